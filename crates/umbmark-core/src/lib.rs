@@ -1,0 +1,20 @@
+//! The science of wheeled-robot odometry error.
+//!
+//! A *model* is a nominal robot plus a chain of [effects](effect). One chain serves both ways: forward, it turns a
+//! [path](path) into wheel motion, encoder ticks and the true pose ([`simulate`], [`monte_carlo`]); backward, it turns
+//! recorded ticks into the predicted pose ([`replay`]), from which robots are scored and calibrated ([`score`],
+//! [`calibrate`]).
+//!
+//! Inside, everything is SI: metres, radians, seconds, ticks. Headings and rotations are counter-clockwise positive.
+//! A text boundary (file column, TOML key, JSON key, flag) carries the unit in its name.
+//!
+//! Nothing here prints, parses flags or knows Python.
+
+pub mod drive;
+pub mod effect;
+pub mod engine;
+pub mod geometry;
+pub mod path;
+
+/// The version of this crate, printed beside every result.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
