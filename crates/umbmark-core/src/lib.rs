@@ -14,6 +14,7 @@ pub mod drive;
 pub mod effect;
 pub mod engine;
 pub mod geometry;
+pub mod parameter;
 pub mod path;
 
 /// The version of this crate, printed beside every result.

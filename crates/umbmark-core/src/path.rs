@@ -1,0 +1,266 @@
+//! What the robot is told to drive.
+//!
+//! A [`Shape`] (one file each) turns its numbers into [`Move`]s for the counter-clockwise direction; the clockwise path
+//! is their mirror image in the START heading. START is the origin, heading along the x axis. A [`SpeedProfile`] says how
+//! fast each move is driven, from rest to rest.
+
+mod circle;
+mod figure_eight;
+mod rectangle;
+mod speed;
+mod spin;
+mod square;
+mod straight;
+mod waypoints;
+
+use crate::drive::{DifferentialDrive, WheelTravel};
+use crate::geometry::{Displacement2, Pose2};
+use crate::parameter::{Parameter, ParameterError};
+
+pub use circle::CIRCLE;
+pub use figure_eight::FIGURE_EIGHT;
+pub use rectangle::RECTANGLE;
+pub use speed::{SpeedProfile, Trapezoid};
+pub use spin::SPIN;
+pub use square::SQUARE;
+pub use straight::STRAIGHT;
+pub use waypoints::WAYPOINTS;
+
+/// Every shape there is.
+pub static SHAPES: &[&Shape] = &[&SQUARE, &RECTANGLE, &FIGURE_EIGHT, &CIRCLE, &STRAIGHT, &SPIN, &WAYPOINTS];
+
+/// The sense in which a path is driven round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Direction {
+    /// Clockwise: right turns.
+    Cw,
+    /// Counter-clockwise: left turns.
+    Ccw,
+}
+
+impl Direction {
+    /// Both, in the order of the paper.
+    pub const BOTH: [Direction; 2] = [Direction::Cw, Direction::Ccw];
+
+    /// "cw" or "ccw", as in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Direction::Cw => "cw",
+            Direction::Ccw => "ccw",
+        }
+    }
+
+    /// +1 for counter-clockwise, -1 for clockwise: the sign of its turns.
+    pub fn sign(self) -> f64 {
+        match self {
+            Direction::Cw => -1.0,
+            Direction::Ccw => 1.0,
+        }
+    }
+}
+
+/// One piece of a path, driven from rest to rest at a constant ratio of the wheel speeds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Move {
+    /// Straight ahead by a length \[m\]; negative is backward.
+    Straight {
+        /// \[m\]
+        length: f64,
+    },
+    /// A turn on the spot.
+    Turn {
+        /// \[rad\], counter-clockwise positive.
+        angle: f64,
+    },
+    /// A circular arc, driven forward.
+    Arc {
+        /// Radius of the path of the axle's centre \[m\], positive.
+        radius: f64,
+        /// Change of heading \[rad\], counter-clockwise positive.
+        angle: f64,
+    },
+}
+
+impl Move {
+    /// The body motion of this move.
+    pub fn displacement(&self) -> Displacement2 {
+        let (forward, rotation) = match *self {
+            Move::Straight { length } => (length, 0.0),
+            Move::Turn { angle } => (0.0, angle),
+            Move::Arc { radius, angle } => (radius * angle.abs(), angle),
+        };
+        Displacement2 { forward, sideways: 0.0, rotation }
+    }
+
+    /// The wheel travels that a robot believes to make for this move.
+    pub fn wheel_travel(&self, drive: &DifferentialDrive) -> WheelTravel {
+        let d = self.displacement();
+        drive.wheel_travel(d.forward, d.rotation)
+    }
+
+    fn mirrored(self) -> Move {
+        match self {
+            Move::Straight { length } => Move::Straight { length },
+            Move::Turn { angle } => Move::Turn { angle: -angle },
+            Move::Arc { radius, angle } => Move::Arc { radius, angle: -angle },
+        }
+    }
+}
+
+/// A kind of path: how its numbers become moves.
+#[derive(Debug)]
+pub struct Shape {
+    /// Its name in files and flags.
+    pub name: &'static str,
+    /// What it is and what it is for, in a sentence.
+    pub about: &'static str,
+    /// Its numbers. Empty for waypoints, whose numbers are a list of points.
+    pub parameters: &'static [Parameter],
+    moves: fn(&[f64]) -> Vec<Move>,
+}
+
+/// What makes a path impossible.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PathError {
+    /// A number of the shape or of the speed profile is out of range.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// Too few or too many numbers for the shape.
+    #[error("{shape} takes {expected} numbers, got {got}")]
+    Count {
+        /// The shape.
+        shape: &'static str,
+        /// How many it takes.
+        expected: usize,
+        /// How many were given.
+        got: usize,
+    },
+    /// Waypoints that are no path.
+    #[error("waypoints must be two or more finite, distinct points in a row; point {index} is ({x}, {y})")]
+    Waypoint {
+        /// Number of the offending point, from 1.
+        index: usize,
+        /// \[m\]
+        x: f64,
+        /// \[m\]
+        y: f64,
+    },
+}
+
+/// A path to be driven in either direction.
+///
+/// ```
+/// use umbmark_core::path::{Direction, Path};
+/// let path = Path::umbmark();
+/// assert_eq!(path.moves(Direction::Cw).len(), 8);
+/// assert!((path.length() - 16.0).abs() < 1e-12);
+/// let end = path.end(Direction::Ccw);
+/// assert!(end.x.abs() < 1e-12 && end.y.abs() < 1e-12);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Path {
+    shape: &'static Shape,
+    values: Vec<f64>,
+    moves: Vec<Move>,
+    /// How fast it is driven.
+    pub speed: SpeedProfile,
+}
+
+impl Path {
+    /// A path of a given shape with its numbers in the order of [`Shape::parameters`].
+    pub fn new(shape: &'static Shape, values: &[f64], speed: SpeedProfile) -> Result<Path, PathError> {
+        if std::ptr::eq(shape, &WAYPOINTS) {
+            waypoints::check(values)?;
+        } else if values.len() != shape.parameters.len() {
+            return Err(PathError::Count { shape: shape.name, expected: shape.parameters.len(), got: values.len() });
+        }
+        for (parameter, value) in shape.parameters.iter().zip(values) {
+            parameter.check(*value)?;
+        }
+        Ok(Path { shape, values: values.to_vec(), moves: (shape.moves)(values), speed })
+    }
+
+    /// The paper's 4 x 4 m square at 0.2 m/s.
+    pub fn umbmark() -> Path {
+        Path::new(&SQUARE, &[4.0], SpeedProfile::default()).expect("4 m is a side")
+    }
+
+    /// What kind of path it is.
+    pub fn shape(&self) -> &'static Shape {
+        self.shape
+    }
+
+    /// Its numbers, in the order of the shape's parameters.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The moves in order.
+    pub fn moves(&self, direction: Direction) -> Vec<Move> {
+        match direction {
+            Direction::Ccw => self.moves.clone(),
+            Direction::Cw => self.moves.iter().map(|m| m.mirrored()).collect(),
+        }
+    }
+
+    /// Length travelled by the axle's centre \[m\].
+    pub fn length(&self) -> f64 {
+        self.moves.iter().map(|m| m.displacement().forward.abs()).sum()
+    }
+
+    /// Where a robot without errors ends, seen from START.
+    pub fn end(&self, direction: Direction) -> Pose2 {
+        self.moves(direction).iter().fold(Pose2::IDENTITY, |pose, m| pose.moved(&m.displacement()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn path(shape: &'static Shape, values: &[f64]) -> Path {
+        Path::new(shape, values, SpeedProfile::default()).unwrap()
+    }
+
+    #[test]
+    fn closed_shapes_close_in_both_directions_and_mirror_each_other() {
+        for p in [
+            path(&SQUARE, &[4.0]),
+            path(&RECTANGLE, &[7.0, 4.0]),
+            path(&FIGURE_EIGHT, &[2.0]),
+            path(&CIRCLE, &[1.5, 2.0]),
+            path(&SPIN, &[5.0]),
+        ] {
+            let (mut right, mut left) = (Pose2::IDENTITY, Pose2::IDENTITY);
+            for (cw, ccw) in p.moves(Direction::Cw).iter().zip(p.moves(Direction::Ccw)) {
+                right = right.moved(&cw.displacement());
+                left = left.moved(&ccw.displacement());
+                assert!((right.x - left.x).abs() < 1e-12 && (right.y + left.y).abs() < 1e-12, "{}", p.shape().name);
+            }
+            for end in [right, left] {
+                assert!(end.x.abs() < 1e-12 && end.y.abs() < 1e-12, "{} {end:?}", p.shape().name);
+                assert!(libm::sin(end.heading).abs() < 1e-12 && libm::cos(end.heading) > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn the_ccw_square_lies_to_the_left_of_start_and_has_the_length_of_its_sides() {
+        let p = path(&SQUARE, &[4.0]);
+        let corner = p.moves(Direction::Ccw)[..3].iter().fold(Pose2::IDENTITY, |q, m| q.moved(&m.displacement()));
+        assert!((corner.x - 4.0).abs() < 1e-12 && (corner.y - 4.0).abs() < 1e-12);
+        assert!((path(&RECTANGLE, &[7.0, 4.0]).length() - 22.0).abs() < 1e-12);
+        assert!((path(&CIRCLE, &[1.5, 2.0]).length() - 6.0 * std::f64::consts::PI).abs() < 1e-12);
+        assert_eq!(path(&STRAIGHT, &[10.0]).end(Direction::Cw), Pose2::new(10.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused() {
+        let refuse = |shape, values: &[f64]| Path::new(shape, values, SpeedProfile::default()).unwrap_err().to_string();
+        assert_eq!(refuse(&SQUARE, &[-4.0]), "side_m must be between 0.001 and 10000 m, got -4");
+        assert_eq!(refuse(&SQUARE, &[]), "square takes 1 numbers, got 0");
+        assert!(refuse(&WAYPOINTS, &[1.0, 0.0, 1.0, 0.0]).contains("point 2"));
+        assert!(refuse(&WAYPOINTS, &[f64::NAN, 0.0]).contains("point 1"));
+    }
+}

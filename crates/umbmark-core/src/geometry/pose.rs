@@ -80,11 +80,7 @@ impl<T: Real> Pose2<T> {
     #[inline]
     pub fn inverse(&self) -> Pose2<T> {
         let (sine, cosine) = self.heading.sine_cosine();
-        Pose2 {
-            x: -(cosine * self.x + sine * self.y),
-            y: sine * self.x - cosine * self.y,
-            heading: -self.heading,
-        }
+        Pose2 { x: -(cosine * self.x + sine * self.y), y: sine * self.x - cosine * self.y, heading: -self.heading }
     }
 
     /// `other` as seen from this pose: `inverse(self) * other`, without cancelling large world coordinates.
@@ -183,7 +179,10 @@ mod tests {
             let error = (matrix(&Pose2::exp(&log)) - matrix(&pose)).abs().max();
             assert!(error < 1e-14, "{d:?}: {error:e}");
             if d.rotation.abs() < PI {
-                assert!((log.forward - d.forward).abs() < 1e-13 && (log.sideways - d.sideways).abs() < 1e-13, "{d:?} {log:?}");
+                assert!(
+                    (log.forward - d.forward).abs() < 1e-13 && (log.sideways - d.sideways).abs() < 1e-13,
+                    "{d:?} {log:?}"
+                );
             }
         }
     }

@@ -1,0 +1,106 @@
+//! Differential drive: two driven wheels on one axle.
+
+use super::{DriveError, positive};
+use crate::geometry::{Displacement2, Real};
+
+/// Distance rolled by each wheel \[m\], forward positive.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WheelTravel<T = f64> {
+    /// \[m\]
+    pub left: T,
+    /// \[m\]
+    pub right: T,
+}
+
+impl<T: Real> WheelTravel<T> {
+    /// Both wheels' travel times a number.
+    #[inline]
+    pub fn scaled(&self, factor: f64) -> WheelTravel<T> {
+        WheelTravel { left: self.left * factor, right: self.right * factor }
+    }
+}
+
+/// The nominal kinematics of a differential drive.
+///
+/// forward = (s_R + s_L)/2, rotation = (s_R - s_L)/b, with wheel travels s_L, s_R and wheelbase b: Crowley & Reignier
+/// (1992), as used by Borenstein & Feng (1995).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DifferentialDrive {
+    wheelbase: f64,
+    wheel_diameter_left: f64,
+    wheel_diameter_right: f64,
+}
+
+impl DifferentialDrive {
+    /// A drive from its wheelbase and wheel diameters \[m\], all positive and finite.
+    pub fn new(wheelbase: f64, wheel_diameter_left: f64, wheel_diameter_right: f64) -> Result<Self, DriveError> {
+        Ok(DifferentialDrive {
+            wheelbase: positive("wheelbase", wheelbase, "m")?,
+            wheel_diameter_left: positive("wheel diameter (left)", wheel_diameter_left, "m")?,
+            wheel_diameter_right: positive("wheel diameter (right)", wheel_diameter_right, "m")?,
+        })
+    }
+
+    /// b \[m\]: distance between the contact points of the two drive wheels.
+    #[doc(alias = "track_width")]
+    #[doc(alias = "wheel_separation")]
+    pub fn wheelbase(&self) -> f64 {
+        self.wheelbase
+    }
+
+    /// D_L \[m\].
+    pub fn wheel_diameter_left(&self) -> f64 {
+        self.wheel_diameter_left
+    }
+
+    /// D_R \[m\].
+    pub fn wheel_diameter_right(&self) -> f64 {
+        self.wheel_diameter_right
+    }
+
+    /// Body motion of the axle's centre for given wheel travels, at constant ratio of the wheel speeds.
+    #[inline]
+    pub fn displacement<T: Real>(&self, travel: &WheelTravel<T>) -> Displacement2<T> {
+        Displacement2 {
+            forward: (travel.right + travel.left) * 0.5,
+            sideways: T::from(0.0),
+            rotation: (travel.right - travel.left) / self.wheelbase,
+        }
+    }
+
+    /// Wheel travels that make the axle's centre advance `forward` \[m\] while the body turns by `rotation` \[rad\].
+    #[inline]
+    pub fn wheel_travel(&self, forward: f64, rotation: f64) -> WheelTravel {
+        let half = 0.5 * self.wheelbase * rotation;
+        WheelTravel { left: forward - half, right: forward + half }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wheel_travel_and_displacement_undo_each_other() {
+        let drive = DifferentialDrive::new(0.34, 0.15, 0.15).unwrap();
+        for (forward, rotation) in [(4.0, 0.0), (0.0, -1.5), (-0.3, 0.7)] {
+            let d = drive.displacement(&drive.wheel_travel(forward, rotation));
+            assert!((d.forward - forward).abs() < 1e-15 && (d.rotation - rotation).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn the_right_wheel_alone_turns_the_body_to_the_left() {
+        let drive = DifferentialDrive::new(0.5, 0.15, 0.15).unwrap();
+        let d = drive.displacement(&WheelTravel { left: 0.0, right: 0.1 });
+        assert_eq!((d.forward, d.rotation), (0.05, 0.2));
+    }
+
+    #[test]
+    fn impossible_lengths_are_refused_with_the_offending_value() {
+        for (bad, text) in [(-0.34, "-0.34"), (0.0, "0"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
+            let error = DifferentialDrive::new(bad, 0.15, 0.15).unwrap_err().to_string();
+            assert_eq!(error, format!("wheelbase must be positive and finite, got {text} m"));
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! A number a user can set: its name, unit, bounds, usual value and meaning.
+//!
+//! Effects, path shapes and speed profiles describe their numbers with the same type, so that files, flags, help and
+//! error messages are all made from one description.
+
+use crate::drive::Robot;
+
+/// The description of one number.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Its name in files: the unit stands in the name unless it is a ratio or a count.
+    pub name: &'static str,
+    /// Its command-line flag, without the dashes.
+    pub flag: &'static str,
+    /// Its unit; empty for a pure number.
+    pub unit: &'static str,
+    /// The value where none is given.
+    pub default: DefaultValue,
+    /// A usual size: for an effect, of the departure from the value that does nothing.
+    pub typical: f64,
+    /// Smallest and largest value allowed.
+    pub bounds: (f64, f64),
+    /// What it is, in a short sentence.
+    pub meaning: &'static str,
+    /// Where the number stands for one of a few words: the words, in order from zero.
+    pub choices: &'static [&'static str],
+}
+
+/// The value of a parameter that nobody set.
+#[derive(Clone, Copy, Debug)]
+pub enum DefaultValue {
+    /// A number.
+    Value(f64),
+    /// A number that the robot has.
+    OfRobot(fn(&Robot) -> f64),
+}
+
+impl DefaultValue {
+    /// The number itself.
+    pub fn resolve(&self, robot: &Robot) -> f64 {
+        match self {
+            DefaultValue::Value(value) => *value,
+            DefaultValue::OfRobot(of) => of(robot),
+        }
+    }
+}
+
+/// A parameter that cannot have the value it was given.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{name} must be {allowed}, got {value}")]
+pub struct ParameterError {
+    /// The parameter.
+    pub name: &'static str,
+    /// What it was given.
+    pub value: f64,
+    /// What it may be, in words.
+    pub allowed: String,
+}
+
+impl Parameter {
+    /// `value`, if it is finite and within the bounds.
+    pub fn check(&self, value: f64) -> Result<f64, ParameterError> {
+        let (lowest, highest) = self.bounds;
+        let whole = self.choices.is_empty() || value.fract() == 0.0;
+        if value.is_finite() && value >= lowest && value <= highest && whole {
+            return Ok(value);
+        }
+        Err(ParameterError { name: self.name, value, allowed: self.allowed() })
+    }
+
+    /// The allowed values in words: "between 0.5 and 2", "0 or more, in m".
+    pub fn allowed(&self) -> String {
+        if !self.choices.is_empty() {
+            return format!("one of {}", self.choices.join(", "));
+        }
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        match self.bounds {
+            (f64::NEG_INFINITY, f64::INFINITY) => format!("a finite number{unit}"),
+            (lowest, f64::INFINITY) => format!("{lowest}{unit} or more"),
+            (f64::NEG_INFINITY, highest) => format!("{highest}{unit} or less"),
+            (lowest, highest) => format!("between {lowest} and {highest}{unit}"),
+        }
+    }
+}
+
+/// The member of `names` that `word` was probably meant to be, if one is near.
+pub fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let word = word.to_lowercase();
+    names
+        .into_iter()
+        .map(|name| (edit_distance(&word, &name.to_lowercase()), name))
+        .filter(|(distance, name)| *distance <= 2.max(name.len() / 3))
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, name)| name)
+}
+
+/// Levenshtein distance in characters.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, cb) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(ca != *cb);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RATIO: Parameter = Parameter {
+        name: "e_d",
+        flag: "ed",
+        unit: "",
+        default: DefaultValue::Value(1.0),
+        typical: 1e-3,
+        bounds: (0.5, 2.0),
+        meaning: "",
+        choices: &[],
+    };
+
+    #[test]
+    fn values_out_of_bounds_and_not_finite_are_refused_with_the_range() {
+        assert_eq!(RATIO.check(1.01), Ok(1.01));
+        assert_eq!(RATIO.check(3.0).unwrap_err().to_string(), "e_d must be between 0.5 and 2, got 3");
+        assert!(RATIO.check(f64::NAN).is_err());
+    }
+
+    #[test]
+    fn a_slip_of_the_keyboard_finds_its_word_and_nonsense_finds_none() {
+        let names = ["wheelbase", "wheel_noise", "scale"];
+        assert_eq!(nearest("wheelbsae", names), Some("wheelbase"));
+        assert_eq!(nearest("Wheel_nose", names), Some("wheel_noise"));
+        assert_eq!(nearest("zzz", names), None);
+    }
+}

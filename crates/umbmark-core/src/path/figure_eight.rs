@@ -1,0 +1,24 @@
+//! The crossing figure-eight.
+
+use super::square::SIDE_BOUNDS;
+use super::{Move, Shape};
+use crate::parameter::{DefaultValue, Parameter};
+use std::f64::consts::TAU;
+
+/// A full circle to the left, then one to the right, through START. To first order it shows E_d in the return heading
+/// only and E_b in the return position only.
+pub static FIGURE_EIGHT: Shape = Shape {
+    name: "figure_eight",
+    about: "a full circle to one side, then a full circle to the other, crossing at START",
+    parameters: &[Parameter {
+        name: "radius_m",
+        flag: "radius",
+        unit: "m",
+        default: DefaultValue::Value(2.0),
+        typical: 2.0,
+        bounds: SIDE_BOUNDS,
+        meaning: "radius of each circle",
+        choices: &[],
+    }],
+    moves: |values| [TAU, -TAU].map(|angle| Move::Arc { radius: values[0], angle }).to_vec(),
+};

@@ -1,0 +1,150 @@
+//! How fast a move is driven.
+
+use super::PathError;
+use crate::parameter::{DefaultValue, Parameter};
+
+/// Trapezoidal speed from rest to rest, and a pause before the next move.
+///
+/// `speed` and `acceleration` are those of the faster wheel, as in section 4.1 of the paper, where 0.2 m/s is both the
+/// speed on the legs and the greatest wheel speed in the turns. A move too short to reach the speed is a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpeedProfile {
+    speed: f64,
+    acceleration: f64,
+    pause: f64,
+}
+
+impl Default for SpeedProfile {
+    /// 0.2 m/s (the paper, section 4.1), 0.2 m/s² and a pause of 1 s (assumed).
+    fn default() -> Self {
+        SpeedProfile { speed: 0.2, acceleration: 0.2, pause: 1.0 }
+    }
+}
+
+impl SpeedProfile {
+    /// The numbers of a profile, in the order of [`SpeedProfile::new`].
+    pub const PARAMETERS: [Parameter; 3] = [
+        Parameter {
+            name: "speed_m_s",
+            flag: "speed",
+            unit: "m/s",
+            default: DefaultValue::Value(0.2),
+            typical: 0.2,
+            bounds: (1e-4, 100.0),
+            meaning: "greatest speed of the faster wheel",
+            choices: &[],
+        },
+        Parameter {
+            name: "acceleration_m_s2",
+            flag: "acceleration",
+            unit: "m/s^2",
+            default: DefaultValue::Value(0.2),
+            typical: 0.2,
+            bounds: (1e-4, 1000.0),
+            meaning: "acceleration of the faster wheel",
+            choices: &[],
+        },
+        Parameter {
+            name: "pause_s",
+            flag: "pause",
+            unit: "s",
+            default: DefaultValue::Value(1.0),
+            typical: 1.0,
+            bounds: (0.0, 3600.0),
+            meaning: "rest between two moves",
+            choices: &[],
+        },
+    ];
+
+    /// A profile from speed \[m/s\], acceleration \[m/s²\] and pause \[s\].
+    pub fn new(speed: f64, acceleration: f64, pause: f64) -> Result<Self, PathError> {
+        for (parameter, value) in Self::PARAMETERS.iter().zip([speed, acceleration, pause]) {
+            parameter.check(value)?;
+        }
+        Ok(SpeedProfile { speed, acceleration, pause })
+    }
+
+    /// Speed, acceleration and pause \[m/s, m/s², s\].
+    pub fn values(&self) -> [f64; 3] {
+        [self.speed, self.acceleration, self.pause]
+    }
+
+    /// Rest between two moves \[s\].
+    pub fn pause(&self) -> f64 {
+        self.pause
+    }
+
+    /// The profile of a move in which the faster wheel rolls `travel` \[m\] (sign ignored).
+    pub fn over(&self, travel: f64) -> Trapezoid {
+        let travel = travel.abs();
+        let ramp = (self.speed / self.acceleration).min((travel / self.acceleration).sqrt());
+        let top = ramp * self.acceleration;
+        let cruise = if top > 0.0 { (travel - top * ramp) / top } else { 0.0 };
+        Trapezoid { ramp, cruise: cruise.max(0.0) }
+    }
+}
+
+/// Fraction of a move's travel done as a function of time: quadratic, linear, quadratic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trapezoid {
+    /// Duration of each ramp \[s\].
+    pub ramp: f64,
+    /// Duration at constant speed \[s\].
+    pub cruise: f64,
+}
+
+impl Trapezoid {
+    /// \[s\]
+    pub fn duration(&self) -> f64 {
+        2.0 * self.ramp + self.cruise
+    }
+
+    /// Share of the travel done at `time` \[s\] after the start: 0 before it, 1 after the end.
+    pub fn fraction(&self, time: f64) -> f64 {
+        let total = self.ramp + self.cruise;
+        if time <= 0.0 {
+            0.0
+        } else if time >= self.duration() {
+            1.0
+        } else if time < self.ramp {
+            0.5 * time * time / self.ramp / total
+        } else if time <= total {
+            (time - 0.5 * self.ramp) / total
+        } else {
+            let left = self.duration() - time;
+            1.0 - 0.5 * left * left / self.ramp / total
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_profile_covers_the_travel_with_the_given_speed_and_acceleration() {
+        let profile = SpeedProfile::new(0.5, 0.25, 1.0).unwrap();
+        for travel in [4.0, 1.0, 0.3, -4.0] {
+            let t = profile.over(travel);
+            let step = 1e-4;
+            let (mut fastest, mut before, mut steepest) = (0.0_f64, 0.0, 0.0_f64);
+            let mut speed_before = 0.0;
+            for i in 1..=(t.duration() / step) as usize {
+                let position = t.fraction(i as f64 * step) * travel.abs();
+                let speed = (position - before) / step;
+                fastest = fastest.max(speed);
+                steepest = steepest.max((speed - speed_before).abs() / step);
+                (before, speed_before) = (position, speed);
+            }
+            assert!((before - travel.abs()).abs() < 1e-4, "{travel}: {before}");
+            let expected = 0.5_f64.min((travel.abs() * 0.25).sqrt());
+            assert!((fastest - expected).abs() < 1e-4 && steepest < 0.25 + 1e-3, "{travel}: {fastest} {steepest}");
+        }
+    }
+
+    #[test]
+    fn no_travel_takes_no_time_and_is_done_at_once() {
+        let t = SpeedProfile::default().over(0.0);
+        assert_eq!((t.duration(), t.fraction(0.0), t.fraction(1.0)), (0.0, 0.0, 1.0));
+    }
+}

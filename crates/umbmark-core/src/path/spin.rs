@@ -1,0 +1,13 @@
+//! Turns on the spot.
+
+use super::circle::TURNS;
+use super::{Move, Shape};
+use std::f64::consts::TAU;
+
+/// Full turns on the spot: E_d does nothing here, so E_b (with scrub) stands alone.
+pub static SPIN: Shape = Shape {
+    name: "spin",
+    about: "one or more full turns on the spot",
+    parameters: &[TURNS],
+    moves: |values| vec![Move::Turn { angle: TAU * values[0] }],
+};

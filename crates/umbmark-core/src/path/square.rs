@@ -1,0 +1,29 @@
+//! The square of UMBmark.
+
+use super::{Move, Shape};
+use crate::parameter::{DefaultValue, Parameter};
+use std::f64::consts::FRAC_PI_2;
+
+pub(super) const SIDE_BOUNDS: (f64, f64) = (1e-3, 1e4);
+
+/// Four straight legs and four quarter turns on the spot: Borenstein & Feng (1995), section 3.
+pub static SQUARE: Shape = Shape {
+    name: "square",
+    about: "four straight legs, each followed by a quarter turn on the spot: the path of UMBmark",
+    parameters: &[Parameter {
+        name: "side_m",
+        flag: "side",
+        unit: "m",
+        default: DefaultValue::Value(4.0),
+        typical: 4.0,
+        bounds: SIDE_BOUNDS,
+        meaning: "length of a side",
+        choices: &[],
+    }],
+    moves: |values| sides(&[values[0]; 4]),
+};
+
+/// Legs of the given lengths \[m\], a quarter turn to the left after each.
+pub(super) fn sides(lengths: &[f64]) -> Vec<Move> {
+    lengths.iter().flat_map(|&length| [Move::Straight { length }, Move::Turn { angle: FRAC_PI_2 }]).collect()
+}
