@@ -1,1 +1,309 @@
+//! What makes a robot's true motion differ from what its odometry believes.
+//!
+//! An [`Effect`] is written once, in one file, as a change of motion from believed to true. The same change serves
+//! simulation (believed = commanded) and replay (believed = recorded ticks), with values (`f64`) or with derivatives
+//! ([`Dual`]). To add one: write its file, and its line in the [`CATALOGUE`].
+//!
+//! ```text
+//! believed wheel travel -> [wheels] -> true wheel travel -> kinematics -> [body] -> true motion -> true pose
+//!                                                               ^ diffusion, bumps                    | [start]
+//!                                                                                  measured pose <- [measured]
+//! ```
 
+mod bumps;
+mod model;
+mod placed_bumps;
+mod reference_noise;
+mod scale;
+mod start_pose;
+mod wheel_diameter_ratio;
+mod wheel_noise;
+mod wheelbase;
+
+use crate::drive::WheelTravel;
+use crate::geometry::{Displacement2, Dual, Pose2, Real};
+use crate::parameter::{Parameter, nearest};
+use crate::path::Direction;
+use crate::random::Stream;
+
+pub use bumps::extra_travel;
+pub use model::{Chain, Model, ModelError, Part};
+
+/// The largest number of parameters of one effect.
+pub const MAX_PARAMETERS: usize = 6;
+
+/// Every effect there is, in the order in which they act.
+pub static CATALOGUE: &[Entry] = &[
+    Entry::of::<wheel_diameter_ratio::WheelDiameterRatio>(),
+    Entry::of::<wheelbase::Wheelbase>(),
+    Entry::of::<scale::Scale>(),
+    Entry::of::<placed_bumps::PlacedBumps>(),
+    Entry::of::<bumps::Bumps>(),
+    Entry::of::<wheel_noise::WheelNoise>(),
+    Entry::of::<start_pose::StartPose>(),
+    Entry::of::<reference_noise::ReferenceNoise>(),
+];
+
+/// The entry of an effect by its name in files.
+pub fn find(name: &str) -> Result<&'static Entry, ModelError> {
+    CATALOGUE.iter().find(|entry| entry.about.name == name).ok_or_else(|| ModelError::UnknownEffect {
+        name: name.to_owned(),
+        nearest: nearest(name, CATALOGUE.iter().map(|entry| entry.about.name)),
+    })
+}
+
+/// Where an effect acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ActsOn {
+    /// The wheels' true travel.
+    Wheels,
+    /// The body's true motion.
+    Body,
+    /// Where the robot stands when its odometry is set to START.
+    Start,
+    /// The measurement of the absolute pose.
+    Reference,
+}
+
+impl ActsOn {
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            ActsOn::Wheels => "the wheels' true travel",
+            ActsOn::Body => "the body's true motion",
+            ActsOn::Start => "the robot's place at START",
+            ActsOn::Reference => "the absolute measurement",
+        }
+    }
+}
+
+/// What people should know of an effect.
+#[derive(Debug)]
+pub struct About {
+    /// Its name in files.
+    pub name: &'static str,
+    /// Its name in the field.
+    pub title: &'static str,
+    /// Where it acts.
+    pub acts_on: ActsOn,
+    /// Its numbers.
+    pub parameters: &'static [Parameter],
+    /// The law, in plain unicode.
+    pub equation: &'static str,
+    /// The cause.
+    pub physics: &'static str,
+    /// What it does to a square driven both ways.
+    pub signature: &'static str,
+    /// What looks the same in return poses.
+    pub confused_with: &'static [&'static str],
+    /// The experiment that tells it from those.
+    pub separated_by: &'static str,
+    /// Where all this is from.
+    pub source: &'static str,
+}
+
+/// Which test a run belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum TestKind {
+    /// UMBmark on a smooth floor.
+    Systematic,
+    /// Extended UMBmark, with bumps placed on the first leg.
+    Bumps,
+}
+
+impl TestKind {
+    /// "systematic" or "bumps", as in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            TestKind::Systematic => "systematic",
+            TestKind::Bumps => "bumps",
+        }
+    }
+}
+
+/// A stretch of driving at constant ratio of the wheel speeds, as an effect sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Stretch {
+    /// Its number in the run, from 0.
+    pub index: usize,
+    /// Sense of the run.
+    pub direction: Direction,
+    /// Test that the run belongs to.
+    pub test: TestKind,
+    /// Believed wheel travel \[m\].
+    pub travel: WheelTravel,
+}
+
+/// One wheel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wheel {
+    /// The left one.
+    Left,
+    /// The right one.
+    Right,
+}
+
+/// A wheel rolls over something, and its travel over ground falls short of what its encoder counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bump {
+    /// Where in the stretch, as a share of its travel in [0, 1].
+    pub at: f64,
+    /// The wheel that meets it.
+    pub wheel: Wheel,
+    /// Travel counted but not made over ground \[m\].
+    pub lost: f64,
+}
+
+/// Variance of each wheel's true travel about its mean \[m²\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WheelVariance {
+    /// \[m²\]
+    pub left: f64,
+    /// \[m²\]
+    pub right: f64,
+}
+
+/// A physical cause of odometry error. `p` are its parameters, in the order of [`About::parameters`].
+///
+/// Each method that is not overridden changes nothing.
+pub trait Effect {
+    /// What people should know of it.
+    const ABOUT: About;
+
+    /// Changes believed into true wheel travel \[m\].
+    fn wheels<T: Real>(_p: &[T], _travel: &mut WheelTravel<T>) {}
+
+    /// Changes the body motion that true wheel travel makes.
+    fn body<T: Real>(_p: &[T], _motion: &mut Displacement2<T>) {}
+
+    /// Variance that white noise on the wheels gathers over a true travel.
+    fn diffusion(_p: &[f64], _travel: &WheelTravel) -> WheelVariance {
+        WheelVariance::default()
+    }
+
+    /// Adds the bumps that the wheels meet in a stretch, in any order.
+    fn bumps(_p: &[f64], _stretch: &Stretch, _stream: &mut Stream, _met: &mut Vec<Bump>) {}
+
+    /// Where the robot truly stands at START, seen from where it is believed to stand.
+    fn start(_p: &[f64], _stream: &mut Stream) -> Pose2 {
+        Pose2::IDENTITY
+    }
+
+    /// Changes a true pose into the measured one.
+    fn measured(_p: &[f64], _stream: &mut Stream, _pose: &mut Pose2) {}
+}
+
+/// The deterministic part of an effect, for one kind of number.
+#[derive(Clone, Copy, Debug)]
+pub struct Mean<T: Real> {
+    /// See [`Effect::wheels`].
+    pub wheels: fn(&[T], &mut WheelTravel<T>),
+    /// See [`Effect::body`].
+    pub body: fn(&[T], &mut Displacement2<T>),
+}
+
+/// The random part of an effect.
+#[derive(Clone, Copy, Debug)]
+pub struct Scatter {
+    /// See [`Effect::diffusion`].
+    pub diffusion: fn(&[f64], &WheelTravel) -> WheelVariance,
+    /// See [`Effect::bumps`].
+    pub bumps: fn(&[f64], &Stretch, &mut Stream, &mut Vec<Bump>),
+    /// See [`Effect::start`].
+    pub start: fn(&[f64], &mut Stream) -> Pose2,
+    /// See [`Effect::measured`].
+    pub measured: fn(&[f64], &mut Stream, &mut Pose2),
+}
+
+/// An effect of the catalogue.
+#[derive(Debug)]
+pub struct Entry {
+    /// What people should know of it.
+    pub about: About,
+    pub(crate) values: Mean<f64>,
+    pub(crate) duals: Mean<Dual>,
+    pub(crate) scatter: Scatter,
+}
+
+impl Entry {
+    const fn of<E: Effect>() -> Entry {
+        assert!(E::ABOUT.parameters.len() <= MAX_PARAMETERS);
+        Entry {
+            about: E::ABOUT,
+            values: Mean { wheels: E::wheels::<f64>, body: E::body::<f64> },
+            duals: Mean { wheels: E::wheels::<Dual>, body: E::body::<Dual> },
+            scatter: Scatter { diffusion: E::diffusion, bumps: E::bumps, start: E::start, measured: E::measured },
+        }
+    }
+
+    /// A number that names the effect's random stream: a hash of its name (FNV-1a), so that the order of the catalogue
+    /// does not matter.
+    pub(crate) fn purpose(&self) -> u64 {
+        self.about
+            .name
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    }
+}
+
+impl PartialEq for Entry {
+    fn eq(&self, other: &Entry) -> bool {
+        self.about.name == other.about.name
+    }
+}
+
+/// A kind of number that effects can be asked for.
+pub trait Evaluate: Real {
+    /// The deterministic part of an effect for this kind of number.
+    fn mean(entry: &Entry) -> &Mean<Self>;
+}
+
+impl Evaluate for f64 {
+    fn mean(entry: &Entry) -> &Mean<f64> {
+        &entry.values
+    }
+}
+
+impl Evaluate for Dual {
+    fn mean(entry: &Entry) -> &Mean<Dual> {
+        &entry.duals
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::Robot;
+
+    #[test]
+    fn the_catalogue_is_complete_and_consistent() {
+        let mut flags = Vec::new();
+        for entry in CATALOGUE {
+            let about = &entry.about;
+            assert!(std::ptr::eq(find(about.name).unwrap(), entry), "{} stands twice", about.name);
+            for text in [about.title, about.equation, about.physics, about.signature, about.separated_by, about.source]
+            {
+                assert!(text.len() > 3, "{} leaves a text empty", about.name);
+            }
+            for p in about.parameters {
+                assert!(!flags.contains(&p.flag), "--{} stands twice", p.flag);
+                flags.push(p.flag);
+                assert!(!p.meaning.is_empty());
+                p.check(p.default.resolve(&Robot::labmate())).unwrap();
+            }
+            for other in about.confused_with {
+                assert!(*other != about.name);
+            }
+        }
+        let mut purposes: Vec<u64> = CATALOGUE.iter().map(Entry::purpose).collect();
+        purposes.sort_unstable();
+        purposes.dedup();
+        assert_eq!(purposes.len(), CATALOGUE.len());
+    }
+
+    #[test]
+    fn a_misspelt_effect_is_told_its_neighbour() {
+        let error = find("wheel_base").unwrap_err().to_string();
+        assert_eq!(error, "there is no effect \"wheel_base\"; did you mean \"wheelbase\"?");
+    }
+}

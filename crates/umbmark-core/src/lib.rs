@@ -10,12 +10,14 @@
 //!
 //! Nothing here prints, parses flags or knows Python.
 
+pub mod dataset;
 pub mod drive;
 pub mod effect;
 pub mod engine;
 pub mod geometry;
 pub mod parameter;
 pub mod path;
+pub mod random;
 
 /// The version of this crate, printed beside every result.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,0 +1,56 @@
+//! Noise of the absolute measurement.
+
+use super::{About, ActsOn, Effect};
+use crate::geometry::Pose2;
+use crate::parameter::{DefaultValue, Parameter};
+use crate::random::Stream;
+
+/// Independent normal noise on every measured absolute pose.
+pub struct ReferenceNoise;
+
+const fn deviation(
+    name: &'static str,
+    flag: &'static str,
+    unit: &'static str,
+    typical: f64,
+    meaning: &'static str,
+) -> Parameter {
+    Parameter {
+        name,
+        flag,
+        unit,
+        default: DefaultValue::Value(0.0),
+        typical,
+        bounds: (0.0, 10.0),
+        meaning,
+        choices: &[],
+    }
+}
+
+impl Effect for ReferenceNoise {
+    const ABOUT: About = About {
+        name: "reference_noise",
+        title: "noise of the absolute measurement",
+        acts_on: ActsOn::Reference,
+        parameters: &[
+            deviation("position_sd_m", "reference-position-sd", "m", 2e-3, "standard deviation of each coordinate"),
+            deviation("heading_sd_rad", "reference-heading-sd", "rad", 2.6e-3, "standard deviation of the heading"),
+        ],
+        equation: "measured = true + N(0, diag(sd²))",
+        physics: "A tape read to 2 mm and a heading from two such readings (0.15 degree), or the noise of motion capture.",
+        signature: "Scatter that does not grow with the length of the path.",
+        confused_with: &["start_pose"],
+        separated_by: "measuring the same pose twice without driving",
+        source: "usual sizes of tape and motion capture",
+    };
+
+    fn measured(p: &[f64], stream: &mut Stream, pose: &mut Pose2) {
+        if p[0] > 0.0 {
+            pose.x += p[0] * stream.normal();
+            pose.y += p[0] * stream.normal();
+        }
+        if p[1] > 0.0 {
+            pose.heading += p[1] * stream.normal();
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! E_s: the scale.
+
+use super::{About, ActsOn, Effect};
+use crate::drive::WheelTravel;
+use crate::geometry::Real;
+use crate::parameter::{DefaultValue, Parameter};
+
+/// The ratio of the mean true wheel diameter to the nominal one.
+pub struct Scale;
+
+impl Effect for Scale {
+    const ABOUT: About = About {
+        name: "scale",
+        title: "scale, E_s",
+        acts_on: ActsOn::Wheels,
+        parameters: &[Parameter {
+            name: "e_s",
+            flag: "es",
+            unit: "",
+            default: DefaultValue::Value(1.0),
+            typical: 4e-3,
+            bounds: (0.2, 5.0),
+            meaning: "E_s = mean true wheel diameter / mean nominal wheel diameter",
+            choices: &[],
+        }],
+        equation: "s_L ← E_s s_L,  s_R ← E_s s_R",
+        physics: "The mean of both wheel diameters differs from the nominal one: wear, load, tape-measure error. 0.3 to \
+                  0.5 % is what a tape leaves.",
+        signature: "Legs are longer than believed, which a closed square does not show; turns are larger by the same share, \
+                    which looks like E_b. A square determines only E_b/E_s.",
+        confused_with: &["wheelbase", "speed_slip"],
+        separated_by: "the length of one straight leg by tape, or the pose at a stop",
+        source: "Borenstein & Feng (1995), section 2",
+    };
+
+    fn wheels<T: Real>(p: &[T], travel: &mut WheelTravel<T>) {
+        travel.left *= p[0];
+        travel.right *= p[0];
+    }
+}

@@ -1,0 +1,96 @@
+//! Misplacement at START.
+
+use super::{About, ActsOn, Effect};
+use crate::geometry::Pose2;
+use crate::parameter::{DefaultValue, Parameter};
+use crate::random::Stream;
+
+/// The robot does not stand where its odometry is told that it stands.
+pub struct StartPose;
+
+const fn bias(
+    name: &'static str,
+    flag: &'static str,
+    unit: &'static str,
+    typical: f64,
+    meaning: &'static str,
+) -> Parameter {
+    Parameter {
+        name,
+        flag,
+        unit,
+        default: DefaultValue::Value(0.0),
+        typical,
+        bounds: (-10.0, 10.0),
+        meaning,
+        choices: &[],
+    }
+}
+
+impl Effect for StartPose {
+    const ABOUT: About = About {
+        name: "start_pose",
+        title: "START misplacement",
+        acts_on: ActsOn::Start,
+        parameters: &[
+            bias("x_m", "start-x", "m", 2e-3, "constant misplacement along the heading"),
+            bias("y_m", "start-y", "m", 2e-3, "constant misplacement to the left"),
+            bias("heading_rad", "start-heading", "rad", 2e-3, "constant misalignment, counter-clockwise"),
+            Parameter {
+                bounds: (0.0, 10.0),
+                ..bias(
+                    "position_sd_m",
+                    "start-position-sd",
+                    "m",
+                    2e-3,
+                    "scatter of each \
+                coordinate from run to run",
+                )
+            },
+            Parameter {
+                bounds: (0.0, 10.0),
+                ..bias(
+                    "heading_sd_rad",
+                    "start-heading-sd",
+                    "rad",
+                    2e-3,
+                    "scatter of the \
+                heading from run to run",
+                )
+            },
+        ],
+        equation: "world_from_start ← world_from_start · (x, y, δ), with (x, y, δ) ~ N(bias, diag(sd²))",
+        physics: "The robot is pushed to a mark on the floor, and its odometry set to zero whether it stands there or not.",
+        signature: "A heading error δ turns the whole path about START: invisible at the end of a closed path but for the \
+                    heading itself. A position error shifts the return by as much.",
+        confused_with: &["floor_slope", "placed_bumps"],
+        separated_by: "measuring START in every run",
+        source: "Borenstein & Feng (1995), section 3.4, step 1",
+    };
+
+    fn start(p: &[f64], stream: &mut Stream) -> Pose2 {
+        let mut scatter = |sd: f64| if sd > 0.0 { sd * stream.normal() } else { 0.0 };
+        Pose2::new(p[0] + scatter(p[3]), p[1] + scatter(p[3]), p[2] + scatter(p[4]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bias_and_scatter_have_the_stated_sizes() {
+        let n = 20_000;
+        let mut stream = Stream::new(5, 0, 0);
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for _ in 0..n {
+            let d = StartPose::start(&[0.1, 0.0, 0.0, 0.02, 0.0], &mut stream);
+            assert_eq!(d.heading, 0.0);
+            sum += d.x - 0.1;
+            squares += d.y * d.y;
+        }
+        let n = f64::from(n);
+        assert!((sum / n).abs() < 4.0 * 0.02 / n.sqrt());
+        assert!(((squares / n).sqrt() / 0.02 - 1.0).abs() < 4.0 / (2.0 * n).sqrt());
+    }
+}

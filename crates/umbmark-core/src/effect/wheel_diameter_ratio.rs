@@ -1,0 +1,42 @@
+//! E_d: unequal wheel diameters.
+
+use super::{About, ActsOn, Effect};
+use crate::drive::WheelTravel;
+use crate::geometry::Real;
+use crate::parameter::{DefaultValue, Parameter};
+
+/// The ratio of the true wheel diameters, split symmetrically so that their mean stays nominal.
+pub struct WheelDiameterRatio;
+
+impl Effect for WheelDiameterRatio {
+    const ABOUT: About = About {
+        name: "wheel_diameter_ratio",
+        title: "unequal wheel diameters, E_d",
+        acts_on: ActsOn::Wheels,
+        parameters: &[Parameter {
+            name: "e_d",
+            flag: "ed",
+            unit: "",
+            default: DefaultValue::Value(1.0),
+            typical: 1.21e-3,
+            bounds: (0.5, 2.0),
+            meaning: "E_d = D_R/D_L, the ratio of the true wheel diameters beyond their nominal ratio",
+            choices: &[],
+        }],
+        equation: "s_R ← s_R · 2 E_d/(1 + E_d),  s_L ← s_L · 2/(1 + E_d)",
+        physics: "Tyres are never made to the same diameter, and a load off the centre line compresses one more than the \
+                  other. The wheel that is larger rolls farther for the same count.",
+        signature: "A straight leg becomes an arc of curvature (E_d - 1)/b; turns on the spot are unharmed. The return \
+                    heading error per side is L (E_d - 1)/b in both directions of driving.",
+        confused_with: &["direction_dependent_wheelbase", "leg_kick", "speed_slip_right"],
+        separated_by: "a long straight (the heading grows with distance), and spins, which it leaves alone",
+        source: "Borenstein & Feng (1995), section 2; split: Borenstein & Feng (1996), IEEE Trans. Robotics and \
+                 Automation 12(6)",
+    };
+
+    fn wheels<T: Real>(p: &[T], travel: &mut WheelTravel<T>) {
+        let left = (p[0] + 1.0).recip() * 2.0;
+        travel.left *= left;
+        travel.right *= left * p[0];
+    }
+}

@@ -1,0 +1,38 @@
+//! E_b: the effective wheelbase.
+
+use super::{About, ActsOn, Effect};
+use crate::geometry::{Displacement2, Real};
+use crate::parameter::{DefaultValue, Parameter};
+
+/// The ratio of the effective wheelbase to the nominal one.
+pub struct Wheelbase;
+
+impl Effect for Wheelbase {
+    const ABOUT: About = About {
+        name: "wheelbase",
+        title: "effective wheelbase, E_b",
+        acts_on: ActsOn::Body,
+        parameters: &[Parameter {
+            name: "e_b",
+            flag: "eb",
+            unit: "",
+            default: DefaultValue::Value(1.0),
+            typical: 8e-3,
+            bounds: (0.2, 5.0),
+            meaning: "E_b = effective wheelbase / nominal wheelbase",
+            choices: &[],
+        }],
+        equation: "Δθ ← Δθ / E_b",
+        physics: "A tyre touches the floor in an area, not in a point; where in that area it turns is uncertain by up to 1 % \
+                  of the wheelbase. Scrub in turns on the spot acts the same way and is part of what is measured.",
+        signature: "Every turn is too small (E_b > 1) or too large. The return heading error per side is -(E_b - 1) π/2 in \
+                    ccw runs and the opposite in cw runs.",
+        confused_with: &["scale", "turn_slip", "turn_slip_rate", "speed_slip"],
+        separated_by: "spins together with one measured straight leg",
+        source: "Borenstein & Feng (1995), section 2",
+    };
+
+    fn body<T: Real>(p: &[T], motion: &mut Displacement2<T>) {
+        motion.rotation /= p[0];
+    }
+}
