@@ -18,6 +18,8 @@ pub mod geometry;
 pub mod parameter;
 pub mod path;
 pub mod random;
+pub mod score;
+pub mod stats;
 
 /// The version of this crate, printed beside every result.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
