@@ -5,6 +5,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use tempfile::NamedTempFile;
+use umbmark_core::dataset::read_robot;
+use umbmark_core::drive::Robot;
+use umbmark_core::effect::Model;
+use umbmark_core::monte_carlo::Draw;
 
 /// A file that appears under its name only when it is whole.
 #[derive(Debug)]
@@ -59,12 +63,13 @@ impl Write for Pending {
     }
 }
 
-/// The robot of a robot.toml and its path.
-pub fn robot(file: &Path) -> anyhow::Result<(umbmark_core::drive::Robot, umbmark_core::path::Path)> {
-    anyhow::bail!("{}", file.display())
+/// The robot of a robot.toml, and its path: the paper's square where the file says none.
+pub fn robot(file: &Path) -> anyhow::Result<(Robot, umbmark_core::path::Path)> {
+    let (robot, path) = read_robot(file)?;
+    Ok((robot, path.unwrap_or_else(umbmark_core::path::Path::umbmark)))
 }
 
 /// The effects of a model.toml.
-pub fn model(file: &Path, _robot: &umbmark_core::drive::Robot) -> anyhow::Result<(umbmark_core::effect::Model, Vec<umbmark_core::monte_carlo::Draw>)> {
+pub fn model(file: &Path, _robot: &Robot) -> anyhow::Result<(Model, Vec<Draw>)> {
     anyhow::bail!("{}", file.display())
 }
