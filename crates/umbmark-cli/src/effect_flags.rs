@@ -107,9 +107,8 @@ impl FromArgMatches for EffectFlags {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
         let given = every().filter_map(|(entry, parameter)| {
             let value = number_of(matches, parameter);
-            let deviation = has_deviation(parameter)
-                .then(|| matches.get_one::<f64>(&deviation_flag(parameter)).copied())
-                .flatten();
+            let deviation =
+                has_deviation(parameter).then(|| matches.get_one::<f64>(&deviation_flag(parameter)).copied()).flatten();
             (value.is_some() || deviation.is_some()).then_some(Given {
                 effect: entry.about.name,
                 parameter,

@@ -58,3 +58,13 @@ impl Write for Pending {
         self.file.flush()
     }
 }
+
+/// The robot of a robot.toml and its path.
+pub fn robot(file: &Path) -> anyhow::Result<(umbmark_core::drive::Robot, umbmark_core::path::Path)> {
+    anyhow::bail!("{}", file.display())
+}
+
+/// The effects of a model.toml.
+pub fn model(file: &Path, _robot: &umbmark_core::drive::Robot) -> anyhow::Result<(umbmark_core::effect::Model, Vec<umbmark_core::monte_carlo::Draw>)> {
+    anyhow::bail!("{}", file.display())
+}

@@ -15,11 +15,13 @@ pub mod drive;
 pub mod effect;
 pub mod engine;
 pub mod geometry;
-//pub mod monte_carlo;
+pub mod monte_carlo;
 pub mod parameter;
 pub mod path;
 pub mod random;
+pub mod score;
 pub mod simulate;
+pub mod stats;
 
 /// The version of this crate, printed beside every result.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

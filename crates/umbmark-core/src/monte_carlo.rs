@@ -200,7 +200,7 @@ impl Study {
         for (what, runs) in [("number of clockwise runs", self.runs[0]), ("number of ccw runs", self.runs[1])] {
             count(what, runs as u64, 1..MAX_RUNS + 1)?;
         }
-        self.draws.iter().try_for_each(|draw| draw.check(&self.robot))
+        self.draws.iter().try_for_each(Draw::check)
     }
 }
 
@@ -248,8 +248,8 @@ mod tests {
                 ControlFlow::Continue(())
             })
         });
-        let moments =
-            ensemble.unwrap().statistics.iter().flat_map(|(_, s)| [s.mean().to_bits(), s.std_dev().to_bits()]);
+        let ensemble = ensemble.unwrap();
+        let moments = ensemble.statistics.iter().flat_map(|(_, s)| [s.mean().to_bits(), s.std_dev().to_bits()]);
         (rows, moments.collect())
     }
 

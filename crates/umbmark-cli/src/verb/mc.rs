@@ -151,7 +151,8 @@ impl Arguments {
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let (study, assumed) = arguments.study(session.seed())?;
     let metrics = study.metrics();
-    let mut out = arguments.out.as_deref().map(|file| TrialsFile::create(file, &metrics, arguments.force)).transpose()?;
+    let mut out =
+        arguments.out.as_deref().map(|file| TrialsFile::create(file, &metrics, arguments.force)).transpose()?;
     let interrupt = session.catch_interrupt()?;
     let mut progress = session.progress(study.trials, "trials");
     let began = Instant::now();
@@ -250,7 +251,7 @@ impl Report<'_> {
                 (metric.name().to_owned(), value)
             })
             .collect();
-        let model: Vec<Value> = self.study.model.parts().iter().map(|part| {
+        let effects = self.study.model.parts().iter().map(|part| {
             let mut entry = Map::from_iter([("name".to_owned(), json!(part.effect.about.name))]);
             for (parameter, value) in part.effect.about.parameters.iter().zip(&part.values) {
                 let drawn = self
@@ -274,7 +275,7 @@ impl Report<'_> {
             "runs_per_direction": self.study.runs[0],
             "robot": self.study.robot.name,
             "path": { "shape": path.shape().name, "sizes": sizes },
-            "effects": model,
+            "effects": effects.collect::<Vec<Value>>(),
             "assumed": self.assumed,
             "version": umbmark_core::VERSION,
         })
@@ -300,8 +301,14 @@ impl Report<'_> {
             sizes.join(", "),
         );
         for part in study.model.parts() {
-            let values: Vec<String> =
-                part.effect.about.parameters.iter().zip(&part.values).map(|(p, v)| self.value_text(part.effect.about.name, p, *v)).collect();
+            let values: Vec<String> = part
+                .effect
+                .about
+                .parameters
+                .iter()
+                .zip(&part.values)
+                .map(|(p, v)| self.value_text(part.effect.about.name, p, *v))
+                .collect();
             text += &format!("  {}: {}\n", part.effect.about.name, values.join(", "));
         }
         for assumption in self.assumed {

@@ -1,7 +1,6 @@
 //! Parameters that differ from trial to trial.
 
 use super::StudyError;
-use crate::drive::Robot;
 use crate::effect::{ModelError, find};
 use crate::parameter::Parameter;
 use crate::random::Stream;
@@ -50,7 +49,7 @@ pub enum DistributionError {
 }
 
 /// A parameter of an effect and the distribution that it is drawn from.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Draw {
     effect: &'static str,
     parameter: &'static Parameter,
@@ -99,7 +98,7 @@ impl Draw {
         }
     }
 
-    pub(super) fn check(&self, _robot: &Robot) -> Result<(), StudyError> {
+    pub(super) fn check(&self) -> Result<(), StudyError> {
         let ends = match self.distribution {
             Distribution::Normal { mean, .. } => [mean; 2],
             Distribution::Uniform { min, max } => [min, max],

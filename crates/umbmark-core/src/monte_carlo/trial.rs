@@ -5,7 +5,7 @@ use crate::dataset::ReturnError;
 use crate::effect::TestKind;
 use crate::path::Direction;
 use crate::random::Stream;
-use crate::score;
+use crate::score::{self, Cluster, Convention, nonsystematic_orientation};
 use crate::simulate::{Simulator, Truth};
 
 /// Purpose of the stream that parameters are drawn from.
@@ -70,27 +70,35 @@ impl Bench {
         }
         let [cw, ccw] = &self.returned;
         let summary = score::summarise(cw, ccw);
-        let mut row = [0.0; Metric::COUNT];
-        for (slot, metric) in row.iter_mut().zip(Metric::ALL) {
-            *slot = match metric {
-                Metric::EMaxSys => summary.e_max_sys,
-                Metric::Sigma => summary.sigma,
-                Metric::CentroidCwX => summary.centroid_cw[0],
-                Metric::CentroidCwY => summary.centroid_cw[1],
-                Metric::CentroidCcwX => summary.centroid_ccw[0],
-                Metric::CentroidCcwY => summary.centroid_ccw[1],
-                Metric::ReturnHeadingCw => summary.heading_cw,
-                Metric::ReturnHeadingCcw => summary.heading_ccw,
-                Metric::NonsysOrientation => 0.0,
-            };
-        }
-        if self.extended {
-            for direction in Direction::BOTH {
-                for slot in &mut self.bumped[direction as usize] {
-                    *slot = self.simulator.run(&mut self.truth, direction, TestKind::Bumps);
-                }
+        let (heading_cw, heading_ccw) = (heading(summary.cw), heading(summary.ccw));
+        let nonsystematic = if self.extended { self.extended_test(heading_cw, heading_ccw) } else { f64::NAN };
+        let centroid = |cluster: Option<Cluster>| cluster.map_or([f64::NAN; 2], |c| [c.x, c.y]);
+        Metric::ALL.map(|metric| match metric {
+            Metric::EMaxSys => summary.e_max_sys().unwrap_or(f64::NAN),
+            Metric::Sigma => summary.sigma_axis().unwrap_or(f64::NAN),
+            Metric::CentroidCwX => centroid(summary.cw)[0],
+            Metric::CentroidCwY => centroid(summary.cw)[1],
+            Metric::CentroidCcwX => centroid(summary.ccw)[0],
+            Metric::CentroidCcwY => centroid(summary.ccw)[1],
+            Metric::ReturnHeadingCw => heading_cw,
+            Metric::ReturnHeadingCcw => heading_ccw,
+            Metric::NonsysOrientation => nonsystematic,
+        })
+    }
+
+    /// The runs with bumps, and Eq. (5) over them.
+    fn extended_test(&mut self, heading_cw: f64, heading_ccw: f64) -> f64 {
+        for direction in Direction::BOTH {
+            for slot in &mut self.bumped[direction as usize] {
+                *slot = self.simulator.run(&mut self.truth, direction, TestKind::Bumps);
             }
         }
-        row
+        let [cw, ccw] = &self.bumped;
+        nonsystematic_orientation(cw, ccw, heading_cw, heading_ccw, Convention::Mean).unwrap_or(f64::NAN)
     }
+}
+
+/// Mean return heading error of a cluster; every simulated run has one.
+fn heading(cluster: Option<Cluster>) -> f64 {
+    cluster.and_then(|c| c.heading).unwrap_or(f64::NAN)
 }

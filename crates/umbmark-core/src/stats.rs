@@ -1,0 +1,97 @@
+//! Intervals, and quantiles of the usual distributions (thin over `statrs`).
+
+use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
+
+/// A closed interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Its lower end.
+    pub low: f64,
+    /// Its upper end.
+    pub high: f64,
+}
+
+impl Interval {
+    /// `centre` ± `half_width`.
+    pub fn around(centre: f64, half_width: f64) -> Interval {
+        Interval { low: centre - half_width, high: centre + half_width }
+    }
+
+    /// Whether `value` lies in it.
+    pub fn contains(&self, value: f64) -> bool {
+        self.low <= value && value <= self.high
+    }
+
+    /// Both ends times a positive number.
+    pub fn scaled(&self, factor: f64) -> Interval {
+        Interval { low: self.low * factor, high: self.high * factor }
+    }
+}
+
+/// The value that Student's t with `degrees_of_freedom` stays below with `probability`.
+///
+/// NaN for a probability outside (0, 1) or degrees of freedom that are not positive.
+///
+/// ```
+/// # use umbmark_core::stats::student_t_quantile;
+/// assert!((student_t_quantile(0.975, 8.0) - 2.306_004_135).abs() < 1e-8);
+/// ```
+pub fn student_t_quantile(probability: f64, degrees_of_freedom: f64) -> f64 {
+    quantile(StudentsT::new(0.0, 1.0, degrees_of_freedom), probability)
+}
+
+/// The value that chi-squared with `degrees_of_freedom` stays below with `probability`.
+///
+/// NaN for a probability outside (0, 1) or degrees of freedom that are not positive.
+pub fn chi_squared_quantile(probability: f64, degrees_of_freedom: f64) -> f64 {
+    quantile(ChiSquared::new(degrees_of_freedom), probability)
+}
+
+fn quantile<D: ContinuousCDF<f64, f64>, E>(distribution: Result<D, E>, probability: f64) -> f64 {
+    match distribution {
+        Ok(distribution) if probability > 0.0 && probability < 1.0 => distribution.inverse_cdf(probability),
+        _ => f64::NAN,
+    }
+}
+
+/// The value that Hotelling's T² of two coordinates stays below with `probability`, for a covariance estimated with
+/// `degrees_of_freedom` ν.
+///
+/// T² = 2ν/(ν - 1) · F(2, ν - 1), and F with 2 degrees of freedom above has the closed form
+/// P(T² > t) = (1 + t/ν)^(-(ν - 1)/2). Infinite for ν ≤ 1, where every centre is possible.
+///
+/// ```
+/// # use umbmark_core::stats::hotelling_quantile;
+/// assert!((hotelling_quantile(0.95, 8.0) - 2.0 * 8.0 / 7.0 * 4.737_414).abs() < 1e-5);
+/// ```
+pub fn hotelling_quantile(probability: f64, degrees_of_freedom: f64) -> f64 {
+    if degrees_of_freedom <= 1.0 {
+        return f64::INFINITY;
+    }
+    degrees_of_freedom * (libm::pow(1.0 - probability, -2.0 / (degrees_of_freedom - 1.0)) - 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: printed tables of the distributions.
+    #[test]
+    fn quantiles_are_those_of_the_tables() {
+        for (p, df, t) in
+            [(0.975, 1.0, 12.706204736), (0.975, 8.0, 2.306004135), (0.05, 4.0, -2.131847), (0.9875, 8.0, 2.751524)]
+        {
+            assert!((student_t_quantile(p, df) - t).abs() < 2e-5 * t.abs(), "{p} {df}: {}", student_t_quantile(p, df));
+        }
+        for (p, df, x) in [(0.025, 16.0, 6.907664), (0.975, 16.0, 28.845351), (0.5, 8.0, 7.344121)] {
+            assert!((chi_squared_quantile(p, df) - x).abs() < 1e-5 * x, "{p} {df}: {}", chi_squared_quantile(p, df));
+        }
+    }
+
+    #[test]
+    fn what_has_no_quantile_is_not_a_number() {
+        assert!(student_t_quantile(1.0, 8.0).is_nan() && student_t_quantile(0.5, 0.0).is_nan());
+        assert!(chi_squared_quantile(-0.1, 8.0).is_nan() && chi_squared_quantile(f64::NAN, 8.0).is_nan());
+        assert_eq!(hotelling_quantile(0.95, 1.0), f64::INFINITY);
+    }
+}
