@@ -18,6 +18,7 @@ mod document;
 mod error;
 mod folder;
 mod label;
+mod model_file;
 mod optiodom;
 mod recording;
 mod returns;
@@ -28,6 +29,7 @@ mod text;
 mod tick_log;
 
 pub use error::DatasetError;
+pub use model_file::{parse_model, read_model};
 pub use robot_file::{parse_robot, read_robot};
 
 use crate::drive::Robot;

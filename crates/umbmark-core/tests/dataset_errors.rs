@@ -1,5 +1,7 @@
 //! Each piece of unusable input gets one clear error: file, line, column or key, value, what is allowed, what to do.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 mod bad_input;
 
 use bad_input::{Case, cases};
