@@ -14,10 +14,12 @@ pub mod dataset;
 pub mod drive;
 pub mod effect;
 pub mod engine;
+pub mod fit;
 pub mod geometry;
 pub mod parameter;
 pub mod path;
 pub mod random;
+pub mod replay;
 pub mod score;
 pub mod stats;
 
