@@ -1,4 +1,34 @@
-//! Measured (or simulated) robots: what a dataset folder holds, in memory.
+//! Measured (or simulated) robots: what a dataset folder holds, in memory, and its files.
+//!
+//! [`Dataset::load`] takes a folder (`robot.toml`, `returns.csv`, `runs/*.csv`; or one of OptiOdom) or one file of it.
+//! Inside, one file per layout reads text into rows (`returns`, `tick_log`, `optiodom`), a `Recording` mends counts
+//! (roll-overs), `start_frame` moves tracks into the frame of START, and an `Assembly` matches returns with logs.
+//!
+//! ```no_run
+//! use umbmark_core::dataset::Dataset;
+//! let data = Dataset::load("my_robot")?;
+//! println!("{} runs of {}", data.runs.len(), data.nominal_robot()?.name);
+//! # Ok::<(), umbmark_core::dataset::DatasetError>(())
+//! ```
+
+mod assembly;
+mod columns;
+mod dead_reckoning;
+mod document;
+mod error;
+mod folder;
+mod label;
+mod optiodom;
+mod recording;
+mod returns;
+mod robot_file;
+mod sheet;
+mod start_frame;
+mod text;
+mod tick_log;
+
+pub use error::DatasetError;
+pub use robot_file::{parse_robot, read_robot};
 
 use crate::drive::Robot;
 use crate::effect::TestKind;
@@ -46,7 +76,7 @@ pub struct TickLog {
 pub struct Run {
     /// What it is called: file stem or row.
     pub name: String,
-    /// Its number within its direction and test, from 1.
+    /// Its number, unique within its direction and test.
     pub number: u32,
     /// Sense of driving; `None` for paths that have none.
     pub direction: Option<Direction>,
@@ -61,12 +91,32 @@ pub struct Run {
 /// A robot and its runs.
 #[derive(Clone, Debug)]
 pub struct Dataset {
-    /// The nominal robot.
-    pub robot: Robot,
+    /// The nominal robot; `None` where a return sheet was given without one, which is enough for scores.
+    pub robot: Option<Robot>,
     /// The path that it was told to drive, where that is known.
     pub path: Option<Path>,
     /// Its runs.
     pub runs: Vec<Run>,
     /// What the reader noticed and mended, one sentence each.
     pub warnings: Vec<String>,
+}
+
+impl Dataset {
+    /// Reads a dataset folder, an OptiOdom folder, or one file of either. Never touches what it reads.
+    ///
+    /// A single file is taken with the `robot.toml` beside it, if there is one.
+    pub fn load(path: impl AsRef<std::path::Path>) -> Result<Dataset, DatasetError> {
+        folder::load(path.as_ref())
+    }
+
+    /// The nominal robot, for questions that need one.
+    pub fn nominal_robot(&self) -> Result<&Robot, DatasetError> {
+        self.robot.as_ref().ok_or(DatasetError::NoRobot)
+    }
+
+    /// The known return errors of one test and direction, in the order of the runs.
+    pub fn returns(&self, test: TestKind, direction: Direction) -> impl Iterator<Item = ReturnError> + '_ {
+        let fits = move |run: &&Run| run.test == test && run.direction == Some(direction);
+        self.runs.iter().filter(fits).filter_map(|run| run.returned)
+    }
 }

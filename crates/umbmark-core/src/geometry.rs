@@ -13,4 +13,5 @@ mod real;
 
 pub use angle::{circular_mean, wrap};
 pub use pose::{Displacement2, Pose2};
+pub(crate) use real::{COSINE_SERIES, HALF_PI, SINC_SERIES};
 pub use real::{Dual, Real};

@@ -16,11 +16,13 @@ pub mod effect;
 pub mod engine;
 pub mod fit;
 pub mod geometry;
+pub mod monte_carlo;
 pub mod parameter;
 pub mod path;
 pub mod random;
 pub mod replay;
 pub mod score;
+pub mod simulate;
 pub mod stats;
 
 /// The version of this crate, printed beside every result.

@@ -122,14 +122,6 @@ impl Model {
         self.parts.iter().flat_map(|part| part.values.iter().copied())
     }
 
-    /// Replaces all values, in the order of [`Model::values`], without checking their bounds.
-    pub(crate) fn set_values(&mut self, values: &[f64]) {
-        let mut values = values.iter();
-        for slot in self.parts.iter_mut().flat_map(|part| part.values.iter_mut()) {
-            *slot = *values.next().expect("one value a parameter");
-        }
-    }
-
     /// The model's deterministic chain with its own values.
     pub fn chain(&self) -> Chain<f64> {
         let values: Vec<f64> = self.values().collect();
@@ -138,15 +130,14 @@ impl Model {
 
     /// The model's deterministic chain with `values` (numbers or duals) in the order of [`Model::values`].
     pub fn chain_with<T: Evaluate>(&self, values: &[T]) -> Chain<T> {
-        let mut values = values.iter().copied();
-        let links = self.parts.iter().map(|part| {
-            let mut padded = [T::from(0.0); MAX_PARAMETERS];
-            for (slot, value) in padded.iter_mut().zip(values.by_ref().take(part.values.len())) {
-                *slot = value;
-            }
-            Link { mean: *T::mean(part.effect), values: padded }
+        let links = self.parts.iter().map(|part| Link {
+            mean: *T::mean(part.effect),
+            count: part.values.len(),
+            values: [T::from(0.0); MAX_PARAMETERS],
         });
-        Chain { drive: self.robot.drive, links: links.collect() }
+        let mut chain = Chain { drive: self.robot.drive, links: links.collect() };
+        chain.set_values(values);
+        chain
     }
 }
 
@@ -160,10 +151,24 @@ pub struct Chain<T: Evaluate> {
 #[derive(Clone, Debug)]
 struct Link<T: Evaluate> {
     mean: Mean<T>,
+    count: usize,
     values: [T; MAX_PARAMETERS],
 }
 
 impl<T: Evaluate> Chain<T> {
+    /// Replaces all values, in the order of [`Model::values`].
+    ///
+    /// # Panics
+    /// Where there are fewer values than parameters.
+    pub fn set_values(&mut self, values: &[T]) {
+        let mut rest = values;
+        for link in &mut self.links {
+            let own;
+            (own, rest) = rest.split_at(link.count);
+            link.values[..link.count].copy_from_slice(own);
+        }
+    }
+
     /// True wheel travel for a believed one.
     #[inline]
     pub fn wheel_travel(&self, believed: &WheelTravel) -> WheelTravel<T> {

@@ -72,25 +72,34 @@ impl Real for Dual {
     }
 }
 
+/// Coefficients of z, z², ... z⁶ in sinc x = 1 + ..., with z = x² and |x| <= π/4.
+pub(crate) const SINC_SERIES: [f64; 6] = [
+    -1.666_666_666_666_663_2e-1,
+    8.333_333_333_322_49e-3,
+    -1.984_126_982_985_795e-4,
+    2.755_731_370_707_006_8e-6,
+    -2.505_076_025_340_686_3e-8,
+    1.589_690_995_211_55e-10,
+];
+
+/// Coefficients of z², z³, ... z⁷ in cos x = 1 - z/2 + ..., with z = x² and |x| <= π/4.
+pub(crate) const COSINE_SERIES: [f64; 6] = [
+    4.166_666_666_666_66e-2,
+    -1.388_888_888_887_411e-3,
+    2.480_158_728_947_673e-5,
+    -2.755_731_435_139_066_3e-7,
+    2.087_572_321_298_175e-9,
+    -1.135_964_755_778_819_5e-11,
+];
+
+/// π/2 in three parts; a multiple of the first below 2^20 is exact.
+pub(crate) const HALF_PI: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
+
 /// (sin x / x, cos x) for |x| <= π/4: minimax polynomials in x² of degree 12 and 14.
 #[inline]
 pub(crate) fn sinc_cos_near_zero(x: f64) -> (f64, f64) {
-    const S: [f64; 6] = [
-        -1.666_666_666_666_663_2e-1,
-        8.333_333_333_322_49e-3,
-        -1.984_126_982_985_795e-4,
-        2.755_731_370_707_006_8e-6,
-        -2.505_076_025_340_686_3e-8,
-        1.589_690_995_211_55e-10,
-    ];
-    const C: [f64; 6] = [
-        4.166_666_666_666_66e-2,
-        -1.388_888_888_887_411e-3,
-        2.480_158_728_947_673e-5,
-        -2.755_731_435_139_066_3e-7,
-        2.087_572_321_298_175e-9,
-        -1.135_964_755_778_819_5e-11,
-    ];
+    const S: [f64; 6] = SINC_SERIES;
+    const C: [f64; 6] = COSINE_SERIES;
     // Estrin's scheme: independent halves, short dependency chain.
     let z = x * x;
     let z2 = z * z;
@@ -107,7 +116,6 @@ pub(crate) fn sin_cos_reduced(x: f64) -> (f64, f64) {
     if !(x.abs() < 1e5) {
         return libm::sincos(x);
     }
-    const HALF_PI: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
     let quarter_turns = (x * std::f64::consts::FRAC_2_PI).round();
     let rest = ((x - quarter_turns * HALF_PI[0]) - quarter_turns * HALF_PI[1]) - quarter_turns * HALF_PI[2];
     let (sinc, cosine) = sinc_cos_near_zero(rest);

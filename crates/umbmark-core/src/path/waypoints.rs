@@ -22,7 +22,7 @@ pub(super) fn check(values: &[f64]) -> Result<(), PathError> {
         }
         before = (x, y);
     }
-    if values.is_empty() || values.len() % 2 != 0 {
+    if values.is_empty() || !values.len().is_multiple_of(2) {
         return Err(PathError::Count { shape: WAYPOINTS.name, expected: 2, got: values.len() });
     }
     Ok(())

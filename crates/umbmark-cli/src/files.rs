@@ -1,0 +1,70 @@
+//! Files written beside and renamed, so that nobody ever sees half of one; and the files that describe robots.
+
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use tempfile::NamedTempFile;
+
+/// A file that appears under its name only when it is whole.
+#[derive(Debug)]
+pub struct Pending {
+    path: PathBuf,
+    file: BufWriter<NamedTempFile>,
+    force: bool,
+}
+
+impl Pending {
+    /// Begins a file; refuses one that exists unless `force`.
+    pub fn create(path: &Path, force: bool) -> anyhow::Result<Pending> {
+        if !force && path.exists() {
+            anyhow::bail!("{} exists already; --force replaces it", path.display());
+        }
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let file = NamedTempFile::new_in(folder)
+            .with_context(|| format!("cannot write into the folder {}", folder.display()))?;
+        Ok(Pending { path: path.to_owned(), file: BufWriter::new(file), force })
+    }
+
+    /// What to say when writing fails.
+    pub fn failed(&self) -> String {
+        format!("cannot write {}", self.path.display())
+    }
+
+    /// Gives the file its name.
+    pub fn finish(self) -> anyhow::Result<()> {
+        let failed = self.failed();
+        let file = self.file.into_inner().map_err(io::IntoInnerError::into_error).with_context(|| failed.clone())?;
+        file.as_file().sync_all().with_context(|| failed.clone())?;
+        let named = if self.force { file.persist(&self.path) } else { file.persist_noclobber(&self.path) };
+        named.map_err(|error| error.error).with_context(|| failed)?;
+        Ok(())
+    }
+
+    /// Writes a whole file at once.
+    pub fn write_whole(path: &Path, force: bool, text: &str) -> anyhow::Result<()> {
+        let mut file = Pending::create(path, force)?;
+        file.write_all(text.as_bytes()).with_context(|| file.failed())?;
+        file.finish()
+    }
+}
+
+impl Write for Pending {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+/// The robot of a robot.toml and its path.
+pub fn robot(file: &Path) -> anyhow::Result<(umbmark_core::drive::Robot, umbmark_core::path::Path)> {
+    anyhow::bail!("{}", file.display())
+}
+
+/// The effects of a model.toml.
+pub fn model(file: &Path, _robot: &umbmark_core::drive::Robot) -> anyhow::Result<(umbmark_core::effect::Model, Vec<umbmark_core::monte_carlo::Draw>)> {
+    anyhow::bail!("{}", file.display())
+}

@@ -1,0 +1,72 @@
+//! The `umbmark` command as a library: one file per verb.
+//!
+//! Parsing only parses: each verb's `Arguments` are turned into one resolved configuration of the core before anything is
+//! computed. Results go to stdout, messages and progress to stderr.
+
+mod effect_flags;
+mod files;
+mod robot_flags;
+mod session;
+mod table;
+mod terminal;
+mod verb;
+
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser};
+
+pub use session::Session;
+pub use verb::Verb;
+
+/// Measure, explain and correct the odometry error of wheeled robots.
+///
+/// UMBmark (Borenstein & Feng, 1995): drive a square in both directions, compare where the robot is with where it thinks
+/// it is. This tool simulates such tests by the thousand, scores measured ones and calibrates the robot.
+#[derive(Debug, Parser)]
+#[command(
+    name = "umbmark",
+    version,
+    propagate_version = true,
+    arg_required_else_help = true,
+    after_help = "Exit codes: 0 done; 1 the data or the arguments are unusable; 2 wrong usage."
+)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+
+    #[command(flatten)]
+    session: session::Options,
+}
+
+/// The whole command, for help pages, manuals and completions.
+pub fn command() -> clap::Command {
+    Cli::command()
+}
+
+/// Runs the command with its arguments, the program's name first.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(error) => {
+            // clap sends help to stdout and wrong usage to stderr; a closed pipe there is no failure.
+            let _ = error.print();
+            return ExitCode::from(error.exit_code() as u8);
+        }
+    };
+    let mut session = Session::new(cli.session);
+    let outcome = cli.verb.run(&mut session).and_then(|code| Ok(session.flush().map(|()| code)?));
+    match outcome {
+        Ok(code) => code,
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            let _ = writeln!(io::stderr(), "error: {error:#}");
+            ExitCode::from(1)
+        }
+    }
+}
+
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe))
+}

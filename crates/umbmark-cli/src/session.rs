@@ -1,0 +1,146 @@
+//! What all verbs share: options, the way out, and the wish to stop.
+
+use std::io::{self, BufWriter, IsTerminal, Stdout, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use anyhow::Context;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// The options of every verb.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Options {
+    /// Print one JSON document on stdout, and nothing else there
+    #[arg(long, global = true)]
+    pub json: bool,
+
+    /// Seed of all random numbers: the same seed gives the same results
+    #[arg(long, global = true, default_value_t = 1, value_name = "N")]
+    pub seed: u64,
+
+    /// Threads to use; the results do not depend on it [default: all processors]
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+
+    /// No progress bars
+    #[arg(long, global = true)]
+    pub quiet: bool,
+}
+
+/// One run of the command: its options, its standard output, and whether it was asked to stop.
+#[derive(Debug)]
+pub struct Session {
+    options: Options,
+    out: BufWriter<Stdout>,
+    interrupted: Arc<AtomicBool>,
+}
+
+impl Session {
+    pub(crate) fn new(options: Options) -> Session {
+        Session { options, out: BufWriter::new(io::stdout()), interrupted: Arc::new(AtomicBool::new(false)) }
+    }
+
+    /// Whether a JSON document is wanted.
+    pub fn json(&self) -> bool {
+        self.options.json
+    }
+
+    /// The seed of all random numbers.
+    pub fn seed(&self) -> u64 {
+        self.options.seed
+    }
+
+    /// Standard output, buffered.
+    pub fn out(&mut self) -> &mut impl Write {
+        &mut self.out
+    }
+
+    /// Prints one JSON document.
+    pub fn print_json(&mut self, document: &serde_json::Value) -> io::Result<()> {
+        serde_json::to_writer_pretty(&mut self.out, document)?;
+        writeln!(self.out)
+    }
+
+    /// A message for people, on stderr.
+    pub fn message(&self, kind: &str, text: &str) {
+        let _ = writeln!(io::stderr(), "{kind}: {text}");
+    }
+
+    pub(crate) fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+
+    /// Runs `work` on the number of threads that was asked for.
+    pub fn on_threads<R: Send>(&self, work: impl FnOnce() -> R + Send) -> anyhow::Result<R> {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.options.threads.map_or(0, usize::from))
+            .build()
+            .context("cannot start the threads")?;
+        Ok(pool.install(work))
+    }
+
+    /// From now on Ctrl-C asks to stop instead of killing; a second one kills.
+    pub fn catch_interrupt(&self) -> anyhow::Result<Interrupt> {
+        let flag = Arc::clone(&self.interrupted);
+        ctrlc::set_handler(move || {
+            if flag.swap(true, Ordering::SeqCst) {
+                std::process::exit(130);
+            }
+        })
+        .context("cannot catch Ctrl-C")?;
+        Ok(Interrupt(Arc::clone(&self.interrupted)))
+    }
+
+    /// A progress bar on stderr for `total` steps of `unit`; it shows itself only where people look and after a second.
+    pub fn progress(&self, total: u64, unit: &'static str) -> Progress {
+        let shown = !self.options.quiet && io::stderr().is_terminal();
+        Progress { bar: None, total, unit, began: Instant::now(), shown }
+    }
+}
+
+/// Whether Ctrl-C was pressed.
+#[derive(Clone, Debug)]
+pub struct Interrupt(Arc<AtomicBool>);
+
+impl Interrupt {
+    /// Whether Ctrl-C was pressed.
+    pub fn requested(&self) -> bool {
+        self.0.load(Ordering::SeqCst)
+    }
+}
+
+/// A progress bar that appears when the work takes more than a second.
+#[derive(Debug)]
+pub struct Progress {
+    bar: Option<ProgressBar>,
+    total: u64,
+    unit: &'static str,
+    began: Instant,
+    shown: bool,
+}
+
+impl Progress {
+    /// Says that `done` steps are done.
+    pub fn at(&mut self, done: u64) {
+        if self.bar.is_none() && self.shown && self.began.elapsed() > Duration::from_secs(1) {
+            let bar = ProgressBar::with_draw_target(Some(self.total), ProgressDrawTarget::stderr());
+            let template = format!("{{wide_bar}} {{pos}}/{{len}} {} {{eta}} left", self.unit);
+            if let Ok(style) = ProgressStyle::with_template(&template) {
+                bar.set_style(style);
+            }
+            self.bar = Some(bar);
+        }
+        if let Some(bar) = &self.bar {
+            bar.set_position(done);
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! The verbs, one file each.
+
+mod completions;
+mod mc;
+
+use std::process::ExitCode;
+
+use crate::Session;
+
+/// What the command can do.
+#[derive(Debug, clap::Subcommand)]
+pub enum Verb {
+    /// Monte Carlo: simulate whole UMBmark tests by the thousand
+    Mc(Box<mc::Arguments>),
+    /// Print shell completions or the manual page
+    Completions(completions::Arguments),
+}
+
+impl Verb {
+    pub(crate) fn run(self, session: &mut Session) -> anyhow::Result<ExitCode> {
+        match self {
+            Verb::Mc(arguments) => mc::run(*arguments, session),
+            Verb::Completions(arguments) => completions::run(arguments, session),
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! Runs put together from return rows and logs.
+
+use super::dead_reckoning::{EndPose, computed_poses, return_error};
+use super::error::DatasetError;
+use super::label::{self, Named};
+use super::recording::Recording;
+use super::returns::ReturnRow;
+use super::start_frame::move_to_start;
+use super::{Dataset, Run, TickLog};
+use crate::drive::Robot;
+use crate::effect::TestKind;
+use crate::path::{Direction, Path};
+
+/// A log that turns by less than this has no direction \[rad\].
+const LEAST_TURN: f64 = 0.5;
+
+/// A dataset in the making.
+pub(super) struct Assembly {
+    robot: Option<Robot>,
+    path: Option<Path>,
+    runs: Vec<Run>,
+    /// Where each run comes from.
+    places: Vec<String>,
+    has_returns: bool,
+    pub warnings: Vec<String>,
+}
+
+impl Assembly {
+    pub fn new(robot: Option<Robot>, path: Option<Path>) -> Assembly {
+        let (runs, places, warnings) = (Vec::new(), Vec::new(), Vec::new());
+        Assembly { robot, path, runs, places, has_returns: false, warnings }
+    }
+
+    /// Adds the rows of a return sheet; they come before the logs.
+    pub fn add_returns(&mut self, file: &str, rows: &[ReturnRow]) -> Result<(), DatasetError> {
+        self.has_returns = true;
+        for row in rows {
+            let test = row.test.unwrap_or(TestKind::Systematic);
+            let name = label::label(test, row.direction, row.number);
+            let (number, direction, returned) = (row.number, row.direction, Some(row.error));
+            self.push(Run { name, number, direction, test, log: None, returned }, file, row.line)?;
+        }
+        Ok(())
+    }
+
+    /// Adds a log whose file is called `stem`.
+    pub fn add_log(
+        &mut self,
+        recording: Recording,
+        stem: &str,
+        named: Named,
+        end: EndPose,
+    ) -> Result<(), DatasetError> {
+        let file = recording.file.clone();
+        let bits = self.robot.as_ref().and_then(|robot| robot.encoder.counter_bits());
+        let mut log = recording.into_log(self.robot.as_ref(), bits, &mut self.warnings)?;
+        move_to_start(&file, &mut log, &mut self.warnings)?;
+        let computed = self.robot.as_ref().map(|robot| computed_poses(&log, robot)).unwrap_or_default();
+        let returned = return_error(&log, &computed, end);
+        let turned = computed.last().map_or(0.0, |pose| pose.heading);
+        let direction = self.direction(&file, named, turned);
+        if let Some(row) = self.row_of(named, direction) {
+            return self.attach(row, log, stem, &file);
+        }
+        if self.has_returns {
+            let follows = if returned.is_some() { "follows from its log" } else { "is not known" };
+            self.warnings.push(format!("{file}: has no row in the return sheet; its return error {follows}"));
+        }
+        let test = named.test.unwrap_or(TestKind::Systematic);
+        let number = named.number.unwrap_or_else(|| self.next_number(test, direction));
+        let run = Run { name: stem.to_owned(), number, direction, test, log: Some(log), returned };
+        self.push(run, &file, 1)
+    }
+
+    /// The dataset, its runs in order.
+    pub fn finish(self) -> Dataset {
+        let Assembly { robot, path, mut runs, warnings, .. } = self;
+        runs.sort_by_key(|run| (run.test, run.direction, run.number));
+        Dataset { robot, path, runs, warnings }
+    }
+
+    fn push(&mut self, run: Run, file: &str, line: usize) -> Result<(), DatasetError> {
+        let key = |run: &Run| (run.test, run.direction, run.number);
+        if let Some(first) = self.runs.iter().position(|other| key(other) == key(&run)) {
+            return Err(DatasetError::DuplicateRun {
+                file: file.to_owned(),
+                line,
+                run: label::spoken(run.test, run.direction, run.number),
+                first: self.places[first].clone(),
+            });
+        }
+        self.runs.push(run);
+        self.places.push(format!("{file}:{line}"));
+        Ok(())
+    }
+
+    /// What the name says, else what the ticks say.
+    fn direction(&mut self, file: &str, named: Named, turned: f64) -> Option<Direction> {
+        let driven = match turned {
+            _ if turned > LEAST_TURN => Some(Direction::Ccw),
+            _ if turned < -LEAST_TURN => Some(Direction::Cw),
+            _ => None,
+        };
+        if let (Some(name), Some(ticks)) = (named.direction, driven.filter(|d| named.direction != Some(*d))) {
+            let (name, ticks) = (name.name(), ticks.name());
+            self.warnings.push(format!(
+                "{file}: its name says {name}, its ticks turn {ticks}; taken as {name}. Look whether left and right are exchanged"
+            ));
+        }
+        named.direction.or(driven)
+    }
+
+    /// The return row that a log belongs to.
+    fn row_of(&self, named: Named, direction: Option<Direction>) -> Option<usize> {
+        let number = named.number?;
+        let fits = |run: &Run| run.direction == direction && run.number == number;
+        let of = |test: TestKind| self.runs.iter().position(|run| fits(run) && run.test == test && self.is_row(run));
+        match named.test {
+            Some(test) => of(test),
+            None => of(TestKind::Systematic).or_else(|| of(TestKind::Bumps)),
+        }
+    }
+
+    fn is_row(&self, run: &Run) -> bool {
+        self.has_returns && run.returned.is_some()
+    }
+
+    fn attach(&mut self, row: usize, log: TickLog, stem: &str, file: &str) -> Result<(), DatasetError> {
+        let run = &mut self.runs[row];
+        if run.log.is_some() {
+            return Err(DatasetError::DuplicateRun {
+                file: file.to_owned(),
+                line: 1,
+                run: label::spoken(run.test, run.direction, run.number),
+                first: self.places[row].clone(),
+            });
+        }
+        run.log = Some(log);
+        run.name = stem.to_owned();
+        self.places[row] = file.to_owned();
+        Ok(())
+    }
+
+    fn next_number(&self, test: TestKind, direction: Option<Direction>) -> u32 {
+        let of_kind = self.runs.iter().filter(|run| run.test == test && run.direction == direction);
+        of_kind.map(|run| run.number).max().map_or(1, |most| most.saturating_add(1))
+    }
+}

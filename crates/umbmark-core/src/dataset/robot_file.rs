@@ -1,0 +1,184 @@
+//! `robot.toml`: the nominal robot, its encoders and its path.
+
+use super::document::{Entry, Source, Table};
+use super::error::{DatasetError, did_you_mean};
+use super::text::read_text;
+use crate::drive::{DifferentialDrive, Encoder, MAX_COUNTER_BITS, Robot};
+use crate::parameter::{DefaultValue, Parameter};
+use crate::path::{Path, SHAPES, Shape, SpeedProfile, WAYPOINTS};
+
+const WHEELBASE: Parameter =
+    key("wheelbase_m", "m", 0.340, (1e-3, 100.0), "distance of the two wheels' contact points");
+const DIAMETER: Parameter = key("wheel_diameter_m", "m", 0.150, (1e-3, 10.0), "diameter of both wheels");
+const RADIUS: Parameter = key("wheel_radius_m", "m", 0.075, (5e-4, 5.0), "radius of both wheels");
+const DIAMETER_LEFT: Parameter = Parameter { name: "wheel_diameter_left_m", ..DIAMETER };
+const DIAMETER_RIGHT: Parameter = Parameter { name: "wheel_diameter_right_m", ..DIAMETER };
+const TICKS: Parameter =
+    key("ticks_per_revolution", "", 2000.0, (1.0, 1e9), "counts per wheel revolution, after gearing and quadrature");
+const RATE: Parameter = key("encoder_rate_hz", "Hz", 100.0, (1e-3, 1e6), "how often the counts are read");
+const BITS: Parameter =
+    key("counter_bits", "", 16.0, (1.0, MAX_COUNTER_BITS as f64), "width of a counter that rolls over");
+const WHEELBASE_NAMES: [&str; 3] = [WHEELBASE.name, "wheel_separation_m", "track_width_m"];
+const EVERY_TICK: &str = "every tick";
+const POINTS: &str = "points_m";
+
+const fn key(
+    name: &'static str,
+    unit: &'static str,
+    typical: f64,
+    bounds: (f64, f64),
+    meaning: &'static str,
+) -> Parameter {
+    Parameter { name, flag: "", unit, default: DefaultValue::Value(typical), typical, bounds, meaning, choices: &[] }
+}
+
+/// The robot of a `robot.toml`, and its path where the file says one.
+pub fn read_robot(file: impl AsRef<std::path::Path>) -> Result<(Robot, Option<Path>), DatasetError> {
+    let file = file.as_ref();
+    parse_robot(&file.display().to_string(), &read_text(file)?)
+}
+
+/// The same from text; `file` is what messages call it.
+pub fn parse_robot(file: &str, text: &str) -> Result<(Robot, Option<Path>), DatasetError> {
+    let source = Source { file, text };
+    let root = source.parse()?;
+    let root = Table::root(&source, &root);
+    root.only(&["robot", "path"])?;
+    let robot = root.need("robot", "a table [robot] with wheelbase_m, wheel_diameter_m and ticks_per_revolution")?;
+    let robot = read_robot_table(&robot.table("[robot]".into())?)?;
+    let path = root.get("path").map(|path| read_path_table(&path.table("[path]".into())?)).transpose()?;
+    Ok((robot, path))
+}
+
+fn read_robot_table(table: &Table) -> Result<Robot, DatasetError> {
+    let mut keys = vec!["name", "drive"];
+    keys.extend(WHEELBASE_NAMES);
+    keys.extend([DIAMETER, DIAMETER_LEFT, DIAMETER_RIGHT, RADIUS, TICKS, RATE, BITS].map(|p| p.name));
+    table.only(&keys)?;
+    if let Some(drive) = table.get("drive") {
+        check_drive(&drive)?;
+    }
+    let name = table.get("name").map(|entry| entry.word("text")).transpose()?.unwrap_or("robot");
+    let wheelbase =
+        table.one_of(&WHEELBASE_NAMES)?.ok_or_else(|| table.missing(WHEELBASE.name, "e.g. wheelbase_m = 0.340"))?;
+    let wheelbase = wheelbase.number(&WHEELBASE)?;
+    let (left, right) = read_wheels(table)?;
+    let ticks = table.number(&TICKS)?;
+    let encoder = Encoder::new(ticks, read_rate(table)?, read_bits(table)?);
+    let drive = DifferentialDrive::new(wheelbase, left, right);
+    match (drive, encoder) {
+        (Ok(drive), Ok(encoder)) => Ok(Robot { name: name.to_owned(), drive, encoder }),
+        (Err(error), _) | (_, Err(error)) => Err(table.missing("possible values", &error.to_string())),
+    }
+}
+
+fn check_drive(drive: &Entry) -> Result<(), DatasetError> {
+    const DRIVES: [&str; 4] = ["differential", "synchro", "clapper", "ackermann"];
+    let allowed = format!("one of {}", DRIVES.join(", "));
+    match drive.word(&allowed)? {
+        "differential" => Ok(()),
+        word if DRIVES.contains(&word) => Err(drive.not_yet("drive = \"differential\" is".into())),
+        word => Err(drive.wrong(&allowed, &did_you_mean(word, DRIVES))),
+    }
+}
+
+/// Left and right diameter \[m\].
+fn read_wheels(table: &Table) -> Result<(f64, f64), DatasetError> {
+    let both = table.one_of(&[DIAMETER.name, RADIUS.name])?;
+    let single = table.get(DIAMETER_LEFT.name).or_else(|| table.get(DIAMETER_RIGHT.name));
+    match (both, single) {
+        (Some(both), Some(single)) => Err(both.again(&single)),
+        (Some(radius), None) if radius.key == RADIUS.name => {
+            let diameter = 2.0 * radius.number(&RADIUS)?;
+            Ok((diameter, diameter))
+        }
+        (Some(diameter), None) => {
+            let diameter = diameter.number(&DIAMETER)?;
+            Ok((diameter, diameter))
+        }
+        (None, Some(_)) => Ok((table.number(&DIAMETER_LEFT)?, table.number(&DIAMETER_RIGHT)?)),
+        (None, None) => Err(table.missing(
+            DIAMETER.name,
+            "e.g. wheel_diameter_m = 0.150 (or wheel_diameter_left_m and wheel_diameter_right_m, or wheel_radius_m)",
+        )),
+    }
+}
+
+fn read_rate(table: &Table) -> Result<Option<f64>, DatasetError> {
+    let Some(entry) = table.get(RATE.name) else { return Ok(None) };
+    if entry.any_number().is_none() {
+        let allowed = format!("{}, or \"{EVERY_TICK}\"", RATE.allowed());
+        return match entry.word(&allowed) {
+            Ok(EVERY_TICK) => Ok(None),
+            _ => Err(entry.wrong(&allowed, "")),
+        };
+    }
+    entry.number(&RATE).map(Some)
+}
+
+fn read_bits(table: &Table) -> Result<Option<u32>, DatasetError> {
+    let Some(entry) = table.get(BITS.name) else { return Ok(None) };
+    let bits = entry.number(&BITS)?;
+    if bits.fract() != 0.0 {
+        return Err(entry.wrong(&format!("a whole number {}", BITS.allowed()), ""));
+    }
+    Ok(Some(bits as u32))
+}
+
+fn read_path_table(table: &Table) -> Result<Path, DatasetError> {
+    let allowed = format!("one of {}", SHAPES.iter().map(|shape| shape.name).collect::<Vec<_>>().join(", "));
+    let entry = table.need("shape", "e.g. shape = \"square\"")?;
+    let word = entry.word(&allowed)?;
+    let shape = *SHAPES
+        .iter()
+        .find(|shape| shape.name == word)
+        .ok_or_else(|| entry.wrong(&allowed, &did_you_mean(word, SHAPES.iter().map(|shape| shape.name))))?;
+    let mut keys = vec!["shape"];
+    keys.extend(shape.parameters.iter().map(|p| p.name));
+    if is_waypoints(shape) {
+        keys.push(POINTS);
+    }
+    keys.extend(SpeedProfile::PARAMETERS.iter().map(|p| p.name));
+    table.only(&keys)?;
+    let values = if is_waypoints(shape) {
+        read_points(table)?
+    } else {
+        shape.parameters.iter().map(|p| table.number(p)).collect::<Result<Vec<_>, _>>()?
+    };
+    let speed = read_speed(table)?;
+    Path::new(shape, &values, speed).map_err(|error| match table.get(POINTS) {
+        Some(points) => points.wrong(&error.to_string(), ""),
+        None => entry.wrong(&error.to_string(), ""),
+    })
+}
+
+fn read_speed(table: &Table) -> Result<SpeedProfile, DatasetError> {
+    let mut values = SpeedProfile::default().values();
+    for (value, parameter) in values.iter_mut().zip(&SpeedProfile::PARAMETERS) {
+        if let Some(entry) = table.get(parameter.name) {
+            *value = entry.number(parameter)?;
+        }
+    }
+    SpeedProfile::new(values[0], values[1], values[2])
+        .map_err(|error| table.missing("possible speed", &error.to_string()))
+}
+
+fn read_points(table: &Table) -> Result<Vec<f64>, DatasetError> {
+    const ALLOWED: &str = "a list of points [x, y], in m";
+    let entry = table.need(POINTS, "e.g. points_m = [[4.0, 0.0], [4.0, 4.0], [0.0, 0.0]]")?;
+    let mut values = Vec::new();
+    for point in entry.list(ALLOWED)? {
+        let pair = point.list(ALLOWED)?;
+        if pair.len() != 2 {
+            return Err(point.wrong(ALLOWED, "each point has two numbers"));
+        }
+        for coordinate in pair {
+            values.push(coordinate.any_number().ok_or_else(|| coordinate.wrong(ALLOWED, ""))?);
+        }
+    }
+    Ok(values)
+}
+
+pub(super) fn is_waypoints(shape: &Shape) -> bool {
+    shape.name == WAYPOINTS.name
+}

@@ -1,0 +1,147 @@
+//! Comma-separated text with line numbers.
+//!
+//! Tolerated, because they do no harm: Windows and old Mac line ends, a byte order mark, blank lines, lines of nothing
+//! but commas, comment lines (#), spaces round cells, quotation marks round cells, empty cells after the last column.
+
+use super::error::{DatasetError, quoted};
+
+/// A text with a header.
+pub(super) struct Sheet<'a> {
+    pub file: &'a str,
+    /// Names of the columns, in lower case.
+    pub header: Vec<String>,
+    pub header_line: usize,
+    body: Rows<'a>,
+}
+
+/// A row of cells.
+pub(super) struct Row<'r> {
+    pub file: &'r str,
+    pub line: usize,
+    pub cells: &'r [&'r str],
+}
+
+/// The lines of a text that hold something, with their numbers.
+#[derive(Clone)]
+pub(super) struct Rows<'a> {
+    lines: std::str::Split<'a, char>,
+    line: usize,
+}
+
+impl<'a> Rows<'a> {
+    pub fn of(text: &'a str) -> Rows<'a> {
+        let end = if text.contains('\n') { '\n' } else { '\r' };
+        Rows { lines: text.split(end), line: 0 }
+    }
+}
+
+impl<'a> Iterator for Rows<'a> {
+    type Item = (usize, &'a str);
+
+    fn next(&mut self) -> Option<(usize, &'a str)> {
+        for line in self.lines.by_ref() {
+            self.line += 1;
+            let line = line.trim();
+            if !line.starts_with('#') && line.bytes().any(|byte| byte != b',' && !byte.is_ascii_whitespace()) {
+                return Some((self.line, line));
+            }
+        }
+        None
+    }
+}
+
+impl<'a> Sheet<'a> {
+    /// Takes the first row as the header; `expected` names its columns in messages.
+    pub fn open(file: &'a str, text: &'a str, expected: &str) -> Result<Sheet<'a>, DatasetError> {
+        let mut body = Rows::of(text);
+        let Some((header_line, header)) = body.next() else {
+            let found = if text.trim().is_empty() { "the file is empty" } else { "there are only comments" };
+            let remedy = format!("it needs a header line ({expected}) and rows");
+            return Err(DatasetError::NoRows { file: file.to_owned(), found, remedy });
+        };
+        check_separator(file, header_line, header)?;
+        let mut cells = Vec::new();
+        split(header, &mut cells);
+        if cells[0].parse::<f64>().is_ok() {
+            return Err(DatasetError::NoHeader { file: file.to_owned(), line: header_line, value: quoted(cells[0]) });
+        }
+        let used = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
+        let header = cells[..used].iter().map(|cell| cell.to_lowercase()).collect();
+        Ok(Sheet { file, header, header_line, body })
+    }
+
+    /// Takes every row as data, of a number of columns.
+    pub fn headless(file: &'a str, text: &'a str, columns: usize) -> Sheet<'a> {
+        Sheet { file, header: vec![String::new(); columns], header_line: 0, body: Rows::of(text) }
+    }
+
+    /// Visits every row; there must be one.
+    pub fn for_each(&self, mut visit: impl FnMut(&Row) -> Result<(), DatasetError>) -> Result<(), DatasetError> {
+        let mut cells = Vec::with_capacity(self.header.len());
+        let mut any = false;
+        for (line, text) in self.body.clone() {
+            split(text, &mut cells);
+            self.check_width(line, text, &cells)?;
+            visit(&Row { file: self.file, line, cells: &cells })?;
+            any = true;
+        }
+        if any {
+            return Ok(());
+        }
+        let (file, found) = (self.file.to_owned(), "there are no rows");
+        Err(DatasetError::NoRows { file, found, remedy: "add the measurements, one a line".into() })
+    }
+
+    fn check_width(&self, line: usize, text: &str, cells: &[&str]) -> Result<(), DatasetError> {
+        let expected = self.header.len();
+        if cells.len() >= expected && cells[expected..].iter().all(|cell| cell.is_empty()) {
+            return Ok(());
+        }
+        if cells.len() == 1 {
+            check_separator(self.file, line, text)?;
+        }
+        let remedy = if cells.len() > expected {
+            "write decimals with a point (0.123, not 0,123), and quote text that has commas"
+        } else {
+            "leave a cell empty (,,) where nothing was measured"
+        };
+        Err(DatasetError::Ragged { file: self.file.to_owned(), line, got: cells.len(), expected, remedy })
+    }
+}
+
+fn check_separator(file: &str, line: usize, text: &str) -> Result<(), DatasetError> {
+    let found = match text {
+        _ if text.contains(';') => "semicolons",
+        _ if text.contains(',') => return Ok(()),
+        _ if text.contains('\t') => "tabs",
+        _ if text.contains(' ') => "spaces",
+        _ => return Ok(()),
+    };
+    Err(DatasetError::Separator { file: file.to_owned(), line, found })
+}
+
+/// Cuts a line at its commas, but not at those in quotation marks.
+pub(super) fn split<'a>(line: &'a str, cells: &mut Vec<&'a str>) {
+    cells.clear();
+    if !line.contains('"') {
+        cells.extend(line.split(',').map(str::trim));
+        return;
+    }
+    let (mut start, mut inside) = (0, false);
+    for (at, byte) in line.bytes().enumerate() {
+        match byte {
+            b'"' => inside = !inside,
+            b',' if !inside => {
+                cells.push(unquoted(&line[start..at]));
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    cells.push(unquoted(&line[start..]));
+}
+
+fn unquoted(cell: &str) -> &str {
+    let cell = cell.trim();
+    cell.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).map_or(cell, str::trim)
+}

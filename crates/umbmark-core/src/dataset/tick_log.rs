@@ -1,0 +1,71 @@
+//! `runs/*.csv`: one tick log per run, with the absolute poses that were measured on the way.
+
+use super::ReferencePose;
+use super::columns::{Column, Columns, Quantity};
+use super::error::DatasetError;
+use super::recording::Recording;
+use super::sheet::{Row, Sheet};
+use Quantity::{Angle, Bare, Length, Time};
+
+/// The header of messages and of files that are written.
+pub(super) const HEADER: &str = "t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad";
+
+struct ReferenceColumns {
+    x: Column,
+    y: Column,
+    heading: Option<Column>,
+}
+
+/// The rows of a log.
+pub(super) fn parse_tick_log(file: &str, text: &str, warnings: &mut Vec<String>) -> Result<Recording, DatasetError> {
+    let sheet = Sheet::open(file, text, HEADER)?;
+    let mut columns = Columns::of(&sheet);
+    let needs = "a tick log needs t_s, ticks_left and ticks_right";
+    let time = columns.need("t", Time, needs)?;
+    let counts = [columns.need("ticks_left", Bare, needs)?, columns.need("ticks_right", Bare, needs)?];
+    let reference = ReferenceColumns::find(&mut columns)?;
+    columns.finish(warnings)?;
+    let mut recording = Recording {
+        file: file.to_owned(),
+        columns: [&time, &counts[0], &counts[1]].map(|column| column.name.clone()),
+        ..Recording::default()
+    };
+    sheet.for_each(|row| {
+        recording.lines.push(row.line);
+        recording.time.push(row.number(&time)?);
+        for (wheel, column) in counts.iter().enumerate() {
+            recording.counts[wheel].push(row.number(column)?);
+        }
+        if let Some(columns) = &reference {
+            recording.reference.extend(columns.read(row, recording.time.len() - 1)?);
+        }
+        Ok(())
+    })?;
+    Ok(recording)
+}
+
+impl ReferenceColumns {
+    fn find(columns: &mut Columns) -> Result<Option<ReferenceColumns>, DatasetError> {
+        let x = columns.find("x_ref", Length)?;
+        let y = columns.find("y_ref", Length)?;
+        let heading = columns.find("theta_ref", Angle)?;
+        let needs = "a reference needs both x_ref_m and y_ref_m";
+        match (x, y) {
+            (Some(x), Some(y)) => Ok(Some(ReferenceColumns { x, y, heading })),
+            (None, None) if heading.is_none() => Ok(None),
+            (None, _) => Err(columns.missing("x_ref", Length, needs)),
+            (_, None) => Err(columns.missing("y_ref", Length, needs)),
+        }
+    }
+
+    /// The pose of a row, if one was measured there.
+    fn read(&self, row: &Row, sample: usize) -> Result<Option<ReferencePose>, DatasetError> {
+        let heading = self.heading.as_ref().map(|column| row.number_or(column)).transpose()?.flatten();
+        match (row.number_or(&self.x)?, row.number_or(&self.y)?) {
+            (Some(x), Some(y)) => Ok(Some(ReferencePose { sample, x, y, heading })),
+            (None, None) if heading.is_none() => Ok(None),
+            (None, _) => Err(row.wrong(&self.x, "a finite number", "fill in the pose, or leave all its cells empty")),
+            (_, None) => Err(row.wrong(&self.y, "a finite number", "fill in the pose, or leave all its cells empty")),
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! One entrance to all kinds of odometry.
+
+use super::{Motion, SampledOdometry, TickGeometry, TickOdometry, Update, WheelLine, oracle};
+
+/// When the counters are read, and by which algorithm the motion is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Method {
+    /// At every tick, by the product over the word: [`TickOdometry`].
+    EveryTick,
+    /// At every tick, one after the other: the [`oracle`], thousands of times slower, to check the above.
+    EveryTickOneByOne,
+    /// At the readings of each segment: [`SampledOdometry`].
+    Sampled(Update),
+    /// At the readings of each segment, one after the other, to check the above.
+    SampledOneByOne(Update),
+}
+
+/// A straight piece of wheel motion and how often the counters are read along it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Segment {
+    /// The motion of the wheels.
+    pub line: WheelLine,
+    /// Readings at equal fractions of the travel, the last one at the end; ignored by tick-exact odometry.
+    pub readings: u32,
+}
+
+impl Segment {
+    /// A segment for odometry that is updated at every tick.
+    pub fn every_tick(line: WheelLine) -> Segment {
+        Segment { line, readings: 0 }
+    }
+
+    /// A segment whose counters are read this many times.
+    pub fn sampled(line: WheelLine, readings: u32) -> Segment {
+        Segment { line, readings }
+    }
+}
+
+impl AsRef<WheelLine> for Segment {
+    fn as_ref(&self) -> &WheelLine {
+        &self.line
+    }
+}
+
+/// Odometry: segments of wheel motion in, motions of the robot as its counters report them out.
+///
+/// Clone it for every thread. Results depend on the segment alone: not on what was computed before, in which order, on
+/// which thread or on which processor.
+#[derive(Clone, Debug)]
+pub struct Integrator {
+    kind: Kind,
+}
+
+#[derive(Clone, Debug)]
+enum Kind {
+    EveryTick(TickOdometry),
+    EveryTickOneByOne(TickGeometry),
+    Sampled(SampledOdometry),
+    SampledOneByOne(SampledOdometry),
+}
+
+impl Integrator {
+    /// An integrator with these tick lengths and this wheelbase.
+    pub fn new(geometry: TickGeometry, method: Method) -> Integrator {
+        let kind = match method {
+            Method::EveryTick => Kind::EveryTick(TickOdometry::new(geometry)),
+            Method::EveryTickOneByOne => Kind::EveryTickOneByOne(geometry),
+            Method::Sampled(update) => Kind::Sampled(SampledOdometry::new(geometry, update)),
+            Method::SampledOneByOne(update) => Kind::SampledOneByOne(SampledOdometry::new(geometry, update)),
+        };
+        Integrator { kind }
+    }
+
+    /// What a tick is worth.
+    pub fn geometry(&self) -> &TickGeometry {
+        match &self.kind {
+            Kind::EveryTick(odometry) => odometry.geometry(),
+            Kind::EveryTickOneByOne(geometry) => geometry,
+            Kind::Sampled(odometry) | Kind::SampledOneByOne(odometry) => odometry.geometry(),
+        }
+    }
+
+    /// The motion that the counters report for `segment`.
+    #[inline]
+    pub fn motion(&mut self, segment: &Segment) -> Motion {
+        match &mut self.kind {
+            Kind::EveryTick(odometry) => odometry.motion(&segment.line),
+            Kind::EveryTickOneByOne(geometry) => oracle::motion(geometry, &segment.line),
+            Kind::Sampled(odometry) => odometry.at_constant_rate(&segment.line, segment.readings),
+            Kind::SampledOneByOne(odometry) => odometry.one_by_one(&segment.line, segment.readings),
+        }
+    }
+
+    /// The motions that the counters report for `segments`, into the `motions` of the same places.
+    ///
+    /// The same bits as one by one, faster where the machine has lanes. Only as many are computed as the shorter of the
+    /// two slices has.
+    pub fn motions(&mut self, segments: &[Segment], motions: &mut [Motion]) {
+        match &mut self.kind {
+            Kind::EveryTick(odometry) => odometry.motions(segments, motions),
+            _ => segments.iter().zip(motions).for_each(|(segment, motion)| *motion = self.motion(segment)),
+        }
+    }
+}

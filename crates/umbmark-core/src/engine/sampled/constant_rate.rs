@@ -1,0 +1,107 @@
+//! Readings at equal fractions of the travel: a wheel's count changes by one of two neighbouring whole numbers.
+
+use super::{SampledOdometry, Update};
+use crate::engine::{Motion, TickGeometry, WheelLine};
+use crate::geometry::Real;
+
+/// A line cut into equal pieces, both wheels mirrored forward.
+///
+/// The phase of a wheel before reading i is start + i rate in units of 2^-64 tick, where the rate is the travel divided
+/// by the number of readings and rounded up. The rounding adds up to less than 2^-32 tick over all readings, so that the
+/// counts at the end are those of the line; up to 2^16 readings every count on the way is that of the exact quotient too.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EqualPieces {
+    /// Phases within a tick, units of 2^-64.
+    pub phase: [u64; 2],
+    /// Whole ticks per reading.
+    pub whole: [i64; 2],
+    /// What is left of the rate, units of 2^-64 tick: a reading counts one tick more when this carries.
+    pub rest: [u64; 2],
+    /// 1 forward, -1 backward.
+    pub sign: [i64; 2],
+    pub readings: u32,
+}
+
+impl EqualPieces {
+    /// `readings` must not be 0.
+    pub fn new(line: &WheelLine, readings: u32) -> EqualPieces {
+        let forward = line.mirrored_forward();
+        let rate = forward.travel().map(|travel| ((travel as u128) << 32).div_ceil(u128::from(readings)));
+        EqualPieces {
+            phase: forward.start().map(|start| (start as u64) << 32),
+            whole: rate.map(|rate| (rate >> 64) as i64),
+            rest: rate.map(|rate| rate as u64),
+            sign: line.backward().map(|backward| if backward { -1 } else { 1 }),
+            readings,
+        }
+    }
+
+    /// The changes of the counters at a reading at which the (left, right) rest carries or does not.
+    #[inline]
+    pub fn change(&self, carries: [bool; 2]) -> [i64; 2] {
+        [0, 1].map(|i| self.sign[i] * (self.whole[i] + i64::from(carries[i])))
+    }
+}
+
+/// What one reading does to the pose: a step in the old frame, then a rotation.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step {
+    pub x: f64,
+    pub y: f64,
+    pub cosine: f64,
+    pub sine: f64,
+}
+
+impl Step {
+    pub fn new(geometry: &TickGeometry, update: Update, change: [i64; 2]) -> Step {
+        let rotation = geometry.heading(change);
+        let (length, turned) = update.step(geometry.distance(change), rotation);
+        let (side, ahead) = turned.sine_cosine();
+        let (sine, cosine) = rotation.sine_cosine();
+        Step { x: length * ahead, y: length * side, cosine, sine }
+    }
+}
+
+impl SampledOdometry {
+    /// The motion reported along `line` when the counters are read `readings` times at equal fractions of its travel, the
+    /// last time at its end. Without any reading nothing is reported.
+    ///
+    /// ```
+    /// use umbmark_core::engine::{SampledOdometry, TickGeometry, Update, WheelLine};
+    /// let mut odometry = SampledOdometry::new(TickGeometry::new(1e-3, 1e-3, 0.34)?, Update::Arc);
+    /// let line = WheelLine::from_ticks([0.0, 0.0], [4000.0, 4000.0])?;
+    /// assert_eq!(odometry.at_constant_rate(&line, 2000).pose.y, 0.0);
+    /// # Ok::<(), umbmark_core::engine::EngineError>(())
+    /// ```
+    pub fn at_constant_rate(&mut self, line: &WheelLine, readings: u32) -> Motion {
+        self.one_by_one(line, readings)
+    }
+
+    /// The same, always reading by reading; equal to within rounding.
+    pub fn one_by_one(&self, line: &WheelLine, readings: u32) -> Motion {
+        if readings == 0 {
+            return Motion::IDENTITY;
+        }
+        let pieces = EqualPieces::new(line, readings);
+        let (x, y) = one_by_one(&self.geometry, self.update, &pieces);
+        Motion::with_counts(x, y, line.counts(), &self.geometry)
+    }
+}
+
+/// Four steps worked out beforehand, chosen by the two carries; the direction is a rotating unit vector.
+fn one_by_one(geometry: &TickGeometry, update: Update, pieces: &EqualPieces) -> (f64, f64) {
+    let steps = [[false, false], [true, false], [false, true], [true, true]]
+        .map(|carries| Step::new(geometry, update, pieces.change(carries)));
+    let ([mut left, mut right], [left_rest, right_rest]) = (pieces.phase, pieces.rest);
+    let (mut x, mut y, mut cosine, mut sine) = (0.0, 0.0, 1.0, 0.0);
+    for _ in 0..pieces.readings {
+        let (left_carry, right_carry);
+        (left, left_carry) = left.overflowing_add(left_rest);
+        (right, right_carry) = right.overflowing_add(right_rest);
+        let step = &steps[usize::from(left_carry) + 2 * usize::from(right_carry)];
+        x += cosine * step.x - sine * step.y;
+        y += sine * step.x + cosine * step.y;
+        (cosine, sine) = (cosine * step.cosine - sine * step.sine, sine * step.cosine + cosine * step.sine);
+    }
+    (x, y)
+}

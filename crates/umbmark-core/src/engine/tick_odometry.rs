@@ -1,0 +1,67 @@
+//! Tick-exact odometry.
+
+use super::digital_line::DigitalLine;
+use super::mid_heading::MidHeading;
+use super::{Letter, Motion, TickGeometry, WheelLine, word};
+use crate::geometry::Pose2;
+
+/// Odometry that is updated at every tick of either counter, each tick an exact circular arc.
+///
+/// The motion of a segment is the ordered product of its ticks, computed in O(log ticks) operations by
+/// [`word_product`](super::word_product). Simultaneous ticks count as one joint step: two equal wheels in step drive
+/// exactly straight.
+///
+/// The order of the ticks is exact; rounding moves the end by less than 1e-12 m up to 1e5 ticks and 2e-11 m at 1e7, for
+/// any ratio of the wheel speeds.
+#[derive(Clone, Copy, Debug)]
+pub struct TickOdometry {
+    geometry: TickGeometry,
+    left: MidHeading<f64>,
+    right: MidHeading<f64>,
+}
+
+impl TickOdometry {
+    /// Odometry with these tick lengths and this wheelbase.
+    pub fn new(geometry: TickGeometry) -> TickOdometry {
+        let tick = |letter| MidHeading::of_letter(&geometry, letter, [false; 2]);
+        TickOdometry { geometry, left: tick(Letter::Left), right: tick(Letter::Right) }
+    }
+
+    /// What a tick is worth.
+    pub fn geometry(&self) -> &TickGeometry {
+        &self.geometry
+    }
+
+    /// The motion that the ticks along `line` report.
+    ///
+    /// ```
+    /// use umbmark_core::engine::{TickGeometry, TickOdometry, WheelLine};
+    /// // A quarter turn to the left on the spot: π/2 · 0.34 m / 2 per wheel, in ticks of 1 mm.
+    /// let odometry = TickOdometry::new(TickGeometry::new(1e-3, 1e-3, 0.34)?);
+    /// let ticks = std::f64::consts::FRAC_PI_2 * 170.0;
+    /// let motion = odometry.motion(&WheelLine::from_ticks([0.5, 0.5], [-ticks, ticks])?);
+    /// assert!((motion.pose.heading - std::f64::consts::FRAC_PI_2).abs() < 2e-3 / 0.34);
+    /// # Ok::<(), umbmark_core::engine::EngineError>(())
+    /// ```
+    #[inline]
+    pub fn motion(&self, line: &WheelLine) -> Motion {
+        let backward = line.backward();
+        let product = word::product(&DigitalLine::new(line), |letter| match letter {
+            Letter::Left => self.left.reversed_if(backward[0]),
+            Letter::Right => self.right.reversed_if(backward[1]),
+            Letter::Joint => MidHeading::of_letter(&self.geometry, letter, backward),
+        });
+        let [x, y, cosine, sine] = product.end();
+        let heading = self.geometry.heading(line.counts()) + 0.0;
+        Motion { pose: Pose2 { x, y, heading }, cosine, sine }
+    }
+
+    /// The motions that the ticks along `lines` report, into the `motions` of the same places; the same bits as one by
+    /// one. Only as many are computed as the shorter of the two slices has.
+    pub fn motions<L: AsRef<WheelLine>>(&self, lines: &[L], motions: &mut [Motion]) {
+        lines.iter().zip(motions).for_each(|(line, motion)| *motion = self.motion(line.as_ref()));
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,115 @@
+use super::*;
+use crate::engine::random_lines::{Source, cases};
+use crate::engine::{Monoid, double_double, oracle, word_product};
+use std::f64::consts::PI;
+
+/// The robot of the design figures: wheels of 0.15 m, 2000 ticks a turn, wheelbase 0.34 m.
+fn nominal() -> TickGeometry {
+    TickGeometry::new(PI * 0.15 / 2000.0, PI * 0.15 / 2000.0, 0.34).unwrap()
+}
+
+/// As nominal, but 8000 ticks of one wheel are a whole turn of the robot, exactly.
+fn commensurate() -> TickGeometry {
+    TickGeometry::new(PI * 0.15 / 2000.0, PI * 0.15 / 2000.0, 0.3).unwrap()
+}
+
+fn calibrated() -> TickGeometry {
+    TickGeometry::new(2.353e-4, 2.353e-4 * 1.0012, 0.3372).unwrap()
+}
+
+/// Largest errors of position \[m\] and rotation \[rad\] against the double-double tick loop.
+fn errors(geometry: &TickGeometry, line: &WheelLine) -> (f64, f64) {
+    let motion = TickOdometry::new(*geometry).motion(line);
+    let [x, y, heading, cosine, sine] = double_double::motion(geometry, line);
+    let off = |value: f64, reference: double_double::DoubleDouble| {
+        (double_double::DoubleDouble::from(value) - reference).value().abs()
+    };
+    let position = off(motion.pose.x, x).max(off(motion.pose.y, y));
+    let rotation = off(motion.pose.heading, heading).max(off(motion.cosine, cosine)).max(off(motion.sine, sine));
+    (position, rotation)
+}
+
+#[test]
+fn a_segment_ends_where_the_double_double_tick_loop_ends() {
+    let mut source = Source(3);
+    for i in 0..cases(600) {
+        let ticks = if i % 20 == 0 { 100_000 } else { 3_000 };
+        let line = source.line(ticks);
+        for geometry in [nominal(), commensurate(), calibrated()] {
+            let (position, rotation) = errors(&geometry, &line);
+            assert!(position <= 1e-12 && rotation <= 1e-12, "{line:?} {geometry:?}: {position:e} m, {rotation:e} rad");
+        }
+    }
+}
+
+#[test]
+fn patterns_of_almost_whole_turns_lose_no_digits() {
+    for (left, right) in [(12.0, 95_988.0), (-12.0, 96_000.0), (12.3, 96_012.7), (-4.1, 96_003.0)] {
+        let line = WheelLine::from_ticks([0.3, 0.6], [left, right]).unwrap();
+        let (position, rotation) = errors(&commensurate(), &line);
+        assert!(position <= 1e-12 && rotation <= 1e-12, "{left} {right}: {position:e} m, {rotation:e} rad");
+    }
+}
+
+#[test]
+#[ignore = "about a minute; run once per change of the kernels"]
+fn ten_million_ticks_stay_within_their_bound() {
+    let mut source = Source(4);
+    for _ in 0..12 {
+        let line = source.line(10_000_000);
+        for geometry in [nominal(), commensurate(), calibrated()] {
+            let (position, rotation) = errors(&geometry, &line);
+            println!("{position:e} m, {rotation:e} rad {line:?}");
+            assert!(position <= 2e-11 && rotation <= 2e-11, "{line:?}: {position:e} m, {rotation:e} rad");
+        }
+    }
+}
+
+#[test]
+fn the_tick_loop_in_f64_agrees() {
+    let mut source = Source(5);
+    for geometry in [nominal(), calibrated()] {
+        for _ in 0..cases(300) {
+            let line = source.line(5_000);
+            let (fast, slow) = (TickOdometry::new(geometry).motion(&line), oracle::motion(&geometry, &line));
+            let error = (fast.pose.x - slow.pose.x).abs().max((fast.pose.y - slow.pose.y).abs());
+            assert!(error <= 1e-12, "{line:?}: {error:e} m");
+            assert_eq!(fast.pose.heading, slow.pose.heading);
+            assert!((fast.cosine - slow.cosine).abs() <= 1e-12 && (fast.sine - slow.sine).abs() <= 1e-12);
+        }
+    }
+}
+
+#[test]
+fn the_ideal_robot_drives_exactly_straight_because_simultaneous_ticks_are_one_letter() {
+    let geometry = nominal();
+    let ticks = 4.0 / geometry.left();
+    let leg = WheelLine::from_ticks([0.0, 0.0], [ticks, ticks]).unwrap();
+    let motion = TickOdometry::new(geometry).motion(&leg);
+    assert_eq!((motion.pose.y, motion.pose.heading, motion.sine, motion.cosine), (0.0, 0.0, 0.0, 1.0));
+    assert!((motion.pose.x - 16_976.0 * geometry.left()).abs() < 1e-12);
+
+    // Were one of the two to come first, the robot would zigzag to its side: δ L / (2 b) = 1.386 mm on 4 m.
+    let tick = |letter| MidHeading::of_letter(&geometry, letter, [false; 2]);
+    let ordered = word_product(&leg, |letter| match letter {
+        Letter::Joint => tick(Letter::Right).then(&tick(Letter::Left)),
+        letter => tick(letter),
+    });
+    assert!((ordered.end()[1] - 1.386e-3).abs() < 1e-6, "{}", ordered.end()[1]);
+}
+
+#[test]
+fn driving_back_leads_back() {
+    let mut source = Source(6);
+    let odometry = TickOdometry::new(calibrated());
+    for _ in 0..2_000 {
+        let there = source.line(20_000);
+        let back = there.followed_by(there.travel().map(|units| -units)).unwrap();
+        if there.backward() == [false; 2] || there.backward() == [true; 2] {
+            // The order of the ticks on the way back may differ where two fall into one unit, never the counts.
+            let motion = odometry.motion(&there).then(&odometry.motion(&back));
+            assert!(motion.pose.heading.abs() < 1e-13);
+        }
+        assert_eq!(back.end_phases(), there.start());
+    }
+}

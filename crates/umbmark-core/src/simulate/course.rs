@@ -1,0 +1,82 @@
+//! The commands of one direction of driving, as the robot's own counters will see them.
+
+use crate::drive::{Robot, WheelTravel};
+use crate::engine::{MAX_TICKS, WheelLine};
+use crate::path::{Direction, Path, Trapezoid};
+
+use super::SimulateError;
+
+/// One move of a path, in the robot's own terms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leg {
+    /// Believed wheel travel without quantisation \[m\].
+    pub travel: WheelTravel,
+    /// Counts at which the left and right wheel stop, cumulative from START.
+    pub stop: [i64; 2],
+    /// When it begins \[s\] after START.
+    pub begins: f64,
+    /// How its travel is spread over time.
+    pub profile: Trapezoid,
+}
+
+/// All moves of a path in one direction.
+///
+/// Each wheel is position-controlled, as the LabMate's: it stops when its own counter reaches the count nearest to its
+/// ideal cumulative travel. So quantisation never adds up over the moves.
+#[derive(Clone, Debug)]
+pub struct Course {
+    /// Sense of driving.
+    pub direction: Direction,
+    /// The moves.
+    pub legs: Vec<Leg>,
+}
+
+impl Course {
+    /// The commands that `robot` gives itself to drive `path`.
+    pub fn new(robot: &Robot, path: &Path, direction: Direction) -> Result<Course, SimulateError> {
+        let per_tick = robot.metres_per_tick();
+        let (mut left, mut right, mut clock) = (0.0, 0.0, 0.0);
+        let mut legs = Vec::new();
+        for (index, one) in path.moves(direction).iter().enumerate() {
+            let travel = one.wheel_travel(&robot.drive);
+            for (wheel, metres, tick) in [("left", travel.left, per_tick.left), ("right", travel.right, per_tick.right)]
+            {
+                let ticks = (metres / tick).abs();
+                // A tick of margin for the rounding of the stops and for where within a tick the wheels come to rest.
+                if !(ticks < MAX_TICKS as f64 - 2.0) {
+                    return Err(SimulateError::TooManyTicks { wheel, index: index + 1, ticks });
+                }
+            }
+            left += travel.left / per_tick.left;
+            right += travel.right / per_tick.right;
+            let profile = path.speed.over(travel.left.abs().max(travel.right.abs()));
+            legs.push(Leg { travel, stop: [left.round() as i64, right.round() as i64], begins: clock, profile });
+            clock += profile.duration() + path.speed.pause();
+        }
+        Ok(Course { direction, legs })
+    }
+
+    /// When the last move ends \[s\].
+    pub fn duration(&self) -> f64 {
+        self.legs.last().map_or(0.0, |leg| leg.begins + leg.profile.duration())
+    }
+}
+
+/// Where a wheel stands at rest: its count, and the place within the tick in 2^-32 ticks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Rest {
+    pub count: [i64; 2],
+    pub phase: [u32; 2],
+}
+
+impl Rest {
+    /// The straight line in the wheel plane from here to the next rest.
+    pub(super) fn line_to(&self, next: &Rest) -> WheelLine {
+        let travel = |wheel: usize| {
+            ((next.count[wheel] - self.count[wheel]) << 32)
+                + (i64::from(next.phase[wheel]) - i64::from(self.phase[wheel]))
+        };
+        WheelLine::new(self.phase.map(i64::from), [travel(0), travel(1)])
+            .expect("Course::new keeps travels within the engine's range")
+    }
+}
