@@ -10,6 +10,7 @@
 //!
 //! Nothing here prints, parses flags or knows Python.
 
+pub mod calibrate;
 pub mod dataset;
 pub mod drive;
 pub mod effect;

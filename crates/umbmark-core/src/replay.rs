@@ -9,10 +9,10 @@
 //! The effects are those of [`effect`](crate::effect), the same that simulate. With `f64` a replay gives poses; with
 //! [`Dual`](crate::geometry::Dual) it gives poses and one column of their Jacobian. Each sample is an exact arc.
 
-use crate::dataset::{ReturnError, TickLog};
+use crate::dataset::TickLog;
 use crate::drive::{Robot, WheelTravel};
-use crate::effect::{Chain, Evaluate, Model};
-use crate::geometry::{Pose2, Real, wrap};
+use crate::effect::{Chain, Evaluate};
+use crate::geometry::Pose2;
 use crate::path::{Direction, Path};
 
 /// What makes a log impossible to replay.
@@ -58,7 +58,7 @@ pub enum ReplayError {
 /// ```
 /// use umbmark_core::{drive::Robot, effect::Model, path::{Direction, Path}, replay::Track};
 /// let robot = Robot::labmate();
-/// let track = Track::from_path(&Path::umbmark(), Direction::Cw, &robot);
+/// let track = Track::from_path(&Path::umbmark(), Direction::Ccw, &robot);
 /// let mut model = Model::new(&robot);
 /// model.set("wheelbase", "e_b", 337.2 / 340.0)?;
 /// model.set("wheel_diameter_ratio", "e_d", 1.00121)?;
@@ -104,8 +104,9 @@ impl Track {
         Track { travel, seen_after: vec![end] }
     }
 
-    /// The same travel, observed at the end only.
-    pub fn at_end(mut self) -> Track {
+    /// The travel up to the last observation (or all, where there is none), observed at its end only.
+    pub fn cut_at_last(mut self) -> Track {
+        self.travel.truncate(self.seen_after.last().copied().unwrap_or(self.travel.len()));
         self.seen_after = vec![self.travel.len()];
         self
     }
@@ -172,29 +173,11 @@ fn check(log: &TickLog) -> Result<(), ReplayError> {
     Ok(())
 }
 
-/// The return error of a recorded run (Eq. 1): last reference pose minus the pose that the nominal robot computes for it.
-///
-/// `None` for a log without reference poses.
-pub fn return_error(log: &TickLog, robot: &Robot) -> Result<Option<ReturnError>, ReplayError> {
-    let track = Track::from_log(log, robot)?;
-    let Some(absolute) = log.reference.last() else { return Ok(None) };
-    let computed = track.poses(&Model::new(robot).chain());
-    Ok(computed.last().map(|computed| difference(absolute.x, absolute.y, absolute.heading, computed)))
-}
-
-/// Observed minus predicted, the heading wrapped into (-π, π].
-pub fn difference<T: Real>(x: f64, y: f64, heading: Option<f64>, predicted: &Pose2<T>) -> ReturnError {
-    ReturnError {
-        x: x - predicted.x.value(),
-        y: y - predicted.y.value(),
-        heading: heading.map(|h| wrap(h - predicted.heading.value())),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::dataset::ReferencePose;
+    use crate::effect::Model;
     use crate::geometry::Dual;
     use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -290,20 +273,6 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn the_return_error_is_absolute_minus_computed_at_the_last_reference() {
-        let mut corner = corner();
-        corner.reference = vec![
-            ReferencePose { sample: 1, x: 9.0, y: 9.0, heading: None },
-            ReferencePose { sample: 4, x: 2.1, y: -0.2, heading: Some(FRAC_PI_2 - 0.3 - 2.0 * PI) },
-        ];
-        let error = return_error(&corner, &robot()).unwrap().unwrap();
-        assert!((error.x - 0.1).abs() < 1e-12 && (error.y + 0.2).abs() < 1e-12);
-        assert!((error.heading.unwrap() + 0.3).abs() < 1e-12);
-        corner.reference.clear();
-        assert_eq!(return_error(&corner, &robot()), Ok(None));
     }
 
     #[test]
