@@ -1,14 +1,10 @@
-//! Files written beside and renamed, so that nobody ever sees half of one; and the files that describe robots.
+//! Files written beside and renamed, so that nobody ever sees half of one.
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use tempfile::NamedTempFile;
-use umbmark_core::dataset::read_robot;
-use umbmark_core::drive::Robot;
-use umbmark_core::effect::Model;
-use umbmark_core::monte_carlo::Draw;
 
 /// A file that appears under its name only when it is whole.
 #[derive(Debug)]
@@ -61,15 +57,4 @@ impl Write for Pending {
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
     }
-}
-
-/// The robot of a robot.toml, and its path: the paper's square where the file says none.
-pub fn robot(file: &Path) -> anyhow::Result<(Robot, umbmark_core::path::Path)> {
-    let (robot, path) = read_robot(file)?;
-    Ok((robot, path.unwrap_or_else(umbmark_core::path::Path::umbmark)))
-}
-
-/// The effects of a model.toml.
-pub fn model(file: &Path, _robot: &Robot) -> anyhow::Result<(Model, Vec<Draw>)> {
-    anyhow::bail!("{}", file.display())
 }

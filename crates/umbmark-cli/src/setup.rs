@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
+use umbmark_core::dataset::{read_model, read_robot};
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::Model;
 use umbmark_core::monte_carlo::Draw;
 use umbmark_core::path::Path;
 
 use crate::effect_flags::EffectFlags;
-use crate::files;
 use crate::robot_flags::RobotFlags;
 
 /// The wheel noise \[m^0.5\] where nothing is said of noise: it gives about the paper's scatter.
@@ -49,13 +49,16 @@ impl SetupFlags {
     /// Reads the files and lets the flags override them.
     pub fn resolve(&self) -> anyhow::Result<Setup> {
         let (robot, path) = match &self.robot {
-            Some(file) => files::robot(file)?,
+            Some(file) => {
+                let (robot, path) = read_robot(file)?;
+                (robot, path.unwrap_or_else(Path::umbmark))
+            }
             None => (Robot::labmate(), Path::umbmark()),
         };
         let robot = self.robot_flags.robot(robot)?;
         let path = self.robot_flags.path(path)?;
         let (mut model, mut draws) = match &self.model {
-            Some(file) => files::model(file, &robot)?,
+            Some(file) => read_model(file, &robot)?,
             None => (Model::new(&robot), Vec::new()),
         };
         let mut assumed = Vec::new();
