@@ -6,7 +6,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use std::time::Duration;
 use umbmark_benches::{Draws, LEG_READINGS, TURN_READINGS, robot};
-use umbmark_core::engine::{Motion, SampledOdometry, TickOdometry, Update, WheelLine, oracle};
+use umbmark_core::engine::{Instructions, Motion, SampledOdometry, TickOdometry, Update, WheelLine, oracle};
 
 /// Enough that no branch predictor learns them by heart.
 const LINES: usize = 4096;
@@ -34,9 +34,12 @@ fn tick_exact(criterion: &mut Criterion) {
                 black_box(&motions);
             });
         });
-        group.bench_function("word, many", |bencher| {
-            bencher.iter(|| odometry.motions(black_box(&lines), &mut motions));
-        });
+        for instructions in [Instructions::Avx2, Instructions::Avx512] {
+            let odometry = odometry.limited_to(instructions);
+            group.bench_function(format!("word, many, {instructions:?}"), |bencher| {
+                bencher.iter(|| odometry.motions(black_box(&lines), &mut motions));
+            });
+        }
         let few = &lines[..16];
         group.throughput(Throughput::Elements(16));
         group.bench_function("oracle", |bencher| {

@@ -2,6 +2,11 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
+#[cfg(target_arch = "x86_64")]
+pub(super) mod avx2;
+#[cfg(target_arch = "x86_64")]
+pub(super) mod avx512;
+
 /// A pack of `f64`s on which the same operations are done side by side; `f64` itself is the pack of one.
 ///
 /// Every operation is that of IEEE 754 on each number by itself, so a number's result does not depend on the width of its

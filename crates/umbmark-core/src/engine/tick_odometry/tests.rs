@@ -115,3 +115,47 @@ fn driving_back_leads_back() {
         assert_eq!(back.end_phases(), there.start());
     }
 }
+
+fn bits(motion: &Motion) -> [u64; 5] {
+    [motion.pose.x, motion.pose.y, motion.pose.heading, motion.cosine, motion.sine].map(f64::to_bits)
+}
+
+#[test]
+fn many_lines_at_once_give_the_same_bits_as_one_by_one_on_every_instruction_set() {
+    let mut source = Source(7);
+    for geometry in [nominal(), commensurate(), calibrated(), TickGeometry::new(0.05, 0.04, 0.03).unwrap()] {
+        let odometry = TickOdometry::new(geometry);
+        let lines: Vec<WheelLine> = (0..cases(40_000))
+            .map(|i| {
+                source.line(match i % 5 {
+                    0 => 40,
+                    4 if i % 50 == 4 => 4_000_000,
+                    _ => 20_000,
+                })
+            })
+            .collect();
+        let alone: Vec<_> = lines.iter().map(|line| bits(&odometry.motion(line))).collect();
+        for instructions in [Instructions::Portable, Instructions::Avx2, Instructions::Avx512] {
+            let mut motions = vec![Motion::IDENTITY; lines.len()];
+            odometry.limited_to(instructions).motions(&lines, &mut motions);
+            for ((line, motion), alone) in lines.iter().zip(&motions).zip(&alone) {
+                assert_eq!(bits(motion), *alone, "{instructions:?} {line:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn slices_of_any_length_are_filled_and_nothing_beyond() {
+    let mut source = Source(8);
+    let odometry = TickOdometry::new(nominal());
+    let lines: Vec<WheelLine> = (0..20).map(|_| source.line(1_000)).collect();
+    for (given, room) in [(0, 3), (1, 1), (7, 9), (9, 7), (20, 20), (17, 30)] {
+        let mut motions = vec![Motion { sine: 9.0, ..Motion::IDENTITY }; room];
+        odometry.motions(&lines[..given], &mut motions);
+        for (i, motion) in motions.iter().enumerate() {
+            let untouched = Motion { sine: 9.0, ..Motion::IDENTITY };
+            assert_eq!(*motion, lines[..given].get(i).map_or(untouched, |line| odometry.motion(line)));
+        }
+    }
+}
