@@ -22,6 +22,8 @@ pub(super) trait Lane:
     fn splat(self, value: f64) -> Self;
     fn floor(self) -> Self;
     fn abs(self) -> Self;
+    /// The larger of two numbers neither of which is NaN.
+    fn max(self, other: Self) -> Self;
     fn less(self, other: Self) -> Self::Mask;
     fn equal(self, other: Self) -> Self::Mask;
     /// `yes` where the mask is true and `no` where it is false.
@@ -44,6 +46,10 @@ impl Lane for f64 {
     #[inline(always)]
     fn abs(self) -> f64 {
         f64::abs(self)
+    }
+    #[inline(always)]
+    fn max(self, other: f64) -> f64 {
+        if self < other { other } else { self }
     }
     #[inline(always)]
     fn less(self, other: f64) -> bool {

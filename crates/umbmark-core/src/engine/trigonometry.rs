@@ -4,10 +4,13 @@ use super::lane::Lane;
 use crate::geometry::{COSINE_SERIES as C, HALF_PI, SINC_SERIES as S};
 use std::f64::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_4};
 
+/// Where the polynomials end.
+pub(super) const LARGE: f64 = FRAC_PI_4;
+
 /// Whether any |x| is past π/4, where the polynomials need their argument reduced.
 #[inline(always)]
 pub(super) fn any_large<T: Lane>(x: T) -> bool {
-    T::any(x.splat(FRAC_PI_4).less(x.abs()))
+    T::any(x.splat(LARGE).less(x.abs()))
 }
 
 /// (sin x / x, cos x), with sinc 0 = 1.
@@ -37,7 +40,7 @@ pub(super) fn sinc_cos_near_zero<T: Lane>(x: T) -> (T, T) {
 /// The whole number nearest to x / period, 0 for |x| <= π/4.
 #[inline(always)]
 fn whole_periods<T: Lane>(x: T, inverse_period: f64) -> T {
-    let near_zero = x.abs().less(x.splat(FRAC_PI_4.next_up()));
+    let near_zero = x.abs().less(x.splat(LARGE.next_up()));
     T::select(near_zero, x.splat(0.0), (x * x.splat(inverse_period) + x.splat(0.5)).floor())
 }
 

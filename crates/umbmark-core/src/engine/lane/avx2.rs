@@ -62,6 +62,10 @@ impl Lane for Four {
         Four(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
     }
     #[inline(always)]
+    fn max(self, other: Four) -> Four {
+        Four(unsafe { _mm256_max_pd(self.0, other.0) })
+    }
+    #[inline(always)]
     fn less(self, other: Four) -> __m256d {
         unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0) }
     }

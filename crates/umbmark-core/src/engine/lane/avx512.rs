@@ -61,6 +61,10 @@ impl Lane for Eight {
         Eight(unsafe { _mm512_abs_pd(self.0) })
     }
     #[inline(always)]
+    fn max(self, other: Eight) -> Eight {
+        Eight(unsafe { _mm512_max_pd(self.0, other.0) })
+    }
+    #[inline(always)]
     fn less(self, other: Eight) -> __mmask8 {
         unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0) }
     }

@@ -5,7 +5,8 @@
 //! is the identity to the last bit; so each line sees the operations it would see alone, in the same order.
 
 use crate::engine::lane::Lane;
-use crate::engine::mid_heading::{MidHeading, Root};
+use crate::engine::mid_heading::MidHeading;
+use crate::engine::trigonometry::LARGE;
 use crate::engine::{TickGeometry, UNITS_PER_TICK, WheelLine};
 
 /// Lines whose wheels travel less than this far \[units\] can go side by side.
@@ -44,18 +45,21 @@ pub(super) fn fits(line: &WheelLine) -> bool {
 /// ticks and must be done alone.
 pub(super) const RESULTS: usize = 6;
 
-/// Quotient and remainder of whole numbers, the quotient rounded down, given 1/divisor.
-///
-/// The estimate is off by one at most for quotients up to 2^50.
+/// 1/divisor, low enough that no quotient estimated with it is too large.
 #[inline(always)]
-fn divided<T: Lane>(number: T, divisor: T, inverse: T) -> (T, T) {
-    let (zero, one) = (number.splat(0.0), number.splat(1.0));
-    let quotient = (number * inverse).floor();
+fn reciprocal<T: Lane>(divisor: T) -> T {
+    divisor.splat(1.0 - 2.0 * f64::EPSILON) / divisor
+}
+
+/// Quotient and remainder of whole numbers, the quotient rounded down, given the divisor's [`reciprocal`].
+///
+/// The estimate is right or one too small, for quotients up to 2^48.
+#[inline(always)]
+fn divided<T: Lane>(number: T, divisor: T, reciprocal: T) -> (T, T) {
+    let quotient = (number * reciprocal).floor();
     let rest = number - quotient * divisor;
-    let too_large = rest.less(zero);
-    let (quotient, rest) = (T::select(too_large, quotient - one, quotient), T::select(too_large, rest + divisor, rest));
     let enough = rest.less(divisor);
-    (T::select(enough, quotient, quotient + one), T::select(enough, rest, rest - divisor))
+    (T::select(enough, quotient, quotient + number.splat(1.0)), T::select(enough, rest, rest - divisor))
 }
 
 /// floor((b a' - a b') / 2^32) for whole numbers below 2^32, and whether there is no remainder (1 or 0).
@@ -85,11 +89,41 @@ fn select_motion<T: Lane>(mask: T::Mask, yes: MidHeading<T>, no: MidHeading<T>) 
     }
 }
 
-/// The power with a whole exponent per line; 0 and 1 give the identity and the motion itself to the last bit.
+/// What `closed` is of an exponent above 1; 0 and 1 give the identity and the motion itself to the last bit.
 #[inline(always)]
-fn power<T: Lane>(motion: &MidHeading<T>, root: &Root<T>, exponent: T) -> MidHeading<T> {
-    let single = exponent.equal(exponent.splat(1.0));
-    select_motion(single, *motion, motion.closed_power(root, exponent))
+fn power<T: Lane>(motion: &MidHeading<T>, exponent: T, closed: MidHeading<T>) -> MidHeading<T> {
+    select_motion(exponent.equal(exponent.splat(1.0)), *motion, closed)
+}
+
+/// A power that is rarely above the first.
+#[inline(always)]
+fn small_power<T: Lane>(motion: &MidHeading<T>, exponent: T) -> MidHeading<T> {
+    let (zero, one) = (exponent.splat(0.0), exponent.splat(1.0));
+    let closed = if T::any(one.less(exponent)) {
+        motion.closed_power(&motion.root_in_lanes(), exponent)
+    } else {
+        MidHeading { half: zero, c: one, s: zero, x: zero, y: zero }
+    };
+    power(motion, exponent, closed)
+}
+
+/// Three powers of the same motion. The usual case, all angles near zero, is decided once for all.
+#[inline(always)]
+fn three_powers<T: Lane>(motion: &MidHeading<T>, exponents: [T; 3]) -> [MidHeading<T>; 3] {
+    let [a, b, c] = exponents;
+    let largest = a.max(b).max(c.max(a.splat(1.0))) * motion.half.abs();
+    let [a_closed, b_closed, c_closed] = if T::any(largest.splat(LARGE).less(largest)) {
+        let root = motion.root_in_lanes();
+        [motion.closed_power(&root, a), motion.closed_power(&root, b), motion.closed_power(&root, c)]
+    } else {
+        let root = motion.root_near_zero();
+        [
+            motion.closed_power_near_zero(&root, a),
+            motion.closed_power_near_zero(&root, b),
+            motion.closed_power_near_zero(&root, c),
+        ]
+    };
+    [power(motion, a, a_closed), power(motion, b, b_closed), power(motion, c, c_closed)]
 }
 
 /// A forward tick in every lane, or its reverse where `sign` is -1.
@@ -135,7 +169,7 @@ pub(super) fn results<T: Lane>(
     let ties = T::select(one_wheel, zero, no_rest);
     let start_offset = (b * left - a * right) + cross;
     let end_offset = (start_offset - right * (a_end - a)) + left * (b_end - b);
-    let per_run = one / run;
+    let per_run = reciprocal(run);
     let (before, mut first) = divided(rise + start_offset, run, per_run);
     let (minus_after, mut last) = divided(end_offset, run, per_run);
     let before = T::select(one_wheel, zero, before);
@@ -145,24 +179,23 @@ pub(super) fn results<T: Lane>(
 
     let (left_tick, right_tick) = (tick(ticks[0], left_sign), tick(ticks[1], right_sign));
     let identity = MidHeading { half: zero, c: one, s: zero, x: zero, y: zero };
-    let right_root = right_tick.root_in_lanes();
-    let mut front = power(&right_tick, &right_root, before).product(&left_tick);
+    let mut front = small_power(&right_tick, before).product(&left_tick);
     front = select_motion(one_wheel, identity, front);
-    let mut back = power(&right_tick, &right_root, after);
+    let mut back = small_power(&right_tick, after);
 
     let (mut p, mut q) = (rise, run);
     let (k, rest) = divided(p, q, per_run);
     let k = T::select(T::either(one_wheel, x_count.equal(zero)), zero, k);
     p = rest;
     u_count = u_count - k * x_count;
-    let (mut x, mut u) = (power(&right_tick, &right_root, k).product(&left_tick), right_tick);
+    let (mut x, mut u) = (small_power(&right_tick, k).product(&left_tick), right_tick);
 
     loop {
         let active = zero.less(u_count);
         if !T::any(active) {
             break;
         }
-        let per_p = one / p;
+        let per_p = reciprocal(p);
         let to_first = q - first - one;
         let (head, head_rest) = divided(to_first, p, per_p);
         let (tail, tail_rest) = divided(last, p, per_p);
@@ -174,12 +207,11 @@ pub(super) fn results<T: Lane>(
 
         // Lines that are done must not send the others down the path of large angles.
         let base = MidHeading { half: T::select(active, x.half, zero), ..x };
-        let root = base.root_in_lanes();
-        let front_more = front.product(&power(&base, &root, head)).product(&u);
-        let back_more = power(&base, &root, tail).product(&back);
-        let x_more = power(&base, &root, k).product(&u);
+        let [x_head, x_tail, x_k] = three_powers(&base, [head, tail, k]);
+        let front_more = front.product(&x_head).product(&u);
+        let x_more = x_k.product(&u);
         front = select_motion(active, front_more, front);
-        back = select_motion(active, back_more, back);
+        back = x_tail.product(&back);
         u = select_motion(active, x, u);
         x = select_motion(active, x_more, x);
 
@@ -190,8 +222,7 @@ pub(super) fn results<T: Lane>(
         x_count = T::select(active, groups, x_count);
         u_count = T::select(active, x_left, zero);
     }
-    let root = x.root_in_lanes();
-    let product = front.product(&power(&x, &root, x_count)).product(&back);
+    let product = front.product(&small_power(&x, x_count)).product(&back);
     let [x, y, cosine, sine] = product.end();
     let turned = right * right_sign * zero.splat(geometry.right()) - left * left_sign * zero.splat(geometry.left());
     [x, y, turned / zero.splat(geometry.wheelbase()) + zero, cosine, sine, ties]
