@@ -4,7 +4,6 @@ use super::TickOdometry;
 use super::lanes::{Block, RESULTS, fits, results};
 use crate::engine::lane::{avx2::Four, avx512::Eight};
 use crate::engine::{Instructions, Motion, WheelLine};
-use crate::geometry::Pose2;
 
 impl TickOdometry {
     pub(super) fn motions_in_lanes<L: AsRef<WheelLine>>(&self, lines: &[L], motions: &mut [Motion]) {
@@ -26,12 +25,15 @@ impl TickOdometry {
     ) {
         for (lines, motions) in lines.chunks(N).zip(motions.chunks_mut(N)) {
             let [x, y, heading, cosine, sine, ties] = results(&Block::new(lines));
+            for (i, motion) in motions.iter_mut().enumerate().take(lines.len()) {
+                // Number by number: a struct put together first is written and read again in different widths.
+                (motion.pose.x, motion.pose.y, motion.pose.heading) = (x[i], y[i], heading[i]);
+                (motion.cosine, motion.sine) = (cosine[i], sine[i]);
+            }
             for (i, (line, motion)) in lines.iter().map(AsRef::as_ref).zip(motions).enumerate() {
-                *motion = if ties[i] == 0.0 && fits(line) {
-                    Motion { pose: Pose2 { x: x[i], y: y[i], heading: heading[i] }, cosine: cosine[i], sine: sine[i] }
-                } else {
-                    self.motion(line)
-                };
+                if ties[i] != 0.0 || !fits(line) {
+                    *motion = self.motion(line);
+                }
             }
         }
     }
