@@ -26,11 +26,12 @@ const HEADING_LIMIT: i64 = 1 << 16;
 /// Segments with fewer readings are not worth a table.
 const FEWEST_READINGS: u32 = 64;
 
-/// A carry word's place in the table, and the number of its carries.
+/// What a carry word means: its place among the possible ones, and by how many ticks it turns the robot.
 #[derive(Clone, Copy)]
 struct Rank {
-    place: u8,
-    ones: u8,
+    column: u16,
+    row: u16,
+    turn: i32,
 }
 
 /// The words that can occur, in numerical order.
@@ -48,17 +49,22 @@ const POSSIBLE: [u8; WORDS] = {
     possible
 };
 
-/// The ranks of the words that can occur; the others never ask.
-const RANKS: [Rank; 256] = {
-    let mut ranks = [Rank { place: 0, ones: 0 }; 256];
+/// The ranks of the words of a wheel whose ticks turn the robot counter-clockwise: a right one forward or a left one
+/// backward. Words that cannot occur have none.
+static COUNTER_CLOCKWISE: [Rank; 256] = ranks(1);
+static CLOCKWISE: [Rank; 256] = ranks(-1);
+
+const fn ranks(sign: i32) -> [Rank; 256] {
+    let mut ranks = [Rank { column: 0, row: 0, turn: 0 }; 256];
     let mut place = 0;
     while place < WORDS {
         let word = POSSIBLE[place];
-        ranks[word as usize] = Rank { place: place as u8, ones: word.count_ones() as u8 };
+        ranks[word as usize] =
+            Rank { column: place as u16, row: (WORDS * place) as u16, turn: sign * word.count_ones() as i32 };
         place += 1;
     }
     ranks
-};
+}
 
 /// Whether any two stretches of equal length have as many ones as each other, give or take one: the mark of mechanical
 /// words (Morse & Hedlund 1940).
@@ -193,11 +199,13 @@ impl Blocks {
         let [left_sign, right_sign] = pieces.sign;
         let whole = right_sign * pieces.whole[1] - left_sign * pieces.whole[0];
         let mut heading = directions.reach;
+        let ranks = |sign: i64| if sign > 0 { &COUNTER_CLOCKWISE } else { &CLOCKWISE };
+        let (left_ranks, right_ranks) = (ranks(-left_sign), ranks(right_sign));
         let mut eight = |left: u8, right: u8| {
-            let (left, right) = (RANKS[usize::from(left)], RANKS[usize::from(right)]);
-            let motion = motions.eight[usize::from(left.place) + WORDS * usize::from(right.place)];
+            let (left, right) = (left_ranks[usize::from(left)], right_ranks[usize::from(right)]);
+            let motion = motions.eight[usize::from(left.column) + usize::from(right.row)];
             let turned = turned(directions.table[heading as usize], motion);
-            heading += 8 * whole + right_sign * i64::from(right.ones) - left_sign * i64::from(left.ones);
+            heading += 8 * whole + i64::from(left.turn + right.turn);
             turned
         };
         // Two sums, so that one addition need not wait for the other.
