@@ -246,7 +246,7 @@ impl Row<'_> {
             line: self.line,
             column: column.name.clone(),
             value: if value.is_empty() { "nothing".into() } else { quoted(value) },
-            allowed: allowed.to_owned(),
+            allowed: allowed.into(),
             remedy: remedy.into(),
         }
     }

@@ -204,7 +204,7 @@ impl<'a> Entry<'a> {
             line: self.line,
             key,
             value: self.shown(),
-            allowed: allowed.to_owned(),
+            allowed: allowed.into(),
             remedy: remedy.into(),
         }
     }

@@ -110,12 +110,22 @@ impl Recording {
         if speed <= FASTEST {
             return Ok(());
         }
-        let remedy = match bits {
+        let remedy: String = match bits {
             Some(bits) => format!("look whether the counter has {bits} bits, was set back, or rows are missing"),
             None => "look whether the counter was set back, rolled over (say counter_bits in robot.toml), or rows are missing".into(),
         };
         let speed = speed.round();
-        Err(DatasetError::Jump { file, line, column, before, after, seconds, speed, limit: FASTEST, remedy })
+        Err(DatasetError::Jump {
+            file,
+            line,
+            column,
+            before,
+            after,
+            seconds,
+            speed,
+            limit: FASTEST,
+            remedy: remedy.into(),
+        })
     }
 }
 
