@@ -46,12 +46,12 @@ pub enum StudyError {
     #[error(transparent)]
     Distribution(#[from] DistributionError),
     /// A parameter's distribution lies outside its bounds.
-    #[error("{effect}: {source}")]
+    #[error("{effect}: {problem}")]
     Bounds {
         /// The effect.
         effect: &'static str,
         /// The parameter, its value and its range.
-        source: ParameterError,
+        problem: ParameterError,
     },
     /// No trials, or a test without runs.
     #[error("{what} must be between {} and {}, got {value}", range.start, range.end - 1)]

@@ -8,15 +8,11 @@ use std::time::Instant;
 
 use anyhow::Context;
 use serde_json::{Map, Value, json};
-use umbmark_core::drive::Robot;
-use umbmark_core::effect::Model;
 use umbmark_core::engine::Update;
 use umbmark_core::monte_carlo::{Distribution, Draw, Ensemble, Metric, Row, Statistics, Study};
-use umbmark_core::path::Path;
 use umbmark_core::simulate::{Odometry, Phase};
 
-use crate::effect_flags::EffectFlags;
-use crate::robot_flags::RobotFlags;
+use crate::setup::{Setup, SetupFlags};
 use crate::table::{table, with_precision_of};
 use crate::terminal::histogram;
 use crate::{Session, files};
@@ -68,14 +64,6 @@ pub struct Arguments {
     #[arg(long, default_value_t = 5, value_name = "N")]
     runs: usize,
 
-    /// The robot and its path, instead of the paper's LabMate on a 4 x 4 m square
-    #[arg(long, value_name = "robot.toml")]
-    robot: Option<PathBuf>,
-
-    /// Effects with their values or distributions
-    #[arg(long, value_name = "model.toml")]
-    model: Option<PathBuf>,
-
     /// How the robot computes its pose
     #[arg(long, value_enum, default_value_t = OdometryKind::Robot, value_name = "KIND")]
     odometry: OdometryKind,
@@ -97,36 +85,13 @@ pub struct Arguments {
     force: bool,
 
     #[command(flatten)]
-    robot_flags: RobotFlags,
-
-    #[command(flatten)]
-    effects: EffectFlags,
+    setup: SetupFlags,
 }
-
-/// The paper's scatter, where nothing else is said of noise.
-const ASSUMED_WHEEL_NOISE: f64 = 1e-3;
 
 impl Arguments {
     fn study(&self, seed: u64) -> anyhow::Result<(Study, Vec<String>)> {
-        let (robot, path) = match &self.robot {
-            Some(file) => files::robot(file)?,
-            None => (Robot::labmate(), Path::umbmark()),
-        };
-        let robot = self.robot_flags.robot(robot)?;
-        let path = self.robot_flags.path(path)?;
-        let (mut model, mut draws) = match &self.model {
-            Some(file) => files::model(file, &robot)?,
-            None => (Model::new(&robot), Vec::new()),
-        };
-        let mut assumed = Vec::new();
-        if self.robot.is_none() && self.robot_flags.leaves_assumptions() {
-            assumed.push("wheel diameter 0.150 m and 2000 ticks per revolution where not given".to_owned());
-        }
-        if self.model.is_none() && self.robot.is_none() && !self.effects.mentions("wheel_noise") {
-            model.set("wheel_noise", "k_sqrt_m", ASSUMED_WHEEL_NOISE)?;
-            assumed.push(format!("wheel noise k = {ASSUMED_WHEEL_NOISE} m^0.5 (--wheel-noise 0 for none)"));
-        }
-        self.effects.apply(&mut model, &mut draws)?;
+        let Setup { path, model, draws, assumed } = self.setup.resolve()?;
+        let robot = model.robot();
         let update = match self.update {
             UpdateKind::Arc => Update::Arc,
             UpdateKind::Midpoint => Update::Midpoint,
