@@ -1,6 +1,9 @@
 //! The verbs, one file each.
 
 mod completions;
+mod effects;
+mod init;
+mod inspect;
 mod mc;
 
 use std::process::ExitCode;
@@ -12,6 +15,12 @@ use crate::Session;
 pub enum Verb {
     /// Monte Carlo: simulate whole UMBmark tests by the thousand
     Mc(Box<mc::Arguments>),
+    /// Look at a dataset: what it holds, whether it is any good, what it can determine
+    Inspect(inspect::Arguments),
+    /// Write a robot.toml and a returns.csv to fill in
+    Init(init::Arguments),
+    /// List the effects that make a robot err, or explain one
+    Effects(effects::Arguments),
     /// Print shell completions or the manual page
     Completions(completions::Arguments),
 }
@@ -20,6 +29,9 @@ impl Verb {
     pub(crate) fn run(self, session: &mut Session) -> anyhow::Result<ExitCode> {
         match self {
             Verb::Mc(arguments) => mc::run(*arguments, session),
+            Verb::Inspect(arguments) => inspect::run(arguments, session),
+            Verb::Init(arguments) => init::run(arguments, session),
+            Verb::Effects(arguments) => effects::run(arguments, session),
             Verb::Completions(arguments) => completions::run(arguments, session),
         }
     }

@@ -82,7 +82,7 @@ fn scale(tracked: bool, open: bool) -> Determined {
         (false, false) => Determined {
             quantity,
             yes: false,
-            because: "a closed path gives E_b/E_s only; measure the pose at a stop on the way, or a straight",
+            because: "a return to START gives E_b/E_s only; measure the pose at a stop on the way, or a straight",
         },
     }
 }

@@ -70,6 +70,7 @@ fn a_clean_log_is_measured_as_it_was_made() {
     }
     let bad: Vec<_> = found.checks.iter().filter(|check| !check.ok).map(|check| check.name).collect();
     assert_eq!(bad, ["runs"]);
+    assert!(found.checks.iter().all(|check| check.name != "returns against logs"), "they are from the logs");
     assert!(found.determined.iter().take(3).all(|d| d.yes));
 }
 
@@ -100,6 +101,15 @@ fn without_a_track_a_wheel_that_runs_backward_is_told_by_the_path() {
     let wheels = found.logs[0].wheels.as_ref().unwrap();
     assert_eq!(wheels.wheels, Wheels::Otherwise { exchanged: false, left_backward: false, right_backward: true });
     assert_eq!(wheels.misfit, None);
+}
+
+#[test]
+fn a_sheet_that_tells_of_other_runs_is_seen() {
+    let mut run = drive(Direction::Ccw, 5, same);
+    run.returned.as_mut().unwrap().y += 0.05;
+    let found = dataset(vec![run]).inspect();
+    assert_eq!(check(&found, "returns against logs").found, "50.0 mm apart at most");
+    assert!(!check(&found, "returns against logs").ok);
 }
 
 #[test]
