@@ -20,6 +20,8 @@ mod folder;
 mod inspect;
 mod label;
 mod model_file;
+#[cfg(test)]
+mod mutated_input;
 mod optiodom;
 mod recording;
 mod returns;
