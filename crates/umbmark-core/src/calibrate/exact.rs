@@ -27,7 +27,7 @@ const INVOLVED: f64 = 0.01;
 
 /// The fit and what it says of E_d, E_b, E_s.
 pub(super) struct Exact {
-    /// What was not shown stays 1.
+    /// 1 for what is not shown.
     pub correction: Correction,
     /// Which of E_d, E_b, E_s the data shows.
     pub shown: [bool; 3],
