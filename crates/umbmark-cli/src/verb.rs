@@ -1,7 +1,9 @@
 //! The verbs, one file each.
 
+mod calibrate;
 mod completions;
 mod mc;
+mod score;
 mod simulate;
 
 use std::process::ExitCode;
@@ -15,6 +17,10 @@ pub enum Verb {
     Mc(Box<mc::Arguments>),
     /// Simulate one test and write it as a dataset
     Simulate(Box<simulate::Arguments>),
+    /// Score measured runs: E_max,sys, centres of gravity, sigma, each with an interval
+    Score(score::Arguments),
+    /// Find the true wheel diameters and wheelbase from measured runs
+    Calibrate(calibrate::Arguments),
     /// Print shell completions or the manual page
     Completions(completions::Arguments),
 }
@@ -24,6 +30,8 @@ impl Verb {
         match self {
             Verb::Mc(arguments) => mc::run(*arguments, session),
             Verb::Simulate(arguments) => simulate::run(*arguments, session),
+            Verb::Score(arguments) => score::run(arguments, session),
+            Verb::Calibrate(arguments) => calibrate::run(arguments, session),
             Verb::Completions(arguments) => completions::run(arguments, session),
         }
     }
