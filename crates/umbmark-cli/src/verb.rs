@@ -5,6 +5,7 @@ mod effects;
 mod init;
 mod inspect;
 mod mc;
+mod simulate;
 
 use std::process::ExitCode;
 
@@ -15,6 +16,8 @@ use crate::Session;
 pub enum Verb {
     /// Monte Carlo: simulate whole UMBmark tests by the thousand
     Mc(Box<mc::Arguments>),
+    /// Simulate one test and write it as a dataset
+    Simulate(Box<simulate::Arguments>),
     /// Look at a dataset: what it holds, whether it is any good, what it can determine
     Inspect(inspect::Arguments),
     /// Write a robot.toml and a returns.csv to fill in
@@ -29,6 +32,7 @@ impl Verb {
     pub(crate) fn run(self, session: &mut Session) -> anyhow::Result<ExitCode> {
         match self {
             Verb::Mc(arguments) => mc::run(*arguments, session),
+            Verb::Simulate(arguments) => simulate::run(*arguments, session),
             Verb::Inspect(arguments) => inspect::run(arguments, session),
             Verb::Init(arguments) => init::run(arguments, session),
             Verb::Effects(arguments) => effects::run(arguments, session),
