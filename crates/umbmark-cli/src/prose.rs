@@ -43,8 +43,8 @@ mod tests {
         let lines = hanging("  physics", 12, text);
         assert_eq!(
             lines,
-            "  physics   a cable is laid ten times under the wheel that faces the inside of the\n            \
-             square, over the first leg\n"
+            "  physics   a cable is laid ten times under the wheel that faces the inside of\n            \
+             the square, over the first leg\n"
         );
         assert_eq!(hanging("a long head", 4, "text"), "a long head\n    text\n");
         assert_eq!(hanging("", 2, ""), "\n");

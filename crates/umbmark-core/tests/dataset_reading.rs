@@ -53,6 +53,8 @@ fn the_error_is_absolute_minus_computed_with_the_heading_wrapped() {
     assert!((cw.heading.unwrap() - (2.0 * PI - 6.25)).abs() < 1e-15);
     assert!((ccw.heading.unwrap() - (6.0 - 2.0 * PI)).abs() < 1e-15);
     assert_eq!(data.runs[1].number, 2);
+    let errors = errors(&returns("direction,run,ex_m,ey_m,etheta_rad\ncw,1,0,0,6.25\n"));
+    assert!((errors[0].heading.unwrap() - (6.25 - 2.0 * PI)).abs() < 1e-15);
 }
 
 #[test]

@@ -210,7 +210,6 @@ impl Row<'_> {
         let largest = column.unit.map_or(LARGEST_COUNT, |unit| unit.largest);
         match text.parse::<f64>() {
             Ok(value) if value.abs() <= largest => Ok(Some(match column.unit {
-                Some(unit) if unit.name == "deg" => value.to_radians(),
                 Some(unit) => value / unit.per_si,
                 None => value,
             })),
