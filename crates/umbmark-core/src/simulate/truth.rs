@@ -1,8 +1,8 @@
 //! The true motion of a robot whose odometry believes something else.
 
 use super::diffusion::Diffusion;
-use crate::drive::WheelTravel;
-use crate::effect::{Bump, Chain, Entry, Model, Stretch, Wheel, WheelVariance};
+use crate::drive::{Wheel, WheelTravel};
+use crate::effect::{Bump, Chain, Entry, Model, Stretch, WheelVariance};
 use crate::geometry::{Displacement2, Pose2};
 use crate::random::Stream;
 
