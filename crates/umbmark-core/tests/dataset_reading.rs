@@ -263,3 +263,11 @@ fn a_gap_in_which_the_wheels_rolled_on_is_not_taken_for_a_roll_over() {
     let files = [("robot.toml", ROBOT), ("runs/cw_01.csv", rolled)];
     assert!(matches!(load(&files, "").unwrap_err(), DatasetError::RolledOver { bits: 8, line: 4, .. }));
 }
+
+#[test]
+fn the_model_in_the_documents_is_one() {
+    let text = include_str!("../../../docs/files.md").split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    let robot = umbmark_core::drive::Robot::labmate();
+    let (model, draws) = umbmark_core::dataset::parse_model("files.md", text, &robot).unwrap();
+    assert_eq!((model.parts().len(), draws.len()), (3, 2));
+}
