@@ -130,6 +130,7 @@ fn wheels_and_wheelbase_go_by_several_names() {
         umbmark_core::dataset::parse_robot("robot.toml", &text).unwrap().0
     };
     let plain = read("wheelbase_m = 0.5\nwheel_diameter_m = 0.25");
+    assert_eq!(plain.encoder.rate(), None);
     assert_eq!(read("track_width_m = 0.5\nwheel_radius_m = 0.125"), plain);
     assert_eq!(read("wheel_separation_m = 0.5\nwheel_diameter_left_m = 0.25\nwheel_diameter_right_m = 0.25"), plain);
     assert_eq!(
