@@ -130,6 +130,7 @@ fn wheels_and_wheelbase_go_by_several_names() {
         umbmark_core::dataset::parse_robot("robot.toml", &text).unwrap().0
     };
     let plain = read("wheelbase_m = 0.5\nwheel_diameter_m = 0.25");
+    assert_eq!(plain.encoder.rate(), None);
     assert_eq!(read("track_width_m = 0.5\nwheel_radius_m = 0.125"), plain);
     assert_eq!(read("wheel_separation_m = 0.5\nwheel_diameter_left_m = 0.25\nwheel_diameter_right_m = 0.25"), plain);
     assert_eq!(
@@ -262,4 +263,12 @@ fn a_gap_in_which_the_wheels_rolled_on_is_not_taken_for_a_roll_over() {
     let rolled = "t_s,ticks_left,ticks_right\n0,3,250\n0.1,6,254\n0.2,9,2\n";
     let files = [("robot.toml", ROBOT), ("runs/cw_01.csv", rolled)];
     assert!(matches!(load(&files, "").unwrap_err(), DatasetError::RolledOver { bits: 8, line: 4, .. }));
+}
+
+#[test]
+fn the_model_in_the_documents_is_one() {
+    let text = include_str!("../../../docs/files.md").split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    let robot = umbmark_core::drive::Robot::labmate();
+    let (model, draws) = umbmark_core::dataset::parse_model("files.md", text, &robot).unwrap();
+    assert_eq!((model.parts().len(), draws.len()), (3, 2));
 }

@@ -74,7 +74,7 @@ impl Dataset {
         if let Some(robot) = &self.robot {
             checks.extend(sheet_check(&self.runs, robot));
         }
-        let determined = determine::determine(&groups, &logs, self.path.as_ref());
+        let determined = determine::determine(&groups, &logs, self.robot.as_ref(), self.path.as_ref());
         Inspection { groups, logs, checks, determined, warnings: self.warnings.clone() }
     }
 }

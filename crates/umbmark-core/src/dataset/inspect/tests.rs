@@ -71,7 +71,7 @@ fn a_clean_log_is_measured_as_it_was_made() {
     let bad: Vec<_> = found.checks.iter().filter(|check| !check.ok).map(|check| check.name).collect();
     assert_eq!(bad, ["runs"]);
     assert!(found.checks.iter().all(|check| check.name != "returns against logs"), "they are from the logs");
-    assert!(found.determined.iter().take(3).all(|d| d.yes));
+    assert!(found.determined.iter().take(4).all(|d| d.yes));
 }
 
 #[test]
@@ -140,22 +140,53 @@ fn robot_heading(data: &Dataset) {
     assert_eq!(check(&found, "heading by ticks").found, "20.0 deg off the path");
 }
 
+/// Whether E_d, E_b and E_s can be had from return errors on a path.
+fn determined(path: Path, directions: &[Direction], heading: bool) -> [bool; 3] {
+    let returned = ReturnError { x: 0.0, y: 0.0, heading: heading.then_some(0.0) };
+    let run = |direction: &Direction| Run {
+        name: String::new(),
+        number: 1,
+        direction: Some(*direction),
+        test: TestKind::Systematic,
+        log: None,
+        returned: Some(returned),
+    };
+    let mut data = dataset(directions.iter().map(run).collect());
+    data.path = Some(path);
+    let answers = data.inspect().determined;
+    [answers[0].yes, answers[1].yes, answers[2].yes]
+}
+
+#[test]
+fn what_returns_can_determine_depends_on_path_directions_and_headings() {
+    use crate::path::{CIRCLE, FIGURE_EIGHT, SPIN, SQUARE, STRAIGHT};
+    let path = |shape, values: &[f64]| Path::new(shape, values, SpeedProfile::default()).unwrap();
+    let (cw, both) = (&[Direction::Cw][..], &Direction::BOTH[..]);
+    for heading in [true, false] {
+        assert_eq!(determined(path(&SQUARE, &[4.0]), both, heading), [true, true, false]);
+        assert_eq!(determined(path(&SQUARE, &[4.0]), cw, heading), [false, false, false]);
+        assert_eq!(determined(path(&SPIN, &[4.0]), both, heading), [false, heading, false]);
+        assert_eq!(determined(path(&STRAIGHT, &[4.0]), cw, heading), [true, false, true]);
+    }
+    assert_eq!(determined(path(&FIGURE_EIGHT, &[2.0]), cw, true), [true, true, false]);
+    assert_eq!(determined(path(&CIRCLE, &[2.0, 1.0]), both, true), [true, true, false]);
+    assert_eq!(determined(path(&CIRCLE, &[2.0, 0.5]), both, true), [true, true, true]);
+}
+
 #[test]
 fn what_cannot_be_determined_is_said_with_what_would_help() {
     let strip = |mut run: Run| {
         run.log = None;
         run
     };
-    let determined = |runs: Vec<Run>| dataset(runs).inspect().determined;
+    let found = |runs: Vec<Run>| dataset(runs).inspect().determined;
     let cw = strip(drive(Direction::Cw, 5, same));
     let ccw = strip(drive(Direction::Ccw, 5, same));
-    let one = determined(vec![cw.clone()]);
-    assert!(!one[0].yes && one[0].because.contains("drive the other direction"));
-    let both = determined(vec![cw, ccw]);
-    assert!(both[0].yes && both[2].yes);
-    assert!(!both[1].yes && both[1].because.contains("E_b/E_s only"));
-    assert!(!both[3].yes && !both[4].yes);
-    let mut straight = dataset(vec![strip(drive(Direction::Cw, 5, same))]);
-    straight.path = Path::new(&crate::path::STRAIGHT, &[10.0], SpeedProfile::default()).ok();
-    assert!(straight.inspect().determined[1].yes);
+    let one = found(vec![cw.clone()]);
+    assert!(one[..2].iter().all(|answer| answer.because.contains("drive the other direction")));
+    let both = found(vec![cw, ccw]);
+    assert!(both[2].because.contains("E_b/E_s only") && both[3].yes && !both[4].yes && !both[5].yes);
+    assert!(found(Vec::new())[0].because.contains("no return error"));
+    let tracked = found(vec![drive(Direction::Cw, 5, same)]);
+    assert!(tracked[..3].iter().all(|answer| answer.yes));
 }
