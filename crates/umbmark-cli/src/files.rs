@@ -65,6 +65,9 @@ pub fn robot(file: &Path) -> anyhow::Result<(umbmark_core::drive::Robot, umbmark
 }
 
 /// The effects of a model.toml.
-pub fn model(file: &Path, _robot: &umbmark_core::drive::Robot) -> anyhow::Result<(umbmark_core::effect::Model, Vec<umbmark_core::monte_carlo::Draw>)> {
+pub fn model(
+    file: &Path,
+    _robot: &umbmark_core::drive::Robot,
+) -> anyhow::Result<(umbmark_core::effect::Model, Vec<umbmark_core::monte_carlo::Draw>)> {
     anyhow::bail!("{}", file.display())
 }
