@@ -294,17 +294,31 @@ def test_any_memory_layout_is_read_and_left_as_it_was() -> None:
         np.testing.assert_array_equal(same, CW)
 
 
-anything = hnp.arrays(np.float64, st.tuples(st.integers(0, 6), st.sampled_from([2, 3])))
+FINITE = st.floats(allow_nan=False, allow_infinity=False)
+ANY_RUNS = hnp.arrays(
+    np.float64, st.tuples(st.integers(0, 6), st.sampled_from([2, 3])), elements=FINITE
+)
 
 
-@given(cw=anything, ccw=anything, bumps_cw=st.none() | anything, bumps_ccw=st.none() | anything)
-def test_any_floats_give_a_score_or_a_value_error(
-    cw: Array, ccw: Array, bumps_cw: Array | None, bumps_ccw: Array | None
+@given(
+    cw=ANY_RUNS,
+    ccw=ANY_RUNS,
+    bumps_cw=st.none() | ANY_RUNS,
+    bumps_ccw=st.none() | ANY_RUNS,
+    level=st.floats(0, 1, exclude_min=True, exclude_max=True),
+)
+def test_any_finite_floats_are_scored_and_no_run_at_all_is_a_value_error(
+    cw: Array, ccw: Array, bumps_cw: Array | None, bumps_ccw: Array | None, level: float
 ) -> None:
-    try:
-        result = umbmark.score(cw, ccw, bumps_cw=bumps_cw, bumps_ccw=bumps_ccw)
-    except ValueError:
+    def scored() -> umbmark.Score:
+        return umbmark.score(cw, ccw, bumps_cw=bumps_cw, bumps_ccw=bumps_ccw, level=level)
+
+    if len(cw) + len(ccw) == 0:
+        with pytest.raises(ValueError, match="runs has both a direction"):
+            scored()
         return
+    result = scored()
+    assert (result.n_cw, result.n_ccw) == (len(cw), len(ccw))
     assert repr(result).startswith("Score(\n")
 
 
