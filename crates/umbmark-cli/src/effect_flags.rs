@@ -91,6 +91,7 @@ impl Args for EffectFlags {
                     .long(flag)
                     .value_name("SD")
                     .value_parser(number)
+                    .allow_negative_numbers(true)
                     .help(format!("standard deviation of --{} from trial to trial", parameter.flag))
                     .help_heading(HEADING)
                     .hide_short_help(true),

@@ -1,4 +1,4 @@
-//! Files written beside and renamed, so that nobody ever sees half of one; and the files that describe robots.
+//! Files written beside and renamed, so that nobody ever sees half of one.
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -57,17 +57,4 @@ impl Write for Pending {
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
     }
-}
-
-/// The robot of a robot.toml and its path.
-pub fn robot(file: &Path) -> anyhow::Result<(umbmark_core::drive::Robot, umbmark_core::path::Path)> {
-    anyhow::bail!("{}", file.display())
-}
-
-/// The effects of a model.toml.
-pub fn model(
-    file: &Path,
-    _robot: &umbmark_core::drive::Robot,
-) -> anyhow::Result<(umbmark_core::effect::Model, Vec<umbmark_core::monte_carlo::Draw>)> {
-    anyhow::bail!("{}", file.display())
 }

@@ -7,6 +7,7 @@ mod effect_flags;
 mod files;
 mod robot_flags;
 mod session;
+mod setup;
 mod table;
 mod terminal;
 mod verb;
@@ -69,4 +70,12 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {
     error.chain().any(|cause| cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe))
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn flags_of_all_verbs_are_consistent() {
+        super::command().debug_assert();
+    }
 }

@@ -51,7 +51,13 @@ fn encoder_rate(text: &str) -> Result<Option<f64>, String> {
 impl Args for RobotFlags {
     fn augment_args(command: Command) -> Command {
         let robot = |flag: &'static str, unit: &'static str, help: &'static str| {
-            Arg::new(flag).long(flag).value_name(unit).value_parser(number).help(help).help_heading("Robot")
+            Arg::new(flag)
+                .long(flag)
+                .value_name(unit)
+                .value_parser(number)
+                .allow_negative_numbers(true)
+                .help(help)
+                .help_heading("Robot")
         };
         let command = command
             .arg(robot("wheelbase", "M", "nominal wheelbase b [default: 0.340, the paper's LabMate]"))

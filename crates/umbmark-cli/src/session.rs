@@ -10,6 +10,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// The options of every verb.
 #[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = "Common")]
 pub struct Options {
     /// Print one JSON document on stdout, and nothing else there
     #[arg(long, global = true)]

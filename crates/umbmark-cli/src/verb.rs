@@ -2,6 +2,7 @@
 
 mod completions;
 mod mc;
+mod simulate;
 
 use std::process::ExitCode;
 
@@ -12,6 +13,8 @@ use crate::Session;
 pub enum Verb {
     /// Monte Carlo: simulate whole UMBmark tests by the thousand
     Mc(Box<mc::Arguments>),
+    /// Simulate one test and write it as a dataset
+    Simulate(Box<simulate::Arguments>),
     /// Print shell completions or the manual page
     Completions(completions::Arguments),
 }
@@ -20,6 +23,7 @@ impl Verb {
     pub(crate) fn run(self, session: &mut Session) -> anyhow::Result<ExitCode> {
         match self {
             Verb::Mc(arguments) => mc::run(*arguments, session),
+            Verb::Simulate(arguments) => simulate::run(*arguments, session),
             Verb::Completions(arguments) => completions::run(arguments, session),
         }
     }

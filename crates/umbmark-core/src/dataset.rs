@@ -18,17 +18,26 @@ mod document;
 mod error;
 mod folder;
 mod label;
+mod model_file;
 mod optiodom;
 mod recording;
 mod returns;
 mod robot_file;
+mod robot_text;
+mod save;
 mod sheet;
+mod sheets;
 mod start_frame;
+mod template;
 mod text;
 mod tick_log;
 
 pub use error::DatasetError;
+pub use model_file::{parse_model, read_model};
 pub use robot_file::{parse_robot, read_robot};
+pub use robot_text::robot_text;
+pub use save::Existing;
+pub use template::{template, write_template};
 
 use crate::drive::Robot;
 use crate::effect::TestKind;

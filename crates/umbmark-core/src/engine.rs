@@ -31,6 +31,7 @@
 mod digital_line;
 #[cfg(test)]
 mod double_double;
+mod instructions;
 mod integrator;
 mod lane;
 mod mid_heading;
@@ -46,6 +47,7 @@ mod trigonometry;
 mod wheel_line;
 mod word;
 
+pub use instructions::Instructions;
 pub use integrator::{Integrator, Method, Segment};
 pub use monoid::Monoid;
 pub use motion::Motion;

@@ -10,15 +10,18 @@
 //!
 //! Nothing here prints, parses flags or knows Python.
 
+pub mod calibrate;
 pub mod dataset;
 pub mod drive;
 pub mod effect;
 pub mod engine;
+pub mod fit;
 pub mod geometry;
 pub mod monte_carlo;
 pub mod parameter;
 pub mod path;
 pub mod random;
+pub mod replay;
 pub mod score;
 pub mod simulate;
 pub mod stats;

@@ -14,15 +14,19 @@ use std::ops::{ControlFlow, Range};
 
 use rayon::prelude::*;
 
+use crate::dataset::ReturnError;
 use crate::drive::Robot;
 use crate::effect::{Model, ModelError};
 use crate::parameter::ParameterError;
-use crate::path::Path;
-use crate::simulate::{Odometry, Phase, SimulateError};
+use crate::path::{Direction, Path};
+use crate::replay::Track;
+use crate::simulate::{self, Odometry, Phase, SimulateError};
 
 pub use distribution::{Distribution, DistributionError, Draw};
 pub use metric::Metric;
 pub use statistics::Statistics;
+
+pub use trial::draw_parameters;
 
 use trial::Bench;
 
@@ -46,12 +50,12 @@ pub enum StudyError {
     #[error(transparent)]
     Distribution(#[from] DistributionError),
     /// A parameter's distribution lies outside its bounds.
-    #[error("{effect}: {source}")]
+    #[error("{effect}: {problem}")]
     Bounds {
         /// The effect.
         effect: &'static str,
         /// The parameter, its value and its range.
-        source: ParameterError,
+        problem: ParameterError,
     },
     /// No trials, or a test without runs.
     #[error("{what} must be between {} and {}, got {value}", range.start, range.end - 1)]
@@ -122,6 +126,16 @@ impl Study {
     /// The metrics of a trial, in the order of its [`Row`]; those that the test does not have are left out.
     pub fn metrics(&self) -> Vec<Metric> {
         Metric::ALL.into_iter().filter(|metric| metric.exists(self.runs, self.extended())).collect()
+    }
+
+    /// The test without noise, bumps and quantisation, all drawn parameters in their middle: its return errors \[cw, ccw\]
+    /// by exact kinematics.
+    pub fn noise_free(&self) -> Result<[ReturnError; 2], StudyError> {
+        let chain = trial::centred(&self.model, &self.draws)?.chain();
+        Ok(Direction::BOTH.map(|direction| {
+            let end = Track::from_path(&self.path, direction, &self.robot).end(&chain);
+            simulate::return_error(&end, &self.path.end(direction))
+        }))
     }
 
     /// Runs the study on the present rayon pool.

@@ -360,6 +360,8 @@ mod tests {
             assert_eq!(log.reference.last().unwrap().sample, log.time.len() - 1);
             assert_eq!((log.time.len(), recording.truth.len()), (recording.computed.len(), log.left.len()));
             assert!((log.time[1] - 0.02).abs() < 1e-12 && log.left[0] == 0.0);
+            // Ten references a second, one every fifth sample, and one at the end.
+            assert!(log.reference.len().abs_diff(log.time.len() / 5) <= 2, "{}", log.reference.len());
         }
     }
 

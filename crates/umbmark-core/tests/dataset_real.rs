@@ -1,5 +1,7 @@
 //! Datasets that were measured, or made by another simulator: read as they are, where they are there.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::Dataset;
 use umbmark_core::effect::TestKind;

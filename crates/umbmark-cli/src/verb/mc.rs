@@ -8,15 +8,14 @@ use std::time::Instant;
 
 use anyhow::Context;
 use serde_json::{Map, Value, json};
-use umbmark_core::drive::Robot;
-use umbmark_core::effect::Model;
+use umbmark_core::calibrate::{Angles, Correction};
 use umbmark_core::engine::Update;
 use umbmark_core::monte_carlo::{Distribution, Draw, Ensemble, Metric, Row, Statistics, Study};
-use umbmark_core::path::Path;
+use umbmark_core::path::{Direction, SQUARE};
+use umbmark_core::score::summarise;
 use umbmark_core::simulate::{Odometry, Phase};
 
-use crate::effect_flags::EffectFlags;
-use crate::robot_flags::RobotFlags;
+use crate::setup::{Setup, SetupFlags};
 use crate::table::{table, with_precision_of};
 use crate::terminal::histogram;
 use crate::{Session, files};
@@ -68,14 +67,6 @@ pub struct Arguments {
     #[arg(long, default_value_t = 5, value_name = "N")]
     runs: usize,
 
-    /// The robot and its path, instead of the paper's LabMate on a 4 x 4 m square
-    #[arg(long, value_name = "robot.toml")]
-    robot: Option<PathBuf>,
-
-    /// Effects with their values or distributions
-    #[arg(long, value_name = "model.toml")]
-    model: Option<PathBuf>,
-
     /// How the robot computes its pose
     #[arg(long, value_enum, default_value_t = OdometryKind::Robot, value_name = "KIND")]
     odometry: OdometryKind,
@@ -97,36 +88,13 @@ pub struct Arguments {
     force: bool,
 
     #[command(flatten)]
-    robot_flags: RobotFlags,
-
-    #[command(flatten)]
-    effects: EffectFlags,
+    setup: SetupFlags,
 }
-
-/// The paper's scatter, where nothing else is said of noise.
-const ASSUMED_WHEEL_NOISE: f64 = 1e-3;
 
 impl Arguments {
     fn study(&self, seed: u64) -> anyhow::Result<(Study, Vec<String>)> {
-        let (robot, path) = match &self.robot {
-            Some(file) => files::robot(file)?,
-            None => (Robot::labmate(), Path::umbmark()),
-        };
-        let robot = self.robot_flags.robot(robot)?;
-        let path = self.robot_flags.path(path)?;
-        let (mut model, mut draws) = match &self.model {
-            Some(file) => files::model(file, &robot)?,
-            None => (Model::new(&robot), Vec::new()),
-        };
-        let mut assumed = Vec::new();
-        if self.robot.is_none() && self.robot_flags.leaves_assumptions() {
-            assumed.push("wheel diameter 0.150 m and 2000 ticks per revolution where not given".to_owned());
-        }
-        if self.model.is_none() && self.robot.is_none() && !self.effects.mentions("wheel_noise") {
-            model.set("wheel_noise", "k_sqrt_m", ASSUMED_WHEEL_NOISE)?;
-            assumed.push(format!("wheel noise k = {ASSUMED_WHEEL_NOISE} m^0.5 (--wheel-noise 0 for none)"));
-        }
-        self.effects.apply(&mut model, &mut draws)?;
+        let Setup { path, model, draws, assumed } = self.setup.resolve()?;
+        let robot = model.robot();
         let update = match self.update {
             UpdateKind::Arc => Update::Arc,
             UpdateKind::Midpoint => Update::Midpoint,
@@ -180,7 +148,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if partial {
         session.message("partial", &format!("stopped after {} of {} trials", ensemble.trials, study.trials));
     }
-    let report = Report { study: &study, ensemble: &ensemble, assumed: &assumed, partial, seconds };
+    let theory = Theory::of(&study)?;
+    let report = Report { study: &study, ensemble: &ensemble, theory, assumed: &assumed, partial, seconds };
     if session.json() {
         session.print_json(&report.json())?;
     } else {
@@ -222,10 +191,49 @@ impl TrialsFile {
     }
 }
 
+/// E_max,sys \[m\] of the same test without noise.
+struct Theory {
+    exact: Option<f64>,
+    /// By the formulas of the paper's companion, for a square.
+    first_order: Option<f64>,
+}
+
+impl Theory {
+    fn of(study: &Study) -> anyhow::Result<Theory> {
+        let [cw, ccw] = study.noise_free()?;
+        let middle = |effect: &str, parameter: &str| {
+            let drawn = study.draws.iter().find(|d| d.effect() == effect && d.parameter().name == parameter);
+            drawn.map(Draw::centre).or(study.model.get(effect, parameter)).unwrap_or(1.0)
+        };
+        let e_d = middle("wheel_diameter_ratio", "e_d");
+        // A square sees the ratio of the two only.
+        let e_b = middle("wheelbase", "e_b") / middle("scale", "e_s");
+        let side = study.path.values().first().filter(|_| std::ptr::eq(study.path.shape(), &SQUARE));
+        let first_order = side.and_then(|side| {
+            let angles = Angles::of(&Correction { e_d, e_b, e_s: 1.0 }, *side, &study.robot.drive);
+            let [cw, ccw] = Direction::BOTH.map(|direction| angles.first_order_return(direction, *side));
+            summarise(&[cw], &[ccw]).e_max_sys()
+        });
+        Ok(Theory { exact: summarise(&[cw], &[ccw]).e_max_sys(), first_order })
+    }
+
+    fn text(&self) -> String {
+        let mm = |value: Option<f64>| value.map(|v| format!("{:.1} mm", v * 1e3));
+        match (mm(self.exact), mm(self.first_order)) {
+            (Some(exact), Some(first)) => {
+                format!("E_max,sys without noise: {exact} by exact kinematics, {first} to first order\n\n")
+            }
+            (Some(exact), None) => format!("E_max,sys without noise: {exact} by exact kinematics\n\n"),
+            _ => String::new(),
+        }
+    }
+}
+
 /// Everything that is said of a finished study.
 struct Report<'a> {
     study: &'a Study,
     ensemble: &'a Ensemble,
+    theory: Theory,
     assumed: &'a [String],
     partial: bool,
     seconds: f64,
@@ -272,6 +280,9 @@ impl Report<'_> {
             "partial": self.partial,
             "metrics": metrics,
             "trials_per_s": self.trials_per_s(),
+            "noise_free": {
+                "e_max_sys_m": self.theory.exact, "first_order_e_max_sys_m": self.theory.first_order,
+            },
             "runs_per_direction": self.study.runs[0],
             "robot": self.study.robot.name,
             "path": { "shape": path.shape().name, "sizes": sizes },
@@ -317,6 +328,7 @@ impl Report<'_> {
         text += "\n";
         text += &self.table();
         text += "\n\n";
+        text += &self.theory.text();
         if let Some(e_max) = self.ensemble.get(Metric::EMaxSys) {
             text += "E_max,sys over the trials\n";
             text += &distribution_of(e_max);

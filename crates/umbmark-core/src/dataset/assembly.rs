@@ -101,13 +101,16 @@ impl Assembly {
             _ if turned < -LEAST_TURN => Some(Direction::Cw),
             _ => None,
         };
-        if let (Some(name), Some(ticks)) = (named.direction, driven.filter(|d| named.direction != Some(*d))) {
+        let Some(told) = named.direction else { return driven };
+        if let (Some(name), Some(ticks)) = (told, driven)
+            && name != ticks
+        {
             let (name, ticks) = (name.name(), ticks.name());
             self.warnings.push(format!(
                 "{file}: its name says {name}, its ticks turn {ticks}; taken as {name}. Look whether left and right are exchanged"
             ));
         }
-        named.direction.or(driven)
+        told
     }
 
     /// The return row that a log belongs to.

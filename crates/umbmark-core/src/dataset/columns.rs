@@ -231,7 +231,9 @@ impl Row<'_> {
         if let Some((_, meaning)) = words.iter().find(|(word, _)| *word == text) {
             return Ok(*meaning);
         }
-        let allowed = words.iter().map(|(word, _)| *word).collect::<Vec<_>>().join(" or ");
+        let (last, others) = words.split_last().map_or(("", &words[..0]), |(last, others)| (last.0, others));
+        let others = others.iter().map(|(word, _)| *word).collect::<Vec<_>>().join(", ");
+        let allowed = format!("{others} or {last}");
         let remedy = did_you_mean(&text, words.iter().map(|(word, _)| *word));
         Err(self.wrong(column, &allowed, &remedy))
     }
@@ -250,8 +252,8 @@ impl Row<'_> {
     }
 }
 
-/// Counts above this are not whole numbers any more.
-const LARGEST_COUNT: f64 = 9_007_199_254_740_992.0;
+/// Not far above this, counts are not told apart any more.
+const LARGEST_COUNT: f64 = 9e15;
 
 fn allowed(column: &Column) -> String {
     match column.unit {

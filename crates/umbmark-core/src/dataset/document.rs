@@ -136,6 +136,11 @@ impl<'a> Entry<'a> {
         }
     }
 
+    /// Whether the value is a table.
+    pub fn is_table(&self) -> bool {
+        matches!(self.value.get_ref(), DeValue::Table(_))
+    }
+
     /// The value as a list of entries under the same key.
     pub fn list(&self, allowed: &str) -> Result<Vec<Entry<'a>>, DatasetError> {
         let DeValue::Array(items) = self.value.get_ref() else { return Err(self.wrong(allowed, "")) };

@@ -124,7 +124,10 @@ fn add_optiodom_run(assembly: &mut Assembly, file: &Path, set: &str) -> Result<(
 /// One file, with the robot that stands beside it where there is one.
 fn load_file(file: &Path) -> Result<Dataset, DatasetError> {
     match extension(file).as_str() {
-        "toml" => return Err(not_a_dataset(file, "it is a description; give the folder it is in".into())),
+        "toml" => {
+            let (file, found) = (file.display().to_string(), "it describes one".into());
+            return Err(DatasetError::NotADataset { file, found, remedy: "give the folder it is in, or returns.csv" });
+        }
         "mcap" => return Err(mcap(file)),
         _ => {}
     }
@@ -160,8 +163,12 @@ fn robot_beside(folder: &Path) -> Option<PathBuf> {
 }
 
 fn mcap(file: &Path) -> DatasetError {
-    let remedy = "MCAP is not read yet; export it as CSV (t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad)";
-    DatasetError::NotADataset { file: file.display().to_string(), found: "it is an MCAP log".into(), remedy }
+    let remedy = "export it as CSV (t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad)";
+    DatasetError::NotADataset {
+        file: file.display().to_string(),
+        found: "it is an MCAP log, which is not read yet".into(),
+        remedy,
+    }
 }
 
 fn extension(file: &Path) -> String {

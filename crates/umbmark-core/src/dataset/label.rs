@@ -10,10 +10,10 @@ pub(super) const DIRECTIONS: [(&str, Option<Direction>); 3] =
 /// Words for the tests, as in files.
 pub(super) const TESTS: [(&str, TestKind); 2] = [("systematic", TestKind::Systematic), ("bumps", TestKind::Bumps)];
 
-/// The name of a run: `cw_01`, `bumps_ccw_03`, `run_02`.
+/// The name of a run: `cw_01`, `bumps_ccw_03`, `none_02`.
 pub(super) fn label(test: TestKind, direction: Option<Direction>, number: u32) -> String {
     let test = if test == TestKind::Bumps { "bumps_" } else { "" };
-    format!("{test}{}_{number:02}", direction.map_or("run", Direction::name))
+    format!("{test}{}_{number:02}", direction.map_or("none", Direction::name))
 }
 
 /// The same for people: "run 3 cw (bumps)".
@@ -26,7 +26,8 @@ pub(super) fn spoken(test: TestKind, direction: Option<Direction>, number: u32) 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Named {
     pub test: Option<TestKind>,
-    pub direction: Option<Direction>,
+    /// `Some(None)` where it says that there is none.
+    pub direction: Option<Option<Direction>>,
     pub number: Option<u32>,
 }
 
@@ -36,7 +37,7 @@ pub(super) fn parse(stem: &str) -> Named {
     let mut named = Named::default();
     for word in stem.split(|c: char| !c.is_ascii_alphanumeric()) {
         if let Some((_, direction)) = DIRECTIONS.iter().find(|(name, _)| *name == word) {
-            named.direction = *direction;
+            named.direction = Some(*direction);
         } else if let Some((_, test)) = TESTS.iter().find(|(name, _)| *name == word) {
             named.test = Some(*test);
         } else if let Ok(number) = word.parse() {
@@ -56,12 +57,12 @@ mod tests {
             for direction in [Some(Direction::Cw), Some(Direction::Ccw), None] {
                 for number in [0, 3, 12, 123] {
                     let named = parse(&label(test, direction, number));
-                    assert_eq!((named.direction, named.number), (direction, Some(number)));
+                    assert_eq!((named.direction, named.number), (Some(direction), Some(number)));
                     assert_eq!(named.test.unwrap_or(TestKind::Systematic), test);
                 }
             }
         }
-        assert_eq!(parse("Monday-CCW-07").direction, Some(Direction::Ccw));
+        assert_eq!(parse("Monday-CCW-07").direction, Some(Some(Direction::Ccw)));
         assert_eq!(parse("accurate"), Named::default());
     }
 }

@@ -5,7 +5,7 @@ use super::error::{DatasetError, did_you_mean};
 use super::text::read_text;
 use crate::drive::{DifferentialDrive, Encoder, MAX_COUNTER_BITS, Robot};
 use crate::parameter::{DefaultValue, Parameter};
-use crate::path::{Path, SHAPES, Shape, SpeedProfile, WAYPOINTS};
+use crate::path::{Path, PathError, SHAPES, Shape, SpeedProfile, WAYPOINTS};
 
 const WHEELBASE: Parameter =
     key("wheelbase_m", "m", 0.340, (1e-3, 100.0), "distance of the two wheels' contact points");
@@ -146,9 +146,11 @@ fn read_path_table(table: &Table) -> Result<Path, DatasetError> {
         shape.parameters.iter().map(|p| table.number(p)).collect::<Result<Vec<_>, _>>()?
     };
     let speed = read_speed(table)?;
-    Path::new(shape, &values, speed).map_err(|error| match table.get(POINTS) {
-        Some(points) => points.wrong(&error.to_string(), ""),
-        None => entry.wrong(&error.to_string(), ""),
+    Path::new(shape, &values, speed).map_err(|error| match (&error, table.get(POINTS)) {
+        (PathError::Waypoint { index, .. }, Some(points)) => points
+            .wrong("two or more finite points, each another than the one before", &format!("look at point {index}")),
+        (_, Some(points)) => points.wrong(&error.to_string(), ""),
+        (_, None) => entry.wrong(&error.to_string(), ""),
     })
 }
 

@@ -15,7 +15,7 @@ pub(super) fn decode(file: &str, bytes: Vec<u8>) -> Result<String, DatasetError>
     let text = String::from_utf8(bytes).map_err(|error| {
         let good = error.utf8_error().valid_up_to();
         let line = error.as_bytes()[..good].iter().filter(|byte| **byte == b'\n').count() + 1;
-        let found = if utf16 { "this is UTF-16" } else { "these bytes are not UTF-8 text" };
+        let found = if utf16 { "this is UTF-16" } else { "there are bytes that are not UTF-8" };
         DatasetError::NotUtf8 { file: file.to_owned(), line, found }
     })?;
     Ok(match text.strip_prefix('\u{feff}') {

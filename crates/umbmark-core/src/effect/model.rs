@@ -28,12 +28,12 @@ pub enum ModelError {
         nearest: Option<&'static str>,
     },
     /// A value out of range.
-    #[error("{effect}: {source}")]
+    #[error("{effect}: {problem}")]
     Value {
         /// The effect.
         effect: &'static str,
         /// The parameter, its value and its range.
-        source: ParameterError,
+        problem: ParameterError,
     },
 }
 
@@ -104,8 +104,9 @@ impl Model {
             let nearest = nearest(parameter, about.parameters.iter().map(|p| p.name));
             ModelError::UnknownParameter { effect: about.name, name: parameter.to_owned(), nearest }
         })?;
-        let value =
-            about.parameters[index].check(value).map_err(|source| ModelError::Value { effect: about.name, source })?;
+        let value = about.parameters[index]
+            .check(value)
+            .map_err(|problem| ModelError::Value { effect: about.name, problem })?;
         self.add(effect)?.values[index] = value;
         Ok(())
     }

@@ -33,8 +33,8 @@ impl Effect for ReferenceNoise {
         title: "noise of the absolute measurement",
         acts_on: ActsOn::Reference,
         parameters: &[
-            deviation("position_sd_m", "reference-position-sd", "m", 2e-3, "standard deviation of each coordinate"),
-            deviation("heading_sd_rad", "reference-heading-sd", "rad", 2.6e-3, "standard deviation of the heading"),
+            deviation("position_sd_m", "reference-position-noise", "m", 2e-3, "standard deviation of each coordinate"),
+            deviation("heading_sd_rad", "reference-heading-noise", "rad", 2.6e-3, "standard deviation of the heading"),
         ],
         equation: "measured = true + N(0, diag(sd²))",
         physics: "A tape read to 2 mm and a heading from two such readings (0.15 degree), or the noise of motion capture.",

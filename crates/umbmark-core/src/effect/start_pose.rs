@@ -40,7 +40,7 @@ impl Effect for StartPose {
                 bounds: (0.0, 10.0),
                 ..bias(
                     "position_sd_m",
-                    "start-position-sd",
+                    "start-position-scatter",
                     "m",
                     2e-3,
                     "scatter of each \
@@ -51,7 +51,7 @@ impl Effect for StartPose {
                 bounds: (0.0, 10.0),
                 ..bias(
                     "heading_sd_rad",
-                    "start-heading-sd",
+                    "start-heading-scatter",
                     "rad",
                     2e-3,
                     "scatter of the \

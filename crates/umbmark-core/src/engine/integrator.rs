@@ -1,6 +1,6 @@
 //! One entrance to all kinds of odometry.
 
-use super::{Motion, SampledOdometry, TickGeometry, TickOdometry, Update, WheelLine, oracle};
+use super::{Instructions, Motion, SampledOdometry, TickGeometry, TickOdometry, Update, WheelLine, oracle};
 
 /// When the counters are read, and by which algorithm the motion is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -72,6 +72,16 @@ impl Integrator {
         Integrator { kind }
     }
 
+    /// The same integrator, with registers no wider than these: the same bits, maybe slower.
+    pub fn limited_to(self, instructions: Instructions) -> Integrator {
+        let kind = match self.kind {
+            Kind::EveryTick(odometry) => Kind::EveryTick(odometry.limited_to(instructions)),
+            Kind::Sampled(odometry) => Kind::Sampled(odometry.limited_to(instructions)),
+            one_by_one => one_by_one,
+        };
+        Integrator { kind }
+    }
+
     /// What a tick is worth.
     pub fn geometry(&self) -> &TickGeometry {
         match &self.kind {
@@ -100,6 +110,51 @@ impl Integrator {
         match &mut self.kind {
             Kind::EveryTick(odometry) => odometry.motions(segments, motions),
             _ => segments.iter().zip(motions).for_each(|(segment, motion)| *motion = self.motion(segment)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::random_lines::{Source, cases};
+
+    fn segments(source: &mut Source) -> Vec<Segment> {
+        let count = cases(1_000);
+        (0..count).map(|_| Segment::sampled(source.line(5_000), source.below(400) as u32)).collect()
+    }
+
+    #[test]
+    fn each_fast_method_agrees_with_its_slow_one() {
+        let geometry = TickGeometry::new(2.356e-4, 2.356e-4, 0.34).unwrap();
+        let pairs = [
+            [Method::EveryTick, Method::EveryTickOneByOne],
+            [Method::Sampled(Update::Arc), Method::SampledOneByOne(Update::Arc)],
+            [Method::Sampled(Update::Midpoint), Method::SampledOneByOne(Update::Midpoint)],
+            [Method::Sampled(Update::Euler), Method::SampledOneByOne(Update::Euler)],
+        ];
+        for pair in pairs {
+            let [mut fast, mut slow] = pair.map(|method| Integrator::new(geometry, method));
+            for segment in segments(&mut Source(31)) {
+                let (fast, slow) = (fast.motion(&segment), slow.motion(&segment));
+                let error = (fast.pose.x - slow.pose.x).abs().max((fast.pose.y - slow.pose.y).abs());
+                assert!(error < 1e-12 && fast.pose.heading == slow.pose.heading, "{pair:?} {segment:?}: {error:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn many_segments_are_the_same_bits_as_each_for_every_method_and_instruction_set() {
+        let geometry = TickGeometry::new(2.356e-4, 2.356e-4, 0.34).unwrap();
+        let segments = segments(&mut Source(32));
+        for method in [Method::EveryTick, Method::EveryTickOneByOne, Method::Sampled(Update::Arc)] {
+            let mut one = Integrator::new(geometry, method);
+            let alone: Vec<Motion> = segments.iter().map(|segment| one.motion(segment)).collect();
+            for instructions in [Instructions::Portable, Instructions::Avx2, Instructions::Avx512] {
+                let mut motions = vec![Motion::IDENTITY; segments.len()];
+                Integrator::new(geometry, method).limited_to(instructions).motions(&segments, &mut motions);
+                assert_eq!(motions, alone, "{method:?} {instructions:?}");
+            }
         }
     }
 }

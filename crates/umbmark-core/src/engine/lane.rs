@@ -2,6 +2,11 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
+#[cfg(target_arch = "x86_64")]
+pub(super) mod avx2;
+#[cfg(target_arch = "x86_64")]
+pub(super) mod avx512;
+
 /// A pack of `f64`s on which the same operations are done side by side; `f64` itself is the pack of one.
 ///
 /// Every operation is that of IEEE 754 on each number by itself, so a number's result does not depend on the width of its
@@ -17,6 +22,8 @@ pub(super) trait Lane:
     fn splat(self, value: f64) -> Self;
     fn floor(self) -> Self;
     fn abs(self) -> Self;
+    /// The larger of two numbers neither of which is NaN.
+    fn max(self, other: Self) -> Self;
     fn less(self, other: Self) -> Self::Mask;
     fn equal(self, other: Self) -> Self::Mask;
     /// `yes` where the mask is true and `no` where it is false.
@@ -39,6 +46,10 @@ impl Lane for f64 {
     #[inline(always)]
     fn abs(self) -> f64 {
         f64::abs(self)
+    }
+    #[inline(always)]
+    fn max(self, other: f64) -> f64 {
+        if self < other { other } else { self }
     }
     #[inline(always)]
     fn less(self, other: f64) -> bool {

@@ -67,13 +67,19 @@ impl<T: Lane> MidHeading<T> {
 
     #[inline(always)]
     pub fn root_in_lanes(&self) -> Root<T> {
-        let one = self.half.splat(1.0);
         if any_large(self.half) {
             let (half, half_turns) = folded_to_half_turn(self.half);
-            Root { half, inverse_sinc: one / sinc_cos(half).0, half_turns: Some(half_turns) }
+            Root { half, inverse_sinc: half.splat(1.0) / sinc_cos(half).0, half_turns: Some(half_turns) }
         } else {
-            Root { half: self.half, inverse_sinc: one / sinc_cos_near_zero(self.half).0, half_turns: None }
+            self.root_near_zero()
         }
+    }
+
+    /// The root, if no |half| is past π/4.
+    #[inline(always)]
+    pub fn root_near_zero(&self) -> Root<T> {
+        let inverse_sinc = self.half.splat(1.0) / sinc_cos_near_zero(self.half).0;
+        Root { half: self.half, inverse_sinc, half_turns: None }
     }
 
     /// The closed form of the k-th power, for a whole number k.
@@ -81,16 +87,31 @@ impl<T: Lane> MidHeading<T> {
     pub fn closed_power(&self, root: &Root<T>, k: T) -> Self {
         let angle = k * root.half;
         let (sinc, cosine) = sinc_cos(angle);
-        let (c, s, scale) = (cosine, sinc * angle, k * sinc * root.inverse_sinc);
+        let power = self.power_of_angle(root, k, angle, sinc, cosine);
         match root.half_turns {
-            None => MidHeading { half: angle, c, s, x: scale * self.x, y: scale * self.y },
+            None => power,
             Some(half_turns) => {
                 // e^(i k (h' + j π)) = (-1)^(k j) e^(i k h'), and the quotient of sines has one sign less.
                 let sign = alternating_sign(k * half_turns);
-                let scale = sign * alternating_sign(half_turns) * scale;
-                MidHeading { half: k * self.half, c: sign * c, s: sign * s, x: scale * self.x, y: scale * self.y }
+                let scale = sign * alternating_sign(half_turns);
+                let MidHeading { c, s, x, y, .. } = power;
+                MidHeading { half: k * self.half, c: sign * c, s: sign * s, x: scale * x, y: scale * y }
             }
         }
+    }
+
+    /// The closed form of the k-th power, if no |half| and no |k half| is past π/4.
+    #[inline(always)]
+    pub fn closed_power_near_zero(&self, root: &Root<T>, k: T) -> Self {
+        let angle = k * root.half;
+        let (sinc, cosine) = sinc_cos_near_zero(angle);
+        self.power_of_angle(root, k, angle, sinc, cosine)
+    }
+
+    #[inline(always)]
+    fn power_of_angle(&self, root: &Root<T>, k: T, angle: T, sinc: T, cosine: T) -> Self {
+        let scale = k * sinc * root.inverse_sinc;
+        MidHeading { half: angle, c: cosine, s: sinc * angle, x: scale * self.x, y: scale * self.y }
     }
 }
 

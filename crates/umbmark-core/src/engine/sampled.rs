@@ -1,9 +1,13 @@
 //! Odometry from counters read at given instants.
 
+use blocks::Blocks;
+
 use super::oracle::CompensatedSum;
-use super::{Motion, TickGeometry, UNITS_PER_TICK, WheelLine};
+use super::{Instructions, Motion, TickGeometry, UNITS_PER_TICK, WheelLine};
 use crate::geometry::{Pose2, Real};
 
+mod blocks;
+mod carries;
 mod constant_rate;
 
 /// How the pose is advanced by one change of the counters, of distance d and rotation θ at heading φ.
@@ -42,12 +46,19 @@ impl Update {
 pub struct SampledOdometry {
     geometry: TickGeometry,
     update: Update,
+    instructions: Instructions,
+    blocks: Blocks,
 }
 
 impl SampledOdometry {
     /// Odometry with these tick lengths, this wheelbase and this update.
     pub fn new(geometry: TickGeometry, update: Update) -> SampledOdometry {
-        SampledOdometry { geometry, update }
+        SampledOdometry { geometry, update, instructions: Instructions::best(), blocks: Blocks::default() }
+    }
+
+    /// The same odometry, with registers no wider than these: the same bits, maybe slower.
+    pub fn limited_to(self, instructions: Instructions) -> SampledOdometry {
+        SampledOdometry { instructions: self.instructions.min(instructions), ..self }
     }
 
     /// What a tick is worth.

@@ -2,8 +2,12 @@
 
 use super::digital_line::DigitalLine;
 use super::mid_heading::MidHeading;
-use super::{Letter, Motion, TickGeometry, WheelLine, word};
+use super::{Instructions, Letter, Motion, TickGeometry, WheelLine, word};
 use crate::geometry::Pose2;
+
+mod lanes;
+#[cfg(target_arch = "x86_64")]
+mod x86;
 
 /// Odometry that is updated at every tick of either counter, each tick an exact circular arc.
 ///
@@ -18,13 +22,24 @@ pub struct TickOdometry {
     geometry: TickGeometry,
     left: MidHeading<f64>,
     right: MidHeading<f64>,
+    instructions: Instructions,
 }
 
 impl TickOdometry {
     /// Odometry with these tick lengths and this wheelbase.
     pub fn new(geometry: TickGeometry) -> TickOdometry {
         let tick = |letter| MidHeading::of_letter(&geometry, letter, [false; 2]);
-        TickOdometry { geometry, left: tick(Letter::Left), right: tick(Letter::Right) }
+        TickOdometry {
+            geometry,
+            left: tick(Letter::Left),
+            right: tick(Letter::Right),
+            instructions: Instructions::best(),
+        }
+    }
+
+    /// The same odometry, with registers no wider than these: the same bits, maybe slower.
+    pub fn limited_to(self, instructions: Instructions) -> TickOdometry {
+        TickOdometry { instructions: self.instructions.min(instructions), ..self }
     }
 
     /// What a tick is worth.
@@ -56,9 +71,16 @@ impl TickOdometry {
         Motion { pose: Pose2 { x, y, heading }, cosine, sine }
     }
 
-    /// The motions that the ticks along `lines` report, into the `motions` of the same places; the same bits as one by
-    /// one. Only as many are computed as the shorter of the two slices has.
+    /// The motions that the ticks along `lines` report, into the `motions` of the same places.
+    ///
+    /// The same bits as one by one, several lines at once where the machine can ([`Instructions`]). Neighbours that are
+    /// alike, legs beside legs and turns beside turns, go fastest. Only as many are computed as the shorter of the two
+    /// slices has.
     pub fn motions<L: AsRef<WheelLine>>(&self, lines: &[L], motions: &mut [Motion]) {
+        #[cfg(target_arch = "x86_64")]
+        if self.instructions > Instructions::Portable {
+            return self.motions_in_lanes(lines, motions);
+        }
         lines.iter().zip(motions).for_each(|(line, motion)| *motion = self.motion(line.as_ref()));
     }
 }

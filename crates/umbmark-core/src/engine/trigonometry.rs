@@ -4,10 +4,13 @@ use super::lane::Lane;
 use crate::geometry::{COSINE_SERIES as C, HALF_PI, SINC_SERIES as S};
 use std::f64::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_4};
 
+/// Where the polynomials end.
+pub(super) const LARGE: f64 = FRAC_PI_4;
+
 /// Whether any |x| is past π/4, where the polynomials need their argument reduced.
 #[inline(always)]
 pub(super) fn any_large<T: Lane>(x: T) -> bool {
-    T::any(x.splat(FRAC_PI_4).less(x.abs()))
+    T::any(x.splat(LARGE).less(x.abs()))
 }
 
 /// (sin x / x, cos x), with sinc 0 = 1.
@@ -16,51 +19,64 @@ pub(super) fn sinc_cos<T: Lane>(x: T) -> (T, T) {
     if any_large(x) { sinc_cos_reduced(x) } else { sinc_cos_near_zero(x) }
 }
 
+/// a + b z.
+#[inline(always)]
+fn linear<T: Lane>(z: T, a: f64, b: f64) -> T {
+    z.splat(a) + z * z.splat(b)
+}
+
 /// (sin x / x, cos x) for |x| <= π/4.
 #[inline(always)]
 pub(super) fn sinc_cos_near_zero<T: Lane>(x: T) -> (T, T) {
-    let c = |value| x.splat(value);
     let z = x * x;
     let z2 = z * z;
     let z4 = z2 * z2;
-    let sinc = (c(1.0) + z * c(S[0])) + z2 * (c(S[1]) + z * c(S[2])) + z4 * ((c(S[3]) + z * c(S[4])) + z2 * c(S[5]));
-    let cosine = (c(1.0) - c(0.5) * z)
-        + z2 * (c(C[0]) + z * c(C[1]))
-        + z4 * ((c(C[2]) + z * c(C[3])) + z2 * (c(C[4]) + z * c(C[5])));
+    let sinc = linear(z, 1.0, S[0]) + z2 * linear(z, S[1], S[2]) + z4 * (linear(z, S[3], S[4]) + z2 * z.splat(S[5]));
+    let cosine =
+        linear(z, 1.0, -0.5) + z2 * linear(z, C[0], C[1]) + z4 * (linear(z, C[2], C[3]) + z2 * linear(z, C[4], C[5]));
     (sinc, cosine)
 }
 
-/// (sin x / x, cos x) for any x: subtracts the nearest multiple of π/2 in three parts (Cody & Waite).
+/// The whole number nearest to x / period, 0 for |x| <= π/4.
+#[inline(always)]
+fn whole_periods<T: Lane>(x: T, inverse_period: f64) -> T {
+    let near_zero = x.abs().less(x.splat(LARGE.next_up()));
+    T::select(near_zero, x.splat(0.0), (x * x.splat(inverse_period) + x.splat(0.5)).floor())
+}
+
+/// x - n π/2 for a whole number n, with π/2 in three parts (Cody & Waite).
+#[inline(always)]
+fn less_quarter_turns<T: Lane>(x: T, n: T) -> T {
+    ((x - n * x.splat(HALF_PI[0])) - n * x.splat(HALF_PI[1])) - n * x.splat(HALF_PI[2])
+}
+
+/// (sin x / x, cos x) for any x.
 ///
 /// The absolute error grows as the spacing of the numbers around x, which is what the rounding of x itself costs.
 #[inline(always)]
 fn sinc_cos_reduced<T: Lane>(x: T) -> (T, T) {
-    let c = |value| x.splat(value);
-    let near_zero = x.abs().less(c(FRAC_PI_4.next_up()));
-    let quarter_turns = T::select(near_zero, c(0.0), (x * c(FRAC_2_PI) + c(0.5)).floor());
-    let rest = ((x - quarter_turns * c(HALF_PI[0])) - quarter_turns * c(HALF_PI[1])) - quarter_turns * c(HALF_PI[2]);
+    let (zero, one) = (x.splat(0.0), x.splat(1.0));
+    let quarter_turns = whole_periods(x, FRAC_2_PI);
+    let rest = less_quarter_turns(x, quarter_turns);
     let (sinc, cosine) = sinc_cos_near_zero(rest);
     let sine = sinc * rest;
 
-    let quadrant = quarter_turns - c(4.0) * (quarter_turns * c(0.25)).floor();
-    let (one, two, three) = (quadrant.equal(c(1.0)), quadrant.equal(c(2.0)), quadrant.equal(c(3.0)));
-    let swapped = T::either(one, three);
+    let quadrant = quarter_turns - x.splat(4.0) * (quarter_turns * x.splat(0.25)).floor();
+    let (first, second, third) = (quadrant.equal(one), quadrant.equal(x.splat(2.0)), quadrant.equal(x.splat(3.0)));
+    let swapped = T::either(first, third);
     let (sine, cosine) = (T::select(swapped, cosine, sine), T::select(swapped, sine, cosine));
-    let sine = T::select(T::either(two, three), c(0.0) - sine, sine);
-    let cosine = T::select(T::either(one, two), c(0.0) - cosine, cosine);
+    let sine = T::select(T::either(second, third), zero - sine, sine);
+    let cosine = T::select(T::either(first, second), zero - cosine, cosine);
 
-    let unreduced = quarter_turns.equal(c(0.0));
-    (T::select(unreduced, sinc, sine / T::select(unreduced, c(1.0), x)), cosine)
+    let unreduced = quarter_turns.equal(zero);
+    (T::select(unreduced, sinc, sine / T::select(unreduced, one, x)), cosine)
 }
 
 /// x less the nearest multiple of π, in \[-π/2, π/2\], and that multiple; x itself and 0 for |x| <= π/4.
 #[inline(always)]
 pub(super) fn folded_to_half_turn<T: Lane>(x: T) -> (T, T) {
-    let c = |value| x.splat(value);
-    let near_zero = x.abs().less(c(FRAC_PI_4.next_up()));
-    let turns = T::select(near_zero, c(0.0), (x * c(FRAC_1_PI) + c(0.5)).floor());
-    let halves = turns * c(2.0);
-    (((x - halves * c(HALF_PI[0])) - halves * c(HALF_PI[1])) - halves * c(HALF_PI[2]), turns)
+    let half_turns = whole_periods(x, FRAC_1_PI);
+    (less_quarter_turns(x, half_turns * x.splat(2.0)), half_turns)
 }
 
 /// -1 where the whole number n is odd, 1 where it is even.

@@ -79,7 +79,7 @@ fn product_without_ties<M: Monoid>(line: &DigitalLine, alphabet: impl Fn(Letter)
     let (mut p, mut q) = (line.rise, line.run);
     let (mut first, mut last) = (line.first, line.last);
     let (mut x_count, mut u_count) = (line.left - 1, line.between);
-    if p >= q {
+    if p >= q && x_count > 0 {
         let k = p / q;
         p -= k * q;
         u_count -= k * x_count;

@@ -107,7 +107,7 @@ impl Draw {
             self.parameter
                 .check(*value)
                 .map(|_| ())
-                .map_err(|source| StudyError::Bounds { effect: self.effect, source })
+                .map_err(|problem| StudyError::Bounds { effect: self.effect, problem })
         })
     }
 

@@ -2,7 +2,7 @@
 
 use super::{Draw, Metric, Row, Study, StudyError};
 use crate::dataset::ReturnError;
-use crate::effect::TestKind;
+use crate::effect::{Model, ModelError, Part, TestKind};
 use crate::path::Direction;
 use crate::random::Stream;
 use crate::score::{self, Cluster, Convention, nonsystematic_orientation};
@@ -10,6 +10,35 @@ use crate::simulate::{Simulator, Truth};
 
 /// Purpose of the stream that parameters are drawn from.
 const PARAMETERS: u64 = 3;
+
+/// The model of one trial: `model` with every drawn parameter drawn.
+pub fn draw_parameters(model: &Model, draws: &[Draw], seed: u64, trial: u64) -> Result<Model, StudyError> {
+    let centred = centred(model, draws)?;
+    let mut drawn = centred.clone();
+    let mut stream = Stream::new(seed, PARAMETERS, trial);
+    for draw in centred.parts().iter().flat_map(|part| draws_of(part, draws)).flatten() {
+        drawn.set(draw.effect(), draw.parameter().name, draw.draw(&mut stream))?;
+    }
+    Ok(drawn)
+}
+
+/// `model` with every drawn parameter in the middle of its distribution.
+pub(super) fn centred(model: &Model, draws: &[Draw]) -> Result<Model, ModelError> {
+    let mut centred = model.clone();
+    for draw in draws {
+        centred.set(draw.effect(), draw.parameter().name, draw.centre())?;
+    }
+    Ok(centred)
+}
+
+/// For each parameter of a part, in order, its draw if it has one.
+fn draws_of<'a>(part: &Part, draws: &'a [Draw]) -> impl Iterator<Item = Option<&'a Draw>> {
+    let about = &part.effect.about;
+    about
+        .parameters
+        .iter()
+        .map(move |p| draws.iter().find(|draw| draw.effect() == about.name && draw.parameter().name == p.name))
+}
 
 /// What a thread needs to run trials, allocated once.
 pub(super) struct Bench {
@@ -25,22 +54,9 @@ pub(super) struct Bench {
 
 impl Bench {
     pub(super) fn new(study: &Study) -> Result<Bench, StudyError> {
-        let mut model = study.model.clone();
-        for draw in &study.draws {
-            model.set(draw.effect(), draw.parameter().name, draw.centre())?;
-        }
-        let mut draws = Vec::new();
-        let mut index = 0;
-        for part in model.parts() {
-            for parameter in part.effect.about.parameters {
-                let found = study
-                    .draws
-                    .iter()
-                    .find(|draw| draw.effect() == part.effect.about.name && draw.parameter().name == parameter.name);
-                draws.extend(found.map(|draw| (index, draw.clone())));
-                index += 1;
-            }
-        }
+        let model = centred(&study.model, &study.draws)?;
+        let all = model.parts().iter().flat_map(|part| draws_of(part, &study.draws));
+        let draws = all.enumerate().filter_map(|(index, draw)| Some((index, draw?.clone()))).collect();
         let room = |n: usize| vec![ReturnError::default(); n];
         Ok(Bench {
             simulator: Simulator::new(&study.robot, &study.path, study.odometry, study.phase)?,

@@ -116,6 +116,12 @@ impl Truth {
         self.done = 0.0;
     }
 
+    /// Puts one more bump ahead of the robot in the present stretch.
+    pub fn place(&mut self, bump: Bump) {
+        let behind = self.ahead.partition_point(|other| other.at >= bump.at);
+        self.ahead.insert(behind, bump);
+    }
+
     /// Drives on until `share` of the stretch is done.
     pub fn advance(&mut self, share: f64) {
         while let Some(bump) = self.ahead.pop_if(|bump| bump.at < share) {

@@ -1,5 +1,6 @@
 //! Readings at equal fractions of the travel: a wheel's count changes by one of two neighbouring whole numbers.
 
+use super::blocks::Blocks;
 use super::{SampledOdometry, Update};
 use crate::engine::{Motion, TickGeometry, WheelLine};
 use crate::geometry::Real;
@@ -26,7 +27,12 @@ impl EqualPieces {
     /// `readings` must not be 0.
     pub fn new(line: &WheelLine, readings: u32) -> EqualPieces {
         let forward = line.mirrored_forward();
-        let rate = forward.travel().map(|travel| ((travel as u128) << 32).div_ceil(u128::from(readings)));
+        let rate = forward.travel().map(|travel| {
+            // travel 2^32 / readings, in two divisions of 64 bits.
+            let (travel, readings) = (travel as u64, u64::from(readings));
+            let rest = travel % readings << 32;
+            (u128::from(travel / readings) << 32 | u128::from(rest / readings)) + u128::from(rest % readings != 0)
+        });
         EqualPieces {
             phase: forward.start().map(|start| (start as u64) << 32),
             whole: rate.map(|rate| (rate >> 64) as i64),
@@ -36,10 +42,12 @@ impl EqualPieces {
         }
     }
 
-    /// The changes of the counters at a reading at which the (left, right) rest carries or does not.
-    #[inline]
-    pub fn change(&self, carries: [bool; 2]) -> [i64; 2] {
-        [0, 1].map(|i| self.sign[i] * (self.whole[i] + i64::from(carries[i])))
+    /// What the four kinds of readings do, by left carry + 2 right carry.
+    pub fn steps(&self, geometry: &TickGeometry, update: Update) -> [Step; 4] {
+        [[0, 0], [1, 0], [0, 1], [1, 1]].map(|carries| {
+            let change = [0, 1].map(|i| self.sign[i] * (self.whole[i] + carries[i]));
+            Step::new(geometry, update, change)
+        })
     }
 }
 
@@ -53,12 +61,26 @@ pub(super) struct Step {
 }
 
 impl Step {
+    pub const IDENTITY: Step = Step { x: 0.0, y: 0.0, cosine: 1.0, sine: 0.0 };
+
     pub fn new(geometry: &TickGeometry, update: Update, change: [i64; 2]) -> Step {
         let rotation = geometry.heading(change);
         let (length, turned) = update.step(geometry.distance(change), rotation);
         let (side, ahead) = turned.sine_cosine();
         let (sine, cosine) = rotation.sine_cosine();
         Step { x: length * ahead, y: length * side, cosine, sine }
+    }
+
+    /// This step, then `next`.
+    #[inline(always)]
+    pub fn then(&self, next: &Step) -> Step {
+        let Step { x, y, cosine, sine } = *self;
+        Step {
+            x: x + (cosine * next.x - sine * next.y),
+            y: y + (sine * next.x + cosine * next.y),
+            cosine: cosine * next.cosine - sine * next.sine,
+            sine: sine * next.cosine + cosine * next.sine,
+        }
     }
 }
 
@@ -74,7 +96,15 @@ impl SampledOdometry {
     /// # Ok::<(), umbmark_core::engine::EngineError>(())
     /// ```
     pub fn at_constant_rate(&mut self, line: &WheelLine, readings: u32) -> Motion {
-        self.one_by_one(line, readings)
+        if readings == 0 {
+            return Motion::IDENTITY;
+        }
+        let (pieces, counts) = (EqualPieces::new(line, readings), line.counts());
+        if !Blocks::suit(&self.geometry, &pieces, counts) {
+            return self.one_by_one(line, readings);
+        }
+        let (x, y) = self.blocks.end(&self.geometry, self.update, self.instructions, &pieces, counts);
+        Motion::with_counts(x, y, counts, &self.geometry)
     }
 
     /// The same, always reading by reading; equal to within rounding.
@@ -90,18 +120,14 @@ impl SampledOdometry {
 
 /// Four steps worked out beforehand, chosen by the two carries; the direction is a rotating unit vector.
 fn one_by_one(geometry: &TickGeometry, update: Update, pieces: &EqualPieces) -> (f64, f64) {
-    let steps = [[false, false], [true, false], [false, true], [true, true]]
-        .map(|carries| Step::new(geometry, update, pieces.change(carries)));
+    let steps = pieces.steps(geometry, update);
     let ([mut left, mut right], [left_rest, right_rest]) = (pieces.phase, pieces.rest);
-    let (mut x, mut y, mut cosine, mut sine) = (0.0, 0.0, 1.0, 0.0);
+    let mut motion = Step::IDENTITY;
     for _ in 0..pieces.readings {
         let (left_carry, right_carry);
         (left, left_carry) = left.overflowing_add(left_rest);
         (right, right_carry) = right.overflowing_add(right_rest);
-        let step = &steps[usize::from(left_carry) + 2 * usize::from(right_carry)];
-        x += cosine * step.x - sine * step.y;
-        y += sine * step.x + cosine * step.y;
-        (cosine, sine) = (cosine * step.cosine - sine * step.sine, sine * step.cosine + cosine * step.sine);
+        motion = motion.then(&steps[usize::from(left_carry) + 2 * usize::from(right_carry)]);
     }
-    (x, y)
+    (motion.x, motion.y)
 }

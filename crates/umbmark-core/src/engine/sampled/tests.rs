@@ -115,3 +115,22 @@ fn a_profile_reads_the_end_of_the_longest_line_exactly_and_survives_any_fraction
     assert_eq!(odometry.clone().at_constant_rate(&line, 0), Motion::IDENTITY);
     assert_eq!(odometry.clone().at_constant_rate(&line, 1).pose.heading, heading);
 }
+
+#[test]
+fn blocks_give_the_same_bits_on_every_instruction_set_whatever_was_computed_before() {
+    let mut source = Source(14);
+    let bits = |motion: Motion| [motion.pose.x, motion.pose.y, motion.pose.heading].map(f64::to_bits);
+    for update in UPDATES {
+        let fresh = SampledOdometry::new(geometries()[0], update);
+        let mut used =
+            [Instructions::Portable, Instructions::Avx2, Instructions::Avx512].map(|i| fresh.clone().limited_to(i));
+        for _ in 0..cases(400) {
+            let line = source.line(20_000);
+            let readings = source.below(3_000) as u32;
+            let expected = bits(fresh.clone().at_constant_rate(&line, readings));
+            for odometry in &mut used {
+                assert_eq!(bits(odometry.at_constant_rate(&line, readings)), expected, "{line:?} {readings}");
+            }
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! `umbmark simulate`: one test, written as a dataset.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use serde_json::{Value, json};
+use umbmark_core::dataset::{Dataset, Existing, Run};
+use umbmark_core::drive::{Encoder, Robot};
+use umbmark_core::effect::{Model, TestKind};
+use umbmark_core::engine::Update;
+use umbmark_core::monte_carlo::draw_parameters;
+use umbmark_core::path::{Direction, Path};
+use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth};
+
+use crate::Session;
+use crate::setup::{Setup, SetupFlags};
+use crate::table::table;
+
+/// Arguments of `simulate`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Folder to write: robot.toml, returns.csv and runs/*.csv
+    #[arg(short, long, value_name = "FOLDER")]
+    output: PathBuf,
+
+    /// Runs in each direction
+    #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    runs: u32,
+
+    /// How often the absolute pose is measured on the way; 0 for the end pose alone
+    #[arg(long, default_value_t = 20.0, value_name = "HZ", value_parser = crate::effect_flags::number)]
+    reference_rate: f64,
+
+    /// Replace files that exist
+    #[arg(long)]
+    force: bool,
+
+    #[command(flatten)]
+    setup: SetupFlags,
+}
+
+/// How often the counters are written down where the robot file does not say \[Hz\].
+const LOG_RATE: f64 = 100.0;
+
+pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
+    let Setup { path, model, draws, assumed } = arguments.setup.resolve()?;
+    let model = draw_parameters(&model, &draws, session.seed(), 0)?;
+    let robot = with_rate(model.robot())?;
+    let dataset = record(&arguments, &robot, &path, &model, session.seed())?;
+    let existing = if arguments.force { Existing::Replace } else { Existing::Keep };
+    dataset.save(&arguments.output, existing)?;
+    for text in &assumed {
+        session.message("assumed", text);
+    }
+    if session.json() {
+        let runs: Vec<Value> = dataset.runs.iter().map(run_json).collect();
+        session.print_json(&json!({
+            "output": arguments.output.display().to_string(),
+            "seed": session.seed(),
+            "runs": runs,
+            "version": umbmark_core::VERSION,
+        }))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let rows = dataset.runs.iter().filter_map(|run| {
+        let error = run.returned?;
+        let heading = error.heading.map_or("-".to_owned(), |h| format!("{:.2}", h.to_degrees()));
+        Some(vec![run.name.clone(), format!("{:.1}", error.x * 1e3), format!("{:.1}", error.y * 1e3), heading])
+    });
+    let text = table(&["run", "ex [mm]", "ey [mm]", "etheta [deg]"], rows);
+    let count = dataset.runs.len();
+    let place = arguments.output.display();
+    writeln!(session.out(), "{text}\n")?;
+    let seed = session.seed();
+    writeln!(session.out(), "{count} runs of {} in {place}, seed {seed}", robot.name)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The robot with a sampling rate, which a log needs.
+fn with_rate(robot: &Robot) -> anyhow::Result<Robot> {
+    let encoder = &robot.encoder;
+    let rate = encoder.rate().unwrap_or(LOG_RATE);
+    let encoder = Encoder::new(encoder.ticks_per_revolution(), Some(rate), encoder.counter_bits())?;
+    Ok(Robot { encoder, ..robot.clone() })
+}
+
+fn record(arguments: &Arguments, robot: &Robot, path: &Path, model: &Model, seed: u64) -> anyhow::Result<Dataset> {
+    let rate = robot.encoder.rate().unwrap_or(LOG_RATE);
+    let odometry = Odometry::Sampled { rate, update: Update::Arc };
+    let mut simulator = Simulator::new(robot, path, odometry, Phase::Random)?;
+    let mut truth = Truth::new(model);
+    simulator.open(&mut truth, seed, 0);
+    let extended = model.get("placed_bumps", "count").is_some_and(|count| count > 0.0);
+    let tests = if extended { &[TestKind::Systematic, TestKind::Bumps][..] } else { &[TestKind::Systematic] };
+    let mut runs = Vec::new();
+    for &test in tests {
+        for direction in Direction::BOTH {
+            for number in 1..=arguments.runs {
+                let reference = if arguments.reference_rate > 0.0 { arguments.reference_rate } else { rate };
+                let mut recording = simulator.record(&mut truth, direction, test, [rate, reference])?;
+                if arguments.reference_rate <= 0.0 {
+                    let last = recording.log.reference.len() - 1;
+                    recording.log.reference.drain(..last);
+                }
+                let prefix = if test == TestKind::Bumps { "bumps_" } else { "" };
+                runs.push(Run {
+                    name: format!("{prefix}{}_{number:02}", direction.name()),
+                    number,
+                    direction: Some(direction),
+                    test,
+                    log: Some(recording.log),
+                    returned: Some(recording.returned),
+                });
+            }
+        }
+    }
+    Ok(Dataset { robot: Some(robot.clone()), path: Some(path.clone()), runs, warnings: Vec::new() })
+}
+
+fn run_json(run: &Run) -> Value {
+    let error = run.returned.unwrap_or_default();
+    json!({
+        "run": run.name, "direction": run.direction.map(Direction::name), "test": run.test.name(),
+        "ex_m": error.x, "ey_m": error.y, "etheta_rad": error.heading,
+    })
+}

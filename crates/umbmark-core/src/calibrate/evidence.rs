@@ -1,0 +1,145 @@
+//! What a dataset offers the fit: believed travel and observed poses, run by run.
+
+use super::{CalibrateError, noise_shape};
+use crate::dataset::{Dataset, Run};
+use crate::drive::Robot;
+use crate::effect::{Model, TestKind};
+use crate::geometry::Pose2;
+use crate::path::Direction;
+use crate::replay::Track;
+use nalgebra::Matrix3;
+
+/// Observations farther from START than this share of the way driven show E_s.
+const AWAY: f64 = 0.05;
+
+/// How much of the way was observed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// End poses only.
+    Ends,
+    /// Poses on the way: at stops, or all along.
+    Tracks,
+}
+
+/// An absolute pose.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    pub x: f64,
+    pub y: f64,
+    pub heading: Option<f64>,
+}
+
+/// One run, ready to be predicted.
+#[derive(Clone, Debug)]
+pub(super) struct Drive {
+    pub direction: Option<Direction>,
+    pub track: Track,
+    pub seen: Vec<Seen>,
+    /// Multiplies observed minus predicted (x, y, heading); lower triangular.
+    pub weight: Matrix3<f64>,
+    /// Whether the ticks were recorded, and not only the path known.
+    pub recorded: bool,
+}
+
+/// All runs of the regular test that can be predicted.
+#[derive(Clone, Debug)]
+pub(super) struct Evidence {
+    pub level: Level,
+    pub drives: Vec<Drive>,
+    /// Metres that a radian of heading error counts as, on tracks.
+    pub heading_arm: f64,
+    /// Whether some observation lies away from START, so that the scale shows.
+    pub scale_shows: bool,
+}
+
+impl Evidence {
+    pub(super) fn new(data: &Dataset, robot: &Robot, heading_arm: Option<f64>) -> Result<Evidence, CalibrateError> {
+        let runs: Vec<&Run> = data.runs.iter().filter(|run| run.test == TestKind::Systematic).collect();
+        let mut drives = Vec::with_capacity(runs.len());
+        for run in &runs {
+            drives.extend(tracked(run, robot)?);
+        }
+        let level =
+            if drives.len() == runs.len() && drives.iter().any(|d| stops(d) > 1) { Level::Tracks } else { Level::Ends };
+        if level == Level::Ends {
+            drives.clear();
+            for run in &runs {
+                drives.extend(ended(run, data, robot)?);
+            }
+        }
+        if drives.is_empty() {
+            return Err(CalibrateError::NothingObserved { runs: data.runs.len() });
+        }
+        let headings_missing =
+            level == Level::Ends && drives.iter().any(|d| d.seen.iter().any(|s| s.heading.is_none()));
+        if headings_missing {
+            drives.iter_mut().flat_map(|d| &mut d.seen).for_each(|s| s.heading = None);
+        }
+        let arm = heading_arm.unwrap_or_else(|| mean_distance(&drives));
+        for drive in &mut drives {
+            drive.weight = match level {
+                Level::Tracks => Matrix3::from_diagonal(&[1.0, 1.0, arm].into()),
+                Level::Ends => end_weight(drive, robot),
+            };
+        }
+        let scale_shows = drives.iter().any(|d| {
+            let far = d.seen.iter().map(|s| libm::hypot(s.x, s.y)).fold(0.0, f64::max);
+            far > AWAY * d.track.length()
+        });
+        Ok(Evidence { level, drives, heading_arm: arm, scale_shows })
+    }
+}
+
+/// A run with its recorded track, if it has one.
+fn tracked(run: &Run, robot: &Robot) -> Result<Option<Drive>, CalibrateError> {
+    let Some(log) = run.log.as_ref().filter(|log| !log.reference.is_empty()) else { return Ok(None) };
+    let track = track_of(run, robot)?;
+    let seen = log.reference.iter().map(|r| Seen { x: r.x, y: r.y, heading: r.heading }).collect();
+    Ok(track.map(|track| Drive { direction: run.direction, track, seen, weight: Matrix3::identity(), recorded: true }))
+}
+
+fn track_of(run: &Run, robot: &Robot) -> Result<Option<Track>, CalibrateError> {
+    let replayed =
+        |log| Track::from_log(log, robot).map_err(|source| CalibrateError::Log { run: run.name.clone(), source });
+    run.log.as_ref().map(replayed).transpose()
+}
+
+/// How many observations were made at different places on the way.
+fn stops(drive: &Drive) -> usize {
+    let mut places: Vec<usize> = drive.track.seen_after().iter().copied().filter(|made| *made > 0).collect();
+    places.dedup();
+    places.len()
+}
+
+/// A run with its return error, as the absolute pose at the end of what was recorded or, without ticks, of the path.
+fn ended(run: &Run, data: &Dataset, robot: &Robot) -> Result<Option<Drive>, CalibrateError> {
+    let Some(error) = run.returned else { return Ok(None) };
+    let recorded = track_of(run, robot)?;
+    let is_recorded = recorded.is_some();
+    let from_path = || {
+        let path = data.path.as_ref()?;
+        Some(Track::from_path(path, run.direction.unwrap_or(Direction::Ccw), robot))
+    };
+    let Some(track) = recorded.map(Track::cut_at_last).or_else(from_path) else { return Ok(None) };
+    let computed: Pose2 = track.end(&Model::new(robot).chain());
+    let heading = error.heading.map(|h| computed.heading + h);
+    let seen = vec![Seen { x: computed.x + error.x, y: computed.y + error.y, heading }];
+    Ok(Some(Drive { direction: run.direction, track, seen, weight: Matrix3::identity(), recorded: is_recorded }))
+}
+
+/// The inverse Cholesky factor of the scatter's shape.
+fn end_weight(drive: &Drive, robot: &Robot) -> Matrix3<f64> {
+    let mut shape = noise_shape::end_covariance(&drive.track, &robot.drive);
+    if drive.seen.iter().any(|s| s.heading.is_none()) {
+        // An unmeasured heading is one of its own, unrelated to the position.
+        shape.fixed_view_mut::<2, 1>(0, 2).fill(0.0);
+        shape.fixed_view_mut::<1, 2>(2, 0).fill(0.0);
+    }
+    shape.cholesky().and_then(|c| c.l().try_inverse()).unwrap_or_else(Matrix3::identity)
+}
+
+/// Root mean square distance of the observations from START \[m\].
+fn mean_distance(drives: &[Drive]) -> f64 {
+    let squares: Vec<f64> = drives.iter().flat_map(|d| &d.seen).map(|s| s.x * s.x + s.y * s.y).collect();
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+}

@@ -1,0 +1,202 @@
+//! `model.toml`: effects with their values, fixed or drawn.
+
+use super::document::{Entry, Source, Table};
+use super::error::{DatasetError, did_you_mean};
+use super::text::read_text;
+use crate::drive::Robot;
+use crate::effect::{CATALOGUE, Entry as Effect, Model};
+use crate::monte_carlo::{Distribution, Draw};
+use crate::parameter::Parameter;
+
+/// Keys that only effects of the user's own have.
+const OWN: [&str; 3] = ["acts_on", "formula", "parameters"];
+const FORMS: &str = "a number, { mean = .., sd = .. } or { min = .., max = .. }";
+
+/// The effects of a `model.toml` on a robot, and those of their parameters that are drawn from a distribution.
+///
+/// In the model a drawn parameter has the middle of its distribution.
+pub fn read_model(file: impl AsRef<std::path::Path>, robot: &Robot) -> Result<(Model, Vec<Draw>), DatasetError> {
+    let file = file.as_ref();
+    parse_model(&file.display().to_string(), &read_text(file)?, robot)
+}
+
+/// The same from text; `file` is what messages call it.
+///
+/// ```
+/// use umbmark_core::{dataset::parse_model, drive::Robot};
+/// let text = "[[effect]]\nname = \"wheelbase\"\ne_b = { mean = 1.01, sd = 0.002 }\nfree = true\n";
+/// let (model, draws) = parse_model("model.toml", text, &Robot::labmate())?;
+/// assert_eq!(model.get("wheelbase", "e_b"), Some(1.01));
+/// assert!(model.parts()[0].free && draws.len() == 1);
+/// # Ok::<(), umbmark_core::dataset::DatasetError>(())
+/// ```
+pub fn parse_model(file: &str, text: &str, robot: &Robot) -> Result<(Model, Vec<Draw>), DatasetError> {
+    let source = Source { file, text };
+    let root = source.parse()?;
+    let root = Table::root(&source, &root);
+    root.only(&["effect"])?;
+    let mut model = Model::new(robot);
+    let mut draws = Vec::new();
+    let mut names: Vec<Entry> = Vec::new();
+    let Some(effects) = root.get("effect") else { return Ok((model, draws)) };
+    for effect in effects.list("a list of tables, each headed [[effect]]")? {
+        let table = effect.table("[[effect]]".into())?;
+        let name = table.need("name", "e.g. name = \"wheelbase\" (`umbmark effects` lists them)")?;
+        let entry = find(&table, &name)?;
+        let same = |other: &&Entry| other.word("").ok() == name.word("").ok();
+        if let Some(first) = names.iter().find(same) {
+            return Err(first.again(&name));
+        }
+        names.push(name);
+        add(&mut model, &mut draws, entry, &table)?;
+    }
+    Ok((model, draws))
+}
+
+fn find(table: &Table, name: &Entry) -> Result<&'static Effect, DatasetError> {
+    let word = name.word("the name of an effect")?;
+    if let Some(entry) = CATALOGUE.iter().find(|entry| entry.about.name == word) {
+        return Ok(entry);
+    }
+    if let Some(own) = OWN.iter().find_map(|key| table.get(key)) {
+        return Err(own.not_yet("effects of your own come later; `umbmark effects` lists those there are".into()));
+    }
+    let near = did_you_mean(word, CATALOGUE.iter().map(|entry| entry.about.name));
+    let remedy = if near.is_empty() { "`umbmark effects` lists them" } else { &near };
+    Err(name.wrong("the name of an effect", remedy))
+}
+
+fn add(model: &mut Model, draws: &mut Vec<Draw>, effect: &Effect, table: &Table) -> Result<(), DatasetError> {
+    let about = &effect.about;
+    let mut keys = vec!["name", "free"];
+    keys.extend(about.parameters.iter().map(|p| p.name));
+    table.only(&keys)?;
+    let mut values = Vec::new();
+    for parameter in about.parameters {
+        let Some(entry) = table.get(parameter.name) else { continue };
+        let (value, distribution) = read_value(&entry, parameter)?;
+        values.push((parameter.name, value));
+        if let Some(distribution) = distribution {
+            let draw = Draw::new(about.name, parameter.name, distribution);
+            draws.push(draw.map_err(|error| entry.wrong(FORMS, &error.to_string()))?);
+        }
+    }
+    let free = table.get("free").map_or(Ok(false), |entry| entry.flag())?;
+    let impossible = |error: crate::effect::ModelError| table.missing("possible values", &error.to_string());
+    model.add(about.name).map_err(impossible)?.free = free;
+    values.into_iter().try_for_each(|(name, value)| model.set(about.name, name, value)).map_err(impossible)
+}
+
+/// The value of a parameter, or the middle of its distribution and the distribution.
+fn read_value(entry: &Entry, parameter: &Parameter) -> Result<(f64, Option<Distribution>), DatasetError> {
+    if !entry.is_table() {
+        return Ok((entry.number(parameter)?, None));
+    }
+    let table = entry.table(entry.key.to_owned())?;
+    let bounded = |key: &str| -> Result<f64, DatasetError> {
+        let value = table.need(key, FORMS)?;
+        let wrong = || value.wrong_value(format!("{key} of {}", parameter.name), &parameter.allowed(), "");
+        let number = value.any_number().ok_or_else(wrong)?;
+        parameter.check(number).map_err(|_| wrong())
+    };
+    if !parameter.choices.is_empty() {
+        return Err(entry.wrong(&parameter.allowed(), "it cannot be drawn"));
+    }
+    if table.get("mean").is_some() || table.get("sd").is_some() {
+        table.only(&["mean", "sd"])?;
+        let (mean, sd) = (bounded("mean")?, table.need("sd", FORMS)?);
+        let size = sd.any_number().filter(|sd| *sd >= 0.0 && sd.is_finite());
+        let name = format!("sd of {}", parameter.name);
+        let size = size.ok_or_else(|| sd.wrong_value(name, "finite and 0 or more", ""))?;
+        return Ok((mean, Some(Distribution::Normal { mean, sd: size })));
+    }
+    table.only(&["min", "max"])?;
+    let (min, max) = (bounded("min")?, bounded("max")?);
+    if min > max {
+        return Err(entry.wrong("a range with min below max", "exchange them"));
+    }
+    Ok((0.5 * (min + max), Some(Distribution::Uniform { min, max })))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<(Model, Vec<Draw>), DatasetError> {
+        parse_model("model.toml", text, &Robot::labmate())
+    }
+
+    #[test]
+    fn effects_have_the_values_of_the_file_and_defaults_elsewhere() {
+        let text = "[[effect]]\nname = \"wheelbase\"\ne_b = 1.01\nfree = true\n\n\
+                    [[effect]]\nname = \"placed_bumps\"\ncount = 10\nprofile = \"edge\"\n";
+        let (model, draws) = read(text).unwrap();
+        assert_eq!(model.get("wheelbase", "e_b"), Some(1.01));
+        assert_eq!(model.get("placed_bumps", "profile"), Some(1.0));
+        assert_eq!(model.get("placed_bumps", "height_m"), Some(0.010));
+        assert!(draws.is_empty());
+        assert_eq!(model.parts().iter().map(|part| part.free).collect::<Vec<_>>(), [true, false]);
+        assert!(read("# nothing\n").unwrap().0.parts().is_empty());
+    }
+
+    #[test]
+    fn a_parameter_may_be_normal_or_uniform_and_stands_at_its_middle() {
+        let text = "[[effect]]\nname = \"scale\"\ne_s = { mean = 1.002, sd = 0.0005 }\n\
+                    [[effect]]\nname = \"wheelbase\"\ne_b = { min = 0.99, max = 1.03 }\n";
+        let (model, draws) = read(text).unwrap();
+        assert_eq!(draws[0].distribution(), Distribution::Normal { mean: 1.002, sd: 0.0005 });
+        assert_eq!(draws[1].distribution(), Distribution::Uniform { min: 0.99, max: 1.03 });
+        assert_eq!((model.get("scale", "e_s"), model.get("wheelbase", "e_b")), (Some(1.002), Some(1.01)));
+    }
+
+    #[test]
+    fn what_cannot_be_meant_is_refused_with_line_key_and_range() {
+        for (lines, said) in [
+            (
+                "name = \"wheelbse\"",
+                "2: name must be the name of an effect, got \"wheelbse\"; did you mean \"wheelbase\"?",
+            ),
+            ("name = \"zzz\"", "2: name must be the name of an effect, got \"zzz\"; `umbmark effects` lists them"),
+            ("e_b = 1.0", "1: [[effect]] has no name; add e.g. name = \"wheelbase\" (`umbmark effects` lists them)"),
+            ("name = \"wheelbase\"\ne_d = 1.0", "3: unknown key \"e_d\" in [[effect]]; did you mean \"e_b\"?"),
+            ("name = \"wheelbase\"\ne_b = 9.0", "3: e_b must be between 0.2 and 5, got 9.0"),
+            ("name = \"wheelbase\"\nfree = 1", "3: free must be true or false, got 1"),
+            (
+                "name = \"wheelbase\"\ne_b = { mean = 1.0 }",
+                "3: e_b has no sd; add a number, { mean = .., sd = .. } or { min = .., max = .. }",
+            ),
+            (
+                "name = \"wheelbase\"\ne_b = { mean = 1.0, sd = -1 }",
+                "3: sd of e_b must be finite and 0 or more, got -1",
+            ),
+            ("name = \"wheelbase\"\ne_b = { mean = 9.0, sd = 1 }", "3: mean of e_b must be between 0.2 and 5, got 9.0"),
+            (
+                "name = \"wheelbase\"\ne_b = { min = 1.1, max = 1.0 }",
+                "3: e_b must be a range with min below max, got { min = 1.1, max = 1.0 }; exchange them",
+            ),
+            (
+                "name = \"placed_bumps\"\nprofile = \"cabel\"",
+                "3: profile must be one of cable, edge, got \"cabel\"; did you mean \"cable\"?",
+            ),
+            (
+                "name = \"placed_bumps\"\nprofile = { min = 0, max = 1 }",
+                "3: profile must be one of cable, edge, got { min = 0, max = 1 }; it cannot be drawn",
+            ),
+            (
+                "name = \"carpet\"\nformula = \"k\"",
+                "3: formula \"k\" is not supported yet; effects of your own come later; `umbmark effects` lists those there are",
+            ),
+            (
+                "name = \"scale\"\n[[effect]]\nname = \"scale\"",
+                "4: name says what name in line 2 says already; keep one of them",
+            ),
+        ] {
+            let error = read(&format!("[[effect]]\n{lines}\n")).map(|_| ()).unwrap_err().to_string();
+            assert_eq!(error, format!("model.toml:{said}"));
+        }
+        assert_eq!(
+            read("effect = 3").map(|_| ()).unwrap_err().to_string(),
+            "model.toml:1: effect must be a list of tables, each headed [[effect]], got 3"
+        );
+    }
+}

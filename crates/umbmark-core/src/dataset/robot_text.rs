@@ -1,0 +1,72 @@
+//! `robot.toml` as text.
+
+use super::robot_file::is_waypoints;
+use crate::drive::Robot;
+use crate::path::{Path, SpeedProfile};
+use std::fmt::Write;
+
+/// A commented `robot.toml` that reads back as this robot and this path, to the last bit.
+///
+/// ```
+/// use umbmark_core::{dataset::{parse_robot, robot_text}, drive::Robot, path::Path};
+/// let text = robot_text(&Robot::labmate(), Some(&Path::umbmark()));
+/// assert_eq!(parse_robot("robot.toml", &text)?.0, Robot::labmate());
+/// # Ok::<(), umbmark_core::dataset::DatasetError>(())
+/// ```
+pub fn robot_text(robot: &Robot, path: Option<&Path>) -> String {
+    let mut text = String::from("[robot]\n");
+    let name = toml::Value::from(robot.name.as_str()).to_string();
+    line(&mut text, "name", &name, "");
+    line(&mut text, "drive", "\"differential\"", "");
+    line(&mut text, "wheelbase_m", &number(robot.drive.wheelbase()), "b: distance of the wheels' contact points");
+    let (left, right) = (robot.drive.wheel_diameter_left(), robot.drive.wheel_diameter_right());
+    if left == right {
+        line(&mut text, "wheel_diameter_m", &number(left), "both wheels");
+    } else {
+        line(&mut text, "wheel_diameter_left_m", &number(left), "");
+        line(&mut text, "wheel_diameter_right_m", &number(right), "");
+    }
+    let encoder = &robot.encoder;
+    let ticks = number(encoder.ticks_per_revolution());
+    line(&mut text, "ticks_per_revolution", &ticks, "of the wheel, after gearing and quadrature");
+    let rate = encoder.rate().map_or("\"every tick\"".to_owned(), number);
+    line(&mut text, "encoder_rate_hz", &rate, "how often the counters are read");
+    if let Some(bits) = encoder.counter_bits() {
+        line(&mut text, "counter_bits", &bits.to_string(), "the counters roll over");
+    }
+    if let Some(path) = path {
+        text.push_str("\n[path]\n");
+        push_path(&mut text, path);
+    }
+    text
+}
+
+fn push_path(text: &mut String, path: &Path) {
+    let shape = path.shape();
+    line(text, "shape", &format!("\"{}\"", shape.name), "");
+    if is_waypoints(shape) {
+        let points: Vec<String> =
+            path.values().chunks_exact(2).map(|p| format!("[{}, {}]", number(p[0]), number(p[1]))).collect();
+        line(text, "points_m", &format!("[{}]", points.join(", ")), "x, y as seen from START");
+    }
+    for (parameter, value) in shape.parameters.iter().zip(path.values()) {
+        line(text, parameter.name, &number(*value), parameter.meaning);
+    }
+    for (parameter, value) in SpeedProfile::PARAMETERS.iter().zip(path.speed.values()) {
+        line(text, parameter.name, &number(value), parameter.meaning);
+    }
+}
+
+/// The shortest text that reads back as the same number, as TOML wants it.
+fn number(value: f64) -> String {
+    format!("{value:?}")
+}
+
+fn line(text: &mut String, key: &str, value: &str, comment: &str) {
+    let entry = format!("{key} = {value}");
+    // Writing to a string does not fail.
+    let _ = match comment {
+        "" => writeln!(text, "{entry}"),
+        _ => writeln!(text, "{entry:<34}# {comment}"),
+    };
+}

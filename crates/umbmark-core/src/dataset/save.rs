@@ -1,0 +1,143 @@
+//! Datasets written to folders: all of it beside, looked at once more, and then renamed into place.
+
+use super::error::DatasetError;
+use super::folder::{RETURNS, ROBOT, RUNS};
+use super::label;
+use super::robot_text::robot_text;
+use super::sheets::{returns_text, tick_log_text};
+use super::{Dataset, Run};
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// What to do with files that are there already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    /// Leave them, and write nothing.
+    Keep,
+    /// Put the new ones in their place.
+    Replace,
+}
+
+impl Dataset {
+    /// Writes `robot.toml`, `returns.csv` and `runs/*.csv` into a folder, which is made where it is not there.
+    ///
+    /// What is written reads back as this dataset to the last bit, but for the names of the runs and the warnings; that
+    /// is checked before anything is put in place, so a folder never holds half of a file. A folder that holds logs of
+    /// other runs is refused, lest the two datasets mix.
+    pub fn save(&self, folder: impl AsRef<Path>, existing: Existing) -> Result<(), DatasetError> {
+        let folder = folder.as_ref();
+        let mut files = BTreeMap::new();
+        files.insert(PathBuf::from(ROBOT), robot_text(self.nominal_robot()?, self.path.as_ref()));
+        files.extend(returns_text(&self.runs).map(|text| (PathBuf::from(RETURNS), text)));
+        for run in &self.runs {
+            let Some(log) = &run.log else { continue };
+            let name = format!("{}.csv", label::label(run.test, run.direction, run.number));
+            files.insert(Path::new(RUNS).join(name), tick_log_text(log));
+        }
+        put(folder, &files, existing, |written| self.check(folder, written))
+    }
+
+    /// Refuses what would be read back as something else.
+    fn check(&self, folder: &Path, written: &Path) -> Result<(), DatasetError> {
+        let refuse = |reason: String| DatasetError::Unwritable { file: folder.display().to_string(), reason };
+        let read = Dataset::load(written).map_err(|error| {
+            let place = written.display().to_string();
+            refuse(format!("it could not be read back: {}", error.to_string().replace(&place, "…")))
+        })?;
+        let mut runs: Vec<&Run> = self.runs.iter().collect();
+        runs.sort_by_key(|run| (run.test, run.direction, run.number));
+        let same_path = match (&self.path, &read.path) {
+            (Some(a), Some(b)) => a.shape().name == b.shape().name && a.values() == b.values() && a.speed == b.speed,
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        if read.robot != self.robot || !same_path {
+            return Err(refuse("robot or path would not be read back as they are".into()));
+        }
+        let same = |(a, b): (&&Run, &Run)| {
+            (a.test, a.direction, a.number) == (b.test, b.direction, b.number)
+                && a.log == b.log
+                && (a.returned == b.returned || a.returned.is_none())
+        };
+        if runs.len() != read.runs.len() {
+            return Err(refuse("a run has neither log nor return error".into()));
+        }
+        match runs.iter().zip(&read.runs).find(|pair| !same(*pair)) {
+            Some((run, _)) => Err(refuse(format!("run {:?} would not be read back as it is", run.name))),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Writes files beside `folder`, has them checked, and renames them into it.
+pub(super) fn put(
+    folder: &Path,
+    files: &BTreeMap<PathBuf, String>,
+    existing: Existing,
+    check: impl FnOnce(&Path) -> Result<(), DatasetError>,
+) -> Result<(), DatasetError> {
+    refuse_existing(folder, files, existing)?;
+    let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let beside = temporary_folder(parent).map_err(|error| unwritable(parent, &error))?;
+    for (name, text) in files {
+        let file = beside.path().join(name);
+        write_file(&file, text).map_err(|error| unwritable(&folder.join(name), &error))?;
+    }
+    check(beside.path())?;
+    if !folder.exists() {
+        return std::fs::rename(beside.path(), folder).map_err(|error| unwritable(folder, &error)).map(|()| {
+            let _ = beside.keep();
+        });
+    }
+    for name in files.keys() {
+        let to = folder.join(name);
+        let made = to.parent().map_or(Ok(()), std::fs::create_dir_all);
+        made.and_then(|()| std::fs::rename(beside.path().join(name), &to)).map_err(|error| unwritable(&to, &error))?;
+    }
+    Ok(())
+}
+
+/// A new folder with the rights that the user's folders have.
+fn temporary_folder(parent: &Path) -> std::io::Result<tempfile::TempDir> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".umbmark-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o777));
+    }
+    builder.tempdir_in(parent)
+}
+
+fn write_file(file: &Path, text: &str) -> std::io::Result<()> {
+    file.parent().map_or(Ok(()), std::fs::create_dir_all)?;
+    let mut handle = std::fs::File::create(file)?;
+    handle.write_all(text.as_bytes())?;
+    handle.sync_all()
+}
+
+fn refuse_existing(folder: &Path, files: &BTreeMap<PathBuf, String>, existing: Existing) -> Result<(), DatasetError> {
+    let refuse = |file: PathBuf, remedy| DatasetError::AlreadyThere { file: file.display().to_string(), remedy };
+    let there = files.keys().map(|name| folder.join(name)).find(|file| file.exists());
+    if let (Some(file), Existing::Keep) = (there, existing) {
+        return Err(refuse(file, "choose another folder, or say --force to replace it"));
+    }
+    let logs = std::fs::read_dir(folder.join(RUNS)).into_iter().flatten().flatten();
+    let mut others = logs.map(|entry| Path::new(RUNS).join(entry.file_name()));
+    let of_dataset = files.keys().any(|name| name.starts_with(RUNS) || name.as_path() == Path::new(RETURNS));
+    match others.find(|name| of_dataset && !files.contains_key(name)) {
+        Some(other) => {
+            Err(refuse(folder.join(other), "it is the log of another run: choose another folder, or delete it"))
+        }
+        None => Ok(()),
+    }
+}
+
+fn unwritable(file: &Path, error: &std::io::Error) -> DatasetError {
+    let reason = match error.kind() {
+        std::io::ErrorKind::NotFound => "there is no such folder".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        _ => error.to_string(),
+    };
+    DatasetError::Unwritable { file: file.display().to_string(), reason }
+}

@@ -1,0 +1,58 @@
+//! Returns and tick logs as text, in the shortest form that reads back to the last bit.
+
+use super::tick_log::HEADER;
+use super::{Run, TickLog};
+use crate::effect::TestKind;
+use crate::path::Direction;
+use std::fmt::Write;
+
+/// `returns.csv` of the runs whose return error is known; nothing where there is none.
+pub(super) fn returns_text(runs: &[Run]) -> Option<String> {
+    let known: Vec<_> = runs.iter().filter_map(|run| Some((run, run.returned?))).collect();
+    if known.is_empty() {
+        return None;
+    }
+    let tests = known.iter().any(|(run, _)| run.test != TestKind::Systematic);
+    let headings = known.iter().any(|(_, error)| error.heading.is_some());
+    let mut text =
+        String::from("# Return errors: absolute minus computed end pose, in the frame of START.\ndirection,run");
+    text.push_str(if tests { ",test,ex_m,ey_m" } else { ",ex_m,ey_m" });
+    text.push_str(if headings { ",etheta_rad\n" } else { "\n" });
+    for (run, error) in known {
+        let _ = write!(text, "{},{}", run.direction.map_or("none", Direction::name), run.number);
+        if tests {
+            let _ = write!(text, ",{}", run.test.name());
+        }
+        let _ = write!(text, ",{:?},{:?}", error.x, error.y);
+        if headings {
+            let _ = write!(text, ",{}", cell(error.heading));
+        }
+        text.push('\n');
+    }
+    Some(text)
+}
+
+/// `runs/*.csv` of a log whose references belong to different samples, in their order.
+pub(super) fn tick_log_text(log: &TickLog) -> String {
+    let mut text = String::with_capacity(40 * log.time.len());
+    let referenced = !log.reference.is_empty();
+    text.push_str(if referenced { HEADER } else { "t_s,ticks_left,ticks_right" });
+    text.push('\n');
+    let mut references = log.reference.iter().peekable();
+    for (sample, time) in log.time.iter().enumerate() {
+        let _ = write!(text, "{time:?},{},{}", log.left[sample], log.right[sample]);
+        match references.next_if(|pose| pose.sample == sample) {
+            Some(pose) => {
+                let _ = write!(text, ",{:?},{:?},{}", pose.x, pose.y, cell(pose.heading));
+            }
+            None if referenced => text.push_str(",,,"),
+            None => {}
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn cell(value: Option<f64>) -> String {
+    value.map(|value| format!("{value:?}")).unwrap_or_default()
+}

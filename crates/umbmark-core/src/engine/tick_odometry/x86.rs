@@ -1,0 +1,78 @@
+//! Which lanes an x86-64 machine has. The `unsafe` here is the crossing into code compiled for more than every machine.
+
+use super::TickOdometry;
+use super::lanes::{Block, RESULTS, fits, results};
+use crate::engine::lane::{avx2::Four, avx512::Eight};
+use crate::engine::{Instructions, Motion, WheelLine};
+
+impl TickOdometry {
+    pub(super) fn motions_in_lanes<L: AsRef<WheelLine>>(&self, lines: &[L], motions: &mut [Motion]) {
+        if self.instructions == Instructions::Avx512 {
+            // SAFETY: `instructions` is never more than what the machine was found to have.
+            self.in_blocks::<8, L>(lines, motions, |block| unsafe { self.eight(block) });
+        } else {
+            // SAFETY: as above; there is no case below AVX2 here.
+            self.in_blocks::<4, L>(lines, motions, |block| unsafe { self.four(block) });
+        }
+    }
+
+    #[inline(always)]
+    fn in_blocks<const N: usize, L: AsRef<WheelLine>>(
+        &self,
+        lines: &[L],
+        motions: &mut [Motion],
+        results: impl Fn(&Block<N>) -> [[f64; N]; RESULTS],
+    ) {
+        for (lines, motions) in lines.chunks(N).zip(motions.chunks_mut(N)) {
+            let [x, y, heading, cosine, sine, ties] = results(&Block::new(lines));
+            for (i, motion) in motions.iter_mut().enumerate().take(lines.len()) {
+                // Number by number: a struct put together first is written and read again in different widths.
+                (motion.pose.x, motion.pose.y, motion.pose.heading) = (x[i], y[i], heading[i]);
+                (motion.cosine, motion.sine) = (cosine[i], sine[i]);
+            }
+            for (i, (line, motion)) in lines.iter().map(AsRef::as_ref).zip(motions).enumerate() {
+                if ties[i] != 0.0 || !fits(line) {
+                    *motion = self.motion(line);
+                }
+            }
+        }
+    }
+
+    /// # Safety
+    /// The machine must have AVX-512F and AVX-512DQ.
+    #[target_feature(enable = "avx512f,avx512dq")]
+    unsafe fn eight(&self, block: &Block<8>) -> [[f64; 8]; RESULTS] {
+        // SAFETY: the caller's word.
+        let [start, travel] = unsafe {
+            [
+                [Eight::load(&block.start[0]), Eight::load(&block.start[1])],
+                [Eight::load(&block.travel[0]), Eight::load(&block.travel[1])],
+            ]
+        };
+        let results = results(&self.geometry, [&self.left, &self.right], start, travel);
+        let mut values = [[0.0; 8]; RESULTS];
+        for (result, values) in results.into_iter().zip(&mut values) {
+            result.store(values);
+        }
+        values
+    }
+
+    /// # Safety
+    /// The machine must have AVX2.
+    #[target_feature(enable = "avx2")]
+    unsafe fn four(&self, block: &Block<4>) -> [[f64; 4]; RESULTS] {
+        // SAFETY: the caller's word.
+        let [start, travel] = unsafe {
+            [
+                [Four::load(&block.start[0]), Four::load(&block.start[1])],
+                [Four::load(&block.travel[0]), Four::load(&block.travel[1])],
+            ]
+        };
+        let results = results(&self.geometry, [&self.left, &self.right], start, travel);
+        let mut values = [[0.0; 4]; RESULTS];
+        for (result, values) in results.into_iter().zip(&mut values) {
+            result.store(values);
+        }
+        values
+    }
+}

@@ -1,0 +1,214 @@
+//! Weighted non-linear least squares: minimise Σ r_i(p)², with residuals r = (observed - predicted)/standard deviation.
+//!
+//! Levenberg (1944) and Marquardt (1963): Gauss-Newton steps damped in units of the Jacobian's column lengths, each solved
+//! by an orthogonal factorisation of \[J; √λ D\], never by normal equations. A parameter, or a combination of parameters, that
+//! the data does not show stays where it started and is named by [`null_directions`]. A fit that stops early is a [`Fit`] that
+//! says so, not an error.
+
+mod covariance;
+
+use nalgebra::{DMatrix, DVector};
+
+pub use covariance::{jackknife_covariance, null_directions};
+
+/// Singular values of the Jacobian with columns of unit length below this share of the largest count as zero.
+pub const RANK_TOLERANCE: f64 = 1e-3;
+
+const FIRST_DAMPING: f64 = 1e-3;
+const LEAST_DAMPING: f64 = 1e-12;
+const MOST_DAMPING: f64 = 1e12;
+
+/// Residuals to be made small.
+pub trait Problem {
+    /// r(p): observed minus predicted, each in units of its standard deviation.
+    fn residuals(&self, parameters: &[f64]) -> DVector<f64>;
+
+    /// ∂r_i/∂p_j, one row a residual.
+    fn jacobian(&self, parameters: &[f64]) -> DMatrix<f64>;
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// The largest number of steps tried.
+    pub iterations: usize,
+    /// Stops where a step changes each parameter by less than this share of its size.
+    pub step_tolerance: f64,
+    /// Stops where a step lowers the sum of squares by less than this share of it.
+    pub decrease_tolerance: f64,
+}
+
+impl Default for Options {
+    /// 100 steps, 1e-14, 1e-15: to the last digits.
+    fn default() -> Self {
+        Options { iterations: 100, step_tolerance: 1e-14, decrease_tolerance: 1e-15 }
+    }
+}
+
+/// Why a fit stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Termination {
+    /// The last step was too small to matter.
+    SmallStep,
+    /// The last step lowered the sum of squares too little to matter, or no shorter step lowers it at all.
+    SmallDecrease,
+    /// The limit of steps was reached: the values are the best so far.
+    IterationLimit,
+    /// The residuals are not finite at the start.
+    NotFinite,
+}
+
+impl Termination {
+    /// Whether the values are a minimum.
+    pub fn converged(self) -> bool {
+        matches!(self, Termination::SmallStep | Termination::SmallDecrease)
+    }
+
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Termination::SmallStep => "converged: the step is negligible",
+            Termination::SmallDecrease => "converged: the decrease is negligible",
+            Termination::IterationLimit => "stopped at the limit of iterations",
+            Termination::NotFinite => "the residuals are not finite at the start values",
+        }
+    }
+}
+
+/// Where a fit stopped, and everything there.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The parameters.
+    pub values: Vec<f64>,
+    /// r at the parameters.
+    pub residuals: DVector<f64>,
+    /// ∂r/∂p at the parameters.
+    pub jacobian: DMatrix<f64>,
+    /// Steps tried.
+    pub iterations: usize,
+    /// Why it stopped.
+    pub termination: Termination,
+}
+
+impl Fit {
+    /// Σ r².
+    pub fn cost(&self) -> f64 {
+        self.residuals.norm_squared()
+    }
+
+    /// Combinations of parameters that the data does not show; see [`null_directions`].
+    pub fn null_directions(&self) -> Vec<DVector<f64>> {
+        null_directions(&self.jacobian, RANK_TOLERANCE)
+    }
+
+    /// Covariance of the parameters, (JᵀJ)⁻¹, for independent residuals of unit variance; `None` where the data leaves
+    /// a combination of parameters open.
+    pub fn covariance(&self) -> Option<DMatrix<f64>> {
+        covariance::inverse_information(&self.jacobian)
+    }
+
+    /// s² = Σ r²/(N - p), the variance of the residuals; `None` without spare residuals.
+    pub fn residual_variance(&self) -> Option<f64> {
+        let spare = self.residuals.len().checked_sub(self.values.len())?;
+        (spare > 0).then(|| self.cost() / spare as f64)
+    }
+}
+
+/// Minimises the sum of squares of a problem's residuals from start values.
+///
+/// ```
+/// use nalgebra::{DMatrix, DVector};
+/// use umbmark_core::fit::{Options, Problem, least_squares};
+/// /// y = a exp(b x) through (0, 2), (1, 1), (2, 0.5).
+/// struct Decay;
+/// impl Problem for Decay {
+///     fn residuals(&self, p: &[f64]) -> DVector<f64> {
+///         DVector::from_fn(3, |i, _| [2.0, 1.0, 0.5][i] - p[0] * (p[1] * i as f64).exp())
+///     }
+///     fn jacobian(&self, p: &[f64]) -> DMatrix<f64> {
+///         DMatrix::from_fn(3, 2, |i, j| {
+///             let (x, e) = (i as f64, (p[1] * i as f64).exp());
+///             if j == 0 { -e } else { -p[0] * x * e }
+///         })
+///     }
+/// }
+/// let fit = least_squares(&Decay, &[1.0, 0.0], &Options::default());
+/// assert!(fit.termination.converged());
+/// assert!((fit.values[0] - 2.0).abs() < 1e-9 && (fit.values[1] + 2f64.ln()).abs() < 1e-9);
+/// ```
+pub fn least_squares(problem: &impl Problem, start: &[f64], options: &Options) -> Fit {
+    let mut at = Point::new(problem, start.to_vec());
+    if !at.cost.is_finite() {
+        return at.stopped(problem, 0, Termination::NotFinite);
+    }
+    let mut lengths = vec![0.0_f64; start.len()];
+    let mut damping = FIRST_DAMPING;
+    let mut jacobian = problem.jacobian(&at.values);
+    for iteration in 1..=options.iterations {
+        for (length, column) in lengths.iter_mut().zip(jacobian.column_iter()) {
+            *length = length.max(column.norm());
+        }
+        let step = damped_step(&jacobian, &at.residuals, &lengths, damping);
+        let next = Point::new(problem, at.values.iter().zip(step.iter()).map(|(p, d)| p + d).collect());
+        let small = step.iter().zip(&at.values).all(|(d, p)| d.abs() <= options.step_tolerance * p.abs().max(1e-300));
+        let decrease = at.cost - next.cost;
+        // Sums that agree to the last digits cannot tell which point is better; the step can, so it is taken.
+        let negligible = decrease.abs() <= options.decrease_tolerance * at.cost;
+        let better = decrease > 0.0 || negligible;
+        if better {
+            at = next;
+        }
+        if small {
+            return at.stopped(problem, iteration, Termination::SmallStep);
+        }
+        if (negligible && damping <= LEAST_DAMPING) || damping >= MOST_DAMPING {
+            return at.stopped(problem, iteration, Termination::SmallDecrease);
+        }
+        if better {
+            jacobian = problem.jacobian(&at.values);
+        }
+        // The last steps are undamped: a damped one may lower the sum too little to matter and yet be far from the end.
+        damping = match (negligible, better) {
+            (true, _) => LEAST_DAMPING,
+            (false, true) => (0.1 * damping).max(LEAST_DAMPING),
+            (false, false) => 10.0 * damping,
+        };
+    }
+    at.stopped(problem, options.iterations, Termination::IterationLimit)
+}
+
+struct Point {
+    values: Vec<f64>,
+    residuals: DVector<f64>,
+    cost: f64,
+}
+
+impl Point {
+    fn new(problem: &impl Problem, values: Vec<f64>) -> Point {
+        let residuals = problem.residuals(&values);
+        let cost = residuals.norm_squared();
+        Point { values, residuals, cost }
+    }
+
+    fn stopped(self, problem: &impl Problem, iterations: usize, termination: Termination) -> Fit {
+        let jacobian = problem.jacobian(&self.values);
+        Fit { values: self.values, residuals: self.residuals, jacobian, iterations, termination }
+    }
+}
+
+/// argmin |r + J δ|² + λ |D δ|², D the column lengths (1 where a column is zero).
+fn damped_step(jacobian: &DMatrix<f64>, residuals: &DVector<f64>, lengths: &[f64], damping: f64) -> DVector<f64> {
+    let (rows, columns) = jacobian.shape();
+    let mut stacked = jacobian.clone().resize_vertically(rows + columns, 0.0);
+    for (j, length) in lengths.iter().enumerate() {
+        stacked[(rows + j, j)] = damping.sqrt() * if *length > 0.0 { *length } else { 1.0 };
+    }
+    let qr = stacked.qr();
+    let mut right = -residuals.clone().resize_vertically(rows + columns, 0.0);
+    qr.q_tr_mul(&mut right);
+    let head = right.rows(0, columns).into_owned();
+    qr.r().solve_upper_triangular(&head).unwrap_or_else(|| DVector::zeros(columns))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,128 @@
+use super::*;
+use crate::random::Stream;
+use std::ops::Range;
+
+/// Rosenbrock's valley as residuals (1 - x, 10 (y - x²)): the classic that undamped steps overshoot.
+struct Valley;
+
+impl Problem for Valley {
+    fn residuals(&self, p: &[f64]) -> DVector<f64> {
+        DVector::from_vec(vec![1.0 - p[0], 10.0 * (p[1] - p[0] * p[0])])
+    }
+
+    fn jacobian(&self, p: &[f64]) -> DMatrix<f64> {
+        DMatrix::from_row_slice(2, 2, &[-1.0, 0.0, -20.0 * p[0], 10.0])
+    }
+}
+
+/// A straight line a + b x through points with standard deviations of their own.
+struct Line {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    sd: Vec<f64>,
+}
+
+impl Problem for Line {
+    fn residuals(&self, p: &[f64]) -> DVector<f64> {
+        DVector::from_fn(self.x.len(), |i, _| (self.y[i] - p[0] - p[1] * self.x[i]) / self.sd[i])
+    }
+
+    fn jacobian(&self, _: &[f64]) -> DMatrix<f64> {
+        DMatrix::from_fn(self.x.len(), 2, |i, j| -if j == 0 { 1.0 } else { self.x[i] } / self.sd[i])
+    }
+}
+
+#[test]
+fn the_bottom_of_rosenbrocks_valley_is_found_from_the_usual_start() {
+    let fit = least_squares(&Valley, &[-1.2, 1.0], &Options::default());
+    assert!(fit.termination.converged(), "{:?}", fit.termination);
+    assert!((fit.values[0] - 1.0).abs() < 1e-12 && (fit.values[1] - 1.0).abs() < 1e-12, "{:?}", fit.values);
+}
+
+/// Oracle: the closed formulas of weighted straight-line regression.
+#[test]
+fn a_weighted_line_has_the_estimates_and_covariance_of_the_textbook() {
+    let line = Line { x: vec![0.0, 1.0, 2.0, 4.0], y: vec![1.1, 2.9, 5.2, 9.0], sd: vec![0.1, 0.2, 0.1, 0.4] };
+    let fit = least_squares(&line, &[0.0, 0.0], &Options::default());
+    let w: Vec<f64> = line.sd.iter().map(|s| 1.0 / (s * s)).collect();
+    let sum = |f: &dyn Fn(usize) -> f64| (0..4).map(|i| w[i] * f(i)).sum::<f64>();
+    let (s, sx, sxx) = (sum(&|_| 1.0), sum(&|i| line.x[i]), sum(&|i| line.x[i] * line.x[i]));
+    let (sy, sxy) = (sum(&|i| line.y[i]), sum(&|i| line.x[i] * line.y[i]));
+    let determinant = s * sxx - sx * sx;
+    assert!((fit.values[0] - (sxx * sy - sx * sxy) / determinant).abs() < 1e-11);
+    assert!((fit.values[1] - (s * sxy - sx * sy) / determinant).abs() < 1e-11);
+    let covariance = fit.covariance().unwrap();
+    let expected = DMatrix::from_row_slice(2, 2, &[sxx, -sx, -sx, s]) / determinant;
+    assert!((covariance - expected).abs().max() < 1e-14);
+    assert!((fit.residual_variance().unwrap() - fit.cost() / 2.0).abs() < 1e-15);
+}
+
+#[test]
+fn a_combination_that_the_data_does_not_show_is_named_and_left_where_it_started() {
+    struct Sum;
+    impl Problem for Sum {
+        fn residuals(&self, p: &[f64]) -> DVector<f64> {
+            DVector::from_fn(3, |i, _| (i as f64 + 1.0) * (7.0 - p[0] - 2.0 * p[1]))
+        }
+        fn jacobian(&self, _: &[f64]) -> DMatrix<f64> {
+            DMatrix::from_fn(3, 3, |i, j| [-1.0, -2.0, 0.0][j] * (i as f64 + 1.0))
+        }
+    }
+    let fit = least_squares(&Sum, &[1.0, 1.0, 5.0], &Options::default());
+    assert!(fit.termination.converged());
+    assert!((fit.values[0] + 2.0 * fit.values[1] - 7.0).abs() < 1e-9);
+    assert_eq!(fit.values[2], 5.0);
+    let null = fit.null_directions();
+    assert_eq!(null.len(), 2);
+    for direction in &null {
+        assert!((&fit.jacobian * direction).norm() < 1e-9);
+    }
+    assert_eq!(fit.covariance(), None);
+    assert_eq!(fit.residual_variance(), None);
+}
+
+#[test]
+fn fewer_residuals_than_parameters_leave_directions_open() {
+    let line = Line { x: vec![1.0], y: vec![3.0], sd: vec![1.0] };
+    let fit = least_squares(&line, &[0.0, 0.0], &Options::default());
+    assert!(fit.cost() < 1e-20 && fit.null_directions().len() == 1);
+}
+
+#[test]
+fn a_hopeless_start_and_a_limit_of_steps_are_reports_and_not_errors() {
+    let fit = least_squares(&Valley, &[f64::NAN, 0.0], &Options::default());
+    assert_eq!((fit.termination, fit.iterations), (Termination::NotFinite, 0));
+    let fit = least_squares(&Valley, &[-1.2, 1.0], &Options { iterations: 3, ..Options::default() });
+    assert_eq!((fit.termination, fit.iterations), (Termination::IterationLimit, 3));
+    assert!(fit.cost() < 24.2);
+}
+
+/// 4000 draws, seed 9, of eight groups of five residuals that share an error. True slope variance from the draws
+/// themselves; the covariance for independent residuals is wrong by a factor that the jackknife must not miss.
+#[test]
+fn leaving_out_groups_sees_the_correlation_within_them() {
+    let x: Vec<f64> = (0..40).map(|i| f64::from(i / 5) + 0.01 * f64::from(i % 5)).collect();
+    let groups: Vec<Range<usize>> = (0..8).map(|g| 5 * g..5 * g + 5).collect();
+    let (mut squares, mut jackknife, mut independent) = (0.0, 0.0, 0.0);
+    let draws = 4000;
+    for draw in 0..draws {
+        let mut stream = Stream::new(9, 0, draw);
+        let shared: Vec<f64> = (0..8).map(|_| stream.normal()).collect();
+        let y = (0..40).map(|i| shared[i / 5] + 0.1 * stream.normal()).collect();
+        let line = Line { x: x.clone(), y, sd: vec![1.0; 40] };
+        let fit = least_squares(&line, &[0.0, 0.0], &Options::default());
+        squares += fit.values[1] * fit.values[1];
+        jackknife += jackknife_covariance(&fit.jacobian, &fit.residuals, &groups).unwrap()[(1, 1)];
+        independent += fit.covariance().unwrap()[(1, 1)] * fit.residual_variance().unwrap();
+    }
+    assert!((1.0..1.8).contains(&(jackknife / squares)), "{}", jackknife / squares);
+    assert!(independent / squares < 0.3, "{}", independent / squares);
+}
+
+#[test]
+fn groups_that_alone_show_a_parameter_leave_the_jackknife_without_an_answer() {
+    let jacobian = DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
+    let residuals = DVector::from_element(3, 0.1);
+    assert_eq!(jackknife_covariance(&jacobian, &residuals, &[0..1, 1..2, 2..3]), None);
+    assert_eq!(jackknife_covariance(&jacobian, &residuals, &[]), None);
+}

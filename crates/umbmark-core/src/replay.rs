@@ -1,0 +1,286 @@
+//! Wheel travel back to poses: what a model predicts that an absolute reference will see.
+//!
+//! ```text
+//! recorded ticks --+
+//!                  +--> believed wheel travel -> [wheels] -> kinematics -> [body] -> predicted pose
+//! commanded moves -+
+//! ```
+//!
+//! The effects are those of [`effect`](crate::effect), the same that simulate. With `f64` a replay gives poses; with
+//! [`Dual`](crate::geometry::Dual) it gives poses and one column of their Jacobian. Each sample is an exact arc.
+
+use crate::dataset::TickLog;
+use crate::drive::{Robot, WheelTravel};
+use crate::effect::{Chain, Evaluate};
+use crate::geometry::Pose2;
+use crate::path::{Direction, Path};
+
+/// What makes a log impossible to replay.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReplayError {
+    /// Columns of different lengths.
+    #[error("time, left and right must have one value a sample, got {time}, {left} and {right}")]
+    Lengths {
+        /// Number of times.
+        time: usize,
+        /// Number of left counts.
+        left: usize,
+        /// Number of right counts.
+        right: usize,
+    },
+    /// A count that is no number.
+    #[error("ticks of sample {sample} must be finite, got left {left}, right {right}")]
+    NotFinite {
+        /// The sample, from 0.
+        sample: usize,
+        /// \[ticks\]
+        left: f64,
+        /// \[ticks\]
+        right: f64,
+    },
+    /// Reference poses out of order or beyond the log.
+    #[error("reference pose {index} belongs to sample {sample}; samples must not decrease and stay below {samples}")]
+    Sample {
+        /// The reference pose, from 0.
+        index: usize,
+        /// Its sample.
+        sample: usize,
+        /// Number of samples in the log.
+        samples: usize,
+    },
+}
+
+/// The believed wheel travel of one run, cut at the moments when the robot is observed.
+///
+/// Samples in which no wheel moves are dropped. The robot starts at the identity.
+///
+/// ```
+/// use umbmark_core::{drive::Robot, effect::Model, path::{Direction, Path}, replay::Track};
+/// let robot = Robot::labmate();
+/// let track = Track::from_path(&Path::umbmark(), Direction::Ccw, &robot);
+/// let mut model = Model::new(&robot);
+/// model.set("wheelbase", "e_b", 337.2 / 340.0)?;
+/// model.set("wheel_diameter_ratio", "e_d", 1.00121)?;
+/// let end = track.end(&model.chain());
+/// assert!((end.x.hypot(end.y) - 0.3056).abs() < 1e-4); // the paper's Table I publishes 310 mm
+/// # Ok::<(), umbmark_core::effect::ModelError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Track {
+    travel: Vec<WheelTravel>,
+    /// How many travels are made when each observation is taken, never decreasing.
+    seen_after: Vec<usize>,
+}
+
+impl Track {
+    /// The track of a recorded run, observed at each of its reference poses.
+    pub fn from_log(log: &TickLog, robot: &Robot) -> Result<Track, ReplayError> {
+        check(log)?;
+        let per_tick = robot.metres_per_tick();
+        let mut travel = Vec::with_capacity(log.left.len());
+        let mut seen_after = Vec::with_capacity(log.reference.len());
+        let mut due = log.reference.iter().map(|r| r.sample).peekable();
+        let (mut left, mut right) = (0.0, 0.0);
+        for (sample, (l, r)) in log.left.iter().zip(&log.right).enumerate() {
+            if (*l, *r) != (left, right) {
+                travel.push(WheelTravel { left: (l - left) * per_tick.left, right: (r - right) * per_tick.right });
+                (left, right) = (*l, *r);
+            }
+            while due.next_if_eq(&sample).is_some() {
+                seen_after.push(travel.len());
+            }
+        }
+        Ok(Track { travel, seen_after })
+    }
+
+    /// The track of a robot that makes the moves of a path as its odometry believes, observed at the end.
+    ///
+    /// Where only return errors were measured, this is what the robot believed to drive: its controller stops each move
+    /// when the odometry says so.
+    pub fn from_path(path: &Path, direction: Direction, robot: &Robot) -> Track {
+        let travel: Vec<WheelTravel> = path.moves(direction).iter().map(|m| m.wheel_travel(&robot.drive)).collect();
+        let end = travel.len();
+        Track { travel, seen_after: vec![end] }
+    }
+
+    /// The travel up to the last observation (or all, where there is none), observed at its end only.
+    pub fn cut_at_last(mut self) -> Track {
+        self.travel.truncate(self.seen_after.last().copied().unwrap_or(self.travel.len()));
+        self.seen_after = vec![self.travel.len()];
+        self
+    }
+
+    /// Believed wheel travel of each sample or move \[m\].
+    pub fn travel(&self) -> &[WheelTravel] {
+        &self.travel
+    }
+
+    /// How many elements of [`Track::travel`] are made when each observation is taken, never decreasing.
+    pub fn seen_after(&self) -> &[usize] {
+        &self.seen_after
+    }
+
+    /// Length that the axle's centre is believed to travel \[m\], forward or backward.
+    pub fn length(&self) -> f64 {
+        self.travel.iter().map(|t| 0.5 * (t.left + t.right).abs()).sum()
+    }
+
+    /// Calls `seen` with the number of each observation and the pose predicted for it. It allocates nothing.
+    #[inline]
+    pub fn replay<T: Evaluate>(&self, chain: &Chain<T>, mut seen: impl FnMut(usize, &Pose2<T>)) {
+        let mut pose = Pose2::<T>::new(T::from(0.0), T::from(0.0), T::from(0.0));
+        let mut made = 0;
+        for (observation, after) in self.seen_after.iter().enumerate() {
+            for travel in &self.travel[made..*after] {
+                pose = pose.moved(&chain.displacement(travel));
+            }
+            made = *after;
+            seen(observation, &pose);
+        }
+    }
+
+    /// The pose predicted for the end of the travel.
+    pub fn end<T: Evaluate>(&self, chain: &Chain<T>) -> Pose2<T> {
+        let start = Pose2::<T>::new(T::from(0.0), T::from(0.0), T::from(0.0));
+        self.travel.iter().fold(start, |pose, travel| pose.moved(&chain.displacement(travel)))
+    }
+
+    /// The poses predicted for all observations.
+    pub fn poses<T: Evaluate>(&self, chain: &Chain<T>) -> Vec<Pose2<T>> {
+        let mut poses = Vec::with_capacity(self.seen_after.len());
+        self.replay(chain, |_, pose| poses.push(*pose));
+        poses
+    }
+}
+
+fn check(log: &TickLog) -> Result<(), ReplayError> {
+    let (time, left, right) = (log.time.len(), log.left.len(), log.right.len());
+    if time != left || left != right {
+        return Err(ReplayError::Lengths { time, left, right });
+    }
+    let ticks = log.left.iter().zip(&log.right).enumerate();
+    if let Some((sample, (left, right))) = ticks.into_iter().find(|(_, (l, r))| !(l.is_finite() && r.is_finite())) {
+        return Err(ReplayError::NotFinite { sample, left: *left, right: *right });
+    }
+    let mut before = 0;
+    for (index, reference) in log.reference.iter().enumerate() {
+        if reference.sample < before || reference.sample >= left {
+            return Err(ReplayError::Sample { index, sample: reference.sample, samples: left });
+        }
+        before = reference.sample;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::ReferencePose;
+    use crate::effect::Model;
+    use crate::geometry::Dual;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    /// 1 m wheel circumference, 1000 ticks a turn: a millimetre a tick; wheelbase 0.5 m.
+    fn robot() -> Robot {
+        use crate::drive::{DifferentialDrive, Encoder};
+        let drive = DifferentialDrive::new(0.5, 1.0 / PI, 1.0 / PI).unwrap();
+        Robot { name: "round numbers".into(), drive, encoder: Encoder::new(1000.0, None, None).unwrap() }
+    }
+
+    fn seen(sample: usize) -> ReferencePose {
+        ReferencePose { sample, x: 0.0, y: 0.0, heading: None }
+    }
+
+    fn log(left: &[f64], right: &[f64], reference: Vec<ReferencePose>) -> TickLog {
+        let time = (0..left.len()).map(|i| i as f64).collect();
+        TickLog { time, left: left.to_vec(), right: right.to_vec(), reference }
+    }
+
+    /// Straight 2 m, a quarter turn to the left on the spot, straight 1 m; still samples between.
+    fn corner() -> TickLog {
+        let quarter = 1000.0 * 0.5 * FRAC_PI_2 / 2.0;
+        log(
+            &[0.0, 2000.0, 2000.0, 2000.0 - quarter, 2000.0 - quarter, 3000.0 - quarter],
+            &[0.0, 2000.0, 2000.0, 2000.0 + quarter, 2000.0 + quarter, 3000.0 + quarter],
+            [0, 1, 2, 2, 4, 5].map(seen).to_vec(),
+        )
+    }
+
+    #[test]
+    fn poses_belong_to_the_samples_of_their_references_through_standstill_and_repeats() {
+        let track = Track::from_log(&corner(), &robot()).unwrap();
+        let poses = track.poses(&Model::new(&robot()).chain());
+        let expected = [
+            (0.0, 0.0, 0.0),
+            (2.0, 0.0, 0.0),
+            (2.0, 0.0, 0.0),
+            (2.0, 0.0, 0.0),
+            (2.0, 0.0, FRAC_PI_2),
+            (2.0, 1.0, FRAC_PI_2),
+        ];
+        assert_eq!(poses.len(), expected.len());
+        for (pose, (x, y, heading)) in poses.iter().zip(expected) {
+            assert!((pose.x - x).abs() < 1e-12 && (pose.y - y).abs() < 1e-12 && (pose.heading - heading).abs() < 1e-12);
+        }
+        assert_eq!(track.travel().len(), 3);
+        assert!((track.length() - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn one_sample_of_an_arc_is_exact_to_the_right_as_to_the_left() {
+        for sign in [1.0, -1.0] {
+            // Half a circle of radius 1 m: wheels at 0.75 and 1.25 m from its centre.
+            let (inner, outer) = (1000.0 * 0.75 * PI, 1000.0 * 1.25 * PI);
+            let (left, right) = if sign > 0.0 { (inner, outer) } else { (outer, inner) };
+            let track = Track::from_log(&log(&[left], &[right], vec![seen(0)]), &robot()).unwrap();
+            let end = track.end(&Model::new(&robot()).chain());
+            assert!(end.x.abs() < 1e-12 && (end.y - sign * 2.0).abs() < 1e-12, "{end:?}");
+        }
+    }
+
+    #[test]
+    fn the_jacobian_is_that_of_finite_differences_at_every_observation() {
+        let robot = robot();
+        let mut model = Model::new(&robot);
+        for (effect, parameter, value) in
+            [("wheel_diameter_ratio", "e_d", 1.01), ("wheelbase", "e_b", 0.98), ("scale", "e_s", 1.02)]
+        {
+            model.set(effect, parameter, value).unwrap();
+        }
+        let values: Vec<f64> = model.values().collect();
+        for track in [
+            Track::from_log(&corner(), &robot).unwrap(),
+            Track::from_path(&Path::umbmark(), Direction::Cw, &robot),
+            Track::from_path(&Path::umbmark(), Direction::Ccw, &robot),
+        ] {
+            for i in 0..values.len() {
+                let seeded: Vec<Dual> =
+                    values.iter().enumerate().map(|(j, v)| Dual::new(*v, f64::from(u8::from(i == j)))).collect();
+                let exact = track.poses(&model.chain_with(&seeded));
+                let at = |step: f64| {
+                    let mut moved = values.clone();
+                    moved[i] += step;
+                    track.poses(&model.chain_with(&moved))
+                };
+                let h = 1e-5;
+                for (k, (high, low)) in at(h).iter().zip(at(-h)).enumerate() {
+                    let numeric = [high.x - low.x, high.y - low.y, high.heading - low.heading].map(|d| d / (2.0 * h));
+                    let column = [exact[k].x.eps, exact[k].y.eps, exact[k].heading.eps];
+                    for (c, n) in column.iter().zip(numeric) {
+                        assert!((c - n).abs() < 1e-6 * (1.0 + n.abs()), "parameter {i}, observation {k}: {c} {n}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn impossible_logs_are_refused_with_the_offending_value() {
+        let refuse = |log: &TickLog| Track::from_log(log, &robot()).unwrap_err().to_string();
+        assert!(refuse(&log(&[0.0, 1.0], &[0.0], vec![])).contains("got 2, 2 and 1"));
+        assert!(refuse(&log(&[0.0, f64::NAN], &[0.0, 1.0], vec![])).contains("sample 1 must be finite, got left NaN"));
+        assert!(refuse(&log(&[0.0], &[0.0], vec![seen(1)])).contains("reference pose 0 belongs to sample 1"));
+        assert!(refuse(&log(&[0.0, 1.0], &[0.0, 1.0], vec![seen(1), seen(0)])).contains("reference pose 1"));
+    }
+}

@@ -1,0 +1,251 @@
+//! What good files mean, and what is tolerated in them.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use umbmark_core::dataset::{Dataset, DatasetError, ReturnError, Run};
+use umbmark_core::effect::TestKind;
+use umbmark_core::path::Direction;
+
+const ROBOT: &str = "[robot]\nwheelbase_m = 0.5\nwheel_diameter_m = 0.2\nticks_per_revolution = 1000\n";
+
+fn load(files: &[(&str, &str)], path: &str) -> Result<Dataset, DatasetError> {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let file = folder.path().join(name);
+        std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+        std::fs::write(file, text).unwrap();
+    }
+    Dataset::load(if path.is_empty() { folder.path().to_owned() } else { folder.path().join(path) })
+}
+
+fn returns(text: &str) -> Dataset {
+    load(&[("robot.toml", ROBOT), ("returns.csv", text)], "").unwrap()
+}
+
+fn log(name: &str, text: &str) -> Dataset {
+    load(&[("robot.toml", ROBOT), (&format!("runs/{name}"), text)], "").unwrap()
+}
+
+fn errors(data: &Dataset) -> Vec<ReturnError> {
+    data.runs.iter().map(|run| run.returned.unwrap()).collect()
+}
+
+/// Counts of a robot that turns on the spot by an angle \[rad\] and stands still before and after.
+fn turning(angle: f64, references: [&str; 3]) -> String {
+    let ticks = (angle * 0.25 / (PI * 0.2 / 1000.0)).round();
+    let mut text = String::from("t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad\n");
+    for (i, reference) in references.iter().enumerate() {
+        let turned = if i == 0 { 0.0 } else { ticks };
+        text += &format!("{},{},{},{reference}\n", 10 * i, -turned, turned);
+    }
+    text
+}
+
+#[test]
+fn the_error_is_absolute_minus_computed_with_the_heading_wrapped() {
+    let data = returns(
+        "direction,run,x_abs_m,y_abs_m,theta_abs_rad,x_calc_m,y_calc_m,theta_calc_rad\n\
+         cw,1,0.5,0.25,-6.25,0.125,0.5,0.0\nccw,2,0,0,3.0,0,0,-3.0\n",
+    );
+    let [cw, ccw] = errors(&data)[..] else { panic!() };
+    assert_eq!((cw.x, cw.y), (0.375, -0.25));
+    assert!((cw.heading.unwrap() - (2.0 * PI - 6.25)).abs() < 1e-15);
+    assert!((ccw.heading.unwrap() - (6.0 - 2.0 * PI)).abs() < 1e-15);
+    assert_eq!(data.runs[1].number, 2);
+}
+
+#[test]
+fn millimetres_centimetres_and_degrees_are_metres_and_radians() {
+    let mm = returns("direction,run,ex_mm,ey_mm,etheta_deg\ncw,1,250,-125,90\n");
+    let cm = returns("direction,run,ex_cm,ey_cm,etheta_rad\ncw,1,25,-12.5,1.5707963267948966\n");
+    let expected = ReturnError { x: 0.25, y: -0.125, heading: Some(FRAC_PI_2) };
+    assert_eq!((errors(&mm), errors(&cm)), (vec![expected], vec![expected]));
+}
+
+#[test]
+fn a_heading_may_be_missing_in_all_rows_or_in_some() {
+    let none = returns("direction,run,ex_m,ey_m\ncw,1,0.1,0.2\n");
+    assert_eq!(errors(&none)[0].heading, None);
+    let some = returns(
+        "direction,run,x_abs_m,y_abs_m,theta_abs_rad,x_calc_m,y_calc_m,theta_calc_rad\ncw,1,1,2,,0,0,0.5\ncw,2,1,2,0.5,0,0,0.25\n",
+    );
+    assert_eq!(errors(&some).iter().map(|e| e.heading).collect::<Vec<_>>(), [None, Some(0.25)]);
+}
+
+#[test]
+fn a_measured_start_turns_the_absolute_pose_into_its_frame() {
+    let data = returns(
+        "direction,run,x_abs_m,y_abs_m,theta_abs_deg,x_calc_m,y_calc_m,theta_calc_deg,x_start_m,y_start_m,theta_start_deg\n\
+         cw,1,3,5.5,100,0.25,0,0,3,5,90\n",
+    );
+    let error = errors(&data)[0];
+    assert!((error.x - 0.25).abs() < 1e-15 && error.y.abs() < 1e-15, "{error:?}");
+    assert!((error.heading.unwrap() - 10f64.to_radians()).abs() < 1e-15);
+}
+
+#[test]
+fn harmless_untidiness_is_tolerated() {
+    let tidy = returns("direction,run,test,ex_m,ey_m\ncw,1,systematic,0.1,0.2\ncw,1,bumps,0.3,0.4\nccw,1,,0.5,0.6\n");
+    for untidy in [
+        "direction,run,test,ex_m,ey_m\r\ncw,1,systematic,0.1,0.2\r\ncw,1,bumps,0.3,0.4\r\nccw,1,,0.5,0.6\r\n",
+        "direction,run,test,ex_m,ey_m\rcw,1,systematic,0.1,0.2\rcw,1,bumps,0.3,0.4\rccw,1,,0.5,0.6",
+        "\u{feff}direction,run,test,ex_m,ey_m\ncw,1,systematic,0.1,0.2\ncw,1,bumps,0.3,0.4\nccw,1,,0.5,0.6",
+        " Direction , RUN,Test ,ex_m, ey_m\n CW , 1, systematic, +0.1, 2e-1\n\n  \ncw,1,Bumps,.3,0.4\nccw,01,,0.5,0.6\n,,,,\n",
+        "# a comment\n\"direction\",\"run\",test,ex_m,ey_m\n# another\nccw,1,,0.5,0.6,,\ncw,1,bumps,0.3,\"0.4\"\ncw,1,systematic,0.1,0.2\n",
+    ] {
+        assert_eq!(returns(untidy).runs, tidy.runs, "{untidy:?}");
+    }
+    assert_eq!(tidy.runs.iter().map(|run| run.name.as_str()).collect::<Vec<_>>(), ["cw_01", "ccw_01", "bumps_cw_01"]);
+}
+
+#[test]
+fn a_column_that_is_not_known_is_named_in_a_warning() {
+    let data = returns("direction,run,ex_m,ey_m,operator\ncw,1,0.1,0.2,Ann\n");
+    assert_eq!(data.warnings.len(), 1);
+    assert!(data.warnings[0].ends_with("column \"operator\" is not used"), "{:?}", data.warnings);
+}
+
+#[test]
+fn a_return_sheet_alone_needs_no_robot_until_one_is_asked_for() {
+    let files = [("sheet.csv", "direction,run,ex_m,ey_m\ncw,1,0.1,0.2\n")];
+    let data = load(&files, "sheet.csv").unwrap();
+    assert_eq!(data.returns(TestKind::Systematic, Direction::Cw).count(), 1);
+    assert_eq!(data.returns(TestKind::Systematic, Direction::Ccw).count(), 0);
+    let said = data.nominal_robot().unwrap_err().to_string();
+    assert_eq!(
+        said,
+        "the nominal robot is not known: no robot.toml beside the data; `umbmark init` writes one to fill in"
+    );
+    let beside = load(&[("robot.toml", ROBOT), files[0]], "sheet.csv").unwrap();
+    assert_eq!(beside.nominal_robot().unwrap().drive.wheelbase(), 0.5);
+}
+
+#[test]
+fn wheels_and_wheelbase_go_by_several_names() {
+    let read = |wheels: &str| {
+        let text = format!("[robot]\n{wheels}\nticks_per_revolution = 1000\nencoder_rate_hz = \"every tick\"\n");
+        umbmark_core::dataset::parse_robot("robot.toml", &text).unwrap().0
+    };
+    let plain = read("wheelbase_m = 0.5\nwheel_diameter_m = 0.25");
+    assert_eq!(read("track_width_m = 0.5\nwheel_radius_m = 0.125"), plain);
+    assert_eq!(read("wheel_separation_m = 0.5\nwheel_diameter_left_m = 0.25\nwheel_diameter_right_m = 0.25"), plain);
+    assert_eq!(
+        read("wheelbase_m = 5e-1\nwheel_diameter_left_m = 0.2\nwheel_diameter_right_m = 0.3")
+            .drive
+            .wheel_diameter_left(),
+        0.2
+    );
+}
+
+#[test]
+fn paths_of_every_shape_are_read() {
+    for (lines, length) in [
+        ("shape = \"square\"\nside_m = 2", 8.0),
+        ("shape = \"rectangle\"\nlength_m = 7.0\nwidth_m = 4.0", 22.0),
+        ("shape = \"figure_eight\"\nradius_m = 1.0", 4.0 * PI),
+        ("shape = \"circle\"\nradius_m = 1.0\nturns = 2", 4.0 * PI),
+        ("shape = \"straight\"\nlength_m = 10.0", 10.0),
+        ("shape = \"spin\"\nturns = 3.0", 0.0),
+        ("shape = \"waypoints\"\npoints_m = [[1.0, 0.0], [1, 1], [0, 0]]", 2.0 + 2f64.sqrt()),
+    ] {
+        let text = format!("{ROBOT}[path]\n{lines}\nspeed_m_s = 0.5\npause_s = 0\n");
+        let path = umbmark_core::dataset::parse_robot("robot.toml", &text).unwrap().1.unwrap();
+        assert!((path.length() - length).abs() < 1e-12, "{lines}");
+        assert_eq!(path.speed.values(), [0.5, 0.2, 0.0]);
+    }
+}
+
+#[test]
+fn rolled_counters_are_unrolled_both_ways_and_counted_from_start() {
+    let robot = format!("{ROBOT}counter_bits = 16\n");
+    let text = "t_s,ticks_left,ticks_right\n0,169,65533\n0.05,65410,394\n0.1,65000,800\n";
+    let data = load(&[("robot.toml", &robot), ("runs/cw_01.csv", text)], "").unwrap();
+    let log = data.runs[0].log.as_ref().unwrap();
+    assert_eq!((&log.left[..], &log.right[..]), (&[0.0, -295.0, -705.0][..], &[0.0, 397.0, 803.0][..]));
+    assert!(data.warnings[0].ends_with("2 roll-overs of the 16-bit counters undone"), "{:?}", data.warnings);
+}
+
+#[test]
+fn the_direction_is_that_of_the_name_else_that_of_the_ticks() {
+    for (name, turned, direction, number) in [
+        ("ccw_03.csv", 6.0, Some(Direction::Ccw), 3),
+        ("monday 7.csv", -6.0, Some(Direction::Cw), 7),
+        ("monday.csv", 6.0, Some(Direction::Ccw), 1),
+        ("straight_02.csv", 0.1, None, 2),
+        ("none_01.csv", 6.0, None, 1),
+    ] {
+        let data = log(name, &turning(turned, ["", "", ""].map(|_| ",,")));
+        assert_eq!((data.runs[0].direction, data.runs[0].number), (direction, number), "{name}");
+        assert!(data.warnings.is_empty());
+    }
+    let data = log("cw_01.csv", &turning(6.0, [",,"; 3]));
+    assert_eq!(data.runs[0].direction, Some(Direction::Cw));
+    assert!(data.warnings[0].contains("its name says cw, its ticks turn ccw"), "{:?}", data.warnings);
+}
+
+#[test]
+fn without_a_return_sheet_the_error_follows_from_the_log() {
+    let data = log("ccw_01.csv", &turning(2.0, ["0.001,0,0", "0.05,0.25,2.25", "0.05,0.25,2.25"]));
+    let error = errors(&data)[0];
+    assert_eq!((error.x, error.y), (0.05, 0.25));
+    assert!((error.heading.unwrap() - 0.25).abs() < 1e-3, "{error:?}");
+}
+
+#[test]
+fn at_the_end_the_second_half_of_the_standing_measurements_is_averaged() {
+    let mut text = turning(2.0, ["0,0,0", "9,9,9", "1,1,1"]);
+    let last = text.lines().last().unwrap().split(',').take(3).skip(1).collect::<Vec<_>>().join(",");
+    for (time, reference) in [(30, "0.25,0,2"), (40, "0.75,0,2.5")] {
+        text += &format!("{time},{last},{reference}\n");
+    }
+    let error = errors(&log("ccw_01.csv", &text))[0];
+    assert_eq!(error.x, 0.5);
+    assert!((error.heading.unwrap() - 0.25).abs() < 1e-3);
+}
+
+#[test]
+fn a_track_in_the_room_is_turned_into_the_frame_of_start_and_a_misplaced_robot_is_not() {
+    let room = log(
+        "ccw_01.csv",
+        &turning(
+            2.0,
+            ["3,5,1.5707963267948966", "", "2.75,5.5,3.5707963267948966"].map(|r| if r.is_empty() { ",," } else { r }),
+        ),
+    );
+    let error = errors(&room)[0];
+    assert!((error.x - 0.5).abs() < 1e-12 && (error.y - 0.25).abs() < 1e-12, "{error:?}");
+    assert!(error.heading.unwrap().abs() < 1e-3);
+    assert!(room.warnings[0].contains("starts 5.831 m and 90.0 deg from the origin; taken as poses in the room"));
+    let hand = log("ccw_01.csv", &turning(2.0, ["0.02,0,0.01", ",,", "0.25,0.5,2"]));
+    assert_eq!(errors(&hand)[0].x, 0.25);
+    assert!(hand.warnings[0].contains("taken as misplacement of the robot"), "{:?}", hand.warnings);
+    let noise = log("ccw_01.csv", &turning(2.0, ["0.001,0,0.001", ",,", "0.25,0.5,2"]));
+    assert!(noise.warnings.is_empty());
+}
+
+#[test]
+fn logs_and_returns_are_matched_by_test_direction_and_number() {
+    let sheet = "direction,run,test,ex_m,ey_m\nccw,1,systematic,1,0\nccw,1,bumps,2,0\nccw,2,bumps,3,0\n";
+    let still = turning(2.0, [",,"; 3]);
+    let files = [
+        ("robot.toml", ROBOT),
+        ("returns.csv", sheet),
+        ("runs/ccw_01.csv", &still),
+        ("runs/bumps_ccw_01.csv", &still),
+        ("runs/ccw_02.csv", &still),
+        ("runs/ccw_03.csv", &still),
+    ];
+    let data = load(&files, "").unwrap();
+    let described = |run: &Run| (run.name.clone(), run.test, run.number, run.returned.map(|e| e.x), run.log.is_some());
+    assert_eq!(
+        data.runs.iter().map(described).collect::<Vec<_>>(),
+        [
+            ("ccw_01".into(), TestKind::Systematic, 1, Some(1.0), true),
+            ("ccw_03".into(), TestKind::Systematic, 3, None, true),
+            ("bumps_ccw_01".into(), TestKind::Bumps, 1, Some(2.0), true),
+            ("ccw_02".into(), TestKind::Bumps, 2, Some(3.0), true),
+        ]
+    );
+    assert!(data.warnings[0].ends_with("has no row in the return sheet; its return error is not known"));
+}
