@@ -1,7 +1,7 @@
 //! Python bindings: the extension module `umbmark._umbmark`, which the package `umbmark` re-exports.
 //!
 //! One file for each room of `umbmark-core` that Python sees. Every call has three steps: arrays are checked and read
-//! under the interpreter lock ([`arrays`]), the work runs without it ([`detached`]), and its result is a frozen class whose
+//! under the interpreter lock (`arrays`), the work runs without it (`detached`), and its result is a frozen class whose
 //! attributes carry their unit, under the names of the command's JSON keys.
 
 mod arrays;
