@@ -15,8 +15,11 @@ pub fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> St
     table.trim_fmt()
 }
 
-/// `value` with enough digits that its uncertainty is told to two of them.
+/// `value` with enough digits that its uncertainty is told to two of them; a dash for what is not known.
 pub fn with_precision_of(value: f64, uncertainty: f64) -> String {
+    if !value.is_finite() {
+        return "-".to_owned();
+    }
     let decimals = if uncertainty > 0.0 && uncertainty.is_finite() {
         (1 - uncertainty.log10().floor() as i32).clamp(0, 9) as usize
     } else {

@@ -1,7 +1,12 @@
 //! The verbs, one file each.
 
+mod calibrate;
 mod completions;
+mod effects;
+mod init;
+mod inspect;
 mod mc;
+mod score;
 mod simulate;
 
 use std::process::ExitCode;
@@ -15,6 +20,16 @@ pub enum Verb {
     Mc(Box<mc::Arguments>),
     /// Simulate one test and write it as a dataset
     Simulate(Box<simulate::Arguments>),
+    /// Score a measured test: E_max,sys, centroids, sigma, extended test
+    Score(score::Arguments),
+    /// Calibrate a measured robot: E_d, E_b, E_s, and files to put them to use
+    Calibrate(calibrate::Arguments),
+    /// Look at a dataset: what it holds, whether it is any good, what it can determine
+    Inspect(inspect::Arguments),
+    /// Write a robot.toml and a returns.csv to fill in
+    Init(init::Arguments),
+    /// List the effects that make a robot err, or explain one
+    Effects(effects::Arguments),
     /// Print shell completions or the manual page
     Completions(completions::Arguments),
 }
@@ -24,6 +39,11 @@ impl Verb {
         match self {
             Verb::Mc(arguments) => mc::run(*arguments, session),
             Verb::Simulate(arguments) => simulate::run(*arguments, session),
+            Verb::Score(arguments) => score::run(arguments, session),
+            Verb::Calibrate(arguments) => calibrate::run(arguments, session),
+            Verb::Inspect(arguments) => inspect::run(arguments, session),
+            Verb::Init(arguments) => init::run(arguments, session),
+            Verb::Effects(arguments) => effects::run(arguments, session),
             Verb::Completions(arguments) => completions::run(arguments, session),
         }
     }

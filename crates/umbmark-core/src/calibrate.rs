@@ -28,7 +28,7 @@ use evidence::Evidence;
 use nalgebra::{Matrix2, Matrix3};
 use outcome::Forecast;
 
-pub use closed_form::{Angles, ClosedForm};
+pub use closed_form::{Angles, ClosedForm, RadiusWheelbase};
 pub use correction::{Correction, Ratio};
 pub use evidence::Level;
 pub use outcome::{Replayed, drive_again};
@@ -71,6 +71,8 @@ pub struct Options {
     /// Metres that a radian of heading error counts as in whole-track fits; by default the root mean square distance of
     /// the observed poses from START, the displacement that a radian makes there.
     pub heading_arm: Option<f64>,
+    /// The wheelbase in the closed forms' E_d.
+    pub radius_wheelbase: RadiusWheelbase,
 }
 
 /// How an estimate was made.
@@ -202,7 +204,8 @@ pub fn calibrate(data: &Dataset, options: &Options) -> Result<Calibration, Calib
     let mut warnings = Vec::new();
     let square = Square::new(data.path.as_ref(), robot, &cw, &ccw, &mut warnings);
     let fitted = exact_estimate(&evidence, robot, &mut warnings);
-    let mut estimates: Vec<Estimate> = square.map(|s| s.estimates(&mut warnings)).unwrap_or_default();
+    let mut estimates: Vec<Estimate> =
+        square.map(|s| s.estimates(options.radius_wheelbase, &mut warnings)).unwrap_or_default();
     let truth = fitted.as_ref().filter(|e| e.shown[0] && e.shown[1]).map(|e| e.correction);
     estimates.extend(fitted);
     let summary = summarise(&cw, &ccw);
@@ -222,7 +225,11 @@ fn exact_estimate(evidence: &Evidence, robot: &Robot, warnings: &mut Vec<String>
     let exact = exact::exact(evidence, robot);
     warn_of_what_does_not_show(&exact.shown, evidence, warnings);
     if !exact.fit.termination.converged() {
-        warnings.push(format!("The exact fit {}; do not use it.", exact.fit.termination.name()));
+        warnings.push(format!("The exact fit {}: do not use it.", exact.fit.termination.name()));
+    }
+    if let Err(error) = exact.correction.model(robot) {
+        warnings.push(format!("No exact fit: it ran out of bounds ({error}). Are signs, units and directions right?"));
+        return None;
     }
     exact.shown.contains(&true).then(|| Estimate {
         shown: exact.shown,
@@ -283,7 +290,7 @@ impl<'a> Square<'a> {
         None
     }
 
-    fn estimates(&self, warnings: &mut Vec<String>) -> Vec<Estimate> {
+    fn estimates(&self, wheelbase: RadiusWheelbase, warnings: &mut Vec<String>) -> Vec<Estimate> {
         let (Some(cw), Some(ccw)) = (self.summary.cw, self.summary.ccw) else { return Vec::new() };
         let estimate = |form: ClosedForm| {
             let name = Method::ClosedForm(form).name();
@@ -291,7 +298,7 @@ impl<'a> Square<'a> {
                 warnings.push(format!("No {name}: return headings were not measured in both directions."));
                 return None;
             };
-            let Some(correction) = angles.correction(self.side, &self.robot.drive) else {
+            let Some(correction) = angles.correction(self.side, &self.robot.drive, wheelbase) else {
                 warnings.push(format!(
                     "No {name}: its angles, {:.1} deg a turn and {:.1} deg a leg, belong to no robot. Are signs and units right?",
                     angles.alpha.to_degrees(),
@@ -301,7 +308,7 @@ impl<'a> Square<'a> {
             };
             let scatter = self.scatter.filter(|s| form != ClosedForm::Heading || s.with_heading);
             let covariance = scatter.map(|scatter| {
-                let by_angles = angles.correction_jacobian(self.side, &self.robot.drive);
+                let by_angles = angles.correction_jacobian(self.side, &self.robot.drive, wheelbase);
                 let of_angles = form.covariance(&scatter, cw.n, ccw.n, self.side);
                 widen(by_angles * of_angles * by_angles.transpose())
             });

@@ -141,12 +141,15 @@ pub fn least_squares(problem: &impl Problem, start: &[f64], options: &Options) -
     if !at.cost.is_finite() {
         return at.stopped(problem, 0, Termination::NotFinite);
     }
+    if start.is_empty() {
+        return at.stopped(problem, 0, Termination::SmallStep);
+    }
     let mut lengths = vec![0.0_f64; start.len()];
     let mut damping = FIRST_DAMPING;
     let mut jacobian = problem.jacobian(&at.values);
     for iteration in 1..=options.iterations {
-        for (length, column) in lengths.iter_mut().zip(jacobian.column_iter()) {
-            *length = length.max(column.norm());
+        for (length, now) in lengths.iter_mut().zip(covariance::column_lengths(&jacobian)) {
+            *length = length.max(now);
         }
         let step = damped_step(&jacobian, &at.residuals, &lengths, damping);
         let next = Point::new(problem, at.values.iter().zip(step.iter()).map(|(p, d)| p + d).collect());
@@ -196,12 +199,17 @@ impl Point {
     }
 }
 
-/// argmin |r + J δ|² + λ |D δ|², D the column lengths (1 where a column is zero).
+/// argmin |r + J δ|² + λ |D δ|², D the column lengths. A parameter whose column is zero stays.
 fn damped_step(jacobian: &DMatrix<f64>, residuals: &DVector<f64>, lengths: &[f64], damping: f64) -> DVector<f64> {
     let (rows, columns) = jacobian.shape();
     let mut stacked = jacobian.clone().resize_vertically(rows + columns, 0.0);
     for (j, length) in lengths.iter().enumerate() {
-        stacked[(rows + j, j)] = damping.sqrt() * if *length > 0.0 { *length } else { 1.0 };
+        if *length > 0.0 {
+            stacked[(rows + j, j)] = damping.sqrt() * length;
+        } else {
+            stacked.column_mut(j).fill(0.0);
+            stacked[(rows + j, j)] = 1.0;
+        }
     }
     let qr = stacked.qr();
     let mut right = -residuals.clone().resize_vertically(rows + columns, 0.0);

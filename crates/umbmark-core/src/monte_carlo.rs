@@ -164,27 +164,22 @@ impl Study {
         let per_bench = BATCH.div_ceil(benches.len() as u64);
         let (mut chunk, mut done) = (0, 0);
         while chunk < chunks {
-            // Each bench takes every k-th chunk of the batch; results are put back in order.
+            // Each bench takes every k-th chunk of the batch; rows are put back in order.
             let batch = (per_bench * benches.len() as u64).min(chunks - chunk);
-            let count = benches.len() as u64;
-            let parts: Vec<Vec<(u64, Chunk)>> = benches
+            let stride = benches.len();
+            let parts: Vec<Vec<Vec<Row>>> = benches
                 .par_iter_mut()
                 .enumerate()
-                .map(|(k, bench)| {
-                    (k as u64..batch).step_by(count as usize).map(|i| (i, self.chunk(chunk + i, bench))).collect()
-                })
+                .map(|(k, bench)| (k as u64..batch).step_by(stride).map(|i| self.chunk(chunk + i, bench)).collect())
                 .collect();
-            let mut gathered: Vec<(u64, Chunk)> = parts.into_iter().flatten().collect();
-            gathered.sort_unstable_by_key(|(i, _)| *i);
+            let mut parts: Vec<_> = parts.into_iter().map(Vec::into_iter).collect();
+            let rows: Vec<Row> =
+                (0..batch as usize).flat_map(|i| parts[i % stride].next().unwrap_or_default()).collect();
+            statistics.par_iter_mut().enumerate().for_each(|(column, statistics)| {
+                rows.chunks(CHUNK as usize).for_each(|chunk| statistics.take(chunk.iter().map(|row| row[column])));
+            });
             let first = done;
-            let mut rows = Vec::with_capacity((batch * CHUNK) as usize);
-            for (_, part) in gathered {
-                for (sum, new) in statistics.iter_mut().zip(&part.statistics) {
-                    sum.merge(new);
-                }
-                done += part.rows.len() as u64;
-                rows.extend(part.rows);
-            }
+            done += rows.len() as u64;
             chunk += batch;
             if sink(first, &rows).is_break() {
                 break;
@@ -194,16 +189,9 @@ impl Study {
         Ok(Ensemble { trials: done, statistics: named.collect() })
     }
 
-    fn chunk(&self, index: u64, bench: &mut Bench) -> Chunk {
+    fn chunk(&self, index: u64, bench: &mut Bench) -> Vec<Row> {
         let range = index * CHUNK..((index + 1) * CHUNK).min(self.trials);
-        let rows: Vec<Row> = range.map(|trial| bench.trial(self.seed, trial)).collect();
-        let mut statistics = vec![Statistics::new(); Metric::COUNT];
-        for row in &rows {
-            for (sum, value) in statistics.iter_mut().zip(row) {
-                sum.add(*value);
-            }
-        }
-        Chunk { rows, statistics }
+        range.map(|trial| bench.trial(self.seed, trial)).collect()
     }
 
     fn check(&self) -> Result<(), StudyError> {
@@ -233,11 +221,6 @@ pub const MAX_TRIALS: u64 = 1_000_000_000_000;
 
 /// The most runs in a direction.
 pub const MAX_RUNS: u64 = 10_000;
-
-struct Chunk {
-    rows: Vec<Row>,
-    statistics: Vec<Statistics>,
-}
 
 #[cfg(test)]
 mod tests {

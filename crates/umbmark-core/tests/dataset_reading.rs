@@ -53,6 +53,8 @@ fn the_error_is_absolute_minus_computed_with_the_heading_wrapped() {
     assert!((cw.heading.unwrap() - (2.0 * PI - 6.25)).abs() < 1e-15);
     assert!((ccw.heading.unwrap() - (6.0 - 2.0 * PI)).abs() < 1e-15);
     assert_eq!(data.runs[1].number, 2);
+    let errors = errors(&returns("direction,run,ex_m,ey_m,etheta_rad\ncw,1,0,0,6.25\n"));
+    assert!((errors[0].heading.unwrap() - (6.25 - 2.0 * PI)).abs() < 1e-15);
 }
 
 #[test]
@@ -248,4 +250,16 @@ fn logs_and_returns_are_matched_by_test_direction_and_number() {
         ]
     );
     assert!(data.warnings[0].ends_with("has no row in the return sheet; its return error is not known"));
+}
+
+#[test]
+fn a_gap_in_which_the_wheels_rolled_on_is_not_taken_for_a_roll_over() {
+    let mut text = String::from("t_s,ticks_left,ticks_right\n");
+    for row in (0..40).filter(|row| !(20..30).contains(row)) {
+        text += &format!("{},{},{}\n", 0.1 * f64::from(row), 23 * row, 24 * row);
+    }
+    assert_eq!(log("cw_01.csv", &text).runs[0].log.as_ref().unwrap().right[29], 936.0);
+    let rolled = "t_s,ticks_left,ticks_right\n0,3,250\n0.1,6,254\n0.2,9,2\n";
+    let files = [("robot.toml", ROBOT), ("runs/cw_01.csv", rolled)];
+    assert!(matches!(load(&files, "").unwrap_err(), DatasetError::RolledOver { bits: 8, line: 4, .. }));
 }

@@ -17,9 +17,8 @@
 //!
 //! with x, y, θ the mean return errors. Sources: Borenstein & Feng, "Correction of systematic odometry errors in mobile
 //! robots", IROS 1995, and IEEE Trans. Robotics and Automation 12(6), 1996; heading: Jung & Chung, Int. J. Advanced
-//! Robotic Systems 8(5), 2011. b in E_d is the corrected wheelbase, with which the corrections published for real robots come
-//! out to the last digit. Jung & Chung's term that couples β into E_b is left out: it belongs to unequal wheels split
-//! one-sidedly, and here the mean diameter is kept.
+//! Robotic Systems 8(5), 2011. Which wheelbase b is meant in E_d is a choice: see [`RadiusWheelbase`]. Jung & Chung's term
+//! that couples β into E_b is left out: it belongs to unequal wheels split one-sidedly, and here the mean diameter is kept.
 
 use super::correction::Correction;
 use crate::dataset::ReturnError;
@@ -81,6 +80,42 @@ impl ClosedForm {
     }
 }
 
+/// The wheelbase b in E_d = (R + b/2)/(R - b/2).
+///
+/// They differ in E_d - 1 by the share by which the wheelbases differ. One round on a noise-free LabMate of the paper's Table I
+/// (306 and 417 mm) leaves, in mm:
+///
+/// | | x | y | mean | heading |
+/// |---|---|---|---|---|
+/// | corrected | 10.0, 19.1 | 19.2, 37.1 | 4.6, 9.0 | 0.0, 0.0 |
+/// | nominal | 11.4, 21.7 | 18.1, 35.2 | 3.3, 6.8 | 1.3, 2.3 |
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RadiusWheelbase {
+    /// E_b b_nominal: the distance that the wheels really are apart when they roll along R. With it the corrections published for
+    /// real robots (OptiOdom, 2022) and the errors they leave come out to the last printed digit.
+    #[default]
+    Corrected,
+    /// b_nominal: the formula with the only b that is known beforehand.
+    Nominal,
+}
+
+impl RadiusWheelbase {
+    /// "corrected" or "nominal".
+    pub fn name(self) -> &'static str {
+        match self {
+            RadiusWheelbase::Corrected => "corrected",
+            RadiusWheelbase::Nominal => "nominal",
+        }
+    }
+
+    fn of(self, drive: &DifferentialDrive, e_b: f64) -> f64 {
+        match self {
+            RadiusWheelbase::Corrected => e_b * drive.wheelbase(),
+            RadiusWheelbase::Nominal => drive.wheelbase(),
+        }
+    }
+}
+
 /// The two angles per side of the square.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Angles {
@@ -105,32 +140,37 @@ impl Angles {
     /// about a point between the wheels.
     ///
     /// ```
-    /// use umbmark_core::{calibrate::{Angles, Correction}, drive::Robot};
+    /// use umbmark_core::{calibrate::{Angles, Correction, RadiusWheelbase}, drive::Robot};
     /// let drive = Robot::labmate().drive;
     /// let correction = Correction { e_d: 1.002, e_b: 0.99, e_s: 1.0 };
-    /// let back = Angles::of(&correction, 4.0, &drive).correction(4.0, &drive).unwrap();
+    /// let back = Angles::of(&correction, 4.0, &drive).correction(4.0, &drive, RadiusWheelbase::Corrected).unwrap();
     /// assert!((back.e_d - 1.002).abs() < 1e-12 && (back.e_b - 0.99).abs() < 1e-12);
     /// ```
-    pub fn correction(&self, side: f64, drive: &DifferentialDrive) -> Option<Correction> {
+    pub fn correction(&self, side: f64, drive: &DifferentialDrive, wheelbase: RadiusWheelbase) -> Option<Correction> {
         let e_b = FRAC_PI_2 / (FRAC_PI_2 - self.alpha);
-        let half = self.half_track_curvature(side, drive, e_b);
+        // (b/2)/R
+        let half = wheelbase.of(drive, e_b) / side * libm::sin(0.5 * self.beta);
         let possible = self.alpha < FRAC_PI_2 && half.abs() < 1.0;
         possible.then(|| Correction { e_d: (1.0 + half) / (1.0 - half), e_b, e_s: 1.0 })
     }
 
-    /// (b/2)/R.
-    fn half_track_curvature(&self, side: f64, drive: &DifferentialDrive, e_b: f64) -> f64 {
-        e_b * drive.wheelbase() * libm::sin(0.5 * self.beta) / side
-    }
-
     /// ∂(E_d, E_b)/∂(α, β).
-    pub fn correction_jacobian(&self, side: f64, drive: &DifferentialDrive) -> Matrix2<f64> {
+    pub fn correction_jacobian(
+        &self,
+        side: f64,
+        drive: &DifferentialDrive,
+        wheelbase: RadiusWheelbase,
+    ) -> Matrix2<f64> {
         let e_b = FRAC_PI_2 / (FRAC_PI_2 - self.alpha);
-        let half = self.half_track_curvature(side, drive, e_b);
+        let per_side = wheelbase.of(drive, e_b) / side;
+        let half = per_side * libm::sin(0.5 * self.beta);
         let by_half = 2.0 / ((1.0 - half) * (1.0 - half));
-        let e_b_by_alpha = e_b * e_b / FRAC_PI_2;
-        let half_by_beta = 0.5 * e_b * drive.wheelbase() * libm::cos(0.5 * self.beta) / side;
-        Matrix2::new(by_half * half * e_b / FRAC_PI_2, by_half * half_by_beta, e_b_by_alpha, 0.0)
+        let half_by_alpha = match wheelbase {
+            RadiusWheelbase::Corrected => half * e_b / FRAC_PI_2,
+            RadiusWheelbase::Nominal => 0.0,
+        };
+        let half_by_beta = 0.5 * per_side * libm::cos(0.5 * self.beta);
+        Matrix2::new(by_half * half_by_alpha, by_half * half_by_beta, e_b * e_b / FRAC_PI_2, 0.0)
     }
 
     /// The return error to first order: (2L, ∓2L, 4) φ as in the module's text.

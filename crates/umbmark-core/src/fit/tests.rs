@@ -82,6 +82,37 @@ fn a_combination_that_the_data_does_not_show_is_named_and_left_where_it_started(
 }
 
 #[test]
+fn a_parameter_whose_derivative_is_rounding_stays_where_it_is() {
+    struct Rounding;
+    impl Problem for Rounding {
+        fn residuals(&self, p: &[f64]) -> DVector<f64> {
+            DVector::from_vec(vec![3.0 - p[0], 0.1])
+        }
+        fn jacobian(&self, _: &[f64]) -> DMatrix<f64> {
+            DMatrix::from_row_slice(2, 2, &[-1.0, 0.0, 0.0, 1e-16])
+        }
+    }
+    let fit = least_squares(&Rounding, &[1.0, 1.0], &Options::default());
+    assert_eq!(fit.values, [3.0, 1.0]);
+    assert_eq!(fit.null_directions().len(), 1);
+}
+
+#[test]
+fn nothing_to_fit_is_fitted_at_once() {
+    struct Fixed;
+    impl Problem for Fixed {
+        fn residuals(&self, _: &[f64]) -> DVector<f64> {
+            DVector::from_vec(vec![1.0])
+        }
+        fn jacobian(&self, _: &[f64]) -> DMatrix<f64> {
+            DMatrix::zeros(1, 0)
+        }
+    }
+    let fit = least_squares(&Fixed, &[], &Options::default());
+    assert!(fit.termination.converged() && fit.cost() == 1.0 && fit.null_directions().is_empty());
+}
+
+#[test]
 fn fewer_residuals_than_parameters_leave_directions_open() {
     let line = Line { x: vec![1.0], y: vec![3.0], sd: vec![1.0] };
     let fit = least_squares(&line, &[0.0, 0.0], &Options::default());

@@ -1,0 +1,288 @@
+//! `umbmark calibrate`: from measured runs to the true wheel diameters and wheelbase.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use serde_json::{Map, Value, json};
+use umbmark_core::calibrate::{
+    Calibration, Estimate, Level, Method, Options, RadiusWheelbase, Ratio, Replayed, calibrate, export,
+};
+use umbmark_core::dataset::Dataset;
+use umbmark_core::drive::Robot;
+
+use crate::Session;
+use crate::files::Pending;
+use crate::table::{table, with_precision_of};
+
+/// The estimate that is exported.
+#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
+enum MethodKind {
+    ClosedFormX,
+    ClosedFormY,
+    ClosedFormMean,
+    Heading,
+    Exact,
+}
+
+/// The wheelbase in the closed forms' rotation radius.
+#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
+enum WheelbaseKind {
+    /// The corrected one, where the wheels really are
+    Corrected,
+    /// The nominal one
+    Nominal,
+}
+
+/// Arguments of `calibrate`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A dataset folder, an OptiOdom folder, or a return sheet beside its robot.toml
+    #[arg(value_name = "DATA")]
+    data: PathBuf,
+
+    /// Probability with which the intervals hold
+    #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = crate::effect_flags::number)]
+    level: f64,
+
+    /// Metres that a radian of heading error counts as when whole tracks are fitted
+    /// [default: root mean square distance of the poses from START]
+    #[arg(long, value_name = "M", value_parser = crate::effect_flags::number)]
+    heading_arm: Option<f64>,
+
+    /// Wheelbase in the closed forms' formula for E_d
+    #[arg(long, value_enum, default_value_t = WheelbaseKind::Corrected, value_name = "WHICH")]
+    radius_wheelbase: WheelbaseKind,
+
+    /// Write launch-time parameters for diff_drive_controller of ros2_control
+    #[arg(long, value_name = "FILE", help_heading = "Export")]
+    export_ros2: Option<PathBuf>,
+
+    /// Name of the controller in that file
+    #[arg(long, default_value = "diff_drive_controller", value_name = "NAME", help_heading = "Export")]
+    controller: String,
+
+    /// Write a robot.toml with the corrected lengths
+    #[arg(long, value_name = "FILE", help_heading = "Export")]
+    export_toml: Option<PathBuf>,
+
+    /// Write a C header with the corrected lengths
+    #[arg(long, value_name = "FILE", help_heading = "Export")]
+    export_c: Option<PathBuf>,
+
+    /// Method whose result is exported
+    #[arg(long, value_enum, default_value_t = MethodKind::Exact, value_name = "METHOD", help_heading = "Export")]
+    method: MethodKind,
+
+    /// Replace files that exist
+    #[arg(long)]
+    force: bool,
+}
+
+impl Arguments {
+    fn options(&self) -> Options {
+        let radius_wheelbase = match self.radius_wheelbase {
+            WheelbaseKind::Corrected => RadiusWheelbase::Corrected,
+            WheelbaseKind::Nominal => RadiusWheelbase::Nominal,
+        };
+        Options { heading_arm: self.heading_arm, radius_wheelbase }
+    }
+
+    fn exported_method(&self) -> Method {
+        Method::ALL[self.method as usize]
+    }
+}
+
+pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
+    if !(arguments.level > 0.0 && arguments.level < 1.0) {
+        anyhow::bail!("--level must be between 0 and 1, both excluded, got {}", arguments.level);
+    }
+    let data = Dataset::load(&arguments.data)?;
+    let mut calibration = calibrate(&data, &arguments.options())?;
+    let robot = data.nominal_robot()?;
+    if calibration.estimates.is_empty() {
+        anyhow::bail!("nothing can be calibrated from these runs\n{}", calibration.warnings.join("\n"));
+    }
+    calibration.warnings.splice(0..0, data.warnings.iter().cloned());
+    let written = export_files(&arguments, &data, robot, &calibration)?;
+    if session.json() {
+        session.print_json(&document(robot, &calibration, arguments.level))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    for warning in &calibration.warnings {
+        session.message("warning", warning);
+    }
+    write!(session.out(), "{}", text(robot, &calibration, arguments.level))?;
+    for file in written {
+        writeln!(session.out(), "wrote {file}")?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes what was asked for; gives the names of the files.
+fn export_files(
+    arguments: &Arguments,
+    data: &Dataset,
+    robot: &Robot,
+    calibration: &Calibration,
+) -> anyhow::Result<Vec<String>> {
+    let asked = [&arguments.export_ros2, &arguments.export_toml, &arguments.export_c];
+    if asked.iter().all(|file| file.is_none()) {
+        return Ok(Vec::new());
+    }
+    let method = arguments.exported_method();
+    let estimate = calibration
+        .estimate(method)
+        .filter(|e| e.shown[0] && e.shown[1])
+        .with_context(|| format!("nothing to export: {} does not give both E_d and E_b", method.name()))?;
+    let correction = &estimate.correction;
+    let texts = [
+        export::ros2_control(robot, correction, &arguments.controller),
+        export::robot_toml(robot, data.path.as_ref(), correction)?,
+        export::c_header(robot, correction)?,
+    ];
+    let mut written = Vec::new();
+    for (file, text) in asked.into_iter().zip(texts) {
+        if let Some(file) = file {
+            Pending::write_whole(file, arguments.force, &text)?;
+            written.push(file.display().to_string());
+        }
+    }
+    Ok(written)
+}
+
+fn document(robot: &Robot, calibration: &Calibration, level: f64) -> Value {
+    let methods: Map<String, Value> = Method::ALL
+        .into_iter()
+        .map(|m| (m.name().to_owned(), json!(calibration.estimate(m).map(|e| estimate_json(robot, e, level)))))
+        .collect();
+    json!({
+        "methods": methods,
+        "observed": level_name(calibration.level),
+        "heading_arm_m": calibration.heading_arm,
+        "level": level,
+        "warnings": calibration.warnings,
+        "version": umbmark_core::VERSION,
+    })
+}
+
+fn level_name(level: Level) -> &'static str {
+    match level {
+        Level::Ends => "end_poses",
+        Level::Tracks => "tracks",
+    }
+}
+
+fn estimate_json(robot: &Robot, estimate: &Estimate, level: f64) -> Value {
+    let shown: Vec<Ratio> = Ratio::ALL.into_iter().filter(|r| estimate.ratio(*r).is_some()).collect();
+    let covariance = estimate.covariance.map(|c| {
+        let row = |i: &Ratio| shown.iter().map(|j| c[(*i as usize, *j as usize)]).collect::<Vec<f64>>();
+        shown.iter().map(row).collect::<Vec<_>>()
+    });
+    let interval = |ratio: Ratio| estimate.interval(ratio, level).map(|i| [i.low, i.high]);
+    let lengths = Lengths::new(robot, estimate);
+    let replayed = |r: Option<Replayed>| r.map(|r| json!({ "e_max_sys_m": r.e_max_sys, "largest_m": r.largest }));
+    json!({
+        "e_d": estimate.ratio(Ratio::Diameters),
+        "e_b": estimate.ratio(Ratio::Wheelbase),
+        "e_s": estimate.ratio(Ratio::Scale),
+        "wheelbase_m": lengths.wheelbase,
+        "wheel_diameter_left_m": lengths.left,
+        "wheel_diameter_right_m": lengths.right,
+        "covariance": covariance,
+        "covariance_of": shown.iter().map(|r| r.name()).collect::<Vec<_>>(),
+        "degrees_of_freedom": estimate.covariance.map(|_| estimate.degrees_of_freedom),
+        "e_d_interval": interval(Ratio::Diameters),
+        "e_b_interval": interval(Ratio::Wheelbase),
+        "e_s_interval": interval(Ratio::Scale),
+        "e_max_sys_before_m": estimate.e_max_sys_before,
+        "e_max_sys_after_m": estimate.e_max_sys_after,
+        "replayed_before": replayed(estimate.replayed_before),
+        "replayed_after": replayed(estimate.replayed_after),
+        "termination": estimate.termination.map(|t| t.name()),
+    })
+}
+
+/// The true lengths \[m\], as far as the ratios are known.
+struct Lengths {
+    wheelbase: Option<f64>,
+    left: Option<f64>,
+    right: Option<f64>,
+}
+
+impl Lengths {
+    fn new(robot: &Robot, estimate: &Estimate) -> Lengths {
+        let (left, right) = estimate.correction.wheel_factors();
+        let wheels = estimate.shown[0] || estimate.shown[2];
+        Lengths {
+            wheelbase: estimate.shown[1].then(|| robot.drive.wheelbase() * estimate.correction.e_b),
+            left: wheels.then(|| robot.drive.wheel_diameter_left() * left),
+            right: wheels.then(|| robot.drive.wheel_diameter_right() * right),
+        }
+    }
+}
+
+/// What people call a method.
+fn title(method: Method) -> &'static str {
+    match method.name() {
+        "closed_form_x" => "closed form, x",
+        "closed_form_y" => "closed form, y",
+        "closed_form_mean" => "closed form, mean",
+        "heading" => "heading form",
+        _ => "exact fit",
+    }
+}
+
+fn text(robot: &Robot, calibration: &Calibration, level: f64) -> String {
+    let observed = match calibration.level {
+        Level::Ends => "end poses",
+        Level::Tracks => "whole tracks; the closed forms use their ends",
+    };
+    let drive = &robot.drive;
+    let mut text = format!(
+        "Calibration of {}\nobserved: {observed}\nnominal: b {:.3} mm, D_left {:.4} mm, D_right {:.4} mm\n\n",
+        robot.name,
+        1e3 * drive.wheelbase(),
+        1e3 * drive.wheel_diameter_left(),
+        1e3 * drive.wheel_diameter_right(),
+    );
+    let estimates = &calibration.estimates;
+    text += &table(&["", "E_d", "E_b", "E_s"], estimates.iter().map(|e| ratio_row(e, level)));
+    text += &format!("\n\n± holds with {} %.", 100.0 * level);
+    if let Some(before) = estimates.iter().find_map(|e| e.e_max_sys_before) {
+        text += &format!(" E_max,sys as driven: {:.1} mm; with the correction:", 1e3 * before);
+    }
+    text += "\n\n";
+    let header = ["", "b [mm]", "D_left [mm]", "D_right [mm]", "predicted", "replayed [mm]"];
+    text += &table(&header, estimates.iter().map(|e| length_row(robot, e)));
+    text += "\n\npredicted: the same test driven again; replayed: recorded ticks computed again\n";
+    text
+}
+
+fn ratio_row(estimate: &Estimate, level: f64) -> Vec<String> {
+    let cell = |ratio: Ratio| {
+        let Some(value) = estimate.ratio(ratio) else { return "-".to_owned() };
+        match estimate.interval(ratio, level) {
+            Some(interval) if interval.high > interval.low => {
+                let half = 0.5 * (interval.high - interval.low);
+                format!("{} ± {}", with_precision_of(value, half), with_precision_of(half, half))
+            }
+            _ => format!("{value:.6}"),
+        }
+    };
+    std::iter::once(title(estimate.method).to_owned()).chain(Ratio::ALL.map(cell)).collect()
+}
+
+fn length_row(robot: &Robot, estimate: &Estimate) -> Vec<String> {
+    let lengths = Lengths::new(robot, estimate);
+    let mm = |value: Option<f64>, decimals: usize| value.map_or("-".to_owned(), |v| format!("{:.decimals$}", 1e3 * v));
+    vec![
+        title(estimate.method).to_owned(),
+        mm(lengths.wheelbase, 3),
+        mm(lengths.left, 4),
+        mm(lengths.right, 4),
+        mm(estimate.e_max_sys_after, 1),
+        mm(estimate.replayed_after.and_then(|r| r.e_max_sys), 1),
+    ]
+}

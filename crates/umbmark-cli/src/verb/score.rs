@@ -1,0 +1,162 @@
+//! `umbmark score`: Eqs. 1 to 6 on measured runs.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use serde_json::{Map, Value, json};
+use umbmark_core::dataset::Dataset;
+use umbmark_core::score::{CentroidInterval, Cluster, Convention, Score, score};
+use umbmark_core::stats::Interval;
+
+use crate::Session;
+use crate::table::table;
+
+/// How Eq. 5 joins both directions.
+#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
+enum ConventionKind {
+    /// Mean of both directions: half of Eq. 5, as in Table II of the paper
+    Mean,
+    /// Sum of both directions: Eq. 5 as printed
+    Sum,
+}
+
+/// Arguments of `score`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A dataset folder, or a return sheet (returns.csv)
+    #[arg(value_name = "DATA")]
+    data: PathBuf,
+
+    /// Probability with which the intervals hold
+    #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = crate::effect_flags::number)]
+    level: f64,
+
+    /// How the extended test joins both directions
+    #[arg(long, value_enum, default_value_t = ConventionKind::Mean, value_name = "HOW")]
+    convention: ConventionKind,
+}
+
+pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
+    let data = Dataset::load(&arguments.data)?;
+    let mut score = score(&data.runs, arguments.level)?;
+    score.warnings.splice(0..0, data.warnings.iter().cloned());
+    let convention = match arguments.convention {
+        ConventionKind::Mean => Convention::Mean,
+        ConventionKind::Sum => Convention::Sum,
+    };
+    if session.json() {
+        session.print_json(&document(&score, convention))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    for warning in &score.warnings {
+        session.message("warning", warning);
+    }
+    write!(session.out(), "{}", text(&score, convention))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn document(score: &Score, convention: Convention) -> Value {
+    let summary = &score.summary;
+    let intervals = score.intervals.as_ref();
+    let mut document = json!({
+        "e_max_sys_m": summary.e_max_sys(),
+        "e_max_sys_interval_m": intervals.and_then(|i| i.e_max_sys).map(ends),
+        "noise_band_m": score.noise_band,
+        "sigma_m": summary.sigma_axis(),
+        "sigma_interval_m": intervals.map(|i| ends(i.sigma_axis)),
+        "sigma_radial_m": summary.sigma_radial(),
+    });
+    let mut put = |key: String, value: Value| document.as_object_mut().map(|map| map.insert(key, value));
+    for (name, cluster, interval) in
+        [("cw", summary.cw, intervals.and_then(|i| i.cw)), ("ccw", summary.ccw, intervals.and_then(|i| i.ccw))]
+    {
+        put(format!("n_{name}"), json!(cluster.map_or(0, |c| c.n)));
+        put(format!("centroid_{name}_m"), json!(cluster.map(|c| [c.x, c.y])));
+        put(format!("centroid_{name}_interval_m"), json!(interval.map(|i| [ends(i.x), ends(i.y)])));
+        put(format!("centroid_{name}_ellipse"), json!(interval.map(|i| ellipse_json(&i))));
+        put(format!("return_heading_{name}_rad"), json!(cluster.and_then(|c| c.heading)));
+        put(format!("return_heading_{name}_interval_rad"), json!(interval.and_then(|i| i.heading).map(ends)));
+    }
+    if let Some(extended) = &score.extended {
+        put("nonsys_orientation_rad".into(), json!(extended.orientation(convention)));
+        put("nonsys_orientation_interval_rad".into(), json!(extended.interval(convention).map(ends)));
+        put("nonsys_convention".into(), json!(convention.name()));
+        put("n_bumps_cw".into(), json!(extended.n_cw));
+        put("n_bumps_ccw".into(), json!(extended.n_ccw));
+    }
+    put("level".into(), json!(score.level));
+    put("warnings".into(), json!(score.warnings));
+    put("version".into(), json!(umbmark_core::VERSION));
+    document
+}
+
+fn ends(interval: Interval) -> [f64; 2] {
+    [interval.low, interval.high]
+}
+
+fn ellipse_json(interval: &CentroidInterval) -> Map<String, Value> {
+    let e = interval.ellipse;
+    Map::from_iter([
+        ("semi_major_m".to_owned(), json!(e.semi_major)),
+        ("semi_minor_m".to_owned(), json!(e.semi_minor)),
+        ("angle_rad".to_owned(), json!(e.angle)),
+    ])
+}
+
+fn text(score: &Score, convention: Convention) -> String {
+    let summary = &score.summary;
+    let n = |cluster: Option<Cluster>| cluster.map_or(0, |c| c.n);
+    let percent = 100.0 * score.level;
+    let mut text = format!("UMBmark score of {} cw + {} ccw runs\n\n", n(summary.cw), n(summary.ccw));
+    let (from, to) = (format!("{percent} % from"), "to".to_owned());
+    text += &table(&["", "value", &from, &to], rows(score, convention));
+    text += "\n";
+    if let Some(band) = score.noise_band {
+        let judged = match summary.e_max_sys() {
+            Some(e_max) if e_max <= band => "no sign of a systematic error",
+            _ => "more than chance",
+        };
+        text +=
+            &format!("\nScatter alone gives E_max,sys up to {:.1} mm in {percent} % of tests: {judged}.\n", 1e3 * band);
+    }
+    text
+}
+
+fn rows(score: &Score, convention: Convention) -> Vec<Vec<String>> {
+    const MM: f64 = 1e3;
+    const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+    let row = |name: &str, value: f64, interval: Option<Interval>, factor: f64, decimals: usize| {
+        let number = |v: f64| format!("{:.decimals$}", v * factor);
+        let end = |v: Option<f64>| v.map_or("-".to_owned(), number);
+        vec![name.to_owned(), number(value), end(interval.map(|i| i.low)), end(interval.map(|i| i.high))]
+    };
+    let (summary, intervals) = (&score.summary, score.intervals.as_ref());
+    let mut rows = Vec::new();
+    match summary.e_max_sys() {
+        Some(e_max) => rows.push(row("E_max,sys [mm]", e_max, intervals.and_then(|i| i.e_max_sys), MM, 1)),
+        None => rows.push(["E_max,sys [mm]", "refused", "-", "-"].map(str::to_owned).to_vec()),
+    }
+    if let (Some(axis), Some(radial)) = (summary.sigma_axis(), summary.sigma_radial()) {
+        let interval = intervals.map(|i| i.sigma_axis);
+        rows.push(row("sigma, per axis [mm]", axis, interval, MM, 1));
+        rows.push(row("sigma, radial [mm]", radial, interval.map(|i| i.scaled(radial / axis)), MM, 1));
+    }
+    for (name, cluster, interval) in
+        [("cw", summary.cw, intervals.and_then(|i| i.cw)), ("ccw", summary.ccw, intervals.and_then(|i| i.ccw))]
+    {
+        let Some(cluster) = cluster else { continue };
+        rows.push(row(&format!("centre of gravity {name}, x [mm]"), cluster.x, interval.map(|i| i.x), MM, 1));
+        rows.push(row(&format!("centre of gravity {name}, y [mm]"), cluster.y, interval.map(|i| i.y), MM, 1));
+        rows.push(row(&format!("r_c.g. {name} [mm]"), cluster.distance(), None, MM, 1));
+        if let Some(heading) = cluster.heading {
+            let name = format!("return heading {name} [deg]");
+            rows.push(row(&name, heading, interval.and_then(|i| i.heading), DEGREES, 3));
+        }
+    }
+    if let Some(extended) = &score.extended {
+        let name = format!("orientation with bumps, {} [deg]", convention.name());
+        rows.push(row(&name, extended.orientation(convention), extended.interval(convention), DEGREES, 3));
+    }
+    rows
+}

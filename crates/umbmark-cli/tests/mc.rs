@@ -1,0 +1,212 @@
+//! `umbmark mc` as its users meet it.
+
+use snapbox::cmd::{Command, OutputAssert, cargo_bin};
+use snapbox::str;
+
+fn mc(arguments: &[&str]) -> OutputAssert {
+    Command::new(cargo_bin!("umbmark")).arg("mc").args(arguments).assert()
+}
+
+fn stdout(arguments: &[&str]) -> String {
+    let assert = mc(arguments).success();
+    String::from_utf8(assert.get_output().stdout.clone()).unwrap()
+}
+
+fn json(arguments: &[&str]) -> serde_json::Value {
+    serde_json::from_str(&stdout(&[arguments, &["--json"]].concat())).unwrap()
+}
+
+#[test]
+fn the_table_has_every_metric_a_histogram_and_the_seed() {
+    mc(&["--ed", "1.002", "--eb", "1.01", "--wheel-noise", "0", "--odometry", "continuous", "-n", "40"])
+        .success()
+        .stderr_eq(str![""])
+        .stdout_eq(str![[r#"
+Monte Carlo of UMBmark: 40 trials of 5 cw + 5 ccw runs
+TRC LabMate, square (side_m 4)
+  wheel_diameter_ratio: e_d 1.002
+  wheelbase: e_b 1.01
+  wheel_noise: k_sqrt_m 0
+  assumed: wheel diameter 0.150 m and 2000 ticks per revolution where not given
+
+ metric                        mean  std error  std dev       5 %      50 %      95 %
+ E_max,sys [mm]             447.564      0.000    0.000   447.564   447.564   447.564
+ sigma (per axis) [mm]        0.000      0.000    0.000     0.000     0.000     0.000
+ centroid cw, x [mm]       -293.593      0.000    0.000  -293.593  -293.593  -293.593
+ centroid cw, y [mm]       -337.811      0.000    0.000  -337.811  -337.811  -337.811
+ centroid ccw, x [mm]        62.942      0.000    0.000    62.942    62.942    62.942
+ centroid ccw, y [mm]       -60.080      0.000    0.000   -60.080   -60.080   -60.080
+ return heading cw [deg]      8.898      0.000    0.000     8.898     8.898     8.898
+ return heading ccw [deg]     1.769      0.000    0.000     1.769     1.769     1.769
+
+E_max,sys without noise: 447.6 mm by exact kinematics, 439.3 mm to first order
+
+[..]
+[..]
+
+seed 1, [..] trials/s, umbmark [..]
+
+"#]]);
+}
+
+#[test]
+fn the_document_has_the_promised_keys_and_nothing_else_on_stdout() {
+    let document = json(&["-n", "30", "--bumps", "10", "--seed", "5"]);
+    assert_eq!((&document["n"], &document["seed"]), (&30.into(), &5.into()));
+    assert!(document["trials_per_s"].as_f64().unwrap() > 0.0);
+    for metric in [
+        "e_max_sys_m",
+        "sigma_m",
+        "centroid_cw_x_m",
+        "centroid_cw_y_m",
+        "centroid_ccw_x_m",
+        "centroid_ccw_y_m",
+        "return_heading_cw_rad",
+        "return_heading_ccw_rad",
+        "nonsys_orientation_rad",
+    ] {
+        let entry = &document["metrics"][metric];
+        for key in ["mean", "std_dev", "std_error"] {
+            assert!(entry[key].is_number(), "{metric} {key}");
+        }
+        assert!(entry["quantiles"]["0.05"].as_f64() <= entry["quantiles"]["0.95"].as_f64());
+    }
+    assert!(json(&["-n", "3"])["metrics"].get("nonsys_orientation_rad").is_none());
+}
+
+#[test]
+fn a_single_trial_has_null_for_what_it_cannot_know_and_never_nan() {
+    let document = json(&["-n", "1"]);
+    assert!(document["metrics"]["e_max_sys_m"]["std_error"].is_null());
+    let text = stdout(&["-n", "1"]);
+    assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+}
+
+#[test]
+fn threads_change_nothing_but_the_time() {
+    let of = |threads| {
+        let mut document = json(&["-n", "3000", "--ed-sd", "0.0005", "--threads", threads]);
+        document.as_object_mut().unwrap().remove("trials_per_s");
+        document
+    };
+    let one = of("1");
+    assert_eq!(one, of("2"));
+    assert_eq!(one, of("8"));
+}
+
+#[test]
+fn every_trial_can_be_written_down_and_no_file_is_replaced_unasked() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("trials with a space.csv");
+    let name = file.to_str().unwrap();
+    mc(&["-n", "2500", "--out", name]).success();
+    let text = std::fs::read_to_string(&file).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(
+        lines.next().unwrap(),
+        "trial,e_max_sys_m,sigma_m,centroid_cw_x_m,centroid_cw_y_m,centroid_ccw_x_m,centroid_ccw_y_m,\
+         return_heading_cw_rad,return_heading_ccw_rad"
+    );
+    let rows: Vec<&str> = lines.collect();
+    assert_eq!((rows.len(), rows[0].split(',').count()), (2500, 9));
+    assert!(rows[2499].starts_with("2499,"));
+    let mean = rows.iter().map(|row| row.split(',').nth(1).unwrap().parse::<f64>().unwrap()).sum::<f64>() / 2500.0;
+    assert!((mean - json(&["-n", "2500"])["metrics"]["e_max_sys_m"]["mean"].as_f64().unwrap()).abs() < 1e-12);
+
+    mc(&["-n", "5", "--out", name]).code(1).stdout_eq(str![""]).stderr_eq(str![[r#"
+error: [..]trials with a space.csv exists already; --force replaces it
+
+"#]]);
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), text);
+    mc(&["-n", "5", "--out", name, "--force"]).success();
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    let nowhere = folder.path().join("no/such/folder.csv");
+    mc(&["-n", "5", "--out", nowhere.to_str().unwrap()]).code(1).stderr_eq(str![[r#"
+error: cannot write into the folder [..]: [..]
+
+"#]]);
+}
+
+#[test]
+fn unusable_arguments_get_one_clear_error_and_exit_one() {
+    for (arguments, message) in [
+        (&["--ed", "9"][..], "error: --ed: wheel_diameter_ratio: e_d must be between 0.5 and 2, got 9\n"),
+        (&["--wheelbase", "-0.34"], "error: wheelbase must be positive and finite, got -0.34 m\n"),
+        (&["--eb-sd", "-1"], "error: --eb-sd: standard deviation of e_b must be finite and 0 or more, got -1\n"),
+        (&["--radius", "2"], "error: --radius is not a size of a square\n"),
+        (&["-n", "0"], "error: number of trials must be between 1 and 1000000000000, got 0\n"),
+        (&["--runs", "0"], "error: number of clockwise runs must be between 1 and 10000, got 0\n"),
+        (&["--side", "0"], "error: side_m must be between 0.001 and 10000 m, got 0\n"),
+        (
+            &["--side", "9999", "--ticks-per-revolution", "1e8"],
+            "error: the left wheel makes 2.122e12 ticks in move 1 of the path; at most 2^30 - 2 are possible\n",
+        ),
+        (&["--robot", "no.toml"], "error: no.toml: [..]\n"),
+    ] {
+        mc(arguments).code(1).stdout_eq(str![""]).stderr_eq(message);
+    }
+}
+
+#[test]
+fn wrong_usage_exits_two_and_says_what_is_wrong() {
+    mc(&["--ed", "1,002"]).code(2).stderr_eq(str![[r#"
+error: invalid value '1,002' for '--ed <X>': write decimals with a point, as in 1.002
+
+For more information, try '--help'.
+
+"#]]);
+    mc(&["--eb", "nan"]).code(2);
+    mc(&["--wheel-nose", "1"]).code(2).stderr_eq(str![[r#"
+error: unexpected argument '--wheel-nose' found
+
+  tip: a similar argument exists: '--wheel-noise'
+
+Usage: umbmark mc --wheel-noise <M^0.5>
+
+For more information, try '--help'.
+
+"#]]);
+}
+
+#[test]
+fn robot_and_model_files_are_used_and_flags_override_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let file = folder.path().join(name);
+        std::fs::write(&file, text).unwrap();
+        file.to_str().unwrap().to_owned()
+    };
+    let robot = write(
+        "robot.toml",
+        "[robot]\nname = \"tiny\"\nwheelbase_m = 0.2\nwheel_diameter_m = 0.084\nticks_per_revolution = 2796.8\n\
+         [path]\nshape = \"square\"\nside_m = 1.0\n",
+    );
+    let model = write(
+        "model.toml",
+        "[[effect]]\nname = \"wheelbase\"\ne_b = { mean = 1.02, sd = 0.001 }\n\
+         [[effect]]\nname = \"wheel_diameter_ratio\"\ne_d = 1.01\n",
+    );
+    let document = json(&["-n", "50", "--robot", &robot, "--model", &model, "--ed", "1.0"]);
+    assert_eq!(document["robot"], "tiny");
+    assert_eq!(document["path"]["sizes"]["side_m"], 1.0);
+    assert_eq!(document["effects"][0]["e_d"], 1.0);
+    assert_eq!(document["effects"][1]["e_b"]["sd"], 0.001);
+    // To first order E_b alone gives 2√2 L (E_b - 1) π/2.
+    let expected = 8.0_f64.sqrt() * 0.02 * std::f64::consts::FRAC_PI_2;
+    let mean = document["metrics"]["e_max_sys_m"]["mean"].as_f64().unwrap();
+    assert!((mean / expected - 1.0).abs() < 0.05, "{mean} {expected}");
+}
+
+#[test]
+fn a_closed_pipe_is_no_failure() {
+    let mut child = std::process::Command::new(cargo_bin!("umbmark"))
+        .args(["mc", "-n", "10"])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    assert!(output.stderr.is_empty(), "{output:?}");
+}
