@@ -26,6 +26,12 @@ def run(*more: str) -> str:
     return done.stdout
 
 
+def test_the_readme_names_both_commands() -> None:
+    text = (TOP / "README.md").read_text(encoding="utf-8")
+    for command in (COMMAND, "./test.sh"):
+        assert re.search(rf"^{re.escape(command)}\b", text, re.MULTILINE), command
+
+
 def test_the_first_command_prints_a_table_a_histogram_and_the_seed() -> None:
     text = run()
     assert re.search(r"E_max,sys .*\d", text), text
