@@ -131,6 +131,8 @@ fn wheels_and_wheelbase_go_by_several_names() {
     };
     let plain = read("wheelbase_m = 0.5\nwheel_diameter_m = 0.25");
     assert_eq!(plain.encoder.rate(), None);
+    let hex = "[robot]\nwheelbase_m = 0.5\nwheel_diameter_m = 0.25\nticks_per_revolution = 0x3E8\n";
+    assert_eq!(umbmark_core::dataset::parse_robot("robot.toml", hex).unwrap().0.encoder.ticks_per_revolution(), 1000.0);
     assert_eq!(read("track_width_m = 0.5\nwheel_radius_m = 0.125"), plain);
     assert_eq!(read("wheel_separation_m = 0.5\nwheel_diameter_left_m = 0.25\nwheel_diameter_right_m = 0.25"), plain);
     assert_eq!(

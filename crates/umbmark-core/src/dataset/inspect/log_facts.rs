@@ -160,3 +160,20 @@ fn scatter(groups: &[&[ReferencePose]], residuals: impl Fn(&ReferencePose, &Refe
     }
     (degrees > 0.0).then(|| (squares / degrees).sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_is_the_standard_deviation_with_n_minus_1_pooled_over_both_coordinates() {
+        let pose = |i: usize| ReferencePose { sample: i, x: 10.0 + i as f64, y: 3.0, heading: Some(0.1 * i as f64) };
+        let (five, four): (Vec<_>, Vec<_>) = ((0..5).map(pose).collect(), (0..4).map(pose).collect());
+        let position = |p: &ReferencePose, m: &ReferencePose| vec![p.x - m.x, p.y - m.y];
+        // Squares about the mean: 10 in x and none in y, over 4 + 4 degrees of freedom; four poses are too few to count.
+        assert_eq!(scatter(&[&five, &four], position), Some(1.25_f64.sqrt()));
+        assert_eq!(scatter(&[&four], position), None);
+        let heading = scatter(&[&five], |p, m| vec![p.heading.unwrap() - m.heading.unwrap()]).unwrap();
+        assert!((heading - 0.025_f64.sqrt()).abs() < 1e-15);
+    }
+}
