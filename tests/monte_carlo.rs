@@ -1,5 +1,7 @@
 //! Ensembles held against theory and against themselves.
 
+#![allow(clippy::unwrap_used)]
+
 use std::ops::ControlFlow;
 
 use umbmark_core::drive::Robot;

@@ -1,8 +1,10 @@
 //! The numbers and claims of Borenstein & Feng (1995), from general code.
 
+#![allow(clippy::unwrap_used)]
+
 use umbmark_core::dataset::ReturnError;
-use umbmark_core::drive::Robot;
-use umbmark_core::effect::{Bump, Model, Stretch, TestKind, Wheel};
+use umbmark_core::drive::{Robot, Wheel};
+use umbmark_core::effect::{Bump, Model, Stretch, TestKind};
 use umbmark_core::geometry::{Displacement2, Pose2};
 use umbmark_core::path::{Direction, FIGURE_EIGHT, Path, RECTANGLE, SQUARE, SpeedProfile};
 use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth};

@@ -1,11 +1,12 @@
 //! One segment of odometry: a 4 m leg, a quarter turn, any ratio of the wheel speeds.
 //!
-//! `cargo bench -p umbmark-benches --bench segment`; throughput is in segments, ticks or readings per second.
+//! `cargo bench -p umbmark-benches --bench segment`; throughput is in segments per second where every tick counts, in
+//! readings per second where the counters are sampled. Instruction sets a machine lacks fall back to the next one it has.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use std::time::Duration;
-use umbmark_benches::{Draws, LEG_READINGS, TURN_READINGS, robot};
+use umbmark_benches::{Draws, LEG_READINGS, TURN_READINGS, robot, tick_loop};
 use umbmark_core::engine::{Instructions, Motion, SampledOdometry, TickOdometry, Update, WheelLine, oracle};
 
 /// Enough that no branch predictor learns them by heart.
@@ -41,7 +42,10 @@ fn tick_exact(criterion: &mut Criterion) {
             });
         }
         let few = &lines[..16];
-        group.throughput(Throughput::Elements(16));
+        group.throughput(Throughput::Elements(few.len() as u64));
+        group.bench_function("tick loop", |bencher| {
+            bencher.iter(|| few.iter().map(|line| tick_loop(odometry.geometry(), line).0).sum::<f64>());
+        });
         group.bench_function("oracle", |bencher| {
             bencher.iter(|| few.iter().map(|line| oracle::motion(odometry.geometry(), line).pose.x).sum::<f64>());
         });
@@ -50,17 +54,20 @@ fn tick_exact(criterion: &mut Criterion) {
 }
 
 fn sampled(criterion: &mut Criterion) {
-    let mut odometry = SampledOdometry::new(robot(), Update::Arc);
     for (kind, lines, readings) in kinds() {
         let lines = &lines[..512];
         let mut group = criterion.benchmark_group(format!("sampled {kind}"));
         group.throughput(Throughput::Elements(lines.len() as u64 * u64::from(readings)));
+        let odometry = SampledOdometry::new(robot(), Update::Arc);
         group.bench_function("one by one", |bencher| {
             bencher.iter(|| lines.iter().map(|line| odometry.one_by_one(line, readings).pose.x).sum::<f64>());
         });
-        group.bench_function("constant rate", |bencher| {
-            bencher.iter(|| lines.iter().map(|line| odometry.at_constant_rate(line, readings).pose.x).sum::<f64>());
-        });
+        for instructions in [Instructions::Portable, Instructions::Avx2, Instructions::Avx512] {
+            let mut odometry = odometry.clone().limited_to(instructions);
+            group.bench_function(format!("eight at a time, {instructions:?}"), |bencher| {
+                bencher.iter(|| lines.iter().map(|line| odometry.at_constant_rate(line, readings).pose.x).sum::<f64>());
+            });
+        }
         group.finish();
     }
 }

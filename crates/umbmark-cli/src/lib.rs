@@ -5,6 +5,7 @@
 
 mod effect_flags;
 mod files;
+mod prose;
 mod robot_flags;
 mod session;
 mod setup;

@@ -2,6 +2,9 @@
 
 mod calibrate;
 mod completions;
+mod effects;
+mod init;
+mod inspect;
 mod mc;
 mod score;
 mod simulate;
@@ -17,10 +20,16 @@ pub enum Verb {
     Mc(Box<mc::Arguments>),
     /// Simulate one test and write it as a dataset
     Simulate(Box<simulate::Arguments>),
-    /// Score measured runs: E_max,sys, centres of gravity, sigma, each with an interval
+    /// Score a measured test: E_max,sys, centroids, sigma, extended test
     Score(score::Arguments),
-    /// Find the true wheel diameters and wheelbase from measured runs
+    /// Calibrate a measured robot: E_d, E_b, E_s, and files to put them to use
     Calibrate(calibrate::Arguments),
+    /// Look at a dataset: what it holds, whether it is any good, what it can determine
+    Inspect(inspect::Arguments),
+    /// Write a robot.toml and a returns.csv to fill in
+    Init(init::Arguments),
+    /// List the effects that make a robot err, or explain one
+    Effects(effects::Arguments),
     /// Print shell completions or the manual page
     Completions(completions::Arguments),
 }
@@ -32,6 +41,9 @@ impl Verb {
             Verb::Simulate(arguments) => simulate::run(*arguments, session),
             Verb::Score(arguments) => score::run(arguments, session),
             Verb::Calibrate(arguments) => calibrate::run(arguments, session),
+            Verb::Inspect(arguments) => inspect::run(arguments, session),
+            Verb::Init(arguments) => init::run(arguments, session),
+            Verb::Effects(arguments) => effects::run(arguments, session),
             Verb::Completions(arguments) => completions::run(arguments, session),
         }
     }

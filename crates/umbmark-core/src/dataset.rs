@@ -17,8 +17,11 @@ mod dead_reckoning;
 mod document;
 mod error;
 mod folder;
+mod inspect;
 mod label;
 mod model_file;
+#[cfg(test)]
+mod mutated_input;
 mod optiodom;
 mod recording;
 mod returns;
@@ -33,6 +36,7 @@ mod text;
 mod tick_log;
 
 pub use error::DatasetError;
+pub use inspect::{Check, Coverage, Determined, Group, Inspection, LogFacts, ReferenceFacts, Wheels, WheelsFound};
 pub use model_file::{parse_model, read_model};
 pub use robot_file::{parse_robot, read_robot};
 pub use robot_text::robot_text;

@@ -8,6 +8,29 @@ mod encoder;
 pub use differential::{DifferentialDrive, WheelTravel};
 pub use encoder::{Encoder, MAX_COUNTER_BITS, roll_over};
 
+/// One of the two drive wheels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wheel {
+    /// The wheel to the left of the heading.
+    Left,
+    /// The wheel to the right of the heading.
+    Right,
+}
+
+impl Wheel {
+    /// Both wheels, in the order of every pair (left, right).
+    pub const BOTH: [Wheel; 2] = [Wheel::Left, Wheel::Right];
+}
+
+impl std::fmt::Display for Wheel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Wheel::Left => "left",
+            Wheel::Right => "right",
+        })
+    }
+}
+
 /// What makes a drive or an encoder impossible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

@@ -20,7 +20,7 @@ mod wheel_diameter_ratio;
 mod wheel_noise;
 mod wheelbase;
 
-use crate::drive::WheelTravel;
+use crate::drive::{Wheel, WheelTravel};
 use crate::geometry::{Displacement2, Dual, Pose2, Real};
 use crate::parameter::{Parameter, nearest};
 use crate::path::Direction;
@@ -132,15 +132,6 @@ pub struct Stretch {
     pub test: TestKind,
     /// Believed wheel travel \[m\].
     pub travel: WheelTravel,
-}
-
-/// One wheel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wheel {
-    /// The left one.
-    Left,
-    /// The right one.
-    Right,
 }
 
 /// A wheel rolls over something, and its travel over ground falls short of what its encoder counts.

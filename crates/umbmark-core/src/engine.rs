@@ -57,28 +57,7 @@ pub use tick_odometry::TickOdometry;
 pub use wheel_line::{MAX_TICKS, UNITS_PER_TICK, WheelLine};
 pub use word::{Letter, word_product};
 
-/// One of the two drive wheels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wheel {
-    /// The wheel to the left of the heading.
-    Left,
-    /// The wheel to the right of the heading.
-    Right,
-}
-
-impl Wheel {
-    /// Both wheels, in the order of every `[_; 2]` of this module.
-    pub const BOTH: [Wheel; 2] = [Wheel::Left, Wheel::Right];
-}
-
-impl std::fmt::Display for Wheel {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Wheel::Left => "left",
-            Wheel::Right => "right",
-        })
-    }
-}
+use crate::drive::Wheel;
 
 /// What the engine refuses to integrate.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

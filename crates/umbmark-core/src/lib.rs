@@ -1,7 +1,7 @@
 //! The science of wheeled-robot odometry error.
 //!
-//! A *model* is a nominal robot plus a chain of [effects](effect). One chain serves both ways: forward, it turns a
-//! [path](path) into wheel motion, encoder ticks and the true pose ([`simulate`], [`monte_carlo`]); backward, it turns
+//! A *model* is a nominal robot plus a chain of effects ([`effect`]). One chain serves both ways: forward, it turns a
+//! [`path`] into wheel motion, encoder ticks and the true pose ([`simulate`], [`monte_carlo`]); backward, it turns
 //! recorded ticks into the predicted pose ([`replay`]), from which robots are scored and calibrated ([`score`],
 //! [`calibrate`]).
 //!

@@ -124,6 +124,8 @@ pub struct Simulator {
     computer: Computer,
     phase: Phase,
     phases: Stream,
+    segments: Vec<Segment>,
+    motions: Vec<Motion>,
 }
 
 impl Simulator {
@@ -150,6 +152,8 @@ impl Simulator {
             computer,
             phase,
             phases: Stream::new(0, 0, 0),
+            segments: Vec::new(),
+            motions: Vec::new(),
         })
     }
 
@@ -171,26 +175,71 @@ impl Simulator {
 
     /// Drives once round the path and measures the return error.
     pub fn run(&mut self, truth: &mut Truth, direction: Direction, test: TestKind) -> ReturnError {
-        truth.start();
-        let mut computed = Motion::IDENTITY;
+        let mut returned = [ReturnError::default()];
+        let [mut cw, mut ccw]: [&mut [ReturnError]; 2] = [&mut [], &mut []];
+        *(if direction == Direction::Cw { &mut cw } else { &mut ccw }) = &mut returned;
+        self.test(truth, test, [cw, ccw]);
+        returned[0]
+    }
+
+    /// Drives a whole test, as many runs clockwise and then counter-clockwise as there are places in `returned`, and
+    /// measures the return error of each.
+    ///
+    /// The same as one run after the other, to the last bit; the odometry of all moves is computed at once.
+    pub fn test(&mut self, truth: &mut Truth, test: TestKind, returned: [&mut [ReturnError]; 2]) {
+        self.segments.clear();
+        for (direction, returned) in Direction::BOTH.into_iter().zip(&returned) {
+            for _ in 0..returned.len() {
+                self.command(direction);
+            }
+        }
+        self.compute(returned.each_ref().map(|r| r.len()));
+        let mut next = 0;
+        for (direction, returned) in Direction::BOTH.into_iter().zip(returned) {
+            for returned in returned {
+                truth.start();
+                let mut computed = Motion::IDENTITY;
+                for (index, leg) in self.courses[direction as usize].legs.iter().enumerate() {
+                    let travel = match self.computer {
+                        Computer::Continuous => leg.travel,
+                        _ => self.per_tick.of(&self.segments[next].line),
+                    };
+                    computed = computed.then(&self.motions[next]);
+                    truth.begin(Stretch { index, direction, test, travel }, leg.travel);
+                    truth.advance(1.0);
+                    next += 1;
+                }
+                *returned = return_error(&truth.measure(), &computed.pose);
+            }
+        }
+    }
+
+    /// Notes the wheel motion of one run: from rest to rest, wherever within a tick.
+    fn command(&mut self, direction: Direction) {
         let mut rest = Rest { count: [0; 2], phase: self.draw_phase() };
         for index in 0..self.course(direction).legs.len() {
-            let leg = self.course(direction).legs[index];
-            let next = Rest { count: leg.stop, phase: self.draw_phase() };
-            let line = rest.line_to(&next);
-            let (travel, motion) = match &mut self.computer {
-                Computer::Ticks(integrator) => (self.per_tick.of(&line), integrator.motion(&Segment::every_tick(line))),
-                Computer::Sampled(moves) => (self.per_tick.of(&line), moves.motion(direction as usize, index, &line)),
-                Computer::Continuous => {
-                    (leg.travel, Motion::from(Pose2::exp(&self.robot.drive.displacement(&leg.travel))))
-                }
-            };
-            computed = computed.then(&motion);
-            truth.begin(Stretch { index, direction, test, travel }, leg.travel);
-            truth.advance(1.0);
+            let next = Rest { count: self.course(direction).legs[index].stop, phase: self.draw_phase() };
+            self.segments.push(Segment::every_tick(rest.line_to(&next)));
             rest = next;
         }
-        return_error(&truth.measure(), &computed.pose)
+    }
+
+    /// Computes the motion that the robot believes of every segment, for these numbers of runs \[cw, ccw\].
+    fn compute(&mut self, runs: [usize; 2]) {
+        self.motions.resize(self.segments.len(), Motion::IDENTITY);
+        if let Computer::Ticks(integrator) = &mut self.computer {
+            return integrator.motions(&self.segments, &mut self.motions);
+        }
+        let mut places = self.segments.iter().zip(&mut self.motions);
+        for (course, runs) in self.courses.iter().zip(runs) {
+            for (index, leg) in (0..runs).flat_map(|_| course.legs.iter().enumerate()) {
+                let Some((segment, motion)) = places.next() else { return };
+                *motion = match &mut self.computer {
+                    Computer::Sampled(moves) => moves.motion(course.direction as usize, index, &segment.line),
+                    _ => Motion::exp(&self.robot.drive.displacement(&leg.travel)),
+                };
+            }
+        }
     }
 
     fn draw_phase(&mut self) -> [u32; 2] {

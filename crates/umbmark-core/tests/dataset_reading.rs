@@ -53,6 +53,8 @@ fn the_error_is_absolute_minus_computed_with_the_heading_wrapped() {
     assert!((cw.heading.unwrap() - (2.0 * PI - 6.25)).abs() < 1e-15);
     assert!((ccw.heading.unwrap() - (6.0 - 2.0 * PI)).abs() < 1e-15);
     assert_eq!(data.runs[1].number, 2);
+    let errors = errors(&returns("direction,run,ex_m,ey_m,etheta_rad\ncw,1,0,0,6.25\n"));
+    assert!((errors[0].heading.unwrap() - (6.25 - 2.0 * PI)).abs() < 1e-15);
 }
 
 #[test]
@@ -128,6 +130,7 @@ fn wheels_and_wheelbase_go_by_several_names() {
         umbmark_core::dataset::parse_robot("robot.toml", &text).unwrap().0
     };
     let plain = read("wheelbase_m = 0.5\nwheel_diameter_m = 0.25");
+    assert_eq!(plain.encoder.rate(), None);
     assert_eq!(read("track_width_m = 0.5\nwheel_radius_m = 0.125"), plain);
     assert_eq!(read("wheel_separation_m = 0.5\nwheel_diameter_left_m = 0.25\nwheel_diameter_right_m = 0.25"), plain);
     assert_eq!(
@@ -248,4 +251,24 @@ fn logs_and_returns_are_matched_by_test_direction_and_number() {
         ]
     );
     assert!(data.warnings[0].ends_with("has no row in the return sheet; its return error is not known"));
+}
+
+#[test]
+fn a_gap_in_which_the_wheels_rolled_on_is_not_taken_for_a_roll_over() {
+    let mut text = String::from("t_s,ticks_left,ticks_right\n");
+    for row in (0..40).filter(|row| !(20..30).contains(row)) {
+        text += &format!("{},{},{}\n", 0.1 * f64::from(row), 23 * row, 24 * row);
+    }
+    assert_eq!(log("cw_01.csv", &text).runs[0].log.as_ref().unwrap().right[29], 936.0);
+    let rolled = "t_s,ticks_left,ticks_right\n0,3,250\n0.1,6,254\n0.2,9,2\n";
+    let files = [("robot.toml", ROBOT), ("runs/cw_01.csv", rolled)];
+    assert!(matches!(load(&files, "").unwrap_err(), DatasetError::RolledOver { bits: 8, line: 4, .. }));
+}
+
+#[test]
+fn the_model_in_the_documents_is_one() {
+    let text = include_str!("../../../docs/files.md").split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    let robot = umbmark_core::drive::Robot::labmate();
+    let (model, draws) = umbmark_core::dataset::parse_model("files.md", text, &robot).unwrap();
+    assert_eq!((model.parts().len(), draws.len()), (3, 2));
 }

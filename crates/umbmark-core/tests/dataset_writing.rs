@@ -141,6 +141,9 @@ fn what_would_be_read_back_as_something_else_is_not_written() {
     assert!(refused(&|d| first_log(d, &|log| log.time[5] = 0.0)).contains("must increase"));
     assert!(refused(&|d| first_log(d, &|log| log.left[5] = 0.5)).contains("whole number of ticks"));
     assert!(refused(&|d| first_log(d, &|log| log.reference[1].sample = 7)).contains("would not be read back as it is"));
+    let misplaced = ReferencePose { sample: 0, x: 0.5, y: 0.0, heading: Some(0.0) };
+    let said = refused(&|d| first_log(d, &|log| log.reference.insert(0, misplaced)));
+    assert!(said.contains("the reader says: the track starts 0.500 m and 0.0 deg from the origin"), "{said}");
 }
 
 #[test]

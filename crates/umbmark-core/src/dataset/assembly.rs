@@ -10,6 +10,7 @@ use super::{Dataset, Run, TickLog};
 use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::path::{Direction, Path};
+use std::collections::BTreeMap;
 
 /// A log that turns by less than this has no direction \[rad\].
 const LEAST_TURN: f64 = 0.5;
@@ -19,6 +20,8 @@ pub(super) struct Assembly {
     robot: Option<Robot>,
     path: Option<Path>,
     runs: Vec<Run>,
+    /// The place of each test, direction and number among the runs.
+    index: BTreeMap<(TestKind, Option<Direction>, u32), usize>,
     /// Where each run comes from.
     places: Vec<String>,
     has_returns: bool,
@@ -28,7 +31,7 @@ pub(super) struct Assembly {
 impl Assembly {
     pub fn new(robot: Option<Robot>, path: Option<Path>) -> Assembly {
         let (runs, places, warnings) = (Vec::new(), Vec::new(), Vec::new());
-        Assembly { robot, path, runs, places, has_returns: false, warnings }
+        Assembly { robot, path, runs, index: BTreeMap::new(), places, has_returns: false, warnings }
     }
 
     /// Adds the rows of a return sheet; they come before the logs.
@@ -80,8 +83,8 @@ impl Assembly {
     }
 
     fn push(&mut self, run: Run, file: &str, line: usize) -> Result<(), DatasetError> {
-        let key = |run: &Run| (run.test, run.direction, run.number);
-        if let Some(first) = self.runs.iter().position(|other| key(other) == key(&run)) {
+        let key = (run.test, run.direction, run.number);
+        if let Some(&first) = self.index.get(&key) {
             return Err(DatasetError::DuplicateRun {
                 file: file.to_owned(),
                 line,
@@ -89,6 +92,7 @@ impl Assembly {
                 first: self.places[first].clone(),
             });
         }
+        self.index.insert(key, self.runs.len());
         self.runs.push(run);
         self.places.push(format!("{file}:{line}"));
         Ok(())
@@ -116,16 +120,14 @@ impl Assembly {
     /// The return row that a log belongs to.
     fn row_of(&self, named: Named, direction: Option<Direction>) -> Option<usize> {
         let number = named.number?;
-        let fits = |run: &Run| run.direction == direction && run.number == number;
-        let of = |test: TestKind| self.runs.iter().position(|run| fits(run) && run.test == test && self.is_row(run));
+        let of = |test| {
+            let place = *self.index.get(&(test, direction, number))?;
+            (self.has_returns && self.runs[place].returned.is_some()).then_some(place)
+        };
         match named.test {
             Some(test) => of(test),
             None => of(TestKind::Systematic).or_else(|| of(TestKind::Bumps)),
         }
-    }
-
-    fn is_row(&self, run: &Run) -> bool {
-        self.has_returns && run.returned.is_some()
     }
 
     fn attach(&mut self, row: usize, log: TickLog, stem: &str, file: &str) -> Result<(), DatasetError> {

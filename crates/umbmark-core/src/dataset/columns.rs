@@ -123,13 +123,13 @@ impl<'s> Columns<'s> {
     /// Ends the search: columns that nobody asked for are refused where they resemble one that could have been meant,
     /// else named in a warning.
     pub fn finish(self, warnings: &mut Vec<String>) -> Result<(), DatasetError> {
+        let given: BTreeSet<&String> = self.sheet.header.iter().collect();
+        let free: Vec<&str> = self.known.iter().filter(|name| !given.contains(name)).map(String::as_str).collect();
         for (index, header) in self.sheet.header.iter().enumerate() {
             if self.used.contains(&index) || header.is_empty() {
                 continue;
             }
-            let free =
-                self.known.iter().map(String::as_str).filter(|name| !self.sheet.header.iter().any(|h| h == name));
-            if let Some(nearest) = crate::parameter::nearest(header, free) {
+            if let Some(nearest) = crate::parameter::nearest(header, free.iter().copied()) {
                 let (column, nearest) = (quoted(header), nearest.to_owned());
                 return Err(DatasetError::UnknownColumn {
                     file: self.file(),
@@ -210,7 +210,6 @@ impl Row<'_> {
         let largest = column.unit.map_or(LARGEST_COUNT, |unit| unit.largest);
         match text.parse::<f64>() {
             Ok(value) if value.abs() <= largest => Ok(Some(match column.unit {
-                Some(unit) if unit.name == "deg" => value.to_radians(),
                 Some(unit) => value / unit.per_si,
                 None => value,
             })),
@@ -246,7 +245,7 @@ impl Row<'_> {
             line: self.line,
             column: column.name.clone(),
             value: if value.is_empty() { "nothing".into() } else { quoted(value) },
-            allowed: allowed.to_owned(),
+            allowed: allowed.into(),
             remedy: remedy.into(),
         }
     }

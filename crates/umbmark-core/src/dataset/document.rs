@@ -2,7 +2,6 @@
 
 use super::error::{DatasetError, quoted};
 use crate::parameter::{Parameter, nearest};
-use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -20,12 +19,12 @@ impl<'a> Source<'a> {
             let before = self.text.get(..at).unwrap_or(self.text);
             let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
             let reason = error.message().lines().collect::<Vec<_>>().join(", ");
-            DatasetError::Syntax { file: self.file.to_owned(), line: self.line(at..at), column, reason }
+            DatasetError::Syntax { file: self.file.to_owned(), line: self.line(at), column, reason }
         })
     }
 
-    fn line(&self, span: Range<usize>) -> usize {
-        self.text.bytes().take(span.start).filter(|byte| *byte == b'\n').count() + 1
+    fn line(&self, at: usize) -> usize {
+        self.text.bytes().take(at).filter(|byte| *byte == b'\n').count() + 1
     }
 }
 
@@ -45,8 +44,8 @@ pub(super) struct Entry<'a> {
     source: &'a Source<'a>,
     /// The key.
     pub key: &'a str,
-    /// Where it stands.
-    pub line: usize,
+    /// Where it stands in the text.
+    at: usize,
     /// What it is given.
     pub value: &'a Spanned<DeValue<'a>>,
 }
@@ -69,7 +68,7 @@ impl<'a> Table<'a> {
         };
         Err(DatasetError::UnknownKey {
             file: self.source.file.to_owned(),
-            line: self.source.line(key.span()),
+            line: self.source.line(key.span().start),
             table: self.name.clone(),
             key: quoted(key.get_ref()),
             remedy,
@@ -79,7 +78,7 @@ impl<'a> Table<'a> {
     /// The entry of a key, if it is there.
     pub fn get(&self, key: &str) -> Option<Entry<'a>> {
         let (key, value) = self.entries.get_key_value(key)?;
-        Some(Entry { source: self.source, key: key.get_ref(), line: self.source.line(key.span()), value })
+        Some(Entry { source: self.source, key: key.get_ref(), at: key.span().start, value })
     }
 
     /// The entry of a key that must be there; `example` says how it may look.
@@ -116,22 +115,26 @@ impl<'a> Table<'a> {
 }
 
 impl<'a> Entry<'a> {
+    fn line(&self) -> usize {
+        self.source.line(self.at)
+    }
+
     /// The error of a second key that means the same.
     pub fn again(&self, second: &Entry) -> DatasetError {
-        let (first, second) = if self.line <= second.line { (self, second) } else { (second, self) };
+        let (first, second) = if self.at <= second.at { (self, second) } else { (second, self) };
         DatasetError::KeyTwice {
             file: self.source.file.to_owned(),
-            line: second.line,
+            line: second.line(),
             second: second.key.to_owned(),
             first: first.key.to_owned(),
-            first_line: first.line,
+            first_line: first.line(),
         }
     }
 
     /// The value as a table, called `name` in messages.
     pub fn table(&self, name: String) -> Result<Table<'a>, DatasetError> {
         match self.value.get_ref() {
-            DeValue::Table(entries) => Ok(Table { source: self.source, name, line: self.line, entries }),
+            DeValue::Table(entries) => Ok(Table { source: self.source, name, line: self.line(), entries }),
             _ => Err(self.wrong(&format!("a table, {name}"), "")),
         }
     }
@@ -144,7 +147,7 @@ impl<'a> Entry<'a> {
     /// The value as a list of entries under the same key.
     pub fn list(&self, allowed: &str) -> Result<Vec<Entry<'a>>, DatasetError> {
         let DeValue::Array(items) = self.value.get_ref() else { return Err(self.wrong(allowed, "")) };
-        let entry = |value: &'a Spanned<DeValue<'a>>| Entry { value, line: self.source.line(value.span()), ..*self };
+        let entry = |value: &'a Spanned<DeValue<'a>>| Entry { value, at: value.span().start, ..*self };
         Ok(items.iter().map(entry).collect())
     }
 
@@ -201,10 +204,10 @@ impl<'a> Entry<'a> {
     pub fn wrong_value(&self, key: String, allowed: &str, remedy: &str) -> DatasetError {
         DatasetError::Value {
             file: self.source.file.to_owned(),
-            line: self.line,
+            line: self.line(),
             key,
             value: self.shown(),
-            allowed: allowed.to_owned(),
+            allowed: allowed.into(),
             remedy: remedy.into(),
         }
     }
@@ -213,7 +216,7 @@ impl<'a> Entry<'a> {
     pub fn not_yet(&self, remedy: String) -> DatasetError {
         DatasetError::NotYet {
             file: self.source.file.to_owned(),
-            line: self.line,
+            line: self.line(),
             key: self.key.to_owned(),
             value: self.shown(),
             remedy,

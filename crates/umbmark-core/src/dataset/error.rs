@@ -209,7 +209,7 @@ pub enum DatasetError {
         /// What it holds, quoted.
         value: String,
         /// What it may hold, with the unit.
-        allowed: String,
+        allowed: Box<str>,
         /// What to do; may be empty.
         remedy: Box<str>,
     },
@@ -265,7 +265,7 @@ pub enum DatasetError {
         /// What is allowed \[m/s\].
         limit: f64,
         /// What to do.
-        remedy: String,
+        remedy: Box<str>,
     },
     /// A count that jumps as a counter does that rolls over.
     #[error(
@@ -362,7 +362,7 @@ pub enum DatasetError {
         /// What it was given.
         value: String,
         /// What it may be, with the unit.
-        allowed: String,
+        allowed: Box<str>,
         /// What to do; may be empty.
         remedy: Box<str>,
     },

@@ -72,14 +72,21 @@ impl Recording {
                 remedy: "".into(),
             });
         }
-        let usual = usual_step(readings);
+        let usual = self.usual_rate(wheel);
+        let fastest = robot.map_or(f64::INFINITY, |robot| FASTEST / metres_per_tick(robot, wheel));
         let mut total = 0.0;
         let mut ticks = vec![0.0; readings.len()];
         for (i, pair) in readings.windows(2).enumerate() {
             let plain = pair[1] - pair[0];
             let step = bits.map_or(plain, |bits| roll_over(pair[0] as i64, pair[1] as i64, bits) as f64);
             *rolled += u32::from(step != plain);
-            self.check_step(wheel, i, step, robot, bits, usual)?;
+            let seconds = self.time[i + 1] - self.time[i];
+            if let (None, Some(bits)) = (bits, rolled_bits(step.abs(), (usual * seconds).max(1.0))) {
+                return Err(self.rolled_over(wheel, i, bits));
+            }
+            if let Some(robot) = robot.filter(|_| step.abs() > fastest * seconds) {
+                return Err(self.jump(wheel, i, step.abs() * metres_per_tick(robot, wheel) / seconds, bits));
+            }
             // Sums of whole numbers are exact; of others, the difference from the first reading is.
             total = if bits.is_some() { total + step } else { pair[1] - readings[0] };
             ticks[i + 1] = total;
@@ -87,45 +94,54 @@ impl Recording {
         Ok(ticks)
     }
 
-    fn check_step(
-        &self,
-        wheel: usize,
-        at: usize,
-        step: f64,
-        robot: Option<&Robot>,
-        bits: Option<u32>,
-        usual: f64,
-    ) -> Result<(), DatasetError> {
-        let size = step.abs();
-        let seconds = self.time[at + 1] - self.time[at];
-        let (file, line, column) = (self.file.clone(), self.lines[at + 1], self.columns[wheel + 1].clone());
-        let (before, after) = (self.counts[wheel][at], self.counts[wheel][at + 1]);
-        let near = |bits: &u32| (size - f64::from(*bits).exp2()).abs() <= 4.0 * usual && size > 10.0 * usual;
-        if let (None, Some(bits)) = (bits, USUAL_BITS.into_iter().find(near)) {
-            return Err(DatasetError::RolledOver { file, line, column, before, after, bits });
+    /// The rate of a wheel that all but one step in a hundred stay below \[ticks/s\].
+    fn usual_rate(&self, wheel: usize) -> f64 {
+        let steps = self.counts[wheel].windows(2).zip(self.time.windows(2));
+        let mut rates: Vec<f64> =
+            steps.map(|(count, time)| (count[1] - count[0]).abs() / (time[1] - time[0])).collect();
+        if rates.is_empty() {
+            return 0.0;
         }
-        let Some(robot) = robot else { return Ok(()) };
-        let per_tick = robot.metres_per_tick();
-        let speed = size * [per_tick.left, per_tick.right][wheel] / seconds;
-        if speed <= FASTEST {
-            return Ok(());
+        let place = (rates.len() - 1) * 99 / 100;
+        *rates.select_nth_unstable_by(place, f64::total_cmp).1
+    }
+
+    fn rolled_over(&self, wheel: usize, at: usize, bits: u32) -> DatasetError {
+        DatasetError::RolledOver {
+            file: self.file.clone(),
+            line: self.lines[at + 1],
+            column: self.columns[wheel + 1].clone(),
+            before: self.counts[wheel][at],
+            after: self.counts[wheel][at + 1],
+            bits,
         }
-        let remedy = match bits {
-            Some(bits) => format!("look whether the counter has {bits} bits, was set back, or rows are missing"),
-            None => "look whether the counter was set back, rolled over (say counter_bits in robot.toml), or rows are missing".into(),
-        };
-        let speed = speed.round();
-        Err(DatasetError::Jump { file, line, column, before, after, seconds, speed, limit: FASTEST, remedy })
+    }
+
+    fn jump(&self, wheel: usize, at: usize, speed: f64, bits: Option<u32>) -> DatasetError {
+        let cause = bits.map_or("rolled over (say counter_bits in robot.toml)".to_owned(), |bits| {
+            format!("has another width than {bits} bits")
+        });
+        DatasetError::Jump {
+            file: self.file.clone(),
+            line: self.lines[at + 1],
+            column: self.columns[wheel + 1].clone(),
+            before: self.counts[wheel][at],
+            after: self.counts[wheel][at + 1],
+            seconds: ((self.time[at + 1] - self.time[at]) * 1e9).round() / 1e9,
+            speed: speed.round(),
+            limit: FASTEST,
+            remedy: format!("look whether the counter was set back or {cause}, or rows are missing").into(),
+        }
     }
 }
 
-/// The size of step that all but one in a hundred stay below, at least one tick.
-fn usual_step(readings: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = readings.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
-    if steps.is_empty() {
-        return 1.0;
-    }
-    let place = (steps.len() - 1) * 99 / 100;
-    let (_, usual, _) = steps.select_nth_unstable_by(place, f64::total_cmp);
-    usual.max(1.0)
+/// The counter that rolled over where a wheel went `size` ticks and about `expected` are usual.
+fn rolled_bits(size: f64, expected: f64) -> Option<u32> {
+    let near = |bits: &u32| (size - f64::from(*bits).exp2()).abs() <= 4.0 * expected;
+    USUAL_BITS.into_iter().find(near).filter(|_| size > 10.0 * expected)
+}
+
+fn metres_per_tick(robot: &Robot, wheel: usize) -> f64 {
+    let per_tick = robot.metres_per_tick();
+    [per_tick.left, per_tick.right][wheel]
 }

@@ -63,7 +63,12 @@ impl Dataset {
             return Err(refuse("a run has neither log nor return error".into()));
         }
         match runs.iter().zip(&read.runs).find(|pair| !same(*pair)) {
-            Some((run, _)) => Err(refuse(format!("run {:?} would not be read back as it is", run.name))),
+            Some((run, _)) => {
+                let name = label::label(run.test, run.direction, run.number);
+                let why = read.warnings.iter().find_map(|w| Some(w.split_once(&format!("{name}.csv: "))?.1));
+                let why = why.map(|why| format!("; the reader says: {why}")).unwrap_or_default();
+                Err(refuse(format!("{name} would not be read back as it is{why}")))
+            }
             None => Ok(()),
         }
     }

@@ -1,6 +1,7 @@
 //! Bumps met by chance, and the geometry of one.
 
-use super::{About, ActsOn, Bump, Effect, Stretch, Wheel};
+use super::{About, ActsOn, Bump, Effect, Stretch};
+use crate::drive::Wheel;
 use crate::parameter::{DefaultValue, Parameter};
 use crate::random::Stream;
 

@@ -118,7 +118,7 @@ impl Model {
         Some(part.values[index])
     }
 
-    /// All values of all parts, one after the other: the order of [`Model::set_values`].
+    /// All values of all parts, one after the other: the order of [`Model::chain_with`].
     pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
         self.parts.iter().flat_map(|part| part.values.iter().copied())
     }

@@ -1,7 +1,8 @@
 //! The bumps of the extended UMBmark test.
 
 use super::bumps::{EXTRA_TRAVEL, HEIGHT, PROFILE, WHEEL_RADIUS, lost_travel};
-use super::{About, ActsOn, Bump, Effect, Stretch, TestKind, Wheel};
+use super::{About, ActsOn, Bump, Effect, Stretch, TestKind};
+use crate::drive::Wheel;
 use crate::parameter::{DefaultValue, Parameter};
 use crate::path::Direction;
 use crate::random::Stream;

@@ -1,7 +1,7 @@
 //! What a segment of odometry reports.
 
 use super::TickGeometry;
-use crate::geometry::{Pose2, Real};
+use crate::geometry::{Displacement2, Pose2, Real};
 
 /// The rigid motion that the counters report for a segment, with the cosine and sine of its heading.
 ///
@@ -33,6 +33,31 @@ impl From<Pose2> for Motion {
 impl Motion {
     /// No motion.
     pub const IDENTITY: Motion = Motion { pose: Pose2::IDENTITY, cosine: 1.0, sine: 0.0 };
+
+    /// The motion of a constant twist: as [`Pose2::exp`], with the cosine and sine of its rotation for little more.
+    ///
+    /// ```
+    /// # use umbmark_core::{engine::Motion, geometry::{Displacement2, Pose2}};
+    /// let arc = Displacement2 { forward: 2.0, sideways: 0.1, rotation: -0.7 };
+    /// let (motion, pose) = (Motion::exp(&arc), Pose2::exp(&arc));
+    /// assert!((motion.pose.x - pose.x).abs() < 1e-15 && (motion.sine + 0.7_f64.sin()).abs() < 1e-15);
+    /// ```
+    #[inline]
+    pub fn exp(displacement: &Displacement2) -> Motion {
+        let half = 0.5 * displacement.rotation;
+        let (sinc, cosine) = half.sinc_cos();
+        let sine = sinc * half;
+        let (forward, sideways) = (sinc * displacement.forward, sinc * displacement.sideways);
+        Motion {
+            pose: Pose2 {
+                x: cosine * forward - sine * sideways,
+                y: sine * forward + cosine * sideways,
+                heading: displacement.rotation,
+            },
+            cosine: cosine * cosine - sine * sine,
+            sine: 2.0 * cosine * sine,
+        }
+    }
 
     /// A motion that ends at (x, y) \[m\] with the heading of these changes of the counters (left, right).
     pub(super) fn with_counts(x: f64, y: f64, counts: [i64; 2], geometry: &TickGeometry) -> Motion {

@@ -27,7 +27,7 @@ impl Source {
         match self.below(4) {
             0 => 0,
             1 => UNITS_PER_TICK / (1 + self.below(8)) - 1,
-            2 => self.below(3) * (UNITS_PER_TICK / 4),
+            2 => (self.below(5) - 2) & (UNITS_PER_TICK - 1),
             _ => self.below(UNITS_PER_TICK),
         }
     }
@@ -37,11 +37,12 @@ impl Source {
     }
 
     /// A line of at most about `ticks` ticks per wheel: equal speeds, rational and nearly rational ratios, steep and flat
-    /// ones, still wheels, fractions of a tick; all four pairs of directions, phases on and off the grid.
+    /// ones, still wheels, fractions of a tick, lattice points missed by units; all four pairs of directions, phases on
+    /// and off the grid.
     pub fn line(&mut self, ticks: i64) -> WheelLine {
         let whole = UNITS_PER_TICK;
         let any = |source: &mut Source| source.below(ticks * whole);
-        let [left, right] = match self.below(9) {
+        let [left, right] = match self.below(10) {
             0 => [any(self), any(self)],
             1 => [any(self); 2],
             2 => {
@@ -60,6 +61,10 @@ impl Source {
             5 => [any(self), self.below(3) * self.below(whole)],
             6 => [self.below(2) * self.below(whole), any(self)],
             7 => [self.below(4 * whole), self.below(4 * whole)],
+            8 => {
+                let (length, ratio) = (self.below(ticks) / 4 * whole, 1 + self.below(4));
+                [length + self.below(5), (length * ratio + self.below(5) - 2).max(0)]
+            }
             _ => [self.below(ticks) * whole, self.below(ticks) * whole],
         };
         let start = [self.phase(), self.phase()];

@@ -1,6 +1,7 @@
 //! What one tick means.
 
-use super::{EngineError, Wheel};
+use super::EngineError;
+use crate::drive::Wheel;
 
 /// What odometry believes of the robot: the distance a wheel rolls per tick, and how far the wheels are apart.
 ///

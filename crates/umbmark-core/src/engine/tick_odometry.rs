@@ -15,8 +15,9 @@ mod x86;
 /// [`word_product`](super::word_product). Simultaneous ticks count as one joint step: two equal wheels in step drive
 /// exactly straight.
 ///
-/// The order of the ticks is exact; rounding moves the end by less than 1e-12 m up to 1e5 ticks and 2e-11 m at 1e7, for
-/// any ratio of the wheel speeds.
+/// The order of the ticks is exact; rounding moves the end by less than 1e-12 m up to 1e5 ticks, for any ratio of the
+/// wheel speeds. At 1e7 ticks it was seen to be 9e-13 m for equal tick lengths, and 2.2e-11 m for unequal ones, whose
+/// angles are rounded one by one.
 #[derive(Clone, Copy, Debug)]
 pub struct TickOdometry {
     geometry: TickGeometry,

@@ -1,6 +1,7 @@
 //! A segment in the plane of the two wheel angles.
 
-use super::{EngineError, Wheel};
+use super::EngineError;
+use crate::drive::Wheel;
 
 /// Fixed-point units per encoder tick: 2^32, a resolution of 5e-14 m on a robot with 0.24 mm ticks.
 pub const UNITS_PER_TICK: i64 = 1 << 32;

@@ -130,6 +130,9 @@ fn product_with_ties<M: Monoid>(line: &DigitalLine, alphabet: impl Fn(Letter) ->
     let mut front = group(&x, &u, &d, line.before, first == 0);
     let mut back = u.power(line.after);
     loop {
+        if x_count == 0 {
+            return front.then(&back);
+        }
         let k = p / q;
         p -= k * q;
         u_count -= k * x_count;

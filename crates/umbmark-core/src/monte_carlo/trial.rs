@@ -3,7 +3,6 @@
 use super::{Draw, Metric, Row, Study, StudyError};
 use crate::dataset::ReturnError;
 use crate::effect::{Model, ModelError, Part, TestKind};
-use crate::path::Direction;
 use crate::random::Stream;
 use crate::score::{self, Cluster, Convention, nonsystematic_orientation};
 use crate::simulate::{Simulator, Truth};
@@ -79,11 +78,8 @@ impl Bench {
             self.truth.set_values(&self.values);
         }
         self.simulator.open(&mut self.truth, seed, trial);
-        for direction in Direction::BOTH {
-            for slot in &mut self.returned[direction as usize] {
-                *slot = self.simulator.run(&mut self.truth, direction, TestKind::Systematic);
-            }
-        }
+        let places = self.returned.each_mut().map(Vec::as_mut_slice);
+        self.simulator.test(&mut self.truth, TestKind::Systematic, places);
         let [cw, ccw] = &self.returned;
         let summary = score::summarise(cw, ccw);
         let (heading_cw, heading_ccw) = (heading(summary.cw), heading(summary.ccw));
@@ -104,11 +100,8 @@ impl Bench {
 
     /// The runs with bumps, and Eq. (5) over them.
     fn extended_test(&mut self, heading_cw: f64, heading_ccw: f64) -> f64 {
-        for direction in Direction::BOTH {
-            for slot in &mut self.bumped[direction as usize] {
-                *slot = self.simulator.run(&mut self.truth, direction, TestKind::Bumps);
-            }
-        }
+        let places = self.bumped.each_mut().map(Vec::as_mut_slice);
+        self.simulator.test(&mut self.truth, TestKind::Bumps, places);
         let [cw, ccw] = &self.bumped;
         nonsystematic_orientation(cw, ccw, heading_cw, heading_ccw, Convention::Mean).unwrap_or(f64::NAN)
     }

@@ -1,7 +1,7 @@
 //! White wheel noise along a stretch of driving, as one normal draw of its end pose.
 
 use crate::effect::WheelVariance;
-use crate::geometry::{Displacement2, Pose2, Real};
+use crate::geometry::{Displacement2, Real};
 use crate::random::Stream;
 
 /// The distribution of the end pose of a constant-twist stretch whose wheels roll with white noise.
@@ -69,16 +69,12 @@ impl Diffusion {
         Diffusion { mean, factor: cholesky(covariance) }
     }
 
-    /// A pose drawn about `end`, the noise-free end of a stretch that began at heading `start_heading`.
+    /// A draw of how the noise moves the end of a stretch, seen from its start: (x, y) \[m\] and heading \[rad\].
     #[inline]
-    pub fn scatter(&self, end: &Pose2, start_heading: f64, stream: &mut Stream) -> Pose2 {
+    pub fn draw(&self, stream: &mut Stream) -> [f64; 3] {
         let z = [stream.normal(), stream.normal(), stream.normal()];
         let f = &self.factor;
-        let dx = self.mean[0] + f[0] * z[0];
-        let dy = self.mean[1] + f[1] * z[0] + f[2] * z[1];
-        let dh = f[3] * z[0] + f[4] * z[1] + f[5] * z[2];
-        let (sine, cosine) = start_heading.sine_cosine();
-        Pose2 { x: end.x + cosine * dx - sine * dy, y: end.y + sine * dx + cosine * dy, heading: end.heading + dh }
+        [self.mean[0] + f[0] * z[0], self.mean[1] + f[1] * z[0] + f[2] * z[1], f[3] * z[0] + f[4] * z[1] + f[5] * z[2]]
     }
 }
 
@@ -99,6 +95,7 @@ fn cholesky(c: [f64; 6]) -> [f64; 6] {
 mod tests {
     use super::*;
     use crate::drive::WheelTravel;
+    use crate::geometry::Pose2;
 
     const WHEELBASE: f64 = 0.34;
 
@@ -154,7 +151,12 @@ mod tests {
             let diffusion = Diffusion::new(&motion, &variance, 1.0 / WHEELBASE);
             let end = Pose2::exp(&motion);
             let mut stream = Stream::new(11, 1, case as u64);
-            let drawn: Vec<Pose2> = (0..n).map(|_| diffusion.scatter(&end, 0.0, &mut stream)).collect();
+            let drawn: Vec<Pose2> = (0..n)
+                .map(|_| {
+                    let [dx, dy, turned] = diffusion.draw(&mut stream);
+                    Pose2::new(end.x + dx, end.y + dy, end.heading + turned)
+                })
+                .collect();
             let walked: Vec<Pose2> = (0..n).map(|_| stepped(&travel, k, 300, &mut stream)).collect();
             let distances = [|p: &Pose2| p.x, |p: &Pose2| p.y, |p: &Pose2| p.heading]
                 .map(|of| ks(drawn.iter().map(of).collect(), walked.iter().map(of).collect()));
@@ -210,8 +212,7 @@ mod tests {
     #[test]
     fn no_variance_moves_nothing() {
         let motion = Displacement2 { forward: 1.0, sideways: 0.0, rotation: 0.3 };
-        let end = Pose2::exp(&motion);
         let d = Diffusion::new(&motion, &WheelVariance::default(), 3.0);
-        assert_eq!(d.scatter(&end, 0.0, &mut Stream::new(0, 0, 0)), end);
+        assert_eq!(d.draw(&mut Stream::new(0, 0, 0)), [0.0; 3]);
     }
 }

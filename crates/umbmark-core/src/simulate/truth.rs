@@ -1,8 +1,9 @@
 //! The true motion of a robot whose odometry believes something else.
 
 use super::diffusion::Diffusion;
-use crate::drive::WheelTravel;
-use crate::effect::{Bump, Chain, Entry, Model, Stretch, Wheel, WheelVariance};
+use crate::drive::{Wheel, WheelTravel};
+use crate::effect::{Bump, Chain, Entry, Model, Stretch, WheelVariance};
+use crate::engine::Motion;
 use crate::geometry::{Displacement2, Pose2};
 use crate::random::Stream;
 
@@ -17,7 +18,7 @@ pub struct Truth {
     rotation_per_metre: f64,
     noisy: bool,
     noise: Stream,
-    pose: Pose2,
+    pose: Motion,
     stretch: Option<Stretch>,
     /// Travel that the stretch was commanded to have, the same in every trial.
     commanded: WheelTravel,
@@ -48,7 +49,7 @@ impl Truth {
             rotation_per_metre: 0.0,
             noisy: false,
             noise: Stream::new(0, 0, 0),
-            pose: Pose2::IDENTITY,
+            pose: Motion::IDENTITY,
             stretch: None,
             commanded: WheelTravel::default(),
             ahead: Vec::new(),
@@ -98,9 +99,10 @@ impl Truth {
 
     /// Puts the robot at START, as far as the effects let it stand there.
     pub fn start(&mut self) {
-        self.pose = self.random.iter_mut().fold(Pose2::IDENTITY, |pose, part| {
+        let start = self.random.iter_mut().fold(Pose2::IDENTITY, |pose, part| {
             pose.compose(&(part.effect.scatter.start)(&part.values, &mut part.stream))
         });
+        self.pose = Motion::from(start);
         self.stretch = None;
     }
 
@@ -140,11 +142,15 @@ impl Truth {
         let whole = piece == 1.0;
         let travel = self.chain.wheel_travel(&stretch.travel.scaled(piece));
         let motion = self.chain.body(&travel);
-        let from = self.pose.heading;
-        self.pose = self.pose.moved(&motion);
+        let from = self.pose;
+        self.pose = from.then(&Motion::exp(&motion));
         if self.noisy {
             let diffusion = if whole { self.whole_diffusion() } else { self.diffusion(&travel, &motion) };
-            self.pose = diffusion.scatter(&self.pose, from, &mut self.noise);
+            let [dx, dy, turned] = diffusion.draw(&mut self.noise);
+            // Moved in the frame of the start, turned about the end.
+            self.pose.pose.x += from.cosine * dx - from.sine * dy;
+            self.pose.pose.y += from.sine * dx + from.cosine * dy;
+            self.pose = self.pose.then(&Motion::from(Pose2::new(0.0, 0.0, turned)));
         }
         self.done = share;
     }
@@ -171,17 +177,17 @@ impl Truth {
             Wheel::Left => WheelTravel { left: -bump.lost, right: 0.0 },
             Wheel::Right => WheelTravel { left: 0.0, right: -bump.lost },
         };
-        self.pose = self.pose.moved(&self.chain.body(&travel));
+        self.pose = self.pose.then(&Motion::exp(&self.chain.body(&travel)));
     }
 
     /// The true pose.
     pub fn pose(&self) -> Pose2 {
-        self.pose
+        self.pose.pose
     }
 
     /// The true pose as the absolute measurement shows it.
     pub fn measure(&mut self) -> Pose2 {
-        let mut pose = self.pose;
+        let mut pose = self.pose.pose;
         for part in &mut self.random {
             (part.effect.scatter.measured)(&part.values, &mut part.stream, &mut pose);
         }

@@ -30,7 +30,7 @@ impl EqualPieces {
         let rate = forward.travel().map(|travel| {
             // travel 2^32 / readings, in two divisions of 64 bits.
             let (travel, readings) = (travel as u64, u64::from(readings));
-            let rest = travel % readings << 32;
+            let rest = (travel % readings) << 32;
             (u128::from(travel / readings) << 32 | u128::from(rest / readings)) + u128::from(rest % readings != 0)
         });
         EqualPieces {

@@ -13,6 +13,9 @@ use crate::engine::{TickGeometry, UNITS_PER_TICK, WheelLine};
 pub(super) const TRAVEL_LIMIT: i64 = 1 << 52;
 
 /// N lines, wheel by wheel: start and travel of the left and the right wheel \[units\], whole numbers.
+///
+/// Aligned to a cache line, so that no register straddles two.
+#[repr(align(64))]
 pub(super) struct Block<const N: usize> {
     pub start: [[f64; N]; 2],
     pub travel: [[f64; N]; 2],
@@ -50,6 +53,10 @@ pub(super) const RESULTS: usize = 6;
 fn reciprocal<T: Lane>(divisor: T) -> T {
     divisor.splat(1.0 - 2.0 * f64::EPSILON) / divisor
 }
+
+/// The results of N lines, aligned as [`Block`].
+#[repr(align(64))]
+pub(super) struct Results<const N: usize>(pub [[f64; N]; RESULTS]);
 
 /// Quotient and remainder of whole numbers, the quotient rounded down, given the divisor's [`reciprocal`].
 ///

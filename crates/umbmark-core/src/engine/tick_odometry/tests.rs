@@ -83,6 +83,16 @@ fn the_tick_loop_in_f64_agrees() {
 }
 
 #[test]
+fn the_oracle_does_not_drift() {
+    for geometry in [nominal(), calibrated()] {
+        let line = WheelLine::from_ticks([0.1, 0.7], [100_000.3, 100_020.8]).unwrap();
+        let (motion, [x, y, ..]) = (oracle::motion(&geometry, &line), double_double::motion(&geometry, &line));
+        let error = (motion.pose.x - x.value()).abs().max((motion.pose.y - y.value()).abs());
+        assert!(error <= 2e-14, "{error:e} m");
+    }
+}
+
+#[test]
 fn the_ideal_robot_drives_exactly_straight_because_simultaneous_ticks_are_one_letter() {
     let geometry = nominal();
     let ticks = 4.0 / geometry.left();
@@ -129,6 +139,7 @@ fn many_lines_at_once_give_the_same_bits_as_one_by_one_on_every_instruction_set(
             .map(|i| {
                 source.line(match i % 5 {
                     0 => 40,
+                    1 => 1_000_000,
                     4 if i % 50 == 4 => 4_000_000,
                     _ => 20_000,
                 })

@@ -1,7 +1,7 @@
 //! Which lanes an x86-64 machine has. The `unsafe` here is the crossing into code compiled for more than every machine.
 
 use super::TickOdometry;
-use super::lanes::{Block, RESULTS, fits, results};
+use super::lanes::{Block, RESULTS, Results, fits, results};
 use crate::engine::lane::{avx2::Four, avx512::Eight};
 use crate::engine::{Instructions, Motion, WheelLine};
 
@@ -21,10 +21,10 @@ impl TickOdometry {
         &self,
         lines: &[L],
         motions: &mut [Motion],
-        results: impl Fn(&Block<N>) -> [[f64; N]; RESULTS],
+        results: impl Fn(&Block<N>) -> Results<N>,
     ) {
         for (lines, motions) in lines.chunks(N).zip(motions.chunks_mut(N)) {
-            let [x, y, heading, cosine, sine, ties] = results(&Block::new(lines));
+            let Results([x, y, heading, cosine, sine, ties]) = &results(&Block::new(lines));
             for (i, motion) in motions.iter_mut().enumerate().take(lines.len()) {
                 // Number by number: a struct put together first is written and read again in different widths.
                 (motion.pose.x, motion.pose.y, motion.pose.heading) = (x[i], y[i], heading[i]);
@@ -41,7 +41,7 @@ impl TickOdometry {
     /// # Safety
     /// The machine must have AVX-512F and AVX-512DQ.
     #[target_feature(enable = "avx512f,avx512dq")]
-    unsafe fn eight(&self, block: &Block<8>) -> [[f64; 8]; RESULTS] {
+    unsafe fn eight(&self, block: &Block<8>) -> Results<8> {
         // SAFETY: the caller's word.
         let [start, travel] = unsafe {
             [
@@ -50,8 +50,8 @@ impl TickOdometry {
             ]
         };
         let results = results(&self.geometry, [&self.left, &self.right], start, travel);
-        let mut values = [[0.0; 8]; RESULTS];
-        for (result, values) in results.into_iter().zip(&mut values) {
+        let mut values = Results([[0.0; 8]; RESULTS]);
+        for (result, values) in results.into_iter().zip(&mut values.0) {
             result.store(values);
         }
         values
@@ -60,7 +60,7 @@ impl TickOdometry {
     /// # Safety
     /// The machine must have AVX2.
     #[target_feature(enable = "avx2")]
-    unsafe fn four(&self, block: &Block<4>) -> [[f64; 4]; RESULTS] {
+    unsafe fn four(&self, block: &Block<4>) -> Results<4> {
         // SAFETY: the caller's word.
         let [start, travel] = unsafe {
             [
@@ -69,8 +69,8 @@ impl TickOdometry {
             ]
         };
         let results = results(&self.geometry, [&self.left, &self.right], start, travel);
-        let mut values = [[0.0; 4]; RESULTS];
-        for (result, values) in results.into_iter().zip(&mut values) {
+        let mut values = Results([[0.0; 4]; RESULTS]);
+        for (result, values) in results.into_iter().zip(&mut values.0) {
             result.store(values);
         }
         values

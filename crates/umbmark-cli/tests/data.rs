@@ -1,0 +1,139 @@
+//! The verbs that look at data and prepare it: their output, to the letter.
+//!
+//! `SNAPSHOTS=overwrite cargo test -p umbmark-cli` writes the golden files anew.
+
+#![allow(clippy::unwrap_used)]
+
+#[path = "../../umbmark-core/tests/bad_input/mod.rs"]
+mod bad_input;
+
+use snapbox::{assert_data_eq, file};
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn umbmark(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_umbmark")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+/// Standard output of a command that succeeds and says nothing else.
+fn said(arguments: &[&str]) -> String {
+    let output = umbmark(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data"), arguments);
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "", "{arguments:?}");
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Standard error of a command that fails and prints nothing.
+fn refused(folder: &Path, arguments: &[&str]) -> String {
+    let output = umbmark(folder, arguments);
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "", "{arguments:?}");
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+fn fits_the_terminal(text: &str) {
+    for line in text.lines() {
+        assert!(line.chars().count() <= 80, "{line}");
+    }
+}
+
+#[test]
+fn inspect_of_a_return_sheet() {
+    let text = said(&["inspect", "tape"]);
+    fits_the_terminal(&text);
+    assert_data_eq!(text, file!["golden/inspect_tape.txt"]);
+}
+
+#[test]
+fn inspect_of_tracked_logs() {
+    let text = said(&["inspect", "tracked"]);
+    fits_the_terminal(&text);
+    assert_data_eq!(text, file!["golden/inspect_tracked.txt"]);
+}
+
+#[test]
+fn inspect_of_a_single_sheet_without_robot() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("sheet.csv"), "direction,run,ex_mm,ey_mm,who\ncw,1,10,20,Ann\n").unwrap();
+    let output = umbmark(folder.path(), &["inspect", "sheet.csv"]);
+    assert_data_eq!(String::from_utf8(output.stdout).unwrap(), file!["golden/inspect_sheet.txt"]);
+}
+
+#[test]
+fn inspect_as_json() {
+    let text = said(&["inspect", "tracked", "--json"]);
+    let document: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(document["robot"]["wheelbase_m"], 0.34);
+    assert_eq!(document["logs"][0]["wheels"]["as_named"], true);
+    assert_data_eq!(text, file!["golden/inspect_tracked.json"]);
+}
+
+#[test]
+fn the_list_of_effects_names_each_entry_of_the_catalogue() {
+    let text = said(&["effects"]);
+    fits_the_terminal(&text);
+    let document: serde_json::Value = serde_json::from_str(&said(&["effects", "--json"])).unwrap();
+    let entries = document["effects"].as_array().unwrap();
+    assert_eq!(entries.len(), umbmark_core::effect::CATALOGUE.len());
+    for entry in entries {
+        let name = entry["name"].as_str().unwrap();
+        assert!(text.contains(&format!("\n  {name} ")), "{name}");
+        fits_the_terminal(&said(&["effects", name]));
+    }
+}
+
+#[test]
+fn an_effect_explained() {
+    assert_data_eq!(said(&["effects", "placed_bumps"]), file!["golden/effect_placed_bumps.txt"]);
+    assert_data_eq!(said(&["effects", "wheel_diameter_ratio", "--json"]), file!["golden/effect_ratio.json"]);
+}
+
+#[test]
+fn the_model_file_of_an_explanation_is_one() {
+    for entry in umbmark_core::effect::CATALOGUE {
+        let text = said(&["effects", entry.about.name]);
+        let model = text.split("in a model.toml\n").nth(1).unwrap();
+        let robot = umbmark_core::drive::Robot::labmate();
+        let (model, _) = umbmark_core::dataset::parse_model("model.toml", model, &robot).unwrap();
+        assert_eq!(model.parts()[0].effect, entry);
+    }
+}
+
+#[test]
+fn an_effect_that_is_none_is_told_its_neighbour() {
+    let said = refused(Path::new("."), &["effects", "wheel_base"]);
+    assert_eq!(said, "error: there is no effect \"wheel_base\"; did you mean \"wheelbase\"?\n");
+}
+
+#[test]
+fn init_writes_two_files_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = umbmark(folder.path(), &["init", "mine"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert_data_eq!(String::from_utf8(output.stdout).unwrap(), file!["golden/init.txt"]);
+    let read = |name: &str| std::fs::read_to_string(folder.path().join("mine").join(name)).unwrap();
+    assert_data_eq!(read("robot.toml"), file!["golden/init_robot.toml"]);
+    assert_data_eq!(read("returns.csv"), file!["golden/init_returns.csv"]);
+    assert_eq!(
+        refused(folder.path(), &["init", "mine"]),
+        "error: mine/returns.csv: is there already; choose another folder, or say --force to replace it\n"
+    );
+    assert_eq!(umbmark(folder.path(), &["init", "mine", "--force"]).status.code(), Some(0));
+    assert_eq!(
+        refused(folder.path(), &["inspect", "mine"]),
+        "error: mine/returns.csv: there are no rows; add the measurements, one a line\n"
+    );
+}
+
+#[test]
+fn bad_input_is_told_on_stderr_with_exit_code_1_and_nothing_on_stdout() {
+    for case in bad_input::cases() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("folder");
+        std::fs::create_dir(&folder).unwrap();
+        case.write(&folder);
+        let path = if case.load.is_empty() { folder.clone() } else { folder.join(&case.load) };
+        let said = refused(place.path(), &["inspect", &path.display().to_string()]);
+        assert_eq!(case.without_folder(&said, &folder), format!("error: {}\n", case.says), "{}", case.name);
+    }
+}

@@ -1,0 +1,217 @@
+//! What a dataset holds, whether it is any good, and what it can determine.
+//!
+//! [`Dataset::inspect`] measures; nothing here changes or fits anything.
+
+mod determine;
+mod log_facts;
+mod wheels;
+
+use super::dead_reckoning::{EndPose, computed_poses, return_error};
+use super::{Dataset, ReturnError, Run};
+use crate::drive::Robot;
+use crate::effect::TestKind;
+use crate::geometry::{Pose2, wrap};
+use crate::path::{Direction, Path};
+
+pub use determine::Determined;
+pub use log_facts::{Coverage, LogFacts, ReferenceFacts};
+pub use wheels::{Wheels, WheelsFound};
+
+/// The findings on a dataset.
+#[derive(Clone, Debug)]
+pub struct Inspection {
+    /// Runs of each test and direction.
+    pub groups: Vec<Group>,
+    /// Each log, in the order of the runs.
+    pub logs: Vec<LogFacts>,
+    /// Each figure with what good looks like.
+    pub checks: Vec<Check>,
+    /// What the data can say of the robot.
+    pub determined: Vec<Determined>,
+    /// What the reader noticed and mended.
+    pub warnings: Vec<String>,
+}
+
+/// The runs of one test and direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// The test.
+    pub test: TestKind,
+    /// Sense of driving.
+    pub direction: Option<Direction>,
+    /// How many runs.
+    pub runs: usize,
+    /// How many of them have a return error.
+    pub returns: usize,
+    /// How many of them have a return heading.
+    pub headings: usize,
+    /// How many of them have a log.
+    pub logs: usize,
+}
+
+/// A figure, and what good looks like.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// What was looked at.
+    pub name: &'static str,
+    /// What was found, with its unit.
+    pub found: String,
+    /// What good looks like.
+    pub good: &'static str,
+    /// Whether it is good.
+    pub ok: bool,
+}
+
+impl Dataset {
+    /// Looks at everything in the dataset.
+    pub fn inspect(&self) -> Inspection {
+        let logs: Vec<LogFacts> =
+            self.runs.iter().filter_map(|run| LogFacts::of(run, self.robot.as_ref(), self.path.as_ref())).collect();
+        let groups = groups(&self.runs);
+        let mut checks = vec![runs_check(&groups)];
+        checks.extend(headings_check(&groups));
+        checks.extend(log_checks(&logs, self.path.as_ref()));
+        if let Some(robot) = &self.robot {
+            checks.extend(sheet_check(&self.runs, robot));
+        }
+        let determined = determine::determine(&groups, &logs, self.robot.as_ref(), self.path.as_ref());
+        Inspection { groups, logs, checks, determined, warnings: self.warnings.clone() }
+    }
+}
+
+fn groups(runs: &[Run]) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    for run in runs {
+        let same = |group: &Group| (group.test, group.direction) == (run.test, run.direction);
+        let place = groups.iter().position(same).unwrap_or_else(|| {
+            let (test, direction) = (run.test, run.direction);
+            groups.push(Group { test, direction, runs: 0, returns: 0, headings: 0, logs: 0 });
+            groups.len() - 1
+        });
+        let group = &mut groups[place];
+        group.runs += 1;
+        group.returns += usize::from(run.returned.is_some());
+        group.headings += usize::from(run.returned.is_some_and(|error| error.heading.is_some()));
+        group.logs += usize::from(run.log.is_some());
+    }
+    groups
+}
+
+fn runs_check(groups: &[Group]) -> Check {
+    let count = |direction| {
+        let of = groups.iter().filter(|g| g.test == TestKind::Systematic && g.direction == Some(direction));
+        of.map(|g| g.runs).sum::<usize>()
+    };
+    let [cw, ccw] = Direction::BOTH.map(count);
+    Check {
+        name: "runs",
+        found: format!("{cw} cw, {ccw} ccw"),
+        good: "5 or more each way; fewer than 3 say nothing of the scatter",
+        ok: cw.min(ccw) >= 5,
+    }
+}
+
+fn headings_check(groups: &[Group]) -> Option<Check> {
+    let (returns, headings) = groups.iter().fold((0, 0), |(r, h), g| (r + g.returns, h + g.headings));
+    (returns > 0).then(|| Check {
+        name: "return headings",
+        found: format!("{headings} of {returns} measured"),
+        good: "all: they are a second way to the same calibration",
+        ok: headings == returns,
+    })
+}
+
+fn worst(values: impl Iterator<Item = f64>) -> Option<f64> {
+    values.reduce(f64::max)
+}
+
+fn log_checks(logs: &[LogFacts], path: Option<&Path>) -> Vec<Check> {
+    let mut checks = Vec::new();
+    let mut add = |name, found: Option<String>, good, ok| {
+        checks.extend(found.map(|found| Check { name, found, good, ok }));
+    };
+    let slowest = logs.iter().map(|log| log.rate).reduce(f64::min);
+    add("sampling rate", slowest.map(|r| format!("{r:.1} Hz")), "20 Hz or more", slowest.is_some_and(|r| r >= 19.5));
+    let jitter = worst(logs.iter().map(|log| log.jitter));
+    let steady = jitter.is_some_and(|j| j <= 0.2);
+    add("jitter", jitter.map(|j| format!("{:.0} %", 100.0 * j)), "20 % of the period or less", steady);
+    let gap = worst(logs.iter().map(|log| log.longest_gap * log.rate));
+    let whole = gap.is_some_and(|g| g <= 5.0);
+    add("longest gap", gap.map(|g| format!("{g:.1} periods")), "5 periods or less: no rows are missing", whole);
+    if let Some(nominal) = path.map(Path::length).filter(|length| *length > 0.0) {
+        let off = worst(logs.iter().filter_map(|log| Some((log.length? / nominal - 1.0).abs())));
+        let near = off.is_some_and(|off| off <= 0.02);
+        add("length by ticks", off.map(|o| format!("{:.1} % off the path", 100.0 * o)), "2 % or less", near);
+    }
+    let turn = worst(logs.iter().filter_map(|log| log.heading_off).map(f64::abs));
+    let round = turn.is_some_and(|turn| turn <= 5f64.to_radians());
+    let found = turn.map(|turn| format!("{:.1} deg off the path", turn.to_degrees()));
+    add("heading by ticks", found, "5 deg or less: the robot drives by these ticks", round);
+    let wheels = logs.iter().filter_map(|log| log.wheels.as_ref()).max_by_key(|w| w.wheels != Wheels::AsGiven);
+    let sound = wheels.is_some_and(|w| w.wheels == Wheels::AsGiven);
+    add("wheels", wheels.map(|w| w.wheels.to_string()), "as named, both counting up when driving forward", sound);
+    checks.extend(reference_checks(logs));
+    checks
+}
+
+fn reference_checks(logs: &[LogFacts]) -> Vec<Check> {
+    let references: Vec<&ReferenceFacts> = logs.iter().filter_map(|log| log.reference.as_ref()).collect();
+    let mut checks = Vec::new();
+    if logs.is_empty() {
+        return checks;
+    }
+    let coverage = references.iter().map(|r| r.coverage).min();
+    checks.push(Check {
+        name: "reference",
+        found: match coverage {
+            Some(coverage) => format!("{coverage}, in {} of {} logs", references.len(), logs.len()),
+            None => "none".into(),
+        },
+        good: "a track, or a pose at every stop",
+        ok: references.len() == logs.len() && coverage >= Some(Coverage::OnTheWay),
+    });
+    if let Some(noise) = worst(references.iter().filter_map(|r| r.noise)) {
+        checks.push(Check {
+            name: "noise of the position",
+            found: format!("{:.2} mm while standing", 1e3 * noise),
+            good: "2 mm or less",
+            ok: noise <= 2e-3,
+        });
+    }
+    if let Some(noise) = worst(references.iter().filter_map(|r| r.heading_noise)) {
+        checks.push(Check {
+            name: "noise of the heading",
+            found: format!("{:.2} mrad while standing", 1e3 * noise),
+            good: "2 mrad or less",
+            ok: noise <= 2e-3,
+        });
+    }
+    checks
+}
+
+/// Largest difference of the return errors in the sheet and those that follow from logs; errors that were taken from the
+/// logs in the first place do not count.
+fn sheet_check(runs: &[Run], robot: &Robot) -> Option<Check> {
+    let differences = runs.iter().filter_map(|run| {
+        let log = run.log.as_ref()?;
+        let (computed, returned) = (computed_poses(log, robot), run.returned?);
+        let [standing, last] = [EndPose::Standing, EndPose::Last].map(|end| return_error(log, &computed, end));
+        let ReturnError { x, y, .. } = standing.filter(|_| ![standing, last].contains(&run.returned))?;
+        Some(libm::hypot(x - returned.x, y - returned.y))
+    });
+    let largest = worst(differences)?;
+    Some(Check {
+        name: "returns against logs",
+        found: format!("{:.1} mm apart at most", 1e3 * largest),
+        good: "10 mm or less: both tell of the same runs",
+        ok: largest <= 0.010,
+    })
+}
+
+/// How far the heading at the end is from the path's own, full turns ignored \[rad\].
+fn heading_off(path: &Path, direction: Option<Direction>, end: &Pose2) -> f64 {
+    wrap(end.heading - path.end(direction.unwrap_or(Direction::Ccw)).heading)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,192 @@
+use super::*;
+use crate::dataset::{ReferencePose, TickLog};
+use crate::path::SpeedProfile;
+
+/// Drives a square of 2 m at 50 Hz, tracked every `every` samples; `wheels` changes the counts written down.
+fn drive(direction: Direction, every: usize, wheels: impl Fn(f64, f64) -> (f64, f64)) -> Run {
+    let robot = Robot::labmate();
+    let path = Path::new(&crate::path::SQUARE, &[2.0], SpeedProfile::default()).unwrap();
+    let per_tick = robot.metres_per_tick();
+    let (mut log, mut pose) = (TickLog::default(), Pose2::IDENTITY);
+    let (mut left, mut right) = (0.0, 0.0);
+    let mut write = |pose: &Pose2, (left, right): (f64, f64)| {
+        let sample = log.time.len();
+        log.time.push(sample as f64 / 50.0);
+        log.left.push(left);
+        log.right.push(right);
+        if sample.is_multiple_of(every) {
+            let noise = 1e-3 * (sample as f64 * 12.9898).sin();
+            log.reference.push(ReferencePose { sample, x: pose.x + noise, y: pose.y, heading: Some(pose.heading) });
+        }
+    };
+    (0..50).for_each(|_| write(&pose, wheels(left, right)));
+    for m in path.moves(direction) {
+        let (n, d) = (200, m.displacement());
+        let travel = m.wheel_travel(&robot.drive);
+        for _ in 0..n {
+            pose = pose.moved(&crate::geometry::Displacement2 {
+                forward: d.forward / f64::from(n),
+                sideways: 0.0,
+                rotation: d.rotation / f64::from(n),
+            });
+            left += travel.left / f64::from(n) / per_tick.left;
+            right += travel.right / f64::from(n) / per_tick.right;
+            write(&pose, wheels(left, right));
+        }
+    }
+    (0..50).for_each(|_| write(&pose, wheels(left, right)));
+    let returned = return_error(&log, &computed_poses(&log, &robot), EndPose::Standing);
+    let (name, test) = (direction.name().to_owned(), TestKind::Systematic);
+    Run { name, number: 1, direction: Some(direction), test, log: Some(log), returned }
+}
+
+fn dataset(runs: Vec<Run>) -> Dataset {
+    let path = Path::new(&crate::path::SQUARE, &[2.0], SpeedProfile::default()).unwrap();
+    Dataset { robot: Some(Robot::labmate()), path: Some(path), runs, warnings: Vec::new() }
+}
+
+fn same(left: f64, right: f64) -> (f64, f64) {
+    (left, right)
+}
+
+fn check<'a>(inspection: &'a Inspection, name: &str) -> &'a Check {
+    inspection.checks.iter().find(|check| check.name == name).unwrap()
+}
+
+#[test]
+fn a_clean_log_is_measured_as_it_was_made() {
+    let found = dataset(vec![drive(Direction::Cw, 5, same), drive(Direction::Ccw, 5, same)]).inspect();
+    for (log, turn) in found.logs.iter().zip([-1.0, 1.0]) {
+        assert_eq!(log.rows, 1700);
+        assert!((log.duration - 33.98).abs() < 1e-9 && (log.rate - 50.0).abs() < 1e-6 && log.jitter < 1e-6);
+        assert!((log.length.unwrap() - 8.0).abs() < 1e-9);
+        assert!((log.heading.unwrap() - turn * std::f64::consts::TAU).abs() < 1e-9);
+        let reference = log.reference.as_ref().unwrap();
+        assert_eq!((reference.poses, reference.coverage), (340, Coverage::Track));
+        assert!((reference.rate - 10.0).abs() < 0.1 && (reference.longest_gap - 0.1).abs() < 1e-9);
+        let noise = reference.noise.unwrap();
+        assert!(noise > 0.3e-3 && noise < 0.8e-3, "{noise}");
+        assert!(reference.heading_noise.unwrap() < 1e-9);
+    }
+    let bad: Vec<_> = found.checks.iter().filter(|check| !check.ok).map(|check| check.name).collect();
+    assert_eq!(bad, ["runs"]);
+    assert!(found.checks.iter().all(|check| check.name != "returns against logs"), "they are from the logs");
+    assert!(found.determined.iter().take(4).all(|d| d.yes));
+}
+
+#[test]
+fn exchanged_and_backward_wheels_are_told_from_the_track() {
+    for (exchanged, left_backward, right_backward) in [(true, false, false), (false, true, false), (true, false, true)]
+    {
+        let wheels = |left: f64, right: f64| {
+            let (mut l, mut r) = if exchanged { (right, left) } else { (left, right) };
+            l = if left_backward { -l } else { l };
+            r = if right_backward { -r } else { r };
+            (l, r)
+        };
+        let found = dataset(vec![drive(Direction::Ccw, 5, wheels)]).inspect();
+        let expected = Wheels::Otherwise { exchanged, left_backward, right_backward };
+        assert_eq!(found.logs[0].wheels.as_ref().unwrap().wheels, expected);
+        assert!(!check(&found, "wheels").ok);
+    }
+    assert_eq!(
+        Wheels::Otherwise { exchanged: true, left_backward: false, right_backward: true }.to_string(),
+        "left and right exchanged, ticks_right counts backward"
+    );
+}
+
+#[test]
+fn without_a_track_a_wheel_that_runs_backward_is_told_by_the_path() {
+    let found = dataset(vec![drive(Direction::Ccw, 100_000, |left, right| (left, -right))]).inspect();
+    let wheels = found.logs[0].wheels.as_ref().unwrap();
+    assert_eq!(wheels.wheels, Wheels::Otherwise { exchanged: false, left_backward: false, right_backward: true });
+    assert_eq!(wheels.misfit, None);
+}
+
+#[test]
+fn a_sheet_that_tells_of_other_runs_is_seen() {
+    let mut run = drive(Direction::Ccw, 5, same);
+    run.returned.as_mut().unwrap().y += 0.05;
+    let found = dataset(vec![run]).inspect();
+    assert_eq!(check(&found, "returns against logs").found, "50.0 mm apart at most");
+    assert!(!check(&found, "returns against logs").ok);
+}
+
+#[test]
+fn gaps_jitter_and_a_wrong_wheelbase_are_seen() {
+    let mut run = drive(Direction::Ccw, 5, same);
+    for time in &mut run.log.as_mut().unwrap().time[800..] {
+        *time += 1.0;
+    }
+    for (i, time) in run.log.as_mut().unwrap().time.iter_mut().enumerate() {
+        *time += 0.006 * f64::from(i as u32 % 2);
+    }
+    let mut data = dataset(vec![run]);
+    let robot = data.robot.as_mut().unwrap();
+    robot.drive = crate::drive::DifferentialDrive::new(0.36, 0.16, 0.16).unwrap();
+    let found = data.inspect();
+    for name in ["jitter", "longest gap", "length by ticks"] {
+        assert!(!check(&found, name).ok, "{name}: {}", check(&found, name).found);
+    }
+    assert_eq!(check(&found, "length by ticks").found, "6.7 % off the path");
+    robot_heading(&data);
+}
+
+fn robot_heading(data: &Dataset) {
+    let mut data = data.clone();
+    let robot = data.robot.as_mut().unwrap();
+    robot.drive = crate::drive::DifferentialDrive::new(0.36, 0.15, 0.15).unwrap();
+    let found = data.inspect();
+    assert_eq!(check(&found, "heading by ticks").found, "20.0 deg off the path");
+}
+
+/// Whether E_d, E_b and E_s can be had from return errors on a path.
+fn determined(path: Path, directions: &[Direction], heading: bool) -> [bool; 3] {
+    let returned = ReturnError { x: 0.0, y: 0.0, heading: heading.then_some(0.0) };
+    let run = |direction: &Direction| Run {
+        name: String::new(),
+        number: 1,
+        direction: Some(*direction),
+        test: TestKind::Systematic,
+        log: None,
+        returned: Some(returned),
+    };
+    let mut data = dataset(directions.iter().map(run).collect());
+    data.path = Some(path);
+    let answers = data.inspect().determined;
+    [answers[0].yes, answers[1].yes, answers[2].yes]
+}
+
+#[test]
+fn what_returns_can_determine_depends_on_path_directions_and_headings() {
+    use crate::path::{CIRCLE, FIGURE_EIGHT, SPIN, SQUARE, STRAIGHT};
+    let path = |shape, values: &[f64]| Path::new(shape, values, SpeedProfile::default()).unwrap();
+    let (cw, both) = (&[Direction::Cw][..], &Direction::BOTH[..]);
+    for heading in [true, false] {
+        assert_eq!(determined(path(&SQUARE, &[4.0]), both, heading), [true, true, false]);
+        assert_eq!(determined(path(&SQUARE, &[4.0]), cw, heading), [false, false, false]);
+        assert_eq!(determined(path(&SPIN, &[4.0]), both, heading), [false, heading, false]);
+        assert_eq!(determined(path(&STRAIGHT, &[4.0]), cw, heading), [true, false, true]);
+    }
+    assert_eq!(determined(path(&FIGURE_EIGHT, &[2.0]), cw, true), [true, true, false]);
+    assert_eq!(determined(path(&CIRCLE, &[2.0, 1.0]), both, true), [true, true, false]);
+    assert_eq!(determined(path(&CIRCLE, &[2.0, 0.5]), both, true), [true, true, true]);
+}
+
+#[test]
+fn what_cannot_be_determined_is_said_with_what_would_help() {
+    let strip = |mut run: Run| {
+        run.log = None;
+        run
+    };
+    let found = |runs: Vec<Run>| dataset(runs).inspect().determined;
+    let cw = strip(drive(Direction::Cw, 5, same));
+    let ccw = strip(drive(Direction::Ccw, 5, same));
+    let one = found(vec![cw.clone()]);
+    assert!(one[..2].iter().all(|answer| answer.because.contains("drive the other direction")));
+    let both = found(vec![cw, ccw]);
+    assert!(both[2].because.contains("E_b/E_s only") && both[3].yes && !both[4].yes && !both[5].yes);
+    assert!(found(Vec::new())[0].because.contains("no return error"));
+    let tracked = found(vec![drive(Direction::Cw, 5, same)]);
+    assert!(tracked[..3].iter().all(|answer| answer.yes));
+}

@@ -1,0 +1,64 @@
+"""The package as a whole: what it exports, its version, and the examples in its docstrings."""
+
+import doctest
+import importlib.metadata
+import inspect
+import sys
+import threading
+import time
+
+import numpy as np
+import umbmark
+
+
+def test_the_version_is_the_same_everywhere() -> None:
+    assert umbmark.__version__ == importlib.metadata.version("umbmark")
+
+
+def test_everything_public_has_a_docstring() -> None:
+    for name in umbmark.__all__:
+        thing = getattr(umbmark, name)
+        assert name.startswith("__") or inspect.getdoc(thing), name
+        if inspect.isclass(thing):
+            for attribute in vars(thing):
+                assert attribute.startswith("__") or getattr(thing, attribute).__doc__, attribute
+
+
+def test_the_examples_in_the_docstrings_run() -> None:
+    parser, runner = doctest.DocTestParser(), doctest.DocTestRunner()
+    for name in umbmark.__all__:
+        text = inspect.getdoc(getattr(umbmark, name)) or ""
+        runner.run(parser.get_doctest(text, {}, name, None, None))
+    tried = runner.summarize()
+    assert tried.attempted > 0
+    assert tried.failed == 0
+
+
+def test_another_thread_runs_while_scores_are_computed() -> None:
+    """With this switch interval the lock changes hands only where its holder gives it up."""
+    errors = np.random.default_rng(1).normal(size=(300_000, 3))
+    running, done = threading.Event(), threading.Event()
+    count = 0
+
+    def counting() -> None:
+        nonlocal count
+        while not done.is_set():
+            running.set()
+            count += 1
+            time.sleep(0)
+
+    usual = sys.getswitchinterval()
+    sys.setswitchinterval(60)
+    try:
+        thread = threading.Thread(target=counting)
+        thread.start()
+        running.wait()
+        before = count
+        umbmark.score(errors, errors)
+        after = count
+        done.set()
+        thread.join()
+    finally:
+        done.set()
+        sys.setswitchinterval(usual)
+    assert after > before

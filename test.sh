@@ -1,0 +1,117 @@
+#!/usr/bin/env bash
+# Runs every test: formatting, lints, Rust, documentation, and Python in a virtual environment of its own, .venv.
+# Needs Rust and Python 3.11 or newer; the network only for the package registries, and only when something is missing.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+# Environments of other projects (conda, ROS) must not leak in.
+unset CONDA_PREFIX PYTHONHOME PYTHONPATH
+export PYTHONNOUSERSITE=1
+export VIRTUAL_ENV=$PWD/.venv
+python=$VIRTUAL_ENV/bin/python
+package=crates/umbmark-py
+requirements=$package/requirements-test.txt
+
+section=''
+section_began=0
+
+end_section() {
+    if [ -n "$section" ]; then
+        echo "-- $section: $((SECONDS - section_began)) s"
+    fi
+}
+
+begin() {
+    end_section
+    section=$1
+    section_began=$SECONDS
+    printf '\n== %s\n' "$section"
+}
+
+stop() {
+    echo "test.sh: $1" >&2
+    exit 1
+}
+
+say_where_it_failed() {
+    local status=$?
+    if [ "$status" -ne 0 ] && [ -n "$section" ]; then
+        echo "test.sh: FAILED in: $section" >&2
+    fi
+}
+trap say_where_it_failed EXIT
+
+# Whether a component of Rust is there that rustup may have left out.
+has() {
+    if ! cargo "$1" --version > /dev/null 2>&1; then
+        echo "skipped: cargo $1 is not installed (rustup component add $2)"
+        return 1
+    fi
+}
+
+is_new_enough() {
+    "$1" -c 'import sys; sys.exit(sys.version_info < (3, 11))' > /dev/null 2>&1
+}
+
+make_environment() {
+    local candidate without_venv=''
+    for candidate in python3.13 python3.12 python3.11 python3 python; do
+        if is_new_enough "$candidate"; then
+            if "$candidate" -m venv --clear .venv > /dev/null 2>&1; then
+                return
+            fi
+            without_venv=$candidate
+        fi
+    done
+    if [ -n "$without_venv" ]; then
+        stop "$without_venv cannot make a virtual environment; install its venv module (Debian, Ubuntu: python3-venv)"
+    fi
+    stop 'Python 3.11 or newer is needed, and none was found as python3.13, python3.12, python3.11, python3 or python'
+}
+
+command -v cargo > /dev/null || stop 'cargo was not found; install Rust from https://rustup.rs'
+
+begin 'Python: environment'
+if ! is_new_enough "$python"; then
+    make_environment
+fi
+# What was installed last, written when it was complete.
+installed=.venv/requirements-installed.txt
+if ! cmp -s "$requirements" "$installed"; then
+    "$python" -m pip install --quiet --disable-pip-version-check --requirement "$requirements"
+    cp "$requirements" "$installed"
+fi
+"$python" --version
+
+begin 'Rust: formatting'
+if has fmt rustfmt; then
+    cargo fmt --all --check
+fi
+
+begin 'Rust: lints'
+if has clippy clippy; then
+    cargo clippy --workspace --all-targets -- -D warnings
+fi
+
+begin 'Rust: tests'
+cargo test --workspace
+
+begin 'Rust: documentation'
+RUSTDOCFLAGS='-D warnings' cargo doc --workspace --no-deps
+
+begin 'Python: module'
+"$python" -m maturin develop --manifest-path "$package/Cargo.toml"
+
+begin 'Python: formatting and lints'
+"$python" -m ruff format --check --config "$package/pyproject.toml" "$package" .ci
+"$python" -m ruff check --config "$package/pyproject.toml" "$package" .ci
+
+begin 'Python: types'
+"$python" -m mypy --config-file "$package/pyproject.toml" "$package/python" "$package/tests" .ci
+"$python" -m mypy.stubtest --mypy-config-file "$package/pyproject.toml" umbmark
+
+begin 'Python: tests'
+"$python" -m pytest "$package"
+
+end_section
+printf '\nall tests passed in %d s\n' "$SECONDS"
