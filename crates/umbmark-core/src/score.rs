@@ -45,7 +45,7 @@ pub enum ScoreError {
         value: f64,
     },
     /// A return error that is no number.
-    #[error("return error of run {run} must be finite, got ({x}, {y}) m, {heading:?} rad; correct or remove the run")]
+    #[error("return error of run {run} must be finite, got ({x}, {y}) m{}; correct or remove the run", in_radians(*heading))]
     NotFinite {
         /// Name of the run.
         run: String,
@@ -56,6 +56,10 @@ pub enum ScoreError {
         /// \[rad\]
         heading: Option<f64>,
     },
+}
+
+fn in_radians(heading: Option<f64>) -> String {
+    heading.map(|rad| format!(", {rad} rad")).unwrap_or_default()
 }
 
 /// Return errors sorted by test and direction.
