@@ -18,7 +18,7 @@ fn study(values: &[(&str, &str, f64)], trials: u64) -> Study {
 }
 
 fn run(study: &Study) -> Ensemble {
-    study.run(|_, _| ControlFlow::Continue(())).unwrap()
+    study.run(|_| ControlFlow::Continue(())).unwrap()
 }
 
 /// Wheel noise k on a square of side L: each side adds a heading noise of variance 2k²(L + turn)/b², so the variance of the
@@ -79,8 +79,8 @@ fn whole_trials_by_the_word_and_one_by_one_agree() {
     let rows = |study: &Study| {
         let mut rows = Vec::new();
         study
-            .run(|_, batch| {
-                rows.extend_from_slice(batch);
+            .run(|batch| {
+                rows.extend_from_slice(batch.rows);
                 ControlFlow::Continue(())
             })
             .unwrap();

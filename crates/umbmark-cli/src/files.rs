@@ -21,7 +21,11 @@ impl Pending {
             anyhow::bail!("{} exists already; --force replaces it", path.display());
         }
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let file = NamedTempFile::new_in(folder)
+        let mut builder = tempfile::Builder::new();
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let file = builder
+            .tempfile_in(folder)
             .with_context(|| format!("cannot write into the folder {}", folder.display()))?;
         Ok(Pending { path: path.to_owned(), file: BufWriter::new(file), force })
     }

@@ -3,7 +3,9 @@
 //! Parsing only parses: each verb's `Arguments` are turned into one resolved configuration of the core before anything is
 //! computed. Results go to stdout, messages and progress to stderr.
 
+mod checkpoint;
 mod effect_flags;
+mod ensemble_report;
 mod files;
 mod prose;
 mod robot_flags;

@@ -1,4 +1,4 @@
-//! What all verbs share: options, the way out, and the wish to stop.
+//! What all verbs share: options, the way out, progress, and the wish to stop.
 
 use std::io::{self, BufWriter, IsTerminal, Stdout, Write};
 use std::sync::Arc;
@@ -29,17 +29,16 @@ pub struct Options {
     pub quiet: bool,
 }
 
-/// One run of the command: its options, its standard output, and whether it was asked to stop.
+/// One run of the command: its options, and its standard output.
 #[derive(Debug)]
 pub struct Session {
     options: Options,
     out: BufWriter<Stdout>,
-    interrupted: Arc<AtomicBool>,
 }
 
 impl Session {
     pub(crate) fn new(options: Options) -> Session {
-        Session { options, out: BufWriter::new(io::stdout()), interrupted: Arc::new(AtomicBool::new(false)) }
+        Session { options, out: BufWriter::new(io::stdout()) }
     }
 
     /// Whether a JSON document is wanted.
@@ -81,33 +80,23 @@ impl Session {
         Ok(pool.install(work))
     }
 
-    /// From now on Ctrl-C asks to stop instead of killing; a second one kills.
-    pub fn catch_interrupt(&self) -> anyhow::Result<Interrupt> {
-        let flag = Arc::clone(&self.interrupted);
+    /// A flag that Ctrl-C sets from now on, instead of killing; a second one kills.
+    pub fn catch_interrupt(&self) -> anyhow::Result<Arc<AtomicBool>> {
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&interrupted);
         ctrlc::set_handler(move || {
             if flag.swap(true, Ordering::SeqCst) {
                 std::process::exit(130);
             }
         })
         .context("cannot catch Ctrl-C")?;
-        Ok(Interrupt(Arc::clone(&self.interrupted)))
+        Ok(interrupted)
     }
 
     /// A progress bar on stderr for `total` steps of `unit`; it shows itself only where people look and after a second.
     pub fn progress(&self, total: u64, unit: &'static str) -> Progress {
         let shown = !self.options.quiet && io::stderr().is_terminal();
         Progress { bar: None, total, unit, began: Instant::now(), shown }
-    }
-}
-
-/// Whether Ctrl-C was pressed.
-#[derive(Clone, Debug)]
-pub struct Interrupt(Arc<AtomicBool>);
-
-impl Interrupt {
-    /// Whether Ctrl-C was pressed.
-    pub fn requested(&self) -> bool {
-        self.0.load(Ordering::SeqCst)
     }
 }
 

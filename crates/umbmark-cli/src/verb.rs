@@ -6,6 +6,7 @@ mod effects;
 mod init;
 mod inspect;
 mod mc;
+mod merge;
 mod score;
 mod simulate;
 
@@ -18,6 +19,8 @@ use crate::Session;
 pub enum Verb {
     /// Monte Carlo: simulate whole UMBmark tests by the thousand
     Mc(Box<mc::Arguments>),
+    /// Merge shards or checkpoints of mc into one result
+    Merge(merge::Arguments),
     /// Simulate one test and write it as a dataset
     Simulate(Box<simulate::Arguments>),
     /// Score a measured test: E_max,sys, centroids, sigma, extended test
@@ -38,6 +41,7 @@ impl Verb {
     pub(crate) fn run(self, session: &mut Session) -> anyhow::Result<ExitCode> {
         match self {
             Verb::Mc(arguments) => mc::run(*arguments, session),
+            Verb::Merge(arguments) => merge::run(arguments, session),
             Verb::Simulate(arguments) => simulate::run(*arguments, session),
             Verb::Score(arguments) => score::run(arguments, session),
             Verb::Calibrate(arguments) => calibrate::run(arguments, session),

@@ -212,3 +212,113 @@ fn a_closed_pipe_is_no_failure() {
     assert!(output.status.success(), "{output:?}");
     assert!(output.stderr.is_empty(), "{output:?}");
 }
+
+/// What a study says, but for the time it took.
+fn results(mut document: serde_json::Value) -> serde_json::Value {
+    document.as_object_mut().unwrap().remove("trials_per_s");
+    document
+}
+
+const LONG: [&str; 7] = ["-n", "150000", "--ed-sd", "0.0005", "--seed", "11", "--json"];
+
+#[test]
+fn a_study_killed_at_any_moment_goes_on_to_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("study.json");
+    let checkpoint = ["--checkpoint", file.to_str().unwrap(), "--checkpoint-every", "0"];
+    let mut child = std::process::Command::new(cargo_bin!("umbmark"))
+        .arg("mc")
+        .args(LONG)
+        .args(checkpoint)
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    while !file.exists() && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    // SIGKILL on Unix: nothing of the program runs after it.
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let merged = Command::new(cargo_bin!("umbmark")).args(["merge", file.to_str().unwrap(), "--json"]).assert();
+    let half: serde_json::Value = serde_json::from_slice(&merged.success().get_output().stdout).unwrap();
+    let done = half["n"].as_u64().unwrap();
+    assert!(done > 0 && done < 150_000, "{done} trials were done when it was killed");
+    let resumed = mc(&[&LONG[..], &checkpoint, &["--resume"]].concat()).success();
+    let resumed: serde_json::Value = serde_json::from_slice(&resumed.get_output().stdout).unwrap();
+    let whole = mc(&LONG).success();
+    let whole: serde_json::Value = serde_json::from_slice(&whole.get_output().stdout).unwrap();
+    assert_eq!(results(resumed), results(whole));
+}
+
+#[test]
+fn shards_merge_to_the_bits_of_one_run_and_say_what_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let name = |i: u32| folder.path().join(format!("{i}.json")).to_str().unwrap().to_owned();
+    let study = ["-n", "3000", "--bumps", "10", "--seed", "4"];
+    for i in 1..=3 {
+        mc(&[&study[..], &["--shard", &format!("{i}/3"), "--checkpoint", &name(i)]].concat()).success();
+    }
+    let merge = |files: &[&str]| Command::new(cargo_bin!("umbmark")).arg("merge").args(files).arg("--json").assert();
+    let of = |assert: OutputAssert| serde_json::from_slice::<serde_json::Value>(&assert.get_output().stdout).unwrap();
+    let (one, two, three) = (name(1), name(2), name(3));
+    let merged = of(merge(&[&three, &one, &two]).success().stderr_eq(str![""]));
+    let mut whole = json(&study);
+    whole["trials_per_s"] = serde_json::Value::Null;
+    assert_eq!(merged, whole);
+    let partial = merge(&[&one, &three]).success().stderr_eq(str![[r#"
+missing: trials 1024 to 2047
+
+"#]]);
+    assert_eq!(of(partial)["partial"], true);
+    merge(&[&one, &one]).code(1).stdout_eq(str![""]).stderr_eq(str![[r#"
+error: cannot merge [..]1.json with what comes before it: trials 0 to 1023 are in both
+
+"#]]);
+    mc(&["-n", "3000", "--seed", "5", "--checkpoint", &one, "--resume"]).code(1).stderr_eq(str![[r#"
+error: [..]1.json is of another study or shard; say the same flags, seed and number of trials as before
+
+"#]]);
+    mc(&["-n", "3000", "--checkpoint", &one]).code(1).stderr_eq(str![[r#"
+error: [..]1.json exists already; --resume goes on with it, --force begins anew
+
+"#]]);
+    std::fs::write(folder.path().join("1.json"), "{}").unwrap();
+    merge(&[&one]).code(1).stderr_eq(str![[r#"
+error: [..]1.json is no checkpoint of this version of umbmark; give a file of `mc --checkpoint`: missing field [..]
+
+"#]]);
+}
+
+#[test]
+fn a_study_stops_when_it_is_precise_and_at_the_same_trial_for_any_number_of_threads() {
+    let of = |threads| results(json(&["--until-std-error", "0.2mm", "--eb", "1.01", "--threads", threads]));
+    let one = of("1");
+    assert_eq!(one, of("3"));
+    let error = one["metrics"]["e_max_sys_m"]["std_error"].as_f64().unwrap();
+    assert!(error <= 0.2e-3 && one["partial"] == false, "{error}");
+    mc(&["-n", "500", "--until-std-error", "0.001mm"]).success().stderr_eq(str![[r#"
+warning: all trials are done, and the standard error that was asked for is not reached
+
+"#]]);
+    mc(&["--until-std-error", "0.1"]).code(2);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_with_what_is_done_marked_as_partial() {
+    let child = std::process::Command::new(cargo_bin!("umbmark"))
+        .args(["mc", "-n", "100000000", "--json"])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["partial"], true);
+    let n = document["n"].as_u64().unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(message, format!("partial: stopped after {n} of 100000000 trials\n"));
+}

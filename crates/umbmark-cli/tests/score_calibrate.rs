@@ -137,10 +137,10 @@ fn the_calibration_as_json_has_the_keys_that_stay() {
         assert!((m["wheelbase_m"].as_f64().unwrap() - 0.34 * e_b).abs() < 1e-12);
     }
     assert!(calibration["warnings"][0].as_str().unwrap().starts_with("E_s is not determined"));
-    let nominal = document(&data(), &["calibrate", "labmate", "--json", "--radius-wheelbase", "nominal"]);
+    let corrected = document(&data(), &["calibrate", "labmate", "--json", "--radius-wheelbase", "corrected"]);
     let e_d = |c: &Value| c["methods"]["closed_form_x"]["e_d"].as_f64().unwrap() - 1.0;
     let e_b = calibration["methods"]["closed_form_x"]["e_b"].as_f64().unwrap();
-    assert!((e_d(&calibration) / e_d(&nominal) - e_b).abs() < 1e-5);
+    assert!((e_d(&corrected) / e_d(&calibration) - e_b).abs() < 1e-5);
 }
 
 #[test]

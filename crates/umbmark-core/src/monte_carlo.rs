@@ -2,15 +2,18 @@
 //!
 //! A *trial* is one test: n runs in each direction, and where bumps are placed the same number of bumped runs again. Its
 //! random numbers depend on the seed and its number alone, so trial 7 is the same whether it is run first, last, alone or
-//! on another thread. Trials are gathered in chunks of a fixed size, and chunks are merged in their order: the same seed
-//! gives the same bits for any number of threads.
+//! on another thread; and statistics do not depend on the order of their numbers. So the same seed gives the same bits for
+//! any number of threads, for a study resumed after a crash, and for one put together from shards.
 
 mod distribution;
+mod ensemble;
 mod metric;
+mod shard;
 mod statistics;
 mod trial;
 
 use std::ops::{ControlFlow, Range};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
@@ -23,15 +26,21 @@ use crate::replay::Track;
 use crate::simulate::{self, Odometry, Phase, SimulateError};
 
 pub use distribution::{Distribution, DistributionError, Draw};
+pub use ensemble::{Ensemble, MergeError};
 pub use metric::Metric;
+pub use shard::{Shard, ShardError};
 pub use statistics::Statistics;
 
 pub use trial::draw_parameters;
 
 use trial::Bench;
 
-/// Trials per chunk. A part of every result: another size would round differently in the last bits.
-pub const CHUNK: u64 = 1024;
+/// Trials that one thread runs at a time. Shards begin and end at multiples of it.
+pub const CHUNK: u64 = 256;
+
+/// Trials between two looks at whether a study is precise enough: a fixed number, so that where it stops does not depend on
+/// the number of threads.
+pub const BATCH: u64 = 16_384;
 
 /// The values of one trial's metrics, in the order of [`Study::metrics`].
 pub type Row = [f64; Metric::COUNT];
@@ -92,13 +101,15 @@ pub struct Study {
     pub seed: u64,
 }
 
-/// What a study found.
-#[derive(Clone, Debug)]
-pub struct Ensemble {
-    /// Trials done: all of them, unless the study was stopped.
-    pub trials: u64,
-    /// One for each metric of the study, in order.
-    pub statistics: Vec<(Metric, Statistics)>,
+/// What a sink is told after every batch.
+#[derive(Debug)]
+pub struct Batch<'a> {
+    /// Number of the first trial.
+    pub first: u64,
+    /// The metrics of its trials, in order.
+    pub rows: &'a [Row],
+    /// The ensemble with this batch in it.
+    pub ensemble: &'a Ensemble,
 }
 
 impl Study {
@@ -128,6 +139,26 @@ impl Study {
         Metric::ALL.into_iter().filter(|metric| metric.exists(self.runs, self.extended())).collect()
     }
 
+    /// Everything that decides the numbers of a trial, in words: two studies with the same identity have the same trials.
+    pub fn identity(&self) -> String {
+        let effects = self.model.parts().iter().map(|part| format!("{} {:?}", part.effect.about.name, part.values));
+        let draws = self.draws.iter().map(|d| format!("{}.{} {:?}", d.effect(), d.parameter().name, d.distribution()));
+        format!(
+            "umbmark {}, seed {}, {:?}, {} {:?} {:?}, {:?} {:?}, {:?} runs, effects [{}], drawn [{}]",
+            crate::VERSION,
+            self.seed,
+            self.robot,
+            self.path.shape().name,
+            self.path.values(),
+            self.path.speed,
+            self.odometry,
+            self.phase,
+            self.runs,
+            effects.collect::<Vec<_>>().join(", "),
+            draws.collect::<Vec<_>>().join(", "),
+        )
+    }
+
     /// The test without noise, bumps and quantisation, all drawn parameters in their middle: its return errors \[cw, ccw\]
     /// by exact kinematics.
     pub fn noise_free(&self) -> Result<[ReturnError; 2], StudyError> {
@@ -140,8 +171,8 @@ impl Study {
 
     /// Runs the study on the present rayon pool.
     ///
-    /// `sink` receives the rows of every batch of trials in order, with the number of the first; it may stop the study
-    /// between batches. Memory does not grow with the number of trials.
+    /// `sink` is told of every batch of trials, in order, and may stop the study between batches. Memory does not grow with
+    /// the number of trials.
     ///
     /// ```
     /// use std::ops::ControlFlow;
@@ -149,49 +180,64 @@ impl Study {
     /// let mut model = Model::new(&Robot::labmate());
     /// model.set("wheel_diameter_ratio", "e_d", 1.00121)?;
     /// model.set("wheelbase", "e_b", 337.2 / 340.0)?;
-    /// let ensemble = Study::new(model, 100, 1).run(|_, _| ControlFlow::Continue(()))?;
+    /// let ensemble = Study::new(model, 100, 1).run(|_| ControlFlow::Continue(()))?;
     /// let e_max = &ensemble.get(Metric::EMaxSys).unwrap();
     /// assert!((e_max.mean() - 0.3056).abs() < 1e-3);
     /// # Ok::<(), umbmark_core::monte_carlo::StudyError>(())
     /// ```
-    pub fn run(&self, mut sink: impl FnMut(u64, &[Row]) -> ControlFlow<()>) -> Result<Ensemble, StudyError> {
-        let metrics = self.metrics();
+    pub fn run(&self, sink: impl FnMut(&Batch) -> ControlFlow<()>) -> Result<Ensemble, StudyError> {
+        let mut ensemble = Ensemble::new(self, Shard::WHOLE);
+        self.resume(&mut ensemble, &AtomicBool::new(false), sink)?;
+        Ok(ensemble)
+    }
+
+    /// Runs what is left of an ensemble's shard, as [`Study::run`].
+    ///
+    /// Once `stop` is set, no further chunk is begun, and trials that are done up to the first gap are kept.
+    pub fn resume(
+        &self,
+        ensemble: &mut Ensemble,
+        stop: &AtomicBool,
+        mut sink: impl FnMut(&Batch) -> ControlFlow<()>,
+    ) -> Result<(), StudyError> {
         self.check()?;
         let mut benches: Vec<Bench> =
             (0..rayon::current_num_threads()).map(|_| Bench::new(self)).collect::<Result<_, _>>()?;
-        let mut statistics = vec![Statistics::new(); Metric::COUNT];
-        let chunks = self.trials.div_ceil(CHUNK);
-        let per_bench = BATCH.div_ceil(benches.len() as u64);
-        let (mut chunk, mut done) = (0, 0);
-        while chunk < chunks {
-            // Each bench takes every k-th chunk of the batch; rows are put back in order.
-            let batch = (per_bench * benches.len() as u64).min(chunks - chunk);
-            let stride = benches.len();
-            let parts: Vec<Vec<Vec<Row>>> = benches
-                .par_iter_mut()
-                .enumerate()
-                .map(|(k, bench)| (k as u64..batch).step_by(stride).map(|i| self.chunk(chunk + i, bench)).collect())
-                .collect();
-            let mut parts: Vec<_> = parts.into_iter().map(Vec::into_iter).collect();
-            let rows: Vec<Row> =
-                (0..batch as usize).flat_map(|i| parts[i % stride].next().unwrap_or_default()).collect();
-            statistics.par_iter_mut().enumerate().for_each(|(column, statistics)| {
-                rows.chunks(CHUNK as usize).for_each(|chunk| statistics.take(chunk.iter().map(|row| row[column])));
-            });
-            let first = done;
-            done += rows.len() as u64;
-            chunk += batch;
-            if sink(first, &rows).is_break() {
+        let all = ensemble.shard().trials(self.trials);
+        let mut next = ensemble.next_trial(self.trials);
+        while next < all.end {
+            let batch = next..(next + BATCH).min(all.end);
+            let rows = self.batch(batch.clone(), &mut benches, stop);
+            let whole = rows.len() as u64 == batch.end - batch.start;
+            ensemble.take(next, &rows);
+            let told = Batch { first: next, rows: &rows, ensemble };
+            if sink(&told).is_break() || !whole {
                 break;
             }
+            next = batch.end;
         }
-        let named = Metric::ALL.into_iter().zip(statistics).filter(|(metric, _)| metrics.contains(metric));
-        Ok(Ensemble { trials: done, statistics: named.collect() })
+        Ok(())
     }
 
-    fn chunk(&self, index: u64, bench: &mut Bench) -> Vec<Row> {
-        let range = index * CHUNK..((index + 1) * CHUNK).min(self.trials);
-        range.map(|trial| bench.trial(self.seed, trial)).collect()
+    /// The rows of some trials: each bench takes every k-th chunk, and rows are put back in order. Where `stop` left a chunk
+    /// out, those before it.
+    fn batch(&self, trials: Range<u64>, benches: &mut [Bench], stop: &AtomicBool) -> Vec<Row> {
+        let stride = benches.len();
+        let chunks: Vec<Range<u64>> =
+            trials.clone().step_by(CHUNK as usize).map(|first| first..(first + CHUNK).min(trials.end)).collect();
+        let parts: Vec<Vec<Vec<Row>>> = benches
+            .par_iter_mut()
+            .enumerate()
+            .map(|(k, bench)| {
+                let mine = chunks.iter().skip(k).step_by(stride).cloned();
+                mine.take_while(|_| !stop.load(Ordering::Relaxed))
+                    .map(|chunk| chunk.map(|trial| bench.trial(self.seed, trial)).collect())
+                    .collect()
+            })
+            .collect();
+        let mut parts: Vec<_> = parts.into_iter().map(Vec::into_iter).collect();
+        let in_order = (0..chunks.len()).map_while(|i| parts[i % stride].next());
+        in_order.flatten().collect()
     }
 
     fn check(&self) -> Result<(), StudyError> {
@@ -205,16 +251,6 @@ impl Study {
         self.draws.iter().try_for_each(Draw::check)
     }
 }
-
-impl Ensemble {
-    /// The statistics of one metric, if the study has it.
-    pub fn get(&self, metric: Metric) -> Option<&Statistics> {
-        self.statistics.iter().find(|(m, _)| *m == metric).map(|(_, s)| s)
-    }
-}
-
-/// Chunks per batch, about.
-const BATCH: u64 = 16;
 
 /// The most trials of a study.
 pub const MAX_TRIALS: u64 = 1_000_000_000_000;
@@ -239,15 +275,18 @@ mod tests {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let mut rows = Vec::new();
         let ensemble = pool.install(|| {
-            study.run(|first, batch| {
-                assert_eq!(first as usize, rows.len());
-                rows.extend(batch.iter().map(|row| row.map(f64::to_bits)));
+            study.run(|batch| {
+                assert_eq!(batch.first as usize, rows.len());
+                rows.extend(batch.rows.iter().map(|row| row.map(f64::to_bits)));
                 ControlFlow::Continue(())
             })
         });
-        let ensemble = ensemble.unwrap();
-        let moments = ensemble.statistics.iter().flat_map(|(_, s)| [s.mean().to_bits(), s.std_dev().to_bits()]);
-        (rows, moments.collect())
+        (rows, moments(&ensemble.unwrap()))
+    }
+
+    fn moments(ensemble: &Ensemble) -> Vec<u64> {
+        let of = |s: &Statistics| [s.mean(), s.std_dev(), s.quantile(0.05), s.quantile(0.5)].map(f64::to_bits);
+        ensemble.statistics().flat_map(|(_, s)| of(s)).collect()
     }
 
     #[test]
@@ -263,10 +302,44 @@ mod tests {
     }
 
     #[test]
-    fn a_study_can_be_stopped_and_says_how_far_it_came() {
-        let ensemble = study(100_000).run(|_, _| ControlFlow::Break(())).unwrap();
-        assert!(ensemble.trials > 0 && ensemble.trials < 100_000);
-        assert_eq!(ensemble.get(Metric::EMaxSys).unwrap().count(), ensemble.trials);
+    fn a_study_can_be_stopped_and_goes_on_to_the_same_bits() {
+        let study = study(40_000);
+        let whole = study.run(|_| ControlFlow::Continue(())).unwrap();
+        let mut broken = study.run(|_| ControlFlow::Break(())).unwrap();
+        assert_eq!(broken.trials(), BATCH);
+        assert_eq!(broken.get(Metric::EMaxSys).unwrap().count(), BATCH);
+        let never = AtomicBool::new(false);
+        study.resume(&mut broken, &never, |_| ControlFlow::Continue(())).unwrap();
+        assert_eq!((broken.trials(), moments(&broken)), (40_000, moments(&whole)));
+    }
+
+    #[test]
+    fn a_wish_to_stop_is_heard_within_a_chunk_and_what_is_done_is_kept() {
+        let study = study(40_000);
+        let stop = AtomicBool::new(true);
+        let mut ensemble = Ensemble::new(&study, Shard::WHOLE);
+        study.resume(&mut ensemble, &stop, |_| ControlFlow::Continue(())).unwrap();
+        assert_eq!(ensemble.trials(), 0);
+    }
+
+    #[test]
+    fn shards_merge_in_any_order_to_the_bits_of_the_whole() {
+        let study = study(5000);
+        let whole = study.run(|_| ControlFlow::Continue(())).unwrap();
+        let shard = |index| {
+            let mut ensemble = Ensemble::new(&study, Shard::new(index, 3).unwrap());
+            study.resume(&mut ensemble, &AtomicBool::new(false), |_| ControlFlow::Continue(())).unwrap();
+            ensemble
+        };
+        let mut merged = shard(2);
+        merged.merge(&shard(0)).unwrap();
+        assert_eq!(merged.missing(), [1536..3328]);
+        assert!(matches!(merged.merge(&shard(2)), Err(MergeError::Twice { .. })));
+        merged.merge(&shard(1)).unwrap();
+        assert_eq!((merged.missing(), merged.trials()), (Vec::new(), 5000));
+        assert_eq!(moments(&merged), moments(&whole));
+        let other = self::study(6000).run(|_| ControlFlow::Continue(())).unwrap();
+        assert!(matches!(merged.merge(&other), Err(MergeError::Study { .. })));
     }
 
     #[test]
@@ -274,7 +347,7 @@ mod tests {
         let refuse = |change: fn(&mut Study)| {
             let mut study = study(10);
             change(&mut study);
-            study.run(|_, _| ControlFlow::Continue(())).unwrap_err().to_string()
+            study.run(|_| ControlFlow::Continue(())).unwrap_err().to_string()
         };
         assert!(refuse(|s| s.trials = 0).starts_with("number of trials must be between 1"));
         assert!(refuse(|s| s.runs = [0, 5]).starts_with("number of clockwise runs must be between 1"));

@@ -1,6 +1,6 @@
 //! Each piece of unusable input gets one clear error: file, line, column or key, value, what is allowed, what to do.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used)]
 
 mod bad_input;
 

@@ -1,6 +1,6 @@
 //! What good files mean, and what is tolerated in them.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used)]
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use umbmark_core::dataset::{Dataset, DatasetError, ReturnError, Run};

@@ -1,6 +1,6 @@
 //! Datasets are written whole or not at all, and read back as they were.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 use umbmark_core::dataset::{

@@ -29,10 +29,10 @@ enum MethodKind {
 /// The wheelbase in the closed forms' rotation radius.
 #[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
 enum WheelbaseKind {
-    /// The corrected one, where the wheels really are
-    Corrected,
-    /// The nominal one
+    /// The nominal one, as the paper's companion has it
     Nominal,
+    /// The corrected one, where the wheels really are, as OptiOdom has it
+    Corrected,
 }
 
 /// Arguments of `calibrate`.
@@ -52,7 +52,7 @@ pub struct Arguments {
     heading_arm: Option<f64>,
 
     /// Wheelbase in the closed forms' formula for E_d
-    #[arg(long, value_enum, default_value_t = WheelbaseKind::Corrected, value_name = "WHICH")]
+    #[arg(long, value_enum, default_value_t = WheelbaseKind::Nominal, value_name = "WHICH")]
     radius_wheelbase: WheelbaseKind,
 
     /// Write launch-time parameters for diff_drive_controller of ros2_control

@@ -10,18 +10,17 @@ use anyhow::Context;
 use serde_json::{Map, Value, json};
 use umbmark_core::calibrate::{Angles, Correction};
 use umbmark_core::engine::Update;
-use umbmark_core::monte_carlo::{Distribution, Draw, Ensemble, Metric, Row, Statistics, Study};
+use umbmark_core::monte_carlo::{Distribution, Draw, Ensemble, Metric, Row, Shard, Statistics, Study};
+use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{Direction, SQUARE};
 use umbmark_core::score::summarise;
 use umbmark_core::simulate::{Odometry, Phase};
 
+use crate::checkpoint::Checkpoint;
+use crate::effect_flags::number;
+use crate::ensemble_report::{Description, Report};
 use crate::setup::{Setup, SetupFlags};
-use crate::table::{table, with_precision_of};
-use crate::terminal::histogram;
 use crate::{Session, files};
-
-/// The quantiles that are printed.
-const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
 /// How the robot computes its pose.
 #[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
@@ -59,9 +58,13 @@ enum PhaseKind {
 /// Arguments of `mc`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Trials: whole tests, each with all its runs
-    #[arg(short = 'n', long, default_value_t = 1000, value_name = "N")]
-    trials: u64,
+    /// Trials: whole tests, each with all its runs [default: 1000; as many as it takes with --until-std-error]
+    #[arg(short = 'n', long, value_name = "N")]
+    trials: Option<u64>,
+
+    /// Stop as soon as the standard error of the mean E_max,sys is this small, as in 0.1mm
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    until_std_error: Option<f64>,
 
     /// Runs in each direction
     #[arg(long, default_value_t = 5, value_name = "N")]
@@ -87,6 +90,24 @@ pub struct Arguments {
     #[arg(long)]
     force: bool,
 
+    /// Write what is done to this file now and then, for --resume and `umbmark merge`
+    #[arg(long, value_name = "FILE", help_heading = "Long studies")]
+    checkpoint: Option<PathBuf>,
+
+    /// Time between two checkpoints
+    #[arg(long, value_name = "SECONDS", default_value_t = 2.0, value_parser = number, requires = "checkpoint",
+          help_heading = "Long studies")]
+    checkpoint_every: f64,
+
+    /// Go on with the study of the checkpoint file, if it is there
+    #[arg(long, requires = "checkpoint", conflicts_with = "out", help_heading = "Long studies")]
+    resume: bool,
+
+    /// Run the I-th of K shards, for `umbmark merge` to put together
+    #[arg(long, value_name = "I/K", default_value_t = Shard::WHOLE, conflicts_with = "until_std_error",
+          requires = "checkpoint", help_heading = "Long studies")]
+    shard: Shard,
+
     #[command(flatten)]
     setup: SetupFlags,
 }
@@ -111,29 +132,84 @@ impl Arguments {
             PhaseKind::Edge => Phase::Edge,
         };
         let runs = [self.runs; 2];
-        let study = Study { draws, odometry, path, phase, runs, ..Study::new(model, self.trials, seed) };
+        let study = Study { draws, odometry, path, phase, runs, ..Study::new(model, self.trials(), seed) };
         Ok((study, assumed))
     }
+
+    fn trials(&self) -> u64 {
+        self.trials.unwrap_or(if self.until_std_error.is_some() { MOST_UNTIL } else { 1000 })
+    }
+
+    /// What is done already, where a study is taken up again.
+    fn checkpoint(&self, study: &Study, description: &Description) -> anyhow::Result<Checkpoint> {
+        let new = || Checkpoint { description: description.clone(), ensemble: Ensemble::new(study, self.shard) };
+        let Some(file) = self.checkpoint.as_deref().filter(|file| file.exists()) else { return Ok(new()) };
+        if !self.resume {
+            anyhow::ensure!(
+                self.force,
+                "{} exists already; --resume goes on with it, --force begins anew",
+                file.display()
+            );
+            return Ok(new());
+        }
+        let known = Checkpoint::load(file)?;
+        anyhow::ensure!(
+            known.ensemble.is_of(study, self.shard),
+            "{} is of another study or shard; say the same flags, seed and number of trials as before",
+            file.display()
+        );
+        Ok(known)
+    }
+
+    fn save(&self, description: &Description, ensemble: &Ensemble) -> anyhow::Result<()> {
+        self.checkpoint.as_deref().map_or(Ok(()), |file| Checkpoint::save(file, description, ensemble))
+    }
+
+    fn is_precise(&self, ensemble: &Ensemble) -> bool {
+        let reached = ensemble.get(Metric::EMaxSys).map(Statistics::std_error);
+        self.until_std_error.zip(reached).is_some_and(|(wanted, reached)| reached <= wanted)
+    }
+}
+
+/// The most trials of a study that stops by precision.
+const MOST_UNTIL: u64 = 1_000_000_000;
+
+/// A length with its unit: m, mm or um.
+fn length(text: &str) -> Result<f64, String> {
+    let wrong = || "write a length with its unit, as in 0.1mm, 100um or 1e-4m".to_owned();
+    let units = [("mm", 1e-3), ("um", 1e-6), ("m", 1.0)];
+    let (number, factor) =
+        units.iter().find_map(|(unit, factor)| Some((text.strip_suffix(unit)?, factor))).ok_or_else(wrong)?;
+    let value: f64 = number.trim().parse().map_err(|_| wrong())?;
+    if value > 0.0 && value.is_finite() { Ok(value * factor) } else { Err("must be positive and finite".to_owned()) }
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let (study, assumed) = arguments.study(session.seed())?;
+    let description = describe(&study, &assumed)?;
+    let mut checkpoint = arguments.checkpoint(&study, &description)?;
     let metrics = study.metrics();
     let mut out =
         arguments.out.as_deref().map(|file| TrialsFile::create(file, &metrics, arguments.force)).transpose()?;
-    let interrupt = session.catch_interrupt()?;
-    let mut progress = session.progress(study.trials, "trials");
+    let (before, all) = (checkpoint.ensemble.trials(), arguments.shard.trials(study.trials));
+    let mut progress = session.progress(all.end - all.start, "trials");
+    let stop = session.catch_interrupt()?;
     let began = Instant::now();
+    let mut precise = false;
     let mut failure = None;
-    let ensemble = session.on_threads(|| {
-        study.run(|first, rows| {
-            progress.at(first + rows.len() as u64);
-            if let Some(file) = &mut out
-                && let Err(error) = file.write(first, rows)
-            {
-                failure = Some(error);
+    let Checkpoint { ensemble, .. } = &mut checkpoint;
+    session.on_threads(|| {
+        let mut saved = Instant::now();
+        study.resume(ensemble, &stop, |batch| {
+            progress.at(batch.ensemble.trials());
+            let mut written = out.as_mut().map_or(Ok(()), |file| file.write(batch.first, batch.rows));
+            if written.is_ok() && saved.elapsed().as_secs_f64() >= arguments.checkpoint_every {
+                written = arguments.save(&description, batch.ensemble);
+                saved = Instant::now();
             }
-            if failure.is_some() || interrupt.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            precise = arguments.is_precise(batch.ensemble);
+            failure = written.err();
+            if failure.is_some() || precise { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
     })??;
     let seconds = began.elapsed().as_secs_f64();
@@ -144,12 +220,16 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if let Some(file) = out {
         file.finish()?;
     }
-    let partial = ensemble.trials < study.trials;
+    let ensemble = &checkpoint.ensemble;
+    arguments.save(&description, ensemble)?;
+    let partial = !precise && ensemble.trials() < all.end - all.start;
     if partial {
-        session.message("partial", &format!("stopped after {} of {} trials", ensemble.trials, study.trials));
+        session.message("partial", &format!("stopped after {} of {} trials", ensemble.trials(), all.end - all.start));
+    } else if arguments.until_std_error.is_some() && !precise {
+        session.message("warning", "all trials are done, and the standard error that was asked for is not reached");
     }
-    let theory = Theory::of(&study)?;
-    let report = Report { study: &study, ensemble: &ensemble, theory, assumed: &assumed, partial, seconds };
+    let took = Some((seconds, ensemble.trials() - before));
+    let report = Report { description: &description, ensemble, partial, took };
     if session.json() {
         session.print_json(&report.json())?;
     } else {
@@ -191,6 +271,63 @@ impl TrialsFile {
     }
 }
 
+fn distribution_json(draw: &Draw) -> Value {
+    match draw.distribution() {
+        Distribution::Normal { mean, sd } => json!({ "mean": mean, "sd": sd }),
+        Distribution::Uniform { min, max } => json!({ "min": min, "max": max }),
+    }
+}
+
+/// The study in words and numbers.
+fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
+    let theory = Theory::of(study)?;
+    let path = &study.path;
+    let sizes = || path.shape().parameters.iter().zip(path.values());
+    let written: Vec<String> = sizes().map(|(p, v)| format!("{} {v}", p.name)).collect();
+    let drawn = |effect: &str, parameter: &Parameter| {
+        study.draws.iter().find(|d| d.effect() == effect && d.parameter().name == parameter.name)
+    };
+    let mut heading = vec![
+        format!("{} cw + {} ccw runs", study.runs[0], study.runs[1]),
+        format!("{}, {} ({})", study.robot.name, path.shape().name.replace('_', "-"), written.join(", ")),
+    ];
+    let mut effects = Vec::new();
+    for part in study.model.parts() {
+        let about = &part.effect.about;
+        let mut entry = Map::from_iter([("name".to_owned(), json!(about.name))]);
+        let mut words = Vec::new();
+        for (parameter, value) in about.parameters.iter().zip(&part.values) {
+            let draw = drawn(about.name, parameter);
+            entry.insert(parameter.name.to_owned(), draw.map_or(json!(value), distribution_json));
+            words.push(format!("{} {}", parameter.name, value_text(parameter, *value, draw)));
+        }
+        effects.push(Value::Object(entry));
+        heading.push(format!("  {}: {}", about.name, words.join(", ")));
+    }
+    heading.extend(assumed.iter().map(|assumption| format!("  assumed: {assumption}")));
+    let sizes: Map<String, Value> = sizes().map(|(p, v)| (p.name.to_owned(), json!(v))).collect();
+    let document = json!({
+        "noise_free": { "e_max_sys_m": theory.exact, "first_order_e_max_sys_m": theory.first_order },
+        "runs_per_direction": study.runs[0],
+        "robot": study.robot.name,
+        "path": { "shape": path.shape().name, "sizes": sizes },
+        "effects": effects,
+        "assumed": assumed,
+        "version": umbmark_core::VERSION,
+    });
+    let document = document.as_object().cloned().unwrap_or_default();
+    Ok(Description { heading, theory: theory.text(), seed: study.seed, document })
+}
+
+fn value_text(parameter: &Parameter, value: f64, draw: Option<&Draw>) -> String {
+    match (parameter.choices.get(value as usize), draw.map(Draw::distribution)) {
+        (Some(word), _) => (*word).to_owned(),
+        (None, Some(Distribution::Normal { mean, sd })) => format!("{mean} ± {sd}"),
+        (None, Some(Distribution::Uniform { min, max })) => format!("{min} .. {max}"),
+        (None, None) => value.to_string(),
+    }
+}
+
 /// E_max,sys \[m\] of the same test without noise.
 struct Theory {
     exact: Option<f64>,
@@ -226,206 +363,5 @@ impl Theory {
             (Some(exact), None) => format!("E_max,sys without noise: {exact} by exact kinematics\n\n"),
             _ => String::new(),
         }
-    }
-}
-
-/// Everything that is said of a finished study.
-struct Report<'a> {
-    study: &'a Study,
-    ensemble: &'a Ensemble,
-    theory: Theory,
-    assumed: &'a [String],
-    partial: bool,
-    seconds: f64,
-}
-
-impl Report<'_> {
-    fn trials_per_s(&self) -> f64 {
-        self.ensemble.trials as f64 / self.seconds.max(1e-9)
-    }
-
-    fn json(&self) -> Value {
-        let metrics: Map<String, Value> = self
-            .ensemble
-            .statistics
-            .iter()
-            .map(|(metric, s)| {
-                let quantiles: Map<String, Value> =
-                    QUANTILES.iter().map(|q| (q.to_string(), json!(s.quantile(*q)))).collect();
-                let value = json!({
-                    "mean": s.mean(), "std_dev": s.std_dev(), "std_error": s.std_error(),
-                    "min": s.min(), "max": s.max(), "quantiles": quantiles,
-                });
-                (metric.name().to_owned(), value)
-            })
-            .collect();
-        let effects = self.study.model.parts().iter().map(|part| {
-            let mut entry = Map::from_iter([("name".to_owned(), json!(part.effect.about.name))]);
-            for (parameter, value) in part.effect.about.parameters.iter().zip(&part.values) {
-                let drawn = self
-                    .study
-                    .draws
-                    .iter()
-                    .find(|d| d.effect() == part.effect.about.name && d.parameter().name == parameter.name);
-                entry.insert(parameter.name.to_owned(), drawn.map_or(json!(value), distribution_json));
-            }
-            Value::Object(entry)
-        });
-        let path = &self.study.path;
-        let sizes: Map<String, Value> =
-            path.shape().parameters.iter().zip(path.values()).map(|(p, v)| (p.name.to_owned(), json!(v))).collect();
-        json!({
-            "n": self.ensemble.trials,
-            "seed": self.study.seed,
-            "partial": self.partial,
-            "metrics": metrics,
-            "trials_per_s": self.trials_per_s(),
-            "noise_free": {
-                "e_max_sys_m": self.theory.exact, "first_order_e_max_sys_m": self.theory.first_order,
-            },
-            "runs_per_direction": self.study.runs[0],
-            "robot": self.study.robot.name,
-            "path": { "shape": path.shape().name, "sizes": sizes },
-            "effects": effects.collect::<Vec<Value>>(),
-            "assumed": self.assumed,
-            "version": umbmark_core::VERSION,
-        })
-    }
-
-    fn text(&self) -> String {
-        let study = self.study;
-        let sizes: Vec<String> = study
-            .path
-            .shape()
-            .parameters
-            .iter()
-            .zip(study.path.values())
-            .map(|(p, v)| format!("{} {v}", p.name))
-            .collect();
-        let mut text = format!(
-            "Monte Carlo of UMBmark: {} trials of {} cw + {} ccw runs\n{}, {} ({})\n",
-            self.ensemble.trials,
-            study.runs[0],
-            study.runs[1],
-            study.robot.name,
-            study.path.shape().name.replace('_', "-"),
-            sizes.join(", "),
-        );
-        for part in study.model.parts() {
-            let values: Vec<String> = part
-                .effect
-                .about
-                .parameters
-                .iter()
-                .zip(&part.values)
-                .map(|(p, v)| self.value_text(part.effect.about.name, p, *v))
-                .collect();
-            text += &format!("  {}: {}\n", part.effect.about.name, values.join(", "));
-        }
-        for assumption in self.assumed {
-            text += &format!("  assumed: {assumption}\n");
-        }
-        text += "\n";
-        text += &self.table();
-        text += "\n\n";
-        text += &self.theory.text();
-        if let Some(e_max) = self.ensemble.get(Metric::EMaxSys) {
-            text += "E_max,sys over the trials\n";
-            text += &distribution_of(e_max);
-        }
-        text += &format!(
-            "\nseed {}, {:.0} trials/s, umbmark {}{}\n",
-            study.seed,
-            self.trials_per_s(),
-            umbmark_core::VERSION,
-            if self.partial { ", PARTIAL: stopped before the end" } else { "" },
-        );
-        text
-    }
-
-    fn value_text(&self, effect: &str, parameter: &umbmark_core::parameter::Parameter, value: f64) -> String {
-        if let Some(word) = parameter.choices.get(value as usize) {
-            return format!("{} {word}", parameter.name);
-        }
-        let drawn = self.study.draws.iter().find(|d| d.effect() == effect && d.parameter().name == parameter.name);
-        match drawn.map(Draw::distribution) {
-            Some(Distribution::Normal { mean, sd }) => format!("{} {mean} ± {sd}", parameter.name),
-            Some(Distribution::Uniform { min, max }) => format!("{} {min} .. {max}", parameter.name),
-            None => format!("{} {value}", parameter.name),
-        }
-    }
-
-    fn table(&self) -> String {
-        let rows = self.ensemble.statistics.iter().map(|(metric, s)| {
-            let (unit, factor) = if metric.is_angle() { ("deg", 180.0 / std::f64::consts::PI) } else { ("mm", 1e3) };
-            let cell = |value: f64| with_precision_of(value * factor, s.std_error() * factor);
-            let mut row = vec![format!("{} [{unit}]", title(*metric)), cell(s.mean())];
-            row.push(with_precision_of(s.std_error() * factor, s.std_error() * factor));
-            row.push(cell(s.std_dev()));
-            row.extend([0.05, 0.5, 0.95].map(|q| cell(s.quantile(q))));
-            row
-        });
-        table(&["metric", "mean", "std error", "std dev", "5 %", "50 %", "95 %"], rows)
-    }
-}
-
-fn distribution_json(draw: &Draw) -> Value {
-    match draw.distribution() {
-        Distribution::Normal { mean, sd } => json!({ "mean": mean, "sd": sd }),
-        Distribution::Uniform { min, max } => json!({ "min": min, "max": max }),
-    }
-}
-
-/// What people call a metric.
-fn title(metric: Metric) -> &'static str {
-    match metric {
-        Metric::EMaxSys => "E_max,sys",
-        Metric::Sigma => "sigma (per axis)",
-        Metric::CentroidCwX => "centroid cw, x",
-        Metric::CentroidCwY => "centroid cw, y",
-        Metric::CentroidCcwX => "centroid ccw, x",
-        Metric::CentroidCcwY => "centroid ccw, y",
-        Metric::ReturnHeadingCw => "return heading cw",
-        Metric::ReturnHeadingCcw => "return heading ccw",
-        Metric::NonsysOrientation => "orientation, bumps",
-    }
-}
-
-/// A histogram of lengths in mm, in classes of a round width between the extremes.
-fn distribution_of(s: &Statistics) -> String {
-    let (low, high) = (1e3 * s.quantile(0.001), 1e3 * s.quantile(0.999));
-    let width = round_width((high - low) / 16.0);
-    let first = (low / width).floor();
-    let classes = ((high / width).ceil() - first).max(1.0) as usize;
-    let mut below = 0.0;
-    let shares: Vec<(f64, f64)> = (0..classes)
-        .map(|i| {
-            let edge = (first + i as f64) * width;
-            let up_to = if i + 1 == classes { 1.0 } else { s.share_below((edge + width) * 1e-3) };
-            let share = (up_to - below).max(0.0);
-            below = up_to.max(below);
-            (edge, share)
-        })
-        .collect();
-    histogram(&shares, "mm", 40)
-}
-
-/// The next 1, 2 or 5 times a power of ten.
-fn round_width(width: f64) -> f64 {
-    if !(width > 1e-6) {
-        return 1e-3;
-    }
-    let power = 10f64.powf(width.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|w| *w >= width * 0.999).unwrap_or(width)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn class_widths_are_round() {
-        assert_eq!([0.7, 1.0, 1.2, 3.0, 60.0].map(round_width), [1.0, 1.0, 2.0, 5.0, 100.0]);
-        assert_eq!(round_width(0.0), 1e-3);
     }
 }

@@ -91,12 +91,13 @@ impl ClosedForm {
 /// | nominal | 11.4, 21.7 | 18.1, 35.2 | 3.3, 6.8 | 1.3, 2.3 |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RadiusWheelbase {
-    /// E_b b_nominal: the distance that the wheels really are apart when they roll along R. With it the corrections published for
-    /// real robots (OptiOdom, 2022) and the errors they leave come out to the last printed digit.
+    /// b_nominal, as the paper's companion writes it: the only b that is known beforehand.
     #[default]
-    Corrected,
-    /// b_nominal: the formula with the only b that is known beforehand.
     Nominal,
+    /// E_b b_nominal: the distance that the wheels really are apart when they roll along R. With it the errors left by the
+    /// corrections published for real robots (OptiOdom, 2022) come out to the last printed digit; the corrections themselves
+    /// do with either.
+    Corrected,
 }
 
 impl RadiusWheelbase {

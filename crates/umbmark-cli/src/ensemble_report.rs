@@ -1,0 +1,151 @@
+//! What is said of an ensemble: for people, and as a document.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+use umbmark_core::monte_carlo::{Ensemble, Metric, Statistics};
+
+use crate::table::{table, with_precision_of};
+use crate::terminal::histogram;
+
+/// The quantiles that a document tells.
+const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
+
+/// What a study is, in words and as part of a document; it goes into checkpoints, so that what is merged from them can be
+/// described.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Description {
+    /// Lines above the table.
+    pub heading: Vec<String>,
+    /// A line below the table.
+    pub theory: String,
+    /// Seed of the study.
+    pub seed: u64,
+    /// What the document tells beside the metrics.
+    pub document: Map<String, Value>,
+}
+
+/// An ensemble and what is to be said of it.
+#[derive(Debug)]
+pub struct Report<'a> {
+    /// What the study is.
+    pub description: &'a Description,
+    /// What was found.
+    pub ensemble: &'a Ensemble,
+    /// Whether trials that were asked for are not done.
+    pub partial: bool,
+    /// How long it took \[s\], and for how many trials, where that is known.
+    pub took: Option<(f64, u64)>,
+}
+
+impl Report<'_> {
+    fn trials_per_s(&self) -> Option<f64> {
+        self.took.map(|(seconds, trials)| trials as f64 / seconds.max(1e-9))
+    }
+
+    /// One document.
+    pub fn json(&self) -> Value {
+        let metric = |(metric, s): (Metric, &Statistics)| {
+            let quantiles: Map<String, Value> =
+                QUANTILES.iter().map(|q| (q.to_string(), json!(s.quantile(*q)))).collect();
+            let value = json!({
+                "mean": s.mean(), "std_dev": s.std_dev(), "std_error": s.std_error(),
+                "min": s.min(), "max": s.max(), "quantiles": quantiles,
+            });
+            (metric.name().to_owned(), value)
+        };
+        let metrics: Map<String, Value> = self.ensemble.statistics().map(metric).collect();
+        let mut document = Map::from_iter([
+            ("n".to_owned(), json!(self.ensemble.trials())),
+            ("seed".to_owned(), json!(self.description.seed)),
+            ("partial".to_owned(), json!(self.partial)),
+            ("metrics".to_owned(), Value::Object(metrics)),
+            ("trials_per_s".to_owned(), json!(self.trials_per_s())),
+        ]);
+        document.extend(self.description.document.clone());
+        Value::Object(document)
+    }
+
+    /// A table and a histogram.
+    pub fn text(&self) -> String {
+        let mut text = format!("Monte Carlo of UMBmark: {} trials of ", self.ensemble.trials());
+        text += &self.description.heading.join("\n");
+        text += "\n\n";
+        text += &self.table();
+        text += "\n\n";
+        text += &self.description.theory;
+        if let Some(e_max) = self.ensemble.get(Metric::EMaxSys) {
+            text += "E_max,sys over the trials\n";
+            text += &distribution_of(e_max);
+        }
+        let speed = self.trials_per_s().map(|speed| format!(", {speed:.0} trials/s")).unwrap_or_default();
+        let partial = if self.partial { ", PARTIAL: not all trials are done" } else { "" };
+        let (seed, version) = (self.description.seed, umbmark_core::VERSION);
+        text + &format!("\nseed {seed}{speed}, umbmark {version}{partial}\n")
+    }
+
+    fn table(&self) -> String {
+        let rows = self.ensemble.statistics().map(|(metric, s)| {
+            let (unit, factor) = if metric.is_angle() { ("deg", 180.0 / std::f64::consts::PI) } else { ("mm", 1e3) };
+            let cell = |value: f64| with_precision_of(value * factor, s.std_error() * factor);
+            let mut row = vec![format!("{} [{unit}]", title(metric)), cell(s.mean()), cell(s.std_error())];
+            row.push(cell(s.std_dev()));
+            row.extend([0.05, 0.5, 0.95].map(|q| cell(s.quantile(q))));
+            row
+        });
+        table(&["metric", "mean", "std error", "std dev", "5 %", "50 %", "95 %"], rows)
+    }
+}
+
+/// What people call a metric.
+fn title(metric: Metric) -> &'static str {
+    match metric {
+        Metric::EMaxSys => "E_max,sys",
+        Metric::Sigma => "sigma (per axis)",
+        Metric::CentroidCwX => "centroid cw, x",
+        Metric::CentroidCwY => "centroid cw, y",
+        Metric::CentroidCcwX => "centroid ccw, x",
+        Metric::CentroidCcwY => "centroid ccw, y",
+        Metric::ReturnHeadingCw => "return heading cw",
+        Metric::ReturnHeadingCcw => "return heading ccw",
+        Metric::NonsysOrientation => "orientation, bumps",
+    }
+}
+
+/// A histogram of lengths in mm, in classes of a round width between the extremes.
+fn distribution_of(s: &Statistics) -> String {
+    let (low, high) = (1e3 * s.quantile(0.001), 1e3 * s.quantile(0.999));
+    let width = round_width((high - low) / 16.0);
+    let first = (low / width).floor();
+    let classes = ((high / width).ceil() - first).max(1.0) as usize;
+    let mut below = 0.0;
+    let shares: Vec<(f64, f64)> = (0..classes)
+        .map(|i| {
+            let edge = (first + i as f64) * width;
+            let up_to = if i + 1 == classes { 1.0 } else { s.share_below((edge + width) * 1e-3) };
+            let share = (up_to - below).max(0.0);
+            below = up_to.max(below);
+            (edge, share)
+        })
+        .collect();
+    histogram(&shares, "mm", 40)
+}
+
+/// The next 1, 2 or 5 times a power of ten.
+fn round_width(width: f64) -> f64 {
+    if !(width > 1e-6) {
+        return 1e-3;
+    }
+    let power = 10f64.powf(width.log10().floor());
+    [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|w| *w >= width * 0.999).unwrap_or(width)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn class_widths_are_round() {
+        assert_eq!([0.7, 1.0, 1.2, 3.0, 60.0].map(round_width), [1.0, 1.0, 2.0, 5.0, 100.0]);
+        assert_eq!(round_width(0.0), 1e-3);
+    }
+}
