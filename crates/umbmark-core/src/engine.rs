@@ -51,7 +51,7 @@ pub use instructions::Instructions;
 pub use integrator::{Integrator, Method, Segment};
 pub use monoid::Monoid;
 pub use motion::Motion;
-pub use sampled::{CounterTrack, SampledOdometry, Update};
+pub use sampled::{CounterTrack, Profile, SampledOdometry, Update};
 pub use tick_geometry::TickGeometry;
 pub use tick_odometry::TickOdometry;
 pub use wheel_line::{MAX_TICKS, UNITS_PER_TICK, WheelLine};

@@ -333,7 +333,7 @@ mod tests {
         };
         let mut merged = shard(2);
         merged.merge(&shard(0)).unwrap();
-        assert_eq!(merged.missing(), [1536..3328]);
+        assert_eq!((merged.missing().len(), merged.missing()[0].clone()), (1, 1536..3328));
         assert!(matches!(merged.merge(&shard(2)), Err(MergeError::Twice { .. })));
         merged.merge(&shard(1)).unwrap();
         assert_eq!((merged.missing(), merged.trials()), (Vec::new(), 5000));

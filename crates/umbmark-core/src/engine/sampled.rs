@@ -1,14 +1,17 @@
 //! Odometry from counters read at given instants.
 
 use blocks::Blocks;
+pub use profile::Profile;
+use profile::Steps;
 
 use super::oracle::CompensatedSum;
-use super::{Instructions, Motion, TickGeometry, UNITS_PER_TICK, WheelLine};
+use super::{Instructions, Motion, TickGeometry, WheelLine};
 use crate::geometry::{Pose2, Real};
 
 mod blocks;
 mod carries;
 mod constant_rate;
+mod profile;
 
 /// How the pose is advanced by one change of the counters, of distance d and rotation θ at heading φ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -48,12 +51,19 @@ pub struct SampledOdometry {
     update: Update,
     instructions: Instructions,
     blocks: Blocks,
+    steps: Steps,
 }
 
 impl SampledOdometry {
     /// Odometry with these tick lengths, this wheelbase and this update.
     pub fn new(geometry: TickGeometry, update: Update) -> SampledOdometry {
-        SampledOdometry { geometry, update, instructions: Instructions::best(), blocks: Blocks::default() }
+        SampledOdometry {
+            geometry,
+            update,
+            instructions: Instructions::best(),
+            blocks: Blocks::default(),
+            steps: Steps::default(),
+        }
     }
 
     /// The same odometry, with registers no wider than these: the same bits, maybe slower.
@@ -91,9 +101,7 @@ impl SampledOdometry {
 
     /// The motion reported along `line` when the counters are read where the given fractions of its travel are done.
     ///
-    /// This is how acceleration enters: for a speed profile v(t), the fractions are the integral of v up to each instant
-    /// over the whole integral. Each is clamped to \[0, 1\] (NaN to 0); what happens after the last reading is not
-    /// reported, so the last fraction should be 1.
+    /// This is how acceleration enters; what fractions mean is said at [`Profile::new`].
     ///
     /// ```
     /// use umbmark_core::engine::{SampledOdometry, TickGeometry, Update, WheelLine};
@@ -106,15 +114,7 @@ impl SampledOdometry {
     /// # Ok::<(), umbmark_core::engine::EngineError>(())
     /// ```
     pub fn with_profile(&self, line: &WheelLine, fractions: impl IntoIterator<Item = f64>) -> Motion {
-        const ONE: i64 = 1 << 53;
-        let (start, travel) = (line.start(), line.travel());
-        self.from_counts(fractions.into_iter().map(|fraction| {
-            // The cast takes NaN to 0. Whole 2^-53rds, so that the fraction 1 is exactly the end of the line.
-            let done = i128::from((fraction.clamp(0.0, 1.0) * ONE as f64) as i64);
-            [0, 1].map(|i| {
-                (start[i] + (i128::from(travel[i]) * done / i128::from(ONE)) as i64).div_euclid(UNITS_PER_TICK)
-            })
-        }))
+        self.from_counts(Profile::new(fractions).counts(line))
     }
 }
 

@@ -1,7 +1,7 @@
 //! When the counters are read along a move.
 
 use super::Leg;
-use crate::engine::{Integrator, Method, Motion, SampledOdometry, Segment, TickGeometry, Update, WheelLine};
+use crate::engine::{Integrator, Method, Motion, Profile, SampledOdometry, Segment, TickGeometry, Update, WheelLine};
 
 /// Odometry of a robot that reads its counters at a fixed rate, along moves with acceleration ramps.
 ///
@@ -16,10 +16,10 @@ pub(super) struct SampledMoves {
 }
 
 /// The readings of one move, as shares of its travel.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct Readings {
     /// On the way up, relative to the last of them.
-    up: Vec<f64>,
+    up: Profile,
     /// Share of the travel done when readings at constant speed begin.
     cruise_from: f64,
     /// Share of the travel done when they end.
@@ -27,7 +27,7 @@ struct Readings {
     /// How many there are.
     cruise: u32,
     /// On the way down, as shares of what is left then; the last is 1.
-    down: Vec<f64>,
+    down: Profile,
 }
 
 impl Readings {
@@ -65,11 +65,11 @@ impl Readings {
         }
         let rest = 1.0 - to;
         Readings {
-            up: up.iter().map(|share| share / from).collect(),
+            up: Profile::new(up.iter().map(|share| share / from)),
             cruise_from: from,
             cruise_to: to,
             cruise,
-            down: down.iter().map(|share| if rest > 0.0 { (share - to) / rest } else { 1.0 }).collect(),
+            down: Profile::new(down.iter().map(|share| if rest > 0.0 { (share - to) / rest } else { 1.0 })),
         }
     }
 }
@@ -91,14 +91,14 @@ impl SampledMoves {
         let piece =
             |start, travel| WheelLine::new(start, travel).expect("a piece of a line is no longer than the line");
         let up = piece(line.start(), a);
-        let motion = self.ramps.with_profile(&up, readings.up.iter().copied());
+        let motion = self.ramps.along(&up, &readings.up);
         if readings.cruise_from == 1.0 {
             return motion;
         }
         let level = piece(up.end_phases(), [b[0] - a[0], b[1] - a[1]]);
         let down = piece(level.end_phases(), [line.travel()[0] - b[0], line.travel()[1] - b[1]]);
         let motion = motion.then(&self.cruise.motion(&Segment::sampled(level, readings.cruise)));
-        motion.then(&self.ramps.with_profile(&down, readings.down.iter().copied()))
+        motion.then(&self.ramps.along(&down, &readings.down))
     }
 }
 
@@ -140,7 +140,7 @@ mod tests {
     fn a_hundred_hertz_reads_a_leg_of_twenty_one_seconds_two_thousand_one_hundred_times() {
         let readings = Readings::new(&leg(4.0, 0.0), 100.0);
         // 1 s up and 1 s down at 0.2 m/s², 19 s between.
-        let count = readings.up.len() + readings.cruise as usize + readings.down.len();
+        let count = readings.up.readings() + readings.cruise as usize + readings.down.readings();
         assert_eq!(count, 2100);
         assert!((readings.cruise_from - 0.1 / 4.0).abs() < 1e-12);
     }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::engine::UNITS_PER_TICK;
 use crate::engine::oracle;
 use crate::engine::random_lines::{Source, cases};
 
