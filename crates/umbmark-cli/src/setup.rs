@@ -11,6 +11,28 @@ use umbmark_core::path::Path;
 use crate::effect_flags::EffectFlags;
 use crate::robot_flags::RobotFlags;
 
+/// The directions of a test.
+#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
+pub enum Directions {
+    /// Both: UMBmark
+    Both,
+    /// Clockwise only: a uni-directional test
+    Cw,
+    /// Counter-clockwise only
+    Ccw,
+}
+
+impl Directions {
+    /// Numbers of runs \[cw, ccw\] of a test with `runs` in each of its directions.
+    pub fn runs(self, runs: usize) -> [usize; 2] {
+        match self {
+            Directions::Both => [runs, runs],
+            Directions::Cw => [runs, 0],
+            Directions::Ccw => [0, runs],
+        }
+    }
+}
+
 /// The wheel noise \[m^0.5\] where nothing is said of noise: it gives about the paper's scatter.
 const ASSUMED_WHEEL_NOISE: f64 = 1e-3;
 
@@ -24,6 +46,10 @@ pub struct SetupFlags {
     /// Effects with their values or distributions
     #[arg(long, value_name = "model.toml")]
     model: Option<PathBuf>,
+
+    /// Directions to drive in; a uni-directional test can hide two errors that cancel
+    #[arg(long, value_enum, default_value_t = Directions::Both, value_name = "WHICH")]
+    pub direction: Directions,
 
     #[command(flatten)]
     robot_flags: RobotFlags,

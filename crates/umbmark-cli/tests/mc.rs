@@ -137,7 +137,7 @@ fn unusable_arguments_get_one_clear_error_and_exit_one() {
         (&["--eb-sd", "-1"], "error: --eb-sd: standard deviation of e_b must be finite and 0 or more, got -1\n"),
         (&["--radius", "2"], "error: --radius is not a size of a square\n"),
         (&["-n", "0"], "error: number of trials must be between 1 and 1000000000000, got 0\n"),
-        (&["--runs", "0"], "error: number of clockwise runs must be between 1 and 10000, got 0\n"),
+        (&["--runs", "0"], "error: number of runs must be between 1 and 20000, got 0\n"),
         (&["--side", "0"], "error: side_m must be between 0.001 and 10000 m, got 0\n"),
         (
             &["--side", "9999", "--ticks-per-revolution", "1e8"],
@@ -197,6 +197,18 @@ fn robot_and_model_files_are_used_and_flags_override_them() {
     let expected = 8.0_f64.sqrt() * 0.02 * std::f64::consts::FRAC_PI_2;
     let mean = document["metrics"]["e_max_sys_m"]["mean"].as_f64().unwrap();
     assert!((mean / expected - 1.0).abs() < 0.05, "{mean} {expected}");
+}
+
+#[test]
+fn a_uni_directional_test_has_no_e_max_sys_and_hides_what_cancels() {
+    let flags = ["--direction", "ccw", "--ed", "1.00203", "--eb", "1.01519", "--wheel-noise", "0", "-n", "20"];
+    let document = json(&flags);
+    assert!(document["metrics"].get("e_max_sys_m").is_none());
+    let mean = |metric: &str| document["metrics"][metric]["mean"].as_f64().unwrap();
+    // Fig. 3 of the paper: the ccw square closes, but for the quantisation of the encoders.
+    assert!(mean("centroid_ccw_x_m").hypot(mean("centroid_ccw_y_m")) < 3e-3);
+    let text = stdout(&flags);
+    assert!(text.contains("5 ccw runs, uni-directional") && !text.contains("E_max"), "{text}");
 }
 
 #[test]

@@ -93,7 +93,8 @@ pub struct Study {
     pub odometry: Odometry,
     /// Where its wheels rest within a tick.
     pub phase: Phase,
-    /// Runs in the clockwise and in the counter-clockwise direction.
+    /// Runs in the clockwise and in the counter-clockwise direction; without runs in one of them, the uni-directional test
+    /// of section 3.1 of the paper, which has no E_max,sys.
     pub runs: [usize; 2],
     /// Number of trials.
     pub trials: u64,
@@ -246,8 +247,9 @@ impl Study {
         };
         count("number of trials", self.trials, 1..MAX_TRIALS + 1)?;
         for (what, runs) in [("number of clockwise runs", self.runs[0]), ("number of ccw runs", self.runs[1])] {
-            count(what, runs as u64, 1..MAX_RUNS + 1)?;
+            count(what, runs as u64, 0..MAX_RUNS + 1)?;
         }
+        count("number of runs", (self.runs[0] + self.runs[1]) as u64, 1..2 * MAX_RUNS + 1)?;
         self.draws.iter().try_for_each(Draw::check)
     }
 }
@@ -343,6 +345,15 @@ mod tests {
     }
 
     #[test]
+    fn a_uni_directional_test_has_the_metrics_of_its_direction_and_no_e_max_sys() {
+        let one_way = Study { runs: [0, 5], ..study(100) };
+        let names: Vec<&str> = one_way.metrics().iter().map(|metric| metric.name()).collect();
+        assert_eq!(names, ["sigma_m", "centroid_ccw_x_m", "centroid_ccw_y_m", "return_heading_ccw_rad"]);
+        let ensemble = one_way.run(|_| ControlFlow::Continue(())).unwrap();
+        assert!(ensemble.statistics().all(|(_, s)| s.mean().is_finite() && s.std_dev().is_finite()));
+    }
+
+    #[test]
     fn impossible_studies_are_refused() {
         let refuse = |change: fn(&mut Study)| {
             let mut study = study(10);
@@ -350,6 +361,7 @@ mod tests {
             study.run(|_| ControlFlow::Continue(())).unwrap_err().to_string()
         };
         assert!(refuse(|s| s.trials = 0).starts_with("number of trials must be between 1"));
-        assert!(refuse(|s| s.runs = [0, 5]).starts_with("number of clockwise runs must be between 1"));
+        assert!(refuse(|s| s.runs = [0, 0]).starts_with("number of runs must be between 1"));
+        assert!(refuse(|s| s.runs = [99_999, 5]).starts_with("number of clockwise runs must be between 0"));
     }
 }

@@ -131,7 +131,7 @@ impl Arguments {
             PhaseKind::Random => Phase::Random,
             PhaseKind::Edge => Phase::Edge,
         };
-        let runs = [self.runs; 2];
+        let runs = self.setup.direction.runs(self.runs);
         let study = Study { draws, odometry, path, phase, runs, ..Study::new(model, self.trials(), seed) };
         Ok((study, assumed))
     }
@@ -288,7 +288,11 @@ fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
         study.draws.iter().find(|d| d.effect() == effect && d.parameter().name == parameter.name)
     };
     let mut heading = vec![
-        format!("{} cw + {} ccw runs", study.runs[0], study.runs[1]),
+        match study.runs {
+            [cw, 0] => format!("{cw} cw runs, uni-directional"),
+            [0, ccw] => format!("{ccw} ccw runs, uni-directional"),
+            [cw, ccw] => format!("{cw} cw + {ccw} ccw runs"),
+        },
         format!("{}, {} ({})", study.robot.name, path.shape().name.replace('_', "-"), written.join(", ")),
     ];
     let mut effects = Vec::new();
@@ -308,7 +312,7 @@ fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
     let sizes: Map<String, Value> = sizes().map(|(p, v)| (p.name.to_owned(), json!(v))).collect();
     let document = json!({
         "noise_free": { "e_max_sys_m": theory.exact, "first_order_e_max_sys_m": theory.first_order },
-        "runs_per_direction": study.runs[0],
+        "runs": { "cw": study.runs[0], "ccw": study.runs[1] },
         "robot": study.robot.name,
         "path": { "shape": path.shape().name, "sizes": sizes },
         "effects": effects,

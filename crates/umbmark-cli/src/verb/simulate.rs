@@ -94,9 +94,10 @@ fn record(arguments: &Arguments, robot: &Robot, path: &Path, model: &Model, seed
     let extended = model.get("placed_bumps", "count").is_some_and(|count| count > 0.0);
     let tests = if extended { &[TestKind::Systematic, TestKind::Bumps][..] } else { &[TestKind::Systematic] };
     let mut runs = Vec::new();
+    let numbers = arguments.setup.direction.runs(arguments.runs as usize);
     for &test in tests {
-        for direction in Direction::BOTH {
-            for number in 1..=arguments.runs {
+        for (direction, count) in Direction::BOTH.into_iter().zip(numbers) {
+            for number in 1..=count as u32 {
                 let reference = if arguments.reference_rate > 0.0 { arguments.reference_rate } else { rate };
                 let mut recording = simulator.record(&mut truth, direction, test, [rate, reference])?;
                 if arguments.reference_rate <= 0.0 {

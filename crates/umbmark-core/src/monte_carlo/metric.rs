@@ -60,12 +60,14 @@ impl Metric {
         matches!(self, Metric::ReturnHeadingCw | Metric::ReturnHeadingCcw | Metric::NonsysOrientation)
     }
 
-    /// Whether a test with these runs has it.
-    pub(super) fn exists(self, runs: [usize; 2], extended: bool) -> bool {
+    /// Whether a test with these runs \[cw, ccw\] has it.
+    pub(super) fn exists(self, [cw, ccw]: [usize; 2], extended: bool) -> bool {
         match self {
-            Metric::NonsysOrientation => extended,
-            Metric::Sigma => runs[0] + runs[1] > 2 && runs[0] > 1 && runs[1] > 1,
-            _ => true,
+            Metric::EMaxSys => cw > 0 && ccw > 0,
+            Metric::Sigma => cw > 1 || ccw > 1,
+            Metric::CentroidCwX | Metric::CentroidCwY | Metric::ReturnHeadingCw => cw > 0,
+            Metric::CentroidCcwX | Metric::CentroidCcwY | Metric::ReturnHeadingCcw => ccw > 0,
+            Metric::NonsysOrientation => extended && cw > 0 && ccw > 0,
         }
     }
 }
