@@ -97,7 +97,7 @@ impl Odometry {
 #[derive(Debug)]
 enum Computer {
     Ticks(Integrator),
-    Sampled(SampledMoves),
+    Sampled(Box<SampledMoves>),
     Continuous,
 }
 
@@ -142,7 +142,7 @@ impl Simulator {
                 if !(rate > 0.0 && rate.is_finite()) {
                     return Err(SimulateError::Rate { what: "encoder rate", value: rate });
                 }
-                Computer::Sampled(SampledMoves::new(geometry, update, rate, [&cw.legs, &ccw.legs]))
+                Computer::Sampled(Box::new(SampledMoves::new(geometry, update, rate, [&cw.legs, &ccw.legs])))
             }
         };
         Ok(Simulator {

@@ -320,7 +320,7 @@ fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
         "version": umbmark_core::VERSION,
     });
     let document = document.as_object().cloned().unwrap_or_default();
-    Ok(Description { heading, theory: theory.text(), seed: study.seed, document })
+    Ok(Description { heading, theory: theory.text(study.runs), seed: study.seed, document })
 }
 
 fn value_text(parameter: &Parameter, value: f64, draw: Option<&Draw>) -> String {
@@ -358,13 +358,14 @@ impl Theory {
         Ok(Theory { exact: summarise(&[cw], &[ccw]).e_max_sys(), first_order })
     }
 
-    fn text(&self) -> String {
+    fn text(&self, runs: [usize; 2]) -> String {
+        let subject = if runs.contains(&0) { "Driven both ways, E_max,sys" } else { "E_max,sys" };
         let mm = |value: Option<f64>| value.map(|v| format!("{:.1} mm", v * 1e3));
         match (mm(self.exact), mm(self.first_order)) {
             (Some(exact), Some(first)) => {
-                format!("E_max,sys without noise: {exact} by exact kinematics, {first} to first order\n\n")
+                format!("{subject} without noise: {exact} by exact kinematics, {first} to first order\n\n")
             }
-            (Some(exact), None) => format!("E_max,sys without noise: {exact} by exact kinematics\n\n"),
+            (Some(exact), None) => format!("{subject} without noise: {exact} by exact kinematics\n\n"),
             _ => String::new(),
         }
     }
