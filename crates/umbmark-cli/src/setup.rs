@@ -96,6 +96,9 @@ impl SetupFlags {
             assumed.push(format!("wheel noise k = {ASSUMED_WHEEL_NOISE} m^0.5 (--wheel-noise 0 for none)"));
         }
         self.effects.apply(&mut model, &mut draws)?;
+        if model.get("wheel_noise", "k_sqrt_m").is_none() {
+            assumed.push("no wheel noise (--wheel-noise 0.001 gives about the paper's scatter)".to_owned());
+        }
         Ok(Setup { path, model, draws, assumed })
     }
 }
