@@ -1,4 +1,8 @@
-//! Workloads with fixed seeds for the benchmarks: segments as a robot on the UMBmark square drives them.
+//! Workloads with fixed seeds for the benchmarks: segments as a robot on the UMBmark square drives them, whole tests, and
+//! the studies made of them.
+
+pub mod plain_trials;
+pub mod studies;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use umbmark_core::engine::{TickGeometry, UNITS_PER_TICK, WheelLine};

@@ -1,0 +1,63 @@
+//! Whole runs and whole UMBmark tests on one thread: random numbers, true motion, odometry and score.
+//!
+//! `cargo bench -p umbmark-benches --bench trial`; throughput is in runs or trials per second. A trial is ten runs, five
+//! each way; with ten bumps it is twenty, since the extended test comes on top.
+
+use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
+use std::time::Duration;
+use umbmark_benches::studies::{self, ODOMETRIES, SAMPLED, SEED};
+use umbmark_core::effect::TestKind;
+use umbmark_core::monte_carlo::{CHUNK, Study};
+use umbmark_core::path::Direction;
+use umbmark_core::simulate::{Odometry, Simulator, Truth};
+
+fn run(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("run");
+    group.throughput(Throughput::Elements(1));
+    let study = studies::plain();
+    for (name, odometry) in ODOMETRIES {
+        let mut simulator =
+            Simulator::new(&study.robot, &study.path, odometry, study.phase).expect("the paper's test can be driven");
+        let mut truth = Truth::new(&study.model);
+        simulator.open(&mut truth, SEED, 0);
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| simulator.run(&mut truth, Direction::Ccw, TestKind::Systematic));
+        });
+    }
+    group.finish();
+}
+
+/// Measures `trials` at a time, so that setting up a study does not show.
+fn measure(group: &mut BenchmarkGroup<WallTime>, name: &str, study: Study, trials: u64) {
+    let study = Study { trials, ..study };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    group.throughput(Throughput::Elements(trials));
+    group.bench_function(name, |bencher| pool.install(|| bencher.iter(|| studies::run(&study))));
+}
+
+fn trial(criterion: &mut Criterion) {
+    for (kind, study) in
+        [("plain", studies::plain()), ("ten bumps", studies::ten_bumps()), ("events", studies::events())]
+    {
+        let mut group = criterion.benchmark_group(format!("trial {kind}"));
+        measure(&mut group, "every tick", study.clone(), CHUNK);
+        let sampled = Study { odometry: SAMPLED, ..study.clone() };
+        measure(&mut group, "100 Hz", sampled.clone(), CHUNK);
+        measure(&mut group, "100 Hz without ramps", Study { path: studies::without_ramps(), ..sampled }, CHUNK);
+        if kind == "plain" {
+            measure(&mut group, "no odometry", Study { odometry: Odometry::Continuous, ..study.clone() }, CHUNK);
+            measure(&mut group, "tick by tick", Study { odometry: Odometry::EveryTickOneByOne, ..study }, 2);
+        }
+        group.finish();
+    }
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default()
+        .warm_up_time(Duration::from_millis(500))
+        .measurement_time(Duration::from_secs(3))
+        .sample_size(20);
+    targets = run, trial
+}
+criterion_main!(benches);
