@@ -62,7 +62,7 @@ pub fn without_ramps() -> Path {
 
 /// Runs a study on the present rayon pool and keeps its statistics only.
 pub fn run(study: &Study) -> Ensemble {
-    study.run(|_, _| ControlFlow::Continue(())).expect("a study that can be driven")
+    study.run(|_| ControlFlow::Continue(())).expect("a study that can be driven")
 }
 
 #[cfg(test)]
