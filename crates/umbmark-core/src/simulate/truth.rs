@@ -113,7 +113,7 @@ impl Truth {
         for part in &mut self.random {
             (part.effect.scatter.bumps)(&part.values, &stretch, &mut part.stream, &mut self.ahead);
         }
-        self.ahead.sort_by(|a, b| b.at.total_cmp(&a.at));
+        self.ahead.sort_unstable_by(|a, b| b.at.total_cmp(&a.at));
         self.stretch = Some(stretch);
         self.done = 0.0;
     }
