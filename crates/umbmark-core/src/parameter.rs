@@ -58,6 +58,18 @@ pub struct ParameterError {
 }
 
 impl Parameter {
+    /// A size that does nothing where it is 0, its value where none is given.
+    pub(crate) const fn size(
+        name: &'static str,
+        flag: &'static str,
+        unit: &'static str,
+        typical: f64,
+        bounds: (f64, f64),
+        meaning: &'static str,
+    ) -> Parameter {
+        Parameter { name, flag, unit, default: DefaultValue::Value(0.0), typical, bounds, meaning, choices: &[] }
+    }
+
     /// `value`, if it is finite and within the bounds.
     pub fn check(&self, value: f64) -> Result<f64, ParameterError> {
         let (lowest, highest) = self.bounds;

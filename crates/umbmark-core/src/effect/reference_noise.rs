@@ -2,30 +2,13 @@
 
 use super::{About, ActsOn, Effect};
 use crate::geometry::Pose2;
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 use crate::random::Stream;
 
 /// Independent normal noise on every measured absolute pose.
 pub struct ReferenceNoise;
 
-const fn deviation(
-    name: &'static str,
-    flag: &'static str,
-    unit: &'static str,
-    typical: f64,
-    meaning: &'static str,
-) -> Parameter {
-    Parameter {
-        name,
-        flag,
-        unit,
-        default: DefaultValue::Value(0.0),
-        typical,
-        bounds: (0.0, 10.0),
-        meaning,
-        choices: &[],
-    }
-}
+const SCATTER: (f64, f64) = (0.0, 10.0);
 
 impl Effect for ReferenceNoise {
     const ABOUT: About = About {
@@ -33,8 +16,22 @@ impl Effect for ReferenceNoise {
         title: "noise of the absolute measurement",
         acts_on: ActsOn::Reference,
         parameters: &[
-            deviation("position_sd_m", "reference-position-noise", "m", 2e-3, "standard deviation of each coordinate"),
-            deviation("heading_sd_rad", "reference-heading-noise", "rad", 2.6e-3, "standard deviation of the heading"),
+            Parameter::size(
+                "position_sd_m",
+                "reference-position-noise",
+                "m",
+                2e-3,
+                SCATTER,
+                "standard deviation of each coordinate",
+            ),
+            Parameter::size(
+                "heading_sd_rad",
+                "reference-heading-noise",
+                "rad",
+                2.6e-3,
+                SCATTER,
+                "standard deviation of the heading",
+            ),
         ],
         equation: "measured = true + N(0, diag(sd²))",
         physics: "A tape read to 2 mm and a heading from two such readings (0.15 degree), or the noise of motion capture.",

@@ -2,30 +2,14 @@
 
 use super::{About, ActsOn, Effect};
 use crate::geometry::Pose2;
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 use crate::random::Stream;
 
 /// The robot does not stand where its odometry is told that it stands.
 pub struct StartPose;
 
-const fn bias(
-    name: &'static str,
-    flag: &'static str,
-    unit: &'static str,
-    typical: f64,
-    meaning: &'static str,
-) -> Parameter {
-    Parameter {
-        name,
-        flag,
-        unit,
-        default: DefaultValue::Value(0.0),
-        typical,
-        bounds: (-10.0, 10.0),
-        meaning,
-        choices: &[],
-    }
-}
+const EITHER_WAY: (f64, f64) = (-10.0, 10.0);
+const SCATTER: (f64, f64) = (0.0, 10.0);
 
 impl Effect for StartPose {
     const ABOUT: About = About {
@@ -33,31 +17,32 @@ impl Effect for StartPose {
         title: "START misplacement",
         acts_on: ActsOn::Start,
         parameters: &[
-            bias("x_m", "start-x", "m", 2e-3, "constant misplacement along the heading"),
-            bias("y_m", "start-y", "m", 2e-3, "constant misplacement to the left"),
-            bias("heading_rad", "start-heading", "rad", 2e-3, "constant misalignment, counter-clockwise"),
-            Parameter {
-                bounds: (0.0, 10.0),
-                ..bias(
-                    "position_sd_m",
-                    "start-position-scatter",
-                    "m",
-                    2e-3,
-                    "scatter of each \
-                coordinate from run to run",
-                )
-            },
-            Parameter {
-                bounds: (0.0, 10.0),
-                ..bias(
-                    "heading_sd_rad",
-                    "start-heading-scatter",
-                    "rad",
-                    2e-3,
-                    "scatter of the \
-                heading from run to run",
-                )
-            },
+            Parameter::size("x_m", "start-x", "m", 2e-3, EITHER_WAY, "constant misplacement along the heading"),
+            Parameter::size("y_m", "start-y", "m", 2e-3, EITHER_WAY, "constant misplacement to the left"),
+            Parameter::size(
+                "heading_rad",
+                "start-heading",
+                "rad",
+                2e-3,
+                EITHER_WAY,
+                "constant misalignment, counter-clockwise",
+            ),
+            Parameter::size(
+                "position_sd_m",
+                "start-position-scatter",
+                "m",
+                2e-3,
+                SCATTER,
+                "scatter of each coordinate from run to run",
+            ),
+            Parameter::size(
+                "heading_sd_rad",
+                "start-heading-scatter",
+                "rad",
+                2e-3,
+                SCATTER,
+                "scatter of the heading from run to run",
+            ),
         ],
         equation: "world_from_start ← world_from_start · (x, y, δ), with (x, y, δ) ~ N(bias, diag(sd²))",
         physics: "The robot is pushed to a mark on the floor, and its odometry set to zero whether it stands there or not.",
