@@ -3,7 +3,9 @@
 //! `cargo bench -p umbmark-benches --bench trial`; throughput is in runs or trials per second. A trial is ten runs, five
 //! each way; with ten bumps it is twenty, since the extended test comes on top.
 
-use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
+use criterion::{
+    BenchmarkGroup, Criterion, SamplingMode, Throughput, criterion_group, criterion_main, measurement::WallTime,
+};
 use std::time::Duration;
 use umbmark_benches::studies::{self, ODOMETRIES, SAMPLED, SEED};
 use umbmark_core::effect::TestKind;
@@ -27,7 +29,8 @@ fn run(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Measures `trials` at a time, so that setting up a study does not show.
+/// Measures so many trials at a time, a tenth of a second or more: less, and one sees the growth of the statistics'
+/// sketches, some milliseconds a study.
 fn measure(group: &mut BenchmarkGroup<WallTime>, name: &str, study: Study, trials: u64) {
     let study = Study { trials, ..study };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
@@ -36,17 +39,23 @@ fn measure(group: &mut BenchmarkGroup<WallTime>, name: &str, study: Study, trial
 }
 
 fn trial(criterion: &mut Criterion) {
-    for (kind, study) in
-        [("plain", studies::plain()), ("ten bumps", studies::ten_bumps()), ("events", studies::events())]
+    for (kind, study, chunks) in
+        [("plain", studies::plain(), 16), ("ten bumps", studies::ten_bumps(), 8), ("events", studies::events(), 2)]
     {
         let mut group = criterion.benchmark_group(format!("trial {kind}"));
-        measure(&mut group, "every tick", study.clone(), CHUNK);
+        group.sampling_mode(SamplingMode::Flat).sample_size(10);
+        measure(&mut group, "every tick", study.clone(), chunks * CHUNK);
         let sampled = Study { odometry: SAMPLED, ..study.clone() };
-        measure(&mut group, "100 Hz", sampled.clone(), CHUNK);
-        measure(&mut group, "100 Hz without ramps", Study { path: studies::without_ramps(), ..sampled }, CHUNK);
+        measure(&mut group, "100 Hz", sampled.clone(), CHUNK / 2);
+        measure(&mut group, "100 Hz without ramps", Study { path: studies::without_ramps(), ..sampled }, 4 * CHUNK);
         if kind == "plain" {
-            measure(&mut group, "no odometry", Study { odometry: Odometry::Continuous, ..study.clone() }, CHUNK);
-            measure(&mut group, "tick by tick", Study { odometry: Odometry::EveryTickOneByOne, ..study }, 2);
+            measure(
+                &mut group,
+                "no odometry",
+                Study { odometry: Odometry::Continuous, ..study.clone() },
+                chunks * CHUNK,
+            );
+            measure(&mut group, "tick by tick", Study { odometry: Odometry::EveryTickOneByOne, ..study }, 10);
         }
         group.finish();
     }
@@ -56,7 +65,7 @@ criterion_group! {
     name = benches;
     config = Criterion::default()
         .warm_up_time(Duration::from_millis(500))
-        .measurement_time(Duration::from_secs(3))
+        .measurement_time(Duration::from_secs(4))
         .sample_size(20);
     targets = run, trial
 }
