@@ -19,7 +19,7 @@ fn run(criterion: &mut Criterion) {
     let study = studies::plain();
     for (name, odometry) in ODOMETRIES {
         let mut simulator =
-            Simulator::new(&study.robot, &study.path, odometry, study.phase).expect("the paper's test can be driven");
+            Simulator::new(study.robot(), &study.path, odometry, study.phase).expect("the paper's test can be driven");
         let mut truth = Truth::new(&study.model);
         simulator.open(&mut truth, SEED, 0);
         group.bench_function(name, |bencher| {

@@ -64,3 +64,21 @@ fn with_a_tape_measure_only_the_end_pose_is_known() {
         assert_eq!(log.reference.iter().map(|r| r.sample).collect::<Vec<_>>(), [log.time.len() - 1]);
     }
 }
+
+#[test]
+fn a_narrow_counter_rolls_over_in_the_file_and_is_unrolled_when_it_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let robot = folder.path().join("robot.toml");
+    let text =
+        "[robot]\nwheelbase_m = 0.34\nwheel_diameter_m = 0.15\nticks_per_revolution = 2000\nencoder_rate_hz = 100\n";
+    std::fs::write(&robot, text.to_owned() + "counter_bits = 8\n[path]\nshape = \"square\"\nside_m = 0.5\n").unwrap();
+    let place = folder.path().join("rolled");
+    let arguments = ["-o", place.to_str().unwrap(), "--runs", "1", "--robot", robot.to_str().unwrap()];
+    simulate(&arguments).success();
+    let sheet = std::fs::read_to_string(place.join("runs/cw_01.csv")).unwrap();
+    let counts = sheet.lines().skip(1).map(|line| line.split(',').nth(1).unwrap().parse::<i64>().unwrap());
+    assert_eq!((counts.clone().min(), counts.max()), (Some(0), Some(255)));
+    let log = Dataset::load(&place).unwrap().runs.remove(0).log.unwrap();
+    // Four legs of 2122 ticks, and a turn to the right at each corner.
+    assert!(*log.left.last().unwrap() > 10_000.0, "{:?}", log.left.last());
+}

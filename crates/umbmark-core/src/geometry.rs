@@ -11,7 +11,7 @@ mod angle;
 mod pose;
 mod real;
 
-pub use angle::{circular_mean, wrap};
+pub use angle::{mean_angle, wrap};
 pub use pose::{Displacement2, Pose2};
 pub(crate) use real::{COSINE_SERIES, HALF_PI, SINC_SERIES};
 pub use real::{Dual, Real};

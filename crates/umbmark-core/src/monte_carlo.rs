@@ -81,8 +81,6 @@ pub enum StudyError {
 /// A Monte Carlo study, described.
 #[derive(Clone, Debug)]
 pub struct Study {
-    /// The nominal robot.
-    pub robot: Robot,
     /// The path of every run.
     pub path: Path,
     /// The effects at work, with the values of those parameters that are not drawn.
@@ -118,7 +116,6 @@ impl Study {
     pub fn new(model: Model, trials: u64, seed: u64) -> Study {
         Study {
             odometry: Odometry::of(model.robot()),
-            robot: model.robot().clone(),
             path: Path::umbmark(),
             model,
             draws: Vec::new(),
@@ -127,6 +124,11 @@ impl Study {
             trials,
             seed,
         }
+    }
+
+    /// The nominal robot.
+    pub fn robot(&self) -> &Robot {
+        self.model.robot()
     }
 
     /// Whether each trial includes the extended test, because bumps are placed in it.
@@ -148,7 +150,7 @@ impl Study {
             "umbmark {}, seed {}, {:?}, {} {:?} {:?}, {:?} {:?}, {:?} runs, effects [{}], drawn [{}]",
             crate::VERSION,
             self.seed,
-            self.robot,
+            self.robot(),
             self.path.shape().name,
             self.path.values(),
             self.path.speed,
@@ -165,7 +167,7 @@ impl Study {
     pub fn noise_free(&self) -> Result<[ReturnError; 2], StudyError> {
         let chain = trial::centred(&self.model, &self.draws)?.chain();
         Ok(Direction::BOTH.map(|direction| {
-            let end = Track::from_path(&self.path, direction, &self.robot).end(&chain);
+            let end = Track::from_path(&self.path, direction, self.robot()).end(&chain);
             simulate::return_error(&end, &self.path.end(direction))
         }))
     }

@@ -293,7 +293,7 @@ fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
             [0, ccw] => format!("{ccw} ccw runs, uni-directional"),
             [cw, ccw] => format!("{cw} cw + {ccw} ccw runs"),
         },
-        format!("{}, {} ({})", study.robot.name, path.shape().name.replace('_', "-"), written.join(", ")),
+        format!("{}, {} ({})", study.robot().name, path.shape().name.replace('_', "-"), written.join(", ")),
     ];
     let mut effects = Vec::new();
     for part in study.model.parts() {
@@ -313,7 +313,7 @@ fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
     let document = json!({
         "noise_free": { "e_max_sys_m": theory.exact, "first_order_e_max_sys_m": theory.first_order },
         "runs": { "cw": study.runs[0], "ccw": study.runs[1] },
-        "robot": study.robot.name,
+        "robot": study.robot().name,
         "path": { "shape": path.shape().name, "sizes": sizes },
         "effects": effects,
         "assumed": assumed,
@@ -351,7 +351,7 @@ impl Theory {
         let e_b = middle("wheelbase", "e_b") / middle("scale", "e_s");
         let side = study.path.values().first().filter(|_| std::ptr::eq(study.path.shape(), &SQUARE));
         let first_order = side.and_then(|side| {
-            let angles = Angles::of(&Correction { e_d, e_b, e_s: 1.0 }, *side, &study.robot.drive);
+            let angles = Angles::of(&Correction { e_d, e_b, e_s: 1.0 }, *side, &study.robot().drive);
             let [cw, ccw] = Direction::BOTH.map(|direction| angles.first_order_return(direction, *side));
             summarise(&[cw], &[ccw]).e_max_sys()
         });

@@ -2,7 +2,7 @@
 
 use super::{ReferencePose, ReturnError, TickLog};
 use crate::drive::{Robot, WheelTravel};
-use crate::geometry::{Pose2, wrap};
+use crate::geometry::{Pose2, mean_angle, wrap};
 
 /// Which measurement says where the robot stands at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,9 +69,6 @@ pub(super) fn mean_pose(poses: &[ReferencePose]) -> Option<ReferencePose> {
     let n = poses.len() as f64;
     let x = first.x + poses.iter().map(|p| p.x - first.x).sum::<f64>() / n;
     let y = first.y + poses.iter().map(|p| p.y - first.y).sum::<f64>() / n;
-    let headings: Vec<f64> = poses.iter().filter_map(|p| p.heading).collect();
-    let heading = headings
-        .first()
-        .map(|zero| zero + headings.iter().map(|heading| wrap(heading - zero)).sum::<f64>() / headings.len() as f64);
+    let heading = mean_angle(poses.iter().filter_map(|p| p.heading));
     Some(ReferencePose { sample: first.sample, x, y, heading })
 }

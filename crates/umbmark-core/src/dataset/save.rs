@@ -27,13 +27,14 @@ impl Dataset {
     /// other runs is refused, lest the two datasets mix.
     pub fn save(&self, folder: impl AsRef<Path>, existing: Existing) -> Result<(), DatasetError> {
         let folder = folder.as_ref();
+        let robot = self.nominal_robot()?;
         let mut files = BTreeMap::new();
-        files.insert(PathBuf::from(ROBOT), robot_text(self.nominal_robot()?, self.path.as_ref()));
+        files.insert(PathBuf::from(ROBOT), robot_text(robot, self.path.as_ref()));
         files.extend(returns_text(&self.runs).map(|text| (PathBuf::from(RETURNS), text)));
         for run in &self.runs {
             let Some(log) = &run.log else { continue };
             let name = format!("{}.csv", label::label(run.test, run.direction, run.number));
-            files.insert(Path::new(RUNS).join(name), tick_log_text(log));
+            files.insert(Path::new(RUNS).join(name), tick_log_text(log, &robot.encoder));
         }
         put(folder, &files, existing, |written| self.check(folder, written))
     }
@@ -65,7 +66,8 @@ impl Dataset {
         match runs.iter().zip(&read.runs).find(|pair| !same(*pair)) {
             Some((run, _)) => {
                 let name = label::label(run.test, run.direction, run.number);
-                let why = read.warnings.iter().find_map(|w| Some(w.split_once(&format!("{name}.csv: "))?.1));
+                // The last remark: roll-overs, which are undone as they were written, come before any reason.
+                let why = read.warnings.iter().rev().find_map(|w| Some(w.split_once(&format!("{name}.csv: "))?.1));
                 let why = why.map(|why| format!("; the reader says: {why}")).unwrap_or_default();
                 Err(refuse(format!("{name} would not be read back as it is{why}")))
             }

@@ -2,6 +2,7 @@
 
 use super::tick_log::HEADER;
 use super::{Run, TickLog};
+use crate::drive::Encoder;
 use crate::effect::TestKind;
 use crate::path::Direction;
 use std::fmt::Write;
@@ -32,15 +33,17 @@ pub(super) fn returns_text(runs: &[Run]) -> Option<String> {
     Some(text)
 }
 
-/// `runs/*.csv` of a log whose references belong to different samples, in their order.
-pub(super) fn tick_log_text(log: &TickLog) -> String {
+/// `runs/*.csv` of a log whose references belong to different samples, in their order; counts as the encoder's counter
+/// shows them, rolled over where it does.
+pub(super) fn tick_log_text(log: &TickLog, encoder: &Encoder) -> String {
+    let shown = |ticks: f64| encoder.reading(ticks.floor() as i64) as f64 + (ticks - ticks.floor());
     let mut text = String::with_capacity(40 * log.time.len());
     let referenced = !log.reference.is_empty();
     text.push_str(if referenced { HEADER } else { "t_s,ticks_left,ticks_right" });
     text.push('\n');
     let mut references = log.reference.iter().peekable();
     for (sample, time) in log.time.iter().enumerate() {
-        let _ = write!(text, "{time:?},{},{}", log.left[sample], log.right[sample]);
+        let _ = write!(text, "{time:?},{},{}", shown(log.left[sample]), shown(log.right[sample]));
         match references.next_if(|pose| pose.sample == sample) {
             Some(pose) => {
                 let _ = write!(text, ",{:?},{:?},{}", pose.x, pose.y, cell(pose.heading));

@@ -19,19 +19,21 @@ pub fn wrap(angle: f64) -> f64 {
     if folded <= -PI { folded + TAU } else { folded }
 }
 
-/// The direction of the mean resultant vector of `angles` \[rad\], in (-π, π].
+/// The mean of `angles` \[rad\] that lie within half a turn of each other; `None` where there are none.
 ///
-/// `None` for no angles, or where they cancel (resultant shorter than 1e-12 of their number) and no mean direction
-/// exists. Source: Mardia & Jupp, *Directional Statistics* (2000), section 2.2.
-pub fn circular_mean(angles: impl IntoIterator<Item = f64>) -> Option<f64> {
-    let (mut sine, mut cosine, mut count) = (0.0, 0.0, 0usize);
-    for angle in angles {
-        let (s, c) = libm::sincos(angle);
-        sine += s;
-        cosine += c;
-        count += 1;
-    }
-    (libm::hypot(sine, cosine) > 1e-12 * count as f64).then(|| wrap(libm::atan2(sine, cosine)))
+/// The arithmetic mean as seen from the first of them, so that the cut at ±π does no harm, and with its full turns.
+///
+/// ```
+/// use std::f64::consts::PI;
+/// # use umbmark_core::geometry::mean_angle;
+/// assert!((mean_angle([PI - 0.1, -PI + 0.3]).unwrap() - (PI + 0.1)).abs() < 1e-12);
+/// ```
+#[inline]
+pub fn mean_angle(angles: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut angles = angles.into_iter();
+    let first = angles.next()?;
+    let (sum, count) = angles.fold((0.0, 1.0), |(sum, count), angle| (sum + wrap(angle - first), count + 1.0));
+    Some(first + sum / count)
 }
 
 #[cfg(test)]
@@ -52,11 +54,11 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_of_angles_astride_the_cut_is_at_the_cut_and_opposite_angles_have_none() {
-        let mean = circular_mean([PI - 0.1, -PI + 0.1]).unwrap();
-        assert!((mean.abs() - PI).abs() < 1e-12);
-        assert_eq!(circular_mean([0.0, PI]), None);
-        assert_eq!(circular_mean([]), None);
-        assert!((circular_mean([0.2, 0.4]).unwrap() - 0.3).abs() < 1e-15);
+    fn the_mean_of_angles_astride_the_cut_is_at_the_cut_and_keeps_the_full_turns_of_the_first() {
+        let mean = mean_angle([PI - 0.1, -PI + 0.1]).unwrap();
+        assert!((mean - PI).abs() < 1e-12);
+        assert!((mean_angle([TAU + 0.2, 0.4, -TAU + 0.6]).unwrap() - (TAU + 0.4)).abs() < 1e-12);
+        assert_eq!(mean_angle([]), None);
+        assert_eq!(mean_angle([0.25]), Some(0.25));
     }
 }

@@ -58,7 +58,7 @@ impl Bench {
         let draws = all.enumerate().filter_map(|(index, draw)| Some((index, draw?.clone()))).collect();
         let room = |n: usize| vec![ReturnError::default(); n];
         Ok(Bench {
-            simulator: Simulator::new(&study.robot, &study.path, study.odometry, study.phase)?,
+            simulator: Simulator::new(study.robot(), &study.path, study.odometry, study.phase)?,
             truth: Truth::new(&model),
             values: model.values().collect(),
             draws,

@@ -1,7 +1,7 @@
 //! Centroids, their distances, and the spread about them, without allocation.
 
 use crate::dataset::ReturnError;
-use crate::geometry::wrap;
+use crate::geometry::{mean_angle, wrap};
 
 /// The return errors of one direction in short.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,14 +76,7 @@ impl Cluster {
 
 #[inline]
 fn mean_heading(errors: &[ReturnError]) -> Option<f64> {
-    let mut headings = errors.iter().filter_map(|e| e.heading);
-    let first = headings.next()?;
-    let (mut sum, mut count) = (0.0, 1.0);
-    for heading in headings {
-        sum += wrap(heading - first);
-        count += 1.0;
-    }
-    Some(wrap(first + sum / count))
+    mean_angle(errors.iter().filter_map(|error| error.heading)).map(wrap)
 }
 
 /// One UMBmark test in short: both clusters, E_max,sys and the spread.
