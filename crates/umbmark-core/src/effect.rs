@@ -7,10 +7,14 @@
 //! ```text
 //! believed wheel travel -> [wheels] -> true wheel travel -> kinematics -> [body] -> true motion -> true pose
 //!                                                               ^ diffusion, bumps                    | [start]
-//!                                                                                  measured pose <- [measured]
+//!                                                                          measured pose <- [measured] <- [seen]
 //! ```
+//!
+//! What an effect may depend on (speed, heading, wheel angle, way since the last turn ...) stands in a [`Context`], which
+//! the engine fills for each piece of the way.
 
 mod bumps;
+mod context;
 mod model;
 mod placed_bumps;
 mod reference_noise;
@@ -27,6 +31,7 @@ use crate::path::Direction;
 use crate::random::Stream;
 
 pub use bumps::extra_travel;
+pub use context::{Context, Place, Progress, Sight};
 pub use model::{Chain, Model, ModelError, Part};
 
 /// The largest number of parameters of one effect.
@@ -121,7 +126,7 @@ impl TestKind {
     }
 }
 
-/// A stretch of driving at constant ratio of the wheel speeds, as an effect sees it.
+/// A stretch of driving at constant ratio of the wheel speeds, as bumps see it.
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch {
     /// Its number in the run, from 0.
@@ -161,11 +166,17 @@ pub trait Effect {
     /// What people should know of it.
     const ABOUT: About;
 
+    /// Whether its change of motion depends on the [`Context`], so that driving has to be cut into small pieces for it.
+    const VARIES: bool = false;
+
     /// Changes believed into true wheel travel \[m\].
-    fn wheels<T: Real>(_p: &[T], _travel: &mut WheelTravel<T>) {}
+    fn wheels<T: Real>(_p: &[T], _at: &Context<T>, _travel: &mut WheelTravel<T>) {}
 
     /// Changes the body motion that true wheel travel makes.
-    fn body<T: Real>(_p: &[T], _motion: &mut Displacement2<T>) {}
+    fn body<T: Real>(_p: &[T], _at: &Context<T>, _motion: &mut Displacement2<T>) {}
+
+    /// Changes what an absolute measurement shows of a true pose, other than by chance.
+    fn seen<T: Real>(_p: &[T], _at: &Sight, _pose: &mut Pose2<T>) {}
 
     /// Variance that white noise on the wheels gathers over a true travel.
     fn diffusion(_p: &[f64], _travel: &WheelTravel) -> WheelVariance {
@@ -175,8 +186,13 @@ pub trait Effect {
     /// Adds the bumps that the wheels meet in a stretch, in any order.
     fn bumps(_p: &[f64], _stretch: &Stretch, _stream: &mut Stream, _met: &mut Vec<Bump>) {}
 
-    /// Where the robot truly stands at START, seen from where it is believed to stand.
-    fn start(_p: &[f64], _stream: &mut Stream) -> Pose2 {
+    /// Where the robot truly stands at START on average, seen from where it is believed to stand.
+    fn start<T: Real>(_p: &[T]) -> Pose2<T> {
+        Pose2::IDENTITY.lift()
+    }
+
+    /// How far from there it stands in one run.
+    fn start_scatter(_p: &[f64], _stream: &mut Stream) -> Pose2 {
         Pose2::IDENTITY
     }
 
@@ -187,10 +203,14 @@ pub trait Effect {
 /// The deterministic part of an effect, for one kind of number.
 #[derive(Clone, Copy, Debug)]
 pub struct Mean<T: Real> {
+    /// See [`Effect::start`].
+    pub start: fn(&[T]) -> Pose2<T>,
     /// See [`Effect::wheels`].
-    pub wheels: fn(&[T], &mut WheelTravel<T>),
+    pub wheels: fn(&[T], &Context<T>, &mut WheelTravel<T>),
     /// See [`Effect::body`].
-    pub body: fn(&[T], &mut Displacement2<T>),
+    pub body: fn(&[T], &Context<T>, &mut Displacement2<T>),
+    /// See [`Effect::seen`].
+    pub seen: fn(&[T], &Sight, &mut Pose2<T>),
 }
 
 /// The random part of an effect.
@@ -200,8 +220,8 @@ pub struct Scatter {
     pub diffusion: fn(&[f64], &WheelTravel) -> WheelVariance,
     /// See [`Effect::bumps`].
     pub bumps: fn(&[f64], &Stretch, &mut Stream, &mut Vec<Bump>),
-    /// See [`Effect::start`].
-    pub start: fn(&[f64], &mut Stream) -> Pose2,
+    /// See [`Effect::start_scatter`].
+    pub start_scatter: fn(&[f64], &mut Stream) -> Pose2,
     /// See [`Effect::measured`].
     pub measured: fn(&[f64], &mut Stream, &mut Pose2),
 }
@@ -211,6 +231,8 @@ pub struct Scatter {
 pub struct Entry {
     /// What people should know of it.
     pub about: About,
+    /// See [`Effect::VARIES`].
+    pub varies: bool,
     pub(crate) values: Mean<f64>,
     pub(crate) duals: Mean<Dual>,
     pub(crate) scatter: Scatter,
@@ -221,9 +243,25 @@ impl Entry {
         assert!(E::ABOUT.parameters.len() <= MAX_PARAMETERS);
         Entry {
             about: E::ABOUT,
-            values: Mean { wheels: E::wheels::<f64>, body: E::body::<f64> },
-            duals: Mean { wheels: E::wheels::<Dual>, body: E::body::<Dual> },
-            scatter: Scatter { diffusion: E::diffusion, bumps: E::bumps, start: E::start, measured: E::measured },
+            varies: E::VARIES,
+            values: Mean {
+                start: E::start::<f64>,
+                wheels: E::wheels::<f64>,
+                body: E::body::<f64>,
+                seen: E::seen::<f64>,
+            },
+            duals: Mean {
+                start: E::start::<Dual>,
+                wheels: E::wheels::<Dual>,
+                body: E::body::<Dual>,
+                seen: E::seen::<Dual>,
+            },
+            scatter: Scatter {
+                diffusion: E::diffusion,
+                bumps: E::bumps,
+                start_scatter: E::start_scatter,
+                measured: E::measured,
+            },
         }
     }
 

@@ -165,9 +165,10 @@ impl Study {
     /// The test without noise, bumps and quantisation, all drawn parameters in their middle: its return errors \[cw, ccw\]
     /// by exact kinematics.
     pub fn noise_free(&self) -> Result<[ReturnError; 2], StudyError> {
-        let chain = trial::centred(&self.model, &self.draws)?.chain();
+        let model = trial::centred(&self.model, &self.draws)?;
+        let (chain, track) = (model.chain(), if model.varies() { Track::in_pieces } else { Track::from_path });
         Ok(Direction::BOTH.map(|direction| {
-            let end = Track::from_path(&self.path, direction, self.robot()).end(&chain);
+            let end = track(&self.path, direction, self.robot()).end(&chain);
             simulate::return_error(&end, &self.path.end(direction))
         }))
     }

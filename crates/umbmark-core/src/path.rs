@@ -6,6 +6,7 @@
 
 mod circle;
 mod figure_eight;
+mod pieces;
 mod rectangle;
 mod speed;
 mod spin;
@@ -19,6 +20,7 @@ use crate::parameter::{Parameter, ParameterError};
 
 pub use circle::CIRCLE;
 pub use figure_eight::FIGURE_EIGHT;
+pub use pieces::{Piece, Pieces};
 pub use rectangle::RECTANGLE;
 pub use speed::{SpeedProfile, Trapezoid};
 pub use spin::SPIN;

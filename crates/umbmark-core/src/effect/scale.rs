@@ -1,6 +1,6 @@
 //! E_s: the scale.
 
-use super::{About, ActsOn, Effect};
+use super::{About, ActsOn, Context, Effect};
 use crate::drive::WheelTravel;
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
@@ -33,7 +33,7 @@ impl Effect for Scale {
         source: "Borenstein & Feng (1995), section 2",
     };
 
-    fn wheels<T: Real>(p: &[T], travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= p[0];
         travel.right *= p[0];
     }

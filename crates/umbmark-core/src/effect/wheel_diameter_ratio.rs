@@ -1,6 +1,6 @@
 //! E_d: unequal wheel diameters.
 
-use super::{About, ActsOn, Effect};
+use super::{About, ActsOn, Context, Effect};
 use crate::drive::WheelTravel;
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
@@ -34,7 +34,7 @@ impl Effect for WheelDiameterRatio {
                  Automation 12(6)",
     };
 
-    fn wheels<T: Real>(p: &[T], travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
         let left = (p[0] + 1.0).recip() * 2.0;
         travel.left *= left;
         travel.right *= left * p[0];

@@ -1,6 +1,6 @@
 //! E_b: the effective wheelbase.
 
-use super::{About, ActsOn, Effect};
+use super::{About, ActsOn, Context, Effect};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -32,7 +32,7 @@ impl Effect for Wheelbase {
         source: "Borenstein & Feng (1995), section 2",
     };
 
-    fn body<T: Real>(p: &[T], motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation /= p[0];
     }
 }

@@ -2,7 +2,7 @@
 
 use super::diffusion::Diffusion;
 use crate::drive::{Wheel, WheelTravel};
-use crate::effect::{Bump, Chain, Entry, Model, Stretch, WheelVariance};
+use crate::effect::{Bump, Chain, Context, Entry, Model, Stretch, WheelVariance};
 use crate::engine::Motion;
 use crate::geometry::{Displacement2, Pose2};
 use crate::random::Stream;
@@ -77,7 +77,8 @@ impl Truth {
 
     fn refresh(&mut self) {
         self.whole.clear();
-        self.rotation_per_metre = self.chain.body(&WheelTravel { left: -0.5, right: 0.5 }).rotation;
+        self.rotation_per_metre =
+            self.chain.body(&Context::default(), &WheelTravel { left: -0.5, right: 0.5 }).rotation;
         let variance = self.variance(&WheelTravel { left: 1.0, right: 1.0 });
         self.noisy = variance != WheelVariance::default();
     }
@@ -99,8 +100,8 @@ impl Truth {
 
     /// Puts the robot at START, as far as the effects let it stand there.
     pub fn start(&mut self) {
-        let start = self.random.iter_mut().fold(Pose2::IDENTITY, |pose, part| {
-            pose.compose(&(part.effect.scatter.start)(&part.values, &mut part.stream))
+        let start = self.random.iter_mut().fold(self.chain.start(), |pose, part| {
+            pose.compose(&(part.effect.scatter.start_scatter)(&part.values, &mut part.stream))
         });
         self.pose = Motion::from(start);
         self.stretch = None;
@@ -140,8 +141,8 @@ impl Truth {
             return;
         }
         let whole = piece == 1.0;
-        let travel = self.chain.wheel_travel(&stretch.travel.scaled(piece));
-        let motion = self.chain.body(&travel);
+        let travel = self.chain.wheel_travel(&Context::default(), &stretch.travel.scaled(piece));
+        let motion = self.chain.body(&Context::default(), &travel);
         let from = self.pose;
         self.pose = from.then(&Motion::exp(&motion));
         if self.noisy {
@@ -166,8 +167,8 @@ impl Truth {
         if let Some((_, known)) = self.whole.iter().find(|(travel, _)| *travel == commanded) {
             return *known;
         }
-        let travel = self.chain.wheel_travel(&commanded);
-        let diffusion = self.diffusion(&travel, &self.chain.body(&travel));
+        let travel = self.chain.wheel_travel(&Context::default(), &commanded);
+        let diffusion = self.diffusion(&travel, &self.chain.body(&Context::default(), &travel));
         self.whole.push((commanded, diffusion));
         diffusion
     }
@@ -177,7 +178,7 @@ impl Truth {
             Wheel::Left => WheelTravel { left: -bump.lost, right: 0.0 },
             Wheel::Right => WheelTravel { left: 0.0, right: -bump.lost },
         };
-        self.pose = self.pose.then(&Motion::exp(&self.chain.body(&travel)));
+        self.pose = self.pose.then(&Motion::exp(&self.chain.body(&Context::default(), &travel)));
     }
 
     /// The true pose.

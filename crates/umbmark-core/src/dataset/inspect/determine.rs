@@ -6,7 +6,7 @@
 
 use super::{Coverage, Group, LogFacts};
 use crate::drive::Robot;
-use crate::effect::{Model, TestKind};
+use crate::effect::{Context, Model, TestKind};
 use crate::geometry::{Dual, Pose2};
 use crate::path::{Direction, Path};
 use nalgebra::DMatrix;
@@ -75,7 +75,10 @@ fn jacobian(robot: &Robot, path: &Path, direction: Direction) -> Vec<[Pose2; 3]>
         let mut pose: Pose2<Dual> = Pose2::IDENTITY.lift();
         let mut poses = Vec::new();
         for m in path.moves(direction) {
-            let motion = chain.displacement(&m.wheel_travel(&robot.drive).scaled(1.0 / PIECES as f64));
+            let motion = chain.displacement(
+                &Context::default().headed(pose.heading),
+                &m.wheel_travel(&robot.drive).scaled(1.0 / PIECES as f64),
+            );
             for _ in 0..PIECES {
                 pose = pose.moved(&motion);
                 poses.push(Pose2::new(pose.x.eps, pose.y.eps, pose.heading.eps));
