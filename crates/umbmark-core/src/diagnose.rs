@@ -5,6 +5,11 @@
 //! a trace of its own. Effects that the data cannot tell apart are named together, as a class.
 
 mod candidates;
+mod examination;
+mod flips;
+pub mod smooth;
+mod system;
+pub mod tracks;
 
 use crate::effect::Model;
 
@@ -185,3 +190,4 @@ pub struct Diagnosis {
     /// What else should be said, a sentence each.
     pub remarks: Vec<String>,
 }
+pub mod explore { pub use super::examination::*; pub use super::tracks::*; }

@@ -18,6 +18,7 @@ pub mod effect;
 pub mod engine;
 pub mod fit;
 pub mod geometry;
+pub mod likelihood;
 pub mod monte_carlo;
 pub mod parameter;
 pub mod path;

@@ -205,6 +205,11 @@ impl Track {
         self.travel.iter().map(|t| 0.5 * (t.left + t.right).abs()).sum()
     }
 
+    /// Length that the axle's centre is believed to have travelled after `made` pieces \[m\].
+    pub fn way_before(&self, made: usize) -> f64 {
+        self.contexts.get(made).map_or_else(|| self.length(), |at| at.distance)
+    }
+
     /// Calls `seen` with the number of each observation and the pose predicted for it. It allocates nothing.
     #[inline]
     pub fn replay<T: Evaluate>(&self, chain: &Chain<T>, mut seen: impl FnMut(usize, &Pose2<T>)) {

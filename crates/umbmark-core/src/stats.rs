@@ -1,6 +1,6 @@
 //! Intervals, and quantiles of the usual distributions (thin over `statrs`).
 
-use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
 
 /// A closed interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +45,11 @@ pub fn student_t_quantile(probability: f64, degrees_of_freedom: f64) -> f64 {
 /// NaN for a probability outside (0, 1) or degrees of freedom that are not positive.
 pub fn chi_squared_quantile(probability: f64, degrees_of_freedom: f64) -> f64 {
     quantile(ChiSquared::new(degrees_of_freedom), probability)
+}
+
+/// The probability that F with `above` and `below` degrees of freedom exceeds `f`; 1 for what is no F.
+pub fn f_tail(f: f64, above: f64, below: f64) -> f64 {
+    FisherSnedecor::new(above, below).map_or(1.0, |d| if f > 0.0 { d.sf(f) } else { 1.0 })
 }
 
 fn quantile<D: ContinuousCDF<f64, f64>, E>(distribution: Result<D, E>, probability: f64) -> f64 {

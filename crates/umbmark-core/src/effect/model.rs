@@ -128,6 +128,24 @@ impl Model {
         self.parts.iter().flat_map(|part| part.values.iter().copied())
     }
 
+    /// The same effects with some of the [values](Model::values), named by their place, replaced.
+    pub fn with_values(&self, places: &[usize], values: &[f64]) -> Result<Model, ModelError> {
+        let mut model = self.clone();
+        for (place, value) in places.iter().zip(values) {
+            let mut index = *place;
+            let holds = |part: &&mut Part| {
+                let inside = index < part.values.len();
+                index -= if inside { 0 } else { part.values.len() };
+                inside
+            };
+            let Some(part) = model.parts.iter_mut().find(holds) else { continue };
+            let about = &part.effect.about;
+            let checked = about.parameters[index].check(*value);
+            part.values[index] = checked.map_err(|problem| ModelError::Value { effect: about.name, problem })?;
+        }
+        Ok(model)
+    }
+
     /// The model's deterministic chain with its own values.
     pub fn chain(&self) -> Chain<f64> {
         let values: Vec<f64> = self.values().collect();

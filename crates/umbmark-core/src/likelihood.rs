@@ -1,0 +1,21 @@
+//! How probable the observed tracks are: residuals of a whole run, made independent and of unit variance.
+//!
+//! The pose error of a run is a random walk: every metre and every radian driven adds heading and position noise, START is
+//! placed by hand, and the reference adds noise of its own. So the covariance of all residuals of a run is full, but its inverse
+//! is banded: a Kalman filter along the run turns residuals, and Jacobian columns alike, into independent ones in one pass
+//! ([`Noise::whiten`]). The sizes of the noise are found from the data by restricted maximum likelihood ([`Noise::estimate`]).
+//!
+//! Source: error growth along a path, Chong & Kleeman (1997) and Kelly (2004); innovations as whitened residuals, Kailath (1968);
+//! REML, Patterson & Thompson (1971).
+
+mod fitting;
+mod noise;
+mod observed;
+mod simplex;
+mod whiten;
+
+pub use fitting::{Column, Fitted};
+pub use noise::Noise;
+pub(crate) use noise::gram;
+pub use observed::{Block, Growth, Observed, ObservedRun};
+pub use whiten::Whitened;

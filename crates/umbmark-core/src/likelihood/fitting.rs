@@ -1,0 +1,127 @@
+//! The free parameters of a model, fitted to whole tracks.
+
+use super::noise::Noise;
+use super::observed::Observed;
+use crate::effect::{Model, ModelError};
+use crate::fit::{Fit, Options, Problem, least_squares};
+use crate::geometry::{Dual, Pose2};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// One (x, y, heading) a block.
+pub type Column = Vec<[f64; 3]>;
+
+/// A model fitted to tracks, and the noise that it leaves.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// The model with its free parameters at their best.
+    pub model: Model,
+    /// The noise.
+    pub noise: Noise,
+    /// Which of [`Model::values`] were fitted.
+    pub free: Vec<usize>,
+    /// Their covariance; `None` where the data leaves a combination of them open.
+    pub covariance: Option<DMatrix<f64>>,
+}
+
+/// Stops where a step changes no parameter by more than a millionth.
+const STOP: Options = Options { iterations: 12, step_tolerance: 1e-7, decrease_tolerance: 1e-9 };
+
+impl Observed {
+    /// Fits all free sizes of a model, and the noise.
+    pub fn fit(&self, model: &Model, from: &Noise) -> Result<Fitted, ModelError> {
+        let free = self.free_values(model);
+        let mut fitted = Fitted { model: model.clone(), noise: *from, free, covariance: None };
+        for _ in 0..2 {
+            let fit = self.refit(&mut fitted)?;
+            fitted.covariance = fit.covariance();
+            let mut columns = self.columns(&fitted.model, &fitted.free);
+            let chain = fitted.model.chain();
+            for (run, columns) in self.runs.iter().zip(&mut columns) {
+                columns.push(run.residuals(&chain));
+            }
+            fitted.noise = Noise::estimate(self, &chain, &columns, &fitted.noise);
+        }
+        fitted.covariance = self.refit(&mut fitted)?.covariance();
+        Ok(fitted)
+    }
+
+    /// Fits the free values under the noise as it is.
+    pub fn refit(&self, fitted: &mut Fitted) -> Result<Fit, ModelError> {
+        let start: Vec<f64> = fitted.model.values().collect();
+        let start: Vec<f64> = fitted.free.iter().map(|i| start[*i]).collect();
+        let problem = Tracks { observed: self, model: &fitted.model, noise: &fitted.noise, free: &fitted.free };
+        let fit = least_squares(&problem, &start, &STOP);
+        fitted.model = fitted.model.with_values(&fitted.free, &fit.values)?;
+        Ok(fit)
+    }
+
+    /// Values of the free parts of a model that move some observed pose.
+    pub fn free_values(&self, model: &Model) -> Vec<usize> {
+        let parts = model.parts().iter().flat_map(|part| part.values.iter().map(|_| part.free));
+        let free: Vec<usize> = parts.enumerate().filter_map(|(i, free)| free.then_some(i)).collect();
+        let columns = self.columns(model, &free);
+        let moves = |k: &usize| columns.iter().any(|run| run[*k].iter().any(|c| *c != [0.0; 3]));
+        (0..free.len()).filter(moves).map(|k| free[k]).collect()
+    }
+
+    /// Derivatives of the predicted poses by some of the values of a model: run by run, one column a value.
+    pub fn columns(&self, model: &Model, values: &[usize]) -> Vec<Vec<Column>> {
+        let chains: Vec<_> = values
+            .iter()
+            .map(|seed| {
+                let seeded = model.values().enumerate();
+                let duals: Vec<Dual> = seeded.map(|(i, v)| Dual::new(v, f64::from(u8::from(i == *seed)))).collect();
+                model.chain_with(&duals)
+            })
+            .collect();
+        let derivative = |pose: &Pose2<Dual>| Pose2::new(pose.x.eps, pose.y.eps, pose.heading.eps);
+        self.runs.par_iter().map(|run| chains.iter().map(|chain| run.column(chain, derivative)).collect()).collect()
+    }
+}
+
+struct Tracks<'a> {
+    observed: &'a Observed,
+    model: &'a Model,
+    noise: &'a Noise,
+    free: &'a [usize],
+}
+
+impl Tracks<'_> {
+    /// Whitens one set of columns a run into one matrix.
+    fn stacked(&self, columns: &[Vec<Column>]) -> DMatrix<f64> {
+        let runs: Vec<Vec<f64>> = self
+            .observed
+            .runs
+            .par_iter()
+            .zip(columns)
+            .map(|(run, columns)| {
+                let columns: Vec<&[[f64; 3]]> = columns.iter().map(Vec::as_slice).collect();
+                self.noise.whiten(run, &columns).values
+            })
+            .collect();
+        let width = columns.first().map_or(0, Vec::len);
+        let values: Vec<f64> = runs.concat();
+        DMatrix::from_row_slice(values.len() / width.max(1), width, &values)
+    }
+}
+
+impl Problem for Tracks<'_> {
+    fn residuals(&self, parameters: &[f64]) -> DVector<f64> {
+        let Ok(model) = self.model.with_values(self.free, parameters) else {
+            return DVector::from_element(1, f64::INFINITY);
+        };
+        let chain = model.chain();
+        let residuals: Vec<Vec<Column>> =
+            self.observed.runs.par_iter().map(|run| vec![run.residuals(&chain)]).collect();
+        let stacked = self.stacked(&residuals);
+        DVector::from_column_slice(stacked.as_slice())
+    }
+
+    fn jacobian(&self, parameters: &[f64]) -> DMatrix<f64> {
+        let Ok(model) = self.model.with_values(self.free, parameters) else {
+            return DMatrix::zeros(1, self.free.len());
+        };
+        -self.stacked(&self.observed.columns(&model, self.free))
+    }
+}

@@ -1,0 +1,156 @@
+//! The sizes of the noise, and how they are found.
+
+use super::observed::{Growth, Observed, ObservedRun};
+use super::simplex;
+use crate::effect::Chain;
+use nalgebra::{DMatrix, Matrix3};
+use rayon::prelude::*;
+
+/// Standard deviations of everything random in a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Heading noise per square root of way \[rad/√m\].
+    pub heading_per_metre: f64,
+    /// Heading noise per square root of rotation \[rad/√rad\].
+    pub heading_per_radian: f64,
+    /// Position noise of each coordinate per square root of way \[m/√m\].
+    pub position_per_metre: f64,
+    /// Reference noise that a block of poses shares, each coordinate \[m\].
+    pub reference_position: f64,
+    /// The same of the heading \[rad\].
+    pub reference_heading: f64,
+    /// Reference noise from pose to pose within a block, each coordinate \[m\].
+    pub within_position: f64,
+    /// The same of the heading \[rad\].
+    pub within_heading: f64,
+    /// Scatter of START where it was not measured, each coordinate \[m\].
+    pub start_position: f64,
+    /// The same of the heading \[rad\].
+    pub start_heading: f64,
+}
+
+impl Default for Noise {
+    /// Usual sizes: wheels on a smooth floor, motion capture, START marked on the floor.
+    fn default() -> Self {
+        Noise {
+            heading_per_metre: 1.5e-3,
+            heading_per_radian: 1e-3,
+            position_per_metre: 3e-4,
+            reference_position: 5e-4,
+            reference_heading: 5e-4,
+            within_position: 0.0,
+            within_heading: 0.0,
+            start_position: 2e-3,
+            start_heading: 3e-3,
+        }
+    }
+}
+
+/// No size falls below this share of its usual value, or rises above its inverse.
+const RANGE: f64 = 1e-2;
+/// Evaluations of the likelihood.
+const EVALUATIONS: usize = 160;
+
+impl Noise {
+    /// The sizes under which the residuals of a model are likeliest, by restricted maximum likelihood:
+    ///
+    /// -2 l = Σ log|S| + log|AᵀΣ⁻¹A| + r̂ᵀΣ⁻¹r̂, with the columns A fitted out.
+    ///
+    /// Noise within blocks is taken from successive differences. `columns` holds, run by run, the columns of the model
+    /// and last the residuals.
+    pub fn estimate(observed: &Observed, chain: &Chain<f64>, columns: &[Vec<Vec<[f64; 3]>>], from: &Noise) -> Noise {
+        let mut start = *from;
+        let scatter: Vec<_> = observed.runs.iter().map(|run| run.scatter_within_blocks(chain)).collect();
+        let pooled = |which: usize| {
+            let (sum, count) = scatter.iter().fold((0.0, 0), |(s, n), run| (s + run[which].0, n + run[which].1));
+            if count > 0 { (sum / count as f64).sqrt() } else { 0.0 }
+        };
+        (start.within_position, start.within_heading) = (pooled(0), pooled(1));
+        let sizes = |x: &[f64; 5]| {
+            let usual = Noise::default();
+            let at = |i: usize, usual: f64| usual * libm::exp(x[i].clamp(libm::log(RANGE), -libm::log(RANGE)));
+            Noise {
+                heading_per_metre: at(0, usual.heading_per_metre),
+                heading_per_radian: at(1, usual.heading_per_radian),
+                position_per_metre: at(2, usual.position_per_metre),
+                reference_position: at(3, usual.reference_position),
+                reference_heading: at(4, usual.reference_heading),
+                ..start
+            }
+        };
+        let usual = Noise::default();
+        let first = [
+            libm::log(from.heading_per_metre / usual.heading_per_metre),
+            libm::log(from.heading_per_radian / usual.heading_per_radian),
+            libm::log(from.position_per_metre / usual.position_per_metre),
+            libm::log(from.reference_position / usual.reference_position),
+            libm::log(from.reference_heading / usual.reference_heading),
+        ];
+        let cost = |x: &[f64; 5]| {
+            // A faint preference for usual sizes keeps what the data does not show where it is.
+            let pull: f64 = x.iter().map(|v| 0.02 * v * v).sum();
+            sizes(x).deviance(&observed.runs, columns) + pull
+        };
+        sizes(&simplex::minimise(first, 0.7, EVALUATIONS, cost))
+    }
+
+    /// -2 log of the restricted likelihood, up to a constant. The last column of each run is its residuals.
+    pub fn deviance(&self, runs: &[ObservedRun], columns: &[Vec<Vec<[f64; 3]>>]) -> f64 {
+        let parts: Vec<(DMatrix<f64>, f64)> = runs
+            .par_iter()
+            .zip(columns)
+            .map(|(run, columns)| {
+                let all: Vec<&[[f64; 3]]> = columns.iter().map(Vec::as_slice).collect();
+                let white = self.whiten(run, &all);
+                (gram(&white.values, white.columns), white.log_scale)
+            })
+            .collect();
+        let width = columns.first().map_or(0, Vec::len);
+        let mut sum = DMatrix::zeros(width, width);
+        let mut deviance = 0.0;
+        for (gram, log_scale) in &parts {
+            sum += gram;
+            deviance += 2.0 * log_scale;
+        }
+        let p = width - 1;
+        let cross = sum.view((0, p), (p, 1)).into_owned();
+        let mut rest = sum[(p, p)];
+        let mut information = sum.view((0, 0), (p, p)).into_owned();
+        let lengths: Vec<f64> = (0..p).map(|i| information[(i, i)].sqrt().max(f64::MIN_POSITIVE)).collect();
+        for i in 0..p {
+            for j in 0..p {
+                information[(i, j)] /= lengths[i] * lengths[j];
+            }
+            information[(i, i)] += 1e-12;
+            deviance += 2.0 * libm::log(lengths[i]);
+        }
+        if let Some(factor) = information.cholesky() {
+            let scaled = DMatrix::from_fn(p, 1, |i, _| cross[i] / lengths[i]);
+            rest -= scaled.dot(&factor.solve(&scaled));
+            deviance += 2.0 * (0..p).map(|i| libm::log(factor.l_dirty()[(i, i)])).sum::<f64>();
+        }
+        deviance + rest
+    }
+
+    /// Covariance added from one block to the next, in error coordinates.
+    pub(super) fn growth(&self, growth: &Growth) -> Matrix3<f64> {
+        let (metre, radian) = (self.heading_per_metre.powi(2), self.heading_per_radian.powi(2));
+        let at = |k: usize| metre * growth.heading_per_metre[k] + radian * growth.heading_per_radian[k];
+        let position = self.position_per_metre.powi(2) * growth.way;
+        Matrix3::new(at(0) + position, at(1), at(3), at(1), at(2) + position, at(4), at(3), at(4), at(5))
+    }
+}
+
+/// XᵀX of a matrix stored row by row.
+pub(crate) fn gram(values: &[f64], columns: usize) -> DMatrix<f64> {
+    let mut sum = DMatrix::zeros(columns, columns);
+    for row in values.chunks_exact(columns.max(1)) {
+        for j in 0..columns {
+            for i in 0..=j {
+                sum[(i, j)] += row[i] * row[j];
+            }
+        }
+    }
+    sum.fill_lower_triangle_with_upper_triangle();
+    sum
+}

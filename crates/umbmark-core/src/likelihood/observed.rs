@@ -1,0 +1,242 @@
+//! Recorded runs with the poses that were measured on the way, gathered into blocks.
+
+use crate::dataset::{Dataset, Run};
+use crate::drive::Robot;
+use crate::effect::{Chain, Evaluate, Model, Place, TestKind};
+use crate::geometry::{Pose2, wrap};
+use crate::path::Direction;
+use crate::replay::{ReplayError, Track};
+
+/// Poses measured within this way \[m\] and rotation \[rad\] are one observation: they share the noise of the wheels, and only
+/// that of the reference is averaged.
+const BLOCK: (f64, f64) = (0.03, 0.05);
+/// A run falls into so many units, by the way driven.
+const UNITS: f64 = 4.0;
+
+/// How the random walk of the pose error grows from one block to the next, for unit noise.
+///
+/// In coordinates (q, θ) of the error that stay constant while nothing is added, δp = q + θ J p: a heading step at p adds
+/// (-J p, 1), a position step adds (n, 0).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Growth {
+    /// Σ ds g gᵀ over the pieces, g = (p_y, -p_x, 1), ds the way driven \[m\]: lower triangle by rows.
+    pub heading_per_metre: [f64; 6],
+    /// Σ |dθ| g gᵀ over the pieces \[rad\].
+    pub heading_per_radian: [f64; 6],
+    /// Way driven \[m\].
+    pub way: f64,
+}
+
+/// Neighbouring observations of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// Its first observation.
+    pub first: usize,
+    /// How many there are.
+    pub count: usize,
+    /// How many of them have a heading.
+    pub headings: usize,
+    /// Where it is believed to be.
+    pub place: Pose2,
+    /// How the error grows from the block before to this one.
+    pub growth: Growth,
+    /// Which quarter of the way it lies in, from 0.
+    pub unit: usize,
+}
+
+/// A run, ready to be predicted.
+#[derive(Clone, Debug)]
+pub struct ObservedRun {
+    /// What it is called.
+    pub name: String,
+    /// Its sense.
+    pub direction: Option<Direction>,
+    /// Its believed travel.
+    pub track: Track,
+    /// Measured poses: x, y \[m\] and, where it was measured, heading \[rad\].
+    pub seen: Vec<(f64, f64, Option<f64>)>,
+    /// The poses in blocks.
+    pub blocks: Vec<Block>,
+    /// Whether the pose at START was measured, so that the frame is not taken on trust.
+    pub start_seen: bool,
+}
+
+/// All runs of the regular test that were observed on the way.
+#[derive(Clone, Debug)]
+pub struct Observed {
+    /// The nominal robot.
+    pub robot: Robot,
+    /// The runs, in the order of the dataset.
+    pub runs: Vec<ObservedRun>,
+}
+
+impl Observed {
+    /// Gathers the runs of a dataset that have ticks and absolute poses in at least three places.
+    pub fn new(data: &Dataset, robot: &Robot) -> Result<Observed, ReplayError> {
+        let mut runs = Vec::new();
+        let mut session_distance = 0.0;
+        for run in data.runs.iter().filter(|run| run.test == TestKind::Systematic) {
+            let place = Place { run: runs.len(), session_distance, direction: run.direction };
+            if let Some(observed) = ObservedRun::new(run, robot, place)? {
+                session_distance += observed.track.length();
+                runs.push(observed);
+            }
+        }
+        Ok(Observed { robot: robot.clone(), runs })
+    }
+
+    /// Believed travel of the runs.
+    pub fn tracks(&self) -> impl Iterator<Item = &Track> {
+        self.runs.iter().map(|run| &run.track)
+    }
+}
+
+impl ObservedRun {
+    fn new(run: &Run, robot: &Robot, place: Place) -> Result<Option<ObservedRun>, ReplayError> {
+        let Some(log) = &run.log else { return Ok(None) };
+        let track = Track::from_log_at(log, robot, place)?;
+        let seen: Vec<_> = log.reference.iter().map(|r| (r.x, r.y, r.heading)).collect();
+        let start_seen = track.seen_after().first().is_some_and(|made| track.way_before(*made) < BLOCK.0);
+        let blocks = blocks(&track, &seen, robot);
+        let observed =
+            ObservedRun { name: run.name.clone(), direction: run.direction, track, seen, blocks, start_seen };
+        Ok((observed.blocks.len() >= 3).then_some(observed))
+    }
+
+    /// Measured minus predicted poses, block by block.
+    pub fn residuals(&self, chain: &Chain<f64>) -> Vec<[f64; 3]> {
+        let mut sums = Sums::new(self);
+        self.track.replay(chain, |i, pose| {
+            let (x, y, heading) = self.seen[i];
+            sums.add(i, [x - pose.x, y - pose.y], heading.map(|h| wrap(h - pose.heading)));
+        });
+        sums.means
+    }
+
+    /// Derivatives of the predicted poses, block by block; `derivative` takes them out of a pose.
+    pub fn column<T: Evaluate>(&self, chain: &Chain<T>, derivative: impl Fn(&Pose2<T>) -> Pose2) -> Vec<[f64; 3]> {
+        let mut sums = Sums::new(self);
+        self.track.replay(chain, |i, pose| {
+            let d = derivative(pose);
+            sums.add(i, [d.x, d.y], self.seen[i].2.map(|_| d.heading));
+        });
+        sums.means
+    }
+
+    /// Mean squared difference of successive residuals within blocks, halved: variance of one reference pose (position
+    /// per coordinate \[m²\], heading \[rad²\]) and how many differences it was taken from.
+    pub fn scatter_within_blocks(&self, chain: &Chain<f64>) -> [(f64, usize); 2] {
+        let mut raw = Vec::with_capacity(self.seen.len());
+        self.track.replay(chain, |i, pose| {
+            let (x, y, heading) = self.seen[i];
+            raw.push((x - pose.x, y - pose.y, heading.map(|h| wrap(h - pose.heading))));
+        });
+        let (mut position, mut heading) = ((0.0, 0), (0.0, 0));
+        for block in &self.blocks {
+            for pair in raw[block.first..block.first + block.count].windows(2) {
+                let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
+                position = (position.0 + 0.25 * (dx * dx + dy * dy), position.1 + 1);
+                if let (Some(a), Some(b)) = (pair[0].2, pair[1].2) {
+                    heading = (heading.0 + 0.5 * (b - a) * (b - a), heading.1 + 1);
+                }
+            }
+        }
+        [position, heading]
+    }
+}
+
+/// Means over blocks, gathered in the order of the observations.
+struct Sums<'a> {
+    run: &'a ObservedRun,
+    block: usize,
+    means: Vec<[f64; 3]>,
+}
+
+impl<'a> Sums<'a> {
+    fn new(run: &'a ObservedRun) -> Sums<'a> {
+        Sums { run, block: 0, means: vec![[0.0; 3]; run.blocks.len()] }
+    }
+
+    fn add(&mut self, observation: usize, position: [f64; 2], heading: Option<f64>) {
+        let blocks = &self.run.blocks;
+        while observation >= blocks[self.block].first + blocks[self.block].count {
+            self.block += 1;
+        }
+        let block = &blocks[self.block];
+        let mean = &mut self.means[self.block];
+        mean[0] += position[0] / block.count as f64;
+        mean[1] += position[1] / block.count as f64;
+        if let Some(heading) = heading {
+            mean[2] += heading / block.headings as f64;
+        }
+    }
+}
+
+/// Cuts the observations of a track into blocks.
+fn blocks(track: &Track, seen: &[(f64, f64, Option<f64>)], robot: &Robot) -> Vec<Block> {
+    let walk = Walk::new(track, robot);
+    let whole = walk.way.last().copied().unwrap_or(0.0);
+    let mut blocks: Vec<Block> = Vec::new();
+    let mut before = 0;
+    let mut first = 0;
+    while first < seen.len() {
+        let begins = track.seen_after()[first];
+        let together = |made: &usize| {
+            walk.way[*made] - walk.way[begins] < BLOCK.0 && walk.turned[*made] - walk.turned[begins] < BLOCK.1
+        };
+        let count = track.seen_after()[first..].iter().take_while(|made| together(made)).count().max(1);
+        let middle = track.seen_after()[first + (count - 1) / 2];
+        let unit = (UNITS * walk.way[middle] / whole.max(f64::MIN_POSITIVE)).min(UNITS - 1.0) as usize;
+        blocks.push(Block {
+            first,
+            count,
+            headings: seen[first..first + count].iter().filter(|s| s.2.is_some()).count(),
+            place: walk.places[middle],
+            growth: walk.growth(before, middle),
+            unit,
+        });
+        before = middle;
+        first += count;
+    }
+    blocks
+}
+
+/// Where the odometry believes to be after each piece, and how far it has gone and turned.
+struct Walk {
+    places: Vec<Pose2>,
+    way: Vec<f64>,
+    turned: Vec<f64>,
+}
+
+impl Walk {
+    fn new(track: &Track, robot: &Robot) -> Walk {
+        let chain = Model::new(robot).chain();
+        let mut walk = Walk { places: vec![Pose2::IDENTITY], way: vec![0.0], turned: vec![0.0] };
+        let (mut pose, mut way, mut turned) = (Pose2::IDENTITY, 0.0, 0.0);
+        for (travel, at) in track.travel().iter().zip(track.contexts()) {
+            let motion = chain.displacement(at, travel);
+            pose = pose.moved(&motion);
+            way += motion.forward.abs();
+            turned += motion.rotation.abs();
+            walk.places.push(pose);
+            walk.way.push(way);
+            walk.turned.push(turned);
+        }
+        walk
+    }
+
+    fn growth(&self, from: usize, to: usize) -> Growth {
+        let mut growth = Growth { way: self.way[to] - self.way[from], ..Growth::default() };
+        for piece in from..to {
+            let (a, b) = (&self.places[piece], &self.places[piece + 1]);
+            let g = [0.5 * (a.y + b.y), -0.5 * (a.x + b.x), 1.0];
+            let outer = [g[0] * g[0], g[1] * g[0], g[1] * g[1], g[0], g[1], 1.0];
+            let (way, turned) = (self.way[piece + 1] - self.way[piece], self.turned[piece + 1] - self.turned[piece]);
+            for (k, product) in outer.into_iter().enumerate() {
+                growth.heading_per_metre[k] += way * product;
+                growth.heading_per_radian[k] += turned * product;
+            }
+        }
+        growth
+    }
+}
