@@ -8,6 +8,7 @@ mod candidates;
 mod examination;
 mod flips;
 pub mod smooth;
+pub mod story;
 mod system;
 pub mod tracks;
 
@@ -190,4 +191,4 @@ pub struct Diagnosis {
     /// What else should be said, a sentence each.
     pub remarks: Vec<String>,
 }
-pub mod explore { pub use super::examination::*; pub use super::tracks::*; }
+pub mod explore { pub use super::examination::*; pub use super::tracks::*; pub use super::story::*; }

@@ -113,6 +113,18 @@ impl<'a> Examination<'a> {
         Ok(examination)
     }
 
+    /// A fitted model asked about nothing: for its errors alone.
+    pub fn bare(observed: &'a Observed, fitted: Fitted) -> Examination<'a> {
+        let mut columns = observed.columns(&fitted.model, &fitted.free);
+        let chain = fitted.model.chain();
+        for (all, run) in columns.iter_mut().zip(&observed.runs) {
+            all.push(run.residuals(&chain));
+        }
+        let system = System::new(observed, &fitted.noise, &columns);
+        let free = (0..fitted.free.len()).collect();
+        Examination { observed, fitted, system, asked: Vec::new(), free, columns }
+    }
+
     /// Estimates the noise anew with what is most evidently missing fitted out, so that it is noise alone.
     fn clean(&mut self) {
         let mut out = self.base(None);

@@ -28,9 +28,9 @@ pub struct Fitted {
 const STOP: Options = Options { iterations: 12, step_tolerance: 1e-7, decrease_tolerance: 1e-9 };
 
 impl Observed {
-    /// Fits all free sizes of a model, and the noise.
-    pub fn fit(&self, model: &Model, from: &Noise) -> Result<Fitted, ModelError> {
-        let free = self.free_values(model);
+    /// Fits all free values of a model but those `held`, and the noise.
+    pub fn fit(&self, model: &Model, from: &Noise, held: &[usize]) -> Result<Fitted, ModelError> {
+        let free: Vec<usize> = self.free_values(model).into_iter().filter(|value| !held.contains(value)).collect();
         let mut fitted = Fitted { model: model.clone(), noise: *from, free, covariance: None };
         for _ in 0..2 {
             let fit = self.refit(&mut fitted)?;
