@@ -62,7 +62,7 @@ fn extended(exam: &Examination, finding: &Finding) -> Result<Model, ModelError> 
 }
 
 fn refit(observed: &Observed, model: &Model, noise: &Noise) -> Result<Fitted, ModelError> {
-    let fitted = observed.fit(model, noise, &[])?;
+    let fitted = observed.fit(model, &{let _ = noise; Noise::default()}, &[])?;
     Ok(fitted)
 }
 
@@ -71,13 +71,13 @@ pub fn learn(observed: &Observed, options: &Options, say: &mut dyn FnMut(&Step))
     let mut noise = Noise::default();
     for name in [None, Some("wheel_diameter_ratio"), Some("wheelbase"), Some("scale")] {
         if let Some(name) = name { model.add(name)?.free = true; }
-        let fitted = observed.fit(&model, &noise, &[])?;
+        let fitted = observed.fit(&model, &Noise::default(), &[])?;
         let exam = Examination::bare(observed, fitted);
         model = exam.fitted.model.clone();
         noise = exam.fitted.noise;
         say(&Step { added: name, class: vec![], p: None, inside: in_sample(&exam), heldout: held_out(&exam), note: String::new() });
     }
-    let mut fitted = observed.fit(&model, &noise, &[])?;
+    let _ = noise; let mut fitted = observed.fit(&model, &Noise::default(), &[])?;
     for _ in 0..6 {
         let exam = Examination::new(observed, fitted.clone())?;
         let findings = look(&exam, &[], false, options);
@@ -89,6 +89,8 @@ pub fn learn(observed: &Observed, options: &Options, say: &mut dyn FnMut(&Step))
         let smooth = &smooths[0];
         println!("   best {name} drop {:.1} p_f {:.1e} flips {:.4} step {:?}; smooth {:?} {:.1} {:.1e} {:.4}; held out {:.3} -> {:.3} mm, {:.3} -> {:.3} mrad {:?}", best.answer.drop, best.p_f, best.p_flips, best.answer.step.as_slice(),
             match &exam.asked[smooth.answer.asked].question { Question::Smooth(c, m) => (c.name, m.name()), _ => ("", "") }, smooth.answer.drop, smooth.p_f, smooth.p_flips, 1e3*before.position, 1e3*after.position, 1e3*before.heading.unwrap_or(0.0), 1e3*after.heading.unwrap_or(0.0), picks);
+        { let su = super::tracks::suspect(&exam, best, &[]).unwrap(); println!("   {:?}", su.estimate.iter().map(|e| (e.parameter, e.value, e.standard_error)).collect::<Vec<_>>());
+          println!("   cov {:?}", best.answer.covariance); println!("   scores {:?}", super::tracks::scores(&exam, best).units.iter().map(|u| u.as_slice().to_vec()).collect::<Vec<_>>()); }
         for f in findings.iter().skip(1).take(3) { println!("        then {} drop {:.1} p_f {:.1e} flips {:.4} {:?}", exam.asked[f.answer.asked].effect().unwrap().about.name, f.answer.drop, f.p_f, f.p_flips, f.answer.step.as_slice()); }
         let gain = (1.0 - after.position / before.position).max(1.0 - after.heading.unwrap_or(1.0) / before.heading.unwrap_or(1.0));
         if !best.certified(options) || gain < LEAST_GAIN { break; }

@@ -124,3 +124,87 @@ fn update(states: &mut [Vector3<f64>], innovations: &[Vector3<f64>], gain: &Matr
         *state += gain * innovation;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::Robot;
+    use crate::geometry::Pose2;
+    use crate::likelihood::Growth;
+    use crate::path::{Direction, Path};
+    use crate::random::Stream;
+    use crate::replay::Track;
+    use nalgebra::{DMatrix, DVector};
+
+    /// A run of a few blocks here and there; one of them without headings.
+    fn run(start_seen: bool) -> ObservedRun {
+        let track = Track::from_path(&Path::umbmark(), Direction::Ccw, &Robot::labmate());
+        let places = [(0.0, 0.0), (1.0, 0.1), (2.0, -0.3), (2.5, 1.0), (2.4, 2.0)];
+        let blocks: Vec<Block> = places
+            .iter()
+            .enumerate()
+            .map(|(i, (x, y))| {
+                let mut growth = Growth { way: i as f64, ..Growth::default() };
+                for (sum, at) in
+                    [(&mut growth.heading_per_metre, [*x - 0.5, *y]), (&mut growth.heading_per_radian, [*x, *y - 0.2])]
+                {
+                    let g = [at[1], -at[0], 1.0];
+                    *sum = [g[0] * g[0], g[1] * g[0], g[1] * g[1], g[0], g[1], 1.0].map(|v| i as f64 * v);
+                }
+                let headings = if i == 2 { 0 } else { 2 };
+                Block { first: 2 * i, count: 2, headings, place: Pose2::new(*x, *y, 0.0), growth, unit: 0 }
+            })
+            .collect();
+        ObservedRun { name: "a few".into(), direction: None, track, seen: vec![], blocks, start_seen }
+    }
+
+    fn noise() -> Noise {
+        Noise { heading_per_metre: 0.02, heading_per_radian: 0.01, position_per_metre: 0.005, ..Noise::default() }
+    }
+
+    /// The covariance of all residuals by its definition.
+    fn dense(noise: &Noise, run: &ObservedRun) -> DMatrix<f64> {
+        let mut grown = vec![noise.start(run.start_seen)];
+        for block in &run.blocks {
+            grown.push(grown[grown.len() - 1] + noise.growth(&block.growth));
+        }
+        let n = run.blocks.len();
+        let mut whole = DMatrix::zeros(3 * n, 3 * n);
+        for i in 0..n {
+            for j in 0..n {
+                let mut shared = observation(&run.blocks[i]) * grown[1 + i.min(j)] * observation(&run.blocks[j]).transpose();
+                if i == j {
+                    shared += noise.measurement(&run.blocks[i]);
+                }
+                whole.view_mut((3 * i, 3 * j), (3, 3)).copy_from(&shared);
+            }
+        }
+        let kept: Vec<usize> = (0..3 * n).filter(|r| r % 3 < 2 || run.blocks[r / 3].headings > 0).collect();
+        DMatrix::from_fn(kept.len(), kept.len(), |i, j| whole[(kept[i], kept[j])])
+    }
+
+    #[test]
+    fn products_of_whitened_columns_and_the_scale_are_those_of_the_full_covariance() {
+        let mut stream = Stream::new(3, 0, 0);
+        for start_seen in [true, false] {
+            let (run, noise) = (run(start_seen), noise());
+            let columns: [Vec<[f64; 3]>; 2] =
+                std::array::from_fn(|_| run.blocks.iter().map(|_| std::array::from_fn(|_| stream.normal())).collect());
+            let white = noise.whiten(&run, &[&columns[0], &columns[1]]);
+            let sigma = dense(&noise, &run);
+            let flat = |c: usize| {
+                let kept = run.blocks.iter().zip(&columns[c]);
+                let values: Vec<f64> = kept.flat_map(|(b, v)| v[..if b.headings > 0 { 3 } else { 2 }].to_vec()).collect();
+                DVector::from_vec(values)
+            };
+            let factor = sigma.cholesky().unwrap();
+            for (a, b) in [(0, 0), (0, 1), (1, 1)] {
+                let expected = flat(a).dot(&factor.solve(&flat(b)));
+                let got: f64 = white.rows().map(|row| row[a] * row[b]).sum();
+                assert!((got - expected).abs() < 1e-6 * expected.abs().max(1.0), "{start_seen} {a} {b}: {got} {expected}");
+            }
+            let log_scale: f64 = (0..factor.l().nrows()).map(|i| libm::log(factor.l()[(i, i)])).sum();
+            assert!((white.log_scale - log_scale).abs() < 1e-6, "{} {log_scale}", white.log_scale);
+        }
+    }
+}

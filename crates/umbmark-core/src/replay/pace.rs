@@ -4,12 +4,12 @@ use crate::dataset::TickLog;
 use crate::drive::WheelTravel;
 
 /// Half the width of the window that a speed is taken over \[s\].
-const HALF_WINDOW: f64 = 0.15;
+const HALF_WINDOW: f64 = 0.05;
 
-/// Speeds of the left and the right wheel at each sample \[m/s\]: (s(t + h) - s(t - h))/2h with h = 0.15 s, counts between
+/// Speeds of the left and the right wheel at each sample \[m/s\]: (s(t + h) - s(t - h))/2h with h = 0.05 s, counts between
 /// samples interpolated and the wheels at rest before and after the log.
 ///
-/// At h = 0.15 s a tick of 0.2 mm is 0.7 mm/s, and a ramp of a second is followed.
+/// At h = 0.05 s a tick of 0.2 mm is 2 mm/s, and a ramp of half a second is followed.
 pub(super) fn wheel_speeds(log: &TickLog, per_tick: &WheelTravel) -> Vec<[f64; 2]> {
     let (mut early, mut late) = (Cursor::default(), Cursor::default());
     let speed = |time: &f64| {
