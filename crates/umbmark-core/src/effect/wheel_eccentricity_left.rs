@@ -76,4 +76,19 @@ mod tests {
             }
         }
     }
+    #[test]
+    fn in_a_turn_each_wheel_has_an_angle_of_its_own() {
+        let c = 1e-4;
+        for (direction, sign) in ccw_and_cw() {
+            let turn = sign * 0.17 * std::f64::consts::FRAC_PI_2;
+            for (name, way, side) in
+                [("wheel_eccentricity_left", 4.0 - turn, -1.0), ("wheel_eccentricity_right", 4.0 + turn, 1.0)]
+            {
+                let ahead = c * (libm::cos(way / 0.075) - 1.0);
+                let error =
+                    stops_with(&[(name, "cosine_m", c)], direction)[1].heading - sign * std::f64::consts::FRAC_PI_2;
+                assert!((error - side * ahead / 0.34).abs() < 1e-12, "{name} {direction:?}: {error}");
+            }
+        }
+    }
 }
