@@ -191,4 +191,8 @@ pub struct Diagnosis {
     /// What else should be said, a sentence each.
     pub remarks: Vec<String>,
 }
-pub mod explore { pub use super::examination::*; pub use super::tracks::*; pub use super::story::*; }
+pub mod explore {
+    pub use super::examination::*;
+    pub use super::story::*;
+    pub use super::tracks::*;
+}

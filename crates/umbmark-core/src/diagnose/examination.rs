@@ -64,9 +64,7 @@ pub struct Answer {
 
 /// A fitted model on tracks, its residuals, and the columns of all that may be missing.
 #[derive(Clone, Debug)]
-pub struct Examination<'a> {
-    /// The runs.
-    pub observed: &'a Observed,
+pub struct Examination {
     /// The model.
     pub fitted: Fitted,
     /// Products of all columns.
@@ -78,9 +76,10 @@ pub struct Examination<'a> {
     columns: Vec<Vec<Column>>,
 }
 
-impl<'a> Examination<'a> {
+impl Examination {
     /// Asks a fitted model about every effect of the catalogue that it lacks, and every smooth.
-    pub fn new(observed: &'a Observed, fitted: Fitted) -> Result<Examination<'a>, ModelError> {
+    pub fn new(fitted: Fitted) -> Result<Examination, ModelError> {
+        let observed = &fitted.observed;
         let mut columns = observed.columns(&fitted.model, &fitted.free);
         let free: Vec<usize> = (0..fitted.free.len()).collect();
         let mut asked = Vec::new();
@@ -96,7 +95,7 @@ impl<'a> Examination<'a> {
             let nuisance = NUISANCE.contains(&effect.about.name);
             asked.push(Asked { question: Question::Effect(effect, parameters), columns: own, nuisance });
         }
-        for (all, smooths) in columns.iter_mut().zip(smooth_columns(observed)) {
+        for (all, smooths) in columns.iter_mut().zip(smooth_columns(observed, &fitted.model)) {
             all.extend(smooths);
         }
         for (covariate, motion, first, terms) in smooth::groups() {
@@ -108,13 +107,14 @@ impl<'a> Examination<'a> {
             all.push(run.residuals(&chain));
         }
         let system = System::new(observed, &fitted.noise, &columns);
-        let mut examination = Examination { observed, fitted, system, asked, free, columns };
+        let mut examination = Examination { fitted, system, asked, free, columns };
         examination.clean();
         Ok(examination)
     }
 
     /// A fitted model asked about nothing: for its errors alone.
-    pub fn bare(observed: &'a Observed, fitted: Fitted) -> Examination<'a> {
+    pub fn bare(fitted: Fitted) -> Examination {
+        let observed = &fitted.observed;
         let mut columns = observed.columns(&fitted.model, &fitted.free);
         let chain = fitted.model.chain();
         for (all, run) in columns.iter_mut().zip(&observed.runs) {
@@ -122,7 +122,7 @@ impl<'a> Examination<'a> {
         }
         let system = System::new(observed, &fitted.noise, &columns);
         let free = (0..fitted.free.len()).collect();
-        Examination { observed, fitted, system, asked: Vec::new(), free, columns }
+        Examination { fitted, system, asked: Vec::new(), free, columns }
     }
 
     /// Estimates the noise anew with what is most evidently missing fitted out, so that it is noise alone.
@@ -149,8 +149,8 @@ impl<'a> Examination<'a> {
             .map(|run| out.iter().copied().chain([self.system.residual()]).map(|c| run[c].clone()).collect())
             .collect();
         let chain = self.fitted.model.chain();
-        self.fitted.noise = Noise::estimate(self.observed, &chain, &few, &self.fitted.noise);
-        self.system = System::new(self.observed, &self.fitted.noise, &self.columns);
+        self.fitted.noise = Noise::estimate(&self.fitted.observed, &chain, &few, &self.fitted.noise);
+        self.system = System::new(&self.fitted.observed, &self.fitted.noise, &self.columns);
     }
 
     /// Columns that are fitted out when a group is asked about: the model's own and those of the reference, its own excepted.

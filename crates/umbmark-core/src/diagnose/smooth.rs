@@ -4,9 +4,10 @@
 //! to the way of one wheel), a function of one covariate. Its columns are sums along the run, in the error coordinates of
 //! [`Growth`](crate::likelihood::Growth): cheap, and in the same tests as the catalogue's effects.
 
-use crate::effect::{Context, Model};
+use crate::effect::{Chain, Context, Model};
 use crate::geometry::Pose2;
 use crate::likelihood::{Column, Observed, ObservedRun};
+use rayon::prelude::*;
 
 /// What a smooth adds to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -183,27 +184,27 @@ fn decays(at: &Context, sign: f64, out: &mut [f64]) {
 }
 
 /// The columns of every covariate for every motion: run by run, in the order of [`COVARIATES`] and [`Motion::ALL`], terms last.
-pub fn smooth_columns(observed: &Observed) -> Vec<Vec<Column>> {
+pub fn smooth_columns(observed: &Observed, model: &Model) -> Vec<Vec<Column>> {
     let contexts = || observed.tracks().flat_map(|track| track.contexts());
     let most = |of: fn(&Context) -> f64| contexts().map(of).fold(f64::MIN_POSITIVE, f64::max);
     let scales = [most(|c| c.speed.abs()), most(|c| c.turn_rate.abs())];
     let runs = observed.runs.len().max(1) as f64;
-    observed.runs.iter().map(|run| of_run(run, observed, scales, runs)).collect()
+    let chain = model.chain();
+    observed.runs.par_iter().map(|run| of_run(run, &chain, scales, runs)).collect()
 }
 
-fn of_run(run: &ObservedRun, observed: &Observed, [fastest, fastest_turn]: [f64; 2], runs: f64) -> Vec<Column> {
+fn of_run(run: &ObservedRun, chain: &Chain<f64>, [fastest, fastest_turn]: [f64; 2], runs: f64) -> Vec<Column> {
     let terms: usize = COVARIATES.iter().map(|c| c.terms).sum();
     let track = &run.track;
     let duration = track.contexts().last().map_or(1.0, |c| c.time + c.duration).max(f64::MIN_POSITIVE);
-    let chain = Model::new(&observed.robot).chain();
     let mut states = vec![[0.0; 3]; 3 * terms];
     let mut columns = vec![vec![[0.0; 3]; run.blocks.len()]; 3 * terms];
     let mut basis = vec![0.0; terms];
-    let (mut pose, mut made) = (Pose2::IDENTITY, 0);
+    let (mut pose, mut made) = (chain.start(), 0);
     for (index, block) in run.blocks.iter().enumerate() {
         let until = track.seen_after()[block.first + (block.count - 1) / 2];
         for (travel, at) in track.travel()[made..until].iter().zip(&track.contexts()[made..until]) {
-            let motion = chain.displacement(at, travel);
+            let motion = chain.displacement(&at.headed(pose.heading), travel);
             let middle = pose.moved(&crate::geometry::Displacement2 {
                 forward: 0.5 * motion.forward,
                 sideways: 0.5 * motion.sideways,
@@ -228,7 +229,7 @@ fn of_run(run: &ObservedRun, observed: &Observed, [fastest, fastest_turn]: [f64;
         }
         made = until;
         for (column, s) in columns.iter_mut().zip(&states) {
-            column[index] = [s[0] - pose.y * s[2], s[1] + pose.x * s[2], s[2]];
+            column[index] = [s[0] - block.place.y * s[2], s[1] + block.place.x * s[2], s[2]];
         }
     }
     columns

@@ -79,7 +79,7 @@ fn with(mut base: Vec<usize>, found: &[usize]) -> Vec<usize> {
 
 /// Scores of a group by run, or by quarter of a run where runs are few.
 pub fn scores(exam: &Examination, finding: &Finding) -> Scores {
-    let by_quarter = exam.observed.runs.len() < ENOUGH_RUNS;
+    let by_quarter = exam.fitted.observed.runs.len() < ENOUGH_RUNS;
     let mut units: Vec<nalgebra::DVector<f64>> = Vec::new();
     let mut before = None;
     for unit in &exam.system.units {

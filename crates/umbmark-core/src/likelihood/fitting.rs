@@ -14,6 +14,8 @@ pub type Column = Vec<[f64; 3]>;
 /// A model fitted to tracks, and the noise that it leaves.
 #[derive(Clone, Debug)]
 pub struct Fitted {
+    /// The runs, laid along the model.
+    pub observed: Observed,
     /// The model with its free parameters at their best.
     pub model: Model,
     /// The noise.
@@ -31,29 +33,19 @@ impl Observed {
     /// Fits all free values of a model but those `held`, and the noise.
     pub fn fit(&self, model: &Model, from: &Noise, held: &[usize]) -> Result<Fitted, ModelError> {
         let free: Vec<usize> = self.free_values(model).into_iter().filter(|value| !held.contains(value)).collect();
-        let mut fitted = Fitted { model: model.clone(), noise: *from, free, covariance: None };
+        let mut fitted =
+            Fitted { observed: self.along(model), model: model.clone(), noise: *from, free, covariance: None };
         for _ in 0..2 {
-            let fit = self.refit(&mut fitted)?;
-            fitted.covariance = fit.covariance();
+            fitted.refit()?;
             let mut columns = self.columns(&fitted.model, &fitted.free);
             let chain = fitted.model.chain();
             for (run, columns) in self.runs.iter().zip(&mut columns) {
                 columns.push(run.residuals(&chain));
             }
-            fitted.noise = Noise::estimate(self, &chain, &columns, &fitted.noise);
+            fitted.noise = Noise::estimate(&fitted.observed, &chain, &columns, &fitted.noise);
         }
-        fitted.covariance = self.refit(&mut fitted)?.covariance();
+        fitted.covariance = fitted.refit()?.covariance();
         Ok(fitted)
-    }
-
-    /// Fits the free values under the noise as it is.
-    pub fn refit(&self, fitted: &mut Fitted) -> Result<Fit, ModelError> {
-        let start: Vec<f64> = fitted.model.values().collect();
-        let start: Vec<f64> = fitted.free.iter().map(|i| start[*i]).collect();
-        let problem = Tracks { observed: self, model: &fitted.model, noise: &fitted.noise, free: &fitted.free };
-        let fit = least_squares(&problem, &start, &STOP);
-        fitted.model = fitted.model.with_values(&fitted.free, &fit.values)?;
-        Ok(fit)
     }
 
     /// Values of the free parts of a model that move some observed pose.
@@ -77,6 +69,19 @@ impl Observed {
             .collect();
         let derivative = |pose: &Pose2<Dual>| Pose2::new(pose.x.eps, pose.y.eps, pose.heading.eps);
         self.runs.par_iter().map(|run| chains.iter().map(|chain| run.column(chain, derivative)).collect()).collect()
+    }
+}
+
+impl Fitted {
+    /// Fits the free values under the noise as it is.
+    pub fn refit(&mut self) -> Result<Fit, ModelError> {
+        let start: Vec<f64> = self.model.values().collect();
+        let start: Vec<f64> = self.free.iter().map(|i| start[*i]).collect();
+        let problem = Tracks { observed: &self.observed, model: &self.model, noise: &self.noise, free: &self.free };
+        let fit = least_squares(&problem, &start, &STOP);
+        self.model = self.model.with_values(&self.free, &fit.values)?;
+        self.observed = self.observed.along(&self.model);
+        Ok(fit)
     }
 }
 

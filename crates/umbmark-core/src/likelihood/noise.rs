@@ -13,8 +13,10 @@ pub struct Noise {
     pub heading_per_metre: f64,
     /// Heading noise per square root of rotation \[rad/√rad\].
     pub heading_per_radian: f64,
-    /// Position noise of each coordinate per square root of way \[m/√m\].
-    pub position_per_metre: f64,
+    /// Noise of the way forward per square root of way \[m/√m\].
+    pub forward_per_metre: f64,
+    /// Noise to the side per square root of way \[m/√m\].
+    pub sideways_per_metre: f64,
     /// Reference noise that a block of poses shares, each coordinate \[m\].
     pub reference_position: f64,
     /// The same of the heading \[rad\].
@@ -35,7 +37,8 @@ impl Default for Noise {
         Noise {
             heading_per_metre: 1.5e-3,
             heading_per_radian: 1e-3,
-            position_per_metre: 3e-4,
+            forward_per_metre: 3e-4,
+            sideways_per_metre: 1e-4,
             reference_position: 5e-4,
             reference_heading: 5e-4,
             within_position: 0.0,
@@ -66,15 +69,16 @@ impl Noise {
             if count > 0 { (sum / count as f64).sqrt() } else { 0.0 }
         };
         (start.within_position, start.within_heading) = (pooled(0), pooled(1));
-        let sizes = |x: &[f64; 5]| {
+        let sizes = |x: &[f64; 6]| {
             let usual = Noise::default();
             let at = |i: usize, usual: f64| usual * libm::exp(x[i].clamp(libm::log(RANGE), -libm::log(RANGE)));
             Noise {
                 heading_per_metre: at(0, usual.heading_per_metre),
                 heading_per_radian: at(1, usual.heading_per_radian),
-                position_per_metre: at(2, usual.position_per_metre),
-                reference_position: at(3, usual.reference_position),
-                reference_heading: at(4, usual.reference_heading),
+                forward_per_metre: at(2, usual.forward_per_metre),
+                sideways_per_metre: at(3, usual.sideways_per_metre),
+                reference_position: at(4, usual.reference_position),
+                reference_heading: at(5, usual.reference_heading),
                 ..start
             }
         };
@@ -82,11 +86,12 @@ impl Noise {
         let first = [
             libm::log(from.heading_per_metre / usual.heading_per_metre),
             libm::log(from.heading_per_radian / usual.heading_per_radian),
-            libm::log(from.position_per_metre / usual.position_per_metre),
+            libm::log(from.forward_per_metre / usual.forward_per_metre),
+            libm::log(from.sideways_per_metre / usual.sideways_per_metre),
             libm::log(from.reference_position / usual.reference_position),
             libm::log(from.reference_heading / usual.reference_heading),
         ];
-        let cost = |x: &[f64; 5]| {
+        let cost = |x: &[f64; 6]| {
             // A faint preference for usual sizes keeps what the data does not show where it is.
             let pull: f64 = x.iter().map(|v| 0.02 * v * v).sum();
             sizes(x).deviance(&observed.runs, columns) + pull
@@ -136,8 +141,21 @@ impl Noise {
     pub(super) fn growth(&self, growth: &Growth) -> Matrix3<f64> {
         let (metre, radian) = (self.heading_per_metre.powi(2), self.heading_per_radian.powi(2));
         let at = |k: usize| metre * growth.heading_per_metre[k] + radian * growth.heading_per_radian[k];
-        let position = self.position_per_metre.powi(2) * growth.way;
-        Matrix3::new(at(0) + position, at(1), at(3), at(1), at(2) + position, at(4), at(3), at(4), at(5))
+        let sideways = self.sideways_per_metre.powi(2);
+        let along = self.forward_per_metre.powi(2) - sideways;
+        let [xx, xy, yy] = growth.forward.map(|sum| along * sum);
+        let across = sideways * growth.way;
+        Matrix3::new(
+            at(0) + xx + across,
+            at(1) + xy,
+            at(3),
+            at(1) + xy,
+            at(2) + yy + across,
+            at(4),
+            at(3),
+            at(4),
+            at(5),
+        )
     }
 }
 

@@ -6,6 +6,8 @@ use crate::effect::{Chain, Evaluate, Model, Place, TestKind};
 use crate::geometry::{Pose2, wrap};
 use crate::path::Direction;
 use crate::replay::{ReplayError, Track};
+use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Poses measured within this way \[m\] and rotation \[rad\] are one observation: they share the noise of the wheels, and only
 /// that of the reference is averaged.
@@ -23,6 +25,8 @@ pub struct Growth {
     pub heading_per_metre: [f64; 6],
     /// Σ |dθ| g gᵀ over the pieces \[rad\].
     pub heading_per_radian: [f64; 6],
+    /// Σ ds f fᵀ over the pieces, f the direction of the heading: xx, xy, yy.
+    pub forward: [f64; 3],
     /// Way driven \[m\].
     pub way: f64,
 }
@@ -36,7 +40,7 @@ pub struct Block {
     pub count: usize,
     /// How many of them have a heading.
     pub headings: usize,
-    /// Where it is believed to be.
+    /// Where the model has it, on average.
     pub place: Pose2,
     /// How the error grows from the block before to this one.
     pub growth: Growth,
@@ -52,9 +56,9 @@ pub struct ObservedRun {
     /// Its sense.
     pub direction: Option<Direction>,
     /// Its believed travel.
-    pub track: Track,
+    pub track: Arc<Track>,
     /// Measured poses: x, y \[m\] and, where it was measured, heading \[rad\].
-    pub seen: Vec<(f64, f64, Option<f64>)>,
+    pub seen: Arc<[(f64, f64, Option<f64>)]>,
     /// The poses in blocks.
     pub blocks: Vec<Block>,
     /// Whether the pose at START was measured, so that the frame is not taken on trust.
@@ -87,7 +91,18 @@ impl Observed {
 
     /// Believed travel of the runs.
     pub fn tracks(&self) -> impl Iterator<Item = &Track> {
-        self.runs.iter().map(|run| &run.track)
+        self.runs.iter().map(|run| run.track.as_ref())
+    }
+
+    /// The same runs, with the noise growing along the poses that `model` predicts.
+    ///
+    /// A rotation error moves the robot across its true path; taken across a path that is a degree off, it would seem to
+    /// move it along.
+    pub fn along(&self, model: &Model) -> Observed {
+        let chain = model.chain();
+        let mut observed = self.clone();
+        observed.runs.par_iter_mut().for_each(|run| run.lay_along(&chain));
+        observed
     }
 }
 
@@ -95,12 +110,28 @@ impl ObservedRun {
     fn new(run: &Run, robot: &Robot, place: Place) -> Result<Option<ObservedRun>, ReplayError> {
         let Some(log) = &run.log else { return Ok(None) };
         let track = Track::from_log_at(log, robot, place)?;
-        let seen: Vec<_> = log.reference.iter().map(|r| (r.x, r.y, r.heading)).collect();
+        let seen: Arc<[_]> = log.reference.iter().map(|r| (r.x, r.y, r.heading)).collect();
         let start_seen = track.seen_after().first().is_some_and(|made| track.way_before(*made) < BLOCK.0);
-        let blocks = blocks(&track, &seen, robot);
-        let observed =
-            ObservedRun { name: run.name.clone(), direction: run.direction, track, seen, blocks, start_seen };
+        let chain = Model::new(robot).chain();
+        let blocks = blocks(&track, &seen, &chain);
+        let (name, direction, track) = (run.name.clone(), run.direction, Arc::new(track));
+        let mut observed = ObservedRun { name, direction, track, seen, blocks, start_seen };
+        observed.lay_along(&chain);
         Ok((observed.blocks.len() >= 3).then_some(observed))
+    }
+
+    /// Places the blocks, and the growth of the error between them, along the poses that a model predicts.
+    fn lay_along(&mut self, chain: &Chain<f64>) {
+        let walk = Walk::new(&self.track, chain);
+        let mut before = 0;
+        for block in &mut self.blocks {
+            let own = &self.track.seen_after()[block.first..block.first + block.count];
+            let middle = own[(own.len() - 1) / 2];
+            let mean = |of: fn(&Pose2) -> f64| own.iter().map(|i| of(&walk.places[*i])).sum::<f64>() / own.len() as f64;
+            block.place = Pose2::new(mean(|p| p.x), mean(|p| p.y), mean(|p| p.heading));
+            block.growth = walk.growth(before, middle);
+            before = middle;
+        }
     }
 
     /// Measured minus predicted poses, block by block.
@@ -173,11 +204,10 @@ impl<'a> Sums<'a> {
 }
 
 /// Cuts the observations of a track into blocks.
-fn blocks(track: &Track, seen: &[(f64, f64, Option<f64>)], robot: &Robot) -> Vec<Block> {
-    let walk = Walk::new(track, robot);
+fn blocks(track: &Track, seen: &[(f64, f64, Option<f64>)], chain: &Chain<f64>) -> Vec<Block> {
+    let walk = Walk::new(track, chain);
     let whole = walk.way.last().copied().unwrap_or(0.0);
     let mut blocks: Vec<Block> = Vec::new();
-    let mut before = 0;
     let mut first = 0;
     while first < seen.len() {
         let begins = track.seen_after()[first];
@@ -185,23 +215,15 @@ fn blocks(track: &Track, seen: &[(f64, f64, Option<f64>)], robot: &Robot) -> Vec
             walk.way[*made] - walk.way[begins] < BLOCK.0 && walk.turned[*made] - walk.turned[begins] < BLOCK.1
         };
         let count = track.seen_after()[first..].iter().take_while(|made| together(made)).count().max(1);
-        let middle = track.seen_after()[first + (count - 1) / 2];
-        let unit = (UNITS * walk.way[middle] / whole.max(f64::MIN_POSITIVE)).min(UNITS - 1.0) as usize;
-        blocks.push(Block {
-            first,
-            count,
-            headings: seen[first..first + count].iter().filter(|s| s.2.is_some()).count(),
-            place: walk.places[middle],
-            growth: walk.growth(before, middle),
-            unit,
-        });
-        before = middle;
+        let unit = (UNITS * walk.way[begins] / whole.max(f64::MIN_POSITIVE)).min(UNITS - 1.0) as usize;
+        let headings = seen[first..first + count].iter().filter(|s| s.2.is_some()).count();
+        blocks.push(Block { first, count, headings, place: Pose2::IDENTITY, growth: Growth::default(), unit });
         first += count;
     }
     blocks
 }
 
-/// Where the odometry believes to be after each piece, and how far it has gone and turned.
+/// Where a model has the robot after each piece, and how far it has gone and turned.
 struct Walk {
     places: Vec<Pose2>,
     way: Vec<f64>,
@@ -209,12 +231,11 @@ struct Walk {
 }
 
 impl Walk {
-    fn new(track: &Track, robot: &Robot) -> Walk {
-        let chain = Model::new(robot).chain();
-        let mut walk = Walk { places: vec![Pose2::IDENTITY], way: vec![0.0], turned: vec![0.0] };
-        let (mut pose, mut way, mut turned) = (Pose2::IDENTITY, 0.0, 0.0);
+    fn new(track: &Track, chain: &Chain<f64>) -> Walk {
+        let (mut pose, mut way, mut turned) = (chain.start(), 0.0, 0.0);
+        let mut walk = Walk { places: vec![pose], way: vec![way], turned: vec![turned] };
         for (travel, at) in track.travel().iter().zip(track.contexts()) {
-            let motion = chain.displacement(at, travel);
+            let motion = chain.displacement(&at.headed(pose.heading), travel);
             pose = pose.moved(&motion);
             way += motion.forward.abs();
             turned += motion.rotation.abs();
@@ -232,6 +253,10 @@ impl Walk {
             let g = [0.5 * (a.y + b.y), -0.5 * (a.x + b.x), 1.0];
             let outer = [g[0] * g[0], g[1] * g[0], g[1] * g[1], g[0], g[1], 1.0];
             let (way, turned) = (self.way[piece + 1] - self.way[piece], self.turned[piece + 1] - self.turned[piece]);
+            let (sine, cosine) = libm::sincos(0.5 * (a.heading + b.heading));
+            for (sum, product) in growth.forward.iter_mut().zip([cosine * cosine, cosine * sine, sine * sine]) {
+                *sum += way * product;
+            }
             for (k, product) in outer.into_iter().enumerate() {
                 growth.heading_per_metre[k] += way * product;
                 growth.heading_per_radian[k] += turned * product;

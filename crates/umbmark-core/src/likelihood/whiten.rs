@@ -144,7 +144,7 @@ mod tests {
             .iter()
             .enumerate()
             .map(|(i, (x, y))| {
-                let mut growth = Growth { way: i as f64, ..Growth::default() };
+                let mut growth = Growth { way: i as f64, forward: [0.5 * i as f64; 3], ..Growth::default() };
                 for (sum, at) in
                     [(&mut growth.heading_per_metre, [*x - 0.5, *y]), (&mut growth.heading_per_radian, [*x, *y - 0.2])]
                 {
@@ -155,11 +155,11 @@ mod tests {
                 Block { first: 2 * i, count: 2, headings, place: Pose2::new(*x, *y, 0.0), growth, unit: 0 }
             })
             .collect();
-        ObservedRun { name: "a few".into(), direction: None, track, seen: vec![], blocks, start_seen }
+        ObservedRun { name: "a few".into(), direction: None, track: track.into(), seen: [].into(), blocks, start_seen }
     }
 
     fn noise() -> Noise {
-        Noise { heading_per_metre: 0.02, heading_per_radian: 0.01, position_per_metre: 0.005, ..Noise::default() }
+        Noise { heading_per_metre: 0.02, heading_per_radian: 0.01, forward_per_metre: 0.005, ..Noise::default() }
     }
 
     /// The covariance of all residuals by its definition.
@@ -172,7 +172,8 @@ mod tests {
         let mut whole = DMatrix::zeros(3 * n, 3 * n);
         for i in 0..n {
             for j in 0..n {
-                let mut shared = observation(&run.blocks[i]) * grown[1 + i.min(j)] * observation(&run.blocks[j]).transpose();
+                let mut shared =
+                    observation(&run.blocks[i]) * grown[1 + i.min(j)] * observation(&run.blocks[j]).transpose();
                 if i == j {
                     shared += noise.measurement(&run.blocks[i]);
                 }
@@ -194,14 +195,18 @@ mod tests {
             let sigma = dense(&noise, &run);
             let flat = |c: usize| {
                 let kept = run.blocks.iter().zip(&columns[c]);
-                let values: Vec<f64> = kept.flat_map(|(b, v)| v[..if b.headings > 0 { 3 } else { 2 }].to_vec()).collect();
+                let values: Vec<f64> =
+                    kept.flat_map(|(b, v)| v[..if b.headings > 0 { 3 } else { 2 }].to_vec()).collect();
                 DVector::from_vec(values)
             };
             let factor = sigma.cholesky().unwrap();
             for (a, b) in [(0, 0), (0, 1), (1, 1)] {
                 let expected = flat(a).dot(&factor.solve(&flat(b)));
                 let got: f64 = white.rows().map(|row| row[a] * row[b]).sum();
-                assert!((got - expected).abs() < 1e-6 * expected.abs().max(1.0), "{start_seen} {a} {b}: {got} {expected}");
+                assert!(
+                    (got - expected).abs() < 1e-6 * expected.abs().max(1.0),
+                    "{start_seen} {a} {b}: {got} {expected}"
+                );
             }
             let log_scale: f64 = (0..factor.l().nrows()).map(|i| libm::log(factor.l()[(i, i)])).sum();
             assert!((white.log_scale - log_scale).abs() < 1e-6, "{} {log_scale}", white.log_scale);
