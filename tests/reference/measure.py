@@ -254,7 +254,7 @@ def end_poses(case: Case, seeds: list[int], terms: Terms) -> tuple[Array, Array,
     } & case.causes.keys()
     if reading:
         raise ValueError(
-            f"{', '.join(sorted(reading))}: effects of the encoders: this needs tracks, not returns only"
+            f"{', '.join(sorted(reading))}: the encoders' effects need tracks, not returns only"
         )
     steps = 20
     plan = plan_of(case, terms, len(seeds))
