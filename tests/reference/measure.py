@@ -14,7 +14,16 @@ from robot import Array, Robot
 from schedule import PERIOD_S, Pace, Schedule, schedule, wheel_rates
 from sensors import Counts, Encoders, Odometry, Reference
 
-PURPOSES = ("base", "wheel_noise", "reference", "bumps", "start", "within_tick", "tails")
+PURPOSES = (
+    "base",
+    "wheel_noise",
+    "reference",
+    "bumps",
+    "start",
+    "within_tick",
+    "tails",
+    "reference_tails",
+)
 NOISE_MODELS = ("gaussian", "t4", "correlated")
 CORRELATION_PERIODS = 1000
 """Control periods over which correlated wheel noise forgets: 10 s, 2 m at 0.2 m/s."""
@@ -182,7 +191,7 @@ def reference_noise(seed: int, terms: Terms, runs: int, samples: int) -> Array:
     """[runs x samples x 3] of unit variance; heavy-tailed where the wheel noise is."""
     z = stream(seed, "reference").standard_normal((runs, samples, 3))
     if terms.noise_model == "t4":
-        z *= np.sqrt(2 / stream(seed, "tails").chisquare(4, (runs, samples, 1)))
+        z *= np.sqrt(2 / stream(seed, "reference_tails").chisquare(4, (runs, samples, 1)))
     return z
 
 
