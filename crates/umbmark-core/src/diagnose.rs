@@ -5,11 +5,6 @@
 //! a trace of its own. Effects that the data cannot tell apart are named together, as a class.
 
 mod candidates;
-mod examination;
-mod flips;
-pub mod smooth;
-pub mod story;
-mod system;
 pub mod tracks;
 
 use crate::effect::Model;
@@ -190,9 +185,4 @@ pub struct Diagnosis {
     pub next_experiments: Vec<Experiment>,
     /// What else should be said, a sentence each.
     pub remarks: Vec<String>,
-}
-pub mod explore {
-    pub use super::examination::*;
-    pub use super::story::*;
-    pub use super::tracks::*;
 }

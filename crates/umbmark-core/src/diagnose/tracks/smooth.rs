@@ -53,13 +53,15 @@ struct Piece<'a> {
     rotation: f64,
     wheel_way: [f64; 2],
     duration: f64,
+    way: f64,
+    wheelbase: f64,
     runs: f64,
     fastest: f64,
     fastest_turn: f64,
 }
 
 /// Everything that smooths are asked about.
-pub const COVARIATES: [Covariate; 12] = [
+pub const COVARIATES: [Covariate; 13] = [
     Covariate {
         name: "speed",
         title: "the speed",
@@ -156,6 +158,11 @@ pub const COVARIATES: [Covariate; 12] = [
             out[0] = p.at.direction * p.at.length;
         },
     },
+    Covariate { name: "distance", title: "the place in the run and its sense", terms: 12, value: |p, out| {
+        out.fill(0.0);
+        let own = if p.at.direction < 0.0 { &mut out[..6] } else { &mut out[6..] };
+        cyclic(std::f64::consts::TAU * p.at.distance / p.way, p.at.length + 0.5 * p.wheelbase * p.rotation.abs(), own);
+    } },
 ];
 
 /// x, x², ... times `exposure`.
@@ -189,13 +196,14 @@ pub fn smooth_columns(observed: &Observed, model: &Model) -> Vec<Vec<Column>> {
     let most = |of: fn(&Context) -> f64| contexts().map(of).fold(f64::MIN_POSITIVE, f64::max);
     let scales = [most(|c| c.speed.abs()), most(|c| c.turn_rate.abs())];
     let runs = observed.runs.len().max(1) as f64;
-    let chain = model.chain();
-    observed.runs.par_iter().map(|run| of_run(run, &chain, scales, runs)).collect()
+    let (chain, wheelbase) = (model.chain(), observed.robot.drive.wheelbase());
+    observed.runs.par_iter().map(|run| of_run(run, &chain, wheelbase, scales, runs)).collect()
 }
 
-fn of_run(run: &ObservedRun, chain: &Chain<f64>, [fastest, fastest_turn]: [f64; 2], runs: f64) -> Vec<Column> {
+fn of_run(run: &ObservedRun, chain: &Chain<f64>, wheelbase: f64, [fastest, fastest_turn]: [f64; 2], runs: f64) -> Vec<Column> {
     let terms: usize = COVARIATES.iter().map(|c| c.terms).sum();
     let track = &run.track;
+    let way = track.length().max(f64::MIN_POSITIVE);
     let duration = track.contexts().last().map_or(1.0, |c| c.time + c.duration).max(f64::MIN_POSITIVE);
     let mut states = vec![[0.0; 3]; 3 * terms];
     let mut columns = vec![vec![[0.0; 3]; run.blocks.len()]; 3 * terms];
@@ -211,7 +219,7 @@ fn of_run(run: &ObservedRun, chain: &Chain<f64>, [fastest, fastest_turn]: [f64; 
                 rotation: 0.5 * motion.rotation,
             });
             let wheel_way = [travel.left.abs(), travel.right.abs()];
-            let piece = Piece { at, rotation: motion.rotation, wheel_way, duration, runs, fastest, fastest_turn };
+            let piece = Piece { at, rotation: motion.rotation, wheel_way, duration, way, wheelbase, runs, fastest, fastest_turn };
             let mut rest = basis.as_mut_slice();
             for covariate in &COVARIATES {
                 let own;

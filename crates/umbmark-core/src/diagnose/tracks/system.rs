@@ -1,7 +1,7 @@
 //! A model's residuals beside what its parameters, and the effects that it may be missing, would do to them: products of
 //! whitened columns, summed run by run, from which every test and every fold of a cross-validation follows.
 
-use crate::likelihood::{Column, Noise, Observed, ObservedRun, gram};
+use crate::likelihood::{Column, Noise, Observed, gram};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 
@@ -16,56 +16,11 @@ pub struct Unit {
     pub rows: usize,
 }
 
-/// A run as people see it: residuals in metres and radians, START taken from the first pose where it was measured.
-#[derive(Clone, Debug)]
-pub struct Plain {
-    /// Products of the x and y rows of all columns \[m²\].
-    pub position: DMatrix<f64>,
-    /// Products of the heading rows \[rad²\].
-    pub heading: DMatrix<f64>,
-    /// Number of positions and of headings.
-    pub counts: [usize; 2],
-}
-
-impl Plain {
-    fn new(run: &ObservedRun, columns: &[Column]) -> Plain {
-        let width = columns.len();
-        let (mut position, mut heading) = (Vec::new(), Vec::new());
-        let origin = run.blocks[0].place;
-        for (index, block) in run.blocks.iter().enumerate().skip(usize::from(run.start_seen)) {
-            let (x, y) = (block.place.x - origin.x, block.place.y - origin.y);
-            let aligned = |column: &Column, k: usize| {
-                let start = if run.start_seen { column[0] } else { [0.0; 3] };
-                column[index][k] - start[k] - start[2] * [-y, x, 0.0][k]
-            };
-            for k in 0..2 {
-                position.extend(columns.iter().map(|column| aligned(column, k)));
-            }
-            if block.headings > 0 {
-                heading.extend(columns.iter().map(|column| aligned(column, 2)));
-            }
-        }
-        let counts = [position.len() / width / 2, heading.len() / width];
-        Plain { position: gram(&position, width), heading: gram(&heading, width), counts }
-    }
-}
-
-/// Root mean square errors along the way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Misses {
-    /// Of the position, distance \[m\].
-    pub position: f64,
-    /// Of the heading \[rad\]; `None` where none was measured.
-    pub heading: Option<f64>,
-}
-
 /// Products of columns over all units. The last column is the residual.
 #[derive(Clone, Debug)]
 pub struct System {
     /// Quarters of runs.
     pub units: Vec<Unit>,
-    /// Runs.
-    pub plain: Vec<Plain>,
     /// Number of columns, the residual included.
     pub width: usize,
 }
@@ -90,26 +45,7 @@ impl System {
                 white: gram(&values, width),
             })
         });
-        let units = units.collect();
-        let plain = observed.runs.par_iter().zip(columns).map(|(run, columns)| Plain::new(run, columns)).collect();
-        System { units, plain, width }
-    }
-
-    /// Errors that are left when each run is predicted with coefficients of its own: pairs of columns and values.
-    pub fn misses(&self, of_run: impl Fn(usize) -> (Vec<usize>, DVector<f64>)) -> Misses {
-        let (mut squares, mut counts) = ([0.0; 2], [0; 2]);
-        for (index, run) in self.plain.iter().enumerate() {
-            let (columns, values) = of_run(index);
-            let mut weights = DVector::zeros(self.width);
-            weights[self.residual()] = 1.0;
-            columns.iter().zip(values.iter()).for_each(|(column, value)| weights[*column] = -value);
-            for (k, products) in [&run.position, &run.heading].into_iter().enumerate() {
-                squares[k] += (products * &weights).dot(&weights).max(0.0);
-                counts[k] += run.counts[k];
-            }
-        }
-        let root = |k: usize| (squares[k] / counts[k].max(1) as f64).sqrt();
-        Misses { position: root(0), heading: (counts[1] > 0).then(|| root(1)) }
+        System { units: units.collect(), width }
     }
 
     /// The residual's column.
@@ -141,8 +77,9 @@ pub struct Projected {
     pub base: Vec<usize>,
 }
 
-/// A column with less than this share of its square left is absorbed by the base.
-const ABSORBED: f64 = 1e-6;
+/// A column with less than this share of its square left is absorbed by the base: a collinearity index above 20, the rule of
+/// Brun, Reichert & Künsch (2001, Water Resources Research 37).
+const ABSORBED: f64 = 1.0 / 400.0;
 
 impl Projected {
     /// Fits the columns `base` out of all columns.

@@ -1,5 +1,6 @@
 //! A fitted model on tracks beside everything that it may be missing.
 
+use super::errors::Errors;
 use super::smooth::{self, Covariate, Motion, smooth_columns};
 use super::system::{Projected, System};
 use crate::effect::{CATALOGUE, Entry, ModelError};
@@ -73,6 +74,8 @@ pub struct Examination {
     pub asked: Vec<Asked>,
     /// Columns of the model's free values.
     pub free: Vec<usize>,
+    /// Errors in metres and radians, by the columns of the model and of the catalogue's effects.
+    pub errors: Errors,
     columns: Vec<Vec<Column>>,
 }
 
@@ -107,7 +110,8 @@ impl Examination {
             all.push(run.residuals(&chain));
         }
         let system = System::new(observed, &fitted.noise, &columns);
-        let mut examination = Examination { fitted, system, asked, free, columns };
+        let errors = Errors::new(observed, &columns, (0..width).chain([system.residual()]).collect());
+        let mut examination = Examination { fitted, system, asked, free, errors, columns };
         examination.clean();
         Ok(examination)
     }
@@ -121,8 +125,9 @@ impl Examination {
             all.push(run.residuals(&chain));
         }
         let system = System::new(observed, &fitted.noise, &columns);
+        let errors = Errors::new(observed, &columns, (0..system.width).collect());
         let free = (0..fitted.free.len()).collect();
-        Examination { fitted, system, asked: Vec::new(), free, columns }
+        Examination { fitted, system, asked: Vec::new(), free, errors, columns }
     }
 
     /// Estimates the noise anew with what is most evidently missing fitted out, so that it is noise alone.
@@ -151,6 +156,12 @@ impl Examination {
         let chain = self.fitted.model.chain();
         self.fitted.noise = Noise::estimate(&self.fitted.observed, &chain, &few, &self.fitted.noise);
         self.system = System::new(&self.fitted.observed, &self.fitted.noise, &self.columns);
+    }
+
+    /// Errors by the columns of the model and a smooth.
+    pub fn errors_with(&self, columns: &[usize]) -> Errors {
+        let which = self.free.iter().chain(columns).copied().chain([self.system.residual()]).collect();
+        Errors::new(&self.fitted.observed, &self.columns, which)
     }
 
     /// Columns that are fitted out when a group is asked about: the model's own and those of the reference, its own excepted.

@@ -1,0 +1,96 @@
+//! Errors as people see them: metres and degrees along the way, in the runs at hand and in runs left out.
+
+use crate::likelihood::{Column, Observed, ObservedRun, gram};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// Root mean square errors along the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Misses {
+    /// Of the position, distance \[m\].
+    pub position: f64,
+    /// Of the heading \[rad\]; `None` where none was measured.
+    pub heading: Option<f64>,
+}
+
+impl Misses {
+    /// By what share these errors are smaller than `before`: of position or heading, whichever falls more.
+    pub fn gain(&self, before: &Misses) -> f64 {
+        let of = |now: f64, then: f64| if then > 0.0 { 1.0 - now / then } else { 0.0 };
+        let heading = self.heading.zip(before.heading).map_or(f64::NEG_INFINITY, |(now, then)| of(now, then));
+        of(self.position, before.position).max(heading)
+    }
+}
+
+/// Products of residuals and columns in metres and radians, run by run, START taken from the first pose where it was measured.
+#[derive(Clone, Debug)]
+pub struct Errors {
+    /// The columns of the system that are in it, the residual last.
+    which: Vec<usize>,
+    runs: Vec<Run>,
+}
+
+#[derive(Clone, Debug)]
+struct Run {
+    position: DMatrix<f64>,
+    heading: DMatrix<f64>,
+    /// Number of positions and of headings.
+    counts: [usize; 2],
+}
+
+impl Errors {
+    /// The errors of all runs; `columns` holds all columns run by run, `which` says which may be used, the residual last.
+    pub fn new(observed: &Observed, columns: &[Vec<Column>], which: Vec<usize>) -> Errors {
+        let runs = observed.runs.par_iter().zip(columns).map(|(run, columns)| Run::new(run, columns, &which)).collect();
+        Errors { which, runs }
+    }
+
+    /// Errors that are left when each run is predicted with values of its own, `of_run`: pairs of columns and values.
+    pub fn misses(&self, of_run: impl Fn(usize) -> (Vec<usize>, DVector<f64>)) -> Misses {
+        let (mut squares, mut counts) = ([0.0; 2], [0; 2]);
+        for (index, run) in self.runs.iter().enumerate() {
+            let (columns, values) = of_run(index);
+            let mut weights = DVector::zeros(self.which.len());
+            weights[self.which.len() - 1] = 1.0;
+            for (column, value) in columns.iter().zip(values.iter()) {
+                if let Some(place) = self.which.iter().position(|c| c == column) {
+                    weights[place] = -value;
+                }
+            }
+            for (k, products) in [&run.position, &run.heading].into_iter().enumerate() {
+                squares[k] += (products * &weights).dot(&weights).max(0.0);
+                counts[k] += run.counts[k];
+            }
+        }
+        let root = |k: usize| (squares[k] / counts[k].max(1) as f64).sqrt();
+        Misses { position: root(0), heading: (counts[1] > 0).then(|| root(1)) }
+    }
+
+    /// Errors with the residuals as they are.
+    pub fn in_sample(&self) -> Misses {
+        self.misses(|_| (Vec::new(), DVector::zeros(0)))
+    }
+}
+
+impl Run {
+    fn new(run: &ObservedRun, columns: &[Column], which: &[usize]) -> Run {
+        let width = which.len();
+        let (mut position, mut heading) = (Vec::new(), Vec::new());
+        let origin = run.blocks[0].place;
+        for (index, block) in run.blocks.iter().enumerate().skip(usize::from(run.start_seen)) {
+            let (x, y) = (block.place.x - origin.x, block.place.y - origin.y);
+            let aligned = |column: &Column, k: usize| {
+                let start = if run.start_seen { column[0] } else { [0.0; 3] };
+                column[index][k] - start[k] - start[2] * [-y, x, 0.0][k]
+            };
+            for k in 0..2 {
+                position.extend(which.iter().map(|c| aligned(&columns[*c], k)));
+            }
+            if block.headings > 0 {
+                heading.extend(which.iter().map(|c| aligned(&columns[*c], 2)));
+            }
+        }
+        let counts = [position.len() / width / 2, heading.len() / width];
+        Run { position: gram(&position, width), heading: gram(&heading, width), counts }
+    }
+}
