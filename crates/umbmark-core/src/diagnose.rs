@@ -5,10 +5,19 @@
 //! a trace of its own. Effects that the data cannot tell apart are named together, as a class.
 
 mod candidates;
+pub mod classes;
+pub(crate) mod ends;
+mod experiments;
+mod identifiability;
 
-use crate::effect::Model;
+use crate::calibrate::CalibrateError;
+use crate::dataset::{Dataset, Run};
+use crate::drive::Robot;
+use crate::effect::{Model, ModelError, TestKind};
 
 pub use candidates::{Candidate, Size, candidates, columns};
+pub use ends::{Contrast, OnCircle};
+pub use identifiability::{Identifiability, Share, identifiability};
 
 /// What was observed of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +26,30 @@ pub enum Level {
     Ends,
     /// Absolute poses on the way: at stops, or all along.
     Tracks,
+}
+
+/// What leaves nothing to diagnose.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DiagnoseError {
+    /// Nothing to predict.
+    #[error(transparent)]
+    Evidence(#[from] CalibrateError),
+    /// A model that the catalogue or its bounds refuse.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A fit that never settled.
+    #[error("the fit of the model {how}; fix some of its parameters (free = false)")]
+    NotConverged {
+        /// How it ended.
+        how: &'static str,
+    },
+    /// A fit that left what is possible.
+    #[error("the fit of the model ran out of bounds ({source}); are signs, units and directions right?")]
+    OutOfBounds {
+        /// Which parameter.
+        source: ModelError,
+    },
 }
 
 /// How to look.
@@ -182,6 +215,82 @@ pub struct Diagnosis {
     pub minimum_detectable: Vec<Detectable>,
     /// What to measure next, the most telling per minute first.
     pub next_experiments: Vec<Experiment>,
+    /// Closure contrasts of a square driven both ways, after the fit.
+    pub contrasts: Vec<Contrast>,
+    /// End points beside the circle through START, direction by direction; for squares.
+    pub circle: Vec<OnCircle>,
+    /// What of the model this experiment determines.
+    pub identifiability: Identifiability,
     /// What else should be said, a sentence each.
     pub remarks: Vec<String>,
 }
+
+impl Diagnosis {
+    /// The suspects that are certified as missing.
+    pub fn certified(&self) -> &[Suspect] {
+        &self.ranking[..self.certified]
+    }
+}
+
+/// The model of the paper: E_d and E_b, both free.
+pub fn base_model(robot: &Robot) -> Result<Model, ModelError> {
+    let mut model = Model::new(robot);
+    for effect in ["wheel_diameter_ratio", "wheelbase"] {
+        model.add(effect)?.free = true;
+    }
+    Ok(model)
+}
+
+/// What was observed: tracks, where every run of the regular test has a log with absolute poses at three places or more.
+pub fn level(data: &Dataset) -> Level {
+    let mut runs = data.runs.iter().filter(|run| run.test == TestKind::Systematic).peekable();
+    let observed = runs.peek().is_some() && runs.all(|run| places(run) >= 3);
+    if observed { Level::Tracks } else { Level::Ends }
+}
+
+/// At how many samples of its log a run was observed.
+fn places(run: &Run) -> usize {
+    let mut samples: Vec<usize> = run.log.iter().flat_map(|log| log.reference.iter().map(|r| r.sample)).collect();
+    samples.dedup();
+    samples.len()
+}
+
+/// Fits a model's free parameters and asks every other effect of the catalogue whether it is missing.
+///
+/// ```
+/// use umbmark_core::diagnose::{Options, Verdict, base_model, diagnose};
+/// # use umbmark_core::{dataset::{Dataset, Run}, drive::Robot, effect::TestKind, path::{Direction, Path}};
+/// # use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth};
+/// # let (robot, path) = (Robot::labmate(), Path::umbmark());
+/// let mut truth = base_model(&robot)?;
+/// truth.set("wheel_diameter_ratio", "e_d", 1.00121)?;
+/// truth.set("wheel_noise", "k_sqrt_m", 1e-3)?;
+/// # let mut simulator = Simulator::new(&robot, &path, Odometry::Continuous, Phase::Edge)?;
+/// # let mut truth = Truth::new(&truth);
+/// # simulator.open(&mut truth, 1, 0);
+/// # let mut runs = Vec::new();
+/// # for direction in Direction::BOTH {
+/// #     for number in 1..=5 {
+/// #         let returned = Some(simulator.run(&mut truth, direction, TestKind::Systematic));
+/// #         let name = format!("{}_{number}", direction.name());
+/// #         runs.push(Run { name, number, direction: Some(direction), test: TestKind::Systematic, log: None, returned });
+/// #     }
+/// # }
+/// # let data = Dataset { robot: Some(robot.clone()), path: Some(path), runs, warnings: vec![] };
+/// // `data`: five simulated runs each way of the robot above.
+/// let diagnosis = diagnose(&data, &base_model(&robot)?, &Options::default())?;
+/// assert_eq!(diagnosis.verdict, Verdict::Explained);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diagnosis, DiagnoseError> {
+    let ends = ends::Ends::new(data)?;
+    let mut diagnosis = ends::diagnose(&ends, model, options)?;
+    if level(data) == Level::Tracks {
+        diagnosis.remarks.push(ENDS_OF_TRACKS.into());
+    }
+    Ok(diagnosis)
+}
+
+/// What is said where tracks are judged by their ends.
+pub(crate) const ENDS_OF_TRACKS: &str =
+    "The runs were observed on the way, but only their end poses were used; tracks would show far more.";
