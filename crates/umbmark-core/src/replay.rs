@@ -102,12 +102,7 @@ impl Track {
             track.push(travel, progress.piece(&travel, duration, speeds[before], speeds[sample]));
             (left, right) = (*l, *r);
             while due.next_if_eq(&sample).is_some() {
-                let [left, right] = speeds[sample];
-                track.observe(Sight {
-                    time: log.time[sample] - log.time[0],
-                    speed: 0.5 * (left + right),
-                    turn_rate: (right - left) / robot.drive.wheelbase(),
-                });
+                track.observe(sight(log.time[sample] - log.time[0], speeds[sample], robot));
             }
         }
         Ok(track)
@@ -118,17 +113,22 @@ impl Track {
     /// Where only return errors were measured, this is what the robot believed to drive: its controller stops each move
     /// when the odometry says so. Each move is one piece: for models that do not [vary](crate::effect::Model::varies).
     pub fn from_path(path: &Path, direction: Direction, robot: &Robot) -> Track {
-        Track::along_path(path, direction, robot, Pieces::whole, false)
+        Track::along_path(path, direction, robot, Pieces::whole, Observed::AtEnd)
     }
 
     /// [`Track::from_path`] in pieces of a centimetre, for every model.
     pub fn in_pieces(path: &Path, direction: Direction, robot: &Robot) -> Track {
-        Track::along_path(path, direction, robot, Pieces::of, false)
+        Track::along_path(path, direction, robot, Pieces::of, Observed::AtEnd)
     }
 
     /// [`Track::in_pieces`] observed after every move.
     pub fn with_stops(path: &Path, direction: Direction, robot: &Robot) -> Track {
-        Track::along_path(path, direction, robot, Pieces::of, true)
+        Track::along_path(path, direction, robot, Pieces::of, Observed::AtStops)
+    }
+
+    /// [`Track::in_pieces`] observed after every piece.
+    pub fn watched(path: &Path, direction: Direction, robot: &Robot) -> Track {
+        Track::along_path(path, direction, robot, Pieces::of, Observed::Always)
     }
 
     fn along_path(
@@ -136,7 +136,7 @@ impl Track {
         direction: Direction,
         robot: &Robot,
         cut: fn(&WheelTravel, &SpeedProfile) -> Pieces,
-        stops: bool,
+        observed: Observed,
     ) -> Track {
         let place = Place { direction: Some(direction), ..Place::default() };
         let mut progress = Progress::new(robot, place, false);
@@ -145,9 +145,12 @@ impl Track {
         for (index, m) in moves.iter().enumerate() {
             for piece in cut(&m.wheel_travel(&robot.drive), &path.speed) {
                 track.push(piece.travel, progress.piece(&piece.travel, piece.duration, piece.from, piece.to));
+                if observed == Observed::Always {
+                    track.observe(sight(progress.time(), piece.to, robot));
+                }
             }
             progress.piece(&WheelTravel::default(), path.speed.pause(), [0.0; 2], [0.0; 2]);
-            if stops || index + 1 == moves.len() {
+            if observed == Observed::AtStops || (observed == Observed::AtEnd && index + 1 == moves.len()) {
                 track.observe(Sight { time: progress.time(), ..Sight::default() });
             }
         }
@@ -235,6 +238,19 @@ impl Track {
         self.replay(chain, |_, pose| poses.push(*pose));
         poses
     }
+}
+
+/// When a robot on a path is observed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Observed {
+    AtEnd,
+    AtStops,
+    Always,
+}
+
+/// The moment at which the wheels have these speeds \[m/s\].
+fn sight(time: f64, [left, right]: [f64; 2], robot: &Robot) -> Sight {
+    Sight { time, speed: 0.5 * (left + right), turn_rate: (right - left) / robot.drive.wheelbase() }
 }
 
 fn check(log: &TickLog) -> Result<(), ReplayError> {

@@ -28,7 +28,13 @@ impl Effect for WheelDiameterRatio {
                   other. The wheel that is larger rolls farther for the same count.",
         signature: "A straight leg becomes an arc of curvature (E_d - 1)/b; turns on the spot are unharmed. The return \
                     heading error per side is L (E_d - 1)/b in both directions of driving.",
-        confused_with: &["direction_dependent_wheelbase", "leg_kick", "speed_slip_right"],
+        confused_with: &[
+            "direction_dependent_wheelbase",
+            "leg_kick",
+            "speed_slip_left",
+            "speed_slip_right",
+            "missed_counts",
+        ],
         separated_by: "a long straight (the heading grows with distance), and spins, which it leaves alone",
         source: "Borenstein & Feng (1995), section 2; split: Borenstein & Feng (1996), IEEE Trans. Robotics and \
                  Automation 12(6)",
