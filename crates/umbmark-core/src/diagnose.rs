@@ -294,3 +294,6 @@ pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diag
 /// What is said where tracks are judged by their ends.
 pub(crate) const ENDS_OF_TRACKS: &str =
     "The runs were observed on the way, but only their end poses were used; tracks would show far more.";
+
+#[cfg(test)]
+pub(crate) mod tests;

@@ -28,7 +28,7 @@ pub(crate) use contrasts::{circle, contrasts};
 pub use contrasts::{Contrast, OnCircle};
 pub(crate) use fitted::{Fitted, names};
 pub(crate) use moments::Moments;
-pub(crate) use verdict::{diagnose, likeliest};
+pub(crate) use verdict::{contradiction, diagnose, likeliest};
 
 /// The least number of runs a direction for any test.
 pub(crate) const FEWEST_RUNS: usize = 3;
@@ -94,13 +94,6 @@ impl Ends {
         });
         let seen = Pose2::new(seen.x, seen.y, seen.heading.unwrap_or(0.0));
         self.runs.push(End { direction, track, seen, weight: drive.weight });
-    }
-
-    /// The same without one run.
-    pub fn without(&self, run: usize) -> Ends {
-        let mut rest = self.clone();
-        rest.runs.remove(run);
-        rest
     }
 
     /// How many coordinates an end pose has: 3, or 2 where headings were not measured.

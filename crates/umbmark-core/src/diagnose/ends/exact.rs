@@ -6,7 +6,6 @@
 //! Source: the growth-curve model of Potthoff & Roy (1964), with Rao's (1965) covariance adjustment.
 
 use super::moments::Moments;
-use crate::stats::f_upper_tail;
 use nalgebra::DVector;
 
 /// Wilks' Λ = |E|/|E + H| that both means are zero, as an exact F: statistic and degrees of freedom.
@@ -29,11 +28,6 @@ pub(crate) fn wilks(moments: &Moments) -> Option<(f64, [f64; 2])> {
     }
     let root = lambda.sqrt();
     Some(((1.0 - root) / root * rest / q, [2.0 * q, 2.0 * rest]))
-}
-
-/// p of [`wilks`].
-pub(crate) fn wilks_p(moments: &Moments) -> Option<f64> {
-    wilks(moments).map(|(f, freedom)| f_upper_tail(f, freedom))
 }
 
 /// An effect that moves both means along one direction u, by w_cw and w_ccw.
@@ -90,6 +84,7 @@ impl Pattern {
 mod tests {
     use super::*;
     use crate::random::Stream;
+    use crate::stats::f_upper_tail;
 
     fn moments(counts: [usize; 2], size: usize, trial: u64) -> Moments {
         Moments::draw(counts, size, &mut Stream::new(8, 0, trial))
@@ -104,7 +99,8 @@ mod tests {
             let (mut omnibus, mut single) = (0, 0);
             for trial in 0..trials {
                 let m = moments(counts, size, trial);
-                omnibus += u32::from(wilks_p(&m).unwrap() < 0.05);
+                let (f, freedom) = wilks(&m).unwrap();
+                omnibus += u32::from(f_upper_tail(f, freedom) < 0.05);
                 let rao = pattern.test(&m).unwrap();
                 single += u32::from(f_upper_tail(rao.f, [1.0, rao.freedom]) < 0.05);
             }

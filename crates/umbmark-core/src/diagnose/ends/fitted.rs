@@ -14,6 +14,9 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 /// A component of a null direction below this is rounding.
 const INVOLVED: f64 = 0.01;
 
+/// When a fit has settled: predictions over thousands of small pieces are good to some 1e-13.
+const SETTLED: fit::Options = fit::Options { iterations: 100, step_tolerance: 1e-10, decrease_tolerance: 1e-12 };
+
 /// Parameters that are settled first: what others share with them counts as theirs.
 const FIRST: [&str; 2] = ["wheel_diameter_ratio", "wheelbase"];
 
@@ -39,7 +42,7 @@ impl Fitted {
         let start: Vec<f64> = model.values().collect();
         let problem = Returns { ends, model, start: &start, free: &free };
         let first: Vec<f64> = free.iter().map(|i| start[*i]).collect();
-        let fit = fit::least_squares(&problem, &first, &fit::Options::default());
+        let fit = fit::least_squares(&problem, &first, &SETTLED);
         if !fit.termination.converged() {
             return Err(DiagnoseError::NotConverged { how: fit.termination.name() });
         }
@@ -67,6 +70,17 @@ impl Fitted {
             freedom += of_direction.len() - 1;
         }
         (squares / freedom.max(1) as f64, freedom)
+    }
+
+    /// The derivatives by the same values where the model does nothing: all its values at their defaults.
+    pub fn nominal_jacobian(&self, ends: &Ends) -> Vec<DMatrix<f64>> {
+        let mut nominal = Model::new(self.model.robot());
+        for part in self.model.parts() {
+            if nominal.add(part.effect.about.name).is_err() {
+                return self.jacobian.clone();
+            }
+        }
+        slopes(ends, &nominal, &self.free)
     }
 
     fn estimate(&self, ends: &Ends, information: Option<DMatrix<f64>>) -> Vec<Estimate> {

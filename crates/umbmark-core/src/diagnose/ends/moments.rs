@@ -107,11 +107,6 @@ impl Whitened {
             None => column,
         }
     }
-
-    /// Number of parameters in the base.
-    pub fn rank(&self) -> usize {
-        self.base.as_ref().map_or(0, |base| base.ncols())
-    }
 }
 
 /// Orthonormal columns with the span of `columns`; directions of rounding are left out.

@@ -36,7 +36,9 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
         remarks: Vec::new(),
     };
     diagnosis.remarks.extend(remarks_on_data(ends, &fitted));
-    diagnosis.remarks.extend(diagnosis.circle.iter().filter_map(contradiction));
+    if Asked::wilks_p(ends, &fitted).is_some_and(|p| p < options.size) {
+        diagnosis.remarks.extend(diagnosis.circle.iter().filter_map(contradiction));
+    }
     if !ends.enough() {
         return Ok(diagnosis);
     }
@@ -204,8 +206,9 @@ fn remarks_on_data(ends: &Ends, fitted: &Fitted) -> Vec<String> {
     remarks
 }
 
-/// What the circle says against every effect that is the same on each side.
-fn contradiction(circle: &OnCircle) -> Option<String> {
+/// What the circle says against every effect that is the same on each side. Only where a test rejects them altogether: each
+/// interval of the circle alone errs as often as it says.
+pub(crate) fn contradiction(circle: &OnCircle) -> Option<String> {
     let implied = circle.implied.filter(|_| !circle.explained())?;
     let degrees = circle.turned_less_heading?.to_degrees();
     Some(format!(
