@@ -8,9 +8,7 @@ mod statistics;
 
 use crate::dataset::Dataset;
 use crate::diagnose::ends::{self, Asked, Ends, Fitted};
-use crate::diagnose::{
-    Contrast, DiagnoseError, ENDS_OF_TRACKS, Level, OnCircle, Options, base_model, level,
-};
+use crate::diagnose::{Contrast, DiagnoseError, ENDS_OF_TRACKS, Level, OnCircle, Options, base_model, level};
 use crate::effect::Model;
 use crate::path::Direction;
 use replicas::Replicas;
@@ -132,7 +130,9 @@ fn sentences(statistics: &[Statistic], size: f64) -> Vec<String> {
         let failing: Vec<String> = all.iter().filter(|s| s.p < least).map(|s| phrase(s)).collect();
         let verdict = match (all.is_empty(), failing.is_empty()) {
             (true, _) => return None,
-            (false, true) => "all is explained: means, spread and correlation are as simulated tests have them".to_owned(),
+            (false, true) => {
+                "all is explained: means, spread and correlation are as simulated tests have them".to_owned()
+            }
             (false, false) => format!("not explained: {}", failing.join("; ")),
         };
         Some(format!("{} runs: {verdict}.", direction.name()))

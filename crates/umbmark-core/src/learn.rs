@@ -152,10 +152,7 @@ pub fn fit(data: &Dataset, model: &Model) -> Result<(Model, Vec<Estimate>), Diag
 }
 
 /// The loop, whatever was observed.
-pub(crate) fn from_evidence<E: Evidence>(
-    evidence: &E,
-    options: &diagnose::Options,
-) -> Result<Learnt, DiagnoseError> {
+pub(crate) fn from_evidence<E: Evidence>(evidence: &E, options: &diagnose::Options) -> Result<Learnt, DiagnoseError> {
     let mut story = Story::new(evidence, evidence.nominal())?;
     if evidence.both_ways() {
         for effect in BASE {
@@ -225,7 +222,11 @@ impl<'a, E: Evidence> Story<'a, E> {
     ) -> Result<Story<'a, E>, DiagnoseError> {
         let folds = self.folds.par_iter().zip(&self.fold_models);
         let choose = |(fold, model): (&E, &Model)| match fold.likeliest(model)? {
-            Some(own) => grown(fold, model, own),
+            Some(own) => match grown(fold, model, own) {
+                // Without this run, that effect cannot be fitted.
+                Err(DiagnoseError::NotConverged { .. } | DiagnoseError::OutOfBounds { .. }) => Ok(model.clone()),
+                fitted => fitted,
+            },
             None => Ok(model.clone()),
         };
         let mut further = Story {

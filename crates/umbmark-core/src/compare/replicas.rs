@@ -1,7 +1,7 @@
 //! Simulated tests of the same size, and where measured statistics lie among them.
 
-use super::statistics::Quantity;
 use super::Statistic;
+use super::statistics::Quantity;
 use crate::dataset::ReturnError;
 use crate::diagnose::Options;
 use crate::diagnose::ends::{Ends, Fitted, mirrored};
@@ -67,9 +67,8 @@ impl Replicas {
             }
         }
         let smallest = statistics.iter().map(|s| s.p).fold(1.0, f64::min);
-        let as_small = (0..self.tests.len())
-            .filter(|test| ranks.iter().map(|p| p[*test]).fold(1.0, f64::min) <= smallest)
-            .count();
+        let as_small =
+            (0..self.tests.len()).filter(|test| ranks.iter().map(|p| p[*test]).fold(1.0, f64::min) <= smallest).count();
         (statistics, (1 + as_small) as f64 / (1 + self.tests.len()) as f64)
     }
 

@@ -94,9 +94,8 @@ impl Quantity {
     pub(super) fn of(self, errors: &[Vector3<f64>]) -> f64 {
         let n = errors.len() as f64;
         let mean = errors.iter().fold(Vector3::zeros(), |sum, e| sum + e) / n;
-        let moment = |i: usize, j: usize| {
-            errors.iter().map(|e| (e[i] - mean[i]) * (e[j] - mean[j])).sum::<f64>() / (n - 1.0)
-        };
+        let moment =
+            |i: usize, j: usize| errors.iter().map(|e| (e[i] - mean[i]) * (e[j] - mean[j])).sum::<f64>() / (n - 1.0);
         match self {
             Quantity::MeanX => mean.x,
             Quantity::MeanY => mean.y,

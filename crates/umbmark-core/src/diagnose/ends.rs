@@ -24,8 +24,10 @@ use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
 pub(crate) use asked::Asked;
-pub(crate) use contrasts::{circle, contrasts};
 pub use contrasts::{Contrast, OnCircle};
+pub(crate) use contrasts::{circle, contrasts};
+#[cfg(test)]
+pub(crate) use family::Family;
 pub(crate) use fitted::{Fitted, names};
 pub(crate) use moments::Moments;
 pub(crate) use verdict::{contradiction, diagnose, likeliest};

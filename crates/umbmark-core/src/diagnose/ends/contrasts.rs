@@ -63,7 +63,13 @@ pub(crate) fn contrasts(ends: &Ends, fitted: &Fitted, level: f64) -> Vec<Contras
         }
         let value = halves[i / 2][component];
         let deviation = (moments.scatter[(component, component)] / moments.freedom()).sqrt();
-        contrasts.push(Contrast { name, unit, value, interval: Interval::around(value, t * spread * deviation), meaning });
+        contrasts.push(Contrast {
+            name,
+            unit,
+            value,
+            interval: Interval::around(value, t * spread * deviation),
+            meaning,
+        });
     }
     contrasts
 }
@@ -128,13 +134,7 @@ fn beside(error: &Vector3<f64>, side: f64) -> (f64, f64) {
     (libm::hypot(x, y) - side / std::f64::consts::SQRT_2, libm::atan2(x - y, -x - y) - error.z)
 }
 
-fn on_circle(
-    direction: Direction,
-    runs: &[Run],
-    side: f64,
-    with_heading: bool,
-    level: f64,
-) -> Option<OnCircle> {
+fn on_circle(direction: Direction, runs: &[Run], side: f64, with_heading: bool, level: f64) -> Option<OnCircle> {
     if runs.len() < 2 {
         return None;
     }

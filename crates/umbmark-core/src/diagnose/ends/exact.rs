@@ -127,9 +127,8 @@ mod tests {
         let weights = [1.5, -1.0];
         let rao = Pattern { weights, along: along.clone() }.test(&Moments::of(&runs)).unwrap();
         let across = DVector::from_vec(vec![-0.6, 0.8]);
-        let design = nalgebra::DMatrix::from_fn(10, 2, |i, j| {
-            if j == 0 { weights[runs[i].0] } else { across.dot(&runs[i].1) }
-        });
+        let design =
+            nalgebra::DMatrix::from_fn(10, 2, |i, j| if j == 0 { weights[runs[i].0] } else { across.dot(&runs[i].1) });
         let response = DVector::from_fn(10, |i, _| along.dot(&runs[i].1));
         let inverse = (design.transpose() * &design).try_inverse().unwrap();
         let coefficients = &inverse * design.transpose() * &response;

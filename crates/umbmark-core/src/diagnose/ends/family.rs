@@ -12,6 +12,10 @@ use crate::random::Stream;
 use crate::stats::f_upper_tail;
 use rayon::prelude::*;
 
+/// The test of the whole model has to be so many times as striking as one of a single effect: most causes are on the list, and
+/// each is better seen by its own test. It is there for those that are not.
+const WHOLE: f64 = 4.0;
+
 /// Purpose of the stream of simulated null tests.
 const NULL_TESTS: u64 = 10;
 
@@ -45,11 +49,8 @@ pub(crate) fn statistics(asked: &Asked, moments: &Moments) -> Option<Statistics>
             along * along / column.norm_squared()
         }
     };
-    let whole = if asked.base.is_empty() {
-        wilks(moments).map_or(0.0, |(f, _)| f)
-    } else {
-        whitened.means.norm_squared()
-    };
+    let whole =
+        if asked.base.is_empty() { wilks(moments).map_or(0.0, |(f, _)| f) } else { whitened.means.norm_squared() };
     Some(Statistics { units: asked.units.iter().map(unit).collect(), whole })
 }
 
@@ -87,7 +88,7 @@ impl Family {
         let p_whole = whole.p(observed.whole);
         Some(Family {
             p_adjusted: p.iter().map(|p| adjusted(*p)).collect(),
-            p_whole_adjusted: adjusted(p_whole),
+            p_whole_adjusted: adjusted(WHOLE * p_whole),
             p,
             p_whole,
             exact_whole,
@@ -98,7 +99,7 @@ impl Family {
 
 /// The smallest p of one simulated test. Among exact tests with the same degrees of freedom it is that of the largest F.
 fn smallest(draw: &Statistics, judges: &[Judge], whole: &Judge) -> f64 {
-    let (mut smallest, mut largest) = (whole.p(draw.whole), None::<(f64, &Judge)>);
+    let (mut smallest, mut largest) = (WHOLE * whole.p(draw.whole), None::<(f64, &Judge)>);
     for (judge, f) in judges.iter().zip(&draw.units) {
         match judge {
             Judge::Exact(_) if largest.is_none_or(|(most, _)| *f > most) => largest = Some((*f, judge)),

@@ -60,8 +60,13 @@ impl Fitted {
         let mut squares = Matrix3::zeros();
         let mut freedom = 0;
         for direction in crate::path::Direction::BOTH {
-            let of_direction: Vec<&Vector3<f64>> =
-                ends.runs.iter().zip(&self.residuals).filter(|(run, _)| run.direction == direction).map(|p| p.1).collect();
+            let of_direction: Vec<&Vector3<f64>> = ends
+                .runs
+                .iter()
+                .zip(&self.residuals)
+                .filter(|(run, _)| run.direction == direction)
+                .map(|p| p.1)
+                .collect();
             if of_direction.is_empty() {
                 continue;
             }
@@ -74,13 +79,7 @@ impl Fitted {
 
     /// The derivatives by the same values where the model does nothing: all its values at their defaults.
     pub fn nominal_jacobian(&self, ends: &Ends) -> Vec<DMatrix<f64>> {
-        let mut nominal = Model::new(self.model.robot());
-        for part in self.model.parts() {
-            if nominal.add(part.effect.about.name).is_err() {
-                return self.jacobian.clone();
-            }
-        }
-        slopes(ends, &nominal, &self.free)
+        slopes(ends, &at_rest(&self.model), &self.free)
     }
 
     fn estimate(&self, ends: &Ends, information: Option<DMatrix<f64>>) -> Vec<Estimate> {
@@ -152,7 +151,9 @@ fn derivative(pose: &Pose2<Dual>) -> Vector3<f64> {
 fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     let flags = model.parts().iter().flat_map(|part| part.values.iter().map(|_| part.free));
     let names = names(model);
-    let mut asked: Vec<usize> = flags.enumerate().filter(|(_, free)| *free).map(|(i, _)| i).collect();
+    let nominal = at_rest(model);
+    let mut asked: Vec<usize> =
+        flags.enumerate().filter(|(i, free)| *free && is_size(ends, &nominal, *i)).map(|(i, _)| i).collect();
     asked.sort_by_key(|i| !FIRST.contains(&names[*i].0));
     let start: Vec<f64> = model.values().collect();
     let column = |index: usize| {
@@ -185,6 +186,23 @@ fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     free.sort_unstable();
     let open = asked.into_iter().filter(|i| !free.contains(i)).collect();
     (free, open)
+}
+
+/// The same effects, doing nothing.
+fn at_rest(model: &Model) -> Model {
+    let mut rest = Model::new(model.robot());
+    for part in model.parts() {
+        if let Ok(own) = rest.add(part.effect.about.name) {
+            own.free = part.free;
+        }
+    }
+    rest
+}
+
+/// Whether a value moves the end poses where its effect does nothing yet: not a length, threshold, scatter or choice.
+fn is_size(ends: &Ends, nominal: &Model, value: usize) -> bool {
+    let poses = ends.predict::<Dual>(nominal, &seeded(nominal.values(), value));
+    poses.iter().any(|pose| derivative(pose) != Vector3::zeros())
 }
 
 struct Returns<'a> {

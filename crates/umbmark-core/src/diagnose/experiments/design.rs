@@ -57,11 +57,8 @@ impl Design {
 
     /// What a value of a model does to all observations, in standard deviations.
     pub fn column(&self, model: &Model, value: usize, noise: &Noise) -> DVector<f64> {
-        let duals: Vec<Dual> = model
-            .values()
-            .enumerate()
-            .map(|(i, v)| Dual::new(v, f64::from(u8::from(i == value))))
-            .collect();
+        let duals: Vec<Dual> =
+            model.values().enumerate().map(|(i, v)| Dual::new(v, f64::from(u8::from(i == value)))).collect();
         let mut rows = Vec::new();
         for leg in &self.legs {
             let poses = leg.poses(model, &duals);
