@@ -12,6 +12,8 @@ mod prose;
 mod robot_flags;
 mod session;
 mod setup;
+mod signature;
+mod strip;
 mod table;
 mod terminal;
 mod verb;

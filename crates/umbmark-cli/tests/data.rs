@@ -85,6 +85,7 @@ fn the_list_of_effects_names_each_entry_of_the_catalogue() {
 #[test]
 fn an_effect_explained() {
     assert_data_eq!(said(&["effects", "placed_bumps"]), file!["golden/effect_placed_bumps.txt"]);
+    assert_data_eq!(said(&["effects", "caster_kick"]), file!["golden/effect_caster_kick.txt"]);
     assert_data_eq!(said(&["effects", "wheel_diameter_ratio", "--json"]), file!["golden/effect_ratio.json"]);
 }
 

@@ -65,7 +65,7 @@ pub const MAX_PARAMETERS: usize = 6;
 
 /// Every effect there is, in the order in which they act.
 ///
-/// The order is that of cause: what was counted, what drives the wheels and what shape they have, how they grip, what the
+/// The order is that of cause: what was counted, what shape the wheels have and what drives them, how they grip, what the
 /// floor does, and last where the robot was put and how it was measured. Within a kind, what changes all motion stands
 /// before what changes some of it. Effects on the wheels act before effects on the body wherever they stand, so for small
 /// effects another order would change return poses by products of two of them only.
@@ -75,8 +75,7 @@ pub static CATALOGUE: &[Entry] = &[
     Entry::of::<encoder_skew::EncoderSkew>(),
     Entry::of::<encoder_sampling::EncoderSampling>(),
     Entry::of::<encoder_resolution::EncoderResolution>(),
-    // Play and shape of the wheels.
-    Entry::of::<backlash::Backlash>(),
+    // The wheels' shape, and their play.
     Entry::of::<wheel_diameter_ratio::WheelDiameterRatio>(),
     Entry::of::<wheelbase::Wheelbase>(),
     Entry::of::<scale::Scale>(),
@@ -84,6 +83,7 @@ pub static CATALOGUE: &[Entry] = &[
     Entry::of::<wheel_eccentricity_right::WheelEccentricityRight>(),
     Entry::of::<diameter_drift::DiameterDrift>(),
     Entry::of::<centripetal_load::CentripetalLoad>(),
+    Entry::of::<backlash::Backlash>(),
     // The contact with the floor, smooth.
     Entry::of::<crab::Crab>(),
     Entry::of::<speed_slip::SpeedSlip>(),
@@ -135,6 +135,9 @@ pub enum ActsOn {
 }
 
 impl ActsOn {
+    /// All of them, the most usual first.
+    pub const ALL: [ActsOn; 5] = [ActsOn::Wheels, ActsOn::Body, ActsOn::Odometry, ActsOn::Start, ActsOn::Reference];
+
     /// In words.
     pub fn name(self) -> &'static str {
         match self {

@@ -44,7 +44,7 @@ fn gain<T>(at: &Context<T>, wheel: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::effect::tests::{along_with, ccw_and_cw, stops_with};
+    use crate::effect::tests::{along_with, ccw_and_cw, circle_speeds, halfway_round_with, stops_with};
 
     #[test]
     fn the_robot_is_behind_by_half_k_v_squared_while_it_cruises_and_comes_right_at_the_stop() {
@@ -58,6 +58,15 @@ mod tests {
                     assert!(off < 1e-3 * k.abs(), "{stop:?}");
                 }
             }
+        }
+    }
+    #[test]
+    fn on_a_circle_the_faster_wheel_is_behind_by_more() {
+        for (direction, _) in ccw_and_cw() {
+            let [left, right] = circle_speeds(direction);
+            let expected = 0.1 * 0.5 * (left * left - right * right) / 0.34;
+            let error = halfway_round_with(&[("acceleration_slip", "s2_per_m", 0.1)], direction);
+            assert!((error - expected).abs() < 1e-3 * expected.abs(), "{error} {expected}");
         }
     }
 }

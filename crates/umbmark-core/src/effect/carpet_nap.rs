@@ -13,7 +13,18 @@ impl Effect for CarpetNap {
         name: "carpet_nap",
         title: "drift with the nap of a carpet",
         acts_on: ActsOn::Body,
-        parameters: &[Parameter { flag: "nap-x", ..DRIFT_X }, Parameter { flag: "nap-y", ..DRIFT_Y }],
+        parameters: &[
+            Parameter {
+                flag: "nap-x",
+                meaning: "drift with the nap along the heading at START, per metre driven",
+                ..DRIFT_X
+            },
+            Parameter {
+                flag: "nap-y",
+                meaning: "drift with the nap to the left of the heading at START, per metre driven",
+                ..DRIFT_Y
+            },
+        ],
         equation: DRIFT,
         physics: "Fibres that lean one way lie down under the wheel and carry it along: a drift with the pile, proportional \
                   to the way driven.",

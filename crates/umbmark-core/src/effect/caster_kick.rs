@@ -21,7 +21,11 @@ impl Effect for CasterKick {
                 (-1.0, 1.0),
                 "change of heading after a left turn, once the casters trail",
             ),
-            Parameter { flag: "caster-trail", ..TRAIL },
+            Parameter {
+                flag: "caster-trail",
+                meaning: "way after which all but 1/e of the casters' kick is made",
+                ..TRAIL
+            },
         ],
         equation: "Δθ ← Δθ + κ · (sense of the last turn) · (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since that turn",
         physics: "After a turn on the spot the casters lie across the new course. As the robot drives off they swing round, \
@@ -46,7 +50,7 @@ pub(super) const TRAIL: Parameter = Parameter {
     default: DefaultValue::Value(0.05),
     typical: 0.05,
     bounds: (1e-3, 100.0),
-    meaning: "way over which all but 1/e of the kick is made",
+    meaning: "",
     choices: &[],
 };
 

@@ -41,6 +41,7 @@ impl Effect for DirectionDependentWheelbase {
 #[cfg(test)]
 mod tests {
     use crate::effect::tests::{ccw_and_cw, stops_with};
+    use crate::path::Direction;
     use std::f64::consts::TAU;
 
     #[test]
@@ -54,5 +55,12 @@ mod tests {
                 assert_eq!(stops[1].heading, stops[2].heading);
             }
         }
+    }
+
+    #[test]
+    fn a_leg_that_unequal_wheels_bend_is_no_turn() {
+        let bent = [("wheel_diameter_ratio", "e_d", 1.01)];
+        let both = [bent[0], ("direction_dependent_wheelbase", "difference", 0.1)];
+        assert_eq!(stops_with(&both, Direction::Ccw)[0], stops_with(&bent, Direction::Ccw)[0]);
     }
 }

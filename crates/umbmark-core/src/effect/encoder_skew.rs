@@ -39,7 +39,7 @@ impl Effect for EncoderSkew {
 
 #[cfg(test)]
 mod tests {
-    use crate::effect::tests::{along_with, ccw_and_cw, stops_with};
+    use crate::effect::tests::{along_with, ccw_and_cw, circle_speeds, halfway_round_with, stops_with};
 
     #[test]
     fn the_heading_is_off_by_speed_times_delay_over_wheelbase_only_while_the_robot_drives() {
@@ -51,6 +51,14 @@ mod tests {
                 let stops = stops_with(&model, direction);
                 assert!((stops[7].heading - sign * std::f64::consts::TAU).abs() < 1e-12);
             }
+        }
+    }
+    #[test]
+    fn on_a_circle_it_is_the_speed_of_the_right_wheel_that_counts() {
+        for (direction, _) in ccw_and_cw() {
+            let expected = -0.01 * circle_speeds(direction)[1] / 0.34;
+            let error = halfway_round_with(&[("encoder_skew", "delay_right_s", 0.01)], direction);
+            assert!((error - expected).abs() < 1e-12, "{error} {expected}");
         }
     }
 }

@@ -12,7 +12,18 @@ impl Effect for FloorSlope {
         name: "floor_slope",
         title: "drift on a sloping floor",
         acts_on: ActsOn::Body,
-        parameters: &[Parameter { flag: "slope-x", ..DRIFT_X }, Parameter { flag: "slope-y", ..DRIFT_Y }],
+        parameters: &[
+            Parameter {
+                flag: "slope-x",
+                meaning: "drift downhill along the heading at START, per metre driven",
+                ..DRIFT_X
+            },
+            Parameter {
+                flag: "slope-y",
+                meaning: "drift downhill to the left of the heading at START, per metre driven",
+                ..DRIFT_Y
+            },
+        ],
         equation: DRIFT,
         physics: "Gravity pulls sideways on rolling tyres, which answer with a slip angle of slope over cornering stiffness: \
                   1 % of slope and a stiffness of ten times the load per radian give 1 mm per metre.",
@@ -32,17 +43,9 @@ impl Effect for FloorSlope {
 pub(super) const DRIFT: &str =
     "(forward, sideways) ← (forward, sideways) + R(-h) (g_x, g_y) · length,  h the mean heading";
 
-pub(super) const DRIFT_X: Parameter =
-    Parameter::size("drift_x", "", "m/m", 3e-3, (-1.0, 1.0), "drift along the heading at START, per metre driven");
+pub(super) const DRIFT_X: Parameter = Parameter::size("drift_x", "", "m/m", 3e-3, (-1.0, 1.0), "");
 
-pub(super) const DRIFT_Y: Parameter = Parameter::size(
-    "drift_y",
-    "",
-    "m/m",
-    3e-3,
-    (-1.0, 1.0),
-    "drift to the left of the heading at START, per metre driven",
-);
+pub(super) const DRIFT_Y: Parameter = Parameter::size("drift_y", "", "m/m", 3e-3, (-1.0, 1.0), "");
 
 /// Adds a drift that is fixed in the room, (p₀, p₁) per metre driven.
 pub(super) fn drift<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {

@@ -22,7 +22,11 @@ impl Effect for LegKick {
                 (-1.0, 1.0),
                 "change of heading at the start of each leg, counter-clockwise",
             ),
-            Parameter { flag: "leg-kick-trail", ..TRAIL },
+            Parameter {
+                flag: "leg-kick-trail",
+                meaning: "way after which all but 1/e of the kick of a leg is made",
+                ..TRAIL
+            },
         ],
         equation: "Δθ ← Δθ + κ (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since the last turn or START",
         physics: "One motor answers sooner than the other, one clutch bites later, one caster lies across whatever the turn \

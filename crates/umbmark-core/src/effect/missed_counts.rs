@@ -66,7 +66,7 @@ fn above<T: Real>(speed: f64, threshold: T) -> T {
 
 #[cfg(test)]
 mod tests {
-    use crate::effect::tests::{ccw_and_cw, stops_with};
+    use crate::effect::tests::{ccw_and_cw, circle_speeds, halfway_round_with, stops_with};
 
     #[test]
     fn a_leg_counts_short_in_cruise_and_in_the_upper_half_of_its_ramps_only() {
@@ -82,6 +82,17 @@ mod tests {
                 }
                 let slow = [("missed_counts", "left_s_per_m", k), ("missed_counts", "threshold_m_s", 0.2)];
                 assert_eq!(stops_with(&slow, direction)[0].heading, 0.0);
+            }
+        }
+    }
+    #[test]
+    fn on_a_circle_only_the_wheel_above_the_threshold_counts_short() {
+        for (direction, _) in ccw_and_cw() {
+            for (name, wheel, sign) in [("left_s_per_m", 0, -1.0), ("right_s_per_m", 1, 1.0)] {
+                let model = [("missed_counts", name, 0.01), ("missed_counts", "threshold_m_s", 0.18)];
+                let error = sign * halfway_round_with(&model, direction);
+                let outer = circle_speeds(direction)[wheel] > 0.18;
+                assert!(if outer { error > 0.0 } else { error == 0.0 }, "{name} {direction:?}: {error}");
             }
         }
     }

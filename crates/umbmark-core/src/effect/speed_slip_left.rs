@@ -14,7 +14,11 @@ impl Effect for SpeedSlipLeft {
         name: "speed_slip_left",
         title: "slip that grows with speed, left wheel",
         acts_on: ActsOn::Wheels,
-        parameters: &[Parameter { flag: "speed-slip-left", ..PER_SPEED }],
+        parameters: &[Parameter {
+            flag: "speed-slip-left",
+            meaning: "share of its travel that the left wheel loses per m/s of its speed",
+            ..PER_SPEED
+        }],
         equation: "s_L ← (1 - k |v_L|) s_L",
         physics: CREEP,
         signature: "Legs curve to the left by k v/b per metre; turns lose half the share. At one speed as E_d on the legs.",

@@ -14,7 +14,11 @@ impl Effect for SpeedSlipRight {
         name: "speed_slip_right",
         title: "slip that grows with speed, right wheel",
         acts_on: ActsOn::Wheels,
-        parameters: &[Parameter { flag: "speed-slip-right", ..PER_SPEED }],
+        parameters: &[Parameter {
+            flag: "speed-slip-right",
+            meaning: "share of its travel that the right wheel loses per m/s of its speed",
+            ..PER_SPEED
+        }],
         equation: "s_R ← (1 - k |v_R|) s_R",
         physics: CREEP,
         signature: "Legs curve to the right by k v/b per metre; turns lose half the share. At one speed as E_d on the legs.",

@@ -50,6 +50,20 @@ pub(super) fn along_with(settings: &[Setting], direction: Direction, way: f64) -
     Displacement2 { forward: error.x, sideways: error.y, rotation: error.heading }
 }
 
+/// How much farther than believed the robot has turned halfway round the circle \[rad\].
+pub(super) fn halfway_round_with(settings: &[Setting], direction: Direction) -> f64 {
+    let (_, seen) = watched_with(settings, &circle(), direction);
+    let (_, believed) = watched_with(&[], &circle(), direction);
+    let middle = seen.len() / 2;
+    seen[middle].heading - believed[middle].heading
+}
+
+/// Speeds of the left and the right wheel halfway round it \[m/s\]: 0.2 for the outer one, on a circle of 2.17 m.
+pub(super) fn circle_speeds(direction: Direction) -> [f64; 2] {
+    let inner = 0.2 * 1.83 / 2.17;
+    if direction == Direction::Ccw { [inner, 0.2] } else { [0.2, inner] }
+}
+
 /// Tracks on which every deterministic effect shows: a small square and a circle, both ways.
 fn probes() -> Vec<Track> {
     let robot = Robot::labmate();
@@ -69,19 +83,17 @@ fn seen<T: Evaluate>(model: &Model, values: &[T], probes: &[Track]) -> Vec<T> {
 }
 
 /// The model of one effect with each of its numbers at `value(parameter)`.
-fn alone(entry: &Entry, value: impl Fn(&Parameter, f64) -> f64) -> Model {
-    let mut model = Model::new(&Robot::labmate());
-    model.add(entry.about.name).unwrap();
+fn alone(entry: &Entry, value: fn(&Parameter, &Robot) -> f64) -> Model {
+    let robot = Robot::labmate();
+    let mut model = Model::new(&robot);
     for p in entry.about.parameters {
-        let default = p.default.resolve(&Robot::labmate());
-        model.set(entry.about.name, p.name, value(p, default)).unwrap();
+        model.set(entry.about.name, p.name, value(p, &robot)).unwrap();
     }
     model
 }
 
-/// A value that does something.
-fn usual(p: &Parameter, default: f64) -> f64 {
-    if default == 1.0 { 1.0 + p.typical } else { p.typical }
+fn neutral(p: &Parameter, robot: &Robot) -> f64 {
+    p.default.resolve(robot)
 }
 
 /// The derivative of everything seen by parameter `i`, by duals.
@@ -111,7 +123,7 @@ fn the_catalogue_is_complete_and_consistent() {
             flags.push(p.flag);
             assert!(!p.meaning.is_empty());
             p.check(p.default.resolve(&Robot::labmate())).unwrap();
-            p.check(usual(p, p.default.resolve(&Robot::labmate()))).unwrap();
+            p.check(p.usual(&Robot::labmate())).unwrap();
         }
     }
     let mut purposes: Vec<u64> = CATALOGUE.iter().map(Entry::purpose).collect();
@@ -156,7 +168,7 @@ fn an_effect_with_its_default_values_does_nothing_to_the_last_bit() {
     let probes = probes();
     let nothing = seen::<f64>(&Model::new(&Robot::labmate()), &[], &probes);
     for entry in CATALOGUE {
-        let model = alone(entry, |_, default| default);
+        let model = alone(entry, neutral);
         let values: Vec<f64> = model.values().collect();
         assert!(seen(&model, &values, &probes) == nothing, "{}", entry.about.name);
     }
@@ -167,7 +179,7 @@ fn each_number_but_those_of_chance_shows_and_its_derivative_is_that_of_finite_di
     let probes = probes();
     let mut silent = Vec::new();
     for entry in CATALOGUE {
-        let model = alone(entry, usual);
+        let model = alone(entry, Parameter::usual);
         for (i, p) in entry.about.parameters.iter().enumerate() {
             let exact = column(&model, i, &probes);
             let h = 1e-3 * p.typical.max(1e-6);
@@ -196,7 +208,7 @@ fn each_number_but_those_of_chance_shows_and_its_derivative_is_that_of_finite_di
 fn each_number_acts_linearly_where_the_effect_does_nothing() {
     let probes = probes();
     for entry in CATALOGUE {
-        let model = alone(entry, |_, default| default);
+        let model = alone(entry, neutral);
         for (i, p) in entry.about.parameters.iter().enumerate() {
             let exact = column(&model, i, &probes);
             let h = 1e-4 * p.typical.max(1e-6);
@@ -237,7 +249,7 @@ fn an_effect_says_whether_it_depends_on_where_and_how_the_robot_drives() {
     };
     let travel = WheelTravel { left: 0.005, right: 0.035 };
     for entry in CATALOGUE {
-        let chain = alone(entry, usual).chain();
+        let chain = alone(entry, Parameter::usual).chain();
         let depends = chain.displacement(&other, &travel) != chain.displacement(&Context::default(), &travel);
         assert_eq!(depends, entry.varies, "{}", entry.about.name);
     }

@@ -18,7 +18,7 @@ impl Effect for TurnSlip {
             "",
             5e-3,
             (-1.0, 1.0),
-            "share of the rotation that is lost",
+            "share of the rotation that turns on the spot lose",
         )],
         equation: "Δθ ← (1 - k) Δθ  where |v_R - v_L| > |v|: a turn about a point within a wheelbase",
         physics: "Tyres that turn about the middle of their contact area scrub sideways and give way. Up to 1 % with two \

@@ -14,13 +14,22 @@ impl Effect for WheelEccentricityLeft {
         title: "run-out of the left wheel",
         acts_on: ActsOn::Wheels,
         parameters: &[
-            Parameter { flag: "eccentricity-left-cosine", ..COSINE },
-            Parameter { flag: "eccentricity-left-sine", ..SINE },
+            Parameter {
+                flag: "eccentricity-left-cosine",
+                meaning: "amplitude in the cosine of the left wheel's angle since START",
+                ..COSINE
+            },
+            Parameter {
+                flag: "eccentricity-left-sine",
+                meaning: "amplitude in the sine of the left wheel's angle since START",
+                ..SINE
+            },
         ],
         equation: "s_L ← s_L + c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀),  φ the wheel's angle since START",
         physics: RUN_OUT,
         signature: "A wave in heading of amplitude e/b that repeats with each wheel revolution, and half of it in the way \
-                    gone. After a whole side little of it is left: return poses gain a fraction of a millimetre.",
+                    gone. Where the wave begins at its crest its mean turns the whole path, as crab does; return poses hardly show \
+                    either.",
         confused_with: &["wheel_eccentricity_right"],
         separated_by: "the track against the wheel's angle: in turns the wheels roll opposite ways and their waves part",
         source: "geometry of an off-centre wheel; 0.3 mm is assumed",
@@ -35,11 +44,9 @@ impl Effect for WheelEccentricityLeft {
 pub(super) const RUN_OUT: &str = "A wheel bored or mounted e off its centre has an effective radius that swings by e within each \
      revolution: it rolls ahead of its count on one half and falls behind on the other.";
 
-pub(super) const COSINE: Parameter =
-    Parameter::size("cosine_m", "", "m", 3e-4, (-0.1, 0.1), "amplitude in the cosine of the wheel's angle since START");
+pub(super) const COSINE: Parameter = Parameter::size("cosine_m", "", "m", 3e-4, (-0.1, 0.1), "");
 
-pub(super) const SINE: Parameter =
-    Parameter::size("sine_m", "", "m", 3e-4, (-0.1, 0.1), "amplitude in the sine of the wheel's angle since START");
+pub(super) const SINE: Parameter = Parameter::size("sine_m", "", "m", 3e-4, (-0.1, 0.1), "");
 
 /// c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀) over a piece \[m\].
 pub(super) fn wave<T: Real>(p: &[T], at: &Context<T>, wheel: usize) -> T {
@@ -66,6 +73,21 @@ mod tests {
                     assert!((stop.heading - sign * ahead / 0.34).abs() < 1e-12, "{stop:?}");
                     assert!((stop.x - 4.0 - 0.5 * ahead).abs() < 1e-6, "{stop:?}");
                 }
+            }
+        }
+    }
+    #[test]
+    fn in_a_turn_each_wheel_has_an_angle_of_its_own() {
+        let c = 1e-4;
+        for (direction, sign) in ccw_and_cw() {
+            let turn = sign * 0.17 * std::f64::consts::FRAC_PI_2;
+            for (name, way, side) in
+                [("wheel_eccentricity_left", 4.0 - turn, -1.0), ("wheel_eccentricity_right", 4.0 + turn, 1.0)]
+            {
+                let ahead = c * (libm::cos(way / 0.075) - 1.0);
+                let error =
+                    stops_with(&[(name, "cosine_m", c)], direction)[1].heading - sign * std::f64::consts::FRAC_PI_2;
+                assert!((error - side * ahead / 0.34).abs() < 1e-12, "{name} {direction:?}: {error}");
             }
         }
     }

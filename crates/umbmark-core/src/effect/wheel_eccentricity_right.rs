@@ -15,8 +15,16 @@ impl Effect for WheelEccentricityRight {
         title: "run-out of the right wheel",
         acts_on: ActsOn::Wheels,
         parameters: &[
-            Parameter { flag: "eccentricity-right-cosine", ..COSINE },
-            Parameter { flag: "eccentricity-right-sine", ..SINE },
+            Parameter {
+                flag: "eccentricity-right-cosine",
+                meaning: "amplitude in the cosine of the right wheel's angle since START",
+                ..COSINE
+            },
+            Parameter {
+                flag: "eccentricity-right-sine",
+                meaning: "amplitude in the sine of the right wheel's angle since START",
+                ..SINE
+            },
         ],
         equation: "s_R ← s_R + c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀),  φ the wheel's angle since START",
         physics: RUN_OUT,
