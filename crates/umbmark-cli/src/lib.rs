@@ -7,6 +7,7 @@ mod checkpoint;
 mod effect_flags;
 mod ensemble_report;
 mod files;
+mod model_report;
 mod prose;
 mod robot_flags;
 mod session;
@@ -29,14 +30,15 @@ pub use verb::Verb;
 /// Measure, explain and correct the odometry error of wheeled robots.
 ///
 /// UMBmark (Borenstein & Feng, 1995): drive a square in both directions, compare where the robot is with where it thinks
-/// it is. This tool simulates such tests by the thousand, scores measured ones and calibrates the robot.
+/// it is. This tool simulates such tests by the thousand, scores measured ones, calibrates the robot and finds what else is wrong
+/// with it.
 #[derive(Debug, Parser)]
 #[command(
     name = "umbmark",
     version,
     propagate_version = true,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done; 1 the data or the arguments are unusable; 2 wrong usage."
+    after_help = "Exit codes: 0 done; 1 the data or the arguments are unusable; 2 wrong usage; 3 with --check: something is missing."
 )]
 struct Cli {
     #[command(subcommand)]

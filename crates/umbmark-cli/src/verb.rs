@@ -1,10 +1,14 @@
 //! The verbs, one file each.
 
 mod calibrate;
+mod compare;
 mod completions;
+mod diagnose;
 mod effects;
+mod fit;
 mod init;
 mod inspect;
+mod learn;
 mod mc;
 mod merge;
 mod score;
@@ -27,6 +31,14 @@ pub enum Verb {
     Score(score::Arguments),
     /// Calibrate a measured robot: E_d, E_b, E_s, and files to put them to use
     Calibrate(calibrate::Arguments),
+    /// Hold models against a measured robot: what is explained, what not, in which direction
+    Compare(compare::Arguments),
+    /// Find which class of effects a model is missing, and what to measure next
+    Diagnose(diagnose::Arguments),
+    /// Fit the free effects of a model
+    Fit(fit::Arguments),
+    /// Learn a model: fit, diagnose, add, until nothing is missing
+    Learn(learn::Arguments),
     /// Look at a dataset: what it holds, whether it is any good, what it can determine
     Inspect(inspect::Arguments),
     /// Write a robot.toml and a returns.csv to fill in
@@ -45,10 +57,20 @@ impl Verb {
             Verb::Simulate(arguments) => simulate::run(*arguments, session),
             Verb::Score(arguments) => score::run(arguments, session),
             Verb::Calibrate(arguments) => calibrate::run(arguments, session),
+            Verb::Compare(arguments) => compare::run(arguments, session),
+            Verb::Diagnose(arguments) => diagnose::run(arguments, session),
+            Verb::Fit(arguments) => fit::run(arguments, session),
+            Verb::Learn(arguments) => learn::run(arguments, session),
             Verb::Inspect(arguments) => inspect::run(arguments, session),
             Verb::Init(arguments) => init::run(arguments, session),
             Verb::Effects(arguments) => effects::run(arguments, session),
             Verb::Completions(arguments) => completions::run(arguments, session),
         }
     }
+}
+
+/// A probability between 0 and 1, both excluded.
+fn size(text: &str) -> Result<f64, String> {
+    let size = crate::effect_flags::number(text)?;
+    if size > 0.0 && size < 1.0 { Ok(size) } else { Err("must be between 0 and 1, both excluded".to_owned()) }
 }

@@ -11,10 +11,10 @@
 
 mod closed_form;
 mod correction;
-mod evidence;
+pub(crate) mod evidence;
 mod exact;
 pub mod export;
-mod noise_shape;
+pub(crate) mod noise_shape;
 mod outcome;
 
 use crate::dataset::{Dataset, ReturnError};

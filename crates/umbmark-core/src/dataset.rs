@@ -20,6 +20,7 @@ mod folder;
 mod inspect;
 mod label;
 mod model_file;
+mod model_text;
 #[cfg(test)]
 mod mutated_input;
 mod optiodom;
@@ -38,6 +39,7 @@ mod tick_log;
 pub use error::DatasetError;
 pub use inspect::{Check, Coverage, Determined, Group, Inspection, LogFacts, ReferenceFacts, Wheels, WheelsFound};
 pub use model_file::{parse_model, read_model};
+pub use model_text::model_text;
 pub use robot_file::{parse_robot, read_robot};
 pub use robot_text::robot_text;
 pub use save::Existing;

@@ -5,11 +5,22 @@
 //! a trace of its own. Effects that the data cannot tell apart are named together, as a class.
 
 mod candidates;
-pub mod tracks;
+pub mod classes;
+pub(crate) mod ends;
+mod experiments;
+mod identifiability;
+pub(crate) mod tracks;
 
-use crate::effect::Model;
+use crate::calibrate::CalibrateError;
+use crate::dataset::{Dataset, Run};
+use crate::drive::Robot;
+use crate::effect::{Model, ModelError, TestKind};
+use crate::likelihood::Observed;
+use crate::replay::ReplayError;
 
 pub use candidates::{Candidate, Size, candidates, columns};
+pub use ends::{Contrast, OnCircle};
+pub use identifiability::{Identifiability, Share, identifiability};
 
 /// What was observed of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +29,33 @@ pub enum Level {
     Ends,
     /// Absolute poses on the way: at stops, or all along.
     Tracks,
+}
+
+/// What leaves nothing to diagnose.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DiagnoseError {
+    /// Nothing to predict.
+    #[error(transparent)]
+    Evidence(#[from] CalibrateError),
+    /// A log that cannot be replayed.
+    #[error(transparent)]
+    Log(#[from] ReplayError),
+    /// A model that the catalogue or its bounds refuse.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A fit that never settled.
+    #[error("the fit of the model {how}; fix some of its parameters (free = false)")]
+    NotConverged {
+        /// How it ended.
+        how: &'static str,
+    },
+    /// A fit that left what is possible.
+    #[error("the fit of the model ran out of bounds ({source}); are signs, units and directions right?")]
+    OutOfBounds {
+        /// Which parameter.
+        source: ModelError,
+    },
 }
 
 /// How to look.
@@ -183,6 +221,112 @@ pub struct Diagnosis {
     pub minimum_detectable: Vec<Detectable>,
     /// What to measure next, the most telling per minute first.
     pub next_experiments: Vec<Experiment>,
+    /// Closure contrasts of a square driven both ways, after the fit.
+    pub contrasts: Vec<Contrast>,
+    /// End points beside the circle through START, direction by direction; for squares.
+    pub circle: Vec<OnCircle>,
+    /// What of the model this experiment determines.
+    pub identifiability: Identifiability,
+    /// What an effect outside the catalogue acts on and depends on; from tracks only.
+    pub dependence: Option<Dependence>,
     /// What else should be said, a sentence each.
     pub remarks: Vec<String>,
 }
+
+/// What is missing and not in the catalogue.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dependence {
+    /// The motion that it adds to: "forward", "sideways" or "yaw".
+    pub acts_on: &'static str,
+    /// What it depends on, as formulas of the user's own have it.
+    pub depends_on: &'static str,
+    /// The same in words.
+    pub title: &'static str,
+    /// p among all that was asked.
+    pub p_adjusted: f64,
+    /// By how much the misfit would fall, in units of the noise variance.
+    pub drop: f64,
+}
+
+impl Diagnosis {
+    /// The suspects that are certified as missing.
+    pub fn certified(&self) -> &[Suspect] {
+        &self.ranking[..self.certified]
+    }
+}
+
+/// The model that is asked first: E_d and E_b, and where tracks show it E_s, all free.
+pub fn first_model(data: &Dataset) -> Result<Model, DiagnoseError> {
+    let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
+    let mut model = base_model(robot)?;
+    if level(data) == Level::Tracks {
+        model.add("scale")?.free = true;
+    }
+    Ok(model)
+}
+
+/// The model of the paper: E_d and E_b, both free.
+pub fn base_model(robot: &Robot) -> Result<Model, ModelError> {
+    let mut model = Model::new(robot);
+    for effect in ["wheel_diameter_ratio", "wheelbase"] {
+        model.add(effect)?.free = true;
+    }
+    Ok(model)
+}
+
+/// What was observed: tracks, where every run of the regular test has a log with absolute poses at three places or more.
+pub fn level(data: &Dataset) -> Level {
+    let mut runs = data.runs.iter().filter(|run| run.test == TestKind::Systematic).peekable();
+    let observed = runs.peek().is_some() && runs.all(|run| places(run) >= 3);
+    if observed { Level::Tracks } else { Level::Ends }
+}
+
+/// At how many samples of its log a run was observed.
+fn places(run: &Run) -> usize {
+    let mut samples: Vec<usize> = run.log.iter().flat_map(|log| log.reference.iter().map(|r| r.sample)).collect();
+    samples.dedup();
+    samples.len()
+}
+
+/// Fits a model's free parameters and asks every other effect of the catalogue whether it is missing.
+///
+/// ```
+/// use umbmark_core::diagnose::{Options, Verdict, base_model, diagnose};
+/// # use umbmark_core::{dataset::{Dataset, Run}, drive::Robot, effect::TestKind, path::{Direction, Path}};
+/// # use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth};
+/// # let (robot, path) = (Robot::labmate(), Path::umbmark());
+/// let mut truth = base_model(&robot)?;
+/// truth.set("wheel_diameter_ratio", "e_d", 1.00121)?;
+/// truth.set("wheel_noise", "k_sqrt_m", 1e-3)?;
+/// # let mut simulator = Simulator::new(&robot, &path, Odometry::Continuous, Phase::Edge)?;
+/// # let mut truth = Truth::new(&truth);
+/// # simulator.open(&mut truth, 1, 0);
+/// # let mut runs = Vec::new();
+/// # for direction in Direction::BOTH {
+/// #     for number in 1..=5 {
+/// #         let returned = Some(simulator.run(&mut truth, direction, TestKind::Systematic));
+/// #         let name = format!("{}_{number}", direction.name());
+/// #         runs.push(Run { name, number, direction: Some(direction), test: TestKind::Systematic, log: None, returned });
+/// #     }
+/// # }
+/// # let data = Dataset { robot: Some(robot.clone()), path: Some(path), runs, warnings: vec![] };
+/// // `data`: five simulated runs each way of the robot above.
+/// let diagnosis = diagnose(&data, &base_model(&robot)?, &Options::default())?;
+/// assert_eq!(diagnosis.verdict, Verdict::Explained);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diagnosis, DiagnoseError> {
+    match level(data) {
+        Level::Ends => ends::diagnose(&ends::Ends::new(data)?, model, options),
+        Level::Tracks => tracks::diagnose(tracks::fit(&tracks_of(data)?, model)?, options),
+    }
+}
+
+/// The tracks of a dataset.
+pub(crate) fn tracks_of(data: &Dataset) -> Result<Observed, DiagnoseError> {
+    let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
+    Ok(Observed::new(data, robot)?)
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

@@ -3,7 +3,7 @@
 //! A *model* is a nominal robot plus a chain of effects ([`effect`]). One chain serves both ways: forward, it turns a
 //! [`path`] into wheel motion, encoder ticks and the true pose ([`simulate`], [`monte_carlo`]); backward, it turns
 //! recorded ticks into the predicted pose ([`replay`]), from which robots are scored and calibrated ([`score`],
-//! [`calibrate`]).
+//! [`calibrate`]), and what a model is missing is found ([`compare`], [`diagnose`], [`learn`]).
 //!
 //! Inside, everything is SI: metres, radians, seconds, ticks. Headings and rotations are counter-clockwise positive.
 //! A text boundary (file column, TOML key, JSON key, flag) carries the unit in its name.
@@ -11,6 +11,7 @@
 //! Nothing here prints, parses flags or knows Python.
 
 pub mod calibrate;
+pub mod compare;
 pub mod dataset;
 pub mod diagnose;
 pub mod drive;
@@ -18,6 +19,7 @@ pub mod effect;
 pub mod engine;
 pub mod fit;
 pub mod geometry;
+pub mod learn;
 pub mod likelihood;
 pub mod monte_carlo;
 pub mod parameter;

@@ -1,6 +1,6 @@
 //! Intervals, and quantiles of the usual distributions (thin over `statrs`).
 
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 /// A closed interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,9 +47,35 @@ pub fn chi_squared_quantile(probability: f64, degrees_of_freedom: f64) -> f64 {
     quantile(ChiSquared::new(degrees_of_freedom), probability)
 }
 
-/// The probability that F with `above` and `below` degrees of freedom exceeds `f`; 1 for what is no F.
-pub fn f_tail(f: f64, above: f64, below: f64) -> f64 {
-    FisherSnedecor::new(above, below).map_or(1.0, |d| if f > 0.0 { d.sf(f) } else { 1.0 })
+/// The value that a standard normal draw stays below with `probability`; NaN for one outside (0, 1).
+pub fn normal_quantile(probability: f64) -> f64 {
+    quantile(Normal::new(0.0, 1.0), probability)
+}
+
+/// The probability that F with these degrees of freedom exceeds `f`.
+///
+/// NaN for degrees of freedom that are not positive, or an F that is no number.
+///
+/// ```
+/// # use umbmark_core::stats::f_upper_tail;
+/// assert!((f_upper_tail(3.112_250, [4.0, 14.0]) - 0.05).abs() < 1e-6);
+/// ```
+pub fn f_upper_tail(f: f64, degrees_of_freedom: [f64; 2]) -> f64 {
+    match FisherSnedecor::new(degrees_of_freedom[0], degrees_of_freedom[1]) {
+        Ok(_) if f == f64::INFINITY => 0.0,
+        Ok(distribution) if !f.is_nan() => distribution.sf(f),
+        _ => f64::NAN,
+    }
+}
+
+/// The probability that Student's t with `degrees_of_freedom` is farther from 0 than `t`.
+pub fn t_two_sided(t: f64, degrees_of_freedom: f64) -> f64 {
+    f_upper_tail(t * t, [1.0, degrees_of_freedom])
+}
+
+/// The probability that chi-squared with `degrees_of_freedom` exceeds `x`; NaN where that means nothing.
+pub fn chi_squared_upper_tail(x: f64, degrees_of_freedom: f64) -> f64 {
+    ChiSquared::new(degrees_of_freedom).map_or(f64::NAN, |distribution| distribution.sf(x))
 }
 
 fn quantile<D: ContinuousCDF<f64, f64>, E>(distribution: Result<D, E>, probability: f64) -> f64 {

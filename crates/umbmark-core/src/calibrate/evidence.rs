@@ -23,7 +23,7 @@ pub enum Level {
 
 /// An absolute pose.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
+pub(crate) struct Seen {
     pub x: f64,
     pub y: f64,
     pub heading: Option<f64>,
@@ -31,7 +31,7 @@ pub(super) struct Seen {
 
 /// One run, ready to be predicted.
 #[derive(Clone, Debug)]
-pub(super) struct Drive {
+pub(crate) struct Drive {
     pub direction: Option<Direction>,
     pub track: Track,
     pub seen: Vec<Seen>,
@@ -43,7 +43,7 @@ pub(super) struct Drive {
 
 /// All runs of the regular test that can be predicted.
 #[derive(Clone, Debug)]
-pub(super) struct Evidence {
+pub(crate) struct Evidence {
     pub level: Level,
     pub drives: Vec<Drive>,
     /// Metres that a radian of heading error counts as, on tracks.
@@ -53,7 +53,7 @@ pub(super) struct Evidence {
 }
 
 impl Evidence {
-    pub(super) fn new(data: &Dataset, robot: &Robot, heading_arm: Option<f64>) -> Result<Evidence, CalibrateError> {
+    pub(crate) fn new(data: &Dataset, robot: &Robot, heading_arm: Option<f64>) -> Result<Evidence, CalibrateError> {
         let runs: Vec<&Run> = data.runs.iter().filter(|run| run.test == TestKind::Systematic).collect();
         let mut drives = Vec::with_capacity(runs.len());
         for run in &runs {
@@ -62,25 +62,12 @@ impl Evidence {
         let level =
             if drives.len() == runs.len() && drives.iter().any(|d| stops(d) > 1) { Level::Tracks } else { Level::Ends };
         if level == Level::Ends {
-            drives.clear();
-            for run in &runs {
-                drives.extend(ended(run, data, robot)?);
-            }
-        }
-        if drives.is_empty() {
-            return Err(CalibrateError::NothingObserved { runs: data.runs.len() });
-        }
-        let headings_missing =
-            level == Level::Ends && drives.iter().any(|d| d.seen.iter().any(|s| s.heading.is_none()));
-        if headings_missing {
-            drives.iter_mut().flat_map(|d| &mut d.seen).for_each(|s| s.heading = None);
+            drives = end_poses(data, robot)?;
         }
         let arm = heading_arm.unwrap_or_else(|| mean_distance(&drives));
-        for drive in &mut drives {
-            drive.weight = match level {
-                Level::Tracks => Matrix3::from_diagonal(&[1.0, 1.0, arm].into()),
-                Level::Ends => end_weight(drive, robot),
-            };
+        if level == Level::Tracks {
+            let weight = Matrix3::from_diagonal(&[1.0, 1.0, arm].into());
+            drives.iter_mut().for_each(|drive| drive.weight = weight);
         }
         let scale_shows = drives.iter().any(|d| {
             let far = d.seen.iter().map(|s| libm::hypot(s.x, s.y)).fold(0.0, f64::max);
@@ -88,6 +75,22 @@ impl Evidence {
         });
         Ok(Evidence { level, drives, heading_arm: arm, scale_shows })
     }
+}
+
+/// The end poses of the regular test, weighted by the shape of their scatter; headings only where every run has one.
+pub(crate) fn end_poses(data: &Dataset, robot: &Robot) -> Result<Vec<Drive>, CalibrateError> {
+    let mut drives = Vec::with_capacity(data.runs.len());
+    for run in data.runs.iter().filter(|run| run.test == TestKind::Systematic) {
+        drives.extend(ended(run, data, robot)?);
+    }
+    if drives.is_empty() {
+        return Err(CalibrateError::NothingObserved { runs: data.runs.len() });
+    }
+    if drives.iter().any(|d| d.seen.iter().any(|s| s.heading.is_none())) {
+        drives.iter_mut().flat_map(|d| &mut d.seen).for_each(|s| s.heading = None);
+    }
+    drives.iter_mut().for_each(|drive| drive.weight = end_weight(drive, robot));
+    Ok(drives)
 }
 
 /// A run with its recorded track, if it has one.

@@ -4,6 +4,7 @@ use crate::effect::{CATALOGUE, Entry, Model, ModelError};
 use crate::geometry::{Dual, Pose2};
 use crate::parameter::Parameter;
 use crate::replay::Track;
+use rayon::prelude::*;
 
 /// A parameter in which an effect is linear near where it does nothing, and what a unit of it does.
 #[derive(Clone, Debug)]
@@ -25,30 +26,46 @@ pub struct Candidate {
 
 /// Every effect of the catalogue that changes the mean of what `tracks` observe and is not in the model.
 pub fn candidates(model: &Model, tracks: &[Track]) -> Result<Vec<Candidate>, ModelError> {
-    let missing = CATALOGUE.iter().filter(|entry| model.parts().iter().all(|part| part.effect != *entry));
-    let mut found = Vec::new();
-    for effect in missing {
-        let mut with = model.clone();
-        with.add(effect.about.name)?;
-        let first: usize =
-            with.parts().iter().take_while(|part| part.effect != effect).map(|part| part.values.len()).sum();
-        let mut sizes = Vec::new();
-        for (index, parameter) in effect.about.parameters.iter().enumerate() {
-            let columns = columns(&with, first + index, tracks);
-            let moves = |p: &Pose2| p.x != 0.0 || p.y != 0.0 || p.heading != 0.0;
-            if columns.iter().flatten().any(moves) {
-                sizes.push(Size { parameter, columns });
-            }
-        }
-        if !sizes.is_empty() {
-            found.push(Candidate { effect, sizes });
-        }
-    }
-    Ok(found)
+    of_tracks(model, |_| tracks.iter().collect())
+}
+
+/// [`candidates`] with tracks cut as finely as a model needs them: `tracks(true)` for one that varies along the way.
+pub(crate) fn of_tracks<'a>(
+    model: &Model,
+    tracks: impl Fn(bool) -> Vec<&'a Track> + Sync,
+) -> Result<Vec<Candidate>, ModelError> {
+    let missing: Vec<&'static Entry> =
+        CATALOGUE.iter().filter(|entry| model.parts().iter().all(|part| part.effect != *entry)).collect();
+    let found: Vec<Candidate> =
+        missing.into_par_iter().map(|effect| of_effect(effect, model, &tracks)).collect::<Result<_, _>>()?;
+    Ok(found.into_iter().filter(|candidate| !candidate.sizes.is_empty()).collect())
+}
+
+/// An effect with those of its sizes that move some pose.
+pub(crate) fn of_effect<'a>(
+    effect: &'static Entry,
+    model: &Model,
+    tracks: impl Fn(bool) -> Vec<&'a Track>,
+) -> Result<Candidate, ModelError> {
+    let mut with = model.clone();
+    with.add(effect.about.name)?;
+    let tracks = tracks(with.varies());
+    let before = with.parts().iter().take_while(|part| part.effect != effect);
+    let first: usize = before.map(|part| part.values.len()).sum();
+    let moves = |p: &Pose2| p.x != 0.0 || p.y != 0.0 || p.heading != 0.0;
+    let size = |(index, parameter): (usize, &'static Parameter)| {
+        let columns = of_value(&with, first + index, &tracks);
+        columns.iter().flatten().any(moves).then_some(Size { parameter, columns })
+    };
+    Ok(Candidate { effect, sizes: effect.about.parameters.iter().enumerate().filter_map(size).collect() })
 }
 
 /// Derivatives of all observed poses by one value of a model, in the order of [`Model::values`], run by run.
 pub fn columns(model: &Model, value: usize, tracks: &[Track]) -> Vec<Vec<Pose2>> {
+    of_value(model, value, &tracks.iter().collect::<Vec<_>>())
+}
+
+pub(crate) fn of_value(model: &Model, value: usize, tracks: &[&Track]) -> Vec<Vec<Pose2>> {
     let seeded = model.values().enumerate();
     let values: Vec<Dual> = seeded.map(|(i, v)| Dual::new(v, f64::from(u8::from(i == value)))).collect();
     let chain = model.chain_with(&values);

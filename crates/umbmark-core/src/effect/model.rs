@@ -3,7 +3,7 @@
 use super::{CATALOGUE, Context, Entry, Evaluate, MAX_PARAMETERS, Mean, Sight, find};
 use crate::drive::{DifferentialDrive, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
-use crate::parameter::{ParameterError, nearest};
+use crate::parameter::{DefaultValue, Parameter, ParameterError, nearest};
 
 /// What makes a model impossible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -126,6 +126,14 @@ impl Model {
     /// All values of all parts, one after the other: the order of [`Model::chain_with`].
     pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
         self.parts.iter().flat_map(|part| part.values.iter().copied())
+    }
+
+    /// Which of the [values](Model::values) are shapes: numbers (a length, a threshold) that change nothing where their effect
+    /// is at zero.
+    pub fn shapes(&self) -> Vec<usize> {
+        let all = self.parts.iter().flat_map(|part| part.effect.about.parameters);
+        let shape = |p: &Parameter| !matches!(p.default, DefaultValue::Value(value) if value == 0.0 || value == 1.0);
+        all.enumerate().filter(|(_, p)| shape(p)).map(|(index, _)| index).collect()
     }
 
     /// The same effects with some of the [values](Model::values), named by their place, replaced.

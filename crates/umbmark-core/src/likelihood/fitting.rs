@@ -32,9 +32,8 @@ const STOP: Options = Options { iterations: 12, step_tolerance: 1e-7, decrease_t
 impl Observed {
     /// Fits all free values of a model but those `held`, and the noise.
     pub fn fit(&self, model: &Model, from: &Noise, held: &[usize]) -> Result<Fitted, ModelError> {
-        let free: Vec<usize> = self.free_values(model).into_iter().filter(|value| !held.contains(value)).collect();
-        let mut fitted =
-            Fitted { observed: self.along(model), model: model.clone(), noise: *from, free, covariance: None };
+        let mut fitted = self.unfitted(model, from);
+        fitted.free.retain(|value| !held.contains(value));
         for _ in 0..2 {
             fitted.refit()?;
             let mut columns = self.columns(&fitted.model, &fitted.free);
@@ -46,6 +45,12 @@ impl Observed {
         }
         fitted.covariance = fitted.refit()?.covariance();
         Ok(fitted)
+    }
+
+    /// A model as it is, ready to be fitted.
+    pub fn unfitted(&self, model: &Model, noise: &Noise) -> Fitted {
+        let free = self.free_values(model);
+        Fitted { observed: self.along(model), model: model.clone(), noise: *noise, free, covariance: None }
     }
 
     /// Values of the free parts of a model that move some observed pose.

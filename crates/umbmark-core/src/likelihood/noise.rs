@@ -52,9 +52,12 @@ impl Default for Noise {
 /// No size falls below this share of its usual value, or rises above its inverse.
 const RANGE: f64 = 1e-2;
 /// Evaluations of the likelihood.
-const EVALUATIONS: usize = 160;
+const EVALUATIONS: usize = 110;
 
 impl Noise {
+    /// How many sizes are estimated.
+    pub const SIZES: usize = 6;
+
     /// The sizes under which the residuals of a model are likeliest, by restricted maximum likelihood:
     ///
     /// -2 l = Σ log|S| + log|AᵀΣ⁻¹A| + r̂ᵀΣ⁻¹r̂, with the columns A fitted out.

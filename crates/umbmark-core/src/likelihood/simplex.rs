@@ -2,7 +2,7 @@
 
 /// Minimises `cost` from `start` by the simplex of Nelder & Mead (1965), first edge `edge`, with at most `evaluations`.
 ///
-/// Gives the best point seen. Stops early where the simplex no longer tells its corners apart by 1e-3.
+/// Gives the best point seen. Stops early where the simplex no longer tells its corners apart by 0.02.
 pub(super) fn minimise<const N: usize>(
     start: [f64; N],
     edge: f64,
@@ -22,7 +22,7 @@ pub(super) fn minimise<const N: usize>(
     let mut used = N + 1;
     while used < evaluations {
         corners.sort_by(|a, b| a.0.total_cmp(&b.0));
-        if corners[N].0 - corners[0].0 < 1e-3 {
+        if corners[N].0 - corners[0].0 < 0.02 {
             break;
         }
         let centre: [f64; N] = std::array::from_fn(|i| corners[..N].iter().map(|c| c.1[i]).sum::<f64>() / N as f64);

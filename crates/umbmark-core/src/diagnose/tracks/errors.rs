@@ -1,5 +1,6 @@
 //! Errors as people see them: metres and degrees along the way, in the runs at hand and in runs left out.
 
+use super::system::Projected;
 use crate::likelihood::{Column, Observed, ObservedRun, gram};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -64,6 +65,20 @@ impl Errors {
         }
         let root = |k: usize| (squares[k] / counts[k].max(1) as f64).sqrt();
         Misses { position: root(0), heading: (counts[1] > 0).then(|| root(1)) }
+    }
+
+    /// Values of some columns that make whole tracks fit best, position and heading errors counting alike; without one run.
+    pub fn fit(&self, columns: &[usize], without: Option<usize>) -> DVector<f64> {
+        let width = self.which.len();
+        let (mut position, mut heading) = (DMatrix::zeros(width, width), DMatrix::zeros(width, width));
+        for run in self.runs.iter().enumerate().filter(|(index, _)| Some(*index) != without).map(|(_, run)| run) {
+            position += &run.position;
+            heading += &run.heading;
+        }
+        let (far, turned) = (position[(width - 1, width - 1)], heading[(width - 1, width - 1)]);
+        let products = if turned > 0.0 { position + heading * (far / turned) } else { position };
+        let places = columns.iter().filter_map(|c| self.which.iter().position(|w| w == c)).collect::<Vec<_>>();
+        Projected::fit(&products, &places)
     }
 
     /// Errors with the residuals as they are.

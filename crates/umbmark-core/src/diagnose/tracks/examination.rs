@@ -1,6 +1,7 @@
 //! A fitted model on tracks beside everything that it may be missing.
 
 use super::errors::Errors;
+use super::errors::Misses;
 use super::smooth::{self, Covariate, Motion, smooth_columns};
 use super::system::{Projected, System};
 use crate::effect::{CATALOGUE, Entry, ModelError};
@@ -175,6 +176,99 @@ impl Examination {
             }
         }
         base
+    }
+
+    /// The effect that a column belongs to.
+    pub fn name(&self, column: usize) -> Option<&'static str> {
+        let asked = self.asked.iter().find(|asked| asked.columns.contains(&column));
+        let own = self.fitted.free.get(column).and_then(|value| {
+            let mut rest = *value;
+            self.fitted.model.parts().iter().find_map(|part| {
+                let inside = rest < part.values.len();
+                rest -= if inside { 0 } else { part.values.len() };
+                inside.then_some(part.effect.about.name)
+            })
+        });
+        own.or_else(|| asked.and_then(Asked::effect).map(|effect| effect.about.name))
+    }
+
+    /// Errors of runs left out, with the model's own values and the columns `found` fitted to the others.
+    pub fn left_out(&self, found: &[usize]) -> Misses {
+        self.left_out_with(found, |_| None)
+    }
+
+    /// The same with one more group, picked anew from the products of the others.
+    pub fn left_out_with(&self, found: &[usize], pick: impl Fn(&DMatrix<f64>) -> Option<Answer>) -> Misses {
+        self.errors.misses(|run| {
+            let products = self.system.sum(|unit| unit.run != run);
+            let mut columns = [&self.free[..], found].concat();
+            columns.extend(pick(&products).map(|answer| answer.columns).unwrap_or_default());
+            let values = Projected::fit(&products, &columns);
+            (columns, values)
+        })
+    }
+
+    /// Errors inside and in runs left out, of the model fitted to increments (as its values are) or to whole tracks, whichever
+    /// predicts runs left out better: the first is right where nothing is missing, the second does what can be done where
+    /// something is.
+    pub fn best_errors(&self) -> (Misses, Misses) {
+        let increments = (self.errors.in_sample(), self.left_out(&[]));
+        let all = self.errors.fit(&self.free, None);
+        let inside = self.errors.misses(|_| (self.free.clone(), all.clone()));
+        let left_out = self.errors.misses(|run| (self.free.clone(), self.errors.fit(&self.free, Some(run))));
+        if left_out.position < increments.1.position { (inside, left_out) } else { increments }
+    }
+
+    /// AICc, BIC and the root mean square of the whitened residuals.
+    pub fn criteria(&self) -> (f64, f64, f64) {
+        let residual = self.system.residual();
+        let runs = self.fitted.observed.runs.iter().zip(&self.columns);
+        let scales = runs.map(|(run, columns)| self.fitted.noise.whiten(run, &[&columns[residual]]).log_scale);
+        let squares = self.system.sum(|_| true)[(residual, residual)];
+        let deviance = 2.0 * scales.sum::<f64>() + squares;
+        let (n, k) = (self.system.rows(|_| true) as f64, (self.free.len() + Noise::SIZES) as f64);
+        let aicc = deviance + 2.0 * k * n / (n - k - 1.0).max(1.0);
+        (aicc, deviance + k * libm::log(n), (squares / n).sqrt())
+    }
+
+    /// The effect that explains most of some products, beside the model and the columns `found`.
+    pub fn likeliest(&self, products: &DMatrix<f64>, found: &[usize]) -> Option<Answer> {
+        let with = |base: Vec<usize>| {
+            let new: Vec<usize> = found.iter().copied().filter(|c| !base.contains(c)).collect();
+            Projected::new(products, &[base, new].concat())
+        };
+        let plain = with(self.base(None));
+        let effects = self.asked.iter().enumerate();
+        let effects = effects.filter(|(_, a)| a.effect().is_some() && !a.columns.iter().any(|c| found.contains(c)));
+        let answers = effects.filter_map(|(index, asked)| {
+            let own = asked.nuisance.then(|| with(self.base(Some(index))));
+            self.answer(own.as_ref().unwrap_or(&plain), products, index)
+        });
+        answers.max_by(|a, b| worth(a).total_cmp(&worth(b)))
+    }
+
+    /// Ljung & Box's Q of the heading innovations over ten lags, summed over runs, with its degrees of freedom.
+    pub fn portmanteau(&self) -> (f64, f64) {
+        const LAGS: usize = 10;
+        let residual = self.system.residual();
+        let runs = self.fitted.observed.runs.iter().zip(&self.columns);
+        let (mut q, mut freedom) = (0.0, 0);
+        for (run, columns) in runs {
+            let white = self.fitted.noise.whiten(run, &[&columns[residual]]);
+            let rows: Vec<f64> = white.values.iter().zip(&white.block).skip(6).map(|(value, _)| *value).collect();
+            let heading: Vec<f64> = rows.chunks_exact(3).map(|row| row[2]).collect();
+            let n = heading.len() as f64;
+            let whole: f64 = heading.iter().map(|v| v * v).sum();
+            if heading.len() <= 3 * LAGS || white.values.len() != 3 * run.blocks.len() || whole <= 0.0 {
+                continue;
+            }
+            for lag in 1..=LAGS {
+                let sum: f64 = heading.iter().zip(&heading[lag..]).map(|(a, b)| a * b).sum();
+                q += n * (n + 2.0) * (sum / whole).powi(2) / (n - lag as f64);
+            }
+            freedom += LAGS;
+        }
+        (q, freedom as f64)
     }
 
     /// The answer of every group that `wanted` picks and the data shows, beside a base.

@@ -1,10 +1,10 @@
-//! Diagnosis from tick logs with absolute poses on the way.
+//! Every group asked beside a fitted model: how much it explains, and how sure that is.
 
 use super::examination::{ALIKE, Answer, Examination, Question, worth};
 use super::flips::{Scores, family_wise};
 use super::system::Projected;
-use super::{Estimate, Options, Suspect};
-use crate::stats::f_tail;
+use crate::diagnose::{Estimate, Options, Suspect};
+use crate::stats::f_upper_tail;
 
 /// Runs that carry a certificate on their own; with fewer, quarters of runs do.
 const ENOUGH_RUNS: usize = 8;
@@ -59,7 +59,7 @@ pub fn look(exam: &Examination, found: &[usize], smooths: bool, options: &Option
         let spare = rows as f64 - projected.base.len() as f64 - q;
         let rest = projected.products[(residual, residual)] - answer.drop;
         let f = answer.drop / q / (rest / spare);
-        let p = f_tail(f, q, spare);
+        let p = f_upper_tail(f.max(0.0), [q, spare]);
         findings.push(Finding { answer, p_f: p, p_flips: 1.0, degrees_of_freedom: [q, spare], f, p, projected });
     }
     let asked = findings.len() as f64;
@@ -78,7 +78,7 @@ fn with(mut base: Vec<usize>, found: &[usize]) -> Vec<usize> {
 }
 
 /// Scores of a group by run, or by quarter of a run where runs are few.
-pub fn scores(exam: &Examination, finding: &Finding) -> Scores {
+fn scores(exam: &Examination, finding: &Finding) -> Scores {
     let by_quarter = exam.fitted.observed.runs.len() < ENOUGH_RUNS;
     let mut units: Vec<nalgebra::DVector<f64>> = Vec::new();
     let mut before = None;
@@ -123,10 +123,11 @@ pub fn suspect(exam: &Examination, finding: &Finding, found: &[usize]) -> Option
     let columns = &exam.asked[finding.answer.asked].columns;
     let estimate = finding.answer.columns.iter().enumerate().filter_map(|(k, column)| {
         let which = columns.iter().position(|c| c == column)?;
+        let zero = parameters[which].default.resolve(exam.fitted.model.robot());
         Some(Estimate {
             effect: entry.about.name,
             parameter: parameters[which].name,
-            value: finding.answer.step[k],
+            value: zero + finding.answer.step[k],
             standard_error: finding.answer.covariance[(k, k)].max(0.0).sqrt(),
             degrees_of_freedom: finding.degrees_of_freedom[1],
         })

@@ -60,6 +60,9 @@ struct Piece<'a> {
     fastest_turn: f64,
 }
 
+/// The covariate that stands for errors that repeat themselves, whatever their cause.
+pub const ALONG_THE_WAY: &str = "distance";
+
 /// Everything that smooths are asked about.
 pub const COVARIATES: [Covariate; 13] = [
     Covariate {
@@ -158,11 +161,20 @@ pub const COVARIATES: [Covariate; 13] = [
             out[0] = p.at.direction * p.at.length;
         },
     },
-    Covariate { name: "distance", title: "the place in the run and its sense", terms: 12, value: |p, out| {
-        out.fill(0.0);
-        let own = if p.at.direction < 0.0 { &mut out[..6] } else { &mut out[6..] };
-        cyclic(std::f64::consts::TAU * p.at.distance / p.way, p.at.length + 0.5 * p.wheelbase * p.rotation.abs(), own);
-    } },
+    Covariate {
+        name: "distance",
+        title: "the place in the run and its sense",
+        terms: 12,
+        value: |p, out| {
+            out.fill(0.0);
+            let own = if p.at.direction < 0.0 { &mut out[..6] } else { &mut out[6..] };
+            cyclic(
+                std::f64::consts::TAU * p.at.distance / p.way,
+                p.at.length + 0.5 * p.wheelbase * p.rotation.abs(),
+                own,
+            );
+        },
+    },
 ];
 
 /// x, x², ... times `exposure`.
@@ -200,7 +212,13 @@ pub fn smooth_columns(observed: &Observed, model: &Model) -> Vec<Vec<Column>> {
     observed.runs.par_iter().map(|run| of_run(run, &chain, wheelbase, scales, runs)).collect()
 }
 
-fn of_run(run: &ObservedRun, chain: &Chain<f64>, wheelbase: f64, [fastest, fastest_turn]: [f64; 2], runs: f64) -> Vec<Column> {
+fn of_run(
+    run: &ObservedRun,
+    chain: &Chain<f64>,
+    wheelbase: f64,
+    [fastest, fastest_turn]: [f64; 2],
+    runs: f64,
+) -> Vec<Column> {
     let terms: usize = COVARIATES.iter().map(|c| c.terms).sum();
     let track = &run.track;
     let way = track.length().max(f64::MIN_POSITIVE);
@@ -219,7 +237,17 @@ fn of_run(run: &ObservedRun, chain: &Chain<f64>, wheelbase: f64, [fastest, faste
                 rotation: 0.5 * motion.rotation,
             });
             let wheel_way = [travel.left.abs(), travel.right.abs()];
-            let piece = Piece { at, rotation: motion.rotation, wheel_way, duration, way, wheelbase, runs, fastest, fastest_turn };
+            let piece = Piece {
+                at,
+                rotation: motion.rotation,
+                wheel_way,
+                duration,
+                way,
+                wheelbase,
+                runs,
+                fastest,
+                fastest_turn,
+            };
             let mut rest = basis.as_mut_slice();
             for covariate in &COVARIATES {
                 let own;

@@ -1,0 +1,79 @@
+//! `umbmark fit`: the free parameters of a model, fitted to a dataset.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use serde_json::json;
+use umbmark_core::dataset::Dataset;
+use umbmark_core::learn::fit;
+
+use crate::Session;
+use crate::model_report::{estimates_json, estimates_table, model_json, model_of, write_model};
+
+/// Arguments of `fit`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A dataset folder, an OptiOdom folder, or a return sheet beside its robot.toml
+    #[arg(value_name = "DATA")]
+    data: PathBuf,
+
+    /// The model whose free effects are fitted [default: E_d and E_b]
+    #[arg(long, value_name = "FILE")]
+    model: Option<PathBuf>,
+
+    /// Add an effect and fit it too; may be given more than once
+    #[arg(long, value_name = "EFFECT")]
+    add: Vec<String>,
+
+    /// Write the fitted model
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+
+    /// Probability with which the intervals hold
+    #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = super::size)]
+    level: f64,
+
+    /// Replace a file that exists
+    #[arg(long)]
+    force: bool,
+}
+
+pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
+    let data = Dataset::load(&arguments.data)?;
+    let mut model = model_of(arguments.model.as_deref(), &data)?;
+    for effect in &arguments.add {
+        model.add(effect)?.free = true;
+    }
+    if model.parts().iter().all(|part| !part.free) {
+        anyhow::bail!("no effect of the model is free: say free = true in its file, or --add EFFECT");
+    }
+    let (model, estimates) = fit(&data, &model)?;
+    let free = model.parts().iter().filter(|part| part.free).map(|part| part.effect.about.name);
+    let unfitted: Vec<&str> = free.filter(|name| estimates.iter().all(|e| e.effect != *name)).collect();
+    if let Some(file) = &arguments.output {
+        write_model(&model, file, arguments.force)?;
+    }
+    if session.json() {
+        session.print_json(&json!({
+            "fitted": estimates_json(&estimates, arguments.level),
+            "not_shown": unfitted,
+            "model": model_json(&model),
+            "level": arguments.level,
+            "version": umbmark_core::VERSION,
+        }))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    for warning in &data.warnings {
+        session.message("warning", warning);
+    }
+    for effect in &unfitted {
+        let why = "this data does not show it apart from the rest of the model; it keeps its values";
+        session.message("warning", &format!("{effect} was not fitted: {why}"));
+    }
+    writeln!(session.out(), "{}", estimates_table(&estimates, arguments.level))?;
+    if let Some(file) = &arguments.output {
+        writeln!(session.out(), "\nwrote {}", file.display())?;
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,133 @@
+//! `umbmark learn`: the whole loop, told as a story.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use serde_json::{Value, json};
+use umbmark_core::dataset::Dataset;
+use umbmark_core::diagnose::Options;
+use umbmark_core::learn::{Learnt, Step, learn};
+
+use super::diagnose::in_words;
+use crate::Session;
+use crate::model_report::{estimates_json, estimates_table, finite, model_json, p_text, write_model};
+use crate::prose::hanging;
+use crate::table::table;
+
+/// Arguments of `learn`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A dataset folder, an OptiOdom folder, or a return sheet beside its robot.toml
+    #[arg(value_name = "DATA")]
+    data: PathBuf,
+
+    /// Write the model that was learnt
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+
+    /// Simulated tests for p-values that have no closed form
+    #[arg(long, default_value_t = 999, value_name = "N", value_parser = clap::value_parser!(u32).range(99..=99_999))]
+    draws: u32,
+
+    /// Probability with which an effect is added to a complete model
+    #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = super::size)]
+    size: f64,
+
+    /// Replace a file that exists
+    #[arg(long)]
+    force: bool,
+}
+
+pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
+    let data = Dataset::load(&arguments.data)?;
+    let options = Options { size: arguments.size, draws: arguments.draws as usize, seed: session.seed() };
+    let learnt = session.on_threads(|| learn(&data, &options))??;
+    if let Some(file) = &arguments.output {
+        write_model(&learnt.model, file, arguments.force)?;
+    }
+    if session.json() {
+        session.print_json(&document(&learnt, &options))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    for warning in &data.warnings {
+        session.message("warning", warning);
+    }
+    write!(session.out(), "{}", text(&data, &learnt, &options))?;
+    if let Some(file) = &arguments.output {
+        writeln!(session.out(), "\nwrote {}", file.display())?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn document(learnt: &Learnt, options: &Options) -> Value {
+    let step = |s: &Step| {
+        json!({
+            "added": s.added,
+            "class": s.class,
+            "p_adjusted": s.p_adjusted,
+            "rmse_m": finite(s.error.position),
+            "heading_rmse_rad": s.error.heading,
+            "heldout_rmse_m": finite(s.held_out.position),
+            "heldout_heading_rmse_rad": s.held_out.heading,
+            "aicc": s.aicc,
+            "bic": s.bic,
+        })
+    };
+    json!({
+        "steps": learnt.steps.iter().map(step).collect::<Vec<_>>(),
+        "verdict": learnt.verdict.name(),
+        "model": model_json(&learnt.model),
+        "fitted": estimates_json(&learnt.diagnosis.fitted, 1.0 - options.size),
+        "remarks": learnt.remarks,
+        "size": options.size,
+        "draws": options.draws,
+        "seed": options.seed,
+        "version": umbmark_core::VERSION,
+    })
+}
+
+fn text(data: &Dataset, learnt: &Learnt, options: &Options) -> String {
+    let robot = data.robot.as_ref().map_or("", |robot| robot.name.as_str());
+    let mut text = format!("What {robot} taught\n\n");
+    let header = ["added", "p", "error [mm]", "left out [mm]", "left out [deg]", "AICc"];
+    text += &table(&header, learnt.steps.iter().map(row));
+    text += "\n\n";
+    text += &hanging(
+        "",
+        0,
+        "error: root mean square distance of end poses from the model's, in the runs it was fitted to; left out: of runs \
+                             that neither the choice of effects nor the fit saw. AICc decides nothing.",
+    );
+    text += "\n";
+    text += &hanging("verdict", 10, in_words(learnt.verdict));
+    for step in learnt.steps.iter().filter(|s| s.class.len() > 1) {
+        let told = format!("{} cannot be told apart here; `umbmark diagnose` says what would", step.class.join(", "));
+        text += &hanging("class", 10, &told);
+    }
+    for remark in &learnt.remarks {
+        text += &hanging("note", 10, remark);
+    }
+    if !learnt.diagnosis.fitted.is_empty() {
+        text += &format!("\n{}\n", estimates_table(&learnt.diagnosis.fitted, 1.0 - options.size));
+    }
+    text
+}
+
+fn row(step: &Step) -> Vec<String> {
+    let others = step.class.len().saturating_sub(1);
+    let added = match step.added {
+        None => "nominal robot".to_owned(),
+        Some(effect) if others > 0 => format!("+ {effect} (or {others} alike)"),
+        Some(effect) => format!("+ {effect}"),
+    };
+    let degrees = |heading: Option<f64>| heading.map_or("-".to_owned(), |h| format!("{:.2}", h.to_degrees()));
+    vec![
+        added,
+        step.p_adjusted.map_or("-".into(), p_text),
+        format!("{:.1}", 1e3 * step.error.position),
+        format!("{:.1}", 1e3 * step.held_out.position),
+        degrees(step.held_out.heading),
+        step.aicc.map_or("-".into(), |aicc| format!("{aicc:.1}")),
+    ]
+}

@@ -1,0 +1,153 @@
+//! Models against measured runs: what each explains, what not, and in which direction of driving.
+//!
+//! Every statistic of a test (mean end pose, spread, correlation; for each direction) is held against many simulated tests of the
+//! same size. The p of each is told alone, and once for all together: that of the smallest among all.
+
+mod replicas;
+mod statistics;
+
+use crate::dataset::Dataset;
+use crate::diagnose::ends::{self, Asked, Ends, Fitted};
+use crate::diagnose::{Contrast, DiagnoseError, Level, OnCircle, Options, base_model, level};
+use crate::effect::Model;
+use crate::path::Direction;
+use replicas::Replicas;
+
+pub use replicas::NoiseSource;
+pub use statistics::Quantity;
+
+/// A statistic of the measured test beside what a model predicts for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statistic {
+    /// Of the runs.
+    pub direction: Direction,
+    /// What it is.
+    pub quantity: Quantity,
+    /// As measured \[m, rad or 1\].
+    pub measured: f64,
+    /// As predicted: for spreads and correlations, the middle of the simulated tests.
+    pub predicted: f64,
+    /// How often simulated tests are as far from the prediction.
+    pub p: f64,
+}
+
+/// How one model does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judged {
+    /// What it was called.
+    pub name: String,
+    /// Where the scatter of the simulated tests is from.
+    pub noise: NoiseSource,
+    /// Of both directions.
+    pub statistics: Vec<Statistic>,
+    /// p of the smallest of them among all.
+    pub p: f64,
+    /// Root mean square distance of observed from predicted ends \[m\].
+    pub rmse: f64,
+    /// The same of headings \[rad\].
+    pub heading_rmse: Option<f64>,
+    /// What is explained and what not, a sentence each.
+    pub sentences: Vec<String>,
+}
+
+/// Models side by side.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// What was observed.
+    pub level: Level,
+    /// Number of runs clockwise and counter-clockwise.
+    pub runs: [usize; 2],
+    /// In the order in which they were given.
+    pub models: Vec<Judged>,
+    /// Closure contrasts of a square driven both ways, after a fit of E_d and E_b.
+    pub contrasts: Vec<Contrast>,
+    /// End points beside the circle through START.
+    pub circle: Vec<OnCircle>,
+    /// What else should be said, a sentence each.
+    pub remarks: Vec<String>,
+}
+
+impl Judged {
+    /// Whether nothing speaks against the model at this size of the whole test.
+    pub fn explains(&self, size: f64) -> bool {
+        self.p >= size
+    }
+}
+
+/// Holds models, with the values that they have, against measured runs.
+///
+/// ```no_run
+/// use umbmark_core::{compare::compare, dataset::Dataset, diagnose::Options, effect::Model};
+/// let data = Dataset::load("my_robot")?;
+/// let nominal = Model::new(data.nominal_robot()?);
+/// let comparison = compare(&data, &[("nominal".into(), nominal)], &Options::default())?;
+/// println!("{}", comparison.models[0].sentences.join("\n"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn compare(data: &Dataset, models: &[(String, Model)], options: &Options) -> Result<Comparison, DiagnoseError> {
+    let ends = Ends::new(data)?;
+    let fitted = Fitted::new(&ends, &base_model(&ends.robot)?)?;
+    let confidence = 1.0 - options.size;
+    let circle = ends::circle(&ends, &fitted, confidence);
+    let mut remarks = Vec::new();
+    if Asked::wilks_p(&ends, &fitted).is_some_and(|p| p < options.size) {
+        remarks.extend(circle.iter().filter_map(ends::contradiction));
+    }
+    if !ends.enough() {
+        let [cw, ccw] = ends.counts();
+        remarks.push(format!("Few runs, {cw} cw and {ccw} ccw: p-values say little below 3 + 3."));
+    }
+    if level(data) == Level::Tracks {
+        remarks.push("The runs were observed on the way, but only their end poses are compared here.".into());
+    }
+    let models = models.iter().map(|(name, model)| judge(name, model, &ends, &fitted, options)).collect();
+    let contrasts = ends::contrasts(&ends, &fitted, confidence);
+    Ok(Comparison { level: Level::Ends, runs: ends.counts(), models, contrasts, circle, remarks })
+}
+
+fn judge(name: &str, model: &Model, ends: &Ends, fitted: &Fitted, options: &Options) -> Judged {
+    let residuals = ends.residuals(model);
+    let replicas = Replicas::new(model, ends, fitted, options);
+    let (statistics, p) = replicas.judge(ends, model);
+    let n = residuals.len().max(1) as f64;
+    let rms = |sum: f64| (sum / n).sqrt();
+    Judged {
+        name: name.to_owned(),
+        noise: replicas.source,
+        sentences: sentences(&statistics, options.size),
+        statistics,
+        p,
+        rmse: rms(residuals.iter().map(|r| r.xy().norm_squared()).sum()),
+        heading_rmse: ends.with_heading.then(|| rms(residuals.iter().map(|r| r.z * r.z).sum())),
+    }
+}
+
+/// For each direction, what is explained and what not. A statistic alone counts at the size shared out among all (Bonferroni).
+fn sentences(statistics: &[Statistic], size: f64) -> Vec<String> {
+    let least = size / statistics.len().max(1) as f64;
+    let of = |direction: Direction| {
+        let all: Vec<&Statistic> = statistics.iter().filter(|s| s.direction == direction).collect();
+        let failing: Vec<String> = all.iter().filter(|s| s.p < least).map(|s| phrase(s)).collect();
+        let verdict = match (all.is_empty(), failing.is_empty()) {
+            (true, _) => return None,
+            (false, true) => {
+                "all is explained: means, spread and correlation are as simulated tests have them".to_owned()
+            }
+            (false, false) => format!("not explained: {}", failing.join("; ")),
+        };
+        Some(format!("{} runs: {verdict}.", direction.name()))
+    };
+    Direction::BOTH.into_iter().filter_map(of).collect()
+}
+
+fn phrase(statistic: &Statistic) -> String {
+    let quantity = statistic.quantity;
+    let (scale, unit) = quantity.display();
+    format!(
+        "{} is {:.2}{unit} where {:.2}{unit} is predicted (p = {:.3})",
+        quantity.name(),
+        scale * statistic.measured,
+        scale * statistic.predicted,
+        statistic.p
+    )
+}

@@ -1,0 +1,161 @@
+//! Return poses as evidence: what was measured, in the frame in which both directions scatter alike.
+//!
+//! The noise of a robot's wheels mirrors with its path, so clockwise runs are mirrored (M = diag(1, -1, -1)) and the scatter
+//! of both directions is pooled, with ν = n_cw + n_ccw - 2 degrees of freedom.
+
+mod asked;
+mod contrasts;
+mod exact;
+mod family;
+mod fitted;
+mod flips;
+mod moments;
+mod verdict;
+
+use crate::calibrate::evidence::{Drive, end_poses};
+use crate::calibrate::{CalibrateError, noise_shape};
+use crate::dataset::Dataset;
+use crate::drive::Robot;
+use crate::effect::{Evaluate, Model};
+use crate::geometry::{Pose2, wrap};
+use crate::path::{Direction, Path};
+use crate::replay::Track;
+use nalgebra::{Matrix3, Vector3};
+use std::sync::Arc;
+
+pub(crate) use asked::Asked;
+pub use contrasts::{Contrast, OnCircle};
+pub(crate) use contrasts::{circle, contrasts};
+#[cfg(test)]
+pub(crate) use family::Family;
+pub(crate) use fitted::{Fitted, names};
+pub(crate) use moments::Moments;
+pub(crate) use verdict::{contradiction, diagnose, likeliest};
+
+/// The least number of runs a direction for any test.
+pub(crate) const FEWEST_RUNS: usize = 3;
+
+/// Return poses, ready to be predicted.
+#[derive(Clone, Debug)]
+pub(crate) struct Ends {
+    pub robot: Robot,
+    pub path: Option<Path>,
+    pub runs: Vec<End>,
+    tracks: Vec<Arc<Believed>>,
+    pub with_heading: bool,
+}
+
+/// One run.
+#[derive(Clone, Debug)]
+pub(crate) struct End {
+    /// The path's sense; runs of paths without one count as counter-clockwise.
+    pub direction: Direction,
+    /// Index of what the robot believed to drive.
+    track: usize,
+    /// Absolute pose at the end.
+    seen: Pose2,
+    /// Multiplies observed minus predicted: the inverse Cholesky factor of the scatter's shape.
+    pub weight: Matrix3<f64>,
+}
+
+/// What the robot believed to drive, cut as coarsely as effects allow.
+#[derive(Debug)]
+struct Believed {
+    whole: Track,
+    /// `None` where the track was recorded, and is in small pieces anyway.
+    pieces: Option<Track>,
+}
+
+impl Believed {
+    fn track(&self, varies: bool) -> &Track {
+        self.pieces.as_ref().filter(|_| varies).unwrap_or(&self.whole)
+    }
+}
+
+impl Ends {
+    pub fn new(data: &Dataset) -> Result<Ends, CalibrateError> {
+        let robot = data.robot.clone().ok_or(CalibrateError::NoRobot)?;
+        let drives = end_poses(data, &robot)?;
+        let with_heading = drives.iter().all(|d| d.seen.iter().all(|s| s.heading.is_some()));
+        let mut ends = Ends { robot, path: data.path.clone(), runs: Vec::new(), tracks: Vec::new(), with_heading };
+        for drive in drives {
+            ends.push(drive);
+        }
+        Ok(ends)
+    }
+
+    fn push(&mut self, drive: Drive) {
+        let direction = drive.direction.unwrap_or(Direction::Ccw);
+        let Some(seen) = drive.seen.last() else { return };
+        let known = self.tracks.iter().position(|t| t.whole == drive.track);
+        let track = known.unwrap_or_else(|| {
+            let path = self.path.as_ref().filter(|_| !drive.recorded);
+            let pieces = path.map(|path| Track::in_pieces(path, direction, &self.robot));
+            self.tracks.push(Arc::new(Believed { whole: drive.track, pieces }));
+            self.tracks.len() - 1
+        });
+        let seen = Pose2::new(seen.x, seen.y, seen.heading.unwrap_or(0.0));
+        self.runs.push(End { direction, track, seen, weight: drive.weight });
+    }
+
+    /// How many coordinates an end pose has: 3, or 2 where headings were not measured.
+    pub fn coordinates(&self) -> usize {
+        if self.with_heading { 3 } else { 2 }
+    }
+
+    /// Number of runs clockwise and counter-clockwise.
+    pub fn counts(&self) -> [usize; 2] {
+        Direction::BOTH.map(|direction| self.runs.iter().filter(|run| run.direction == direction).count())
+    }
+
+    /// Whether both directions were driven often enough for a test.
+    pub fn enough(&self) -> bool {
+        self.counts().iter().all(|n| *n >= FEWEST_RUNS)
+    }
+
+    /// Tracks that differ, cut as the model needs it.
+    pub fn tracks(&self, varies: bool) -> Vec<&Track> {
+        self.tracks.iter().map(|t| t.track(varies)).collect()
+    }
+
+    /// A value for every run from one for every track.
+    pub fn of_runs<'a, T>(&'a self, of_tracks: &'a [T]) -> impl Iterator<Item = (Direction, &'a T)> + 'a {
+        self.runs.iter().map(|run| (run.direction, &of_tracks[run.track]))
+    }
+
+    /// Predicted end pose of every run, with values or derivatives.
+    pub fn predict<T: Evaluate>(&self, model: &Model, values: &[T]) -> Vec<Pose2<T>> {
+        let chain = model.chain_with(values);
+        let varies = model.varies();
+        let ends: Vec<Pose2<T>> = self.tracks.iter().map(|t| t.track(varies).end(&chain)).collect();
+        self.runs.iter().map(|run| ends[run.track]).collect()
+    }
+
+    /// Observed minus predicted, run by run; heading 0 where it was not measured.
+    pub fn residuals(&self, model: &Model) -> Vec<Vector3<f64>> {
+        let values: Vec<f64> = model.values().collect();
+        let predicted = self.predict::<f64>(model, &values);
+        self.runs.iter().zip(predicted).map(|(run, pose)| self.residual(run, &pose)).collect()
+    }
+
+    fn residual(&self, run: &End, predicted: &Pose2) -> Vector3<f64> {
+        let heading = if self.with_heading { wrap(run.seen.heading - predicted.heading) } else { 0.0 };
+        Vector3::new(run.seen.x - predicted.x, run.seen.y - predicted.y, heading)
+    }
+
+    /// Return errors, absolute minus computed with the nominal robot, run by run.
+    pub fn errors(&self) -> Vec<Vector3<f64>> {
+        self.residuals(&Model::new(&self.robot))
+    }
+
+    /// The shape of the scatter of counter-clockwise runs with evenly noisy wheels.
+    pub fn noise_shape(&self) -> Option<Matrix3<f64>> {
+        let run = self.runs.iter().find(|run| run.direction == Direction::Ccw)?;
+        Some(noise_shape::end_covariance(self.tracks[run.track].track(false), &self.robot.drive))
+    }
+}
+
+/// Components of a pose difference as seen in a counter-clockwise run.
+pub(crate) fn mirrored(direction: Direction, v: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::new(v.x, direction.sign() * v.y, direction.sign() * v.z)
+}

@@ -1,0 +1,313 @@
+//! What a test of n + n return poses is asked: the residuals of a fitted model, and every size of every missing effect.
+
+use super::exact::{Pattern, wilks};
+use super::fitted::names;
+use super::moments::{Moments, Whitened};
+use super::{Ends, Fitted, mirrored};
+use crate::diagnose::{DiagnoseError, Size, Unseen, Why, candidates, classes};
+use crate::drive::WheelTravel;
+use crate::effect::{CATALOGUE, Context, Entry, Model, Sight};
+use crate::fit::RANK_TOLERANCE;
+use crate::geometry::Pose2;
+use crate::parameter::Parameter;
+use crate::stats::f_upper_tail;
+use nalgebra::{DMatrix, DVector, Vector3};
+
+/// An effect that moves the means by less than this many standard deviations at its usual size is not asked.
+const VISIBLE: f64 = 0.5;
+/// A parameter that makes up less than this share of an absorbed effect is not named.
+const SHARE: f64 = 0.1;
+
+/// A shift of the means, clockwise and counter-clockwise.
+pub(crate) type Columns = [DVector<f64>; 2];
+
+/// One size of an effect, as the means would show it.
+#[derive(Clone, Debug)]
+pub(crate) struct Unit {
+    pub effect: &'static Entry,
+    pub parameter: &'static Parameter,
+    /// Shift of both means by a unit of the size, in the coordinates of [`Asked::moments`].
+    pub columns: Columns,
+    /// Where the exact test applies.
+    pub pattern: Option<Pattern>,
+    /// The shift in standard deviations of the means, less what the model absorbs.
+    pub shift: DVector<f64>,
+}
+
+/// Residuals and what is asked of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Asked {
+    /// In coordinates in which the pooled scatter is the identity (times ν).
+    pub moments: Moments,
+    /// The residuals in the same coordinates, with their group.
+    pub runs: Vec<(usize, DVector<f64>)>,
+    /// What the model explains besides; empty where the coordinates leave it out already.
+    pub base: Vec<Columns>,
+    /// The sizes that can be seen.
+    pub units: Vec<Unit>,
+    /// The effects that cannot.
+    pub unseen: Vec<Unseen>,
+    /// Absorbed effects, by their largest size, and the effect of the model that absorbs them.
+    pub absorbed: Vec<(&'static Entry, &'static Parameter, &'static str)>,
+}
+
+/// From end poses to the coordinates of the tests.
+struct Frame {
+    groups: Vec<usize>,
+    counts: [f64; 2],
+    coordinates: usize,
+    /// L⁻¹ with L Lᵀ the pooled covariance.
+    whitener: DMatrix<f64>,
+    /// Applied after it, in each group.
+    maps: [DMatrix<f64>; 2],
+    /// What the model's free parameters do to the means, whitened.
+    of_model: Vec<Columns>,
+}
+
+impl Asked {
+    /// `None` where the runs have too little scatter for any test.
+    pub fn new(ends: &Ends, fitted: &Fitted) -> Result<Option<Asked>, DiagnoseError> {
+        let Some((mut asked, frame)) = Asked::residuals(ends, fitted) else { return Ok(None) };
+        asked.ask(ends, fitted, &frame)?;
+        Ok(Some(asked))
+    }
+
+    /// p of the test of the whole model by Wilks' Λ, where it applies.
+    pub fn wilks_p(ends: &Ends, fitted: &Fitted) -> Option<f64> {
+        let (asked, _) = Asked::residuals(ends, fitted)?;
+        let (f, freedom) = wilks(&asked.moments).filter(|_| asked.base.is_empty())?;
+        Some(f_upper_tail(f, freedom))
+    }
+
+    /// The residuals in coordinates fit for tests, nothing asked of them yet.
+    fn residuals(ends: &Ends, fitted: &Fitted) -> Option<(Asked, Frame)> {
+        let d = ends.coordinates();
+        let groups: Vec<usize> = ends.runs.iter().map(|run| run.direction as usize).collect();
+        let poses = |v: &Vector3<f64>| DVector::from_column_slice(&v.as_slice()[..d]);
+        let raw: Vec<(usize, DVector<f64>)> =
+            groups.iter().zip(&fitted.residuals).map(|(g, r)| (*g, poses(r))).collect();
+        let raw_moments = Moments::of(&raw);
+        let whitener = whitener(&raw_moments)?;
+        let of_values = |jacobian: &[DMatrix<f64>]| -> Vec<Columns> {
+            let column = |j: usize| jacobian.iter().map(move |slope| slope.column(j).rows(0, d).into_owned());
+            (0..fitted.free.len()).map(|j| means(&groups, column(j).map(|c| &whitener * c), d)).collect()
+        };
+        let of_model = of_values(&fitted.jacobian);
+        let (maps, base) = reduced(&of_model, &of_values(&fitted.nominal_jacobian(ends)), d);
+        let runs: Vec<_> = raw.iter().map(|(g, r)| (*g, &maps[*g] * (&whitener * r))).collect();
+        let moments = Moments::of(&runs);
+        let counts = [moments.count(0), moments.count(1)];
+        let asked = Asked { moments, runs, base, units: Vec::new(), unseen: Vec::new(), absorbed: Vec::new() };
+        Some((asked, Frame { groups, counts, coordinates: d, whitener, maps, of_model }))
+    }
+
+    fn ask(&mut self, ends: &Ends, fitted: &Fitted, frame: &Frame) -> Result<(), DiagnoseError> {
+        let Some(whitened) = Whitened::new(&self.moments, &self.base) else { return Ok(()) };
+        let moved = candidates::of_tracks(&fitted.model, |varies| ends.tracks(varies))?;
+        for candidate in &moved {
+            let mut visible = Vec::new();
+            let mut largest: Option<(f64, Columns, &'static Parameter)> = None;
+            for size in &candidate.sizes {
+                let (full, columns) = frame.columns(ends, size);
+                let (effect, parameter) = (candidate.effect, size.parameter);
+                let raw = parameter.typical * stacked(&full, frame.counts).norm();
+                if largest.as_ref().is_none_or(|(most, _, _)| raw > *most) {
+                    largest = Some((raw, full, parameter));
+                }
+                let shift = whitened.column(&columns);
+                if parameter.typical * shift.norm() >= VISIBLE {
+                    let pattern = if self.base.is_empty() { Pattern::of(&columns) } else { None };
+                    visible.push(Unit { effect, parameter, columns, pattern, shift });
+                }
+            }
+            if visible.is_empty() {
+                let seen = largest.filter(|(raw, _, _)| *raw >= VISIBLE);
+                self.note_unseen(candidate.effect, seen.map(|(_, full, p)| (absorbers(&full, fitted, frame), p)));
+            }
+            self.units.append(&mut visible);
+        }
+        let still = CATALOGUE.iter().filter(|entry| {
+            moved.iter().all(|c| c.effect != *entry)
+                && fitted.model.parts().iter().all(|part| part.effect != *entry)
+                && moves_means(entry, &fitted.model)
+        });
+        self.unseen.extend(still.map(|entry| Unseen { effect: entry.about.name, why: Why::BelowNoise }));
+        Ok(())
+    }
+
+    fn note_unseen(&mut self, effect: &'static Entry, absorbed: Option<(Vec<&'static str>, &'static Parameter)>) {
+        let name = effect.about.name;
+        let why = match absorbed.filter(|(by, _)| !by.is_empty()) {
+            Some((by, parameter)) => {
+                self.absorbed.extend(by.iter().map(|by| (effect, parameter, *by)));
+                Why::Absorbed(by)
+            }
+            None => Why::BelowNoise,
+        };
+        self.unseen.push(Unseen { effect: name, why });
+    }
+
+    /// The same with a size added to what the model explains.
+    pub fn explaining(&self, unit: &Unit) -> Asked {
+        let mut more = self.clone();
+        more.base.push(unit.columns.clone());
+        let whitened = Whitened::new(&more.moments, &more.base);
+        more.units.retain_mut(|other| {
+            let Some(whitened) = &whitened else { return false };
+            other.shift = whitened.column(&other.columns);
+            other.pattern = None;
+            other.effect != unit.effect && other.parameter.typical * other.shift.norm() >= VISIBLE
+        });
+        more
+    }
+
+    /// Units that these means cannot tell apart, as indices.
+    pub fn classes(&self) -> Vec<Vec<usize>> {
+        let shifts: Vec<DVector<f64>> = self.units.iter().map(|unit| unit.shift.clone()).collect();
+        classes::complete_linkage(&shifts, classes::ALIKE)
+    }
+}
+
+/// L⁻¹ with L Lᵀ the pooled covariance; `None` where it is singular but for rounding.
+fn whitener(moments: &Moments) -> Option<DMatrix<f64>> {
+    const ROUNDING: f64 = 1e-9;
+    let covariance = &moments.scatter / moments.freedom();
+    let scales = DVector::from_fn(covariance.nrows(), |i, _| covariance[(i, i)].sqrt());
+    // Scatter that is rounding beside the residuals themselves is none.
+    if scales.iter().any(|s| !(*s > 1e-12)) {
+        return None;
+    }
+    let factor = covariance.cholesky()?.l();
+    if (0..scales.len()).any(|i| factor[(i, i)] < ROUNDING * scales[i]) {
+        return None;
+    }
+    factor.solve_lower_triangular(&DMatrix::identity(scales.len(), scales.len()))
+}
+
+/// Mean of a vector for each run over the runs of each group.
+fn means(groups: &[usize], of_runs: impl Iterator<Item = DVector<f64>>, size: usize) -> Columns {
+    let runs: Vec<(usize, DVector<f64>)> = groups.iter().copied().zip(of_runs).collect();
+    let mut sums = [DVector::zeros(size), DVector::zeros(size)];
+    for (group, v) in &runs {
+        sums[*group] += v;
+    }
+    [0, 1].map(|g| &sums[g] / runs.iter().filter(|(group, _)| *group == g).count().max(1) as f64)
+}
+
+fn stacked(pattern: &Columns, counts: [f64; 2]) -> DVector<f64> {
+    let size = pattern[0].len();
+    DVector::from_fn(2 * size, |i, _| counts[i / size].sqrt() * pattern[i / size][i % size])
+}
+
+impl Frame {
+    /// What a unit of a size does to the means: whitened, and in the coordinates of the tests.
+    fn columns(&self, ends: &Ends, size: &Size) -> (Columns, Columns) {
+        let of_tracks: Vec<Pose2> = size.columns.iter().map(|c| c[0]).collect();
+        let shifts = ends.of_runs(&of_tracks).map(|(direction, pose)| {
+            let shift = mirrored(direction, &Vector3::new(pose.x, pose.y, pose.heading));
+            &self.whitener * shift.rows(0, self.coordinates)
+        });
+        let full = means(&self.groups, shifts, self.coordinates);
+        let columns = [0, 1].map(|g| &self.maps[g] * &full[g]);
+        (full, columns)
+    }
+}
+
+/// Coordinates for the tests in each group, and what of the model is left in them.
+///
+/// Where the nominal model explains any mean along k directions in both groups (2k parameters), those directions are left out
+/// and exact tests apply. Each group leaves out the direction that the fitted model has there, which differs by second-order
+/// terms, and keeps the others aligned. Otherwise all coordinates are kept, and the model is the base of least squares.
+fn reduced(of_model: &[Columns], nominal: &[Columns], d: usize) -> ([DMatrix<f64>; 2], Vec<Columns>) {
+    let everything = || ([DMatrix::identity(d, d), DMatrix::identity(d, d)], of_model.to_vec());
+    if of_model.is_empty() {
+        return everything();
+    }
+    let columns: Vec<DVector<f64>> = nominal.iter().flatten().cloned().collect();
+    let Some((u, singular)) = full_left(&DMatrix::from_columns(&columns)) else { return everything() };
+    let k = singular.iter().filter(|s| **s > RANK_TOLERANCE * singular[0]).count();
+    if of_model.len() != 2 * k || k >= d {
+        return everything();
+    }
+    let (explained, rest) = (u.columns(0, k).into_owned(), u.columns(k, d - k).transpose());
+    let map = |group: usize| {
+        let own: Vec<DVector<f64>> = of_model.iter().map(|pattern| pattern[group].clone()).collect();
+        let (u, _) = full_left(&DMatrix::from_columns(&own))?;
+        let own = u.columns(0, k).into_owned();
+        let aligned = (explained.transpose() * &own).try_inverse()?;
+        Some(&rest * (DMatrix::identity(d, d) - own * aligned * explained.transpose()))
+    };
+    match (map(0), map(1)) {
+        (Some(cw), Some(ccw)) => ([cw, ccw], Vec::new()),
+        _ => everything(),
+    }
+}
+
+/// All left singular vectors, by falling singular value.
+fn full_left(matrix: &DMatrix<f64>) -> Option<(DMatrix<f64>, Vec<f64>)> {
+    let eigen = (matrix * matrix.transpose()).symmetric_eigen();
+    let mut order: Vec<usize> = (0..matrix.nrows()).collect();
+    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+    let singular: Vec<f64> = order.iter().map(|i| eigen.eigenvalues[*i].max(0.0).sqrt()).collect();
+    let columns: Vec<_> = order.iter().map(|i| eigen.eigenvectors.column(*i)).collect();
+    (singular[0] > 0.0).then(|| (DMatrix::from_columns(&columns), singular))
+}
+
+/// The effects of the model whose parameters do what an effect does.
+fn absorbers(full: &Columns, fitted: &Fitted, frame: &Frame) -> Vec<&'static str> {
+    if frame.of_model.is_empty() {
+        return Vec::new();
+    }
+    let columns: Vec<DVector<f64>> = frame.of_model.iter().map(|pattern| stacked(pattern, frame.counts)).collect();
+    let target = stacked(full, frame.counts);
+    let svd = DMatrix::from_columns(&columns).svd(true, true);
+    let Ok(weights) = svd.solve(&target, 1e-12) else { return Vec::new() };
+    let names = names(&fitted.model);
+    let mut by: Vec<&'static str> = Vec::new();
+    for (j, column) in columns.iter().enumerate() {
+        let name = names[fitted.free[j]].0;
+        if (weights[j] * column.norm()).abs() > SHARE * target.norm() && !by.contains(&name) {
+            by.push(name);
+        }
+    }
+    by
+}
+
+/// Whether an effect at its usual sizes changes any motion, start or sight other than by chance.
+fn moves_means(entry: &'static Entry, model: &Model) -> bool {
+    let plain = Model::new(model.robot());
+    let mut with = plain.clone();
+    for parameter in entry.about.parameters.iter().filter(|p| p.choices.is_empty()) {
+        let usual = parameter.default.resolve(model.robot()) + parameter.typical;
+        if with.set(entry.about.name, parameter.name, usual).is_err() {
+            return false;
+        }
+    }
+    let at = Context {
+        heading: 0.7,
+        duration: 0.1,
+        speed: 0.3,
+        turn_rate: 0.4,
+        wheel_speed: [0.2, 0.4],
+        speed_change: [0.02, 0.03],
+        wheel_angle: [1.0, 2.0],
+        wheel_rotation: [0.3, 0.4],
+        reversed: [1.0, -1.0],
+        distance: 3.0,
+        time: 10.0,
+        session_distance: 20.0,
+        since_turn: 0.05,
+        length: 0.03,
+        last_turn: 1.0,
+        run: 2.0,
+        direction: 1.0,
+        recorded: true,
+    };
+    let sight = Sight { time: 10.0, speed: 0.3, turn_rate: 0.4 };
+    let all = |model: &Model| {
+        let chain = model.chain();
+        let travel = WheelTravel { left: 0.02, right: 0.04 };
+        (chain.start(), chain.displacement(&at, &travel), chain.seen(&sight, &Pose2::new(1.0, 2.0, 0.5)))
+    };
+    all(&plain) != all(&with)
+}

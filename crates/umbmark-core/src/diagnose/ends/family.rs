@@ -1,0 +1,139 @@
+//! All tests together: p of the most striking one among all that were asked.
+//!
+//! Each test has its own p, exact where there is an exact test, else from simulated null tests. The smallest of them is
+//! compared with the smallest of each of many simulated null tests (Westfall & Young 1993), so tests that say nearly the same
+//! cost nearly nothing.
+
+use super::asked::{Asked, Unit};
+use super::exact::wilks;
+use super::moments::{Moments, Whitened};
+use crate::diagnose::Options;
+use crate::random::Stream;
+use crate::stats::f_upper_tail;
+use rayon::prelude::*;
+
+/// The test of the whole model has to be so many times as striking as one of a single effect: most causes are on the list, and
+/// each is better seen by its own test. It is there for those that are not.
+const WHOLE: f64 = 4.0;
+
+/// Purpose of the stream of simulated null tests.
+const NULL_TESTS: u64 = 10;
+
+/// What all tests say of one set of moments: F of each unit, and of the whole.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Statistics {
+    pub units: Vec<f64>,
+    pub whole: f64,
+}
+
+/// p of every test, alone and as one of the family.
+#[derive(Clone, Debug)]
+pub(crate) struct Family {
+    pub observed: Statistics,
+    pub p: Vec<f64>,
+    pub p_adjusted: Vec<f64>,
+    /// Whether the whole has an exact F, and its degrees of freedom.
+    pub exact_whole: Option<[f64; 2]>,
+    pub p_whole: f64,
+    pub p_whole_adjusted: f64,
+}
+
+/// F of every unit, without any p.
+pub(crate) fn statistics(asked: &Asked, moments: &Moments) -> Option<Statistics> {
+    let whitened = Whitened::new(moments, &asked.base)?;
+    let unit = |unit: &Unit| match &unit.pattern {
+        Some(pattern) => pattern.test(moments).map_or(0.0, |rao| rao.f),
+        None => {
+            let column = whitened.column(&unit.columns);
+            let along = column.dot(&whitened.means);
+            along * along / column.norm_squared()
+        }
+    };
+    let whole =
+        if asked.base.is_empty() { wilks(moments).map_or(0.0, |(f, _)| f) } else { whitened.means.norm_squared() };
+    Some(Statistics { units: asked.units.iter().map(unit).collect(), whole })
+}
+
+impl Family {
+    /// `None` where the runs have no scatter, or nothing is left to ask.
+    pub fn new(asked: &Asked, options: &Options) -> Option<Family> {
+        let observed = statistics(asked, &asked.moments)?;
+        let (counts, size) = (asked.moments.counts, asked.moments.size());
+        let draws: Vec<Statistics> = (0..options.draws as u64)
+            .into_par_iter()
+            .filter_map(|draw| {
+                let mut stream = Stream::new(options.seed, NULL_TESTS, draw);
+                statistics(asked, &Moments::draw(counts, size, &mut stream))
+            })
+            .collect();
+        let judges: Vec<Judge> = (0..asked.units.len())
+            .map(|i| match asked.units[i].pattern {
+                Some(_) => Judge::Exact([1.0, (counts[0] + counts[1] - size) as f64]),
+                None => Judge::simulated(draws.iter().map(|d| d.units[i])),
+            })
+            .collect();
+        let exact_whole = asked.base.is_empty().then(|| wilks(&asked.moments).map(|(_, freedom)| freedom)).flatten();
+        let has_rest = asked.base.len() < 2 * size;
+        let whole = match exact_whole {
+            Some(freedom) => Judge::Exact(freedom),
+            None if has_rest => Judge::simulated(draws.iter().map(|d| d.whole)),
+            None => Judge::Silent,
+        };
+        let smallest: Vec<f64> = draws.par_iter().map(|draw| smallest(draw, &judges, &whole)).collect();
+        let adjusted = |p: f64| {
+            let as_small = smallest.iter().filter(|s| **s <= p).count();
+            (1 + as_small) as f64 / (1 + smallest.len()) as f64
+        };
+        let p: Vec<f64> = judges.iter().zip(&observed.units).map(|(judge, f)| judge.p(*f)).collect();
+        let p_whole = whole.p(observed.whole);
+        Some(Family {
+            p_adjusted: p.iter().map(|p| adjusted(*p)).collect(),
+            p_whole_adjusted: adjusted(WHOLE * p_whole),
+            p,
+            p_whole,
+            exact_whole,
+            observed,
+        })
+    }
+}
+
+/// The smallest p of one simulated test. Among exact tests with the same degrees of freedom it is that of the largest F.
+fn smallest(draw: &Statistics, judges: &[Judge], whole: &Judge) -> f64 {
+    let (mut smallest, mut largest) = (WHOLE * whole.p(draw.whole), None::<(f64, &Judge)>);
+    for (judge, f) in judges.iter().zip(&draw.units) {
+        match judge {
+            Judge::Exact(_) if largest.is_none_or(|(most, _)| *f > most) => largest = Some((*f, judge)),
+            Judge::Exact(_) => {}
+            _ => smallest = smallest.min(judge.p(*f)),
+        }
+    }
+    largest.map_or(smallest, |(f, judge)| smallest.min(judge.p(f)))
+}
+
+/// Where the p of a statistic comes from.
+enum Judge {
+    Exact([f64; 2]),
+    /// Statistics of null tests, rising.
+    Simulated(Vec<f64>),
+    /// There is nothing to test.
+    Silent,
+}
+
+impl Judge {
+    fn simulated(draws: impl Iterator<Item = f64>) -> Judge {
+        let mut sorted: Vec<f64> = draws.collect();
+        sorted.sort_by(f64::total_cmp);
+        Judge::Simulated(sorted)
+    }
+
+    fn p(&self, statistic: f64) -> f64 {
+        match self {
+            Judge::Exact(freedom) => f_upper_tail(statistic, *freedom),
+            Judge::Simulated(sorted) => {
+                let larger = sorted.len() - sorted.partition_point(|s| *s < statistic);
+                (1 + larger) as f64 / (1 + sorted.len()) as f64
+            }
+            Judge::Silent => 1.0,
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! The non-linear fit of a model's free parameters to return poses.
+//!
+//! Generalised least squares with the shape of the scatter that evenly noisy wheels give the path's end, the weights of
+//! [`calibrate`](crate::calibrate); so E_d and E_b are the same there and here. The covariance of the estimates follows from the
+//! pooled scatter that the runs really show.
+
+use super::{Ends, mirrored};
+use crate::diagnose::{DiagnoseError, Estimate};
+use crate::effect::Model;
+use crate::fit::{self, Problem, RANK_TOLERANCE, null_directions};
+use crate::geometry::{Dual, Pose2};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+
+/// A component of a null direction below this is rounding.
+const INVOLVED: f64 = 0.01;
+
+/// When a fit has settled: predictions over thousands of small pieces are good to some 1e-13.
+const SETTLED: fit::Options = fit::Options { iterations: 100, step_tolerance: 1e-10, decrease_tolerance: 1e-12 };
+
+/// Parameters that are settled first: what others share with them counts as theirs.
+const FIRST: [&str; 2] = ["wheel_diameter_ratio", "wheelbase"];
+
+/// A model fitted to return poses.
+#[derive(Clone, Debug)]
+pub(crate) struct Fitted {
+    pub model: Model,
+    /// Indices, among the model's values, of what was fitted.
+    pub free: Vec<usize>,
+    /// Indices of what was to be fitted and does not show.
+    pub open: Vec<usize>,
+    /// Observed minus predicted, in the mirrored frame, run by run.
+    pub residuals: Vec<Vector3<f64>>,
+    /// Derivatives of the predicted poses by the fitted values, in the mirrored frame, run by run: 3 rows.
+    pub jacobian: Vec<DMatrix<f64>>,
+    /// What was fitted, with its uncertainty; standard errors are NaN for too few runs.
+    pub estimates: Vec<Estimate>,
+}
+
+impl Fitted {
+    pub fn new(ends: &Ends, model: &Model) -> Result<Fitted, DiagnoseError> {
+        let (free, open) = what_shows(ends, model);
+        let start: Vec<f64> = model.values().collect();
+        let problem = Returns { ends, model, start: &start, free: &free };
+        let first: Vec<f64> = free.iter().map(|i| start[*i]).collect();
+        let fit = fit::least_squares(&problem, &first, &SETTLED);
+        if !fit.termination.converged() {
+            return Err(DiagnoseError::NotConverged { how: fit.termination.name() });
+        }
+        let fitted = with_values(model, &problem.all(&fit.values))?;
+        let residuals = ends.residuals(&fitted);
+        let residuals = ends.runs.iter().zip(&residuals).map(|(run, r)| mirrored(run.direction, r)).collect();
+        let jacobian = slopes(ends, &fitted, &free);
+        let mut result = Fitted { model: fitted, free, open, residuals, jacobian, estimates: Vec::new() };
+        result.estimates = result.estimate(ends, fit.covariance());
+        Ok(result)
+    }
+
+    /// Pooled scatter of the residuals about the mean of their direction, and its degrees of freedom.
+    pub fn scatter(&self, ends: &Ends) -> (Matrix3<f64>, usize) {
+        let mut squares = Matrix3::zeros();
+        let mut freedom = 0;
+        for direction in crate::path::Direction::BOTH {
+            let of_direction: Vec<&Vector3<f64>> = ends
+                .runs
+                .iter()
+                .zip(&self.residuals)
+                .filter(|(run, _)| run.direction == direction)
+                .map(|p| p.1)
+                .collect();
+            if of_direction.is_empty() {
+                continue;
+            }
+            let mean = of_direction.iter().fold(Vector3::zeros(), |sum, r| sum + **r) / of_direction.len() as f64;
+            squares += of_direction.iter().map(|r| (*r - mean) * (*r - mean).transpose()).sum::<Matrix3<f64>>();
+            freedom += of_direction.len() - 1;
+        }
+        (squares / freedom.max(1) as f64, freedom)
+    }
+
+    /// The derivatives by the same values where the model does nothing: all its values at their defaults.
+    pub fn nominal_jacobian(&self, ends: &Ends) -> Vec<DMatrix<f64>> {
+        slopes(ends, &at_rest(&self.model), &self.free)
+    }
+
+    fn estimate(&self, ends: &Ends, information: Option<DMatrix<f64>>) -> Vec<Estimate> {
+        let (scatter, freedom) = self.scatter(ends);
+        let d = ends.coordinates();
+        let mut covariance = DMatrix::from_element(self.free.len(), self.free.len(), f64::NAN);
+        if let Some(inverse) = information.filter(|_| freedom > 0) {
+            covariance.fill(0.0);
+            for (run, slope) in ends.runs.iter().zip(&self.jacobian) {
+                // The weights are lower triangular in the run's own frame; mirroring twice is no change.
+                let mirror = Matrix3::from_diagonal(&Vector3::new(1.0, run.direction.sign(), run.direction.sign()));
+                let weight = (mirror * run.weight * mirror).view((0, 0), (d, d)).into_owned();
+                let influence = &inverse * slope.rows(0, d).transpose() * weight.transpose() * weight;
+                covariance += &influence * scatter.view((0, 0), (d, d)) * influence.transpose();
+            }
+        }
+        let names: Vec<_> = names(&self.model);
+        let values: Vec<f64> = self.model.values().collect();
+        let estimate = |(j, i): (usize, &usize)| Estimate {
+            effect: names[*i].0,
+            parameter: names[*i].1,
+            value: values[*i],
+            standard_error: covariance[(j, j)].max(0.0).sqrt(),
+            degrees_of_freedom: freedom as f64,
+        };
+        self.free.iter().enumerate().map(estimate).collect()
+    }
+}
+
+/// Effect and parameter of each value of a model.
+pub(crate) fn names(model: &Model) -> Vec<(&'static str, &'static str)> {
+    let of_part = |part: &crate::effect::Part| {
+        let about = &part.effect.about;
+        about.parameters.iter().map(|p| (about.name, p.name)).collect::<Vec<_>>()
+    };
+    model.parts().iter().flat_map(of_part).collect()
+}
+
+/// The model with other values, each within its bounds.
+fn with_values(model: &Model, values: &[f64]) -> Result<Model, DiagnoseError> {
+    let mut changed = model.clone();
+    for ((effect, parameter), value) in names(model).into_iter().zip(values) {
+        changed.set(effect, parameter, *value).map_err(|source| DiagnoseError::OutOfBounds { source })?;
+    }
+    Ok(changed)
+}
+
+/// Derivatives of the predicted poses in the mirrored frame, run by run.
+fn slopes(ends: &Ends, model: &Model, free: &[usize]) -> Vec<DMatrix<f64>> {
+    let mut jacobian = vec![DMatrix::zeros(3, free.len()); ends.runs.len()];
+    for (j, index) in free.iter().enumerate() {
+        let poses = ends.predict::<Dual>(model, &seeded(model.values(), *index));
+        for ((run, pose), slope) in ends.runs.iter().zip(poses).zip(&mut jacobian) {
+            slope.set_column(j, &mirrored(run.direction, &derivative(&pose)));
+        }
+    }
+    jacobian
+}
+
+fn seeded(values: impl Iterator<Item = f64>, index: usize) -> Vec<Dual> {
+    values.enumerate().map(|(i, v)| Dual::new(v, f64::from(u8::from(i == index)))).collect()
+}
+
+fn derivative(pose: &Pose2<Dual>) -> Vector3<f64> {
+    Vector3::new(pose.x.eps, pose.y.eps, pose.heading.eps)
+}
+
+/// Values that are to be fitted and show, and those that do not: E_d and E_b are asked first, then one after the other.
+fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
+    let flags = model.parts().iter().flat_map(|part| part.values.iter().map(|_| part.free));
+    let names = names(model);
+    let nominal = at_rest(model);
+    let mut asked: Vec<usize> =
+        flags.enumerate().filter(|(i, free)| *free && is_size(ends, &nominal, *i)).map(|(i, _)| i).collect();
+    asked.sort_by_key(|i| !FIRST.contains(&names[*i].0));
+    let start: Vec<f64> = model.values().collect();
+    let column = |index: usize| {
+        let problem = Returns { ends, model, start: &start, free: &[index] };
+        problem.jacobian(&[start[index]]).column(0).into_owned()
+    };
+    let columns: Vec<DVector<f64>> = asked.iter().map(|i| column(*i)).collect();
+    let shows = |kept: &[usize]| {
+        let matrix = DMatrix::from_columns(&kept.iter().map(|k| columns[*k].clone()).collect::<Vec<_>>());
+        null_directions(&matrix, RANK_TOLERANCE)
+    };
+    let mut kept: Vec<usize> = Vec::new();
+    for k in 0..asked.len() {
+        if columns[k].norm() == 0.0 {
+            continue;
+        }
+        kept.push(k);
+        let null = shows(&kept);
+        if null.is_empty() {
+            continue;
+        }
+        kept.pop();
+        if FIRST.contains(&names[asked[k]].0) {
+            // Neither of two that act alike is known.
+            let involved = |at: usize| null.iter().any(|direction| direction[at].abs() > INVOLVED);
+            kept = kept.iter().enumerate().filter(|(at, _)| !involved(*at)).map(|(_, k)| *k).collect();
+        }
+    }
+    let mut free: Vec<usize> = kept.iter().map(|k| asked[*k]).collect();
+    free.sort_unstable();
+    let open = asked.into_iter().filter(|i| !free.contains(i)).collect();
+    (free, open)
+}
+
+/// The same effects, doing nothing.
+fn at_rest(model: &Model) -> Model {
+    let mut rest = Model::new(model.robot());
+    for part in model.parts() {
+        if let Ok(own) = rest.add(part.effect.about.name) {
+            own.free = part.free;
+        }
+    }
+    rest
+}
+
+/// Whether a value moves the end poses where its effect does nothing yet: not a length, threshold, scatter or choice.
+fn is_size(ends: &Ends, nominal: &Model, value: usize) -> bool {
+    let poses = ends.predict::<Dual>(nominal, &seeded(nominal.values(), value));
+    poses.iter().any(|pose| derivative(pose) != Vector3::zeros())
+}
+
+struct Returns<'a> {
+    ends: &'a Ends,
+    model: &'a Model,
+    start: &'a [f64],
+    free: &'a [usize],
+}
+
+impl Returns<'_> {
+    fn all(&self, parameters: &[f64]) -> Vec<f64> {
+        let mut all = self.start.to_vec();
+        for (index, value) in self.free.iter().zip(parameters) {
+            all[*index] = *value;
+        }
+        all
+    }
+
+    fn rows(&self) -> usize {
+        self.ends.runs.len() * self.ends.coordinates()
+    }
+}
+
+impl Problem for Returns<'_> {
+    fn residuals(&self, parameters: &[f64]) -> DVector<f64> {
+        let mut rows = Vec::with_capacity(self.rows());
+        let poses = self.ends.predict::<f64>(self.model, &self.all(parameters));
+        for (run, pose) in self.ends.runs.iter().zip(poses) {
+            let weighted = run.weight * self.ends.residual(run, &pose);
+            rows.extend_from_slice(&weighted.as_slice()[..self.ends.coordinates()]);
+        }
+        DVector::from_vec(rows)
+    }
+
+    fn jacobian(&self, parameters: &[f64]) -> DMatrix<f64> {
+        let values = self.all(parameters);
+        let mut rows = Vec::with_capacity(self.rows() * self.free.len());
+        for index in self.free {
+            let poses = self.ends.predict::<Dual>(self.model, &seeded(values.iter().copied(), *index));
+            for (run, pose) in self.ends.runs.iter().zip(poses) {
+                let slope = run.weight * -derivative(&pose);
+                rows.extend_from_slice(&slope.as_slice()[..self.ends.coordinates()]);
+            }
+        }
+        DMatrix::from_vec(self.rows(), self.free.len(), rows)
+    }
+}

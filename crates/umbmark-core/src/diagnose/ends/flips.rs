@@ -1,0 +1,82 @@
+//! The certificate that trusts no noise model: the signs of the runs' own scores.
+//!
+//! Where an effect is absent, a run's score for it is as likely to be positive as negative, whatever the covariance of its
+//! coordinates. So the observed |Σ s_i| / √(Σ s_i²) is compared with that of other signs. For effects that are asked together, the
+//! greatest is compared with the greatest. Source: the sign-flip score tests of Hemerik, Goeman & Finos (2020).
+
+use super::asked::Asked;
+use crate::random::Stream;
+use nalgebra::DVector;
+
+/// Up to so many runs all patterns of signs are tried.
+const ALL: usize = 12;
+/// Beyond, so many are drawn.
+const DRAWN: usize = 1999;
+const SIGNS: u64 = 11;
+
+/// p of every unit as one of the family; smallest possible: 2^(1 - runs).
+pub(crate) fn certificate(asked: &Asked, seed: u64) -> Vec<f64> {
+    let scores: Vec<Vec<f64>> = asked.units.iter().map(|unit| scores(asked, &unit.shift)).collect();
+    let patterns = patterns(asked.runs.len(), seed);
+    let greatest = |signs: &Vec<f64>| scores.iter().map(|s| statistic(s, signs)).fold(0.0, f64::max);
+    let maxima: Vec<f64> = patterns.iter().map(greatest).collect();
+    let all_up = vec![1.0; asked.runs.len()];
+    let p = |s: &Vec<f64>| {
+        let observed = statistic(s, &all_up) * (1.0 - 1e-12);
+        maxima.iter().filter(|m| **m >= observed).count() as f64 / maxima.len() as f64
+    };
+    scores.iter().map(p).collect()
+}
+
+/// Score of each run for an effect: its residual times the effect's shift, less what the model absorbs.
+fn scores(asked: &Asked, shift: &DVector<f64>) -> Vec<f64> {
+    let size = asked.moments.size();
+    let Some(inverse) = asked.moments.scatter.clone().cholesky() else { return vec![0.0; asked.runs.len()] };
+    let freedom = asked.moments.freedom();
+    let factor = inverse.l();
+    let score = |(group, z): &(usize, DVector<f64>)| {
+        let whitened = factor.solve_lower_triangular(z).unwrap_or_else(|| DVector::zeros(size)) * freedom.sqrt();
+        shift.rows(group * size, size).dot(&whitened) / asked.moments.count(*group).sqrt()
+    };
+    asked.runs.iter().map(score).collect()
+}
+
+fn statistic(scores: &[f64], signs: &[f64]) -> f64 {
+    let sum: f64 = scores.iter().zip(signs).map(|(s, f)| s * f).sum();
+    let squares: f64 = scores.iter().map(|s| s * s).sum();
+    if squares > 0.0 { sum.abs() / squares.sqrt() } else { 0.0 }
+}
+
+/// Patterns of signs, the observed one among them. The first run keeps its sign: only relative signs matter.
+fn patterns(runs: usize, seed: u64) -> Vec<Vec<f64>> {
+    if runs <= ALL {
+        let sign = |pattern: usize, run: usize| if run > 0 && pattern >> (run - 1) & 1 == 1 { -1.0 } else { 1.0 };
+        return (0..1 << (runs - 1)).map(|p| (0..runs).map(|run| sign(p, run)).collect()).collect();
+    }
+    let mut stream = Stream::new(seed, SIGNS, 0);
+    let mut drawn: Vec<Vec<f64>> =
+        (0..DRAWN).map(|_| (0..runs).map(|_| if stream.uniform() < 0.5 { -1.0 } else { 1.0 }).collect()).collect();
+    drawn.push(vec![1.0; runs]);
+    drawn
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ten_runs_have_512_patterns_and_many_runs_have_drawn_ones_with_the_observed_among_them() {
+        let ten = patterns(10, 1);
+        assert_eq!(ten.len(), 512);
+        assert!(ten.iter().all(|p| p[0] == 1.0) && ten[511][1..].iter().all(|f| *f == -1.0));
+        let many = patterns(40, 1);
+        assert_eq!((many.len(), &many[DRAWN]), (2000, &vec![1.0; 40]));
+        assert_eq!(many, patterns(40, 1));
+    }
+
+    #[test]
+    fn equal_scores_are_as_striking_as_can_be() {
+        assert!((statistic(&[2.0; 9], &[1.0; 9]) - 3.0).abs() < 1e-12);
+        assert_eq!(statistic(&[0.0; 3], &[1.0; 3]), 0.0);
+    }
+}

@@ -1,0 +1,119 @@
+//! Means and scatter of residuals: all that the tests look at.
+
+use crate::random::Stream;
+use nalgebra::{DMatrix, DVector};
+
+/// Sufficient statistics of residuals in both directions, in the mirrored frame.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Moments {
+    /// Number of runs, clockwise and counter-clockwise.
+    pub counts: [usize; 2],
+    pub means: [DVector<f64>; 2],
+    /// Σ (z - z̄)(z - z̄)ᵀ over both directions.
+    pub scatter: DMatrix<f64>,
+}
+
+impl Moments {
+    /// Of residuals with their group, 0 for clockwise and 1 for counter-clockwise.
+    pub fn of(runs: &[(usize, DVector<f64>)]) -> Moments {
+        let size = runs.first().map_or(0, |(_, z)| z.len());
+        let mut counts = [0; 2];
+        let mut means = [DVector::zeros(size), DVector::zeros(size)];
+        for (group, z) in runs {
+            counts[*group] += 1;
+            means[*group] += z;
+        }
+        for (mean, count) in means.iter_mut().zip(counts) {
+            *mean /= f64::from(count.max(1) as u32);
+        }
+        let mut scatter = DMatrix::zeros(size, size);
+        for (group, z) in runs {
+            let from_mean = z - &means[*group];
+            scatter.ger(1.0, &from_mean, &from_mean, 1.0);
+        }
+        Moments { counts, means, scatter }
+    }
+
+    /// Moments of as many runs whose residuals are noise of unit covariance.
+    pub fn draw(counts: [usize; 2], size: usize, stream: &mut Stream) -> Moments {
+        let normal = |stream: &mut Stream| DVector::from_fn(size, |_, _| stream.normal());
+        let means = counts.map(|count| normal(stream) / f64::from(count as u32).sqrt());
+        let mut scatter = DMatrix::zeros(size, size);
+        for _ in 0..counts[0] + counts[1] - 2 {
+            let z = normal(stream);
+            scatter.ger(1.0, &z, &z, 1.0);
+        }
+        Moments { counts, means, scatter }
+    }
+
+    /// Degrees of freedom of the scatter.
+    pub fn freedom(&self) -> f64 {
+        f64::from((self.counts[0] + self.counts[1] - 2) as u32)
+    }
+
+    /// Number of coordinates.
+    pub fn size(&self) -> usize {
+        self.scatter.nrows()
+    }
+
+    /// n of a direction.
+    pub fn count(&self, group: usize) -> f64 {
+        f64::from(self.counts[group] as u32)
+    }
+}
+
+/// Least squares in units of the pooled scatter S = E/ν: means as one vector of unit variances, less what a base explains.
+pub(crate) struct Whitened {
+    inverse_factor: DMatrix<f64>,
+    root_counts: [f64; 2],
+    /// Orthonormal columns that span the base.
+    base: Option<DMatrix<f64>>,
+    /// The means.
+    pub means: DVector<f64>,
+}
+
+impl Whitened {
+    /// `None` where the scatter has no inverse.
+    pub fn new(moments: &Moments, base: &[[DVector<f64>; 2]]) -> Option<Whitened> {
+        let factor = (&moments.scatter / moments.freedom()).cholesky()?.l();
+        let size = moments.size();
+        let inverse_factor = factor.solve_lower_triangular(&DMatrix::identity(size, size))?;
+        let root_counts = [moments.count(0).sqrt(), moments.count(1).sqrt()];
+        let mut whitened = Whitened { inverse_factor, root_counts, base: None, means: DVector::zeros(0) };
+        if !base.is_empty() {
+            let columns: Vec<DVector<f64>> = base.iter().map(|column| whitened.whole(column)).collect();
+            whitened.base = Some(span(&DMatrix::from_columns(&columns)));
+        }
+        whitened.means = whitened.column(&moments.means);
+        Some(whitened)
+    }
+
+    /// A pattern of both directions, whitened.
+    fn whole(&self, pattern: &[DVector<f64>; 2]) -> DVector<f64> {
+        let size = self.inverse_factor.nrows();
+        let mut column = DVector::zeros(2 * size);
+        for group in 0..2 {
+            let part = &self.inverse_factor * &pattern[group] * self.root_counts[group];
+            column.rows_mut(group * size, size).copy_from(&part);
+        }
+        column
+    }
+
+    /// A pattern of both directions, whitened, without what the base explains of it.
+    pub fn column(&self, pattern: &[DVector<f64>; 2]) -> DVector<f64> {
+        let column = self.whole(pattern);
+        match &self.base {
+            Some(base) => &column - base * (base.transpose() * &column),
+            None => column,
+        }
+    }
+}
+
+/// Orthonormal columns with the span of `columns`; directions of rounding are left out.
+fn span(columns: &DMatrix<f64>) -> DMatrix<f64> {
+    let svd = columns.clone().svd(true, false);
+    let limit = 1e-9 * svd.singular_values.max();
+    let Some(u) = svd.u else { return DMatrix::zeros(columns.nrows(), 0) };
+    let kept: Vec<_> = (0..u.ncols()).filter(|i| svd.singular_values[*i] > limit).map(|i| u.column(i)).collect();
+    if kept.is_empty() { DMatrix::zeros(columns.nrows(), 0) } else { DMatrix::from_columns(&kept) }
+}

@@ -1,0 +1,223 @@
+//! A diagnosis from return poses, put together.
+
+use super::asked::{Asked, Unit};
+use super::family::{Family, statistics};
+use super::flips::certificate;
+use super::moments::Whitened;
+use super::{Ends, FEWEST_RUNS, Fitted, circle, contrasts};
+use crate::diagnose::experiments::next_experiments;
+use crate::diagnose::identifiability::of_ends;
+use crate::diagnose::{
+    Detectable, DiagnoseError, Diagnosis, Estimate, GoodnessOfFit, Level, OnCircle, Options, Suspect, Verdict,
+};
+use crate::effect::Model;
+use crate::stats::{normal_quantile, student_t_quantile};
+
+/// Probability with which an effect of the minimum detectable size is seen.
+const POWER: f64 = 0.8;
+
+/// Fits the model and asks all that is missing.
+pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<Diagnosis, DiagnoseError> {
+    let fitted = Fitted::new(ends, model)?;
+    let mut diagnosis = Diagnosis {
+        level: Level::Ends,
+        verdict: Verdict::NotEnoughData,
+        model: fitted.model.clone(),
+        fitted: fitted.estimates.clone(),
+        goodness_of_fit: Vec::new(),
+        ranking: Vec::new(),
+        certified: 0,
+        invisible: Vec::new(),
+        minimum_detectable: Vec::new(),
+        next_experiments: Vec::new(),
+        contrasts: contrasts(ends, &fitted, 1.0 - options.size),
+        circle: circle(ends, &fitted, 1.0 - options.size),
+        identifiability: of_ends(ends, &fitted.model)?,
+        dependence: None,
+        remarks: Vec::new(),
+    };
+    diagnosis.remarks.extend(remarks_on_data(ends, &fitted));
+    if Asked::wilks_p(ends, &fitted).is_some_and(|p| p < options.size) {
+        diagnosis.remarks.extend(diagnosis.circle.iter().filter_map(contradiction));
+    }
+    if !ends.enough() {
+        return Ok(diagnosis);
+    }
+    let Some(asked) = Asked::new(ends, &fitted)? else {
+        diagnosis.remarks.push(
+            "The runs have too little scatter to judge by, or repeat one another: no test. Enter every run as it was measured."
+                .into(),
+        );
+        return Ok(diagnosis);
+    };
+    let Some(family) = Family::new(&asked, options) else { return Ok(diagnosis) };
+    diagnosis.goodness_of_fit = vec![goodness_of_fit(&family)];
+    diagnosis.ranking = ranking(&asked, &family, &certificate(&asked, options.seed));
+    diagnosis.minimum_detectable = detectable(&asked, options.size);
+    diagnosis.invisible = asked.unseen.clone();
+    judge(&mut diagnosis, &asked, &family, options);
+    diagnosis.next_experiments = next_experiments(ends, &fitted, &asked, &diagnosis.ranking)?;
+    Ok(diagnosis)
+}
+
+/// The effect that a diagnosis without any gate would add: the one with the greatest F.
+pub(crate) fn likeliest(ends: &Ends, model: &Model) -> Result<Option<&'static str>, DiagnoseError> {
+    let fitted = Fitted::new(ends, model)?;
+    let Some(asked) = Asked::new(ends, &fitted)? else { return Ok(None) };
+    let Some(observed) = statistics(&asked, &asked.moments) else { return Ok(None) };
+    let best = asked.units.iter().zip(&observed.units).max_by(|a, b| a.1.total_cmp(b.1));
+    Ok(best.map(|(unit, _)| unit.effect.about.name))
+}
+
+fn goodness_of_fit(family: &Family) -> GoodnessOfFit {
+    let (name, degrees_of_freedom) = match family.exact_whole {
+        Some(freedom) => ("Wilks' lambda, exact F", Some(freedom)),
+        None => ("generalised least squares, simulated", None),
+    };
+    GoodnessOfFit { name, statistic: family.observed.whole, degrees_of_freedom, p: family.p_whole }
+}
+
+/// Classes by falling F of their best.
+fn ranking(asked: &Asked, family: &Family, flips: &[f64]) -> Vec<Suspect> {
+    let mut suspects: Vec<Suspect> = Vec::new();
+    for class in asked.classes() {
+        let strength = |i: &usize| family.observed.units[*i];
+        let mut members = class.clone();
+        members.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+        let Some(best) = members.first().copied() else { continue };
+        let mut names: Vec<&'static str> = Vec::new();
+        for unit in members.iter().map(|i| &asked.units[*i]) {
+            if !names.contains(&unit.effect.about.name) {
+                names.push(unit.effect.about.name);
+            }
+        }
+        let unit = &asked.units[best];
+        let (estimate, degrees_of_freedom, drop) = one_step(asked, unit);
+        suspects.push(Suspect {
+            class: names,
+            best: unit.effect.about.name,
+            f: family.observed.units[best],
+            degrees_of_freedom,
+            p: family.p[best],
+            p_adjusted: family.p_adjusted[best],
+            p_flips: Some(flips[best]),
+            estimate: vec![estimate],
+            expected_drop: drop,
+        });
+    }
+    suspects.sort_by(|a, b| b.f.total_cmp(&a.f));
+    suspects
+}
+
+/// Size of an effect after one step from zero, degrees of freedom of its F, and the fall of the misfit.
+fn one_step(asked: &Asked, unit: &Unit) -> (Estimate, [f64; 2], f64) {
+    let (mut size, mut error, mut freedom, mut drop) = (0.0, f64::INFINITY, asked.moments.freedom(), 0.0);
+    if let Some(whitened) = Whitened::new(&asked.moments, &asked.base) {
+        let along = unit.shift.dot(&whitened.means);
+        drop = along * along / unit.shift.norm_squared();
+        (size, error) = (along / unit.shift.norm_squared(), 1.0 / unit.shift.norm());
+    }
+    if let Some(rao) = unit.pattern.as_ref().and_then(|pattern| pattern.test(&asked.moments)) {
+        freedom = rao.freedom;
+        if rao.f > 0.0 {
+            (size, error) = (rao.size, rao.size.abs() / rao.f.sqrt());
+        }
+    }
+    let (effect, parameter) = (unit.effect.about.name, unit.parameter.name);
+    let estimate = Estimate { effect, parameter, value: size, standard_error: error, degrees_of_freedom: freedom };
+    (estimate, [1.0, freedom], drop)
+}
+
+/// (t_{1 - α/2, ν} + z_{0.8})/‖Q a‖ for each size.
+fn detectable(asked: &Asked, size: f64) -> Vec<Detectable> {
+    let needed = student_t_quantile(1.0 - 0.5 * size, asked.moments.freedom()) + normal_quantile(POWER);
+    let of = |unit: &Unit| Detectable {
+        effect: unit.effect.about.name,
+        parameter: unit.parameter.name,
+        size: needed / unit.shift.norm(),
+    };
+    asked.units.iter().map(of).collect()
+}
+
+/// Verdict and certificates: the best is added to what is explained, and the rest asked again.
+fn judge(diagnosis: &mut Diagnosis, asked: &Asked, family: &Family, options: &Options) {
+    let certified = diagnosis.ranking.first().is_some_and(|s| s.p_adjusted < options.size);
+    if !certified {
+        let accused = family.p_whole_adjusted < options.size;
+        diagnosis.verdict = if accused { Verdict::UnlistedEffect } else { Verdict::Explained };
+        return;
+    }
+    (diagnosis.verdict, diagnosis.certified) = (Verdict::MissingEffect, 1);
+    let best = &diagnosis.ranking[0];
+    if best.p_flips.is_some_and(|p| p >= options.size) {
+        diagnosis.remarks.push(format!(
+            "The signs of the runs do not confirm {} on their own (p = {:.3}): it rests on normally distributed scatter.",
+            best.best,
+            best.p_flips.unwrap_or(1.0)
+        ));
+    }
+    let parameter = best.estimate[0].parameter;
+    let unit = asked.units.iter().find(|u| u.effect.about.name == best.best && u.parameter.name == parameter);
+    let Some(unit) = unit else { return };
+    let rest = asked.explaining(unit);
+    let Some(further) = Family::new(&rest, options) else { return };
+    let striking = (0..rest.units.len()).min_by(|a, b| further.p_adjusted[*a].total_cmp(&further.p_adjusted[*b]));
+    match striking.filter(|i| further.p_adjusted[*i] < options.size) {
+        Some(second) => {
+            diagnosis.verdict = Verdict::SeveralMissing;
+            let name = rest.units[second].effect.about.name;
+            let place = diagnosis.ranking.iter().skip(1).position(|suspect| suspect.class.contains(&name));
+            if let Some(place) = place {
+                diagnosis.ranking[1..].swap(0, place);
+                diagnosis.ranking[1].p_adjusted = further.p_adjusted[second];
+                diagnosis.certified = 2;
+            }
+        }
+        None if further.p_whole_adjusted < options.size => diagnosis.verdict = Verdict::SeveralMissing,
+        None => {}
+    }
+}
+
+fn remarks_on_data(ends: &Ends, fitted: &Fitted) -> Vec<String> {
+    let [cw, ccw] = ends.counts();
+    let mut remarks = Vec::new();
+    if cw == 0 || ccw == 0 {
+        let driven = if cw == 0 { "counter-clockwise" } else { "clockwise" };
+        remarks.push(format!(
+            "All runs are {driven}: E_d and E_b act alike there, so they are not told apart, and no effect is either. Drive \
+             the path the other way round as well."
+        ));
+    } else if !ends.enough() {
+        remarks.push(format!(
+            "No test: {FEWEST_RUNS} or more runs a direction are needed, got {cw} cw and {ccw} ccw. The paper drives 5."
+        ));
+    }
+    if !ends.with_heading {
+        remarks.push(
+            "Return headings were not measured in every run: one contrast of two is lost, and with it START heading, caster \
+             kick and backlash. A protractor is enough."
+                .into(),
+        );
+    }
+    let names = super::fitted::names(&fitted.model);
+    if cw > 0 && ccw > 0 && !fitted.open.is_empty() {
+        let open: Vec<String> = fitted.open.iter().map(|i| format!("{} of {}", names[*i].1, names[*i].0)).collect();
+        remarks.push(format!("Not fitted, since this data does not show it apart from the rest: {}.", open.join(", ")));
+    }
+    remarks
+}
+
+/// What the circle says against every effect that is the same on each side. Only where a test rejects them altogether: each
+/// interval of the circle alone errs as often as it says.
+pub(crate) fn contradiction(circle: &OnCircle) -> Option<String> {
+    let implied = circle.implied.filter(|_| !circle.explained())?;
+    let degrees = circle.turned_less_heading?.to_degrees();
+    Some(format!(
+        "{} runs: the return heading alone, by E_d and E_b, would put the end {:.0} mm from START; it lies {:.0} mm away, and \
+         angle and heading differ by {:.2} deg. E_d and E_b contradict these poses.",
+        circle.direction.name(),
+        1e3 * implied,
+        1e3 * circle.distance,
+        degrees.abs(),
+    ))
+}

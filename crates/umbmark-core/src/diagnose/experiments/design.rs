@@ -1,0 +1,219 @@
+//! Experiments that people with a tape measure can do, and how their poses scatter.
+
+use crate::diagnose::ends::{Ends, Fitted};
+use crate::drive::Robot;
+use crate::effect::{Evaluate, Model};
+use crate::geometry::{Dual, Pose2};
+use crate::path::{CIRCLE, Direction, Path, SPIN, SQUARE, STRAIGHT, Shape, SpeedProfile};
+use crate::replay::Track;
+use nalgebra::{DVector, Matrix3, Vector3};
+
+/// Carrying the robot to START, lining it up and writing the end pose down \[min\].
+const MINUTES_A_RUN: f64 = 1.0;
+/// Taping a pose on the way \[min\].
+const MINUTES_A_STOP: f64 = 0.5;
+/// What a tape and a protractor scatter: 2 mm and 0.15 degrees.
+const TAPE: [f64; 3] = [2e-3, 2e-3, 2.6e-3];
+
+/// How poses scatter: wheel noise along the way and the tape at its end.
+pub(super) struct Noise {
+    /// Variance of each wheel's travel a metre \[m\].
+    variance: f64,
+    /// 3, or 2 where headings are not measured.
+    coordinates: usize,
+}
+
+impl Noise {
+    /// From the runs: the wheel noise that has their scatter. `None` where there is none to see.
+    pub fn of(ends: &Ends, fitted: &Fitted) -> Option<Noise> {
+        let d = ends.coordinates();
+        let shape = ends.noise_shape()?.view((0, 0), (d, d)).into_owned().cholesky()?;
+        let (scatter, freedom) = fitted.scatter(ends);
+        let variance = shape.solve(&scatter.view((0, 0), (d, d)).into_owned()).trace() / d as f64;
+        (freedom > 0 && variance > 0.0).then_some(Noise { variance, coordinates: d })
+    }
+}
+
+/// Runs of one kind.
+struct Leg {
+    track: Track,
+    runs: usize,
+    /// Heading at START in the room \[rad\], seen from where it was in the data.
+    turned: f64,
+    /// How long one run takes \[min\].
+    minutes: f64,
+}
+
+/// An experiment.
+pub(super) struct Design {
+    pub what: String,
+    legs: Vec<Leg>,
+}
+
+impl Design {
+    pub fn minutes(&self) -> f64 {
+        self.legs.iter().map(|leg| leg.runs as f64 * leg.minutes).sum()
+    }
+
+    /// What a value of a model does to all observations, in standard deviations.
+    pub fn column(&self, model: &Model, value: usize, noise: &Noise) -> DVector<f64> {
+        let duals: Vec<Dual> =
+            model.values().enumerate().map(|(i, v)| Dual::new(v, f64::from(u8::from(i == value)))).collect();
+        let mut rows = Vec::new();
+        for leg in &self.legs {
+            let poses = leg.poses(model, &duals);
+            let whitened = leg.whiten(model.robot(), &poses, noise);
+            rows.extend(whitened.into_iter().map(|w| w * (leg.runs as f64).sqrt()));
+        }
+        DVector::from_vec(rows)
+    }
+}
+
+impl Leg {
+    /// Observed poses in the frame of START, wherever that looks in the room.
+    fn poses<T: Evaluate>(&self, model: &Model, values: &[T]) -> Vec<Pose2<T>> {
+        let chain = model.chain_with(values);
+        if self.turned == 0.0 {
+            return self.track.poses(&chain);
+        }
+        let room_from_start: Pose2<T> = Pose2::new(0.0, 0.0, self.turned).lift();
+        let mut pose = room_from_start.compose(&chain.start());
+        let (mut made, mut poses) = (0, Vec::new());
+        for (after, sight) in self.track.seen_after().iter().zip(self.track.sights()) {
+            for (travel, at) in self.track.travel()[made..*after].iter().zip(&self.track.contexts()[made..*after]) {
+                pose = pose.moved(&chain.displacement(&at.headed(pose.heading), travel));
+            }
+            made = *after;
+            poses.push(room_from_start.inverse().compose(&chain.seen(sight, &pose)));
+        }
+        poses
+    }
+
+    /// The innovations of the column along the run, in standard deviations: what is new at each observation, given those before
+    /// and the way that noise grows and is carried on between them.
+    fn whiten(&self, robot: &Robot, poses: &[Pose2<Dual>], noise: &Noise) -> Vec<f64> {
+        let d = noise.coordinates;
+        let tape = Matrix3::from_diagonal(&Vector3::from(TAPE.map(|sd| sd * sd)));
+        let (mut known, mut covariance) = (Vector3::zeros(), Matrix3::zeros());
+        let (mut before, mut made) = (Pose2::IDENTITY, 0);
+        let mut rows = Vec::new();
+        for (pose, after) in poses.iter().zip(self.track.seen_after()) {
+            let (gathered, now) = self.gathered(robot, before, made..*after);
+            let mut carried = Matrix3::identity();
+            carried[(0, 2)] = before.y - now.y;
+            carried[(1, 2)] = now.x - before.x;
+            known = carried * known;
+            covariance = carried * covariance * carried.transpose() + gathered * noise.variance;
+            let seen = Vector3::new(pose.x.eps, pose.y.eps, pose.heading.eps);
+            let new = (seen - known).rows(0, d).into_owned();
+            if let Some(factor) = (covariance + tape).view((0, 0), (d, d)).into_owned().cholesky() {
+                if let Some(whitened) = factor.l().solve_lower_triangular(&new) {
+                    rows.extend(whitened.iter());
+                }
+                known += covariance.columns(0, d) * factor.solve(&new);
+                let gain = covariance.columns(0, d) * factor.inverse();
+                covariance -= gain * covariance.rows(0, d);
+            }
+            (before, made) = (now, *after);
+        }
+        rows
+    }
+
+    /// Covariance that wheel noise of unit variance a metre gathers over some pieces, and the nominal pose after them.
+    fn gathered(&self, robot: &Robot, from: Pose2, pieces: std::ops::Range<usize>) -> (Matrix3<f64>, Pose2) {
+        let travel = &self.track.travel()[pieces];
+        let end = travel.iter().fold(from, |pose, t| pose.moved(&robot.drive.displacement(t)));
+        let turn = 1.0 / robot.drive.wheelbase();
+        let (mut sum, mut pose) = (Matrix3::zeros(), from);
+        for t in travel {
+            let at = pose.moved(&robot.drive.displacement(&t.scaled(0.5)));
+            let (sine, cosine) = libm::sincos(at.heading);
+            let along = Vector3::new(cosine, sine, 0.0) * 0.5;
+            let about = Vector3::new(at.y - end.y, end.x - at.x, 1.0) * turn;
+            for (shift, rolled) in [(along - about, t.left), (along + about, t.right)] {
+                sum += shift * shift.transpose() * rolled.abs();
+            }
+            pose = pose.moved(&robot.drive.displacement(t));
+        }
+        (sum, end)
+    }
+}
+
+/// The experiment that was done.
+pub(super) fn todays(ends: &Ends) -> Design {
+    let tracks = ends.tracks(true);
+    let numbers: Vec<usize> = (0..tracks.len()).collect();
+    let used: Vec<usize> = ends.of_runs(&numbers).map(|(_, i)| *i).collect();
+    let leg = |(number, track): (usize, &&Track)| Leg {
+        track: (*track).clone(),
+        runs: used.iter().filter(|i| **i == number).count(),
+        turned: 0.0,
+        minutes: 0.0,
+    };
+    Design { what: "the data".into(), legs: tracks.iter().enumerate().map(leg).collect() }
+}
+
+/// Everything that is offered, for this robot on this floor.
+pub(super) fn designs(ends: &Ends) -> Vec<Design> {
+    let robot = &ends.robot;
+    let speed = ends.path.as_ref().map_or_else(SpeedProfile::default, |path| path.speed);
+    let [top, acceleration, pause] = speed.values();
+    let faster = SpeedProfile::new(2.0 * top, acceleration, pause).unwrap_or(speed);
+    let of = |shape: &'static Shape, values: &[f64], speed| Path::new(shape, values, speed).ok();
+    let mut offered = vec![
+        plain("a straight of 10 m by tape, 5 runs", of(&STRAIGHT, &[10.0], speed), robot, 5, false),
+        plain("a straight of 10 m at double speed, 5 runs", of(&STRAIGHT, &[10.0], faster), robot, 5, false),
+        plain("5 turns on the spot each way, 3 runs each", of(&SPIN, &[5.0], speed), robot, 3, true),
+        plain("5 turns on the spot at double rate each way, 3 runs each", of(&SPIN, &[5.0], faster), robot, 3, true),
+        plain("circles of 1 m radius, 2 turns each way, 3 runs each", of(&CIRCLE, &[1.0, 2.0], speed), robot, 3, true),
+    ];
+    if let Some(path) = &ends.path {
+        let quarter = std::f64::consts::FRAC_PI_2;
+        offered.push(again(path, robot, "the pose taped at every stop", true, 0.0));
+        offered.push(again(path, robot, "START turned by 90 deg in the room", false, quarter));
+        let double = of(path.shape(), path.values(), faster);
+        offered.push(plain("the same path at double speed, 3 runs each way", double, robot, 3, true));
+        if std::ptr::eq(path.shape(), &SQUARE) {
+            let side = 0.5 * path.values()[0];
+            let what = format!("a square of {side} m, 3 runs each way");
+            offered.push(plain(&what, of(&SQUARE, &[side], speed), robot, 3, true));
+        }
+    }
+    offered.into_iter().flatten().collect()
+}
+
+/// A path driven as it is, one way or both.
+fn plain(what: &str, path: Option<Path>, robot: &Robot, runs: usize, both: bool) -> Option<Design> {
+    let path = path?;
+    let directions: &[Direction] = if both { &Direction::BOTH } else { &[Direction::Ccw] };
+    let leg = |d: &Direction| Leg {
+        track: Track::in_pieces(&path, *d, robot),
+        runs,
+        turned: 0.0,
+        minutes: MINUTES_A_RUN + minutes(&path, robot),
+    };
+    Some(Design { what: what.into(), legs: directions.iter().map(leg).collect() })
+}
+
+/// The same path again, three runs each way, with poses taped at the stops or START turned in the room.
+fn again(path: &Path, robot: &Robot, how: &str, stops: bool, turned: f64) -> Option<Design> {
+    let leg = |d: Direction| {
+        let track = if stops { Track::with_stops(path, d, robot) } else { Track::in_pieces(path, d, robot) };
+        let taped = MINUTES_A_STOP * (track.sights().len() - 1) as f64;
+        Leg { track, runs: 3, turned, minutes: MINUTES_A_RUN + taped + minutes(path, robot) }
+    };
+    Some(Design { what: format!("the same path, {how}, 3 runs each way"), legs: Direction::BOTH.map(leg).into() })
+}
+
+/// Time on the way \[min\].
+fn minutes(path: &Path, robot: &Robot) -> f64 {
+    let moves = path.moves(Direction::Ccw);
+    let seconds: f64 = moves
+        .iter()
+        .map(|m| {
+            let travel = m.wheel_travel(&robot.drive);
+            path.speed.over(travel.left.abs().max(travel.right.abs())).duration() + path.speed.pause()
+        })
+        .sum();
+    seconds / 60.0
+}

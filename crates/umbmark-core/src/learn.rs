@@ -1,0 +1,272 @@
+//! The whole loop: fit, diagnose, add what is certified as missing, fit again, until nothing is.
+//!
+//! An effect is added when both hold: its class is certified among all that were asked
+//! ([`Diagnosis::certified`](crate::diagnose::Diagnosis::certified)), and the error of runs that were left out falls. Leaving out is
+//! nested: without each run in turn, the choice of the effect is made anew and the model fitted anew. AICc and BIC are told and
+//! decide nothing: with many effects on offer they accept a false one in half of all tests.
+
+mod ends;
+mod tracks;
+
+use crate::dataset::Dataset;
+use crate::diagnose::{self, DiagnoseError, Diagnosis, Estimate, Level, Verdict};
+use crate::effect::Model;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// No model is given more effects than this.
+const MOST: usize = 6;
+
+/// The paper's two errors, which are fitted before anything is asked.
+const BASE: [&str; 2] = ["wheel_diameter_ratio", "wheelbase"];
+
+/// Root mean square errors of predicted poses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Error {
+    /// Distance of observed from predicted positions \[m\].
+    pub position: f64,
+    /// Observed less predicted headings \[rad\], where they were measured.
+    pub heading: Option<f64>,
+    /// Both together, in units of the noise's shape: what has to fall for an effect to stay.
+    pub weighted: f64,
+}
+
+/// One line of the story.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// The effect that was added; `None` for the nominal robot.
+    pub added: Option<&'static str>,
+    /// All effects that the data could not tell from it, itself included.
+    pub class: Vec<&'static str>,
+    /// p of its class among all that were asked; `None` for what was not asked but fitted.
+    pub p_adjusted: Option<f64>,
+    /// In the runs that the model was fitted to.
+    pub error: Error,
+    /// In runs that were left out.
+    pub held_out: Error,
+    /// Akaike's criterion with its small-sample correction; `None` for too few runs.
+    pub aicc: Option<f64>,
+    /// Bayes' criterion.
+    pub bic: Option<f64>,
+}
+
+/// What was learnt.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Learnt {
+    /// From the nominal robot to the model.
+    pub steps: Vec<Step>,
+    /// What the last diagnosis says.
+    pub verdict: Verdict,
+    /// The model, its free parameters fitted.
+    pub model: Model,
+    /// The last diagnosis: of the model that was learnt.
+    pub diagnosis: Diagnosis,
+    /// What else should be said, a sentence each.
+    pub remarks: Vec<String>,
+}
+
+/// Sums of squared errors of some poses.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Squares {
+    pub positions: usize,
+    pub position: f64,
+    pub headings: usize,
+    pub heading: f64,
+    /// Σ |W r|² and the number of its terms.
+    pub weighted: f64,
+    pub weights: usize,
+}
+
+impl Squares {
+    fn add(self, other: Squares) -> Squares {
+        Squares {
+            positions: self.positions + other.positions,
+            position: self.position + other.position,
+            headings: self.headings + other.headings,
+            heading: self.heading + other.heading,
+            weighted: self.weighted + other.weighted,
+            weights: self.weights + other.weights,
+        }
+    }
+
+    fn error(&self) -> Error {
+        let root = |sum: f64, count: usize| (sum / count.max(1) as f64).sqrt();
+        Error {
+            position: root(self.position, self.positions),
+            heading: (self.headings > 0).then(|| root(self.heading, self.headings)),
+            weighted: root(self.weighted, self.weights),
+        }
+    }
+}
+
+/// Runs that a model can be learnt from.
+pub(crate) trait Evidence: Sized + Sync {
+    /// The robot without any effect.
+    fn nominal(&self) -> Model;
+
+    /// Number of runs.
+    fn runs(&self) -> usize;
+
+    /// The same without one run.
+    fn without(&self, run: usize) -> Self;
+
+    /// Whether there is enough to learn E_d and E_b from.
+    fn both_ways(&self) -> bool;
+
+    /// The model with its free parameters fitted, and those with their uncertainty.
+    fn fit(&self, model: &Model) -> Result<(Model, Vec<Estimate>), DiagnoseError>;
+
+    /// What is missing.
+    fn diagnose(&self, model: &Model, options: &diagnose::Options) -> Result<Diagnosis, DiagnoseError>;
+
+    /// The effect that would be added, certified or not.
+    fn likeliest(&self, model: &Model) -> Result<Option<&'static str>, DiagnoseError>;
+
+    /// Errors of one run.
+    fn squares(&self, model: &Model, run: usize) -> Squares;
+
+    /// AICc and BIC, where there are runs enough.
+    fn criteria(&self, model: &Model) -> Option<[f64; 2]>;
+}
+
+/// Learns which effects a robot has.
+///
+/// ```no_run
+/// use umbmark_core::{dataset::Dataset, diagnose::Options, learn::learn};
+/// let learnt = learn(&Dataset::load("my_robot")?, &Options::default())?;
+/// for step in &learnt.steps {
+///     println!("{:?}: {:.1} mm held out", step.added, 1e3 * step.held_out.position);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn learn(data: &Dataset, options: &diagnose::Options) -> Result<Learnt, DiagnoseError> {
+    match diagnose::level(data) {
+        Level::Ends => from_evidence(&diagnose::ends::Ends::new(data)?, options),
+        Level::Tracks => tracks::learn(&diagnose::tracks_of(data)?, options),
+    }
+}
+
+/// Fits a model's free parameters to a dataset; gives the model and what was fitted.
+pub fn fit(data: &Dataset, model: &Model) -> Result<(Model, Vec<Estimate>), DiagnoseError> {
+    match diagnose::level(data) {
+        Level::Ends => diagnose::ends::Ends::new(data)?.fit(model),
+        Level::Tracks => {
+            let fitted = diagnose::tracks::fit(&diagnose::tracks_of(data)?, model)?;
+            let estimates = diagnose::tracks::estimates(&fitted);
+            Ok((fitted.model, estimates))
+        }
+    }
+}
+
+/// The loop, whatever was observed.
+pub(crate) fn from_evidence<E: Evidence>(evidence: &E, options: &diagnose::Options) -> Result<Learnt, DiagnoseError> {
+    let mut story = Story::new(evidence, evidence.nominal())?;
+    if evidence.both_ways() {
+        for effect in BASE {
+            story.add(effect, vec![effect], None)?;
+        }
+    }
+    let mut remarks = Vec::new();
+    loop {
+        let diagnosis = evidence.diagnose(&story.model, options)?;
+        let certified = diagnosis.certified().first().cloned();
+        if let Some(suspect) = certified.filter(|_| story.model.parts().len() < MOST) {
+            let candidate = story.with_likeliest(suspect.best, suspect.class.clone(), suspect.p_adjusted)?;
+            if candidate.last().held_out.weighted < story.last().held_out.weighted {
+                story = candidate;
+                continue;
+            }
+            remarks.push(format!(
+                "{} is certified (p = {:.3}) but was not added: runs that are left out are predicted no better with it.",
+                suspect.class.join(" or "),
+                suspect.p_adjusted
+            ));
+        }
+        remarks.extend(diagnosis.remarks.iter().cloned());
+        let (steps, model, verdict) = (story.steps, story.model, diagnosis.verdict);
+        return Ok(Learnt { steps, verdict, model, diagnosis, remarks });
+    }
+}
+
+/// A model as it grows, on all runs and without each of them.
+struct Story<'a, E> {
+    evidence: &'a E,
+    folds: Arc<Vec<E>>,
+    model: Model,
+    fold_models: Vec<Model>,
+    steps: Vec<Step>,
+}
+
+impl<'a, E: Evidence> Story<'a, E> {
+    fn new(evidence: &'a E, nominal: Model) -> Result<Story<'a, E>, DiagnoseError> {
+        let folds: Vec<E> = (0..evidence.runs()).map(|run| evidence.without(run)).collect();
+        let fold_models = vec![nominal.clone(); folds.len()];
+        let folds = Arc::new(folds);
+        let mut story = Story { evidence, folds, model: nominal, fold_models, steps: Vec::new() };
+        story.tell(None, Vec::new(), None);
+        Ok(story)
+    }
+
+    fn last(&self) -> &Step {
+        &self.steps[self.steps.len() - 1]
+    }
+
+    /// Adds an effect everywhere.
+    fn add(&mut self, effect: &'static str, class: Vec<&'static str>, p: Option<f64>) -> Result<(), DiagnoseError> {
+        let folds = self.folds.par_iter().zip(&self.fold_models);
+        self.fold_models = folds.map(|(fold, model)| grown(fold, model, effect)).collect::<Result<_, _>>()?;
+        self.model = grown(self.evidence, &self.model, effect)?;
+        self.tell(Some(effect), class, p);
+        Ok(())
+    }
+
+    /// The story in which all runs add `effect`, and each fold what it finds likeliest on its own.
+    fn with_likeliest(
+        &self,
+        effect: &'static str,
+        class: Vec<&'static str>,
+        p: f64,
+    ) -> Result<Story<'a, E>, DiagnoseError> {
+        let folds = self.folds.par_iter().zip(&self.fold_models);
+        let choose = |(fold, model): (&E, &Model)| match fold.likeliest(model)? {
+            Some(own) => match grown(fold, model, own) {
+                // Without this run, that effect cannot be fitted.
+                Err(DiagnoseError::NotConverged { .. } | DiagnoseError::OutOfBounds { .. }) => Ok(model.clone()),
+                fitted => fitted,
+            },
+            None => Ok(model.clone()),
+        };
+        let mut further = Story {
+            evidence: self.evidence,
+            folds: self.folds.clone(),
+            model: grown(self.evidence, &self.model, effect)?,
+            fold_models: folds.map(choose).collect::<Result<_, _>>()?,
+            steps: self.steps.clone(),
+        };
+        further.tell(Some(effect), class, Some(p));
+        Ok(further)
+    }
+
+    fn tell(&mut self, added: Option<&'static str>, class: Vec<&'static str>, p_adjusted: Option<f64>) {
+        let total = |squares: &dyn Fn(usize) -> Squares| {
+            (0..self.evidence.runs()).map(squares).fold(Squares::default(), Squares::add).error()
+        };
+        let criteria = self.evidence.criteria(&self.model);
+        self.steps.push(Step {
+            added,
+            class,
+            p_adjusted,
+            error: total(&|run| self.evidence.squares(&self.model, run)),
+            held_out: total(&|run| self.evidence.squares(&self.fold_models[run], run)),
+            aicc: criteria.map(|c| c[0]),
+            bic: criteria.map(|c| c[1]),
+        });
+    }
+}
+
+/// A model with a free effect more, fitted.
+fn grown<E: Evidence>(evidence: &E, model: &Model, effect: &str) -> Result<Model, DiagnoseError> {
+    let mut grown = model.clone();
+    grown.add(effect).map_err(DiagnoseError::Model)?.free = true;
+    Ok(evidence.fit(&grown)?.0)
+}
