@@ -1,16 +1,16 @@
 //! The true motion of a robot whose odometry believes something else.
 
 use super::diffusion::Diffusion;
+use super::pieces::{Piece, Pieces};
 use crate::drive::{Wheel, WheelTravel};
 use crate::effect::{Bump, Chain, Entry, Model, Stretch, WheelVariance};
-use crate::engine::Motion;
 use crate::geometry::{Displacement2, Pose2};
 use crate::random::Stream;
 
 /// Purpose of the stream that wheel noise is drawn from; no hash of a name gives so small a number.
 const WHEEL_NOISE: u64 = 2;
 
-/// The effects of a model at work in one trial: deterministic chain, random parts with their streams, true pose.
+/// The effects of a model at work in one trial: deterministic chain, random parts with their streams, true poses.
 #[derive(Debug)]
 pub struct Truth {
     chain: Chain<f64>,
@@ -18,7 +18,7 @@ pub struct Truth {
     rotation_per_metre: f64,
     noisy: bool,
     noise: Stream,
-    pose: Motion,
+    pieces: Pieces,
     stretch: Option<Stretch>,
     /// Travel that the stretch was commanded to have, the same in every trial.
     commanded: WheelTravel,
@@ -49,7 +49,7 @@ impl Truth {
             rotation_per_metre: 0.0,
             noisy: false,
             noise: Stream::new(0, 0, 0),
-            pose: Motion::IDENTITY,
+            pieces: Pieces::default(),
             stretch: None,
             commanded: WheelTravel::default(),
             ahead: Vec::new(),
@@ -99,10 +99,21 @@ impl Truth {
 
     /// Puts the robot at START, as far as the effects let it stand there.
     pub fn start(&mut self) {
+        self.forget();
+        self.start_another();
+    }
+
+    /// Forgets all runs.
+    pub(super) fn forget(&mut self) {
+        self.pieces.clear();
+    }
+
+    /// Begins one more run at START; where those before it end can still be asked for.
+    pub(super) fn start_another(&mut self) {
         let start = self.random.iter_mut().fold(Pose2::IDENTITY, |pose, part| {
             pose.compose(&(part.effect.scatter.start)(&part.values, &mut part.stream))
         });
-        self.pose = Motion::from(start);
+        self.pieces.start(start);
         self.stretch = None;
     }
 
@@ -142,16 +153,13 @@ impl Truth {
         let whole = piece == 1.0;
         let travel = self.chain.wheel_travel(&stretch.travel.scaled(piece));
         let motion = self.chain.body(&travel);
-        let from = self.pose;
-        self.pose = from.then(&Motion::exp(&motion));
-        if self.noisy {
+        let scatter = if self.noisy {
             let diffusion = if whole { self.whole_diffusion() } else { self.diffusion(&travel, &motion) };
-            let [dx, dy, turned] = diffusion.draw(&mut self.noise);
-            // Moved in the frame of the start, turned about the end.
-            self.pose.pose.x += from.cosine * dx - from.sine * dy;
-            self.pose.pose.y += from.sine * dx + from.cosine * dy;
-            self.pose = self.pose.then(&Motion::from(Pose2::new(0.0, 0.0, turned)));
-        }
+            diffusion.draw(&mut self.noise)
+        } else {
+            [0.0; 3]
+        };
+        self.pieces.push(&Piece { motion, scatter });
         self.done = share;
     }
 
@@ -177,20 +185,33 @@ impl Truth {
             Wheel::Left => WheelTravel { left: -bump.lost, right: 0.0 },
             Wheel::Right => WheelTravel { left: 0.0, right: -bump.lost },
         };
-        self.pose = self.pose.then(&Motion::exp(&self.chain.body(&travel)));
+        self.pieces.push(&Piece { motion: self.chain.body(&travel), scatter: [0.0; 3] });
     }
 
     /// The true pose.
-    pub fn pose(&self) -> Pose2 {
-        self.pose.pose
+    pub fn pose(&mut self) -> Pose2 {
+        self.pieces.settle();
+        self.pieces.reached().last().unwrap_or_default()
     }
 
     /// The true pose as the absolute measurement shows it.
     pub fn measure(&mut self) -> Pose2 {
-        let mut pose = self.pose.pose;
-        for part in &mut self.random {
-            (part.effect.scatter.measured)(&part.values, &mut part.stream, &mut pose);
-        }
-        pose
+        let pose = self.pose();
+        measured(&mut self.random, pose)
     }
+
+    /// The ends of all runs as the absolute measurement shows them, in the order in which they were begun.
+    pub(super) fn measure_all(&mut self) -> impl Iterator<Item = Pose2> + '_ {
+        self.pieces.settle();
+        let Truth { pieces, random, .. } = self;
+        pieces.reached().map(|pose| measured(random, pose))
+    }
+}
+
+/// A true pose as the absolute measurement shows it.
+fn measured(random: &mut [RandomPart], mut pose: Pose2) -> Pose2 {
+    for part in random {
+        (part.effect.scatter.measured)(&part.values, &mut part.stream, &mut pose);
+    }
+    pose
 }
