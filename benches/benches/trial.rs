@@ -40,7 +40,7 @@ fn measure(group: &mut BenchmarkGroup<WallTime>, name: &str, study: Study, trial
 
 fn trial(criterion: &mut Criterion) {
     for (kind, study, chunks) in
-        [("plain", studies::plain(), 16), ("ten bumps", studies::ten_bumps(), 8), ("events", studies::events(), 2)]
+        [("plain", studies::plain(), 64), ("ten bumps", studies::ten_bumps(), 32), ("events", studies::events(), 8)]
     {
         let mut group = criterion.benchmark_group(format!("trial {kind}"));
         group.sampling_mode(SamplingMode::Flat).sample_size(10);

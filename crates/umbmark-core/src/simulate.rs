@@ -14,7 +14,7 @@ use crate::dataset::ReturnError;
 use crate::drive::{Robot, WheelTravel};
 use crate::effect::{Stretch, TestKind};
 use crate::engine::{
-    EngineError, Integrator, Method, Motion, Segment, TickGeometry, UNITS_PER_TICK, Update, WheelLine,
+    EngineError, Instructions, Integrator, Method, Motion, Segment, TickGeometry, UNITS_PER_TICK, Update, WheelLine,
 };
 use crate::geometry::{Pose2, wrap};
 use crate::path::{Direction, Path};
@@ -156,6 +156,16 @@ impl Simulator {
             segments: Vec::new(),
             motions: Vec::new(),
         })
+    }
+
+    /// The same simulator, with registers no wider than these: the same bits, maybe slower.
+    pub fn limited_to(self, instructions: Instructions) -> Simulator {
+        let computer = match self.computer {
+            Computer::Ticks(integrator) => Computer::Ticks(integrator.limited_to(instructions)),
+            Computer::Sampled(moves) => Computer::Sampled(Box::new(moves.limited_to(instructions))),
+            Computer::Continuous => Computer::Continuous,
+        };
+        Simulator { computer, ..self }
     }
 
     /// The nominal robot.

@@ -5,8 +5,11 @@
 //! where it began does not depend on the others. So the pieces of all runs of a test are worked out in one loop without a
 //! branch, and only the products along each run wait for each other.
 
-use crate::engine::Motion;
+use crate::engine::{Instructions, Motion};
 use crate::geometry::{Displacement2, Pose2, sinc_cos_near_zero};
+
+#[cfg(target_arch = "x86_64")]
+mod x86;
 
 /// A motion with constant twist, whose end is then moved in the frame of its start and turned about itself.
 #[derive(Clone, Copy, Debug)]
@@ -22,20 +25,12 @@ const WIDTH: usize = 8;
 
 /// Some pieces, number by number, so that one instruction does several of them.
 #[derive(Clone, Debug, Default)]
+#[repr(align(64))]
 struct Block {
     forward: [f64; WIDTH],
     sideways: [f64; WIDTH],
     rotation: [f64; WIDTH],
     scatter: [[f64; WIDTH]; 3],
-}
-
-/// Where the pieces of a block end, scatter included.
-#[derive(Clone, Copy, Debug)]
-struct Ends {
-    x: [f64; WIDTH],
-    y: [f64; WIDTH],
-    cosine: [f64; WIDTH],
-    sine: [f64; WIDTH],
 }
 
 /// (sinc h, sin h, cos h) from q = h/2 within the polynomials' range, |q| <= π/4: no quarter or half turn is past it.
@@ -67,36 +62,66 @@ impl Block {
         !(self.rotation[place].abs() <= std::f64::consts::PI && self.turned(place).abs() <= std::f64::consts::PI)
     }
 
+    /// Where the pieces end as seen from where they begin, scatter included.
     #[inline(always)]
-    fn ends(&self) -> Ends {
-        let zero = [0.0; WIDTH];
-        let mut ends = Ends { x: zero, y: zero, cosine: zero, sine: zero };
+    fn ends(&self, ends: &mut [Motion; WIDTH]) {
+        let mut x = [0.0; WIDTH];
+        let (mut y, mut cosines, mut sines) = (x, x, x);
+        let mut any_large = false;
         for i in 0..WIDTH {
+            any_large |= self.is_large(i);
             let (sinc, sine, cosine) = from_half(0.25 * self.rotation[i]);
             let (ahead, aside) = (sinc * self.forward[i], sinc * self.sideways[i]);
-            ends.x[i] = (cosine * ahead - sine * aside) + self.scatter[0][i];
-            ends.y[i] = (sine * ahead + cosine * aside) + self.scatter[1][i];
+            x[i] = (cosine * ahead - sine * aside) + self.scatter[0][i];
+            y[i] = (sine * ahead + cosine * aside) + self.scatter[1][i];
             let (_, sine, cosine) = from_half(0.25 * self.turned(i));
-            ends.cosine[i] = 1.0 - 2.0 * (sine * sine);
-            ends.sine[i] = 2.0 * sine * cosine;
+            cosines[i] = 1.0 - 2.0 * (sine * sine);
+            sines[i] = 2.0 * sine * cosine;
         }
-        if (0..WIDTH).fold(false, |any, i| any | self.is_large(i)) {
-            self.replace_large(&mut ends);
+        for (i, end) in ends.iter_mut().enumerate() {
+            // Number by number: a struct put together first is written and read again in different widths.
+            (end.pose.x, end.pose.y, end.pose.heading) = (x[i], y[i], self.turned(i));
+            (end.cosine, end.sine) = (cosines[i], sines[i]);
         }
-        ends
+        if any_large {
+            self.replace_large(ends);
+        }
     }
 
     /// Rotations past half a turn, one by one.
     #[cold]
-    fn replace_large(&self, ends: &mut Ends) {
-        for i in (0..WIDTH).filter(|i| self.is_large(*i)) {
+    fn replace_large(&self, ends: &mut [Motion; WIDTH]) {
+        for (i, motion) in ends.iter_mut().enumerate().filter(|(i, _)| self.is_large(*i)) {
             let (forward, sideways, rotation) = (self.forward[i], self.sideways[i], self.rotation[i]);
             let end = Pose2::exp(&Displacement2 { forward, sideways, rotation });
-            let Motion { cosine, sine, .. } = Motion::from(Pose2::new(0.0, 0.0, self.turned(i)));
-            (ends.x[i], ends.y[i]) = (end.x + self.scatter[0][i], end.y + self.scatter[1][i]);
-            (ends.cosine[i], ends.sine[i]) = (cosine, sine);
+            *motion = Motion::from(Pose2 {
+                x: end.x + self.scatter[0][i],
+                y: end.y + self.scatter[1][i],
+                heading: self.turned(i),
+            });
         }
     }
+}
+
+/// The ends of all pieces of `blocks`, one block after the other.
+#[inline(always)]
+fn all_ends(blocks: &[Block], ends: &mut [[Motion; WIDTH]]) {
+    for (block, ends) in blocks.iter().zip(ends) {
+        block.ends(ends);
+    }
+}
+
+fn work_out(instructions: Instructions, blocks: &[Block], ends: &mut [[Motion; WIDTH]]) {
+    #[cfg(target_arch = "x86_64")]
+    match instructions {
+        // SAFETY: `instructions` is never more than what the machine was found to have.
+        Instructions::Avx512 => return unsafe { x86::all_ends_by_eight(blocks, ends) },
+        // SAFETY: as above.
+        Instructions::Avx2 => return unsafe { x86::all_ends_by_four(blocks, ends) },
+        Instructions::Portable => {}
+    }
+    let _ = instructions;
+    all_ends(blocks, ends);
 }
 
 /// A run under way.
@@ -109,15 +134,27 @@ struct Run {
 }
 
 /// The runs under way and the pieces that they have yet to drive.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Pieces {
+    instructions: Instructions,
     runs: Vec<Run>,
     blocks: Vec<Block>,
     count: usize,
-    motions: Vec<Motion>,
+    ends: Vec<[Motion; WIDTH]>,
 }
 
 impl Pieces {
+    /// No runs, and registers no wider than these to work them out with: the same bits on all.
+    pub(super) fn new(instructions: Instructions) -> Pieces {
+        Pieces {
+            instructions: instructions.min(Instructions::best()),
+            runs: Vec::new(),
+            blocks: Vec::new(),
+            count: 0,
+            ends: Vec::new(),
+        }
+    }
+
     /// Forgets all runs.
     pub(super) fn clear(&mut self) {
         self.runs.clear();
@@ -145,18 +182,12 @@ impl Pieces {
 
     /// Moves every run to the end of its pieces.
     pub(super) fn settle(&mut self) {
-        self.motions.clear();
-        for block in &self.blocks {
-            let ends = block.ends();
-            self.motions.extend((0..WIDTH).map(|i| Motion {
-                pose: Pose2 { x: ends.x[i], y: ends.y[i], heading: block.turned(i) },
-                cosine: ends.cosine[i],
-                sine: ends.sine[i],
-            }));
-        }
+        self.ends.resize(self.blocks.len(), [Motion::IDENTITY; WIDTH]);
+        work_out(self.instructions, &self.blocks, &mut self.ends);
+        let ends = self.ends.as_flattened();
         let mut end = self.count;
         for run in self.runs.iter_mut().rev() {
-            run.reached = self.motions[run.first..end].iter().fold(run.reached, |pose, piece| pose.then(piece));
+            run.reached = ends[run.first..end].iter().fold(run.reached, |pose, piece| pose.then(piece));
             (end, run.first) = (run.first, 0);
         }
         self.blocks.clear();

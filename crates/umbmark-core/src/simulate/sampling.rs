@@ -1,7 +1,9 @@
 //! When the counters are read along a move.
 
 use super::Leg;
-use crate::engine::{Integrator, Method, Motion, Profile, SampledOdometry, Segment, TickGeometry, Update, WheelLine};
+use crate::engine::{
+    Instructions, Integrator, Method, Motion, Profile, SampledOdometry, Segment, TickGeometry, Update, WheelLine,
+};
 
 /// Odometry of a robot that reads its counters at a fixed rate, along moves with acceleration ramps.
 ///
@@ -81,6 +83,11 @@ impl SampledMoves {
             cruise: Integrator::new(geometry, Method::Sampled(update)),
             courses: courses.map(|legs| legs.iter().map(|leg| Readings::new(leg, rate)).collect()),
         }
+    }
+
+    pub(super) fn limited_to(self, instructions: Instructions) -> SampledMoves {
+        let SampledMoves { ramps, cruise, courses } = self;
+        SampledMoves { ramps: ramps.limited_to(instructions), cruise: cruise.limited_to(instructions), courses }
     }
 
     /// The motion that the counters report for move `index` of course `course`, driven along `line`.

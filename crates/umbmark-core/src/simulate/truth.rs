@@ -4,6 +4,7 @@ use super::diffusion::Diffusion;
 use super::pieces::{Piece, Pieces};
 use crate::drive::{Wheel, WheelTravel};
 use crate::effect::{Bump, Chain, Entry, Model, Stretch, WheelVariance};
+use crate::engine::Instructions;
 use crate::geometry::{Displacement2, Pose2};
 use crate::random::Stream;
 
@@ -49,7 +50,7 @@ impl Truth {
             rotation_per_metre: 0.0,
             noisy: false,
             noise: Stream::new(0, 0, 0),
-            pieces: Pieces::default(),
+            pieces: Pieces::new(Instructions::best()),
             stretch: None,
             commanded: WheelTravel::default(),
             ahead: Vec::new(),
@@ -58,6 +59,11 @@ impl Truth {
         };
         truth.refresh();
         truth
+    }
+
+    /// The same, with registers no wider than these: the same bits, maybe slower.
+    pub fn limited_to(self, instructions: Instructions) -> Truth {
+        Truth { pieces: Pieces::new(instructions), ..self }
     }
 
     /// Takes new values for all parameters, in the order of [`Model::values`].
