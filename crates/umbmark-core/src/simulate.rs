@@ -97,7 +97,7 @@ impl Odometry {
 
 #[derive(Debug)]
 enum Computer {
-    Ticks(Integrator),
+    Ticks(Box<Integrator>),
     Sampled(Box<SampledMoves>),
     Continuous,
 }
@@ -137,8 +137,10 @@ impl Simulator {
         let [cw, ccw] = [Course::new(robot, path, Direction::Cw)?, Course::new(robot, path, Direction::Ccw)?];
         let computer = match odometry {
             Odometry::Continuous => Computer::Continuous,
-            Odometry::EveryTick => Computer::Ticks(Integrator::new(geometry, Method::EveryTick)),
-            Odometry::EveryTickOneByOne => Computer::Ticks(Integrator::new(geometry, Method::EveryTickOneByOne)),
+            Odometry::EveryTick => Computer::Ticks(Box::new(Integrator::new(geometry, Method::EveryTick))),
+            Odometry::EveryTickOneByOne => {
+                Computer::Ticks(Box::new(Integrator::new(geometry, Method::EveryTickOneByOne)))
+            }
             Odometry::Sampled { rate, update } => {
                 if !(rate > 0.0 && rate.is_finite()) {
                     return Err(SimulateError::Rate { what: "encoder rate", value: rate });
@@ -161,7 +163,7 @@ impl Simulator {
     /// The same simulator, with registers no wider than these: the same bits, maybe slower.
     pub fn limited_to(self, instructions: Instructions) -> Simulator {
         let computer = match self.computer {
-            Computer::Ticks(integrator) => Computer::Ticks(integrator.limited_to(instructions)),
+            Computer::Ticks(integrator) => Computer::Ticks(Box::new(integrator.limited_to(instructions))),
             Computer::Sampled(moves) => Computer::Sampled(Box::new(moves.limited_to(instructions))),
             Computer::Continuous => Computer::Continuous,
         };
