@@ -41,7 +41,8 @@ impl Stream {
         self.random()
     }
 
-    #[inline]
+    /// Not inlined, so that taking a word is.
+    #[inline(never)]
     fn refill(&mut self) {
         let [first, rest @ ..] = self.counter;
         let counter = |i: usize| first.wrapping_add(1 + i as u64);

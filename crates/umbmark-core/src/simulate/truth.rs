@@ -20,8 +20,9 @@ pub struct Truth {
     noisy: bool,
     noise: Stream,
     pieces: Pieces,
-    stretch: Option<Stretch>,
-    /// Travel that the stretch was commanded to have, the same in every trial.
+    /// Travel of the present stretch as the robot believes it.
+    believed: WheelTravel,
+    /// Travel that it was commanded to have, the same in every trial.
     commanded: WheelTravel,
     /// Bumps of the stretch that lie ahead, the nearest last.
     ahead: Vec<Bump>,
@@ -51,10 +52,10 @@ impl Truth {
             noisy: false,
             noise: Stream::new(0, 0, 0),
             pieces: Pieces::new(Instructions::best()),
-            stretch: None,
+            believed: WheelTravel::default(),
             commanded: WheelTravel::default(),
             ahead: Vec::new(),
-            done: 0.0,
+            done: 1.0,
             whole: Vec::new(),
         };
         truth.refresh();
@@ -120,7 +121,7 @@ impl Truth {
             pose.compose(&(part.effect.scatter.start)(&part.values, &mut part.stream))
         });
         self.pieces.start(start);
-        self.stretch = None;
+        self.done = 1.0;
     }
 
     /// Begins a stretch that was commanded to have a certain travel; what it meets on the way is drawn now.
@@ -131,7 +132,7 @@ impl Truth {
             (part.effect.scatter.bumps)(&part.values, &stretch, &mut part.stream, &mut self.ahead);
         }
         self.ahead.sort_unstable_by(|a, b| b.at.total_cmp(&a.at));
-        self.stretch = Some(stretch);
+        self.believed = stretch.travel;
         self.done = 0.0;
     }
 
@@ -151,19 +152,20 @@ impl Truth {
     }
 
     fn roll(&mut self, share: f64) {
-        let Some(stretch) = self.stretch else { return };
         let piece = share - self.done;
         if piece <= 0.0 {
             return;
         }
         let whole = piece == 1.0;
-        let travel = self.chain.wheel_travel(&stretch.travel.scaled(piece));
+        let travel = self.chain.wheel_travel(&self.believed.scaled(piece));
         let motion = self.chain.body(&travel);
-        let scatter = if self.noisy {
-            let diffusion = if whole { self.whole_diffusion() } else { self.diffusion(&travel, &motion) };
-            diffusion.draw(&mut self.noise)
-        } else {
-            [0.0; 3]
+        let scatter = match (self.noisy, whole) {
+            (false, _) => [0.0; 3],
+            (true, false) => self.diffusion(&travel, &motion).draw(&mut self.noise),
+            (true, true) => {
+                let known = self.find_whole_diffusion();
+                self.whole[known].1.draw(&mut self.noise)
+            }
         };
         self.pieces.push(&Piece { motion, scatter });
         self.done = share;
@@ -175,15 +177,13 @@ impl Truth {
 
     /// The noise of a whole stretch, taken for its commanded travel: the driven one differs by less than a tick or two,
     /// and all stretches of one kind share it.
-    fn whole_diffusion(&mut self) -> Diffusion {
+    fn find_whole_diffusion(&mut self) -> usize {
         let commanded = self.commanded;
-        if let Some((_, known)) = self.whole.iter().find(|(travel, _)| *travel == commanded) {
-            return *known;
-        }
-        let travel = self.chain.wheel_travel(&commanded);
-        let diffusion = self.diffusion(&travel, &self.chain.body(&travel));
-        self.whole.push((commanded, diffusion));
-        diffusion
+        self.whole.iter().position(|(travel, _)| *travel == commanded).unwrap_or_else(|| {
+            let travel = self.chain.wheel_travel(&commanded);
+            self.whole.push((commanded, self.diffusion(&travel, &self.chain.body(&travel))));
+            self.whole.len() - 1
+        })
     }
 
     fn meet(&mut self, bump: &Bump) {

@@ -94,7 +94,7 @@ impl LookUps {
 }
 
 /// The counts of one wheel where these shares of its travel are done, in `f64`: the angle there is rounded to its 53 bits,
-/// 2^-12 units on a ramp of 1000 ticks. The end of the line is exact.
+/// 2^-11 units on a ramp of 1000 ticks. The end of the line is exact.
 #[inline(always)]
 fn fill_counts(start: i64, travel: i64, shares: &[f64], counts: &mut [i32]) {
     // Adding it rounds to a whole number, which then stands in the low bits.
@@ -141,8 +141,8 @@ impl SampledOdometry {
 
     /// The motion reported along `line` when the counters are read where a profile says.
     ///
-    /// As [`with_profile`](SampledOdometry::with_profile) to within 1e-12 m, and an order of magnitude faster where the two
-    /// tick lengths are equal. A reading that falls on the edge of a tick, to within 2^-12 units of 2^-32 tick on a line of
+    /// As [`with_profile`](SampledOdometry::with_profile) to within 1e-12 m, and several times faster where the two
+    /// tick lengths are equal. A reading that falls on the edge of a tick, to within 2^-11 units of 2^-32 tick on a line of
     /// 1000 ticks, may find it counted or not.
     ///
     /// ```
