@@ -199,3 +199,72 @@ impl Pieces {
         self.runs.iter().map(|run| run.reached.pose)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pieces_of(run: usize) -> impl Iterator<Item = Piece> {
+        let rotations = [0.0, 1e-9, -1.57, 1.572, 3.14, -3.143, 3.2, -7.0, 20.0, 0.3, -0.02];
+        rotations.into_iter().cycle().skip(run).take(5 + 7 * run).enumerate().map(|(i, rotation)| Piece {
+            motion: Displacement2 { forward: 4.0 - i as f64, sideways: 0.1 * i as f64, rotation },
+            scatter: [1e-2, -2e-2, 1e-3 * (i as f64 - 5.0)],
+        })
+    }
+
+    /// The piece by its definition, pose by pose.
+    fn driven(pose: Pose2, piece: &Piece) -> Pose2 {
+        let [x, y, turned] = piece.scatter;
+        let end = Pose2::exp(&piece.motion);
+        pose.compose(&Pose2::new(end.x + x, end.y + y, end.heading + turned))
+    }
+
+    #[test]
+    fn runs_end_where_their_pieces_lead_one_by_one_past_half_and_whole_turns_too() {
+        for instructions in [Instructions::Portable, Instructions::Avx2, Instructions::Avx512] {
+            let mut pieces = Pieces::new(instructions);
+            // Settled in the middle of the last run, as a recording does, and at the end.
+            let mut expected = Vec::new();
+            for run in 0..4 {
+                let start = Pose2::new(0.1 * run as f64, -0.2, 0.3 * run as f64);
+                pieces.start(start);
+                pieces_of(run).for_each(|piece| pieces.push(&piece));
+                expected.push(pieces_of(run).fold(start, |pose, piece| driven(pose, &piece)));
+            }
+            pieces.settle();
+            let last =
+                Piece { motion: Displacement2 { forward: 1.0, sideways: 0.0, rotation: -0.5 }, scatter: [0.0; 3] };
+            pieces.push(&last);
+            expected[3] = driven(expected[3], &last);
+            pieces.settle();
+            let reached: Vec<Pose2> = pieces.reached().collect();
+            assert_eq!(reached.len(), 4);
+            for (reached, expected) in reached.iter().zip(&expected) {
+                let gap = [reached.x - expected.x, reached.y - expected.y, reached.heading - expected.heading];
+                assert!(gap.iter().all(|gap| gap.abs() < 1e-12), "{instructions:?}: {reached:?} {expected:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_bits_of_a_piece_do_not_depend_on_its_neighbours_or_the_instruction_set() {
+        let alone = |piece: &Piece| {
+            let mut pieces = Pieces::new(Instructions::Portable);
+            pieces.start(Pose2::IDENTITY);
+            pieces.push(piece);
+            pieces.settle();
+            pieces.reached().next().unwrap()
+        };
+        for instructions in [Instructions::Portable, Instructions::Avx2, Instructions::Avx512] {
+            let mut pieces = Pieces::new(instructions);
+            for piece in pieces_of(3) {
+                pieces.start(Pose2::IDENTITY);
+                pieces.push(&piece);
+            }
+            pieces.settle();
+            for (piece, reached) in pieces_of(3).zip(pieces.reached()) {
+                assert_eq!(reached, alone(&piece), "{instructions:?} {piece:?}");
+            }
+        }
+    }
+}

@@ -5,8 +5,8 @@ use crate::engine::{Instructions, Motion, Profile, SampledOdometry, TickGeometry
 
 /// Odometry of a robot that reads its counters at a fixed rate, along moves with acceleration ramps.
 ///
-/// The clock ticks on through the moves and pauses. Readings on the ramps are taken one by one; those at constant speed,
-/// nearly all, go through the engine's fast path for equal steps. Splitting a move there rounds its wheel angles to 2^-32
+/// The clock ticks on through the moves and pauses. Readings on the ramps are looked up one by one; those at constant
+/// speed, nearly all, go through the engine's fast path for equal steps. Splitting a move there rounds its wheel angles to 2^-32
 /// tick.
 #[derive(Debug)]
 pub(super) struct SampledMoves {
