@@ -205,7 +205,7 @@ mod tests {
     use super::*;
 
     fn pieces_of(run: usize) -> impl Iterator<Item = Piece> {
-        let rotations = [0.0, 1e-9, -1.57, 1.572, 3.14, -3.143, 3.2, -7.0, 20.0, 0.3, -0.02];
+        let rotations = [0.0, 1e-9, -1.57, 1.572, 3.13, -3.145, 3.2, -7.0, 20.0, 0.3, -0.02];
         rotations.into_iter().cycle().skip(run).take(5 + 7 * run).enumerate().map(|(i, rotation)| Piece {
             motion: Displacement2 { forward: 4.0 - i as f64, sideways: 0.1 * i as f64, rotation },
             scatter: [1e-2, -2e-2, 1e-3 * (i as f64 - 5.0)],
