@@ -251,6 +251,13 @@ impl Row<'_> {
     }
 }
 
+/// The number in a cell of a layout that has its own names, in the units of the layout.
+pub(super) fn number_in(file: &str, line: usize, name: &str, cell: &str) -> Result<f64, DatasetError> {
+    let cells = [cell];
+    let row = Row { file, line, cells: &cells };
+    row.number(&Column { name: name.to_owned(), index: 0, unit: None })
+}
+
 /// Not far above this, counts are not told apart any more.
 const LARGEST_COUNT: f64 = 9e15;
 
