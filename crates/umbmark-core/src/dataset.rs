@@ -20,6 +20,7 @@ mod error;
 mod folder;
 mod inspect;
 mod label;
+mod layout;
 mod model_file;
 mod motive;
 #[cfg(test)]
@@ -44,7 +45,10 @@ mod tick_log;
 mod tum;
 
 pub use error::DatasetError;
-pub use inspect::{Check, Coverage, Determined, Group, Inspection, LogFacts, ReferenceFacts, Wheels, WheelsFound};
+pub use inspect::{
+    Check, Coverage, Determined, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, Wheels, WheelsFound,
+};
+pub use layout::{LAYOUTS, Layout};
 pub use model_file::{parse_model, read_model};
 pub use reference_track::ReferenceTrack;
 pub use robot_file::{parse_robot, read_robot};

@@ -60,7 +60,8 @@ fn all_runs_have_one_rate_which_hands_set_five_times_less_precisely() {
     }
     assert_eq!(rates.len(), 8);
     let mean = rates.iter().map(|rate| rate.value).sum::<f64>() / 8.0;
-    let scatter = |values: &mut dyn Iterator<Item = f64>| (values.map(|v| (v - mean).powi(2)).sum::<f64>() / 7.0).sqrt();
+    let scatter =
+        |values: &mut dyn Iterator<Item = f64>| (values.map(|v| (v - mean).powi(2)).sum::<f64>() / 7.0).sqrt();
     let ours = scatter(&mut rates.iter().map(|rate| rate.value));
     println!("rate {mean:.6} ± {ours:.6}; by hand {:.6}", scatter(&mut hands.iter().copied()));
     // The two clocks are the same hardware throughout: 95 % intervals miss the common rate once in eight or less.

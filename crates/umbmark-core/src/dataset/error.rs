@@ -228,9 +228,7 @@ pub enum DatasetError {
         first: String,
     },
     /// Time that does not go forward.
-    #[error(
-        "{file}:{line}: column \"{column}\" must increase, got {after} s after {before} s; {remedy}"
-    )]
+    #[error("{file}:{line}: column \"{column}\" must increase, got {after} s after {before} s; {remedy}")]
     Time {
         /// The file.
         file: String,

@@ -170,7 +170,9 @@ fn load_file(file: &Path) -> Result<Dataset, DatasetError> {
         _ => {}
     }
     let folder = file.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if let Some(set) = optiodom::set_of(&name_of(file)).filter(|set| folder.join(format!("{set}_metadata.csv")).is_file()) {
+    if let Some(set) =
+        optiodom::set_of(&name_of(file)).filter(|set| folder.join(format!("{set}_metadata.csv")).is_file())
+    {
         return load_optiodom_file(file, folder, set);
     }
     let (robot, path) = match robot_beside(folder) {

@@ -126,7 +126,8 @@ impl Layout {
             let bodies: Vec<String> = bodies.iter().map(|name| quoted(name)).collect();
             return Err(refused(file, &format!("it has {} rigid bodies ({})", bodies.len(), bodies.join(", "))));
         }
-        let place = |kind: &str, axis: &str| body.iter().copied().find(|c| at(kinds, *c) == kind && at(axes, *c) == axis);
+        let place =
+            |kind: &str, axis: &str| body.iter().copied().find(|c| at(kinds, *c) == kind && at(axes, *c) == axis);
         let position = ["X", "Y", "Z"].map(|axis| place("Position", axis));
         let rotation = ["X", "Y", "Z", "W"].map(|axis| place("Rotation", axis));
         let euler = match rotation_type {

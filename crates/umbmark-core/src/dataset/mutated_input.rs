@@ -9,7 +9,8 @@ use super::reference_track::ReferenceTrack;
 use super::robot_file::parse_robot;
 use super::stale::drop_stale;
 use super::start_frame::move_to_start;
-use super::{TickLog, motive, optiodom, packed, reference_file, returns, synchronise, text, tick_log, tum};
+use super::synchronise::{place, synchronise};
+use super::{TickLog, motive, optiodom, packed, reference_file, returns, text, tick_log, tum};
 use crate::drive::Robot;
 use crate::random::Stream;
 
@@ -150,16 +151,17 @@ fn placed(track: &ReferenceTrack) -> bool {
     let time: Vec<f64> = (0..40).map(|i| 0.05 * f64::from(i)).collect();
     let counts: Vec<f64> = (0..40).map(|i| f64::from(i * i)).collect();
     let mut log = TickLog { time, left: counts.clone(), right: counts, reference: Vec::new() };
-    if let Ok(found) = synchronise::synchronise(&log, track, &Robot::labmate()) {
+    if let Ok(found) = synchronise(&log, track, &Robot::labmate()) {
         assert!(found.offset.value.is_finite() && found.rate.std_error.is_finite());
     }
-    synchronise::place(&mut log, track, |time| time);
+    place(&mut log, track, |time| time);
     log.time.windows(2).all(|pair| pair[0] < pair[1]) && log.reference.iter().all(|pose| pose.sample < log.time.len())
 }
 
 #[test]
 fn damaged_tracks() {
-    let tum = "# t tx ty tz qx qy qz qw\n0.1 1 2 0 0 0 0 1\n0.2 1.01 2 0 0 0 0.1 0.995\n0.35 1.02 2e0 0 0 0 -0.1 0.995\n";
+    let tum =
+        "# t tx ty tz qx qy qz qw\n0.1 1 2 0 0 0 0 1\n0.2 1.01 2 0 0 0 0.1 0.995\n0.35 1.02 2e0 0 0 0 -0.1 0.995\n";
     let motive = "Format Version,1.23,Take Name,a,Rotation Type,YXZ,Length Units,Meters,Coordinate Space,Global\n\n\
                   ,Type,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body\n\
                   ,Name,r,r,r,r,r,r,r\n,ID,\"A\",\"A\",\"A\",\"A\",\"A\",\"A\",\"A\"\n\

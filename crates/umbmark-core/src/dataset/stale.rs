@@ -10,7 +10,8 @@ const MOVED: (f64, f64) = (0.005, 0.010);
 
 /// Leaves out the repetitions of stale poses; says how many.
 pub(super) fn drop_stale(file: &str, log: &mut TickLog, robot: &Robot, warnings: &mut Vec<String>) {
-    let repeats = |pair: &[ReferencePose]| (pair[0].x, pair[0].y, pair[0].heading) == (pair[1].x, pair[1].y, pair[1].heading);
+    let repeats =
+        |pair: &[ReferencePose]| (pair[0].x, pair[0].y, pair[0].heading) == (pair[1].x, pair[1].y, pair[1].heading);
     if !log.reference.windows(2).any(repeats) {
         return;
     }
@@ -23,7 +24,9 @@ pub(super) fn drop_stale(file: &str, log: &mut TickLog, robot: &Robot, warnings:
     let stale = log.reference.len() - kept.len();
     log.reference = kept;
     if stale > 0 {
-        warnings.push(format!("{file}: {stale} poses repeat the one before while the wheels turn (stale) and were left out"));
+        warnings.push(format!(
+            "{file}: {stale} poses repeat the one before while the wheels turn (stale) and were left out"
+        ));
     }
 }
 

@@ -46,6 +46,15 @@ pub struct Measured {
     pub interval: Interval,
 }
 
+impl Measured {
+    /// The quantity less a number that is known.
+    pub(super) fn less(&self, known: f64) -> Measured {
+        let Interval { low, high } = self.interval;
+        let interval = Interval { low: low - known, high: high - known };
+        Measured { value: self.value - known, interval, ..*self }
+    }
+}
+
 /// How a track lies against the wheel counts: τ = offset + rate · t, and from the axle to the tracked point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alignment {
@@ -208,12 +217,16 @@ pub(super) fn attach(
         .map_err(|reason| DatasetError::Clocks { file: file.to_owned(), reason: reason.to_string() })?;
     let dropped = place(log, &track.of_axle(&found), |time| found.tick_time(time));
     if standing_at_start(log).is_empty() {
-        let reason = "it does not see the robot before it moves, so START is not known; record some seconds of rest first";
+        let reason =
+            "it does not see the robot before it moves, so START is not known; record some seconds of rest first";
         return Err(DatasetError::Clocks { file: file.to_owned(), reason: reason.to_owned() });
     }
-    warnings.push(format!("{file}: {}", found.sentence()));
+    let of_axle = if found.yaw.is_some() { ", and its poses turned into those of the axle's centre" } else { "" };
+    warnings.push(format!("{file}: its clock was set by the motion{of_axle}"));
     if dropped > 0 {
-        warnings.push(format!("{file}: {dropped} poses fall into gaps of the ticks, or outside of them, and were left out"));
+        warnings.push(format!(
+            "{file}: {dropped} poses fall into gaps of the ticks, or outside of them, and were left out"
+        ));
     }
     Ok(found)
 }

@@ -4,7 +4,6 @@ use super::super::reference_track::ReferenceTrack;
 use super::super::{ReferencePose, TickLog};
 use super::Alignment;
 use crate::geometry::Pose2;
-use std::fmt::Write;
 
 /// Counts are not interpolated over more than so many usual steps.
 const GAP: f64 = 5.0;
@@ -89,27 +88,5 @@ impl ReferenceTrack {
             y: poses.iter().map(|pose| pose.y).collect(),
             heading: Some(poses.iter().map(|pose| pose.heading).collect()),
         }
-    }
-}
-
-impl Alignment {
-    /// The alignment in words.
-    pub fn sentence(&self) -> String {
-        let half = |m: &super::Measured| m.interval.high - m.value;
-        let mut text = format!(
-            "its clock is {:+.4} ± {:.4} s from that of the ticks at their start and runs at {:.6} ± {:.6} of it (95 %)",
-            self.offset.value,
-            half(&self.offset),
-            self.rate.value,
-            half(&self.rate)
-        );
-        if let (Some(ahead), Some(left)) = (&self.lever_ahead, &self.lever_left) {
-            let (a, l) = (1e3 * ahead.value, 1e3 * left.value);
-            let _ = write!(text, "; the tracked point is {a:+.1} mm ahead and {l:+.1} mm left of the axle's centre");
-        }
-        if let Some(yaw) = &self.yaw {
-            let _ = write!(text, "; its heading is turned by {:+.2} deg", yaw.value.to_degrees());
-        }
-        text
     }
 }
