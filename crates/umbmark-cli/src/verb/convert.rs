@@ -90,7 +90,9 @@ pub(super) fn clocks_table(clocks: &[RunClock]) -> String {
             let value = with_precision_of(scale * measured.value, half);
             format!("{value} ± {}", with_precision_of(half, half))
         };
-        let or_dash = |measured: &Option<Measured>, scale| measured.as_ref().map_or("-".into(), |m| cell(m, scale));
+        let or_dash = |measured: &Option<Measured>, scale: f64| {
+            measured.as_ref().map_or("-".into(), |m| format!("{:.1}", scale * m.value))
+        };
         vec![
             clock.run.clone(),
             cell(&a.offset, 1.0),
@@ -100,7 +102,7 @@ pub(super) fn clocks_table(clocks: &[RunClock]) -> String {
             or_dash(&a.yaw, 1f64.to_degrees()),
         ]
     });
-    table(&["clock; 95 %", "offset s", "rate", "ahead mm", "left mm", "yaw deg"], rows)
+    table(&["clock; 95 %", "offset s", "rate", "ahead mm", "left", "yaw deg"], rows)
 }
 
 fn document(arguments: &Arguments, layout: &Layout, data: &Dataset, lost: &[String]) -> Value {
@@ -115,7 +117,8 @@ fn document(arguments: &Arguments, layout: &Layout, data: &Dataset, lost: &[Stri
     })
 }
 
-fn clock_json(clock: &RunClock) -> Value {
+/// A clock that was set, with its run and its track.
+pub(super) fn clock_json(clock: &RunClock) -> Value {
     let mut document = alignment_json(&clock.alignment);
     document["run"] = json!(clock.run);
     document["track"] = json!(clock.track);

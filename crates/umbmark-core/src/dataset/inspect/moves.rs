@@ -4,6 +4,7 @@ use super::super::TickLog;
 use super::super::dead_reckoning::computed_poses;
 use crate::drive::Robot;
 use crate::geometry::Pose2;
+use std::f64::consts::FRAC_PI_2;
 
 /// Speeds are those over so long a time \[s\].
 const OVER: f64 = 0.2;
@@ -15,6 +16,8 @@ const LEAST_LEG: f64 = 0.05;
 const LEAST_TURN: f64 = 0.1;
 /// Legs and turns are alike when they differ by less than this share.
 const ALIKE: f64 = 0.1;
+/// A corner that a real robot turns begins and ends in curves; what is left is this near to a right angle \[rad\].
+const CORNER: f64 = 0.4;
 /// Places and speeds kept for a picture.
 const SKETCH: usize = 400;
 
@@ -88,30 +91,41 @@ fn speeds(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<f64> {
     (0..count).map(speed).collect()
 }
 
-/// The moves in order: samples of one kind in a row, short ones left out.
+/// The moves in order. A leg that bends a little, as a robot does that steers back to its line, is a leg; what is too short to
+/// be meant is a transition.
 fn moves(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<Done> {
     let kinds = kinds(time, poses, arm);
-    let mut moves: Vec<Done> = Vec::new();
+    let mut pieces: Vec<Done> = Vec::new();
     let mut start = 0;
     for same in kinds.chunk_by(|a, b| a == b) {
         let end = (start + same.len()).min(poses.len() - 1);
-        let way: f64 = poses[start..=end].windows(2).map(|p| libm::hypot(p[1].x - p[0].x, p[1].y - p[0].y)).sum();
+        let length: f64 = poses[start..=end].windows(2).map(|p| libm::hypot(p[1].x - p[0].x, p[1].y - p[0].y)).sum();
         let angle = poses[end].heading - poses[start].heading;
-        let found = match same[0] {
+        pieces.extend(match same[0] {
             Kind::Standing => (time[end] - time[start] > LEAST_STOP).then_some(Done::Stop),
-            Kind::Driving => (way > LEAST_LEG).then_some(Done::Leg { length: way }),
             Kind::Turning => (angle.abs() > LEAST_TURN).then_some(Done::Turn { angle }),
-            Kind::Curving => (way > LEAST_LEG && angle.abs() > LEAST_TURN).then_some(Done::Arc { length: way, angle }),
-        };
+            Kind::Going if angle.abs() < CORNER => Some(Done::Leg { length }),
+            Kind::Going => Some(Done::Arc { length, angle }),
+        });
         start = end;
-        match (moves.last_mut(), found) {
-            (Some(Done::Stop), Some(Done::Stop)) => {}
-            (Some(Done::Leg { length }), Some(Done::Leg { length: more })) => *length += more,
-            (Some(Done::Turn { angle }), Some(Done::Turn { angle: more })) => *angle += more,
-            (Some(Done::Arc { length, angle }), Some(Done::Arc { length: l, angle: a })) if *angle * a > 0.0 => {
+    }
+    let mut moves = joined(pieces);
+    moves.retain(|done| !matches!(done, Done::Leg { length } if *length < LEAST_LEG));
+    joined(moves)
+}
+
+/// Neighbours of one kind as one move.
+fn joined(pieces: Vec<Done>) -> Vec<Done> {
+    let mut moves: Vec<Done> = Vec::new();
+    for piece in pieces {
+        match (moves.last_mut(), piece) {
+            (Some(Done::Stop), Done::Stop) => {}
+            (Some(Done::Leg { length }), Done::Leg { length: more }) => *length += more,
+            (Some(Done::Turn { angle }), Done::Turn { angle: more }) => *angle += more,
+            (Some(Done::Arc { length, angle }), Done::Arc { length: l, angle: a }) if *angle * a > 0.0 => {
                 (*length, *angle) = (*length + l, *angle + a);
             }
-            (_, found) => moves.extend(found),
+            _ => moves.push(piece),
         }
     }
     moves
@@ -120,9 +134,8 @@ fn moves(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<Done> {
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Standing,
-    Driving,
+    Going,
     Turning,
-    Curving,
 }
 
 /// What the robot does at each sample, by how far it goes in the time around it.
@@ -138,9 +151,8 @@ fn kinds(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<Kind> {
     let fastest = speeds.iter().map(|(forward, turn)| forward + turn).fold(0.0, f64::max);
     let kind = |(forward, turn): &(f64, f64)| match () {
         () if forward + turn <= STANDING * fastest => Kind::Standing,
-        () if *turn < 0.1 * forward => Kind::Driving,
-        () if *forward < 0.1 * turn => Kind::Turning,
-        () => Kind::Curving,
+        () if *forward < 0.5 * turn => Kind::Turning,
+        () => Kind::Going,
     };
     speeds.iter().map(kind).collect()
 }
@@ -156,7 +168,7 @@ fn shape(moves: &[Done]) -> (Option<&'static str>, String) {
         .filter_map(|d| if let Done::Arc { length, angle } = d { Some((*length, *angle)) } else { None })
         .collect();
     let alike = |a: f64, b: f64| (a - b).abs() <= ALIKE * a.abs().max(b.abs());
-    let right = |angle: &f64| alike(angle.abs(), std::f64::consts::FRAC_PI_2) && *angle * turns[0] > 0.0;
+    let right = |angle: &f64| (angle.abs() - FRAC_PI_2).abs() < CORNER && *angle * turns[0] > 0.0;
     let way: f64 = legs.iter().sum();
     match (&legs[..], &arcs[..]) {
         ([a, b, c, d], [])
