@@ -1,8 +1,7 @@
-//! Reads a dataset folder a number of times and prints the CPU-bound seconds of each, for `peers/read_csv.py`. With `--write`
-//! it writes a folder with one log of so many rows first.
+//! Reads a dataset folder a number of times and prints its rows and poses, for `peers/read_csv.py`; with `--write` writes a
+//! folder with one log of so many rows.
 
 use std::path::PathBuf;
-use std::time::Instant;
 use umbmark_benches::logs::{ROBOT, log_text};
 use umbmark_core::dataset::Dataset;
 
@@ -17,11 +16,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Ok(());
     }
     for _ in 0..number {
-        let began = Instant::now();
         let data = Dataset::load(&folder)?;
-        let seconds = began.elapsed().as_secs_f64();
         let log = data.runs[0].log.as_ref().ok_or("no log")?;
-        print_line(&format!("{seconds} {} {}", log.time.len(), log.reference.len()));
+        print_line(&format!("{} {}", log.time.len(), log.reference.len()));
     }
     Ok(())
 }

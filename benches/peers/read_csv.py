@@ -2,11 +2,13 @@
 
 Writes a log, has every reader turn it into arrays a few times in turn, checks that all found the
 same rows and poses, and prints a table in Markdown. The Python readers only make arrays; umbmark
-also checks every row, undoes roll-overs and computes the return error. Needs numpy and pandas.
+also checks every row, undoes roll-overs and computes the return error, and its start counts too.
+Seconds are those of the processor, system calls included. Needs numpy and pandas.
 """
 
 import argparse
 import csv
+import resource
 import statistics
 import subprocess
 import tempfile
@@ -65,10 +67,12 @@ def main() -> None:
                 began = time.process_time()
                 found.add(read(file))
                 seconds[name].append(time.process_time() - began)
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
             said = subprocess.run([program, "--read", folder, "1"], check=True, capture_output=True, text=True)
-            took, rows, poses = said.stdout.split()
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            rows, poses = said.stdout.split()
             found.add((int(rows), int(poses)))
-            seconds["umbmark"].append(float(took))
+            seconds["umbmark"].append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
     if len(found) != 1:
         raise SystemExit(f"the readers found different rows and poses: {found}")
     median = {name: statistics.median(times) for name, times in seconds.items()}

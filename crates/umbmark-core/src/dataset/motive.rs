@@ -122,7 +122,10 @@ impl Layout {
         let body: Vec<usize> = (2..axes.len()).filter(|c| at(types, *c) == "Rigid Body").collect();
         let mut bodies: Vec<String> = body.iter().map(|column| at(names, *column)).collect();
         bodies.dedup();
-        if bodies.len() != 1 {
+        if bodies.is_empty() {
+            return Err(refused(file, "no rigid body is in it"));
+        }
+        if bodies.len() > 1 {
             let bodies: Vec<String> = bodies.iter().map(|name| quoted(name)).collect();
             return Err(refused(file, &format!("it has {} rigid bodies ({})", bodies.len(), bodies.join(", "))));
         }

@@ -133,7 +133,7 @@ pub enum SynchroniseError {
 ///
 /// [`SynchroniseError`] where there is too little motion, or where the two motions do not agree.
 pub fn synchronise(log: &TickLog, track: &ReferenceTrack, robot: &Robot) -> Result<Alignment, SynchroniseError> {
-    for (rows, what) in [(log.time.len(), "ticks"), (track.time.len(), "poses")] {
+    for (rows, what) in [(log.time.len(), "rows of ticks beside it"), (track.time.len(), "poses")] {
         if rows < 20 {
             return Err(SynchroniseError::TooShort { found: format!("{rows} {what}"), needed: "20" });
         }
