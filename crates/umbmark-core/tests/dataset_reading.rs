@@ -362,7 +362,9 @@ fn a_track_beside_the_log_is_set_by_the_motion_in_every_format() {
         let (v, w) = if (100..2500).contains(&i) { (v, w) } else { (0.0, 0.0) };
         counted += &format!("{},{},{}\n", 0.02 * f64::from(i), left / per_tick, right / per_tick);
         time.push(7.5 + 1.01 * 0.02 * f64::from(i));
-        (x.push(px), y.push(py), heading.push(ph));
+        x.push(px);
+        y.push(py);
+        heading.push(ph);
         (left, right) = (left + 0.02 * (v - 0.25 * w), right + 0.02 * (v + 0.25 * w));
         (px, py, ph) = (px + 0.02 * v * ph.cos(), py + 0.02 * v * ph.sin(), ph + 0.02 * w);
     }

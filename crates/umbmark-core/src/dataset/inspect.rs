@@ -176,10 +176,10 @@ fn shape_check(logs: &[LogFacts], path: Option<&Path>) -> Option<Check> {
     let told = path.map(|path| path.shape().name).filter(|name| *name != "waypoints");
     let differs = |moves: &&MovesFound| told.is_some() && moves.shape != told;
     let found = moves().find(differs).or_else(|| moves().next())?;
-    let MovesFound { described, legs, turns, stops, .. } = found;
+    let MovesFound { described, stops, .. } = found;
     Some(Check {
         name: "path by ticks",
-        found: format!("{described}; {legs} legs, {turns} turns, {stops} stops on the way"),
+        found: format!("{described}; {stops} stops on the way"),
         good: "the shape that [path] in robot.toml has",
         ok: !differs(&found),
     })

@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn what_is_written_is_read_back() {
         let poses: Vec<(f64, f64, f64, f64)> =
-            (-8..=8).map(|i| f64::from(i)).map(|i| (i + 20.0, 0.1 * i, -0.3 * i, 0.4 * i)).collect();
+            (-8..=8).map(f64::from).map(|i| (i + 20.0, 0.1 * i, -0.3 * i, 0.4 * i)).collect();
         let rows = parse_tum("f", &tum_text("poses", poses.iter().copied())).unwrap();
         assert_eq!(rows.time.len(), poses.len());
         for ((time, pose), (t, x, y, heading)) in rows.time.iter().zip(&rows.poses).zip(poses) {

@@ -6,7 +6,7 @@ use crate::drive::Robot;
 use crate::geometry::Pose2;
 use std::f64::consts::FRAC_PI_2;
 
-/// Speeds are those over so long a time \[s\].
+/// Speeds are those over so long a time \[s\], and over two samples at least.
 const OVER: f64 = 0.2;
 /// Below this share of the greatest speed of a wheel the robot stands.
 const STANDING: f64 = 0.05;
@@ -141,8 +141,8 @@ enum Kind {
 /// What the robot does at each sample, by how far it goes in the time around it.
 fn kinds(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<Kind> {
     let around = |i: usize| {
-        let from = time.partition_point(|t| *t < time[i] - 0.5 * OVER);
-        let to = time.partition_point(|t| *t <= time[i] + 0.5 * OVER).min(time.len()) - 1;
+        let from = time.partition_point(|t| *t < time[i] - 0.5 * OVER).min(i.saturating_sub(1));
+        let to = (time.partition_point(|t| *t <= time[i] + 0.5 * OVER) - 1).max((i + 1).min(time.len() - 1));
         let moved = poses[from].between(&poses[to]);
         let seconds = (time[to] - time[from]).max(f64::MIN_POSITIVE);
         (libm::hypot(moved.x, moved.y) / seconds, arm * moved.heading.abs() / seconds)
