@@ -17,6 +17,9 @@ const RATE_STEP: f64 = 0.005;
 /// Finest step of the grid \[s\], and the most steps over the ticks.
 const STEP: f64 = 0.1;
 const MOST: f64 = 2000.0;
+/// The same, and the most tries, when looking closer.
+const MOST_CLOSER: f64 = 20_000.0;
+const TRIES: usize = 400;
 
 /// Speed and turn rate (times the wheels' arm) on an even grid.
 struct Rates {
@@ -75,7 +78,7 @@ pub(super) fn search(ticks: &Motion, seen: &Motion, arm: f64) -> Guess {
 /// Halves the steps around a guess until they are small beside a tick's period.
 fn closer(ticks: &Motion, seen: &Motion, arm: f64, mut best: Guess, step: f64) -> Guess {
     let half = 0.5 * (ticks.last() - ticks.first());
-    let fine = STEP.min(step);
+    let fine = STEP.max(2.0 * half / MOST_CLOSER).min(step);
     let steps = ((2.0 * half / fine).ceil() as usize).max(1);
     let counted = Rates::of(ticks, ticks.first(), fine, steps, arm, seen.has_heading);
     let agreement = |offset: f64, rate: f64| {
@@ -84,7 +87,10 @@ fn closer(ticks: &Motion, seen: &Motion, arm: f64, mut best: Guess, step: f64) -
     };
     best.agreement = agreement(best.offset, best.rate);
     let (mut ahead, mut faster) = (step, RATE_STEP);
-    while ahead > 0.1 * ticks.period.min(0.1) {
+    for _ in 0..TRIES {
+        if ahead <= 0.1 * ticks.period.min(0.1) {
+            break;
+        }
         let tried = [(ahead, 0.0), (-ahead, 0.0), (0.0, faster), (0.0, -faster)];
         let next = tried
             .map(|(a, f)| (best.offset + a, best.rate + f))
