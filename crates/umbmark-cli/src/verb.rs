@@ -3,6 +3,7 @@
 mod calibrate;
 mod compare;
 mod completions;
+mod convert;
 mod diagnose;
 mod effects;
 mod fit;
@@ -41,6 +42,8 @@ pub enum Verb {
     Learn(learn::Arguments),
     /// Look at a dataset: what it holds, whether it is any good, what it can determine
     Inspect(inspect::Arguments),
+    /// Write a dataset in another layout; sets clocks that disagree by the motion
+    Convert(convert::Arguments),
     /// Write a robot.toml and a returns.csv to fill in
     Init(init::Arguments),
     /// List the effects that make a robot err, or explain one
@@ -62,6 +65,7 @@ impl Verb {
             Verb::Fit(arguments) => fit::run(arguments, session),
             Verb::Learn(arguments) => learn::run(arguments, session),
             Verb::Inspect(arguments) => inspect::run(arguments, session),
+            Verb::Convert(arguments) => convert::run(arguments, session),
             Verb::Init(arguments) => init::run(arguments, session),
             Verb::Effects(arguments) => effects::run(arguments, session),
             Verb::Completions(arguments) => completions::run(arguments, session),

@@ -139,7 +139,9 @@ pub enum PathError {
         got: usize,
     },
     /// Waypoints that are no path.
-    #[error("waypoints must be two or more finite, distinct points in a row; point {index} is ({x}, {y})")]
+    #[error(
+        "waypoints must be two or more points of at most 1e6 m either way, each another than the one before; point {index} is ({x}, {y})"
+    )]
     Waypoint {
         /// Number of the offending point, from 1.
         index: usize,

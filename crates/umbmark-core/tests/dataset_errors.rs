@@ -29,7 +29,7 @@ fn contents(case: &Case, folder: &Path) -> Vec<Vec<u8>> {
 #[test]
 fn every_piece_of_bad_input_is_answered_with_its_sentence() {
     let cases = cases();
-    assert!(cases.len() > 80);
+    assert!(cases.len() > 100);
     let mut wrong = Vec::new();
     for case in &cases {
         let said = said(case);
@@ -38,4 +38,23 @@ fn every_piece_of_bad_input_is_answered_with_its_sentence() {
         }
     }
     assert!(wrong.is_empty(), "{} differ:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+/// The table of `docs/bad_input.md`, which is made of the cases; `SNAPSHOTS=overwrite` writes it anew.
+#[test]
+fn the_table_in_the_documentation_is_that_of_the_cases() {
+    let shown = |text: &str| text.replace('|', "\\|").replace('<', "&lt;");
+    let mut table = String::from(
+        "# Bad input\n\nWhat cannot be used, and what is said of it. The table is made of the cases that the tests run \
+         ([`cases.txt`](../crates/umbmark-core/tests/bad_input/cases.txt), which holds the input too).\n\n\
+         | what is wrong | what is said |\n|---|---|\n",
+    );
+    for case in cases() {
+        table += &format!("| {} | {} |\n", shown(&case.name), shown(&case.says));
+    }
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/bad_input.md");
+    if std::env::var("SNAPSHOTS").is_ok_and(|what| what == "overwrite") {
+        std::fs::write(&file, &table).unwrap();
+    }
+    assert!(std::fs::read_to_string(&file).is_ok_and(|text| text == table), "write it anew with SNAPSHOTS=overwrite");
 }

@@ -116,7 +116,7 @@ fn record(arguments: &Arguments, robot: &Robot, path: &Path, model: &Model, seed
             }
         }
     }
-    Ok(Dataset { robot: Some(robot.clone()), path: Some(path.clone()), runs, warnings: Vec::new() })
+    Ok(Dataset { robot: Some(robot.clone()), path: Some(path.clone()), runs, clocks: Vec::new(), warnings: Vec::new() })
 }
 
 fn run_json(run: &Run) -> Value {

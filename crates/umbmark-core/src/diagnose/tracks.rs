@@ -32,6 +32,8 @@ pub(crate) use look::Finding;
 pub const LEAST_GAIN: f64 = 0.02;
 /// A smooth speaks for an unlisted effect where the best effect of the catalogue explains less than this share of it.
 const EXPLAINED: f64 = 0.85;
+/// Share by which errors in runs left out must fall for an unlisted effect to be spoken of.
+const TELLING: f64 = 0.1;
 /// Fewer runs give no certificate.
 const FEWEST: usize = 2;
 
@@ -87,7 +89,7 @@ fn smooth_gains(exam: &Examination, finding: &Finding, found: &[usize]) -> bool 
         })
     };
     let base = [&exam.free[..], found].concat();
-    of([&base[..], own].concat()).gain(&of(base.clone())) >= LEAST_GAIN
+    of([&base[..], own].concat()).gain(&of(base.clone())) >= TELLING
 }
 
 /// A smooth, for people.

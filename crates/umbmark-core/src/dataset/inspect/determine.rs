@@ -31,12 +31,13 @@ const PIECES: usize = 8;
 /// Combinations weaker than this \[m or rad per unit of the ratio\], or this share of the strongest, are rounding.
 const WEAKEST: f64 = 1e-9;
 
+/// The answers, and how many combinations of the three ratios are shown.
 pub(super) fn determine(
     groups: &[Group],
     logs: &[LogFacts],
     robot: Option<&Robot>,
     path: Option<&Path>,
-) -> Vec<Determined> {
+) -> (Vec<Determined>, usize) {
     let robot = robot.cloned().unwrap_or_else(Robot::labmate);
     let path = path.cloned().unwrap_or_else(Path::umbmark);
     let mut seen = Vec::new();
@@ -57,7 +58,7 @@ pub(super) fn determine(
     let mut answers =
         vec![ratio("E_d", &seen, 0, tracked), ratio("E_b (if E_s = 1)", &seen, 1, tracked), scale(&seen, tracked)];
     answers.extend(other_answers(groups));
-    answers
+    (answers, rank(&seen, &[0, 1, 2]))
 }
 
 /// Derivatives of the pose by each quantity, along the path.
