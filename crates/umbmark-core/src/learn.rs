@@ -270,3 +270,6 @@ fn grown<E: Evidence>(evidence: &E, model: &Model, effect: &str) -> Result<Model
     grown.add(effect).map_err(DiagnoseError::Model)?.free = true;
     Ok(evidence.fit(&grown)?.0)
 }
+
+#[cfg(test)]
+mod tests;

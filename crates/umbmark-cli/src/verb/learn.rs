@@ -90,7 +90,7 @@ fn document(learnt: &Learnt, options: &Options) -> Value {
 fn text(data: &Dataset, learnt: &Learnt, options: &Options) -> String {
     let robot = data.robot.as_ref().map_or("", |robot| robot.name.as_str());
     let mut text = format!("What {robot} taught\n\n");
-    let header = ["added", "p", "error [mm]", "left out [mm]", "left out [deg]", "AICc"];
+    let header = ["added", "p", "error [mm]", "left out [mm]", "[deg]", "AICc"];
     text += &table(&header, learnt.steps.iter().map(row));
     text += "\n\n";
     text += &hanging(

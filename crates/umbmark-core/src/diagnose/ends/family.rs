@@ -69,14 +69,14 @@ impl Family {
         let judges: Vec<Judge> = (0..asked.units.len())
             .map(|i| match asked.units[i].pattern {
                 Some(_) => Judge::Exact([1.0, (counts[0] + counts[1] - size) as f64]),
-                None => Judge::simulated(draws.iter().map(|d| d.units[i])),
+                None => Judge::simulated(&draws, &observed, |s| s.units[i]),
             })
             .collect();
         let exact_whole = asked.base.is_empty().then(|| wilks(&asked.moments).map(|(_, freedom)| freedom)).flatten();
         let has_rest = asked.base.len() < 2 * size;
         let whole = match exact_whole {
             Some(freedom) => Judge::Exact(freedom),
-            None if has_rest => Judge::simulated(draws.iter().map(|d| d.whole)),
+            None if has_rest => Judge::simulated(&draws, &observed, |s| s.whole),
             None => Judge::Silent,
         };
         let smallest: Vec<f64> = draws.par_iter().map(|draw| smallest(draw, &judges, &whole)).collect();
@@ -113,15 +113,15 @@ fn smallest(draw: &Statistics, judges: &[Judge], whole: &Judge) -> f64 {
 /// Where the p of a statistic comes from.
 enum Judge {
     Exact([f64; 2]),
-    /// Statistics of null tests, rising.
+    /// Statistics of the null tests and of the observed one, rising: all are judged alike.
     Simulated(Vec<f64>),
     /// There is nothing to test.
     Silent,
 }
 
 impl Judge {
-    fn simulated(draws: impl Iterator<Item = f64>) -> Judge {
-        let mut sorted: Vec<f64> = draws.collect();
+    fn simulated(draws: &[Statistics], observed: &Statistics, which: impl Fn(&Statistics) -> f64) -> Judge {
+        let mut sorted: Vec<f64> = draws.iter().chain([observed]).map(which).collect();
         sorted.sort_by(f64::total_cmp);
         Judge::Simulated(sorted)
     }
@@ -130,8 +130,8 @@ impl Judge {
         match self {
             Judge::Exact(freedom) => f_upper_tail(statistic, *freedom),
             Judge::Simulated(sorted) => {
-                let larger = sorted.len() - sorted.partition_point(|s| *s < statistic);
-                (1 + larger) as f64 / (1 + sorted.len()) as f64
+                let as_large = sorted.len() - sorted.partition_point(|s| *s < statistic);
+                as_large as f64 / sorted.len() as f64
             }
             Judge::Silent => 1.0,
         }

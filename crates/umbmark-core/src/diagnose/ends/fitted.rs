@@ -147,7 +147,8 @@ fn derivative(pose: &Pose2<Dual>) -> Vector3<f64> {
     Vector3::new(pose.x.eps, pose.y.eps, pose.heading.eps)
 }
 
-/// Values that are to be fitted and show, and those that do not: E_d and E_b are asked first, then one after the other.
+/// Values that are to be fitted and show, and those that do not: E_d and E_b are asked first, then one after the other. All at the
+/// nominal robot: elsewhere, terms of second order seem to tell apart what no measurement could.
 fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     let flags = model.parts().iter().flat_map(|part| part.values.iter().map(|_| part.free));
     let names = names(model);
@@ -155,9 +156,9 @@ fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     let mut asked: Vec<usize> =
         flags.enumerate().filter(|(i, free)| *free && is_size(ends, &nominal, *i)).map(|(i, _)| i).collect();
     asked.sort_by_key(|i| !FIRST.contains(&names[*i].0));
-    let start: Vec<f64> = model.values().collect();
+    let start: Vec<f64> = nominal.values().collect();
     let column = |index: usize| {
-        let problem = Returns { ends, model, start: &start, free: &[index] };
+        let problem = Returns { ends, model: &nominal, start: &start, free: &[index] };
         problem.jacobian(&[start[index]]).column(0).into_owned()
     };
     let columns: Vec<DVector<f64>> = asked.iter().map(|i| column(*i)).collect();

@@ -34,15 +34,25 @@ impl Moments {
         Moments { counts, means, scatter }
     }
 
-    /// Moments of as many runs whose residuals are noise of unit covariance.
+    /// Moments of as many simulated runs without any effect, where the observed ones have scatter ν I.
+    ///
+    /// Their covariance is itself drawn, as uncertain as the observed runs leave it: the inverse of a Wishart matrix. Exact tests
+    /// are the same for every covariance; others would accuse too often were the estimate taken for the truth.
     pub fn draw(counts: [usize; 2], size: usize, stream: &mut Stream) -> Moments {
+        let freedom = counts[0] + counts[1] - 2;
         let normal = |stream: &mut Stream| DVector::from_fn(size, |_, _| stream.normal());
-        let means = counts.map(|count| normal(stream) / f64::from(count as u32).sqrt());
-        let mut scatter = DMatrix::zeros(size, size);
-        for _ in 0..counts[0] + counts[1] - 2 {
-            let z = normal(stream);
-            scatter.ger(1.0, &z, &z, 1.0);
-        }
+        let wishart = |stream: &mut Stream| {
+            (0..freedom).fold(DMatrix::zeros(size, size), |mut sum: DMatrix<f64>, _| {
+                let z = normal(stream);
+                sum.ger(1.0, &z, &z, 1.0);
+                sum
+            })
+        };
+        let precision = wishart(stream) / freedom as f64;
+        let root = precision.cholesky().and_then(|c| c.l().transpose().try_inverse());
+        let root = root.unwrap_or_else(|| DMatrix::identity(size, size));
+        let means = counts.map(|count| &root * normal(stream) / f64::from(count as u32).sqrt());
+        let scatter = &root * wishart(stream) * root.transpose();
         Moments { counts, means, scatter }
     }
 
