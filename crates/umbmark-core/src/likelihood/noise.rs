@@ -175,3 +175,72 @@ pub(crate) fn gram(values: &[f64], columns: usize) -> DMatrix<f64> {
     sum.fill_lower_triangle_with_upper_triangle();
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::{Dataset, Run};
+    use crate::drive::Robot;
+    use crate::effect::{Model, TestKind};
+    use crate::path::{Direction, Path, SQUARE, SpeedProfile};
+    use crate::simulate::{Odometry, Phase, Simulator, Truth};
+
+    /// `runs` simulated squares each way, watched at 20 Hz.
+    fn watched(model: &Model, runs: u64) -> Dataset {
+        let path = Path::new(&SQUARE, &[2.0], SpeedProfile::default()).unwrap();
+        let robot = model.robot();
+        let mut simulator = Simulator::new(robot, &path, Odometry::EveryTick, Phase::Random).unwrap();
+        let mut truth = Truth::new(model);
+        let mut data =
+            Dataset { robot: Some(robot.clone()), path: Some(path), runs: vec![], clocks: vec![], warnings: vec![] };
+        for (direction, number) in Direction::BOTH.into_iter().flat_map(|d| (0..runs).map(move |n| (d, n))) {
+            simulator.open(&mut truth, 11, 2 * number + direction as u64);
+            let recording = simulator.record(&mut truth, direction, TestKind::Systematic, [100.0, 20.0]).unwrap();
+            data.runs.push(Run {
+                name: format!("{}_{number}", direction.name()),
+                number: number as u32,
+                direction: Some(direction),
+                test: TestKind::Systematic,
+                log: Some(recording.log),
+                returned: Some(recording.returned),
+            });
+        }
+        data
+    }
+
+    /// Seed 11, 6 + 6 runs: sizes within a quarter of the truth, parameters within four standard errors.
+    #[test]
+    fn the_noise_of_the_wheels_and_of_the_reference_is_found_and_intervals_follow() {
+        let robot = Robot::labmate();
+        let mut model = Model::new(&robot);
+        let truth = [("wheel_diameter_ratio", "e_d", 1.002), ("wheelbase", "e_b", 0.99), ("scale", "e_s", 1.003)];
+        for (effect, parameter, value) in truth {
+            model.set(effect, parameter, value).unwrap();
+        }
+        let k = 6e-4;
+        model.set("wheel_noise", "k_sqrt_m", k).unwrap();
+        model.set("reference_noise", "position_sd_m", 8e-4).unwrap();
+        model.set("reference_noise", "heading_sd_rad", 1e-3).unwrap();
+        let observed = Observed::new(&watched(&model, 6), &robot).unwrap();
+        let mut asked = Model::new(&robot);
+        for (effect, ..) in truth {
+            asked.add(effect).unwrap().free = true;
+        }
+        let fitted = observed.fit(&asked, &Noise::default(), &[]).unwrap();
+        let noise = &fitted.noise;
+        for (found, put_in) in [
+            (noise.heading_per_metre, k * 2f64.sqrt() / 0.34),
+            (noise.forward_per_metre, k / 2f64.sqrt()),
+            (noise.within_position, 8e-4),
+            (noise.within_heading, 1e-3),
+        ] {
+            assert!((found / put_in - 1.0).abs() < 0.25, "{found} {put_in}");
+        }
+        let covariance = fitted.covariance.unwrap();
+        for (i, (_, parameter, value)) in truth.into_iter().enumerate() {
+            let found = fitted.model.values().nth(fitted.free[i]).unwrap();
+            let sd = covariance[(i, i)].sqrt();
+            assert!((found - value).abs() < 4.0 * sd && sd < 3e-4, "{parameter}: {found} {value} {sd}");
+        }
+    }
+}

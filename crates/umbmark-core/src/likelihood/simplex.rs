@@ -63,7 +63,7 @@ mod tests {
         let valley = |x: &[f64; 2]| {
             if x[0] > 3.0 { f64::NAN } else { 100.0 * (x[1] - x[0] * x[0]).powi(2) + (1.0 - x[0]).powi(2) }
         };
-        let best = minimise([-1.2, 1.0], 0.7, 400, valley);
+        let best = minimise([-1.2, 1.0], 0.7, 400, |x| 1e3 * valley(x));
         assert!(valley(&best) < 1e-2, "{best:?}");
     }
 }

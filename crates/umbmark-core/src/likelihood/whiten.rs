@@ -2,10 +2,13 @@
 
 use super::noise::Noise;
 use super::observed::{Block, ObservedRun};
-use nalgebra::{Matrix3, RowVector3, SMatrix, Vector3};
+use nalgebra::{Matrix3, RowVector3, Vector3};
 
 /// Standard deviation of a START that is not taken on trust \[m, rad\]: beyond all misplacement, so that it costs one pose.
 const FREE_START: f64 = 1.0;
+
+/// Standard deviation of a heading that was not measured \[rad\].
+const NOT_MEASURED: f64 = 1e6;
 
 /// Columns of a run in which noise is independent with unit variance: two or three rows a block.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +24,24 @@ pub struct Whitened {
 }
 
 impl Whitened {
+    /// The rows of one block: L⁻¹ v of every column.
+    fn push(&mut self, lower: &Matrix3<f64>, innovations: &[Vector3<f64>], rows: usize, block: usize) {
+        let first = self.values.len();
+        self.values.resize(first + rows * self.columns, 0.0);
+        for (c, v) in innovations.iter().enumerate() {
+            let a = v[0] / lower[(0, 0)];
+            let b = (v[1] - lower[(1, 0)] * a) / lower[(1, 1)];
+            let white = [a, b, (v[2] - lower[(2, 0)] * a - lower[(2, 1)] * b) / lower[(2, 2)]];
+            for (r, value) in white.into_iter().take(rows).enumerate() {
+                self.values[first + r * self.columns + c] = value;
+            }
+        }
+        for r in 0..rows {
+            self.block.push(block);
+            self.log_scale += libm::log(lower[(r, r)]);
+        }
+    }
+
     /// The rows, one after the other.
     pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
         self.values.chunks_exact(self.columns.max(1))
@@ -47,53 +68,19 @@ impl Noise {
         for (index, block) in run.blocks.iter().enumerate() {
             p += self.growth(&block.growth);
             let h = observation(block);
-            let rows = if block.headings > 0 { 3 } else { 2 };
             for (column, (state, innovation)) in columns.iter().zip(states.iter().zip(&mut innovations)) {
                 *innovation = Vector3::from(column[index]) - h * state;
             }
-            if rows == 3 {
-                let s = h * p * h.transpose() + self.measurement(block);
-                let Some(factor) = s.cholesky() else { continue };
-                let gain = factor.solve(&(h * p)).transpose();
-                let lower = factor.l();
-                self.emit(&mut out, &lower, &innovations, 3, index);
-                update(&mut states, &innovations, &gain);
-                p -= gain * h * p;
-            } else {
-                let h = h.fixed_view::<2, 3>(0, 0).into_owned();
-                let noise = self.measurement(block).fixed_view::<2, 2>(0, 0).into_owned();
-                let s = h * p * h.transpose() + noise;
-                let Some(factor) = s.cholesky() else { continue };
-                let gain: SMatrix<f64, 3, 2> = factor.solve(&(h * p)).transpose();
-                let lower = Matrix3::identity();
-                let mut lower = lower;
-                lower.fixed_view_mut::<2, 2>(0, 0).copy_from(&factor.l());
-                self.emit(&mut out, &lower, &innovations, 2, index);
-                let mut wide = Matrix3::zeros();
-                wide.fixed_view_mut::<3, 2>(0, 0).copy_from(&gain);
-                update(&mut states, &innovations, &wide);
-                p -= gain * h * p;
+            let Some(factor) = (h * p * h.transpose() + self.measurement(block)).cholesky() else { continue };
+            let gain = factor.solve(&(h * p)).transpose();
+            out.push(&factor.l(), &innovations, if block.headings > 0 { 3 } else { 2 }, index);
+            for (state, innovation) in states.iter_mut().zip(&innovations) {
+                *state += gain * innovation;
             }
+            p -= gain * h * p;
             p = 0.5 * (p + p.transpose());
         }
         out
-    }
-
-    fn emit(&self, out: &mut Whitened, lower: &Matrix3<f64>, innovations: &[Vector3<f64>], rows: usize, block: usize) {
-        let first = out.values.len();
-        out.values.resize(first + rows * out.columns, 0.0);
-        for (c, v) in innovations.iter().enumerate() {
-            let a = v[0] / lower[(0, 0)];
-            let b = (v[1] - lower[(1, 0)] * a) / lower[(1, 1)];
-            let white = [a, b, (v[2] - lower[(2, 0)] * a - lower[(2, 1)] * b) / lower[(2, 2)]];
-            for (r, value) in white.into_iter().take(rows).enumerate() {
-                out.values[first + r * out.columns + c] = value;
-            }
-        }
-        for r in 0..rows {
-            out.block.push(block);
-            out.log_scale += libm::log(lower[(r, r)]);
-        }
     }
 
     /// Covariance of the error at START.
@@ -105,7 +92,10 @@ impl Noise {
     /// Variance of a block's mean.
     fn measurement(&self, block: &Block) -> Matrix3<f64> {
         let position = self.reference_position.powi(2) + self.within_position.powi(2) / block.count as f64;
-        let heading = self.reference_heading.powi(2) + self.within_heading.powi(2) / block.headings.max(1) as f64;
+        let heading = match block.headings {
+            0 => NOT_MEASURED * NOT_MEASURED,
+            count => self.reference_heading.powi(2) + self.within_heading.powi(2) / count as f64,
+        };
         Matrix3::from_diagonal(&Vector3::new(position, position, heading))
     }
 }
@@ -117,12 +107,6 @@ fn observation(block: &Block) -> Matrix3<f64> {
         RowVector3::new(0.0, 1.0, block.place.x),
         RowVector3::new(0.0, 0.0, 1.0),
     ])
-}
-
-fn update(states: &mut [Vector3<f64>], innovations: &[Vector3<f64>], gain: &Matrix3<f64>) {
-    for (state, innovation) in states.iter_mut().zip(innovations) {
-        *state += gain * innovation;
-    }
 }
 
 #[cfg(test)]
