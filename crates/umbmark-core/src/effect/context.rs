@@ -75,6 +75,12 @@ impl Context {
 }
 
 impl<T> Context<T> {
+    /// Whether the robot turns about a point within a wheelbase of its axle's centre: |v_R - v_L| > |v|.
+    pub fn turns_on_the_spot(&self) -> bool {
+        let [left, right] = self.wheel_speed;
+        (right - left).abs() > self.speed.abs()
+    }
+
     /// Mean acceleration of the axle's centre \[m/s²\].
     pub fn acceleration(&self) -> f64 {
         if self.duration > 0.0 { 0.5 * (self.speed_change[0] + self.speed_change[1]) / self.duration } else { 0.0 }
@@ -179,6 +185,11 @@ impl Progress {
     /// Time since the run began \[s\].
     pub fn time(&self) -> f64 {
         self.now.time
+    }
+
+    /// Path length driven in all runs of the session so far \[m\].
+    pub fn session_distance(&self) -> f64 {
+        self.now.session_distance
     }
 
     fn follow_turn(&mut self, forward: f64, rotation: f64) {
