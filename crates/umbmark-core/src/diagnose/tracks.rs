@@ -34,6 +34,8 @@ pub const LEAST_GAIN: f64 = 0.02;
 const EXPLAINED: f64 = 0.85;
 /// Share by which errors in runs left out must fall for an unlisted effect to be spoken of.
 const TELLING: f64 = 0.1;
+/// So many certified effects are tried for their gain.
+const TRIES: usize = 4;
 /// Fewer runs give no certificate.
 const FEWEST: usize = 2;
 
@@ -54,27 +56,54 @@ pub(crate) fn missing(exam: &Examination, options: &Options, most: usize) -> Mis
     loop {
         let findings = look::look(exam, &found, false, options);
         let smooth = look::look(exam, &found, true, options).into_iter().next().filter(|s| s.certified(options));
-        let gained = |finding: &Finding| {
-            let before = exam.left_out(&found);
-            let pick = |products: &_| exam.likeliest(products, &found);
-            finding.certified(options) && exam.left_out_with(&found, pick).gain(&before) >= LEAST_GAIN
-        };
-        let best = findings.first().filter(|_| effects.len() < most && exam.fitted.observed.runs.len() >= FEWEST);
-        let best = best.filter(|finding| gained(finding));
+        let enough = effects.len() < most && exam.fitted.observed.runs.len() >= FEWEST;
+        let best = if enough { first_with_gain(exam, &findings, &found, options) } else { None };
         let explains = best.map_or(0.0, |finding| finding.answer.drop);
         let unlisted = smooth.filter(|s| explains < EXPLAINED * s.answer.drop && smooth_gains(exam, s, &found));
-        let next = best.filter(|_| unlisted.is_none());
-        if let Some(finding) = next {
-            let Some(suspect) = look::suspect(exam, finding, &found) else { break };
-            found.extend(&finding.answer.columns);
-            effects.push((finding.clone(), suspect));
-            continue;
+        if let (Some(finding), None) = (best, &unlisted) {
+            if let Some(suspect) = look::suspect(exam, finding, &found) {
+                found.extend(&finding.answer.columns);
+                effects.push((finding.clone(), suspect));
+                continue;
+            }
         }
         let others = findings.iter().filter_map(|finding| look::suspect(exam, finding, &found)).collect();
         let smooth = unlisted.and_then(|finding| dependence(exam, &finding).map(|told| (finding, told)));
         return Missing { effects, others, smooth };
     }
-    Missing { effects, others: Vec::new(), smooth: None }
+}
+
+/// The first certified effect with which runs left out are predicted better, the choice being made anew without each.
+///
+/// Physics comes before the reference: an effect is asked beside all effects of the reference and stands for itself, where a
+/// delay, asked without itself, takes a share of what physics explains better.
+fn first_with_gain<'a>(
+    exam: &Examination,
+    findings: &'a [Finding],
+    found: &[usize],
+    options: &Options,
+) -> Option<&'a Finding> {
+    let nuisance = |finding: &Finding| exam.asked[finding.answer.asked].nuisance;
+    for of_reference in [false, true] {
+        let mut passed: Vec<&str> = Vec::new();
+        let own = findings.iter().filter(|f| nuisance(f) == of_reference && f.certified(options));
+        for finding in own.take(TRIES) {
+            let wanted = |asked: &examination::Asked| {
+                let name = asked.effect().map_or("", |effect| effect.about.name);
+                asked.nuisance == of_reference && !passed.contains(&name)
+            };
+            // Effects of the reference are in both predictions, so that the gain is the effect's own.
+            let others = exam.base(Some(finding.answer.asked)).into_iter().filter(|c| !exam.free.contains(c));
+            let beside: Vec<usize> = found.iter().copied().chain(others).collect();
+            let before = exam.left_out(&beside);
+            let after = exam.left_out_with(&beside, |products| exam.likeliest(products, found, wanted));
+            if after.gain(&before) >= LEAST_GAIN {
+                return Some(finding);
+            }
+            passed.extend(exam.asked[finding.answer.asked].effect().map(|effect| effect.about.name));
+        }
+    }
+    None
 }
 
 /// Whether runs left out are predicted better with a smooth.
@@ -88,8 +117,8 @@ fn smooth_gains(exam: &Examination, finding: &Finding, found: &[usize]) -> bool 
             (columns.clone(), values)
         })
     };
-    let base = [&exam.free[..], found].concat();
-    of([&base[..], own].concat()).gain(&of(base.clone())) >= TELLING
+    let base = [&exam.base(None)[..], found].concat();
+    of([&base[..], own].concat()).gain_along(&of(base.clone())) >= TELLING
 }
 
 /// A smooth, for people.

@@ -1,6 +1,6 @@
 //! Errors as people see them: metres and degrees along the way, in the runs at hand and in runs left out.
 
-use super::system::Projected;
+use super::system::{Projected, System, Unit};
 use crate::likelihood::{Column, Observed, ObservedRun, gram};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -12,15 +12,25 @@ pub struct Misses {
     pub position: f64,
     /// Of the heading \[rad\]; `None` where none was measured.
     pub heading: Option<f64>,
+    /// Of what is new from pose to pose, in standard deviations.
+    pub white: f64,
 }
 
 impl Misses {
-    /// By what share these errors are smaller than `before`: of position or heading, whichever falls more.
-    pub fn gain(&self, before: &Misses) -> f64 {
-        let of = |now: f64, then: f64| if then > 0.0 { 1.0 - now / then } else { 0.0 };
-        let heading = self.heading.zip(before.heading).map_or(f64::NEG_INFINITY, |(now, then)| of(now, then));
-        of(self.position, before.position).max(heading)
+    /// By what share position or heading errors are smaller than `before`, whichever falls more.
+    pub fn gain_along(&self, before: &Misses) -> f64 {
+        let heading = self.heading.zip(before.heading).map_or(f64::NEG_INFINITY, |(now, then)| fall(now, then));
+        fall(self.position, before.position).max(heading)
     }
+
+    /// The same, or that of what is new from pose to pose: what an effect does within centimetres hardly moves the whole.
+    pub fn gain(&self, before: &Misses) -> f64 {
+        self.gain_along(before).max(fall(self.white, before.white))
+    }
+}
+
+fn fall(now: f64, then: f64) -> f64 {
+    if then > 0.0 { 1.0 - now / then } else { 0.0 }
 }
 
 /// Products of residuals and columns in metres and radians, run by run, START taken from the first pose where it was measured.
@@ -29,6 +39,8 @@ pub struct Errors {
     /// The columns of the system that are in it, the residual last.
     which: Vec<usize>,
     runs: Vec<Run>,
+    /// Products of whitened columns and their number of rows, run by run.
+    white: Vec<(DMatrix<f64>, usize)>,
 }
 
 #[derive(Clone, Debug)]
@@ -41,15 +53,21 @@ struct Run {
 
 impl Errors {
     /// The errors of all runs; `columns` holds all columns run by run, `which` says which may be used, the residual last.
-    pub fn new(observed: &Observed, columns: &[Vec<Column>], which: Vec<usize>) -> Errors {
+    pub fn new(observed: &Observed, system: &System, columns: &[Vec<Column>], which: Vec<usize>) -> Errors {
+        let of_run = |run: usize| {
+            let own = |unit: &Unit| unit.run == run;
+            let sum = system.sum(own);
+            (DMatrix::from_fn(which.len(), which.len(), |i, j| sum[(which[i], which[j])]), system.rows(own))
+        };
+        let white = (0..observed.runs.len()).map(of_run).collect();
         let runs = observed.runs.par_iter().zip(columns).map(|(run, columns)| Run::new(run, columns, &which)).collect();
-        Errors { which, runs }
+        Errors { which, runs, white }
     }
 
     /// Errors that are left when each run is predicted with values of its own, `of_run`: pairs of columns and values.
     pub fn misses(&self, of_run: impl Fn(usize) -> (Vec<usize>, DVector<f64>)) -> Misses {
-        let (mut squares, mut counts) = ([0.0; 2], [0; 2]);
-        for (index, run) in self.runs.iter().enumerate() {
+        let (mut squares, mut counts) = ([0.0; 3], [0; 3]);
+        for (index, (run, white)) in self.runs.iter().zip(&self.white).enumerate() {
             let (columns, values) = of_run(index);
             let mut weights = DVector::zeros(self.which.len());
             weights[self.which.len() - 1] = 1.0;
@@ -58,13 +76,15 @@ impl Errors {
                     weights[place] = -value;
                 }
             }
-            for (k, products) in [&run.position, &run.heading].into_iter().enumerate() {
+            let [positions, headings] = run.counts;
+            let parts = [(&run.position, positions), (&run.heading, headings), (&white.0, white.1)];
+            for (k, (products, count)) in parts.into_iter().enumerate() {
                 squares[k] += (products * &weights).dot(&weights).max(0.0);
-                counts[k] += run.counts[k];
+                counts[k] += count;
             }
         }
         let root = |k: usize| (squares[k] / counts[k].max(1) as f64).sqrt();
-        Misses { position: root(0), heading: (counts[1] > 0).then(|| root(1)) }
+        Misses { position: root(0), heading: (counts[1] > 0).then(|| root(1)), white: root(2) }
     }
 
     /// Values of some columns that make whole tracks fit best, position and heading errors counting alike; without one run.

@@ -4,7 +4,7 @@ use super::errors::Errors;
 use super::errors::Misses;
 use super::smooth::{self, Covariate, Motion, smooth_columns};
 use super::system::{Projected, System};
-use crate::effect::{CATALOGUE, Entry, ModelError};
+use crate::effect::{CATALOGUE, Entry, Model, ModelError};
 use crate::likelihood::{Column, Fitted, Noise, Observed};
 use crate::parameter::Parameter;
 use nalgebra::{DMatrix, DVector};
@@ -35,6 +35,8 @@ pub struct Asked {
     pub question: Question,
     /// Its columns in the system.
     pub columns: Vec<usize>,
+    /// Its shape, where it has one and another value than the usual is tried.
+    pub shape: Option<(&'static Parameter, f64)>,
     /// Whether it is an effect of the reference, fitted out for the others.
     pub nuisance: bool,
 }
@@ -89,7 +91,7 @@ impl Examination {
         let mut asked = Vec::new();
         let mut width = free.len();
         for candidate in candidates(observed, &fitted)? {
-            let (effect, sizes) = candidate;
+            let WithColumns { effect, shape, sizes } = candidate;
             let parameters = sizes.iter().map(|(parameter, _)| *parameter).collect();
             let own = (width..width + sizes.len()).collect();
             width += sizes.len();
@@ -97,23 +99,28 @@ impl Examination {
                 columns.iter_mut().zip(by_run).for_each(|(all, column)| all.push(column));
             }
             let nuisance = NUISANCE.contains(&effect.about.name);
-            asked.push(Asked { question: Question::Effect(effect, parameters), columns: own, nuisance });
+            asked.push(Asked { question: Question::Effect(effect, parameters), columns: own, shape, nuisance });
         }
         for (all, smooths) in columns.iter_mut().zip(smooth_columns(observed, &fitted.model)) {
             all.extend(smooths);
         }
         for (covariate, motion, first, terms) in smooth::groups() {
             let own = (width + first..width + first + terms).collect();
-            asked.push(Asked { question: Question::Smooth(covariate, motion), columns: own, nuisance: false });
+            let question = Question::Smooth(covariate, motion);
+            asked.push(Asked { question, columns: own, shape: None, nuisance: false });
         }
         let chain = fitted.model.chain();
         for (all, run) in columns.iter_mut().zip(&observed.runs) {
             all.push(run.residuals(&chain));
         }
         let system = System::new(observed, &fitted.noise, &columns);
-        let errors = Errors::new(observed, &columns, (0..width).chain([system.residual()]).collect());
+        let errors = Errors::new(observed, &system, &columns, (0..width).chain([system.residual()]).collect());
         let mut examination = Examination { fitted, system, asked, free, errors, columns };
-        examination.clean();
+        if examination.clean() {
+            let which = (0..width).chain([examination.system.residual()]).collect();
+            let Examination { fitted, system, columns, .. } = &examination;
+            examination.errors = Errors::new(&fitted.observed, system, columns, which);
+        }
         Ok(examination)
     }
 
@@ -126,13 +133,14 @@ impl Examination {
             all.push(run.residuals(&chain));
         }
         let system = System::new(observed, &fitted.noise, &columns);
-        let errors = Errors::new(observed, &columns, (0..system.width).collect());
+        let errors = Errors::new(observed, &system, &columns, (0..system.width).collect());
         let free = (0..fitted.free.len()).collect();
         Examination { fitted, system, asked: Vec::new(), free, errors, columns }
     }
 
-    /// Estimates the noise anew with what is most evidently missing fitted out, so that it is noise alone.
-    fn clean(&mut self) {
+    /// Estimates the noise anew with what is most evidently missing fitted out, so that it is noise alone. Says whether anything
+    /// was.
+    fn clean(&mut self) -> bool {
         let mut out = self.base(None);
         let mut added = 0;
         while added < CLEANED {
@@ -147,7 +155,7 @@ impl Examination {
             added += 1;
         }
         if added == 0 {
-            return;
+            return false;
         }
         let few: Vec<Vec<Column>> = self
             .columns
@@ -157,12 +165,13 @@ impl Examination {
         let chain = self.fitted.model.chain();
         self.fitted.noise = Noise::estimate(&self.fitted.observed, &chain, &few, &self.fitted.noise);
         self.system = System::new(&self.fitted.observed, &self.fitted.noise, &self.columns);
+        true
     }
 
     /// Errors by the columns of the model and a smooth.
     pub fn errors_with(&self, columns: &[usize]) -> Errors {
-        let which = self.free.iter().chain(columns).copied().chain([self.system.residual()]).collect();
-        Errors::new(&self.fitted.observed, &self.columns, which)
+        let which = self.base(None).iter().chain(columns).copied().chain([self.system.residual()]).collect();
+        Errors::new(&self.fitted.observed, &self.system, &self.columns, which)
     }
 
     /// Columns that are fitted out when a group is asked about: the model's own and those of the reference, its own excepted.
@@ -231,15 +240,26 @@ impl Examination {
         (aicc, deviance + k * libm::log(n), (squares / n).sqrt())
     }
 
-    /// The effect that explains most of some products, beside the model and the columns `found`.
-    pub fn likeliest(&self, products: &DMatrix<f64>, found: &[usize]) -> Option<Answer> {
+    /// Whether an effect is among those that the columns `found` belong to.
+    pub fn is_found(&self, asked: &Asked, found: &[usize]) -> bool {
+        let same = |other: &Asked| other.effect() == asked.effect() && other.columns.iter().any(|c| found.contains(c));
+        asked.effect().is_some() && self.asked.iter().any(same)
+    }
+
+    /// The effect that explains most of some products, of those `wanted`, beside the model and the columns `found`.
+    pub fn likeliest(
+        &self,
+        products: &DMatrix<f64>,
+        found: &[usize],
+        wanted: impl Fn(&Asked) -> bool,
+    ) -> Option<Answer> {
         let with = |base: Vec<usize>| {
             let new: Vec<usize> = found.iter().copied().filter(|c| !base.contains(c)).collect();
             Projected::new(products, &[base, new].concat())
         };
         let plain = with(self.base(None));
         let effects = self.asked.iter().enumerate();
-        let effects = effects.filter(|(_, a)| a.effect().is_some() && !a.columns.iter().any(|c| found.contains(c)));
+        let effects = effects.filter(|(_, a)| a.effect().is_some() && wanted(a) && !self.is_found(a, found));
         let answers = effects.filter_map(|(index, asked)| {
             let own = asked.nuisance.then(|| with(self.base(Some(index))));
             self.answer(own.as_ref().unwrap_or(&plain), products, index)
@@ -303,8 +323,15 @@ pub fn worth(answer: &Answer) -> f64 {
     answer.drop - 3.0 * answer.columns.len() as f64
 }
 
+/// A shape is tried at its usual value and at these multiples of it.
+const TRIED: [f64; 4] = [1.0, 0.5, 2.0, 4.0];
+
 /// An effect with, for each of its sizes, the columns by run.
-type WithColumns = (&'static Entry, Vec<(&'static Parameter, Vec<Column>)>);
+struct WithColumns {
+    effect: &'static Entry,
+    shape: Option<(&'static Parameter, f64)>,
+    sizes: Vec<(&'static Parameter, Vec<Column>)>,
+}
 
 /// Every effect of the catalogue that the model lacks and that moves some observation, with its columns by run.
 fn candidates(observed: &Observed, fitted: &Fitted) -> Result<Vec<WithColumns>, ModelError> {
@@ -312,22 +339,44 @@ fn candidates(observed: &Observed, fitted: &Fitted) -> Result<Vec<WithColumns>, 
     let missing = CATALOGUE.iter().filter(|entry| model.parts().iter().all(|part| part.effect != *entry));
     let mut found = Vec::new();
     for effect in missing {
-        let mut with = model.clone();
-        with.add(effect.about.name)?;
-        let before = with.parts().iter().take_while(|part| part.effect != effect);
+        let mut plain = model.clone();
+        plain.add(effect.about.name)?;
+        let before = plain.parts().iter().take_while(|part| part.effect != effect);
         let first: usize = before.map(|part| part.values.len()).sum();
-        let count = effect.about.parameters.len();
-        let columns = observed.columns(&with, &(first..first + count).collect::<Vec<_>>());
-        let mut sizes = Vec::new();
-        for (index, parameter) in effect.about.parameters.iter().enumerate() {
-            let by_run: Vec<Column> = columns.iter().map(|run| run[index].clone()).collect();
-            if by_run.iter().flatten().any(|c| *c != [0.0; 3]) {
-                sizes.push((parameter, by_run));
+        let shapes = plain.shapes();
+        let shape = effect.about.parameters.iter().enumerate().find(|(k, _)| shapes.contains(&(first + k)));
+        let tried = if shape.is_some() { &TRIED[..] } else { &TRIED[..1] };
+        for factor in tried {
+            let shape = shape.map(|(_, p)| (p, factor * p.default.resolve(model.robot())));
+            let mut with = plain.clone();
+            if let Some((parameter, value)) = shape {
+                with.set(effect.about.name, parameter.name, value)?;
             }
-        }
-        if !sizes.is_empty() {
-            found.push((effect, sizes));
+            let sizes = columns_of(observed, &with, first, effect);
+            if sizes.is_empty() {
+                break;
+            }
+            found.push(WithColumns { effect, shape, sizes });
         }
     }
     Ok(found)
+}
+
+/// The sizes of an effect whose values begin at `first`, with their columns by run.
+fn columns_of(
+    observed: &Observed,
+    with: &Model,
+    first: usize,
+    effect: &'static Entry,
+) -> Vec<(&'static Parameter, Vec<Column>)> {
+    let places: Vec<usize> = (first..first + effect.about.parameters.len()).collect();
+    let columns = observed.columns(with, &places);
+    let mut sizes = Vec::new();
+    for (index, parameter) in effect.about.parameters.iter().enumerate() {
+        let by_run: Vec<Column> = columns.iter().map(|run| run[index].clone()).collect();
+        if by_run.iter().flatten().any(|c| *c != [0.0; 3]) {
+            sizes.push((parameter, by_run));
+        }
+    }
+    sizes
 }

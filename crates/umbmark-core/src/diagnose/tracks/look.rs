@@ -69,6 +69,13 @@ pub fn look(exam: &Examination, found: &[usize], smooths: bool, options: &Option
         finding.p_flips = p;
     }
     findings.sort_by(|a, b| worth(&b.answer).total_cmp(&worth(&a.answer)));
+    let mut named = Vec::new();
+    findings.retain(|finding| {
+        let effect = exam.asked[finding.answer.asked].effect().map(|effect| effect.about.name);
+        let known = effect.is_some() && named.contains(&effect);
+        named.push(effect);
+        !known
+    });
     findings
 }
 
@@ -102,7 +109,7 @@ pub fn class(exam: &Examination, finding: &Finding, found: &[usize]) -> Vec<&'st
     class.push(own.about.name);
     for (index, other) in exam.asked.iter().enumerate() {
         let Some(effect) = other.effect().filter(|effect| effect.about.name != own.about.name) else { continue };
-        if other.columns.iter().any(|c| found.contains(c)) {
+        if exam.is_found(other, found) || class.contains(&effect.about.name) {
             continue;
         }
         // The rival's own place in the base, if it has one, is free while the two are compared.
@@ -132,6 +139,13 @@ pub fn suspect(exam: &Examination, finding: &Finding, found: &[usize]) -> Option
             degrees_of_freedom: finding.degrees_of_freedom[1],
         })
     });
+    let shape = exam.asked[finding.answer.asked].shape.map(|(parameter, value)| Estimate {
+        effect: entry.about.name,
+        parameter: parameter.name,
+        value,
+        standard_error: f64::NAN,
+        degrees_of_freedom: finding.degrees_of_freedom[1],
+    });
     Some(Suspect {
         class: class(exam, finding, found),
         best: entry.about.name,
@@ -140,7 +154,7 @@ pub fn suspect(exam: &Examination, finding: &Finding, found: &[usize]) -> Option
         p: finding.p,
         p_adjusted: finding.p_adjusted(),
         p_flips: Some(finding.p_flips),
-        estimate: estimate.collect(),
+        estimate: estimate.chain(shape).collect(),
         expected_drop: finding.answer.drop,
     })
 }

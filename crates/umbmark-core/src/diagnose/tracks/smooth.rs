@@ -64,7 +64,7 @@ struct Piece<'a> {
 pub const ALONG_THE_WAY: &str = "distance";
 
 /// Everything that smooths are asked about.
-pub const COVARIATES: [Covariate; 13] = [
+pub const COVARIATES: [Covariate; 14] = [
     Covariate {
         name: "speed",
         title: "the speed",
@@ -89,6 +89,15 @@ pub const COVARIATES: [Covariate; 13] = [
         value: |p, out| {
             let change = 0.5 * (p.at.speed_change[0] + p.at.speed_change[1]);
             out.copy_from_slice(&[change, change.abs()]);
+        },
+    },
+    Covariate {
+        name: "turn_acceleration",
+        title: "the change of the turn rate",
+        terms: 2,
+        value: |p, out| {
+            let change = p.at.speed_change[1] - p.at.speed_change[0];
+            out.copy_from_slice(&[change, change * p.at.turn_rate.signum() * change.signum()]);
         },
     },
     Covariate {
