@@ -37,7 +37,7 @@ def answers(verb: str, folders: list[File]) -> list[dict[str, Any]]:
     """What the command says of each, in the order of the folders."""
 
     def answer(folder: File) -> dict[str, Any]:
-        words = [COMMAND, verb, folder, "--json", "--threads", "1", "--draws", "499"]
+        words = [str(COMMAND), verb, str(folder), "--json", "--threads", "1", "--draws", "499"]
         done = subprocess.run(words, capture_output=True, check=True, text=True)
         document: dict[str, Any] = json.loads(done.stdout)
         return document

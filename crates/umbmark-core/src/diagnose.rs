@@ -152,7 +152,7 @@ pub struct Suspect {
     pub p_flips: Option<f64>,
     /// Sizes of the best effect after one step from zero.
     pub estimate: Vec<Estimate>,
-    /// By how much the misfit would fall, in units of the noise variance.
+    /// By how much the misfit would fall, in units of the noise variance: it ranks the classes.
     pub expected_drop: f64,
 }
 
@@ -211,7 +211,7 @@ pub struct Diagnosis {
     pub fitted: Vec<Estimate>,
     /// Tests of the model as a whole.
     pub goodness_of_fit: Vec<GoodnessOfFit>,
-    /// All classes that were asked, the likeliest first.
+    /// All classes that were asked: those that may be certified first, and of these the likeliest first.
     pub ranking: Vec<Suspect>,
     /// How many of the first of the ranking are certified as missing.
     pub certified: usize,

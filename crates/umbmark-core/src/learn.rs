@@ -171,16 +171,19 @@ pub(crate) fn from_evidence<E: Evidence>(evidence: &E, options: &diagnose::Optio
         let diagnosis = evidence.diagnose(&story.model, options)?;
         let certified = diagnosis.certified().first().cloned();
         if let Some(suspect) = certified.filter(|_| story.model.parts().len() < MOST) {
-            let candidate = story.with_likeliest(suspect.best, suspect.class.clone(), suspect.p_adjusted)?;
-            if candidate.last().held_out.weighted < story.last().held_out.weighted {
-                story = candidate;
-                continue;
-            }
-            remarks.push(format!(
-                "{} is certified (p = {:.3}) but was not added: runs that are left out are predicted no better with it.",
-                suspect.class.join(" or "),
-                suspect.p_adjusted
-            ));
+            let why = match story.with_likeliest(suspect.best, suspect.class.clone(), suspect.p_adjusted) {
+                Ok(candidate) if candidate.last().held_out.weighted < story.last().held_out.weighted => {
+                    story = candidate;
+                    continue;
+                }
+                Ok(_) => "runs that are left out are predicted no better with it".to_owned(),
+                Err(error @ (DiagnoseError::NotConverged { .. } | DiagnoseError::OutOfBounds { .. })) => {
+                    error.to_string()
+                }
+                Err(error) => return Err(error),
+            };
+            let class = suspect.class.join(" or ");
+            remarks.push(format!("{class} is certified (p = {:.3}) but was not added: {why}.", suspect.p_adjusted));
         }
         remarks.extend(diagnosis.remarks.iter().cloned());
         let (steps, model, verdict) = (story.steps, story.model, diagnosis.verdict);

@@ -98,6 +98,19 @@ impl Ends {
         self.runs.push(End { direction, track, seen, weight: drive.weight });
     }
 
+    /// The same runs as if their ticks were those of the path, where it is known.
+    fn as_meant(&self) -> Ends {
+        let Some(path) = &self.path else { return self.clone() };
+        let meant = |direction: Direction| Believed {
+            whole: Track::from_path(path, direction, &self.robot),
+            pieces: Some(Track::in_pieces(path, direction, &self.robot)),
+        };
+        let mut ends = self.clone();
+        ends.tracks = Direction::BOTH.map(|direction| Arc::new(meant(direction))).into();
+        ends.runs.iter_mut().for_each(|run| run.track = run.direction as usize);
+        ends
+    }
+
     /// How many coordinates an end pose has: 3, or 2 where headings were not measured.
     pub fn coordinates(&self) -> usize {
         if self.with_heading { 3 } else { 2 }

@@ -106,13 +106,14 @@ struct Columns {
 impl Columns {
     fn of(design: &Design, fitted: &Fitted, sizes: &[SizeOf], noise: &Noise) -> Result<Columns, DiagnoseError> {
         let model = &fitted.model;
-        let base = fitted.free.iter().map(|index| design.column(model, *index, noise)).collect();
+        let stages = design.stages(model.robot(), noise);
+        let base = fitted.free.iter().map(|index| design.column(model, *index, &stages)).collect();
         let of_size = |(effect, parameter): &SizeOf| -> Result<DVector<f64>, DiagnoseError> {
             let mut with = model.clone();
             with.add(effect.about.name)?;
             let names = super::ends::names(&with);
             let index = names.iter().position(|n| *n == (effect.about.name, parameter.name)).unwrap_or(0);
-            Ok(design.column(&with, index, noise))
+            Ok(design.column(&with, index, &stages))
         };
         Ok(Columns { base, sizes: sizes.iter().map(of_size).collect::<Result<_, _>>()? })
     }

@@ -41,6 +41,8 @@ pub(crate) struct Asked {
     pub moments: Moments,
     /// The residuals in the same coordinates, with their group.
     pub runs: Vec<(usize, DVector<f64>)>,
+    /// Covariance of evenly noisy wheels in the same coordinates, scaled to the scatter.
+    expected: Option<DMatrix<f64>>,
     /// What the model explains besides; empty where the coordinates leave it out already.
     pub base: Vec<Columns>,
     /// The sizes that can be seen.
@@ -97,7 +99,14 @@ impl Asked {
         let runs: Vec<_> = raw.iter().map(|(g, r)| (*g, &maps[*g] * (&whitener * r))).collect();
         let moments = Moments::of(&runs);
         let counts = [moments.count(0), moments.count(1)];
-        let asked = Asked { moments, runs, base, units: Vec::new(), unseen: Vec::new(), absorbed: Vec::new() };
+        let expected = ends.noise_shape().and_then(|shape| {
+            let map = &maps[1] * &whitener;
+            let shape = &map * shape.view((0, 0), (d, d)) * map.transpose();
+            let scale = shape.clone().cholesky()?.solve(&moments.scatter).trace();
+            Some(shape * (scale / moments.freedom() / moments.size() as f64))
+        });
+        let (units, unseen, absorbed) = Default::default();
+        let asked = Asked { moments, runs, expected, base, units, unseen, absorbed };
         Some((asked, Frame { groups, counts, coordinates: d, whitener, maps, of_model }))
     }
 
@@ -159,6 +168,24 @@ impl Asked {
             other.effect != unit.effect && other.parameter.typical * other.shift.norm() >= VISIBLE
         });
         more
+    }
+
+    /// By how much the misfit would fall with each unit.
+    ///
+    /// The covariance is the scatter of these few runs, eked out by that of evenly noisy wheels as if it had been seen in as
+    /// many runs again. That says better which of several effects is the likeliest; no p-value rests on it.
+    pub fn drops(&self) -> Vec<f64> {
+        let mut eked = self.moments.clone();
+        if let Some(expected) = &self.expected {
+            eked.scatter = 0.5 * (eked.scatter + expected * self.moments.freedom());
+        }
+        let Some(whitened) = Whitened::new(&eked, &self.base) else { return vec![0.0; self.units.len()] };
+        let drop = |unit: &Unit| {
+            let column = whitened.column(&unit.columns);
+            let along = column.dot(&whitened.means);
+            along * along / column.norm_squared()
+        };
+        self.units.iter().map(drop).collect()
     }
 
     /// Units that these means cannot tell apart, as indices.

@@ -77,9 +77,10 @@ impl Fitted {
         (squares / freedom.max(1) as f64, freedom)
     }
 
-    /// The derivatives by the same values where the model does nothing: all its values at their defaults.
+    /// The derivatives by the same values where the model does nothing, all its values at their defaults, on the path that was
+    /// meant to be driven (where it is known), run by run.
     pub fn nominal_jacobian(&self, ends: &Ends) -> Vec<DMatrix<f64>> {
-        slopes(ends, &at_rest(&self.model), &self.free)
+        slopes(&ends.as_meant(), &at_rest(&self.model), &self.free)
     }
 
     fn estimate(&self, ends: &Ends, information: Option<DMatrix<f64>>) -> Vec<Estimate> {

@@ -102,9 +102,8 @@ impl Whitened {
     fn whole(&self, pattern: &[DVector<f64>; 2]) -> DVector<f64> {
         let size = self.inverse_factor.nrows();
         let mut column = DVector::zeros(2 * size);
-        for group in 0..2 {
-            let part = &self.inverse_factor * &pattern[group] * self.root_counts[group];
-            column.rows_mut(group * size, size).copy_from(&part);
+        for (group, (shift, root)) in pattern.iter().zip(self.root_counts).enumerate() {
+            column.rows_mut(group * size, size).copy_from(&(&self.inverse_factor * shift * root));
         }
         column
     }

@@ -1,7 +1,7 @@
 //! A diagnosis from return poses, put together.
 
 use super::asked::{Asked, Unit};
-use super::family::{Family, statistics};
+use super::family::Family;
 use super::flips::certificate;
 use super::moments::Whitened;
 use super::{Ends, FEWEST_RUNS, Fitted, circle, contrasts};
@@ -52,7 +52,7 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
     };
     let Some(family) = Family::new(&asked, options) else { return Ok(diagnosis) };
     diagnosis.goodness_of_fit = vec![goodness_of_fit(&family)];
-    diagnosis.ranking = ranking(&asked, &family, &certificate(&asked, options.seed));
+    diagnosis.ranking = ranking(&asked, &family, &certificate(&asked, options.seed), options.size);
     diagnosis.minimum_detectable = detectable(&asked, options.size);
     diagnosis.invisible = asked.unseen.clone();
     judge(&mut diagnosis, &asked, &family, options);
@@ -60,12 +60,11 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
     Ok(diagnosis)
 }
 
-/// The effect that a diagnosis without any gate would add: the one with the greatest F.
+/// The effect that a diagnosis without any gate would add: the one by which the misfit falls most.
 pub(crate) fn likeliest(ends: &Ends, model: &Model) -> Result<Option<&'static str>, DiagnoseError> {
     let fitted = Fitted::new(ends, model)?;
     let Some(asked) = Asked::new(ends, &fitted)? else { return Ok(None) };
-    let Some(observed) = statistics(&asked, &asked.moments) else { return Ok(None) };
-    let best = asked.units.iter().zip(&observed.units).max_by(|a, b| a.1.total_cmp(b.1));
+    let best = asked.units.iter().zip(asked.drops()).max_by(|a, b| a.1.total_cmp(&b.1));
     Ok(best.map(|(unit, _)| unit.effect.about.name))
 }
 
@@ -77,13 +76,14 @@ fn goodness_of_fit(family: &Family) -> GoodnessOfFit {
     GoodnessOfFit { name, statistic: family.observed.whole, degrees_of_freedom, p: family.p_whole }
 }
 
-/// Classes by falling F of their best.
-fn ranking(asked: &Asked, family: &Family, flips: &[f64]) -> Vec<Suspect> {
+/// Classes that may be certified first, then all others; each by the fall of the misfit with their best.
+fn ranking(asked: &Asked, family: &Family, flips: &[f64], size: f64) -> Vec<Suspect> {
     let mut suspects: Vec<Suspect> = Vec::new();
+    let drops = asked.drops();
     for class in asked.classes() {
-        let strength = |i: &usize| family.observed.units[*i];
+        let strength = |i: &usize| (family.p_adjusted[*i] < size, drops[*i]);
         let mut members = class.clone();
-        members.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
+        members.sort_by(|a, b| stronger(strength(a), strength(b)));
         let Some(best) = members.first().copied() else { continue };
         let mut names: Vec<&'static str> = Vec::new();
         for unit in members.iter().map(|i| &asked.units[*i]) {
@@ -92,7 +92,7 @@ fn ranking(asked: &Asked, family: &Family, flips: &[f64]) -> Vec<Suspect> {
             }
         }
         let unit = &asked.units[best];
-        let (estimate, degrees_of_freedom, drop) = one_step(asked, unit);
+        let (estimate, degrees_of_freedom) = one_step(asked, unit);
         suspects.push(Suspect {
             class: names,
             best: unit.effect.about.name,
@@ -102,19 +102,24 @@ fn ranking(asked: &Asked, family: &Family, flips: &[f64]) -> Vec<Suspect> {
             p_adjusted: family.p_adjusted[best],
             p_flips: Some(flips[best]),
             estimate: vec![estimate],
-            expected_drop: drop,
+            expected_drop: drops[best],
         });
     }
-    suspects.sort_by(|a, b| b.f.total_cmp(&a.f));
+    let strength = |s: &Suspect| (s.p_adjusted < size, s.expected_drop);
+    suspects.sort_by(|a, b| stronger(strength(a), strength(b)));
     suspects
 }
 
-/// Size of an effect after one step from zero, degrees of freedom of its F, and the fall of the misfit.
-fn one_step(asked: &Asked, unit: &Unit) -> (Estimate, [f64; 2], f64) {
-    let (mut size, mut error, mut freedom, mut drop) = (0.0, f64::INFINITY, asked.moments.freedom(), 0.0);
+/// The order of (may be certified, fall of the misfit): the strongest first.
+fn stronger(a: (bool, f64), b: (bool, f64)) -> std::cmp::Ordering {
+    b.0.cmp(&a.0).then(b.1.total_cmp(&a.1))
+}
+
+/// Size of an effect after one step from zero, and the degrees of freedom of its F.
+fn one_step(asked: &Asked, unit: &Unit) -> (Estimate, [f64; 2]) {
+    let (mut size, mut error, mut freedom) = (0.0, f64::INFINITY, asked.moments.freedom());
     if let Some(whitened) = Whitened::new(&asked.moments, &asked.base) {
         let along = unit.shift.dot(&whitened.means);
-        drop = along * along / unit.shift.norm_squared();
         (size, error) = (along / unit.shift.norm_squared(), 1.0 / unit.shift.norm());
     }
     if let Some(rao) = unit.pattern.as_ref().and_then(|pattern| pattern.test(&asked.moments)) {
@@ -125,7 +130,7 @@ fn one_step(asked: &Asked, unit: &Unit) -> (Estimate, [f64; 2], f64) {
     }
     let (effect, parameter) = (unit.effect.about.name, unit.parameter.name);
     let estimate = Estimate { effect, parameter, value: size, standard_error: error, degrees_of_freedom: freedom };
-    (estimate, [1.0, freedom], drop)
+    (estimate, [1.0, freedom])
 }
 
 /// (t_{1 - α/2, ν} + z_{0.8})/‖Q a‖ for each size.

@@ -6,7 +6,7 @@ use crate::effect::{Evaluate, Model};
 use crate::geometry::{Dual, Pose2};
 use crate::path::{CIRCLE, Direction, Path, SPIN, SQUARE, STRAIGHT, Shape, SpeedProfile};
 use crate::replay::Track;
-use nalgebra::{DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, Vector3};
 
 /// Carrying the robot to START, lining it up and writing the end pose down \[min\].
 const MINUTES_A_RUN: f64 = 1.0;
@@ -44,6 +44,16 @@ struct Leg {
     minutes: f64,
 }
 
+/// From one observation of a run to the next.
+pub(super) struct Stage {
+    /// How an error of the pose is carried on.
+    carried: Matrix3<f64>,
+    /// Lower triangular root of the covariance of what is new.
+    factor: DMatrix<f64>,
+    /// How much of what is new is known from then on.
+    gain: Matrix3xX<f64>,
+}
+
 /// An experiment.
 pub(super) struct Design {
     pub what: String,
@@ -55,15 +65,26 @@ impl Design {
         self.legs.iter().map(|leg| leg.runs as f64 * leg.minutes).sum()
     }
 
-    /// What a value of a model does to all observations, in standard deviations.
-    pub fn column(&self, model: &Model, value: usize, noise: &Noise) -> DVector<f64> {
+    /// How noise grows along each kind of run.
+    pub fn stages(&self, robot: &Robot, noise: &Noise) -> Vec<Vec<Stage>> {
+        self.legs.iter().map(|leg| leg.stages(robot, noise)).collect()
+    }
+
+    /// What a value of a model does to all observations, in standard deviations: at each, what is new, given those before.
+    pub fn column(&self, model: &Model, value: usize, stages: &[Vec<Stage>]) -> DVector<f64> {
         let duals: Vec<Dual> =
             model.values().enumerate().map(|(i, v)| Dual::new(v, f64::from(u8::from(i == value)))).collect();
         let mut rows = Vec::new();
-        for leg in &self.legs {
-            let poses = leg.poses(model, &duals);
-            let whitened = leg.whiten(model.robot(), &poses, noise);
-            rows.extend(whitened.into_iter().map(|w| w * (leg.runs as f64).sqrt()));
+        for (leg, stages) in self.legs.iter().zip(stages) {
+            let mut known = Vector3::zeros();
+            for (pose, stage) in leg.poses(model, &duals).iter().zip(stages) {
+                known = stage.carried * known;
+                let seen = Vector3::new(pose.x.eps, pose.y.eps, pose.heading.eps);
+                let new = (seen - known).rows(0, stage.factor.nrows()).into_owned();
+                known += &stage.gain * &new;
+                let whitened = stage.factor.solve_lower_triangular(&new).unwrap_or(new);
+                rows.extend(whitened.iter().map(|w| w * (leg.runs as f64).sqrt()));
+            }
         }
         DVector::from_vec(rows)
     }
@@ -89,34 +110,27 @@ impl Leg {
         poses
     }
 
-    /// The innovations of the column along the run, in standard deviations: what is new at each observation, given those before
-    /// and the way that noise grows and is carried on between them.
-    fn whiten(&self, robot: &Robot, poses: &[Pose2<Dual>], noise: &Noise) -> Vec<f64> {
+    /// How noise grows and is seen along the run: a Kalman filter, whose gains depend on no observation.
+    fn stages(&self, robot: &Robot, noise: &Noise) -> Vec<Stage> {
         let d = noise.coordinates;
         let tape = Matrix3::from_diagonal(&Vector3::from(TAPE.map(|sd| sd * sd)));
-        let (mut known, mut covariance) = (Vector3::zeros(), Matrix3::zeros());
-        let (mut before, mut made) = (Pose2::IDENTITY, 0);
-        let mut rows = Vec::new();
-        for (pose, after) in poses.iter().zip(self.track.seen_after()) {
+        let (mut covariance, mut before, mut made) = (Matrix3::zeros(), Pose2::IDENTITY, 0);
+        let mut stages = Vec::new();
+        for after in self.track.seen_after() {
             let (gathered, now) = self.gathered(robot, before, made..*after);
             let mut carried = Matrix3::identity();
             carried[(0, 2)] = before.y - now.y;
             carried[(1, 2)] = now.x - before.x;
-            known = carried * known;
             covariance = carried * covariance * carried.transpose() + gathered * noise.variance;
-            let seen = Vector3::new(pose.x.eps, pose.y.eps, pose.heading.eps);
-            let new = (seen - known).rows(0, d).into_owned();
-            if let Some(factor) = (covariance + tape).view((0, 0), (d, d)).into_owned().cholesky() {
-                if let Some(whitened) = factor.l().solve_lower_triangular(&new) {
-                    rows.extend(whitened.iter());
-                }
-                known += covariance.columns(0, d) * factor.solve(&new);
-                let gain = covariance.columns(0, d) * factor.inverse();
-                covariance -= gain * covariance.rows(0, d);
-            }
+            let seen = (covariance + tape).view((0, 0), (d, d)).into_owned();
+            // The tape's own variance keeps it from being singular.
+            let Some(cholesky) = seen.cholesky() else { continue };
+            let gain = covariance.columns(0, d) * cholesky.inverse();
+            covariance -= &gain * covariance.rows(0, d);
+            stages.push(Stage { carried, factor: cholesky.l(), gain });
             (before, made) = (now, *after);
         }
-        rows
+        stages
     }
 
     /// Covariance that wheel noise of unit variance a metre gathers over some pieces, and the nominal pose after them.
