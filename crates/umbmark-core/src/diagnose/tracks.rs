@@ -24,7 +24,7 @@ use crate::stats::{chi_squared_upper_tail, normal_quantile};
 use examination::Question;
 use system::Projected;
 
-pub use errors::{Errors, Misses};
+pub use errors::Misses;
 pub(crate) use examination::Examination;
 pub(crate) use look::Finding;
 

@@ -24,34 +24,35 @@ impl Effect for FloorSlope {
                 ..DRIFT_Y
             },
             Parameter::size(
-                "creep_x_m_s",
-                "slope-creep-x",
-                "m/s",
+                "slide_x_m_per_rad",
+                "slope-slide-x",
+                "m/rad",
                 1e-3,
                 (-1.0, 1.0),
-                "drift along the heading at START per second of driving",
+                "slide along the heading at START per radian turned",
             ),
             Parameter::size(
-                "creep_y_m_s",
-                "slope-creep-y",
-                "m/s",
+                "slide_y_m_per_rad",
+                "slope-slide-y",
+                "m/rad",
                 1e-3,
                 (-1.0, 1.0),
-                "drift to the left of the heading at START per second of driving",
+                "slide to the left of the heading at START per radian turned",
             ),
         ],
-        equation: "(forward, sideways) ← (forward, sideways) + R(-h) ((g_x, g_y) · length + (c_x, c_y) · duration),  h the \
-                   mean heading, duration where a wheel rolls",
+        equation: "(forward, sideways) ← (forward, sideways) + R(-h) ((g_x, g_y) · length + (c_x, c_y) · |rotation|),  h the \
+                   mean heading",
         physics: "Gravity pulls sideways on rolling tyres, which answer with a slip angle of slope over cornering stiffness: \
-                  1 % of slope and a stiffness of ten times the load per radian give 1 mm per metre. Soft tyres give way \
-                  under the same force with time as well, so that the drift per metre is larger the slower they roll.",
-        signature: "The return point is off by the drift times the length of the path and the creep times the time driven, \
+                  1 % of slope and a stiffness of ten times the load per radian give 1 mm per metre. Tyres that scrub in a \
+                  turn on the spot slide already, and sliding friction holds nothing across: there the robot slides \
+                  downhill as it turns, on wide tyres even where rolling ones hold.",
+        signature: "The return point is off by the drift times the length of the path and the slide times the rotation, \
                     the same in ccw and cw, and the heading is right: no E_d and E_b together can do that.",
         confused_with: &["carpet_nap", "start_pose"],
-        separated_by: "starting the square turned by 90 or 180 degrees; from nap, turning the carpet; creep from drift, \
-                       driving at half the speed",
-        source: "linear tyre model, its stiffness assumed, and 3 mm per metre as a usual size; creep as of any viscoelastic \
-                 body in rolling contact, 1 mm per second assumed and not measured",
+        separated_by: "starting the square turned by 90 or 180 degrees; from nap, turning the carpet; slide from drift, \
+                       a straight leg or a turn alone",
+        source: "linear tyre model, its stiffness assumed, and 3 mm per metre as a usual size; Coulomb friction, which points \
+                 against the slip whatever its size, 1 mm per radian assumed",
     };
 
     fn varies(p: &[f64]) -> bool {
@@ -60,11 +61,10 @@ impl Effect for FloorSlope {
 
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         drift(p, at, motion);
-        if at.wheel_rotation != [0.0; 2] {
-            let (sine, cosine) = mean_heading(at, motion).sine_cosine();
-            motion.forward += (cosine * p[2] + sine * p[3]) * at.duration;
-            motion.sideways += (cosine * p[3] - sine * p[2]) * at.duration;
-        }
+        let turned = (at.turn_rate * at.duration).abs();
+        let (sine, cosine) = mean_heading(at, motion).sine_cosine();
+        motion.forward += (cosine * p[2] + sine * p[3]) * turned;
+        motion.sideways += (cosine * p[3] - sine * p[2]) * turned;
     }
 }
 
@@ -116,16 +116,16 @@ mod tests {
     }
 
     #[test]
-    fn creep_grows_with_the_time_of_driving_and_not_with_the_pauses() {
-        let model = model_with(&[("floor_slope", "creep_x_m_s", 1e-3), ("floor_slope", "creep_y_m_s", -2e-3)]);
-        for (speed, pause) in [(0.2, 1.0), (0.1, 1.0), (0.2, 5.0)] {
-            let path = Path::new(&SQUARE, &[4.0], SpeedProfile::new(speed, 0.2, pause).unwrap()).unwrap();
-            // A ramp up and one down cost as much time as half of them each at full speed.
-            let turn = 0.17 * std::f64::consts::FRAC_PI_2;
-            let time = 4.0 * ((4.0 + turn) / speed + 2.0 * speed / 0.2);
+    fn the_slide_grows_with_the_rotation_and_not_with_the_way() {
+        let model =
+            model_with(&[("floor_slope", "slide_x_m_per_rad", 1e-3), ("floor_slope", "slide_y_m_per_rad", -2e-3)]);
+        for side in [4.0, 1.0] {
+            let path = Path::new(&SQUARE, &[side], SpeedProfile::default()).unwrap();
             for direction in Direction::BOTH {
                 let end = Track::in_pieces(&path, direction, model.robot()).end(&model.chain());
-                assert!((end.x - 1e-3 * time).abs() < 5e-6 && (end.y + 2e-3 * time).abs() < 5e-6, "{end:?} {time}");
+                let turned = std::f64::consts::TAU;
+                // The turn rate is that of the ramps' means: a thousandth.
+                assert!((end.x - 1e-3 * turned).abs() < 1e-5 && (end.y + 2e-3 * turned).abs() < 2e-5, "{end:?}");
             }
         }
     }

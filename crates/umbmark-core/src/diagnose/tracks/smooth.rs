@@ -5,7 +5,7 @@
 //! [`Growth`](crate::likelihood::Growth): cheap, and in the same tests as the catalogue's effects.
 
 use crate::effect::{Chain, Context, Model};
-use crate::geometry::Pose2;
+
 use crate::likelihood::{Column, Observed, ObservedRun};
 use rayon::prelude::*;
 
