@@ -7,7 +7,7 @@ use umbmark_core::drive::{Robot, Wheel};
 use umbmark_core::effect::{Bump, Model, Stretch, TestKind};
 use umbmark_core::geometry::{Displacement2, Pose2};
 use umbmark_core::path::{Direction, FIGURE_EIGHT, Path, RECTANGLE, SQUARE, SpeedProfile};
-use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth};
+use umbmark_core::simulate::{Course, Odometry, Phase, Simulator, Truth};
 
 const LABMATE_WHEELBASE: f64 = 0.340;
 
@@ -99,12 +99,11 @@ fn bumps_early_or_late_on_the_leg_change_the_return_position_and_not_the_heading
     let lost = 3.4e-3;
     let end = |at: f64| {
         let mut truth = Truth::new(&m);
-        truth.start();
-        let path = Path::umbmark();
-        for (index, one) in path.moves(Direction::Ccw).into_iter().enumerate() {
-            let travel = one.wheel_travel(&m.robot().drive);
-            let stretch = Stretch { index, direction: Direction::Ccw, test: TestKind::Systematic, travel };
-            truth.begin(stretch, travel);
+        truth.start(Direction::Ccw);
+        let course = Course::new(m.robot(), &Path::umbmark(), Direction::Ccw).unwrap();
+        for (index, leg) in course.legs.iter().enumerate() {
+            let stretch = Stretch { index, direction: Direction::Ccw, test: TestKind::Systematic, travel: leg.travel };
+            truth.begin(stretch, leg);
             if index == 0 {
                 truth.place(Bump { at, wheel: Wheel::Left, lost });
             }
