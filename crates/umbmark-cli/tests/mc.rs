@@ -101,12 +101,10 @@ fn threads_change_nothing_but_the_time() {
 #[test]
 fn effects_that_depend_on_the_way_or_on_the_measurement_move_the_return_as_their_laws_say() {
     let quarter = std::f64::consts::FRAC_PI_2;
-    let turn = 0.17 * quarter;
-    let driven = 4.0 * ((4.0 + turn) / 0.2 + 2.0);
     for (flags, metric, expected) in [
         (&["--slope-x", "0.003"][..], "centroid_cw_x_m", 0.048),
         (&["--nap-y", "-0.003"], "centroid_ccw_y_m", -0.048),
-        (&["--slope-creep-y", "0.001"], "centroid_cw_y_m", 0.001 * driven),
+        (&["--slope-slide-y", "0.001"], "centroid_cw_y_m", 0.001 * 4.0 * quarter),
         (&["--backlash", "0.001"], "return_heading_ccw_rad", -0.001 / 0.34),
         (&["--turn-slip", "0.005"], "return_heading_ccw_rad", -4.0 * quarter * 0.005),
         (&["--caster-kick", "0.003"], "return_heading_cw_rad", -3.0 * 0.003),

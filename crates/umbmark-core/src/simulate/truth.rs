@@ -180,18 +180,14 @@ impl Truth {
     }
 
     fn roll(&mut self, share: f64) {
-        if share > self.done {
-            if self.varies {
-                self.roll_in_pieces(share)
-            } else {
-                self.roll_at_once(share)
-            }
-            self.done = share;
-        }
-    }
-
-    fn roll_at_once(&mut self, share: f64) {
         let piece = share - self.done;
+        if piece <= 0.0 {
+            return;
+        }
+        self.done = share;
+        if self.varies {
+            return self.roll_in_pieces(share);
+        }
         let whole = piece == 1.0;
         let travel = self.chain.wheel_travel(&Context::default(), &self.believed.scaled(piece));
         let motion = self.chain.body(&Context::default(), &travel);
@@ -206,6 +202,7 @@ impl Truth {
         self.pieces.push(&Piece { motion, scatter });
     }
 
+    #[inline(never)]
     fn roll_in_pieces(&mut self, share: f64) {
         let (mut rolled, mut moved) = (WheelTravel { left: 0.0, right: 0.0 }, Displacement2::NONE);
         while let Some((at, believed)) = self.way.until(share) {

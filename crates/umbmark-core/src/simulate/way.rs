@@ -37,18 +37,15 @@ impl Way {
 
     /// Begins a session.
     pub(super) fn open(&mut self) {
-        self.progress = Progress::new(&self.robot, Place::default(), false);
         self.next_run = 0;
     }
 
     /// Begins the session's next run with the robot truly heading so \[rad\]. Whether encoders record it decides what
     /// [`Context::recorded`] says.
+    #[inline(never)]
     pub(super) fn start(&mut self, direction: Direction, recorded: bool, heading: f64) {
-        let place = Place {
-            run: self.next_run,
-            session_distance: self.progress.session_distance(),
-            direction: Some(direction),
-        };
+        let session_distance = if self.next_run == 0 { 0.0 } else { self.progress.session_distance() };
+        let place = Place { run: self.next_run, session_distance, direction: Some(direction) };
         self.progress = Progress::new(&self.robot, place, recorded);
         self.at = Context::default();
         self.heading = heading;
@@ -62,6 +59,7 @@ impl Way {
     }
 
     /// Begins a move of the course, after the pause before it, of which the robot believes such a travel.
+    #[inline(never)]
     pub(super) fn begin(&mut self, leg: &Leg, believed: &WheelTravel) {
         self.rest(leg.begins - self.clock);
         self.clock = leg.begins + leg.profile.duration();
@@ -84,5 +82,45 @@ impl Way {
     /// The robot has truly turned \[rad\].
     pub(super) fn turn(&mut self, rotation: f64) {
         self.heading += rotation;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::Path;
+    use crate::replay::Track;
+    use crate::simulate::Course;
+
+    #[test]
+    fn the_pieces_of_a_run_are_those_of_the_track_of_its_commands_pauses_included() {
+        let robot = Robot::labmate();
+        for direction in Direction::BOTH {
+            let course = Course::new(&robot, &Path::umbmark(), direction).unwrap();
+            let mut way = Way::new(&robot);
+            way.open();
+            way.start(direction, false, 0.0);
+            let mut driven = Vec::new();
+            for leg in &course.legs {
+                way.begin(leg, &leg.travel);
+                while let Some((at, travel)) = way.until(1.0) {
+                    way.turn(robot.drive.displacement(&travel).rotation);
+                    driven.push(at);
+                }
+            }
+            let track = Track::in_pieces(&Path::umbmark(), direction, &robot);
+            assert_eq!(driven.len(), track.contexts().len());
+            for (driven, told) in driven.iter().zip(track.contexts()) {
+                let numbers = |at: &Context| {
+                    let along = [at.time, at.distance, at.since_turn, at.heading, at.wheel_angle[0], at.wheel_angle[1]];
+                    let rates =
+                        [at.duration, at.speed, at.turn_rate, at.speed_change[0], at.speed_change[1], at.length];
+                    let senses = [at.last_turn, at.direction, at.reversed[0], at.reversed[1], at.run, 0.0];
+                    [along, rates, senses]
+                };
+                let pairs = numbers(driven).into_iter().flatten().zip(numbers(told).into_iter().flatten());
+                assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-9), "{driven:?} {told:?}");
+            }
+        }
     }
 }
