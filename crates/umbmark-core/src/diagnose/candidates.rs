@@ -49,7 +49,7 @@ pub(crate) fn of_effect<'a>(
 ) -> Result<Candidate, ModelError> {
     let mut with = model.clone();
     with.add(effect.about.name)?;
-    let tracks = tracks(with.varies());
+    let tracks = tracks(with.may_vary());
     let before = with.parts().iter().take_while(|part| part.effect != effect);
     let first: usize = before.map(|part| part.values.len()).sum();
     let moves = |p: &Pose2| p.x != 0.0 || p.y != 0.0 || p.heading != 0.0;

@@ -139,7 +139,7 @@ impl Ends {
     /// Predicted end pose of every run, with values or derivatives.
     pub fn predict<T: Evaluate>(&self, model: &Model, values: &[T]) -> Vec<Pose2<T>> {
         let chain = model.chain_with(values);
-        let varies = model.varies();
+        let varies = model.may_vary();
         let ends: Vec<Pose2<T>> = self.tracks.iter().map(|t| t.track(varies).end(&chain)).collect();
         self.runs.iter().map(|run| ends[run.track]).collect()
     }

@@ -68,7 +68,7 @@ pub fn identifiability(
 
 /// The same of measured runs.
 pub(super) fn of_ends(ends: &Ends, model: &Model) -> Result<Identifiability, DiagnoseError> {
-    let tracks = ends.tracks(model.varies());
+    let tracks = ends.tracks(model.may_vary());
     let numbers: Vec<usize> = (0..tracks.len()).collect();
     let runs: Vec<(Direction, usize)> = ends.of_runs(&numbers).map(|(d, i)| (d, *i)).collect();
     of_tracks(model, &tracks, &runs, ends.with_heading)

@@ -119,9 +119,17 @@ impl Model {
     }
 
     /// Whether some effect with its present values changes motion along the way, so that driving has to be cut into small
-    /// pieces. A derivative by a size that is 0 needs them all the same.
+    /// pieces. For derivatives see [`Model::may_vary`].
     pub fn varies(&self) -> bool {
         self.parts.iter().any(|part| (part.effect.varies)(&part.values))
+    }
+
+    /// Whether it would vary with some values: what a derivative must ask, since a size that is 0 has one.
+    pub fn may_vary(&self) -> bool {
+        self.parts.iter().any(|part| {
+            let usual: Vec<f64> = part.effect.about.parameters.iter().map(|p| p.usual(&self.robot)).collect();
+            (part.effect.varies)(&usual)
+        })
     }
 
     /// All values of all parts, one after the other: the order of [`Model::chain_with`].
