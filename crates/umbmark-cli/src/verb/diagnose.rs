@@ -98,6 +98,9 @@ pub(super) fn document(diagnosis: &Diagnosis, options: &Options) -> Value {
             json!({ "separates": e.separates, "experiment": e.experiment, "minutes": e.minutes, "sd": e.sd })
         }).collect::<Vec<_>>(),
         "identifiability": identifiability_json(&diagnosis.identifiability),
+        "unlisted": diagnosis.dependence.as_ref().map(|told| {
+            json!({ "acts_on": told.acts_on, "depends_on": told.depends_on, "p_adjusted": told.p_adjusted })
+        }),
         "model": model_json(&diagnosis.model),
         "remarks": diagnosis.remarks,
         "size": options.size,
@@ -170,7 +173,11 @@ fn identifiability_json(identifiability: &Identifiability) -> Value {
 
 fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options) -> String {
     let robot = data.robot.as_ref().map_or("", |robot| robot.name.as_str());
-    let mut text = format!("Diagnosis of {robot} from return poses\n\n");
+    let from = match diagnosis.level {
+        Level::Ends => "return poses",
+        Level::Tracks => "tracks",
+    };
+    let mut text = format!("Diagnosis of {robot} from {from}\n\n");
     text += &hanging("verdict", 10, in_words(diagnosis.verdict));
     for suspect in diagnosis.certified() {
         text += &hanging("missing", 10, &suspect.class.join(" or "));
@@ -183,8 +190,8 @@ fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options) -> String {
     }
     text += &identifiability_text(&diagnosis.identifiability);
     for gof in &diagnosis.goodness_of_fit {
-        let freedom = gof.degrees_of_freedom.map(|[a, b]| format!("({a}, {b})")).unwrap_or_default();
-        text += &format!("\nwhole model: {}, {freedom} {:.2}, p = {}\n", gof.name, gof.statistic, p_text(gof.p));
+        let freedom = gof.degrees_of_freedom.map(|[a, b]| format!("F({a}, {b}) = ")).unwrap_or_default();
+        text += &format!("\nwhole model: {}, {freedom}{:.2}, p = {}\n", gof.name, gof.statistic, p_text(gof.p));
     }
     if !diagnosis.contrasts.is_empty() {
         text += &format!("\n{}\n", contrasts_table(&diagnosis.contrasts));

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use serde_json::{Value, json};
 use umbmark_core::dataset::Dataset;
-use umbmark_core::diagnose::Options;
+use umbmark_core::diagnose::{Level, Options};
 use umbmark_core::learn::{Learnt, Step, learn};
 
 use super::diagnose::in_words;
@@ -93,12 +93,15 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options) -> String {
     let header = ["added", "p", "error [mm]", "left out [mm]", "[deg]", "AICc"];
     text += &table(&header, learnt.steps.iter().map(row));
     text += "\n\n";
-    text += &hanging(
-        "",
-        0,
-        "error: root mean square distance of end poses from the model's, in the runs it was fitted to; left out: of runs \
-                             that neither the choice of effects nor the fit saw. AICc decides nothing.",
+    let of = match learnt.diagnosis.level {
+        Level::Ends => "end poses",
+        Level::Tracks => "all measured poses",
+    };
+    let legend = format!(
+        "error: root mean square distance of {of} from the model's, in the runs it was fitted to; left out: of runs that neither \
+         the choice of effects nor the fit saw. AICc decides nothing."
     );
+    text += &hanging("", 0, &legend);
     text += "\n";
     text += &hanging("verdict", 10, in_words(learnt.verdict));
     for step in learnt.steps.iter().filter(|s| s.class.len() > 1) {

@@ -87,6 +87,7 @@ fn first_with_gain<'a>(
     for of_reference in [false, true] {
         let mut passed: Vec<&str> = Vec::new();
         let own = findings.iter().filter(|f| nuisance(f) == of_reference && f.certified(options));
+        let own = own.filter(|f| look::possible(exam, f));
         for finding in own.take(TRIES) {
             let wanted = |asked: &examination::Asked| {
                 let name = asked.effect().map_or("", |effect| effect.about.name);

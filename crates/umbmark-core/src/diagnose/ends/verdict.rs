@@ -64,8 +64,14 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
 pub(crate) fn likeliest(ends: &Ends, model: &Model) -> Result<Option<&'static str>, DiagnoseError> {
     let fitted = Fitted::new(ends, model)?;
     let Some(asked) = Asked::new(ends, &fitted)? else { return Ok(None) };
-    let best = asked.units.iter().zip(asked.drops()).max_by(|a, b| a.1.total_cmp(&b.1));
+    let possible = asked.units.iter().zip(asked.drops()).filter(|(unit, _)| possible(&asked, unit));
+    let best = possible.max_by(|a, b| a.1.total_cmp(&b.1));
     Ok(best.map(|(unit, _)| unit.effect.about.name))
+}
+
+/// Whether the size that an effect would have is one that it can have: no bump gives travel back.
+fn possible(asked: &Asked, unit: &Unit) -> bool {
+    unit.parameter.check(one_step(asked, unit).0.value).is_ok()
 }
 
 fn goodness_of_fit(family: &Family) -> GoodnessOfFit {
@@ -76,7 +82,8 @@ fn goodness_of_fit(family: &Family) -> GoodnessOfFit {
     GoodnessOfFit { name, statistic: family.observed.whole, degrees_of_freedom, p: family.p_whole }
 }
 
-/// Classes that may be certified first, then all others; each by the fall of the misfit with their best.
+/// Classes that may be certified first, then all others; each by the fall of the misfit with their best, which is the member
+/// of possible size by which the misfit falls most.
 fn ranking(asked: &Asked, family: &Family, flips: &[f64], size: f64) -> Vec<Suspect> {
     let mut suspects: Vec<Suspect> = Vec::new();
     let drops = asked.drops();
@@ -84,6 +91,7 @@ fn ranking(asked: &Asked, family: &Family, flips: &[f64], size: f64) -> Vec<Susp
         let strength = |i: &usize| (family.p_adjusted[*i] < size, drops[*i]);
         let mut members = class.clone();
         members.sort_by(|a, b| stronger(strength(a), strength(b)));
+        members.sort_by_key(|i| !possible(asked, &asked.units[*i]));
         let Some(best) = members.first().copied() else { continue };
         let mut names: Vec<&'static str> = Vec::new();
         for unit in members.iter().map(|i| &asked.units[*i]) {

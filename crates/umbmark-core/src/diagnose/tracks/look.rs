@@ -84,6 +84,16 @@ fn with(mut base: Vec<usize>, found: &[usize]) -> Vec<usize> {
     base
 }
 
+/// Whether the sizes that an effect would have are ones that it can have: no bump gives travel back.
+pub fn possible(exam: &Examination, finding: &Finding) -> bool {
+    let Question::Effect(_, parameters) = &exam.asked[finding.answer.asked].question else { return true };
+    let columns = &exam.asked[finding.answer.asked].columns;
+    finding.answer.columns.iter().zip(finding.answer.step.iter()).all(|(column, step)| {
+        let parameter = columns.iter().position(|c| c == column).map(|which| parameters[which]);
+        parameter.is_none_or(|p| p.check(p.default.resolve(exam.fitted.model.robot()) + step).is_ok())
+    })
+}
+
 /// Scores of a group by run, or by quarter of a run where runs are few.
 fn scores(exam: &Examination, finding: &Finding) -> Scores {
     let by_quarter = exam.fitted.observed.runs.len() < ENOUGH_RUNS;
