@@ -1,7 +1,7 @@
 //! Measured (or simulated) robots: what a dataset folder holds, in memory, and its files.
 //!
-//! [`Dataset::load`] takes a folder (`robot.toml`, `returns.csv`, `runs/*.csv`; or one of OptiOdom) or one file of it.
-//! Inside, one file per layout reads text into rows (`returns`, `tick_log`, `optiodom`), a `Recording` mends counts
+//! [`Dataset::load`] takes a folder (`robot.toml`, `returns.csv`, `runs/*.csv`, `runs/*.mcap`; or one of OptiOdom) or one
+//! file of it. Inside, one file per layout reads rows (`returns`, `tick_log`, `optiodom`, `mcap`), a `Recording` mends counts
 //! (roll-overs), `start_frame` moves tracks into the frame of START, and an `Assembly` matches returns with logs.
 //!
 //! ```no_run
@@ -19,6 +19,7 @@ mod error;
 mod folder;
 mod inspect;
 mod label;
+mod mcap;
 mod model_file;
 #[cfg(test)]
 mod mutated_input;
@@ -37,6 +38,7 @@ mod tick_log;
 
 pub use error::DatasetError;
 pub use inspect::{Check, Coverage, Determined, Group, Inspection, LogFacts, ReferenceFacts, Wheels, WheelsFound};
+pub use mcap::{McapProblem, Topics};
 pub use model_file::{parse_model, read_model};
 pub use robot_file::{parse_robot, read_robot};
 pub use robot_text::robot_text;
@@ -119,7 +121,12 @@ impl Dataset {
     ///
     /// A single file is taken with the `robot.toml` beside it, if there is one.
     pub fn load(path: impl AsRef<std::path::Path>) -> Result<Dataset, DatasetError> {
-        folder::load(path.as_ref())
+        Dataset::load_with(path, &Topics::default())
+    }
+
+    /// Reads a dataset whose MCAP logs hold wheels and reference on the given topics.
+    pub fn load_with(path: impl AsRef<std::path::Path>, topics: &Topics) -> Result<Dataset, DatasetError> {
+        folder::load(path.as_ref(), topics)
     }
 
     /// The nominal robot, for questions that need one.

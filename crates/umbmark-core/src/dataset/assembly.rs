@@ -34,6 +34,11 @@ impl Assembly {
         Assembly { robot, path, runs, index: BTreeMap::new(), places, has_returns: false, warnings }
     }
 
+    /// The nominal robot, where it is known.
+    pub fn robot(&self) -> Option<&Robot> {
+        self.robot.as_ref()
+    }
+
     /// Adds the rows of a return sheet; they come before the logs.
     pub fn add_returns(&mut self, file: &str, rows: &[ReturnRow]) -> Result<(), DatasetError> {
         self.has_returns = true;
@@ -56,7 +61,19 @@ impl Assembly {
     ) -> Result<(), DatasetError> {
         let file = recording.file.clone();
         let bits = self.robot.as_ref().and_then(|robot| robot.encoder.counter_bits());
-        let mut log = recording.into_log(self.robot.as_ref(), bits, &mut self.warnings)?;
+        let log = recording.into_log(self.robot.as_ref(), bits, &mut self.warnings)?;
+        self.add_ticks(file, log, stem, named, end)
+    }
+
+    /// Adds the ticks of a file that is called `stem`.
+    pub fn add_ticks(
+        &mut self,
+        file: String,
+        mut log: TickLog,
+        stem: &str,
+        named: Named,
+        end: EndPose,
+    ) -> Result<(), DatasetError> {
         move_to_start(&file, &mut log, &mut self.warnings)?;
         let computed = self.robot.as_ref().map(|robot| computed_poses(&log, robot)).unwrap_or_default();
         let returned = return_error(&log, &computed, end);
