@@ -4,6 +4,7 @@
 //! computed. Results go to stdout, messages and progress to stderr.
 
 mod checkpoint;
+mod data_arguments;
 mod effect_flags;
 mod ensemble_report;
 mod files;

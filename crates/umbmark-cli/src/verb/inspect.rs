@@ -1,7 +1,7 @@
 //! `umbmark inspect`: what a dataset holds, whether it is any good, and what it can determine.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 use serde_json::{Map, Value, json};
@@ -10,22 +10,22 @@ use umbmark_core::drive::Robot;
 use umbmark_core::path::Direction;
 
 use crate::Session;
+use crate::data_arguments::DataArguments;
 use crate::prose::hanging;
 use crate::table::table;
 
 /// Arguments of `inspect`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A dataset folder, an OptiOdom folder, or one file of either
-    #[arg(value_name = "DATA")]
-    data: PathBuf,
+    #[command(flatten)]
+    data: DataArguments,
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = Dataset::load(&arguments.data)?;
+    let data = arguments.data.load()?;
     let inspection = data.inspect();
     if session.json() {
-        session.print_json(&document(&arguments.data, &data, &inspection))?;
+        session.print_json(&document(&arguments.data.data, &data, &inspection))?;
     } else {
         write!(session.out(), "{}", text(&data, &inspection))?;
     }

@@ -14,19 +14,19 @@ use umbmark_core::path::{Direction, Path};
 use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth};
 
 use crate::Session;
-use crate::setup::{Setup, SetupFlags};
+use crate::setup::{Directions, Setup, SetupFlags};
 use crate::table::table;
 
 /// Arguments of `simulate`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Folder to write: robot.toml, returns.csv and runs/*.csv
+    /// Folder to write: robot.toml, returns.csv and runs/*.csv; or one run as a log of ROS 2, NAME.mcap
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
 
-    /// Runs in each direction
-    #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    runs: u32,
+    /// Runs in each direction [default: 5, and 1 for an MCAP log]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    runs: Option<u32>,
 
     /// How often the absolute pose is measured on the way; 0 for the end pose alone
     #[arg(long, default_value_t = 20.0, value_name = "HZ", value_parser = crate::effect_flags::number)]
@@ -40,6 +40,26 @@ pub struct Arguments {
     setup: SetupFlags,
 }
 
+impl Arguments {
+    /// Whether one log is to be written, and no folder.
+    fn is_log(&self) -> bool {
+        self.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"))
+    }
+
+    /// Numbers of runs \[cw, ccw\]; a log holds one, counter-clockwise where nothing else is said.
+    fn numbers(&self) -> anyhow::Result<[usize; 2]> {
+        let direction = self.setup.direction;
+        if !self.is_log() {
+            return Ok(direction.runs(self.runs.unwrap_or(5) as usize));
+        }
+        if let Some(runs @ 2..) = self.runs {
+            anyhow::bail!("an MCAP log holds one run, got --runs {runs}; leave it out, or name a folder");
+        }
+        let direction = if direction == Directions::Both { Directions::Ccw } else { direction };
+        Ok(direction.runs(1))
+    }
+}
+
 /// How often the counters are written down where the robot file does not say \[Hz\].
 const LOG_RATE: f64 = 100.0;
 
@@ -49,7 +69,11 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let robot = with_rate(model.robot())?;
     let dataset = record(&arguments, &robot, &path, &model, session.seed())?;
     let existing = if arguments.force { Existing::Replace } else { Existing::Keep };
-    dataset.save(&arguments.output, existing)?;
+    if arguments.is_log() {
+        dataset.save_mcap(&arguments.output, existing)?;
+    } else {
+        dataset.save(&arguments.output, existing)?;
+    }
     for text in &assumed {
         session.message("assumed", text);
     }
@@ -92,9 +116,13 @@ fn record(arguments: &Arguments, robot: &Robot, path: &Path, model: &Model, seed
     let mut truth = Truth::new(model);
     simulator.open(&mut truth, seed, 0);
     let extended = model.get("placed_bumps", "count").is_some_and(|count| count > 0.0);
-    let tests = if extended { &[TestKind::Systematic, TestKind::Bumps][..] } else { &[TestKind::Systematic] };
+    let tests = match (extended, arguments.is_log()) {
+        (true, false) => &[TestKind::Systematic, TestKind::Bumps][..],
+        (true, true) => &[TestKind::Bumps],
+        (false, _) => &[TestKind::Systematic],
+    };
     let mut runs = Vec::new();
-    let numbers = arguments.setup.direction.runs(arguments.runs as usize);
+    let numbers = arguments.numbers()?;
     for &test in tests {
         for (direction, count) in Direction::BOTH.into_iter().zip(numbers) {
             for number in 1..=count as u32 {

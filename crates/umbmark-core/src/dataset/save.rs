@@ -140,7 +140,7 @@ fn refuse_existing(folder: &Path, files: &BTreeMap<PathBuf, String>, existing: E
     }
 }
 
-fn unwritable(file: &Path, error: &std::io::Error) -> DatasetError {
+pub(super) fn unwritable(file: &Path, error: &std::io::Error) -> DatasetError {
     let reason = match error.kind() {
         std::io::ErrorKind::NotFound => "there is no such folder".to_owned(),
         std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
