@@ -34,8 +34,8 @@ const PIECES: [&str; 20] = [
 ];
 
 /// `good` with up to five bytes changed, pieces put in, or parts cut out or doubled.
-fn damaged(good: &str, stream: &mut Stream) -> Vec<u8> {
-    let mut bytes = good.as_bytes().to_vec();
+pub(super) fn damage(good: &[u8], stream: &mut Stream) -> Vec<u8> {
+    let mut bytes = good.to_vec();
     let mut below = |n: usize| ((stream.uniform() * n as f64) as usize).min(n.saturating_sub(1));
     for _ in 0..=below(5) {
         let (a, b) = (below(bytes.len() + 1), below(bytes.len() + 1));
@@ -59,7 +59,7 @@ fn survive(good: &str, purpose: u64, read: impl Fn(&str) -> bool) {
     let mut stream = Stream::new(7, purpose, 0);
     let mut fine = 0;
     for _ in 0..ROUNDS {
-        let Ok(text) = text::decode("file", damaged(good, &mut stream)) else { continue };
+        let Ok(text) = text::decode("file", damage(good.as_bytes(), &mut stream)) else { continue };
         fine += usize::from(read(&text));
     }
     assert!(read(good), "the undamaged file is good");

@@ -13,19 +13,21 @@ pub(super) struct Joints {
     places: Option<[usize; 2]>,
     /// The names of the first message, for those who look for the wheels in vain.
     first: String,
+    /// Which joints may be meant, where that is left open.
+    open: Option<String>,
 }
 
 impl Joints {
     pub fn new(chosen: Option<(&str, &str)>) -> Joints {
         let chosen = chosen.map(|(left, right)| [left.to_owned(), right.to_owned()]);
-        Joints { chosen, last: Names::default(), places: None, first: String::new() }
+        Joints { chosen, last: Names::default(), places: None, first: String::new(), open: None }
     }
 
     /// The positions of the wheels, where the message has them.
     pub fn positions(&mut self, fields: &Fields) -> Result<Option<[f64; 2]>, String> {
         if fields.names != self.last {
             self.last = fields.names.clone();
-            self.places = self.find(&fields.names)?;
+            self.places = self.find(&fields.names);
         }
         let Some(places) = self.places else { return Ok(None) };
         match places.map(|place| fields.values.get(place).copied()) {
@@ -40,8 +42,11 @@ impl Joints {
         self.chosen.clone().unwrap_or_else(|| ["left", "right"].map(str::to_owned))
     }
 
-    /// Says that no message had the positions of both wheels.
+    /// Says why no message had the positions of both wheels.
     pub fn missing(&self) -> String {
+        if let Some(open) = &self.open {
+            return format!("more than one joint may be a wheel: {open}");
+        }
         let wanted = match &self.chosen {
             Some([left, right]) => format!("joints {} and {}", quoted(left), quoted(right)),
             None => "a joint of the left and one of the right wheel".to_owned(),
@@ -49,27 +54,25 @@ impl Joints {
         format!("no message has positions of {wanted}; its joints are {}", self.first)
     }
 
-    fn find(&mut self, names: &Names) -> Result<Option<[usize; 2]>, String> {
+    fn find(&mut self, names: &Names) -> Option<[usize; 2]> {
         if self.first.is_empty() {
             self.first = listed(names.iter().map(quoted));
         }
         let place = |name: &str| names.iter().position(|n| n == name);
         if let Some([left, right]) = &self.chosen {
-            return Ok(place(left).zip(place(right)).map(|(left, right)| [left, right]));
+            return place(left).zip(place(right)).map(|(left, right)| [left, right]);
         }
         let (left, right) = (candidates(names, Side::Left), candidates(names, Side::Right));
         if left.is_empty() || right.is_empty() {
-            return Ok(None);
+            return None;
         }
         let ([left], [right]) = (&left[..], &right[..]) else {
             let sides = [left, right].map(|side| listed(side.into_iter().map(quoted)));
-            return Err(format!(
-                "leaves open which joints are the wheels: left may be {}; right may be {}",
-                sides[0], sides[1]
-            ));
+            self.open.get_or_insert(format!("left may be {}; right may be {}", sides[0], sides[1]));
+            return None;
         };
         self.chosen = Some([(*left).to_owned(), (*right).to_owned()]);
-        Ok(place(left).zip(place(right)).map(|(left, right)| [left, right]))
+        place(left).zip(place(right)).map(|(left, right)| [left, right])
     }
 }
 

@@ -3,10 +3,14 @@
 use super::fields::{Fields, Layout, Slot, same_field};
 use prost_reflect::{DescriptorPool, DynamicMessage, MessageDescriptor, ReflectMessage, Value};
 use std::borrow::Cow;
+use std::panic::catch_unwind;
 
 /// The type `name` of a schema, which is a set of file descriptors.
 pub(super) fn descriptor(name: &str, data: &[u8]) -> Result<MessageDescriptor, String> {
-    let pool = DescriptorPool::decode(data).map_err(|_| "its schema is no set of protobuf descriptors".to_owned())?;
+    // Descriptors without a name where one must be make the crate look for the name in a file that is not there yet.
+    let decoded = catch_unwind(|| DescriptorPool::decode(data));
+    let none = "its schema is no set of protobuf descriptors";
+    let pool = decoded.ok().and_then(Result::ok).ok_or_else(|| none.to_owned())?;
     let missing = || format!("its schema does not define {}", super::super::error::quoted(name));
     pool.get_message_by_name(name).ok_or_else(missing)
 }

@@ -130,14 +130,12 @@ impl Role {
     }
 }
 
-/// A topic for people: its name and its type, and how it is written where that is not read.
+/// A topic for people: its name and its type, how it is written where that is not read, and whether it is empty.
 fn described(topic: &Topic) -> String {
-    let known = if topic.known.is_some() || topic.encoding == "cdr" || topic.encoding == "json" {
-        String::new()
-    } else {
-        format!(", {}", quoted(&topic.encoding))
-    };
-    format!("{} ({}{known})", shown(&topic.name), shown(&topic.schema))
+    let read = topic.known.is_some() || topic.encoding == "cdr" || topic.encoding == "json";
+    let encoding = if read { String::new() } else { format!(", {}", quoted(&topic.encoding)) };
+    let empty = if topic.messages == Some(0) { ", no messages" } else { "" };
+    format!("{} ({}{encoding}{empty})", shown(&topic.name), shown(&topic.schema))
 }
 
 /// A name as it is where that is harmless, else quoted.

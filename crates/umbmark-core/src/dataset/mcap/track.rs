@@ -66,12 +66,9 @@ impl Track {
             let names: Vec<String> = self.frames.iter().map(|frames| shown(&frames.child)).collect();
             self.frames.retain(|frames| bare(&frames.child) == bare(part) || bare(&frames.frame) == bare(part));
             if self.frames.is_empty() {
-                let remedy = format!("the frames in {} are: {}", shown(&chosen.topic), listed(names));
-                return Err(McapProblem::UnknownTopic {
-                    topic: super::super::error::quoted(part),
-                    flag: "--reference",
-                    remedy,
-                });
+                let found = format!("it has no frame {}", super::super::error::quoted(part));
+                let remedy = format!("its frames are: {}", listed(names));
+                return Err(McapProblem::Topic { topic: shown(&chosen.topic), found, remedy });
             }
         } else if !chosen.named
             && matches!(self.kind, MessageType::Odometry | MessageType::Transform | MessageType::Transforms)

@@ -64,7 +64,7 @@ impl Wheels {
         };
         let Some(pair) = pair else { return Ok(()) };
         if let Some(value) = pair.into_iter().find(|value| !(value.abs() <= LARGEST)) {
-            return Err(format!("holds {value}, where a finite number of at most {LARGEST:e} either way is allowed"));
+            return Err(format!("holds {value:e}, where a finite number of at most {LARGEST:e} either way is allowed"));
         }
         self.times.push(times);
         for (values, value) in self.values.iter_mut().zip(pair) {
@@ -83,7 +83,7 @@ impl Wheels {
         !self.are_counts()
     }
 
-    /// The joints that were in no message, where there are joints and none of them could be used.
+    /// Why there are no wheels among the joints, where there are joints and none of them could be used.
     pub fn missing_joints(&self) -> Option<String> {
         match &self.source {
             Source::Joints(joints) if self.times.is_empty() => Some(joints.missing()),
