@@ -73,7 +73,11 @@ fn containers() -> Vec<Case> {
     let mut huge = file_of(&[]);
     huge.push(5);
     huge.extend((1u64 << 40).to_le_bytes());
+    let mut endless = file_of(&[]);
+    endless.push(6);
+    endless.extend([0xff; 30]);
     vec![
+        case("a chunk that claims all there can be", endless),
         case("an empty file", Vec::new()),
         case("a text", b"t_s,ticks_left,ticks_right\n".to_vec()),
         case("a bag of ROS 1", b"#ROSBAG V2.0\n".to_vec()),

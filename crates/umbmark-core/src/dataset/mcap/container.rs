@@ -169,16 +169,17 @@ impl Container {
     /// are used as far as they can be unpacked.
     fn chunk(&mut self, at: u64, head: [u8; HEAD], length: u64, visit: &mut Visit) -> Result<(), Stop> {
         let damaged = |what: String| Stop::Damage(Damage { at, what });
-        let whole = at + HEAD as u64 + length <= self.size;
+        let left = self.size - at - HEAD as u64;
+        let whole = length <= left;
         if whole && length > LONGEST as u64 {
             return Err(damaged(too_long("chunk")));
         }
         let mut chunk = Unpacking {
             reader: LinearReader::new_with_options(options().with_prevalidate_chunk_crcs(whole)),
             source: head.chain(self.file.by_ref().take(length)),
-            left: HEAD as u64 + length.min(self.size - at),
+            left: HEAD as u64 + length.min(left),
             unpacked: &mut self.unpacked,
-            most: FREE.saturating_add(MOST_PACKED.saturating_mul(at.saturating_add(length.min(self.size)))),
+            most: FREE.saturating_add(MOST_PACKED.saturating_mul(at + length.min(left))),
         };
         // The crate's arithmetic overflows on some inconsistent chunks; in builds that check for it, that is a panic.
         let read = catch_unwind(AssertUnwindSafe(|| chunk.read(visit)));

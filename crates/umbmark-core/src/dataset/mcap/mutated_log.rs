@@ -70,7 +70,7 @@ fn damaged_files() {
         let mut stream = Stream::new(7, purpose, 0);
         let mut fine = 0;
         assert!(wishes.iter().all(|wish| read(&mut file, good, wish)), "the undamaged file is good");
-        let rounds = rounds(10);
+        let rounds = rounds(40);
         for round in 0..rounds {
             let bytes = damage(good, &mut stream);
             fine += u64::from(read(&mut file, &bytes, &wishes[round as usize % 2]));
