@@ -82,3 +82,38 @@ fn a_narrow_counter_rolls_over_in_the_file_and_is_unrolled_when_it_is_read() {
     // Four legs of 2122 ticks, and a turn to the right at each corner.
     assert!(*log.left.last().unwrap() > 10_000.0, "{:?}", log.left.last());
 }
+
+#[test]
+fn one_run_can_be_written_as_a_log_of_ros_2_which_brings_its_robot_along() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("run.mcap");
+    let name = place.to_str().unwrap();
+    let assert = simulate(&["-o", name, "--side", "0.5", "--wheelbase", "0.4", "--direction", "cw", "--json"]).success();
+    let document: serde_json::Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
+    assert_eq!(document["runs"].as_array().unwrap().len(), 1);
+    let dataset = Dataset::load(&place).unwrap();
+    assert_eq!(dataset.nominal_robot().unwrap().drive.wheelbase(), 0.4);
+    assert_eq!(dataset.runs[0].direction, Some(Direction::Cw));
+    let log = dataset.runs[0].log.as_ref().unwrap();
+    assert!(log.time.len() > 1000 && log.reference.len() > 200);
+    let inspect = |flags: &[&str]| {
+        Command::new(cargo_bin!("umbmark")).arg("inspect").arg(&place).args(flags).args(["--json"]).assert()
+    };
+    let poses = |flags: &[&str]| {
+        let assert = inspect(flags).success();
+        let document: serde_json::Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
+        document["logs"][0]["reference"]["poses"].as_u64()
+    };
+    assert_eq!(poses(&[]), Some(log.reference.len() as u64));
+    assert_eq!(poses(&["--reference", "none"]), None);
+    assert_eq!(poses(&["--ticks", "/joint_states", "--reference", "/odom"]), Some(log.time.len() as u64));
+    inspect(&["--ticks", "/wheels"]).code(1).stderr_eq(str![[r#"
+error: [..]run.mcap: there is no topic "/wheels" for --ticks; there are: /ground_truth (geometry_msgs/msg/PoseStamped), /joint_states (sensor_msgs/msg/JointState), /odom (nav_msgs/msg/Odometry), /tf (tf2_msgs/msg/TFMessage)
+
+"#]]);
+    simulate(&["-o", name]).code(1);
+    simulate(&["-o", name, "--force", "--runs", "2"]).code(1).stderr_eq(str![[r#"
+error: an MCAP log holds one run, got --runs 2; leave it out, or name a folder
+
+"#]]);
+}

@@ -72,11 +72,21 @@ fn damaged_files() {
         assert!(wishes.iter().all(|wish| read(&mut file, good, wish)), "the undamaged file is good");
         let rounds = rounds(40);
         for round in 0..rounds {
-            let bytes = damage(good, &mut stream);
+            let bytes = if round % 3 == 0 { exaggerated(good, &mut stream) } else { damage(good, &mut stream) };
             fine += u64::from(read(&mut file, &bytes, &wishes[round as usize % 2]));
         }
         assert!(fine > 0 && fine < rounds, "{fine}: damage too heavy or too light to tell anything");
     }
+}
+
+/// A file with one number of 4 or 8 bytes that is as large or as odd as a length can be.
+fn exaggerated(good: &[u8], stream: &mut Stream) -> Vec<u8> {
+    const LENGTHS: [u64; 8] = [0, 1, 1 << 20, 1 << 31, 1 << 40, 1 << 63, u64::MAX - 9, u64::MAX];
+    let mut bytes = good.to_vec();
+    let mut below = |n: usize| ((stream.uniform() * n as f64) as usize).min(n - 1);
+    let (at, width) = (below(bytes.len() - 8), [4, 8][below(2)]);
+    bytes[at..at + width].copy_from_slice(&LENGTHS[below(LENGTHS.len())].to_le_bytes()[..width]);
+    bytes
 }
 
 /// The records of a file in one chunk that is neither packed nor has a checksum.
