@@ -88,7 +88,8 @@ fn one_run_can_be_written_as_a_log_of_ros_2_which_brings_its_robot_along() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("run.mcap");
     let name = place.to_str().unwrap();
-    let assert = simulate(&["-o", name, "--side", "0.5", "--wheelbase", "0.4", "--direction", "cw", "--json"]).success();
+    let assert =
+        simulate(&["-o", name, "--side", "0.5", "--wheelbase", "0.4", "--direction", "cw", "--json"]).success();
     let document: serde_json::Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
     assert_eq!(document["runs"].as_array().unwrap().len(), 1);
     let dataset = Dataset::load(&place).unwrap();

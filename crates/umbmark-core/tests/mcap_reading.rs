@@ -204,7 +204,7 @@ fn a_log_is_read_back_as_it_was_written_with_its_robot_and_the_same_bytes_each_t
         time: (0..500).map(|i| f64::from(i) / 30.0).collect(),
         left: (0..500).map(|i| f64::from(i / 3)).collect(),
         right: (0..500).map(|i| -f64::from(i) * 7.0).collect(),
-        reference: vec![pose(0, Some(0.0)), pose(3, None), pose(7, Some(-3.0)), pose(499, Some(3.14))],
+        reference: vec![pose(0, Some(0.0)), pose(3, None), pose(7, Some(-3.0)), pose(499, Some(3.1))],
     };
     let data = one_run(log);
     let folder = tempfile::tempdir().unwrap();

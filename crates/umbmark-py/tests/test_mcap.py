@@ -3,8 +3,11 @@
 import csv
 import json
 import math
+import os
+import random
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,6 +31,7 @@ TICKS_PER_REVOLUTION = 2000
 STORE = get_typestore(Stores.ROS2_JAZZY)
 # Times of a calendar, as recorders have them.
 EPOCH_NS = 1_760_000_000_000_000_000
+NO_RATES: dict[str, list[float]] = {"velocity": [], "effort": []}
 
 
 @pytest.fixture(scope="session")
@@ -121,8 +125,7 @@ def write_ros2(compression: CompressionType, chunked: bool) -> Callable[[Path, l
                     "header": header,
                     "name": ["arm", "wheel_right_joint", "wheel_left_joint"],
                     "position": [0.1, right, left],
-                    "velocity": [],
-                    "effort": [],
+                    **NO_RATES,
                 }
                 writer.write_message("/joint_states", joints, state, **times)
                 if row.pose:
@@ -261,6 +264,37 @@ def written(umbmark: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Pa
         umbmark, "simulate", "-o", file, "--side", "1", "--eb", "1.01", "--direction", "cw"
     )
     return file, said
+
+
+def test_a_log_with_a_camera_takes_little_memory(
+    umbmark: Path, measured: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "run.mcap"
+    with file.open("wb") as stream:
+        writer = Ros2Writer(stream, compression=CompressionType.ZSTD)
+        names = ["sensor_msgs/msg/JointState", "std_msgs/msg/ByteMultiArray"]
+        joints, images = [writer.register_msgdef(name, definition(name)) for name in names]
+        layout = {"dim": [], "data_offset": 0}
+        image = {"layout": layout, "data": random.Random(1).randbytes(1 << 20)}
+        log = list(rows(measured / "runs" / "ccw_01.csv"))
+        for number, row in enumerate(log):
+            names = ["left_wheel", "right_wheel"]
+            header = {"stamp": row.time, "frame_id": ""}
+            state = {"header": header, "name": names, "position": row.positions}
+            writer.write_message("/joint_states", joints, state | NO_RATES, log_time=row.stamp)
+            if number % 5 == 0:
+                writer.write_message("/camera", images, image, log_time=row.stamp)
+        writer.finish()  # type: ignore[no-untyped-call]
+    shutil.copy(measured / "robot.toml", tmp_path)
+    with (tmp_path / "out.json").open("wb") as out:
+        process = subprocess.Popen([umbmark, "inspect", file, "--json"], stdout=out)
+        _, process.returncode, usage = os.wait4(process.pid, 0)
+    assert process.returncode == 0
+    said = json.loads((tmp_path / "out.json").read_text())
+    assert said["logs"][0]["rows"] == len(log)
+    assert file.stat().st_size > 200e6
+    unit = 1 if sys.platform == "darwin" else 1024
+    assert usage.ru_maxrss * unit < 60e6, "more than a chunk or two"
 
 
 TOPICS = {

@@ -42,7 +42,6 @@ use clock::Clock;
 use container::{Damage, Record};
 use decoder::Decoder;
 use fields::Fields;
-use std::collections::HashMap;
 use topics::{Chosen, shown};
 use track::{TimedPlace, Track};
 use wheels::Wheels;
@@ -76,7 +75,8 @@ impl Reading {
 
 /// What is decoded at once: both topics, message by message.
 struct Decoding {
-    decoders: HashMap<u16, (Decoder, Role)>,
+    /// By channel; there are few.
+    decoders: Vec<(u16, Decoder, Role)>,
     fields: Fields,
     wheels: Wheels,
     track: Option<Track>,
@@ -105,7 +105,7 @@ impl Survey {
         if decoding.wheels.need_robot() && robot.is_none() {
             return Err(DatasetError::NoRobot);
         }
-        let skip = self.chunks_without(|channel| decoding.decoders.contains_key(&channel));
+        let skip = self.chunks_without(|channel| decoding.decoders.iter().any(|(id, ..)| *id == channel));
         let damage = self.walk(&skip, &mut |record| decoding.take(record))?;
         let Decoding { wheels, track, topics, messages, .. } = decoding;
         let file = self.file.clone();
@@ -145,14 +145,14 @@ impl Survey {
         let wheels = Wheels::new(&self.known(ticks)?.1, ticks.part.as_deref());
         let wheels = wheels.map_err(|found| problem(&ticks.topic, found, remedy))?;
         let track = reference.map(|reference| Ok(Track::new(&self.known(reference)?.1))).transpose()?;
-        let mut decoders = HashMap::new();
+        let mut decoders = Vec::new();
         for (chosen, role) in [(Some(ticks), Role::Wheels), (reference, Role::Reference)] {
             let Some(chosen) = chosen else { continue };
             let (encoding, kind) = self.known(chosen)?;
             for (id, schema) in self.channels_of(&chosen.topic) {
                 let decoder = Decoder::new(encoding, &kind, &schema.name, &schema.data)
                     .map_err(|found| problem(&chosen.topic, found, "record it with the schema of its messages"))?;
-                decoders.insert(id, (decoder, role));
+                decoders.push((id, decoder, role));
             }
         }
         let topics = [shown(&ticks.topic), reference.map_or(String::new(), |reference| shown(&reference.topic))];
@@ -200,7 +200,7 @@ impl Survey {
 impl Decoding {
     fn take(&mut self, record: Record) -> Result<(), McapProblem> {
         let Record::Message { channel, log_time, data } = record else { return Ok(()) };
-        let Some((decoder, role)) = self.decoders.get(&channel) else { return Ok(()) };
+        let Some((_, decoder, role)) = self.decoders.iter().find(|(id, ..)| *id == channel) else { return Ok(()) };
         let place = *role as usize;
         self.messages[place] += 1;
         let (wheels, track) = (&mut self.wheels, &mut self.track);

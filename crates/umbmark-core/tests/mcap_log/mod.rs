@@ -19,6 +19,9 @@ const POSE: &str = "===\nMSG: geometry_msgs/Pose\nPoint position\nQuaternion ori
 /// Type, encoding of its definition, definition, encoding of its messages.
 pub type Type = (&'static str, &'static str, String, &'static str);
 
+/// A message of so many milliseconds after the beginning.
+pub type Make = fn(u64) -> Vec<u8>;
+
 pub fn ros2(name: &'static str, text: &str) -> Type {
     (name, "ros2msg", text.to_owned(), "cdr")
 }
@@ -118,7 +121,7 @@ impl Log {
     }
 
     /// A message every ten milliseconds on each topic.
-    pub fn messages(mut self, count: u64, topics: &[(&str, fn(u64) -> Vec<u8>)]) -> Log {
+    pub fn messages(mut self, count: u64, topics: &[(&str, Make)]) -> Log {
         for ms in (0..count).map(|i| 10 * i) {
             for (topic, make) in topics {
                 self = self.message(topic, ms * 1_000_000, &make(ms));

@@ -18,10 +18,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The longest record or unpacked chunk that is read \[byte\].
 pub(super) const LONGEST: usize = 128 << 20;
-/// No log packs better than this; what claims to is not unpacked beyond `FREE` bytes.
+/// No long log packs better than this; what claims to is not unpacked beyond `FREE` bytes.
 const MOST_PACKED: u64 = 1000;
-const FREE: u64 = 16 << 20;
+const FREE: u64 = 1 << 30;
+/// Opcode and length of a record.
 const HEAD: usize = 9;
+/// Start of a chunk: its times and its unpacked size.
+const CHUNK_SIZES: usize = 24;
 
 /// A record that matters here.
 pub(super) enum Record<'a> {
@@ -171,12 +174,16 @@ impl Container {
         let damaged = |what: String| Stop::Damage(Damage { at, what });
         let left = self.size - at - HEAD as u64;
         let whole = length <= left;
-        if whole && length > LONGEST as u64 {
+        let mut start = [0; CHUNK_SIZES];
+        let started = usize::try_from(length.min(left)).unwrap_or(CHUNK_SIZES).min(CHUNK_SIZES);
+        self.file.read_exact(&mut start[..started])?;
+        let unpacked = start[CHUNK_SIZES - 8..].iter().rev().fold(0, |size, byte| size << 8 | u64::from(*byte));
+        if whole && length > LONGEST as u64 || unpacked > LONGEST as u64 {
             return Err(damaged(too_long("chunk")));
         }
         let mut chunk = Unpacking {
             reader: LinearReader::new_with_options(options().with_prevalidate_chunk_crcs(whole)),
-            source: head.chain(self.file.by_ref().take(length)),
+            source: head.chain(&start[..started]).chain(self.file.by_ref().take(length - started as u64)),
             left: HEAD as u64 + length.min(left),
             unpacked: &mut self.unpacked,
             most: FREE.saturating_add(MOST_PACKED.saturating_mul(at + length.min(left))),

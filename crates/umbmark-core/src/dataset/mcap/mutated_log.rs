@@ -2,8 +2,9 @@
 //!
 //! The tool is this file: mutation by our own Philox streams on stable Rust, in layers, so that damage gets past the
 //! checksums of chunks: whole files, records inside of chunks that are packed anew, schemas, and messages. A short run is
-//! part of every test run; `UMBMARK_MUTATIONS=1000000` sets how many inputs each layer gets. 10 million of the fast layers
-//! (schemas and messages) and 1 million of the others were run without a finding after the last one was mended.
+//! part of every test run; `UMBMARK_MUTATIONS=1500000` sets how many inputs a layer gets. That many were run: 12 million
+//! schemas and messages, 1.5 million of JSON and 3 million of protobuf; and 50 000 whole files with
+//! `UMBMARK_MUTATIONS=1000000`. What they found in libraries is in DESIGN.md; after it was guarded against, nothing.
 
 use super::super::mutated_input::damage;
 use super::cdr::Plan;

@@ -50,8 +50,16 @@ fn put(slot: Slot, value: &Value, fields: &mut Fields) -> Option<()> {
     match slot {
         Slot::Number(place) => fields.set(place, number(value)?),
         Slot::Frame | Slot::Child => fields.set_text(slot, value.as_str()?),
-        Slot::Names => value.as_list()?.iter().try_for_each(|name| Some(fields.names.push(name.as_str()?)))?,
-        Slot::Values => value.as_list()?.iter().try_for_each(|value| Some(fields.values.push(number(value)?)))?,
+        Slot::Names => {
+            for name in value.as_list()? {
+                fields.names.push(name.as_str()?);
+            }
+        }
+        Slot::Values => {
+            for value in value.as_list()? {
+                fields.values.push(number(value)?);
+            }
+        }
     }
     Some(())
 }

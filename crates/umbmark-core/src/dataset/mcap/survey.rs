@@ -93,7 +93,10 @@ impl Survey {
             // What the metadata says stands before the chunks, all of which are stepped over.
             let all = summary.chunk_indexes.iter().map(|chunk| chunk.chunk_start_offset).collect();
             let mut robot = None;
-            self.walk(&all, &mut |record| Ok(take_robot(&record, &mut robot)))?;
+            self.walk(&all, &mut |record| {
+                take_robot(&record, &mut robot);
+                Ok(())
+            })?;
             self.robot = robot;
         }
         Ok(())
