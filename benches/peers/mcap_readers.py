@@ -66,7 +66,8 @@ def build() -> str:
     cargo = ["cargo", "build", "--release", "--package", "umbmark-benches", "--example", "mcap_log"]
     subprocess.run(cargo, check=True, cwd=ROOT)
     target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
-    return str(target / "release" / "examples" / ("mcap_log.exe" if os.name == "nt" else "mcap_log"))
+    name = "mcap_log.exe" if os.name == "nt" else "mcap_log"
+    return str(target / "release" / "examples" / name)
 
 
 def words_of(command: list[str]) -> list[list[str]]:
