@@ -220,6 +220,23 @@ impl<E> Run<'_, E> {
         steps.iter().try_for_each(|step| self.step(step, cdr))
     }
 
+    /// Does something `count` times, or once where it takes no room: then it may be there any number of times.
+    fn repeat<B: CdrEndian>(
+        &mut self,
+        count: usize,
+        cdr: &mut CdrReader<B>,
+        mut once: impl FnMut(&mut Self, &mut CdrReader<B>) -> Read<()>,
+    ) -> Read<()> {
+        for _ in 0..count {
+            let before = cdr.position();
+            once(self, cdr)?;
+            if cdr.position() == before {
+                break;
+            }
+        }
+        Ok(())
+    }
+
     fn step<B: CdrEndian>(&mut self, step: &Step, cdr: &mut CdrReader<B>) -> Read<()> {
         match step {
             Step::Skip { size, count } => skip(cdr, *size, *count),
@@ -257,30 +274,19 @@ impl<E> Run<'_, E> {
             }
             Step::Repeat { count, steps } => {
                 let count = count.map_or_else(|| cdr.read_u32().map(|n| n as usize), Ok)?;
-                for _ in 0..count {
-                    let before = cdr.position();
-                    self.all(steps, cdr)?;
-                    // What takes no room may be there any number of times.
-                    if cdr.position() == before {
-                        break;
-                    }
-                }
-                Ok(())
+                self.repeat(count, cdr, |run, cdr| run.all(steps, cdr))
             }
             Step::Each(steps) => {
                 self.single = false;
-                for _ in 0..cdr.read_u32()? {
-                    self.fields.clear();
-                    let before = cdr.position();
-                    self.all(steps, cdr)?;
-                    if cdr.position() == before {
-                        break;
+                let count = cdr.read_u32()? as usize;
+                self.repeat(count, cdr, |run, cdr| {
+                    run.fields.clear();
+                    run.all(steps, cdr)?;
+                    if run.failed.is_none() {
+                        run.failed = (run.visit)(run.fields).err();
                     }
-                    if self.failed.is_none() {
-                        self.failed = (self.visit)(self.fields).err();
-                    }
-                }
-                Ok(())
+                    Ok(())
+                })
             }
             Step::Wall(_) => Err(re_cdr::Error::UnexpectedEof),
         }
