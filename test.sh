@@ -103,15 +103,17 @@ begin 'Python: module'
 "$python" -m maturin develop --manifest-path "$package/Cargo.toml"
 
 begin 'Python: formatting and lints'
-"$python" -m ruff format --check --config "$package/pyproject.toml" "$package" .ci
-"$python" -m ruff check --config "$package/pyproject.toml" "$package" .ci
+"$python" -m ruff format --check --config "$package/pyproject.toml" "$package" tests/reference .ci
+"$python" -m ruff check --config "$package/pyproject.toml" "$package" tests/reference .ci
 
 begin 'Python: types'
 "$python" -m mypy --config-file "$package/pyproject.toml" "$package/python" "$package/tests" .ci
+"$python" -m mypy --config-file "$package/pyproject.toml" tests/reference
 "$python" -m mypy.stubtest --mypy-config-file "$package/pyproject.toml" umbmark
 
 begin 'Python: tests'
 "$python" -m pytest "$package"
+"$python" -m pytest --config-file "$package/pyproject.toml" tests/reference
 
 end_section
 printf '\nall tests passed in %d s\n' "$SECONDS"

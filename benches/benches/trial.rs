@@ -9,6 +9,7 @@ use criterion::{
 use std::time::Duration;
 use umbmark_benches::studies::{self, ODOMETRIES, SAMPLED, SEED};
 use umbmark_core::effect::TestKind;
+use umbmark_core::engine::Instructions;
 use umbmark_core::monte_carlo::{CHUNK, Study};
 use umbmark_core::path::Direction;
 use umbmark_core::simulate::{Odometry, Simulator, Truth};
@@ -30,7 +31,7 @@ fn run(criterion: &mut Criterion) {
 }
 
 /// Measures so many trials at a time, a tenth of a second or more: less, and one sees the growth of the statistics'
-/// sketches, some milliseconds a study.
+/// sketches, some milliseconds a study. Instruction sets that the machine lacks fall back to the next one it has.
 fn measure(group: &mut BenchmarkGroup<WallTime>, name: &str, study: Study, trials: u64) {
     let study = Study { trials, ..study };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
@@ -40,11 +41,15 @@ fn measure(group: &mut BenchmarkGroup<WallTime>, name: &str, study: Study, trial
 
 fn trial(criterion: &mut Criterion) {
     for (kind, study, chunks) in
-        [("plain", studies::plain(), 16), ("ten bumps", studies::ten_bumps(), 8), ("events", studies::events(), 2)]
+        [("plain", studies::plain(), 64), ("ten bumps", studies::ten_bumps(), 32), ("events", studies::events(), 8)]
     {
         let mut group = criterion.benchmark_group(format!("trial {kind}"));
         group.sampling_mode(SamplingMode::Flat).sample_size(10);
         measure(&mut group, "every tick", study.clone(), chunks * CHUNK);
+        for instructions in [Instructions::Portable, Instructions::Avx2, Instructions::Avx512] {
+            let study = Study { instructions, ..study.clone() };
+            measure(&mut group, &format!("every tick, {instructions:?}"), study, chunks * CHUNK);
+        }
         let sampled = Study { odometry: SAMPLED, ..study.clone() };
         measure(&mut group, "100 Hz", sampled.clone(), CHUNK / 2);
         measure(&mut group, "100 Hz without ramps", Study { path: studies::without_ramps(), ..sampled }, 4 * CHUNK);

@@ -1,6 +1,7 @@
 //! Workloads with fixed seeds for the benchmarks: segments as a robot on the UMBmark square drives them, whole tests, and
 //! the studies made of them.
 
+pub mod logs;
 pub mod mcap_logs;
 pub mod plain_trials;
 pub mod studies;

@@ -42,7 +42,8 @@ pub fn write(file: &Path) {
         log: Some(log()),
         returned: None,
     };
-    let data = Dataset { robot: Some(Robot::labmate()), path: None, runs: vec![run], warnings: Vec::new() };
+    let (robot, clocks, topics, warnings) = (Some(Robot::labmate()), Vec::new(), Vec::new(), Vec::new());
+    let data = Dataset { robot, path: None, runs: vec![run], clocks, topics, warnings };
     data.save_mcap(file, Existing::Replace).expect("a log that can be written");
 }
 

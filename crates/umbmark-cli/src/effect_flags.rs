@@ -3,12 +3,20 @@
 use anyhow::Context;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
-use umbmark_core::effect::{CATALOGUE, Entry, Model};
+use umbmark_core::effect::{ActsOn, CATALOGUE, Entry, Model};
 use umbmark_core::monte_carlo::{Distribution, Draw};
 use umbmark_core::parameter::{DefaultValue, Parameter};
 
-/// The heading that effect flags stand under in the help.
-const HEADING: &str = "Effects";
+/// The heading that the flags of an effect stand under in the help.
+fn heading(entry: &Entry) -> &'static str {
+    match entry.about.acts_on {
+        ActsOn::Odometry => "Effects on the odometry",
+        ActsOn::Wheels => "Effects on the wheels",
+        ActsOn::Body => "Effects on the body",
+        ActsOn::Start => "Effects at START",
+        ActsOn::Reference => "Effects on the absolute measurement",
+    }
+}
 
 /// What was said of the effects' parameters on the command line.
 #[derive(Clone, Debug, Default)]
@@ -25,7 +33,8 @@ struct Given {
 }
 
 fn every() -> impl Iterator<Item = (&'static Entry, &'static Parameter)> {
-    CATALOGUE.iter().flat_map(|entry| entry.about.parameters.iter().map(move |p| (entry, p)))
+    let by_kind = ActsOn::ALL.into_iter().flat_map(|kind| CATALOGUE.iter().filter(move |e| e.about.acts_on == kind));
+    by_kind.flat_map(|entry| entry.about.parameters.iter().map(move |p| (entry, p)))
 }
 
 fn deviation_flag(parameter: &Parameter) -> String {
@@ -80,8 +89,8 @@ pub fn number_of(matches: &ArgMatches, parameter: &Parameter) -> Option<f64> {
 
 impl Args for EffectFlags {
     fn augment_args(command: Command) -> Command {
-        every().fold(command, |command, (_, parameter)| {
-            let command = command.arg(number_flag(parameter).help_heading(HEADING));
+        every().fold(command, |command, (entry, parameter)| {
+            let command = command.arg(number_flag(parameter).help_heading(heading(entry)));
             if !has_deviation(parameter) {
                 return command;
             }
@@ -93,7 +102,7 @@ impl Args for EffectFlags {
                     .value_parser(number)
                     .allow_negative_numbers(true)
                     .help(format!("standard deviation of --{} from trial to trial", parameter.flag))
-                    .help_heading(HEADING)
+                    .help_heading(heading(entry))
                     .hide_short_help(true),
             )
         })

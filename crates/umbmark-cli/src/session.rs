@@ -51,6 +51,11 @@ impl Session {
         self.options.seed
     }
 
+    /// Whether people look at standard output, rather than a file or a program.
+    pub fn on_terminal(&self) -> bool {
+        io::stdout().is_terminal()
+    }
+
     /// Standard output, buffered.
     pub fn out(&mut self) -> &mut impl Write {
         &mut self.out

@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod completions;
+mod convert;
 mod effects;
 mod init;
 mod inspect;
@@ -29,6 +30,8 @@ pub enum Verb {
     Calibrate(calibrate::Arguments),
     /// Look at a dataset: what it holds, whether it is any good, what it can determine
     Inspect(inspect::Arguments),
+    /// Write a dataset in another layout; sets clocks that disagree by the motion
+    Convert(convert::Arguments),
     /// Write a robot.toml and a returns.csv to fill in
     Init(init::Arguments),
     /// List the effects that make a robot err, or explain one
@@ -46,6 +49,7 @@ impl Verb {
             Verb::Score(arguments) => score::run(arguments, session),
             Verb::Calibrate(arguments) => calibrate::run(arguments, session),
             Verb::Inspect(arguments) => inspect::run(arguments, session),
+            Verb::Convert(arguments) => convert::run(arguments, session),
             Verb::Init(arguments) => init::run(arguments, session),
             Verb::Effects(arguments) => effects::run(arguments, session),
             Verb::Completions(arguments) => completions::run(arguments, session),

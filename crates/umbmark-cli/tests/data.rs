@@ -69,6 +69,68 @@ fn inspect_as_json() {
 }
 
 #[test]
+fn convert_says_what_it_wrote_and_what_is_lost() {
+    let place = tempfile::tempdir().unwrap();
+    let out = |name: &str| place.path().join(name).display().to_string();
+    let convert = |to: &str| said(&["convert", "tracked", "-o", &out(to), "--to", to]).replace(&out(to), "OUT");
+    assert_data_eq!(convert("optiodom"), file!["golden/convert_optiodom.txt"]);
+    assert_data_eq!(convert("csv"), "wrote 2 runs to OUT as csv\n\nwhat is lost\n  - nothing\n");
+    for to in ["tum", "returns"] {
+        fits_the_terminal(&convert(to));
+    }
+    let again = refused(Path::new(env!("CARGO_MANIFEST_DIR")), &["convert", "tests/data/tracked", "-o", &out("csv")]);
+    assert!(again.ends_with("is there already; choose another folder, or say --force to replace it\n"), "{again}");
+    // The same runs in the own layout, by way of OptiOdom's.
+    let back = said(&["convert", &out("optiodom"), "-o", &out("back"), "--json"]);
+    let document: serde_json::Value = serde_json::from_str(&back).unwrap();
+    assert_eq!((&document["runs"], &document["lost"]), (&2.into(), &serde_json::json!([])));
+}
+
+#[test]
+fn convert_sets_the_clock_of_a_track_and_tells_it() {
+    let place = tempfile::tempdir().unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/tracked");
+    let folder = place.path().join("two_clocks");
+    for part in ["runs", "reference"] {
+        std::fs::create_dir_all(folder.join(part)).unwrap();
+    }
+    std::fs::copy(data.join("robot.toml"), folder.join("robot.toml")).unwrap();
+    for name in ["cw_01.csv", "ccw_01.csv"] {
+        // The log's own poses, taken out and given another clock.
+        let text = std::fs::read_to_string(data.join("runs").join(name)).unwrap();
+        let (mut ticks, mut track) =
+            ("t_s,ticks_left,ticks_right\n".to_owned(), "t_s,x_ref_m,y_ref_m,theta_ref_rad\n".to_owned());
+        // The track sees two seconds of rest before the ticks begin.
+        track += &(1..5).rev().map(|i| format!("{},0,0,0\n", 40.0 - 0.49 * f64::from(i))).collect::<String>();
+        for line in text.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit())) {
+            let cells: Vec<&str> = line.split(',').collect();
+            ticks += &format!("{},{},{}\n", cells[0], cells[1], cells[2]);
+            if cells.get(3).is_some_and(|x| !x.is_empty()) {
+                let time = 40.0 + 0.98 * cells[0].parse::<f64>().unwrap();
+                track += &format!("{time},{}\n", cells[3..].join(","));
+            }
+        }
+        std::fs::write(folder.join("runs").join(name), ticks).unwrap();
+        std::fs::write(folder.join("reference").join(name), track).unwrap();
+    }
+    let (from, out) = (folder.display().to_string(), place.path().join("one_clock").display().to_string());
+    let text = said(&["convert", &from, "-o", &out, "--json"]);
+    let document: serde_json::Value = serde_json::from_str(&text).unwrap();
+    for clock in document["clocks"].as_array().unwrap() {
+        let near = |key: &str, truth: f64, limit: f64| {
+            let value = clock[key]["value"].as_f64().unwrap();
+            assert!((value - truth).abs() < limit, "{key}: {value}");
+        };
+        near("offset_s", 40.0, 0.05);
+        near("rate", 0.98, 2e-3);
+    }
+    assert_eq!(document["clocks"].as_array().unwrap().len(), 2);
+    let told = said(&["inspect", &from]);
+    fits_the_terminal(&told);
+    assert!(told.contains("clocks set by the motion while reading"), "{told}");
+}
+
+#[test]
 fn the_list_of_effects_names_each_entry_of_the_catalogue() {
     let text = said(&["effects"]);
     fits_the_terminal(&text);
@@ -85,6 +147,7 @@ fn the_list_of_effects_names_each_entry_of_the_catalogue() {
 #[test]
 fn an_effect_explained() {
     assert_data_eq!(said(&["effects", "placed_bumps"]), file!["golden/effect_placed_bumps.txt"]);
+    assert_data_eq!(said(&["effects", "caster_kick"]), file!["golden/effect_caster_kick.txt"]);
     assert_data_eq!(said(&["effects", "wheel_diameter_ratio", "--json"]), file!["golden/effect_ratio.json"]);
 }
 

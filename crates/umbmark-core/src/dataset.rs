@@ -1,8 +1,9 @@
 //! Measured (or simulated) robots: what a dataset folder holds, in memory, and its files.
 //!
 //! [`Dataset::load`] takes a folder (`robot.toml`, `returns.csv`, `runs/*.csv`, `runs/*.mcap`; or one of OptiOdom) or one
-//! file of it. Inside, one file per layout reads rows (`returns`, `tick_log`, `optiodom`, `mcap`), a `Recording` mends counts
-//! (roll-overs), `start_frame` moves tracks into the frame of START, and an `Assembly` matches returns with logs.
+//! file of it. Inside, one file per layout reads rows (`returns`, `tick_log`, `optiodom`, `motive`, `tum`, `mcap`), a
+//! `Recording` mends rows and counts, `synchronise` sets the clock of a track by the motion, `place` puts its poses into the
+//! log, `start_frame` moves them into the frame of START, and an `Assembly` matches returns with logs.
 //!
 //! ```no_run
 //! use umbmark_core::dataset::Dataset;
@@ -19,30 +20,44 @@ mod error;
 mod folder;
 mod inspect;
 mod label;
+mod layout;
 mod mcap;
 mod model_file;
+mod motive;
 #[cfg(test)]
 mod mutated_input;
 mod optiodom;
+mod packed;
+mod place;
 mod recording;
+mod reference_file;
+mod reference_track;
 mod returns;
 mod robot_file;
 mod robot_text;
 mod save;
 mod sheet;
 mod sheets;
+mod stale;
 mod start_frame;
+mod synchronise;
 mod template;
 mod text;
 mod tick_log;
+mod tum;
 
 pub use error::DatasetError;
-pub use inspect::{Check, Coverage, Determined, Group, Inspection, LogFacts, ReferenceFacts, Wheels, WheelsFound};
+pub use inspect::{
+    Check, Coverage, Determined, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, Wheels, WheelsFound,
+};
+pub use layout::{LAYOUTS, Layout};
 pub use mcap::{McapProblem, Topics};
 pub use model_file::{parse_model, read_model};
+pub use reference_track::ReferenceTrack;
 pub use robot_file::{parse_robot, read_robot};
 pub use robot_text::robot_text;
 pub use save::Existing;
+pub use synchronise::{Alignment, BLOCKS, Measured, SynchroniseError, synchronise};
 pub use template::{template, write_template};
 
 use crate::drive::Robot;
@@ -103,6 +118,28 @@ pub struct Run {
     pub returned: Option<ReturnError>,
 }
 
+/// How the clock of a track ran against that of a run's ticks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunClock {
+    /// The run's name.
+    pub run: String,
+    /// The file of the track.
+    pub track: String,
+    /// What the motion says.
+    pub alignment: Alignment,
+}
+
+/// Where the log of a run was found in an MCAP file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RunTopics {
+    /// The run's name.
+    pub run: String,
+    /// Topic of the wheels.
+    pub wheels: String,
+    /// Topic of the absolute poses, where there were some.
+    pub reference: Option<String>,
+}
+
 /// A robot and its runs.
 #[derive(Clone, Debug)]
 pub struct Dataset {
@@ -112,6 +149,10 @@ pub struct Dataset {
     pub path: Option<Path>,
     /// Its runs.
     pub runs: Vec<Run>,
+    /// The clocks that were set while reading: one for each log whose poses came from a track with its own clock.
+    pub clocks: Vec<RunClock>,
+    /// The topics that were read: those of each MCAP log.
+    pub topics: Vec<RunTopics>,
     /// What the reader noticed and mended, one sentence each.
     pub warnings: Vec<String>,
 }

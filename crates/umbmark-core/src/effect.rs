@@ -7,16 +7,46 @@
 //! ```text
 //! believed wheel travel -> [wheels] -> true wheel travel -> kinematics -> [body] -> true motion -> true pose
 //!                                                               ^ diffusion, bumps                    | [start]
-//!                                                                                  measured pose <- [measured]
+//!                                                                          measured pose <- [measured] <- [seen]
 //! ```
+//!
+//! What an effect may depend on (speed, heading, wheel angle, way since the last turn ...) stands in a [`Context`], which
+//! the engine fills for each piece of the way.
 
+mod acceleration_slip;
+mod backlash;
 mod bumps;
+mod carpet_nap;
+mod caster_kick;
+mod centripetal_load;
+mod context;
+mod crab;
+mod diameter_drift;
+mod direction_dependent_wheelbase;
+mod encoder_resolution;
+mod encoder_sampling;
+mod encoder_skew;
+mod floor_slope;
+mod floor_slope_yaw;
+mod leg_kick;
+mod marker_offset;
+mod marker_yaw;
+mod missed_counts;
 mod model;
 mod placed_bumps;
+mod reference_clock_rate;
+mod reference_delay;
 mod reference_noise;
 mod scale;
+mod speed_slip;
+mod speed_slip_left;
+mod speed_slip_right;
 mod start_pose;
+mod turn_slip;
+mod turn_slip_rate;
 mod wheel_diameter_ratio;
+mod wheel_eccentricity_left;
+mod wheel_eccentricity_right;
 mod wheel_noise;
 mod wheelbase;
 
@@ -27,20 +57,57 @@ use crate::path::Direction;
 use crate::random::Stream;
 
 pub use bumps::extra_travel;
+pub use context::{Context, Place, Progress, Sight};
 pub use model::{Chain, Model, ModelError, Part};
 
 /// The largest number of parameters of one effect.
 pub const MAX_PARAMETERS: usize = 6;
 
 /// Every effect there is, in the order in which they act.
+///
+/// The order is that of cause: what was counted, what shape the wheels have and what drives them, how they grip, what the
+/// floor does, and last where the robot was put and how it was measured. Within a kind, what changes all motion stands
+/// before what changes some of it. Effects on the wheels act before effects on the body wherever they stand, so for small
+/// effects another order would change return poses by products of two of them only.
 pub static CATALOGUE: &[Entry] = &[
+    // What the encoders make of the wheels' rotation.
+    Entry::of::<missed_counts::MissedCounts>(),
+    Entry::of::<encoder_skew::EncoderSkew>(),
+    Entry::of::<encoder_sampling::EncoderSampling>(),
+    Entry::of::<encoder_resolution::EncoderResolution>(),
+    // The wheels' shape, and their play.
     Entry::of::<wheel_diameter_ratio::WheelDiameterRatio>(),
     Entry::of::<wheelbase::Wheelbase>(),
     Entry::of::<scale::Scale>(),
+    Entry::of::<wheel_eccentricity_left::WheelEccentricityLeft>(),
+    Entry::of::<wheel_eccentricity_right::WheelEccentricityRight>(),
+    Entry::of::<diameter_drift::DiameterDrift>(),
+    Entry::of::<centripetal_load::CentripetalLoad>(),
+    Entry::of::<backlash::Backlash>(),
+    // The contact with the floor, smooth.
+    Entry::of::<crab::Crab>(),
+    Entry::of::<speed_slip::SpeedSlip>(),
+    Entry::of::<speed_slip_left::SpeedSlipLeft>(),
+    Entry::of::<speed_slip_right::SpeedSlipRight>(),
+    Entry::of::<acceleration_slip::AccelerationSlip>(),
+    Entry::of::<turn_slip::TurnSlip>(),
+    Entry::of::<turn_slip_rate::TurnSlipRate>(),
+    Entry::of::<direction_dependent_wheelbase::DirectionDependentWheelbase>(),
+    Entry::of::<caster_kick::CasterKick>(),
+    Entry::of::<leg_kick::LegKick>(),
+    // The floor.
+    Entry::of::<floor_slope::FloorSlope>(),
+    Entry::of::<floor_slope_yaw::FloorSlopeYaw>(),
+    Entry::of::<carpet_nap::CarpetNap>(),
     Entry::of::<placed_bumps::PlacedBumps>(),
     Entry::of::<bumps::Bumps>(),
     Entry::of::<wheel_noise::WheelNoise>(),
+    // START, and the measurement.
     Entry::of::<start_pose::StartPose>(),
+    Entry::of::<reference_delay::ReferenceDelay>(),
+    Entry::of::<reference_clock_rate::ReferenceClockRate>(),
+    Entry::of::<marker_offset::MarkerOffset>(),
+    Entry::of::<marker_yaw::MarkerYaw>(),
     Entry::of::<reference_noise::ReferenceNoise>(),
 ];
 
@@ -63,9 +130,14 @@ pub enum ActsOn {
     Start,
     /// The measurement of the absolute pose.
     Reference,
+    /// What the robot's odometry makes of its wheels, while they roll as they should.
+    Odometry,
 }
 
 impl ActsOn {
+    /// All of them, the most usual first.
+    pub const ALL: [ActsOn; 5] = [ActsOn::Wheels, ActsOn::Body, ActsOn::Odometry, ActsOn::Start, ActsOn::Reference];
+
     /// In words.
     pub fn name(self) -> &'static str {
         match self {
@@ -73,6 +145,7 @@ impl ActsOn {
             ActsOn::Body => "the body's true motion",
             ActsOn::Start => "the robot's place at START",
             ActsOn::Reference => "the absolute measurement",
+            ActsOn::Odometry => "what odometry makes of the wheels",
         }
     }
 }
@@ -94,7 +167,7 @@ pub struct About {
     pub physics: &'static str,
     /// What it does to a square driven both ways.
     pub signature: &'static str,
-    /// What looks the same in return poses.
+    /// What looks the same in return poses, or in a track where those do not show it.
     pub confused_with: &'static [&'static str],
     /// The experiment that tells it from those.
     pub separated_by: &'static str,
@@ -121,7 +194,7 @@ impl TestKind {
     }
 }
 
-/// A stretch of driving at constant ratio of the wheel speeds, as an effect sees it.
+/// A stretch of driving at constant ratio of the wheel speeds, as bumps see it.
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch {
     /// Its number in the run, from 0.
@@ -161,11 +234,17 @@ pub trait Effect {
     /// What people should know of it.
     const ABOUT: About;
 
+    /// Whether its change of motion depends on the [`Context`], so that driving has to be cut into small pieces for it.
+    const VARIES: bool = false;
+
     /// Changes believed into true wheel travel \[m\].
-    fn wheels<T: Real>(_p: &[T], _travel: &mut WheelTravel<T>) {}
+    fn wheels<T: Real>(_p: &[T], _at: &Context<T>, _travel: &mut WheelTravel<T>) {}
 
     /// Changes the body motion that true wheel travel makes.
-    fn body<T: Real>(_p: &[T], _motion: &mut Displacement2<T>) {}
+    fn body<T: Real>(_p: &[T], _at: &Context<T>, _motion: &mut Displacement2<T>) {}
+
+    /// Changes what an absolute measurement shows of a true pose, other than by chance.
+    fn seen<T: Real>(_p: &[T], _at: &Sight, _pose: &mut Pose2<T>) {}
 
     /// Variance that white noise on the wheels gathers over a true travel.
     fn diffusion(_p: &[f64], _travel: &WheelTravel) -> WheelVariance {
@@ -175,8 +254,13 @@ pub trait Effect {
     /// Adds the bumps that the wheels meet in a stretch, in any order.
     fn bumps(_p: &[f64], _stretch: &Stretch, _stream: &mut Stream, _met: &mut Vec<Bump>) {}
 
-    /// Where the robot truly stands at START, seen from where it is believed to stand.
-    fn start(_p: &[f64], _stream: &mut Stream) -> Pose2 {
+    /// Where the robot truly stands at START on average, seen from where it is believed to stand.
+    fn start<T: Real>(_p: &[T]) -> Pose2<T> {
+        Pose2::IDENTITY.lift()
+    }
+
+    /// How far from there it stands in one run.
+    fn start_scatter(_p: &[f64], _stream: &mut Stream) -> Pose2 {
         Pose2::IDENTITY
     }
 
@@ -187,10 +271,14 @@ pub trait Effect {
 /// The deterministic part of an effect, for one kind of number.
 #[derive(Clone, Copy, Debug)]
 pub struct Mean<T: Real> {
+    /// See [`Effect::start`].
+    pub start: fn(&[T]) -> Pose2<T>,
     /// See [`Effect::wheels`].
-    pub wheels: fn(&[T], &mut WheelTravel<T>),
+    pub wheels: fn(&[T], &Context<T>, &mut WheelTravel<T>),
     /// See [`Effect::body`].
-    pub body: fn(&[T], &mut Displacement2<T>),
+    pub body: fn(&[T], &Context<T>, &mut Displacement2<T>),
+    /// See [`Effect::seen`].
+    pub seen: fn(&[T], &Sight, &mut Pose2<T>),
 }
 
 /// The random part of an effect.
@@ -200,8 +288,8 @@ pub struct Scatter {
     pub diffusion: fn(&[f64], &WheelTravel) -> WheelVariance,
     /// See [`Effect::bumps`].
     pub bumps: fn(&[f64], &Stretch, &mut Stream, &mut Vec<Bump>),
-    /// See [`Effect::start`].
-    pub start: fn(&[f64], &mut Stream) -> Pose2,
+    /// See [`Effect::start_scatter`].
+    pub start_scatter: fn(&[f64], &mut Stream) -> Pose2,
     /// See [`Effect::measured`].
     pub measured: fn(&[f64], &mut Stream, &mut Pose2),
 }
@@ -211,6 +299,8 @@ pub struct Scatter {
 pub struct Entry {
     /// What people should know of it.
     pub about: About,
+    /// See [`Effect::VARIES`].
+    pub varies: bool,
     pub(crate) values: Mean<f64>,
     pub(crate) duals: Mean<Dual>,
     pub(crate) scatter: Scatter,
@@ -221,9 +311,25 @@ impl Entry {
         assert!(E::ABOUT.parameters.len() <= MAX_PARAMETERS);
         Entry {
             about: E::ABOUT,
-            values: Mean { wheels: E::wheels::<f64>, body: E::body::<f64> },
-            duals: Mean { wheels: E::wheels::<Dual>, body: E::body::<Dual> },
-            scatter: Scatter { diffusion: E::diffusion, bumps: E::bumps, start: E::start, measured: E::measured },
+            varies: E::VARIES,
+            values: Mean {
+                start: E::start::<f64>,
+                wheels: E::wheels::<f64>,
+                body: E::body::<f64>,
+                seen: E::seen::<f64>,
+            },
+            duals: Mean {
+                start: E::start::<Dual>,
+                wheels: E::wheels::<Dual>,
+                body: E::body::<Dual>,
+                seen: E::seen::<Dual>,
+            },
+            scatter: Scatter {
+                diffusion: E::diffusion,
+                bumps: E::bumps,
+                start_scatter: E::start_scatter,
+                measured: E::measured,
+            },
         }
     }
 
@@ -262,39 +368,4 @@ impl Evaluate for Dual {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::drive::Robot;
-
-    #[test]
-    fn the_catalogue_is_complete_and_consistent() {
-        let mut flags = Vec::new();
-        for entry in CATALOGUE {
-            let about = &entry.about;
-            assert!(std::ptr::eq(find(about.name).unwrap(), entry), "{} stands twice", about.name);
-            for text in [about.title, about.equation, about.physics, about.signature, about.separated_by, about.source]
-            {
-                assert!(text.len() > 3, "{} leaves a text empty", about.name);
-            }
-            for p in about.parameters {
-                assert!(!flags.contains(&p.flag), "--{} stands twice", p.flag);
-                flags.push(p.flag);
-                assert!(!p.meaning.is_empty());
-                p.check(p.default.resolve(&Robot::labmate())).unwrap();
-            }
-            for other in about.confused_with {
-                assert!(*other != about.name);
-            }
-        }
-        let mut purposes: Vec<u64> = CATALOGUE.iter().map(Entry::purpose).collect();
-        purposes.sort_unstable();
-        purposes.dedup();
-        assert_eq!(purposes.len(), CATALOGUE.len());
-    }
-
-    #[test]
-    fn a_misspelt_effect_is_told_its_neighbour() {
-        let error = find("wheel_base").unwrap_err().to_string();
-        assert_eq!(error, "there is no effect \"wheel_base\"; did you mean \"wheelbase\"?");
-    }
-}
+mod tests;

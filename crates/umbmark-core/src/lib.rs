@@ -12,6 +12,7 @@
 
 pub mod calibrate;
 pub mod dataset;
+pub mod diagnose;
 pub mod drive;
 pub mod effect;
 pub mod engine;

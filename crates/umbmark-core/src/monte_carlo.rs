@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use crate::dataset::ReturnError;
 use crate::drive::Robot;
 use crate::effect::{Model, ModelError};
+use crate::engine::Instructions;
 use crate::parameter::ParameterError;
 use crate::path::{Direction, Path};
 use crate::replay::Track;
@@ -98,6 +99,9 @@ pub struct Study {
     pub trials: u64,
     /// Seed of all random numbers.
     pub seed: u64,
+    /// The widest registers that may be used: those of the machine, unless paths are to be compared. No number depends on
+    /// it.
+    pub instructions: Instructions,
 }
 
 /// What a sink is told after every batch.
@@ -123,6 +127,7 @@ impl Study {
             runs: [5, 5],
             trials,
             seed,
+            instructions: Instructions::best(),
         }
     }
 
@@ -165,9 +170,10 @@ impl Study {
     /// The test without noise, bumps and quantisation, all drawn parameters in their middle: its return errors \[cw, ccw\]
     /// by exact kinematics.
     pub fn noise_free(&self) -> Result<[ReturnError; 2], StudyError> {
-        let chain = trial::centred(&self.model, &self.draws)?.chain();
+        let model = trial::centred(&self.model, &self.draws)?;
+        let (chain, track) = (model.chain(), if model.varies() { Track::in_pieces } else { Track::from_path });
         Ok(Direction::BOTH.map(|direction| {
-            let end = Track::from_path(&self.path, direction, self.robot()).end(&chain);
+            let end = track(&self.path, direction, self.robot()).end(&chain);
             simulate::return_error(&end, &self.path.end(direction))
         }))
     }
@@ -265,6 +271,8 @@ pub const MAX_RUNS: u64 = 10_000;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::Update;
+    use crate::path::{FIGURE_EIGHT, SpeedProfile};
 
     fn study(trials: u64) -> Study {
         let mut model = Model::new(&Robot::labmate());
@@ -303,6 +311,37 @@ mod tests {
         let mut other = study.clone();
         other.seed = 8;
         assert_ne!(one.1, bits(&other, 1).1);
+    }
+
+    /// Wheel noise, bumps of both kinds, misplacement at START and errors of the measurement, on the square and on a path of
+    /// whole circles, each with every kind of odometry.
+    #[test]
+    fn every_instruction_set_gives_the_same_bits() {
+        let mut model = Model::new(&Robot::labmate());
+        for (effect, parameter, value) in [
+            ("wheel_noise", "k_sqrt_m", 1e-3),
+            ("bumps", "rate_per_m", 0.5),
+            ("placed_bumps", "count", 3.0),
+            ("start_pose", "position_sd_m", 1e-3),
+            ("reference_noise", "position_sd_m", 1e-3),
+        ] {
+            model.set(effect, parameter, value).unwrap();
+        }
+        let sampled = Odometry::Sampled { rate: 50.0, update: Update::Arc };
+        let figure_eight = Path::new(&FIGURE_EIGHT, &[0.5], SpeedProfile::default()).unwrap();
+        for path in [Path::umbmark(), figure_eight] {
+            for odometry in [Odometry::EveryTick, sampled, Odometry::Continuous] {
+                let on = |instructions| {
+                    let mut study =
+                        Study { model: model.clone(), odometry, path: path.clone(), instructions, ..study(60) };
+                    study.runs = [3, 4];
+                    bits(&study, 1)
+                };
+                let portable = on(Instructions::Portable);
+                assert_eq!(on(Instructions::Avx2), portable, "{odometry:?}");
+                assert_eq!(on(Instructions::Avx512), portable, "{odometry:?}");
+            }
+        }
     }
 
     #[test]

@@ -70,6 +70,15 @@ impl Parameter {
         Parameter { name, flag, unit, default: DefaultValue::Value(0.0), typical, bounds, meaning, choices: &[] }
     }
 
+    /// A value at which it does something: the typical departure from 0 or 1 where that does nothing, else the default.
+    pub fn usual(&self, robot: &Robot) -> f64 {
+        match self.default.resolve(robot) {
+            0.0 => self.typical,
+            1.0 => 1.0 + self.typical,
+            other => other,
+        }
+    }
+
     /// `value`, if it is finite and within the bounds.
     pub fn check(&self, value: f64) -> Result<f64, ParameterError> {
         let (lowest, highest) = self.bounds;

@@ -6,6 +6,7 @@
 
 mod circle;
 mod figure_eight;
+mod pieces;
 mod rectangle;
 mod speed;
 mod spin;
@@ -19,6 +20,7 @@ use crate::parameter::{Parameter, ParameterError};
 
 pub use circle::CIRCLE;
 pub use figure_eight::FIGURE_EIGHT;
+pub use pieces::{Piece, Pieces};
 pub use rectangle::RECTANGLE;
 pub use speed::{SpeedProfile, Trapezoid};
 pub use spin::SPIN;
@@ -137,7 +139,9 @@ pub enum PathError {
         got: usize,
     },
     /// Waypoints that are no path.
-    #[error("waypoints must be two or more finite, distinct points in a row; point {index} is ({x}, {y})")]
+    #[error(
+        "waypoints must be two or more points of at most 1e6 m either way, each another than the one before; point {index} is ({x}, {y})"
+    )]
     Waypoint {
         /// Number of the offending point, from 1.
         index: usize,

@@ -15,15 +15,18 @@ use rand_distr::StandardNormal;
 pub struct Stream {
     key: [u64; 2],
     counter: [u64; 4],
-    block: [u64; 4],
+    blocks: [[u64; 4]; BLOCKS],
     used: usize,
 }
+
+/// Blocks of four words worked out at a time: their rounds, each a chain of multiplications, overlap.
+const BLOCKS: usize = 2;
 
 impl Stream {
     /// The stream of a trial for one purpose.
     #[inline]
     pub fn new(seed: u64, purpose: u64, trial: u64) -> Stream {
-        Stream { key: [seed, purpose], counter: [0, 0, 0, trial], block: [0; 4], used: 4 }
+        Stream { key: [seed, purpose], counter: [0, 0, 0, trial], blocks: [[0; 4]; BLOCKS], used: 4 * BLOCKS }
     }
 
     /// A draw from the standard normal distribution (ziggurat).
@@ -38,27 +41,32 @@ impl Stream {
         self.random()
     }
 
-    #[inline]
+    /// Not inlined, so that taking a word is.
+    #[inline(never)]
     fn refill(&mut self) {
-        self.counter[0] = self.counter[0].wrapping_add(1);
-        self.block = philox(self.counter, self.key);
+        let [first, rest @ ..] = self.counter;
+        let counter = |i: usize| first.wrapping_add(1 + i as u64);
+        self.blocks = philox(std::array::from_fn(|i| [counter(i), rest[0], rest[1], rest[2]]), self.key);
+        self.counter[0] = counter(BLOCKS - 1);
         self.used = 0;
     }
 }
 
-/// Ten rounds of Philox on four 64-bit words.
+/// Ten rounds of Philox on blocks of four 64-bit words.
 #[inline]
-fn philox(counter: [u64; 4], key: [u64; 2]) -> [u64; 4] {
+fn philox(mut blocks: [[u64; 4]; BLOCKS], [mut k0, mut k1]: [u64; 2]) -> [[u64; 4]; BLOCKS] {
     const MULTIPLIERS: [u64; 2] = [0xD2E7_470E_E14C_6C93, 0xCA5A_8263_9512_1157];
     const WEYL: [u64; 2] = [0x9E37_79B9_7F4A_7C15, 0xBB67_AE85_84CA_A73B];
-    let ([mut c0, mut c1, mut c2, mut c3], [mut k0, mut k1]) = (counter, key);
     for _ in 0..10 {
-        let p0 = u128::from(MULTIPLIERS[0]) * u128::from(c0);
-        let p1 = u128::from(MULTIPLIERS[1]) * u128::from(c2);
-        (c0, c1, c2, c3) = ((p1 >> 64) as u64 ^ c1 ^ k0, p1 as u64, (p0 >> 64) as u64 ^ c3 ^ k1, p0 as u64);
+        for block in &mut blocks {
+            let [c0, c1, c2, c3] = *block;
+            let p0 = u128::from(MULTIPLIERS[0]) * u128::from(c0);
+            let p1 = u128::from(MULTIPLIERS[1]) * u128::from(c2);
+            *block = [(p1 >> 64) as u64 ^ c1 ^ k0, p1 as u64, (p0 >> 64) as u64 ^ c3 ^ k1, p0 as u64];
+        }
         (k0, k1) = (k0.wrapping_add(WEYL[0]), k1.wrapping_add(WEYL[1]));
     }
-    [c0, c1, c2, c3]
+    blocks
 }
 
 impl TryRng for Stream {
@@ -71,10 +79,10 @@ impl TryRng for Stream {
 
     #[inline]
     fn try_next_u64(&mut self) -> Result<u64, Infallible> {
-        if self.used == 4 {
+        if self.used == 4 * BLOCKS {
             self.refill();
         }
-        let word = self.block[self.used];
+        let word = self.blocks.as_flattened()[self.used];
         self.used += 1;
         Ok(word)
     }
@@ -94,10 +102,25 @@ mod tests {
 
     #[test]
     fn raw_words_are_those_of_numpy_philox() {
-        // np.random.Philox(key=[42, 0], counter=[0, 0, 0, 7]).random_raw(6)
-        let expected: [u64; 2] = [11_119_611_033_881_747_937, 5_872_490_000_409_827_705];
+        // np.random.Philox(key=[42, 0], counter=[0, 0, 0, 7]).random_raw(14)
+        let expected: [u64; 14] = [
+            11_119_611_033_881_747_937,
+            5_872_490_000_409_827_705,
+            9_076_633_787_134_743_578,
+            1_991_237_858_349_935_211,
+            18_153_647_140_768_459_483,
+            16_539_072_371_841_872_151,
+            3_968_078_018_016_975_680,
+            1_429_073_118_286_788_233,
+            11_639_969_361_856_473_151,
+            14_304_417_508_335_185_442,
+            10_503_572_497_895_252_717,
+            10_778_017_486_778_164_243,
+            16_880_464_031_188_650_337,
+            17_283_046_439_037_632_326,
+        ];
         let mut stream = Stream::new(42, 0, 7);
-        assert_eq!([stream.next_u64(), stream.next_u64()], expected);
+        assert_eq!(std::array::from_fn(|_| stream.next_u64()), expected);
     }
 
     #[test]

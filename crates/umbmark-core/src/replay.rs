@@ -9,11 +9,13 @@
 //! The effects are those of [`effect`](crate::effect), the same that simulate. With `f64` a replay gives poses; with
 //! [`Dual`](crate::geometry::Dual) it gives poses and one column of their Jacobian. Each sample is an exact arc.
 
+mod pace;
+
 use crate::dataset::TickLog;
 use crate::drive::{Robot, WheelTravel};
-use crate::effect::{Chain, Evaluate};
+use crate::effect::{Chain, Context, Evaluate, Place, Progress, Sight};
 use crate::geometry::Pose2;
-use crate::path::{Direction, Path};
+use crate::path::{Direction, Path, Pieces, SpeedProfile};
 
 /// What makes a log impossible to replay.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -51,9 +53,10 @@ pub enum ReplayError {
     },
 }
 
-/// The believed wheel travel of one run, cut at the moments when the robot is observed.
+/// The believed wheel travel of one run in small pieces, each with its [`Context`], and the moments of observation.
 ///
-/// Samples in which no wheel moves are dropped. The robot starts at the identity.
+/// Pieces in which nothing moves are dropped. The robot starts where the effects let it
+/// stand at START.
 ///
 /// ```
 /// use umbmark_core::{drive::Robot, effect::Model, path::{Direction, Path}, replay::Track};
@@ -69,56 +72,135 @@ pub enum ReplayError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
     travel: Vec<WheelTravel>,
-    /// How many travels are made when each observation is taken, never decreasing.
+    contexts: Vec<Context>,
+    /// How many pieces are made when each observation is taken, never decreasing.
     seen_after: Vec<usize>,
+    sights: Vec<Sight>,
 }
 
 impl Track {
-    /// The track of a recorded run, observed at each of its reference poses.
+    /// The track of a recorded run, one piece a sample, observed at each of its reference poses.
+    ///
+    /// It stands first in its session; see [`Track::from_log_at`].
     pub fn from_log(log: &TickLog, robot: &Robot) -> Result<Track, ReplayError> {
+        Track::from_log_at(log, robot, Place::default())
+    }
+
+    /// [`Track::from_log`] of a run with its place among others.
+    pub fn from_log_at(log: &TickLog, robot: &Robot, place: Place) -> Result<Track, ReplayError> {
         check(log)?;
         let per_tick = robot.metres_per_tick();
-        let mut travel = Vec::with_capacity(log.left.len());
-        let mut seen_after = Vec::with_capacity(log.reference.len());
+        let speeds = pace::wheel_speeds(log, &per_tick);
+        let mut progress = Progress::new(robot, place, true);
+        let mut track = Track::empty();
         let mut due = log.reference.iter().map(|r| r.sample).peekable();
         let (mut left, mut right) = (0.0, 0.0);
         for (sample, (l, r)) in log.left.iter().zip(&log.right).enumerate() {
-            if (*l, *r) != (left, right) {
-                travel.push(WheelTravel { left: (l - left) * per_tick.left, right: (r - right) * per_tick.right });
-                (left, right) = (*l, *r);
-            }
+            let before = sample.saturating_sub(1);
+            let duration = log.time[sample] - log.time[before];
+            let travel = WheelTravel { left: (l - left) * per_tick.left, right: (r - right) * per_tick.right };
+            track.push(travel, progress.piece(&travel, duration, speeds[before], speeds[sample]));
+            (left, right) = (*l, *r);
             while due.next_if_eq(&sample).is_some() {
-                seen_after.push(travel.len());
+                track.observe(sight(log.time[sample] - log.time[0], speeds[sample], robot));
             }
         }
-        Ok(Track { travel, seen_after })
+        Ok(track)
     }
 
     /// The track of a robot that makes the moves of a path as its odometry believes, observed at the end.
     ///
     /// Where only return errors were measured, this is what the robot believed to drive: its controller stops each move
-    /// when the odometry says so.
+    /// when the odometry says so. Each move is one piece: for models that do not [vary](crate::effect::Model::varies).
     pub fn from_path(path: &Path, direction: Direction, robot: &Robot) -> Track {
-        let travel: Vec<WheelTravel> = path.moves(direction).iter().map(|m| m.wheel_travel(&robot.drive)).collect();
-        let end = travel.len();
-        Track { travel, seen_after: vec![end] }
+        Track::along_path(path, direction, robot, Pieces::whole, Observed::AtEnd)
+    }
+
+    /// [`Track::from_path`] in pieces of a centimetre, for every model.
+    pub fn in_pieces(path: &Path, direction: Direction, robot: &Robot) -> Track {
+        Track::along_path(path, direction, robot, Pieces::of, Observed::AtEnd)
+    }
+
+    /// [`Track::in_pieces`] observed after every move.
+    pub fn with_stops(path: &Path, direction: Direction, robot: &Robot) -> Track {
+        Track::along_path(path, direction, robot, Pieces::of, Observed::AtStops)
+    }
+
+    /// [`Track::in_pieces`] observed after every piece.
+    pub fn watched(path: &Path, direction: Direction, robot: &Robot) -> Track {
+        Track::along_path(path, direction, robot, Pieces::of, Observed::Always)
+    }
+
+    fn along_path(
+        path: &Path,
+        direction: Direction,
+        robot: &Robot,
+        cut: fn(&WheelTravel, &SpeedProfile) -> Pieces,
+        observed: Observed,
+    ) -> Track {
+        let place = Place { direction: Some(direction), ..Place::default() };
+        let mut progress = Progress::new(robot, place, false);
+        let mut track = Track::empty();
+        let moves = path.moves(direction);
+        for (index, m) in moves.iter().enumerate() {
+            for piece in cut(&m.wheel_travel(&robot.drive), &path.speed) {
+                track.push(piece.travel, progress.piece(&piece.travel, piece.duration, piece.from, piece.to));
+                if observed == Observed::Always {
+                    track.observe(sight(progress.time(), piece.to, robot));
+                }
+            }
+            progress.piece(&WheelTravel::default(), path.speed.pause(), [0.0; 2], [0.0; 2]);
+            if observed == Observed::AtStops || (observed == Observed::AtEnd && index + 1 == moves.len()) {
+                track.observe(Sight { time: progress.time(), ..Sight::default() });
+            }
+        }
+        track
+    }
+
+    fn empty() -> Track {
+        Track { travel: Vec::new(), contexts: Vec::new(), seen_after: Vec::new(), sights: Vec::new() }
+    }
+
+    fn push(&mut self, travel: WheelTravel, at: Context) {
+        if travel != WheelTravel::default() || at.speed_change != [0.0; 2] {
+            self.travel.push(travel);
+            self.contexts.push(at);
+        }
+    }
+
+    fn observe(&mut self, sight: Sight) {
+        self.seen_after.push(self.travel.len());
+        self.sights.push(sight);
     }
 
     /// The travel up to the last observation (or all, where there is none), observed at its end only.
     pub fn cut_at_last(mut self) -> Track {
-        self.travel.truncate(self.seen_after.last().copied().unwrap_or(self.travel.len()));
-        self.seen_after = vec![self.travel.len()];
+        let end = self.seen_after.last().copied().unwrap_or(self.travel.len());
+        self.travel.truncate(end);
+        self.contexts.truncate(end);
+        self.seen_after = vec![end];
+        self.sights = vec![self.sights.last().copied().unwrap_or_default()];
         self
     }
 
-    /// Believed wheel travel of each sample or move \[m\].
+    /// Believed wheel travel of each piece \[m\].
     pub fn travel(&self) -> &[WheelTravel] {
         &self.travel
+    }
+
+    /// Where and how each piece is driven.
+    pub fn contexts(&self) -> &[Context] {
+        &self.contexts
     }
 
     /// How many elements of [`Track::travel`] are made when each observation is taken, never decreasing.
     pub fn seen_after(&self) -> &[usize] {
         &self.seen_after
+    }
+
+    /// The moment of each observation.
+    pub fn sights(&self) -> &[Sight] {
+        &self.sights
     }
 
     /// Length that the axle's centre is believed to travel \[m\], forward or backward.
@@ -129,21 +211,25 @@ impl Track {
     /// Calls `seen` with the number of each observation and the pose predicted for it. It allocates nothing.
     #[inline]
     pub fn replay<T: Evaluate>(&self, chain: &Chain<T>, mut seen: impl FnMut(usize, &Pose2<T>)) {
-        let mut pose = Pose2::<T>::new(T::from(0.0), T::from(0.0), T::from(0.0));
+        let mut pose = chain.start();
         let mut made = 0;
-        for (observation, after) in self.seen_after.iter().enumerate() {
-            for travel in &self.travel[made..*after] {
-                pose = pose.moved(&chain.displacement(travel));
-            }
+        for (observation, (after, sight)) in self.seen_after.iter().zip(&self.sights).enumerate() {
+            pose = self.drive(chain, pose, made..*after);
             made = *after;
-            seen(observation, &pose);
+            seen(observation, &chain.seen(sight, &pose));
         }
+    }
+
+    #[inline]
+    fn drive<T: Evaluate>(&self, chain: &Chain<T>, from: Pose2<T>, pieces: std::ops::Range<usize>) -> Pose2<T> {
+        let pieces = self.travel[pieces.clone()].iter().zip(&self.contexts[pieces]);
+        pieces.fold(from, |pose, (travel, at)| pose.moved(&chain.displacement(&at.headed(pose.heading), travel)))
     }
 
     /// The pose predicted for the end of the travel.
     pub fn end<T: Evaluate>(&self, chain: &Chain<T>) -> Pose2<T> {
-        let start = Pose2::<T>::new(T::from(0.0), T::from(0.0), T::from(0.0));
-        self.travel.iter().fold(start, |pose, travel| pose.moved(&chain.displacement(travel)))
+        let end = self.drive(chain, chain.start(), 0..self.travel.len());
+        chain.seen(&self.sights.last().copied().unwrap_or_default(), &end)
     }
 
     /// The poses predicted for all observations.
@@ -152,6 +238,19 @@ impl Track {
         self.replay(chain, |_, pose| poses.push(*pose));
         poses
     }
+}
+
+/// When a robot on a path is observed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Observed {
+    AtEnd,
+    AtStops,
+    Always,
+}
+
+/// The moment at which the wheels have these speeds \[m/s\].
+fn sight(time: f64, [left, right]: [f64; 2], robot: &Robot) -> Sight {
+    Sight { time, speed: 0.5 * (left + right), turn_rate: (right - left) / robot.drive.wheelbase() }
 }
 
 fn check(log: &TickLog) -> Result<(), ReplayError> {
@@ -223,7 +322,7 @@ mod tests {
         for (pose, (x, y, heading)) in poses.iter().zip(expected) {
             assert!((pose.x - x).abs() < 1e-12 && (pose.y - y).abs() < 1e-12 && (pose.heading - heading).abs() < 1e-12);
         }
-        assert_eq!(track.travel().len(), 3);
+        assert_eq!(track.travel().iter().filter(|t| **t != WheelTravel::default()).count(), 3);
         assert!((track.length() - 3.0).abs() < 1e-12);
     }
 

@@ -5,6 +5,7 @@
 
 mod course;
 mod diffusion;
+mod pieces;
 mod record;
 mod sampling;
 mod truth;
@@ -13,7 +14,7 @@ use crate::dataset::ReturnError;
 use crate::drive::{Robot, WheelTravel};
 use crate::effect::{Stretch, TestKind};
 use crate::engine::{
-    EngineError, Integrator, Method, Motion, Segment, TickGeometry, UNITS_PER_TICK, Update, WheelLine,
+    EngineError, Instructions, Integrator, Method, Motion, Segment, TickGeometry, UNITS_PER_TICK, Update, WheelLine,
 };
 use crate::geometry::{Pose2, wrap};
 use crate::path::{Direction, Path};
@@ -96,7 +97,7 @@ impl Odometry {
 
 #[derive(Debug)]
 enum Computer {
-    Ticks(Integrator),
+    Ticks(Box<Integrator>),
     Sampled(Box<SampledMoves>),
     Continuous,
 }
@@ -136,8 +137,10 @@ impl Simulator {
         let [cw, ccw] = [Course::new(robot, path, Direction::Cw)?, Course::new(robot, path, Direction::Ccw)?];
         let computer = match odometry {
             Odometry::Continuous => Computer::Continuous,
-            Odometry::EveryTick => Computer::Ticks(Integrator::new(geometry, Method::EveryTick)),
-            Odometry::EveryTickOneByOne => Computer::Ticks(Integrator::new(geometry, Method::EveryTickOneByOne)),
+            Odometry::EveryTick => Computer::Ticks(Box::new(Integrator::new(geometry, Method::EveryTick))),
+            Odometry::EveryTickOneByOne => {
+                Computer::Ticks(Box::new(Integrator::new(geometry, Method::EveryTickOneByOne)))
+            }
             Odometry::Sampled { rate, update } => {
                 if !(rate > 0.0 && rate.is_finite()) {
                     return Err(SimulateError::Rate { what: "encoder rate", value: rate });
@@ -155,6 +158,16 @@ impl Simulator {
             segments: Vec::new(),
             motions: Vec::new(),
         })
+    }
+
+    /// The same simulator, with registers no wider than these: the same bits, maybe slower.
+    pub fn limited_to(self, instructions: Instructions) -> Simulator {
+        let computer = match self.computer {
+            Computer::Ticks(integrator) => Computer::Ticks(Box::new(integrator.limited_to(instructions))),
+            Computer::Sampled(moves) => Computer::Sampled(Box::new(moves.limited_to(instructions))),
+            Computer::Continuous => Computer::Continuous,
+        };
+        Simulator { computer, ..self }
     }
 
     /// The nominal robot.
@@ -187,40 +200,59 @@ impl Simulator {
     ///
     /// The same as one run after the other, to the last bit; the odometry of all moves is computed at once.
     pub fn test(&mut self, truth: &mut Truth, test: TestKind, returned: [&mut [ReturnError]; 2]) {
-        self.segments.clear();
-        for (direction, returned) in Direction::BOTH.into_iter().zip(&returned) {
-            for _ in 0..returned.len() {
-                self.command(direction);
-            }
-        }
-        self.compute(returned.each_ref().map(|r| r.len()));
-        let mut next = 0;
-        for (direction, returned) in Direction::BOTH.into_iter().zip(returned) {
-            for returned in returned {
-                truth.start();
-                let mut computed = Motion::IDENTITY;
-                for (index, leg) in self.courses[direction as usize].legs.iter().enumerate() {
+        let runs = returned.each_ref().map(|returned| returned.len());
+        self.command(runs);
+        self.compute(runs);
+        truth.forget();
+        for course in &self.courses {
+            let direction = course.direction;
+            for run in 0..runs[direction as usize] {
+                truth.start_another();
+                for (index, leg) in course.legs.iter().enumerate() {
                     let travel = match self.computer {
                         Computer::Continuous => leg.travel,
-                        _ => self.per_tick.of(&self.segments[next].line),
+                        _ => self.per_tick.of(&self.segments[self.place(runs, direction, run, index)].line),
                     };
-                    computed = computed.then(&self.motions[next]);
                     truth.begin(Stretch { index, direction, test, travel }, leg.travel);
                     truth.advance(1.0);
-                    next += 1;
                 }
-                *returned = return_error(&truth.measure(), &computed.pose);
+            }
+        }
+        let mut measured = truth.measure_all();
+        for (direction, returned) in Direction::BOTH.into_iter().zip(returned) {
+            for (run, (returned, measured)) in returned.iter_mut().zip(&mut measured).enumerate() {
+                let moves = 0..self.course(direction).legs.len();
+                let computed = moves.fold(Motion::IDENTITY, |pose, index| {
+                    pose.then(&self.motions[self.place(runs, direction, run, index)])
+                });
+                *returned = return_error(&measured, &computed.pose);
             }
         }
     }
 
-    /// Notes the wheel motion of one run: from rest to rest, wherever within a tick.
-    fn command(&mut self, direction: Direction) {
-        let mut rest = Rest { count: [0; 2], phase: self.draw_phase() };
-        for index in 0..self.course(direction).legs.len() {
-            let next = Rest { count: self.course(direction).legs[index].stop, phase: self.draw_phase() };
-            self.segments.push(Segment::every_tick(rest.line_to(&next)));
-            rest = next;
+    /// Where the segment of a move stands among those of all runs: moves that are alike side by side, since that is how
+    /// the engine does them fastest.
+    #[inline]
+    fn place(&self, runs: [usize; 2], direction: Direction, run: usize, index: usize) -> usize {
+        let course = self.course(direction);
+        let before = if direction == Direction::BOTH[0] { 0 } else { runs[0] * self.courses[0].legs.len() };
+        before + course.rank(index) * runs[direction as usize] + run
+    }
+
+    /// Notes the wheel motion of all runs: from rest to rest, wherever within a tick.
+    fn command(&mut self, runs: [usize; 2]) {
+        let moves = [0, 1].map(|d| runs[d] * self.courses[d].legs.len());
+        self.segments.resize(moves[0] + moves[1], Segment::default());
+        for direction in Direction::BOTH {
+            for run in 0..runs[direction as usize] {
+                let mut rest = Rest { count: [0; 2], phase: self.draw_phase() };
+                for index in 0..self.course(direction).legs.len() {
+                    let next = Rest { count: self.course(direction).legs[index].stop, phase: self.draw_phase() };
+                    let place = self.place(runs, direction, run, index);
+                    self.segments[place] = Segment::every_tick(rest.line_to(&next));
+                    rest = next;
+                }
+            }
         }
     }
 
@@ -230,14 +262,18 @@ impl Simulator {
         if let Computer::Ticks(integrator) = &mut self.computer {
             return integrator.motions(&self.segments, &mut self.motions);
         }
-        let mut places = self.segments.iter().zip(&mut self.motions);
-        for (course, runs) in self.courses.iter().zip(runs) {
-            for (index, leg) in (0..runs).flat_map(|_| course.legs.iter().enumerate()) {
-                let Some((segment, motion)) = places.next() else { return };
-                *motion = match &mut self.computer {
-                    Computer::Sampled(moves) => moves.motion(course.direction as usize, index, &segment.line),
-                    _ => Motion::exp(&self.robot.drive.displacement(&leg.travel)),
-                };
+        for direction in Direction::BOTH {
+            for index in 0..self.course(direction).legs.len() {
+                for run in 0..runs[direction as usize] {
+                    let place = self.place(runs, direction, run, index);
+                    self.motions[place] = match &mut self.computer {
+                        Computer::Sampled(moves) => moves.motion(direction as usize, index, &self.segments[place].line),
+                        _ => {
+                            let travel = &self.courses[direction as usize].legs[index].travel;
+                            Motion::exp(&self.robot.drive.displacement(travel))
+                        }
+                    };
+                }
             }
         }
     }

@@ -274,3 +274,125 @@ fn the_model_in_the_documents_is_one() {
     let (model, draws) = umbmark_core::dataset::parse_model("files.md", text, &robot).unwrap();
     assert_eq!((model.parts().len(), draws.len()), (3, 2));
 }
+
+fn warnings_of(text: &str) -> (Dataset, String) {
+    let data = log("cw_01.csv", text);
+    let warnings = data.warnings.join("; ");
+    (data, warnings)
+}
+
+fn counts(data: &Dataset) -> (&[f64], &[f64], &[f64]) {
+    let log = data.runs[0].log.as_ref().unwrap();
+    (&log.time, &log.left, &log.right)
+}
+
+#[test]
+fn late_and_repeated_rows_are_put_in_order_and_counted() {
+    let (data, said) = warnings_of(
+        "t_s,ticks_left,ticks_right,x_ref_m,y_ref_m\n0,0,0,0,0\n0.02,2,4,,\n0.01,1,2,0.5,0\n0.03,3,6,,\n0.03,3,6,0.7,0\n0.04,4,8,,\n",
+    );
+    let expected: &[f64] = &[0.0, 1.0, 2.0, 3.0, 4.0];
+    assert_eq!(counts(&data).1, expected);
+    assert_eq!(counts(&data).0, [0.0, 0.01, 0.02, 0.03, 0.04]);
+    let reference = &data.runs[0].log.as_ref().unwrap().reference;
+    assert_eq!(reference.iter().map(|pose| (pose.sample, pose.x)).collect::<Vec<_>>(), [(0, 0.0), (1, 0.5), (3, 0.7)]);
+    assert!(said.contains("1 rows out of order were put where their time stamps say"), "{said}");
+    assert!(said.contains("1 rows that repeat a time stamp were left out"), "{said}");
+}
+
+#[test]
+fn a_time_stamp_coarser_than_the_rate_keeps_the_last_of_its_rows() {
+    let (data, said) = warnings_of("t_s,ticks_left,ticks_right\n0,0,0\n0.01,1,1\n0.01,2,2\n0.02,3,3\n");
+    assert_eq!(counts(&data).1, [0.0, 2.0, 3.0]);
+    assert!(said.contains("1 rows that repeat a time stamp were left out"), "{said}");
+}
+
+#[test]
+fn a_counter_that_was_set_back_goes_on_and_one_that_rolled_over_is_another_thing() {
+    let rows = |counts: &[(i64, i64)]| {
+        let row = |(i, (left, right)): (usize, &(i64, i64))| format!("{},{left},{right}\n", 0.01 * i as f64);
+        "t_s,ticks_left,ticks_right\n".to_owned() + &counts.iter().enumerate().map(row).collect::<String>()
+    };
+    let up: Vec<(i64, i64)> = (0..200).map(|i| (1000 + 3 * i, 2000 + 3 * i)).collect();
+    let reset: Vec<(i64, i64)> = up.iter().copied().chain((0..200).map(|i| (3 * i, 1 + 3 * i))).collect();
+    let (data, said) = warnings_of(&rows(&reset));
+    assert!(said.contains("1 counter resets: counted on from zero"), "{said}");
+    assert_eq!((counts(&data).1[399], counts(&data).2[399]), (597.0 + 597.0, 597.0 + 598.0));
+    // A 16-bit counter, full before and empty after.
+    let robot = format!("{ROBOT}counter_bits = 16\n");
+    let rolled: Vec<(i64, i64)> = (0..400).map(|i| ((65000 + 3 * i) % 65536, (65100 + 3 * i) % 65536)).collect();
+    let data = load(&[("robot.toml", &robot), ("runs/cw_01.csv", &rows(&rolled))], "").unwrap();
+    assert_eq!(counts(&data).1[399], 1197.0);
+    assert!(data.warnings.iter().all(|warning| !warning.contains("reset")), "{:?}", data.warnings);
+    // The same counter, set back at 1597 and then at half its range: no shorter way round explains it.
+    let data = load(&[("robot.toml", &robot), ("runs/cw_01.csv", &rows(&reset))], "").unwrap();
+    assert!(data.warnings[0].contains("1 counter resets"), "{:?}", data.warnings);
+    assert_eq!(counts(&data).1[399], 1194.0);
+}
+
+#[test]
+fn poses_that_repeat_while_the_wheels_turn_are_stale_and_those_at_rest_are_not() {
+    let mut text = String::from("t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad\n");
+    for i in 0..40 {
+        // Rest for ten rows, then 6.3 mm a row; the track freezes for five rows.
+        let ticks = if i < 10 { 0 } else { 10 * (i - 9) };
+        let seen = if (20..25).contains(&i) { 20 } else { i };
+        let x = if seen < 10 { 0.0 } else { 0.0063 * f64::from(seen - 9) };
+        text += &format!("{},{ticks},{ticks},{x},0,0\n", 0.05 * f64::from(i));
+    }
+    let (data, said) = warnings_of(&text);
+    assert!(said.contains("4 poses repeat the one before while the wheels turn (stale) and were left out"), "{said}");
+    assert_eq!(data.runs[0].log.as_ref().unwrap().reference.len(), 36);
+}
+
+#[test]
+fn a_track_beside_the_log_is_set_by_the_motion_in_every_format() {
+    // Legs of 1 m and quarter turns, with rests, at 50 Hz; b = 0.5 m, 0.2 pi mm a tick.
+    let (mut time, mut x, mut y, mut heading) = (vec![], vec![], vec![], vec![]);
+    let (mut left, mut right, mut counted) = (0.0, 0.0, String::from("t_s,ticks_left,ticks_right\n"));
+    let (mut px, mut py, mut ph) = (1.0, 2.0, 0.0_f64);
+    let per_tick = PI * 0.2 / 1000.0;
+    for i in 0..2600 {
+        let phase = i % 300;
+        let (v, w): (f64, f64) = match phase {
+            20..170 => (1.0 / 3.0, 0.0),
+            200..280 => (0.0, FRAC_PI_2 / 1.6),
+            _ => (0.0, 0.0),
+        };
+        let (v, w) = if (100..2500).contains(&i) { (v, w) } else { (0.0, 0.0) };
+        counted += &format!("{},{},{}\n", 0.02 * f64::from(i), left / per_tick, right / per_tick);
+        time.push(7.5 + 1.01 * 0.02 * f64::from(i));
+        x.push(px);
+        y.push(py);
+        heading.push(ph);
+        (left, right) = (left + 0.02 * (v - 0.25 * w), right + 0.02 * (v + 0.25 * w));
+        (px, py, ph) = (px + 0.02 * v * ph.cos(), py + 0.02 * v * ph.sin(), ph + 0.02 * w);
+    }
+    let rows = |row: &dyn Fn(usize) -> String| (0..time.len()).map(row).collect::<String>();
+    let columns = "t_s,x_ref_m,y_ref_m,theta_ref_rad\n".to_owned()
+        + &rows(&|i| format!("{},{},{},{}\n", time[i], x[i], y[i], heading[i]));
+    let tum = rows(&|i| {
+        format!("{} {} {} 0 0 0 {} {}\n", time[i], x[i], y[i], (0.5 * heading[i]).sin(), (0.5 * heading[i]).cos())
+    });
+    // Motive: y up, z for x and x for y, in millimetres and degrees.
+    let motive = "Format Version,1.23,Rotation Type,YXZ,Length Units,Millimeters\n\n\
+                  ,Type,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body\n,Name,r,r,r,r,r,r\n\
+                  ,,Rotation,Rotation,Rotation,Position,Position,Position\nFrame,Time (Seconds),Y,X,Z,X,Y,Z\n"
+        .to_owned()
+        + &rows(&|i| {
+            let turned = heading[i].sin().atan2(heading[i].cos()).to_degrees();
+            format!("{i},{},{turned},0,0,{},95,{}\n", time[i], 1e3 * y[i], 1e3 * x[i])
+        });
+    for (name, track) in [("ccw_01.csv", &columns), ("ccw_01.tum", &tum), ("ccw_01.csv", &motive)] {
+        let files =
+            [("robot.toml", ROBOT), ("runs/ccw_01.csv", &*counted), (&*format!("reference/{name}"), track.as_str())];
+        for path in ["", "runs/ccw_01.csv"] {
+            let data = load(&files, path).unwrap();
+            let alignment = &data.clocks[0].alignment;
+            assert!((alignment.offset.value - 7.5).abs() < 2e-3, "{name}: {alignment:?}");
+            assert!((alignment.rate.value - 1.01).abs() < 1e-4, "{name}: {alignment:?}");
+            let error = data.runs[0].returned.unwrap();
+            assert!(error.x.hypot(error.y) < 2e-3 && error.heading.unwrap().abs() < 1e-3, "{name}: {error:?}");
+        }
+    }
+}

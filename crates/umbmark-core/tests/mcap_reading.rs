@@ -194,7 +194,14 @@ fn one_run(log: TickLog) -> Dataset {
         log: Some(log),
         returned: None,
     };
-    Dataset { robot: Some(Robot::labmate()), path: Some(Path::umbmark()), runs: vec![run], warnings: Vec::new() }
+    Dataset {
+        robot: Some(Robot::labmate()),
+        path: Some(Path::umbmark()),
+        runs: vec![run],
+        clocks: Vec::new(),
+        topics: Vec::new(),
+        warnings: Vec::new(),
+    }
 }
 
 #[test]
@@ -204,7 +211,7 @@ fn a_log_is_read_back_as_it_was_written_with_its_robot_and_the_same_bytes_each_t
         time: (0..500).map(|i| f64::from(i) / 30.0).collect(),
         left: (0..500).map(|i| f64::from(i / 3)).collect(),
         right: (0..500).map(|i| -f64::from(i) * 7.0).collect(),
-        reference: vec![pose(0, Some(0.0)), pose(3, None), pose(7, Some(-3.0)), pose(499, Some(3.1))],
+        reference: vec![pose(0, Some(0.0)), pose(3, None), pose(7, Some(-3.0)), pose(499, Some(-3.2))],
     };
     let data = one_run(log);
     let folder = tempfile::tempdir().unwrap();
@@ -222,7 +229,7 @@ fn a_log_is_read_back_as_it_was_written_with_its_robot_and_the_same_bytes_each_t
     }
     for (a, b) in log.reference.iter().zip(&read.reference) {
         assert_eq!((a.sample, a.x, a.y, a.heading.is_some()), (b.sample, b.x, b.y, b.heading.is_some()));
-        assert!((a.heading.unwrap_or(0.0) - b.heading.unwrap_or(0.0)).abs() < 1e-15);
+        assert!((a.heading.unwrap_or(0.0) - b.heading.unwrap_or(0.0)).abs() < 4e-15);
     }
 }
 
@@ -237,11 +244,10 @@ fn what_an_mcap_file_cannot_hold_is_refused_and_nothing_is_left_behind() {
         right: vec![0.0; 2],
         reference: Vec::new(),
     };
-    assert!(said(at([-1.0, 1.0], 1.0)).contains("time -1 s cannot be written"));
-    assert!(said(at([0.0, 3e9], 1.0)).contains("stamps go from 0"));
-    // Two times of the same nanosecond, and times so late that they are taken as those of a calendar.
-    assert!(said(at([0.0, 1e-10], 1.0)).contains("must increase"), "{}", said(at([0.0, 1e-10], 1.0)));
-    assert!(said(at([5e6, 6e6], 1.0)).contains("would not be read back as it is"));
+    assert!(said(at([0.0, 3e9], 1.0)).contains("time 3000000000 s cannot be written; stamps go from 0"));
+    // Two times of the same nanosecond.
+    assert!(said(at([0.0, 1e-10], 1.0)).contains("too far apart for one moment"));
+    assert!(said(at([0.0, 1e-10], 0.0)).contains("its log would not be read back as it is"));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     std::fs::write(&file, "mine").unwrap();
     assert!(said(at([0.0, 1.0], 1.0)).contains("is there already"));

@@ -5,11 +5,12 @@ use std::process::ExitCode;
 
 use serde_json::{Value, json};
 use umbmark_core::drive::Robot;
-use umbmark_core::effect::{About, CATALOGUE, find};
+use umbmark_core::effect::{About, ActsOn, CATALOGUE, find};
 use umbmark_core::parameter::{DefaultValue, Parameter};
 
 use crate::Session;
 use crate::prose::hanging;
+use crate::signature::Signature;
 
 /// Where the texts of an explanation begin.
 const INDENT: usize = 14;
@@ -24,8 +25,11 @@ pub struct Arguments {
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let (document, text) = match &arguments.name {
         Some(name) => {
-            let about = &find(name)?.about;
-            (about_json(about), explanation(about))
+            let entry = find(name)?;
+            let signature = Signature::of(entry)?;
+            let mut document = about_json(&entry.about);
+            document["picture"] = signature.as_ref().map_or(Value::Null, Signature::json);
+            (document, explanation(&entry.about, signature.as_ref()))
         }
         None => {
             let entries: Vec<Value> = CATALOGUE.iter().map(|entry| about_json(&entry.about)).collect();
@@ -42,15 +46,18 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
 
 fn list() -> String {
     let wide = CATALOGUE.iter().map(|entry| entry.about.name.len()).max().unwrap_or(0) + 2;
-    let mut text = String::from("Effects, in the order in which they act on the motion:\n\n");
-    for entry in CATALOGUE {
-        text += &hanging(&format!("  {}", entry.about.name), wide + 2, entry.about.title);
+    let mut text = String::from("Effects, by what they change, and then in the order in which they act:\n");
+    for kind in ActsOn::ALL {
+        text += &format!("\n{}\n", kind.name());
+        for entry in CATALOGUE.iter().filter(|entry| entry.about.acts_on == kind) {
+            text += &hanging(&format!("  {}", entry.about.name), wide + 2, entry.about.title);
+        }
     }
-    text += "\n`umbmark effects NAME` explains one: equation, parameters, signature, source.\n";
+    text += "\n`umbmark effects NAME` explains one: equation, signature, parameters, source.\n";
     text
 }
 
-fn explanation(about: &About) -> String {
+fn explanation(about: &About, signature: Option<&Signature>) -> String {
     let mut text = format!("{}: {}\n\n", about.name, about.title);
     let confused = if about.confused_with.is_empty() { "nothing".to_owned() } else { about.confused_with.join(", ") };
     for (head, body) in [
@@ -64,6 +71,9 @@ fn explanation(about: &About) -> String {
     ] {
         text += &hanging(head, INDENT + 2, body);
     }
+    let none = || hanging("picture", INDENT + 2, "none: it acts at single places or by chance");
+    text += "\n";
+    text += &signature.map_or_else(none, |signature| signature.picture(INDENT + 2));
     text += "\nparameters\n";
     for parameter in about.parameters {
         text += &hanging(&format!("  {}", parameter.name), INDENT + 2, parameter.meaning);
@@ -72,7 +82,10 @@ fn explanation(about: &About) -> String {
     text += "\nin a model.toml\n  [[effect]]\n";
     text += &format!("  name = \"{}\"\n", about.name);
     for parameter in about.parameters {
-        text += &format!("  {} = {}\n", parameter.name, example(parameter));
+        let value = parameter.usual(&Robot::labmate());
+        let written =
+            parameter.choices.get(value as usize).map_or_else(|| value.to_string(), |word| format!("{word:?}"));
+        text += &format!("  {} = {written}\n", parameter.name);
     }
     text
 }
@@ -90,17 +103,6 @@ fn range(parameter: &Parameter) -> String {
     let usual =
         if parameter.choices.is_empty() { format!("; usual {}{unit}", parameter.typical) } else { String::new() };
     format!("{}; {default}{usual}; --{}", parameter.allowed(), parameter.flag)
-}
-
-/// A value that does something.
-fn example(parameter: &Parameter) -> String {
-    let default = parameter.default.resolve(&Robot::labmate());
-    match parameter.choices.get(default as usize) {
-        Some(word) => format!("\"{word}\""),
-        None if default == 1.0 => format!("{}", default + parameter.typical),
-        None if default == 0.0 => format!("{}", parameter.typical),
-        None => format!("{default}"),
-    }
 }
 
 fn about_json(about: &About) -> Value {

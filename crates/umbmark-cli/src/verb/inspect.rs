@@ -5,7 +5,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use serde_json::{Map, Value, json};
-use umbmark_core::dataset::{Dataset, Group, Inspection, LogFacts, ReferenceFacts, Wheels, WheelsFound};
+use umbmark_core::dataset::{
+    Dataset, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, RunTopics, Wheels, WheelsFound,
+};
 use umbmark_core::drive::Robot;
 use umbmark_core::path::Direction;
 
@@ -13,6 +15,8 @@ use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::prose::hanging;
 use crate::table::table;
+use crate::terminal::{plan, sparkline};
+use crate::verb::convert::{alignment_json, clock_json, clocks_table};
 
 /// Arguments of `inspect`.
 #[derive(Debug, clap::Args)]
@@ -27,7 +31,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if session.json() {
         session.print_json(&document(&arguments.data.data, &data, &inspection))?;
     } else {
-        write!(session.out(), "{}", text(&data, &inspection))?;
+        let text = text(&data, &inspection, session.on_terminal());
+        write!(session.out(), "{text}")?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -36,7 +41,7 @@ fn direction_name(direction: Option<Direction>) -> &'static str {
     direction.map_or("none", Direction::name)
 }
 
-fn text(data: &Dataset, inspection: &Inspection) -> String {
+fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
     let mut text = String::new();
     match &data.robot {
         Some(robot) => text += &hanging("robot", 8, &robot_line(robot)),
@@ -54,6 +59,14 @@ fn text(data: &Dataset, inspection: &Inspection) -> String {
         text += &logs_table(&inspection.logs);
         text += "\n";
     }
+    text +=
+        &inspection.logs.iter().find_map(|log| Some(picture(log, log.moves.as_ref()?, terminal))).unwrap_or_default();
+    if !data.topics.is_empty() {
+        text += &format!("\n{}\n", topics_table(&data.topics));
+    }
+    if !data.clocks.is_empty() {
+        text += &format!("\nclocks set by the motion while reading\n\n{}\n", clocks_table(&data.clocks));
+    }
     text += "\nis it any good?\n";
     for check in &inspection.checks {
         let mark = if check.ok { "ok" } else { "LOOK" };
@@ -63,6 +76,7 @@ fn text(data: &Dataset, inspection: &Inspection) -> String {
         }
     }
     text += "\nwhat can it determine?\n";
+    text += &hanging("  rank", 32, &format!("{} of 3 combinations of E_d, E_b and E_s", inspection.rank));
     for answer in &inspection.determined {
         let mark = if answer.yes { "yes" } else { "no" };
         text += &hanging(&format!("  {mark:<6}{}", answer.quantity), 32, answer.because);
@@ -74,6 +88,25 @@ fn text(data: &Dataset, inspection: &Inspection) -> String {
         }
     }
     text
+}
+
+/// A log seen from above, and its speed over the time.
+fn picture(log: &LogFacts, moves: &MovesFound, terminal: bool) -> String {
+    const WIDE: usize = 60;
+    const HIGH: usize = 16;
+    let (seen, scale) = plan(&moves.computed, &moves.measured, WIDE, HIGH);
+    let key = if moves.measured.is_empty() { "" } else { ", o measured, 8 both" };
+    let most = moves.speed.iter().copied().fold(0.0, f64::max);
+    let lines = seen.lines().map(|line| format!("  {line}")).map(|line| line.trim_end().to_owned() + "\n");
+    format!(
+        "\n{} from above: . by ticks{key}; a character is {:.0} mm wide\n{}\n{} speed of the faster wheel over {:.0} s, up to {most:.2} m/s\n  {}\n",
+        log.name,
+        1e3 * scale,
+        lines.collect::<String>(),
+        log.name,
+        log.duration,
+        sparkline(&moves.speed, WIDE, terminal)
+    )
 }
 
 fn robot_line(robot: &Robot) -> String {
@@ -123,6 +156,18 @@ fn logs_table(logs: &[LogFacts]) -> String {
     table(&header, rows)
 }
 
+fn topics_table(topics: &[RunTopics]) -> String {
+    let rows = topics.iter().map(|topics| {
+        let reference = topics.reference.clone().unwrap_or_else(|| "-".into());
+        vec![topics.run.clone(), topics.wheels.clone(), reference]
+    });
+    table(&["topics", "wheels", "reference"], rows)
+}
+
+fn topics_json(topics: &RunTopics) -> Value {
+    json!({ "run": topics.run, "wheels": topics.wheels, "reference": topics.reference })
+}
+
 fn document(place: &Path, data: &Dataset, inspection: &Inspection) -> Value {
     let groups: Vec<Value> = inspection.groups.iter().map(group_json).collect();
     let logs: Vec<Value> = inspection.logs.iter().map(log_json).collect();
@@ -140,8 +185,11 @@ fn document(place: &Path, data: &Dataset, inspection: &Inspection) -> Value {
         "path": data.path.as_ref().map(path_json),
         "groups": groups,
         "logs": logs,
+        "clocks": data.clocks.iter().map(clock_json).collect::<Vec<Value>>(),
+        "topics": data.topics.iter().map(topics_json).collect::<Vec<Value>>(),
         "checks": checks.collect::<Vec<Value>>(),
         "determined": determined.collect::<Vec<Value>>(),
+        "rank": inspection.rank,
         "warnings": inspection.warnings,
         "version": umbmark_core::VERSION,
     })
@@ -189,11 +237,25 @@ fn log_json(log: &LogFacts) -> Value {
         "rate_hz": log.rate,
         "jitter": log.jitter,
         "longest_gap_s": log.longest_gap,
+        "gaps": log.gaps,
         "length_m": log.length,
         "heading_rad": log.heading,
         "heading_off_rad": log.heading_off,
         "wheels": log.wheels.as_ref().map(wheels_json),
+        "moves": log.moves.as_ref().map(moves_json),
+        "alignment": log.alignment.as_ref().map(alignment_json),
         "reference": log.reference.as_ref().map(reference_json),
+    })
+}
+
+fn moves_json(moves: &MovesFound) -> Value {
+    json!({
+        "shape": moves.shape,
+        "described": moves.described,
+        "legs": moves.legs,
+        "turns": moves.turns,
+        "arcs": moves.arcs,
+        "stops": moves.stops,
     })
 }
 

@@ -141,8 +141,10 @@ mod tests {
             left: believed.left * corrected.drive.wheel_diameter_left() / robot.drive.wheel_diameter_left(),
             right: believed.right * corrected.drive.wheel_diameter_right() / robot.drive.wheel_diameter_right(),
         };
-        let (model, oracle) =
-            (correction.model(&robot).unwrap().chain().displacement(&believed), corrected.drive.displacement(&rolled));
+        let (model, oracle) = (
+            correction.model(&robot).unwrap().chain().displacement(&crate::effect::Context::default(), &believed),
+            corrected.drive.displacement(&rolled),
+        );
         assert!((model.forward - oracle.forward).abs() < 1e-15 && (model.rotation - oracle.rotation).abs() < 1e-15);
     }
 }

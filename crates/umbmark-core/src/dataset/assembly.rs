@@ -4,9 +4,12 @@ use super::dead_reckoning::{EndPose, computed_poses, return_error};
 use super::error::DatasetError;
 use super::label::{self, Named};
 use super::recording::Recording;
+use super::reference_track::ReferenceTrack;
 use super::returns::ReturnRow;
+use super::stale::drop_stale;
 use super::start_frame::move_to_start;
-use super::{Dataset, Run, TickLog};
+use super::synchronise::attach;
+use super::{Dataset, Run, RunClock, RunTopics, TickLog};
 use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::path::{Direction, Path};
@@ -25,13 +28,22 @@ pub(super) struct Assembly {
     /// Where each run comes from.
     places: Vec<String>,
     has_returns: bool,
+    clocks: Vec<RunClock>,
+    pub topics: Vec<RunTopics>,
     pub warnings: Vec<String>,
+}
+
+/// Poses with a clock of their own, and the file they were in.
+pub(super) struct Tracked {
+    pub file: String,
+    pub track: ReferenceTrack,
 }
 
 impl Assembly {
     pub fn new(robot: Option<Robot>, path: Option<Path>) -> Assembly {
         let (runs, places, warnings) = (Vec::new(), Vec::new(), Vec::new());
-        Assembly { robot, path, runs, index: BTreeMap::new(), places, has_returns: false, warnings }
+        let (index, clocks, topics) = (BTreeMap::new(), Vec::new(), Vec::new());
+        Assembly { robot, path, runs, index, places, has_returns: false, clocks, topics, warnings }
     }
 
     /// The nominal robot, where it is known.
@@ -51,17 +63,21 @@ impl Assembly {
         Ok(())
     }
 
-    /// Adds a log whose file is called `stem`.
+    /// Adds a log whose file is called `stem`, with the poses that a tracking system saw of it, where there are some.
     pub fn add_log(
         &mut self,
         recording: Recording,
+        tracked: Option<Tracked>,
         stem: &str,
         named: Named,
         end: EndPose,
     ) -> Result<(), DatasetError> {
         let file = recording.file.clone();
         let bits = self.robot.as_ref().and_then(|robot| robot.encoder.counter_bits());
-        let log = recording.into_log(self.robot.as_ref(), bits, &mut self.warnings)?;
+        let mut log = recording.into_log(self.robot.as_ref(), bits, &mut self.warnings)?;
+        if let Some(tracked) = tracked {
+            self.set_clock(&mut log, tracked, stem)?;
+        }
         self.add_ticks(file, log, stem, named, end)
     }
 
@@ -74,6 +90,9 @@ impl Assembly {
         named: Named,
         end: EndPose,
     ) -> Result<(), DatasetError> {
+        if let Some(robot) = &self.robot {
+            drop_stale(&file, &mut log, robot, &mut self.warnings);
+        }
         move_to_start(&file, &mut log, &mut self.warnings)?;
         let computed = self.robot.as_ref().map(|robot| computed_poses(&log, robot)).unwrap_or_default();
         let returned = return_error(&log, &computed, end);
@@ -92,11 +111,23 @@ impl Assembly {
         self.push(run, &file, 1)
     }
 
+    /// Sets the clock of a track by the motion, and puts its poses into the log.
+    fn set_clock(&mut self, log: &mut TickLog, tracked: Tracked, stem: &str) -> Result<(), DatasetError> {
+        let robot = self.robot.as_ref().ok_or(DatasetError::NoRobot)?;
+        if !log.reference.is_empty() {
+            self.warnings.push(format!("{}: was not used: the log {stem} has poses of its own", tracked.file));
+            return Ok(());
+        }
+        let alignment = attach(&tracked.file, log, &tracked.track, robot, &mut self.warnings)?;
+        self.clocks.push(RunClock { run: stem.to_owned(), track: tracked.file, alignment });
+        Ok(())
+    }
+
     /// The dataset, its runs in order.
     pub fn finish(self) -> Dataset {
-        let Assembly { robot, path, mut runs, warnings, .. } = self;
+        let Assembly { robot, path, mut runs, clocks, topics, warnings, .. } = self;
         runs.sort_by_key(|run| (run.test, run.direction, run.number));
-        Dataset { robot, path, runs, warnings }
+        Dataset { robot, path, runs, clocks, topics, warnings }
     }
 
     fn push(&mut self, run: Run, file: &str, line: usize) -> Result<(), DatasetError> {

@@ -238,9 +238,7 @@ pub enum DatasetError {
         first: String,
     },
     /// Time that does not go forward.
-    #[error(
-        "{file}:{line}: column \"{column}\" must increase, got {after} s after {before} s; put the rows in the order of time, without repeating"
-    )]
+    #[error("{file}:{line}: column \"{column}\" must increase, got {after} s after {before} s; {remedy}")]
     Time {
         /// The file.
         file: String,
@@ -252,6 +250,24 @@ pub enum DatasetError {
         before: f64,
         /// Time of this row \[s\].
         after: f64,
+        /// What to do.
+        remedy: Box<str>,
+    },
+    /// A track with a clock of its own that the motion does not set.
+    #[error("{file}: {reason}")]
+    Clocks {
+        /// The file of the track.
+        file: String,
+        /// Why, and what to do.
+        reason: String,
+    },
+    /// A compressed file that cannot be unpacked.
+    #[error("{file}: {reason}")]
+    Packed {
+        /// The file.
+        file: String,
+        /// Why, and what to do.
+        reason: String,
     },
     /// A wheel that moved faster than a wheel can.
     #[error(

@@ -1,22 +1,27 @@
 //! Files and folders recognised by what is in them.
 
 use super::Dataset;
-use super::assembly::Assembly;
+use super::assembly::{Assembly, Tracked};
 use super::dead_reckoning::EndPose;
 use super::error::DatasetError;
 use super::label::{self, Named};
 use super::mcap::{Survey, Topics};
 use super::optiodom;
+use super::reference_file::parse_reference;
 use super::returns::parse_returns;
 use super::robot_file::{parse_robot, read_robot};
 use super::sheet::Rows;
 use super::text::{read_text, unreadable};
 use super::tick_log::parse_tick_log;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 pub(super) const ROBOT: &str = "robot.toml";
 pub(super) const RETURNS: &str = "returns.csv";
 pub(super) const RUNS: &str = "runs";
+pub(super) const REFERENCE: &str = "reference";
+/// Endings of files with poses that have a clock of their own.
+const TRACKS: [&str; 3] = ["csv", "tum", "txt"];
 const EXPECTED: &str =
     "a dataset has robot.toml with returns.csv, runs/*.csv or runs/*.mcap (`umbmark init FOLDER` writes a start)";
 
@@ -35,7 +40,11 @@ fn load_folder(folder: &Path, topics: &Topics) -> Result<Dataset, DatasetError> 
             [set] => load_optiodom(folder, set, &names),
             [] if has(RETURNS) || has(RUNS) => Err(not_a_dataset(folder, "it has no robot.toml".into())),
             [] => Err(not_a_dataset(folder, "it has neither robot.toml, nor returns.csv, nor runs".into())),
-            _ => Err(not_a_dataset(folder, format!("it has {} OptiOdom sets", sets.len()))),
+            _ => Err(DatasetError::NotADataset {
+                file: folder.display().to_string(),
+                found: format!("it has {} OptiOdom sets ({})", sets.len(), sets.join(", ")),
+                remedy: "give the metadata file of one of them",
+            }),
         };
     }
     let (robot, driven) = read_robot(folder.join(ROBOT))?;
@@ -75,14 +84,15 @@ fn add_returns(assembly: &mut Assembly, file: &Path) -> Result<(), DatasetError>
     assembly.add_returns(&name, &rows)
 }
 
-/// Adds every log of a folder, and says how many.
+/// Adds every log of a folder, with its track where there is one beside it, and says how many.
 fn add_logs(assembly: &mut Assembly, folder: &Path, topics: &Topics) -> Result<usize, DatasetError> {
+    let mut tracks = tracks_beside(folder)?;
     let mut logs = 0;
     for name in names_in(folder)? {
         let file = folder.join(&name);
         match extension(&file).as_str() {
             "csv" => {
-                add_log(assembly, &file)?;
+                add_log(assembly, &file, tracks.remove(&stem(&file)))?;
                 logs += 1;
             }
             "mcap" => {
@@ -92,22 +102,42 @@ fn add_logs(assembly: &mut Assembly, folder: &Path, topics: &Topics) -> Result<u
             _ => assembly.warnings.push(format!("{}: is no log (.csv, .mcap) and was not read", file.display())),
         }
     }
+    for track in tracks.values() {
+        assembly.warnings.push(format!("{}: belongs to no log and was not read", track.display()));
+    }
     Ok(logs)
 }
 
-fn add_log(assembly: &mut Assembly, file: &Path) -> Result<(), DatasetError> {
+/// The tracks of logs in `runs`, by the name of the log: files of the folder `reference` beside it.
+fn tracks_beside(runs: &Path) -> Result<BTreeMap<String, PathBuf>, DatasetError> {
+    let folder = runs.parent().unwrap_or(Path::new(".")).join(REFERENCE);
+    if !folder.is_dir() {
+        return Ok(BTreeMap::new());
+    }
+    let files = names_in(&folder)?.into_iter().map(|name| folder.join(name));
+    Ok(files.filter(|file| TRACKS.contains(&extension(file).as_str())).map(|file| (stem(&file), file)).collect())
+}
+
+fn add_log(assembly: &mut Assembly, file: &Path, track: Option<PathBuf>) -> Result<(), DatasetError> {
     let name = file.display().to_string();
     let recording = parse_tick_log(&name, &read_text(file)?, &mut assembly.warnings)?;
+    let tracked = track.map(|track| read_track(&track, &mut assembly.warnings)).transpose()?;
     let stem = stem(file);
-    assembly.add_log(recording, &stem, label::parse(&stem), EndPose::Standing)
+    assembly.add_log(recording, tracked, &stem, label::parse(&stem), EndPose::Standing)
+}
+
+fn read_track(file: &Path, warnings: &mut Vec<String>) -> Result<Tracked, DatasetError> {
+    let name = file.display().to_string();
+    Ok(Tracked { track: parse_reference(&name, &read_text(file)?, warnings)?, file: name })
 }
 
 fn add_mcap(assembly: &mut Assembly, survey: Survey, file: &Path, topics: &Topics) -> Result<(), DatasetError> {
     let mut warnings = Vec::new();
     let reading = survey.read(topics, assembly.robot(), &mut warnings)?;
+    let stem = stem(file);
+    assembly.topics.push(reading.topics(&stem));
     let log = reading.into_log(assembly.robot(), &mut warnings)?;
     assembly.warnings.append(&mut warnings);
-    let stem = stem(file);
     assembly.add_ticks(file.display().to_string(), log, &stem, label::parse(&stem), EndPose::Standing)
 }
 
@@ -133,12 +163,13 @@ fn folder_of(file: &Path) -> &Path {
 
 fn load_optiodom(folder: &Path, set: &str, names: &[String]) -> Result<Dataset, DatasetError> {
     let mut assembly = optiodom_assembly(folder, set)?;
-    let runs: Vec<&String> = names.iter().filter(|name| optiodom::run_number(name, set).is_some()).collect();
+    let runs = optiodom::runs(names, set);
     if runs.is_empty() {
-        return Err(not_a_dataset(folder, format!("it has OptiOdom metadata and no {set}_run-01.csv")));
+        let found = format!("it has OptiOdom metadata and neither {set}_run-01.csv nor {set}_run-01_odo.csv");
+        return Err(not_a_dataset(folder, found));
     }
-    for name in runs {
-        add_optiodom_run(&mut assembly, &folder.join(name), set)?;
+    for run in runs {
+        add_optiodom_run(&mut assembly, folder, &run)?;
     }
     Ok(assembly.finish())
 }
@@ -149,10 +180,18 @@ fn optiodom_assembly(folder: &Path, set: &str) -> Result<Assembly, DatasetError>
     Ok(Assembly::new(Some(robot), path))
 }
 
-fn add_optiodom_run(assembly: &mut Assembly, file: &Path, set: &str) -> Result<(), DatasetError> {
-    let recording = optiodom::parse_run(&file.display().to_string(), &read_text(file)?)?;
-    let number = file.file_name().and_then(|name| optiodom::run_number(&name.to_string_lossy(), set));
-    assembly.add_log(recording, &stem(file), Named { number, ..Named::default() }, EndPose::Last)
+fn add_optiodom_run(assembly: &mut Assembly, folder: &Path, run: &optiodom::RunFiles) -> Result<(), DatasetError> {
+    let file = folder.join(&run.ticks);
+    let name = file.display().to_string();
+    let text = read_text(&file)?;
+    let named = Named { number: Some(run.number), ..Named::default() };
+    let Some(track) = &run.track else {
+        let recording = optiodom::parse_run(&name, &text)?;
+        return assembly.add_log(recording, None, &stem(&file), named, EndPose::Last);
+    };
+    let recording = optiodom::parse_odometry(&name, &text)?;
+    let tracked = read_track(&folder.join(track), &mut assembly.warnings)?;
+    assembly.add_log(recording, Some(tracked), &stem(&file), named, EndPose::Last)
 }
 
 /// One file, with the robot that stands beside it where there is one.
@@ -166,13 +205,10 @@ fn load_file(file: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
         _ => {}
     }
     let folder = folder_of(file);
-    let stem = stem(file);
-    if let Some((set, _)) =
-        stem.rsplit_once("_run-").filter(|(set, _)| folder.join(format!("{set}_metadata.csv")).is_file())
+    if let Some(set) =
+        optiodom::set_of(&name_of(file)).filter(|set| folder.join(format!("{set}_metadata.csv")).is_file())
     {
-        let mut assembly = optiodom_assembly(folder, set)?;
-        add_optiodom_run(&mut assembly, file, set)?;
-        return Ok(assembly.finish());
+        return load_optiodom_file(file, folder, set);
     }
     let (robot, path) = match robot_beside(folder) {
         Some(robot) => read_robot(robot).map(|(robot, path)| (Some(robot), path))?,
@@ -182,9 +218,26 @@ fn load_file(file: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
     let text = read_text(file)?;
     let is_log = Rows::of(&text).next().is_some_and(|(_, header)| header.to_lowercase().contains("ticks"));
     if is_log {
-        add_log(&mut assembly, file)?
+        let in_runs = folder.file_name().is_some_and(|name| name == RUNS);
+        let track = if in_runs { tracks_beside(folder)?.remove(&stem(file)) } else { None };
+        add_log(&mut assembly, file, track)?
     } else {
         add_returns(&mut assembly, file)?
+    }
+    Ok(assembly.finish())
+}
+
+/// A set of OptiOdom by its metadata, or one run of it.
+fn load_optiodom_file(file: &Path, folder: &Path, set: &str) -> Result<Dataset, DatasetError> {
+    let names = names_in(folder)?;
+    let name = name_of(file);
+    if optiodom::set_of_metadata(&name).is_some() {
+        return load_optiodom(folder, set, &names);
+    }
+    let mut assembly = optiodom_assembly(folder, set)?;
+    match optiodom::runs(&names, set).iter().find(|run| run.ticks == name || run.track.as_ref() == Some(&name)) {
+        Some(run) => add_optiodom_run(&mut assembly, folder, run)?,
+        None => return Err(not_a_dataset(file, "it is no run of the OptiOdom set beside it".into())),
     }
     Ok(assembly.finish())
 }
@@ -196,10 +249,20 @@ fn robot_beside(folder: &Path) -> Option<PathBuf> {
     [Some(folder.join(ROBOT)), above].into_iter().flatten().find(|robot| robot.is_file())
 }
 
-fn extension(file: &Path) -> String {
-    file.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
+fn name_of(file: &Path) -> String {
+    file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
+/// The ending of a file, in lower case; that of what is packed in it where it is packed.
+fn extension(file: &Path) -> String {
+    let name = name_of(file).to_lowercase();
+    let name = name.strip_suffix(".gz").unwrap_or(&name);
+    name.rsplit_once('.').map_or(String::new(), |(_, extension)| extension.to_owned())
+}
+
+/// The name of a file without its endings.
 fn stem(file: &Path) -> String {
-    file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+    let name = name_of(file);
+    let name = name.strip_suffix(".gz").unwrap_or(&name);
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned()
 }

@@ -4,10 +4,11 @@
 
 mod determine;
 mod log_facts;
+mod moves;
 mod wheels;
 
 use super::dead_reckoning::{EndPose, computed_poses, return_error};
-use super::{Dataset, ReturnError, Run};
+use super::{Alignment, Dataset, Measured, ReturnError, Run};
 use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::geometry::{Pose2, wrap};
@@ -15,6 +16,7 @@ use crate::path::{Direction, Path};
 
 pub use determine::Determined;
 pub use log_facts::{Coverage, LogFacts, ReferenceFacts};
+pub use moves::MovesFound;
 pub use wheels::{Wheels, WheelsFound};
 
 /// The findings on a dataset.
@@ -28,6 +30,8 @@ pub struct Inspection {
     pub checks: Vec<Check>,
     /// What the data can say of the robot.
     pub determined: Vec<Determined>,
+    /// How many combinations of E_d, E_b and E_s the poses show, of three.
+    pub rank: usize,
     /// What the reader noticed and mended.
     pub warnings: Vec<String>,
 }
@@ -71,11 +75,15 @@ impl Dataset {
         let mut checks = vec![runs_check(&groups)];
         checks.extend(headings_check(&groups));
         checks.extend(log_checks(&logs, self.path.as_ref()));
+        // Where a track was put into a log, its rows are those of two clocks.
+        if !self.clocks.is_empty() {
+            checks.retain(|check| check.name != "jitter");
+        }
         if let Some(robot) = &self.robot {
             checks.extend(sheet_check(&self.runs, robot));
         }
-        let determined = determine::determine(&groups, &logs, self.robot.as_ref(), self.path.as_ref());
-        Inspection { groups, logs, checks, determined, warnings: self.warnings.clone() }
+        let (determined, rank) = determine::determine(&groups, &logs, self.robot.as_ref(), self.path.as_ref());
+        Inspection { groups, logs, checks, determined, rank, warnings: self.warnings.clone() }
     }
 }
 
@@ -137,7 +145,13 @@ fn log_checks(logs: &[LogFacts], path: Option<&Path>) -> Vec<Check> {
     add("jitter", jitter.map(|j| format!("{:.0} %", 100.0 * j)), "20 % of the period or less", steady);
     let gap = worst(logs.iter().map(|log| log.longest_gap * log.rate));
     let whole = gap.is_some_and(|g| g <= 5.0);
-    add("longest gap", gap.map(|g| format!("{g:.1} periods")), "5 periods or less: no rows are missing", whole);
+    let gaps: usize = logs.iter().map(|log| log.gaps).sum();
+    add(
+        "longest gap",
+        gap.map(|g| format!("{g:.1} periods; {gaps} longer than 5")),
+        "5 periods or less: no rows are missing",
+        whole,
+    );
     if let Some(nominal) = path.map(Path::length).filter(|length| *length > 0.0) {
         let off = worst(logs.iter().filter_map(|log| Some((log.length? / nominal - 1.0).abs())));
         let near = off.is_some_and(|off| off <= 0.02);
@@ -150,7 +164,65 @@ fn log_checks(logs: &[LogFacts], path: Option<&Path>) -> Vec<Check> {
     let wheels = logs.iter().filter_map(|log| log.wheels.as_ref()).max_by_key(|w| w.wheels != Wheels::AsGiven);
     let sound = wheels.is_some_and(|w| w.wheels == Wheels::AsGiven);
     add("wheels", wheels.map(|w| w.wheels.to_string()), "as named, both counting up when driving forward", sound);
+    checks.extend(shape_check(logs, path));
     checks.extend(reference_checks(logs));
+    checks.extend(alignment_checks(logs));
+    checks
+}
+
+/// The shape of the first log that has another one than the path, else of the first.
+fn shape_check(logs: &[LogFacts], path: Option<&Path>) -> Option<Check> {
+    let moves = || logs.iter().filter_map(|log| log.moves.as_ref());
+    let told = path.map(|path| path.shape().name).filter(|name| *name != "waypoints");
+    let differs = |moves: &&MovesFound| told.is_some() && moves.shape != told;
+    let found = moves().find(differs).or_else(|| moves().next())?;
+    let MovesFound { described, stops, .. } = found;
+    Some(Check {
+        name: "path by ticks",
+        found: format!("{described}; {stops} stops on the way"),
+        good: "the shape that [path] in robot.toml has",
+        ok: !differs(&found),
+    })
+}
+
+/// Delay, rate, lever arm and yaw of the poses: the worst of each.
+fn alignment_checks(logs: &[LogFacts]) -> Vec<Check> {
+    let found = || logs.iter().filter_map(|log| log.alignment.as_ref());
+    let worst = |of: &dyn Fn(&Alignment) -> Option<Measured>| {
+        found().filter_map(of).max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))
+    };
+    let shown =
+        |m: &Measured, scale: f64| format!("{:+.1} ± {:.1}", scale * m.value, scale * (m.interval.high - m.value));
+    let within = |m: &Measured, limit: f64| m.value.abs() <= limit || m.interval.contains(0.0);
+    let mut checks = Vec::new();
+    if let (Some(delay), Some(rate)) = (worst(&|a| Some(a.offset)), worst(&|a| Some(a.rate.less(1.0)))) {
+        checks.push(Check {
+            name: "clock of the poses",
+            found: format!("{} ms late, {} ppm fast (95 %)", shown(&delay, 1e3), shown(&rate, 1e6)),
+            good: "within 20 ms and 1000 ppm: one clock; else convert from files with both clocks",
+            ok: within(&delay, 0.020) && within(&rate, 1e-3),
+        });
+    }
+    if let (Some(ahead), Some(left)) = (worst(&|a| a.lever_ahead), worst(&|a| a.lever_left)) {
+        checks.push(Check {
+            name: "tracked point",
+            found: format!(
+                "{} mm ahead, {} mm left of the axle's centre (95 %)",
+                shown(&ahead, 1e3),
+                shown(&left, 1e3)
+            ),
+            good: "within 5 mm of the centre of the axle",
+            ok: within(&ahead, 5e-3) && within(&left, 5e-3),
+        });
+    }
+    if let Some(yaw) = worst(&|a| a.yaw) {
+        checks.push(Check {
+            name: "tracked heading",
+            found: format!("turned by {} deg (95 %)", shown(&yaw, 1f64.to_degrees())),
+            good: "0.5 deg or less: x of the tracked body points forward",
+            ok: within(&yaw, 0.5f64.to_radians()),
+        });
+    }
     checks
 }
 

@@ -2,12 +2,11 @@
 //!
 //! A log is opened (`survey`: which topics are there), the topics of the wheels and of the reference are chosen
 //! (`topics`), and the messages of these two are decoded (`decoder`: `cdr`, `json`, `protobuf`) chunk by chunk
-//! (`container`) into columns (`wheels`, `track`), which become a [`Recording`] and poses to attach to it (`attach`).
+//! (`container`) into columns (`wheels`, `track`), which become a [`Recording`] and the rows of a track to put into it.
 //! Nothing else of a log is kept, so its size does not matter. `write` is the way back.
 //!
 //! Source: the specification of MCAP (<https://mcap.dev/spec>) and its registry of encodings.
 
-mod attach;
 mod cdr;
 mod clock;
 mod container;
@@ -34,16 +33,18 @@ pub use problem::McapProblem;
 pub(super) use survey::Survey;
 pub use topics::Topics;
 
-use super::TickLog;
 use super::error::{DatasetError, quoted};
+use super::place::place;
 use super::recording::Recording;
+use super::reference_track::TrackRows;
+use super::{RunTopics, TickLog};
 use crate::drive::Robot;
 use clock::Clock;
 use container::{Damage, Record};
 use decoder::Decoder;
 use fields::Fields;
 use topics::{Chosen, shown};
-use track::{TimedPlace, Track};
+use track::Track;
 use wheels::Wheels;
 
 /// More messages of a topic are not kept: hours of a fast robot, and 300 MB.
@@ -53,20 +54,30 @@ const MOST_MESSAGES: usize = 2_000_000;
 pub(super) struct Reading {
     recording: Recording,
     are_counts: bool,
-    poses: Vec<TimedPlace>,
+    track: TrackRows,
+    topics: [String; 2],
 }
 
 impl Reading {
-    /// The log, checked as every recording is, with the poses attached.
-    pub fn into_log(self, robot: Option<&Robot>, warnings: &mut Vec<String>) -> Result<TickLog, DatasetError> {
+    /// The topics that were read, for a run.
+    pub fn topics(&self, run: &str) -> RunTopics {
+        let [wheels, reference] = self.topics.clone();
+        let reference = (!self.track.poses.is_empty()).then_some(reference);
+        RunTopics { run: run.to_owned(), wheels, reference }
+    }
+
+    /// The log, checked as every recording is, with the poses in it. Both have one clock.
+    pub fn into_log(mut self, robot: Option<&Robot>, warnings: &mut Vec<String>) -> Result<TickLog, DatasetError> {
         let file = self.recording.file.clone();
         let bits = robot.and_then(|robot| robot.encoder.counter_bits()).filter(|_| self.are_counts);
         let mut log = self.recording.into_log(robot, bits, warnings)?;
-        let poses = self.poses.len();
-        let left_out = attach::attach(&mut log, self.poses);
-        if left_out > 0 {
+        self.track.put_in_order(warnings)?;
+        self.track.count_turns();
+        let poses = self.track.poses.len();
+        let dropped = place(&mut log, &self.track.time, &self.track.poses);
+        if dropped > 0 {
             warnings.push(format!(
-                "{file}: {left_out} of {poses} poses left out: at the same time as another, in a gap of the wheels, or away from their log"
+                "{file}: {dropped} of {poses} poses fall into gaps of the wheels, or outside of them, and were left out"
             ));
         }
         Ok(log)
@@ -124,10 +135,10 @@ impl Survey {
             _ => Vec::new(),
         };
         let clock = Clock::of(wheels.times.iter(), rows.iter().map(|(times, _)| times));
-        let poses = track::timed(rows, &clock);
+        let track = track::timed(rows, &clock, &file, &topics[1]);
         let are_counts = wheels.are_counts();
         let recording = wheels.into_recording(&file, &topics[0], &clock, robot, warnings);
-        Ok(Reading { recording, are_counts, poses })
+        Ok(Reading { recording, are_counts, track, topics })
     }
 
     /// Decoders for the topics that were chosen.

@@ -1,14 +1,25 @@
-//! No input makes a reader panic: good files with random damage, always the same damage for the same seed.
+//! No input makes a reader panic, hang or take more memory than it has bytes: good files with random damage, always the same
+//! damage for the same seed. A damaged file that is still read gives finite numbers only.
+//!
+//! `UMBMARK_TEST_CASES=1000000` damages each of the files a million times and prints how many were read.
 
 use super::model_file::parse_model;
+use super::place::place;
 use super::recording::Recording;
+use super::reference_track::{PoseRow, ReferenceTrack};
 use super::robot_file::parse_robot;
+use super::stale::drop_stale;
 use super::start_frame::move_to_start;
-use super::{TickLog, optiodom, returns, text, tick_log};
+use super::synchronise::synchronise;
+use super::{TickLog, motive, optiodom, packed, reference_file, returns, text, tick_log, tum};
 use crate::drive::Robot;
 use crate::random::Stream;
 
-const ROUNDS: u64 = 20_000;
+/// How often each file is damaged.
+fn rounds() -> u64 {
+    std::env::var("UMBMARK_TEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(20_000)
+}
+
 /// Pieces that parsers trip over.
 const PIECES: [&str; 20] = [
     ",",
@@ -58,18 +69,21 @@ pub(super) fn damage(good: &[u8], stream: &mut Stream) -> Vec<u8> {
 fn survive(good: &str, purpose: u64, read: impl Fn(&str) -> bool) {
     let mut stream = Stream::new(7, purpose, 0);
     let mut fine = 0;
-    for _ in 0..ROUNDS {
+    let rounds = rounds();
+    for _ in 0..rounds {
         let Ok(text) = text::decode("file", damage(good.as_bytes(), &mut stream)) else { continue };
-        fine += usize::from(read(&text));
+        fine += u64::from(read(&text));
     }
+    println!("file {purpose}: {rounds} damaged, {fine} of them still read");
     assert!(read(good), "the undamaged file is good");
-    assert!(fine > 0 && fine < ROUNDS as usize, "{fine}: damage too heavy or too light to tell anything");
+    assert!(fine > 0 && fine < rounds, "{fine}: damage too heavy or too light to tell anything");
 }
 
 fn finished(recording: Recording, bits: Option<u32>) -> bool {
     let log = recording.into_log(Some(&Robot::labmate()), bits, &mut Vec::new());
     let finite = |log: &TickLog| log.left.iter().chain(&log.right).chain(&log.time).all(|value| value.is_finite());
     log.is_ok_and(|mut log| {
+        drop_stale("file", &mut log, &Robot::labmate(), &mut Vec::new());
         let moved = move_to_start("file", &mut log, &mut Vec::new()).is_ok();
         assert!(finite(&log));
         assert!(log.reference.iter().all(|p| p.x.is_finite() && p.y.is_finite()));
@@ -128,4 +142,71 @@ fn damaged_optiodom_files() {
     survive(metadata, 6, |text| optiodom::parse_metadata("file", "set", text).is_ok());
     let run = "0,0,0,0,0,0\n0.05,-5.3e-05,-3e-05,-0.0003,12,7\n0.1,0.002,0.004,0.02,-12,700\n";
     survive(run, 7, |text| optiodom::parse_run("file", text).is_ok_and(|recording| finished(recording, None)));
+}
+
+/// What a log does with a track: it is put between its samples by any clock, and set by the motion where there is enough of it.
+fn placed(track: &ReferenceTrack) -> bool {
+    assert!(track.time.windows(2).all(|pair| pair[0] < pair[1]));
+    let values = || track.x.iter().chain(&track.y).chain(&track.time).chain(track.heading.iter().flatten());
+    assert!(values().all(|value| value.is_finite()));
+    let time: Vec<f64> = (0..40).map(|i| 0.05 * f64::from(i)).collect();
+    let counts: Vec<f64> = (0..40).map(|i| f64::from(i * i)).collect();
+    let mut log = TickLog { time, left: counts.clone(), right: counts, reference: Vec::new() };
+    if let Ok(found) = synchronise(&log, track, &Robot::labmate()) {
+        assert!(found.offset.value.is_finite() && found.rate.std_error.is_finite());
+    }
+    let poses = track.x.iter().zip(&track.y).enumerate();
+    let poses: Vec<PoseRow> = poses.map(|(i, (x, y))| (*x, *y, track.heading.as_ref().map(|h| h[i]))).collect();
+    place(&mut log, &track.time, &poses);
+    log.time.windows(2).all(|pair| pair[0] < pair[1]) && log.reference.iter().all(|pose| pose.sample < log.time.len())
+}
+
+#[test]
+fn damaged_tracks() {
+    let tum =
+        "# t tx ty tz qx qy qz qw\n0.1 1 2 0 0 0 0 1\n0.2 1.01 2 0 0 0 0.1 0.995\n0.35 1.02 2e0 0 0 0 -0.1 0.995\n";
+    let motive = "Format Version,1.23,Take Name,a,Rotation Type,YXZ,Length Units,Meters,Coordinate Space,Global\n\n\
+                  ,Type,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body\n\
+                  ,Name,r,r,r,r,r,r,r\n,ID,\"A\",\"A\",\"A\",\"A\",\"A\",\"A\",\"A\"\n\
+                  ,,Rotation,Rotation,Rotation,Position,Position,Position,Mean Marker Error\n\
+                  Frame,Time (Seconds),Y,X,Z,X,Y,Z,\n0,0.0,90,0,0.1,1,0.1,2,0.001\n1,0.01,,,,,,,\n2,0.02,91,-1,0,1.1,0.1,2,0\n";
+    let columns = "t_s,x_ref_mm,y_ref_mm,theta_ref_deg\n0.0,1,2,3\n0.5,,,\n1.0,-4,5e-1,179\n1.5,2,3,-179\n";
+    for (purpose, good) in [(8, tum), (9, motive), (10, columns)] {
+        survive(good, purpose, |text| {
+            reference_file::parse_reference("file", text, &mut Vec::new()).is_ok_and(|track| placed(&track))
+        });
+    }
+    assert!(motive::parse_motive("file", motive, &mut Vec::new()).is_ok() && tum::parse_tum("file", tum).is_ok());
+}
+
+#[test]
+fn damaged_counters_with_time_stamps_out_of_order() {
+    let odometry = "0,0,0\n0.05,12,7\n0.15,9,9\n0.10,11,8\n0.2,-3,700\n0.2,-3,700\n";
+    survive(odometry, 11, |text| {
+        optiodom::parse_odometry("file", text).is_ok_and(|recording| finished(recording, None))
+    });
+    let reset = "t_s,ticks_left,ticks_right\n0,1000,1000\n0.01,1003,1003\n0.03,3,2\n0.02,0,0\n0.04,6,6\n0.04,7,6\n";
+    for (purpose, bits) in [(12, Some(16)), (13, None)] {
+        survive(reset, purpose, |text| {
+            tick_log::parse_tick_log("file", text, &mut Vec::new()).is_ok_and(|recording| finished(recording, bits))
+        });
+    }
+}
+
+#[test]
+fn damaged_packed_files() {
+    use std::io::Write;
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    encoder.write_all(b"t_s,ticks_left,ticks_right\n0,0,0\n0.01,1,1\n").unwrap();
+    let good = encoder.finish().unwrap();
+    let mut stream = Stream::new(7, 14, 0);
+    for _ in 0..rounds() {
+        let mut bytes = good.clone();
+        for _ in 0..3 {
+            let at = (stream.uniform() * bytes.len() as f64) as usize;
+            bytes[at] = (stream.uniform() * 256.0) as u8;
+        }
+        let unpacked = packed::unpacked("file", bytes);
+        assert!(unpacked.is_err() || unpacked.is_ok_and(|bytes| bytes.len() < 1 << 20));
+    }
 }

@@ -1,4 +1,5 @@
-//! Folders of the OptiOdom project: `*_metadata.csv` and `*_run-NN.csv`.
+//! Folders of the OptiOdom project: `*_metadata.csv` and `*_run-NN.csv`, or what these were made of: `*_run-NN_odo.csv` of the
+//! wheel counters and `*_run-NN_opti.csv` of the tracking system, each with its own clock.
 //!
 //! Rows of a run: time \[s\], x, y \[m\], theta \[rad\] of the tracked robot in the frame of START, then the ticks of this
 //! cycle, right wheel before left. Metadata: `Li` wheelbase \[m\], `Di` right and left wheel diameter \[m\], `ngear` times
@@ -12,6 +13,7 @@ use super::recording::Recording;
 use super::sheet::{Rows, split};
 use crate::drive::{DifferentialDrive, Encoder, Robot};
 use crate::path::{Path, SQUARE, SpeedProfile};
+use std::collections::{BTreeMap, BTreeSet};
 
 const METADATA: &str = "_metadata.csv";
 
@@ -20,9 +22,38 @@ pub(super) fn set_of_metadata(name: &str) -> Option<&str> {
     name.strip_suffix(METADATA)
 }
 
-/// The number of a run file of a set.
-pub(super) fn run_number(name: &str, set: &str) -> Option<u32> {
-    name.strip_prefix(set)?.strip_prefix("_run-")?.strip_suffix(".csv")?.parse().ok()
+/// The set that a file belongs to by its name.
+pub(super) fn set_of(name: &str) -> Option<&str> {
+    set_of_metadata(name).or_else(|| name.rsplit_once("_run-").map(|(set, _)| set))
+}
+
+/// The files of a run: the authors' synchronised one, or those of the wheel counters and of the tracking system.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct RunFiles {
+    pub number: u32,
+    pub ticks: String,
+    pub track: Option<String>,
+}
+
+/// The runs of a set among the names of a folder, in order; a synchronised file goes before the two that it was made of.
+pub(super) fn runs(names: &[String], set: &str) -> Vec<RunFiles> {
+    let part = |name: &str| {
+        let rest = name.strip_suffix(".gz").unwrap_or(name).strip_suffix(".csv")?;
+        let (number, kind) = rest.strip_prefix(set)?.strip_prefix("_run-")?.split_at_checked(2)?;
+        Some((number.parse::<u32>().ok()?, kind.to_owned()))
+    };
+    let mut found: BTreeMap<(u32, String), String> = BTreeMap::new();
+    for name in names {
+        found.extend(part(name).map(|key| (key, name.clone())));
+    }
+    let numbers: BTreeSet<u32> = found.keys().map(|(number, _)| *number).collect();
+    let of = |number: u32, kind: &str| found.get(&(number, kind.to_owned())).cloned();
+    let files = |number: u32| match (of(number, ""), of(number, "_odo"), of(number, "_opti")) {
+        (Some(ticks), ..) => Some(RunFiles { number, ticks, track: None }),
+        (None, Some(ticks), Some(track)) => Some(RunFiles { number, ticks, track: Some(track) }),
+        _ => None,
+    };
+    numbers.into_iter().filter_map(files).collect()
 }
 
 /// The robot and the path of a metadata file; the encoder's rate is left open.
@@ -92,18 +123,31 @@ impl<'a> Metadata<'a> {
     }
 }
 
-/// The rows of a run, ticks summed up.
+/// The rows of the wheel counters alone: time \[s\] and the ticks of this cycle, left wheel before right.
+pub(super) fn parse_odometry(file: &str, text: &str) -> Result<Recording, DatasetError> {
+    let names = ["time (1st)", "odoL (2nd)", "odoR (3rd)"];
+    let columns = names.map(str::to_owned);
+    let mut recording = Recording { file: file.to_owned(), columns, per_cycle: true, ..Recording::default() };
+    headless(file, text, &names, |line, [time, left, right]| {
+        recording.lines.push(line);
+        recording.time.push(*time);
+        recording.counts[0].push(*left);
+        recording.counts[1].push(*right);
+    })?;
+    Ok(recording)
+}
+
+/// The rows of a run.
 pub(super) fn parse_run(file: &str, text: &str) -> Result<Recording, DatasetError> {
     let names = ["time (1st)", "x (2nd)", "y (3rd)", "theta (4th)", "odoR (5th)", "odoL (6th)"];
     let mut recording = Recording {
         file: file.to_owned(),
         columns: [names[0], names[5], names[4]].map(str::to_owned),
+        per_cycle: true,
         ..Recording::default()
     };
-    let (mut left, mut right) = (0.0, 0.0);
     headless(file, text, &names, |line, cells| {
-        let [time, x, y, heading, right_step, left_step] = *cells;
-        (left, right) = (left + left_step, right + right_step);
+        let [time, x, y, heading, right, left] = *cells;
         let sample = recording.time.len();
         recording.lines.push(line);
         recording.time.push(time);

@@ -1,5 +1,7 @@
 //! Raw counts as a reader found them, and how they become a [`TickLog`].
 
+mod order;
+
 use super::error::DatasetError;
 use super::{ReferencePose, TickLog};
 use crate::drive::{Robot, roll_over};
@@ -8,6 +10,9 @@ use crate::drive::{Robot, roll_over};
 const FASTEST: f64 = 100.0;
 /// Counters that are looked for where a count jumps.
 const USUAL_BITS: [u32; 5] = [8, 12, 16, 24, 32];
+/// A counter that was set back shows no more than so many usual steps, after more than so many.
+const AFTER_RESET: f64 = 2.0;
+const BEFORE_RESET: f64 = 20.0;
 
 /// The rows of one log, before anything is mended.
 #[derive(Clone, Debug, Default)]
@@ -21,36 +26,58 @@ pub(super) struct Recording {
     pub time: Vec<f64>,
     /// Readings of the left and the right counter.
     pub counts: [Vec<f64>; 2],
+    /// Whether a reading is what was counted since the row before, rather than in all.
+    pub per_cycle: bool,
     pub reference: Vec<ReferencePose>,
 }
 
+/// What was mended in the counts of a log.
+#[derive(Default)]
+struct Mended {
+    rolled: u32,
+    /// Rows before which a counter was set back to zero.
+    reset: Vec<usize>,
+}
+
 impl Recording {
-    /// Checks time and counts, undoes roll-overs of a counter of `bits` bits, and counts from START.
+    /// Puts rows in order, undoes roll-overs of a counter of `bits` bits and resets, and counts from START.
     pub fn into_log(
-        self,
+        mut self,
         robot: Option<&Robot>,
         bits: Option<u32>,
         warnings: &mut Vec<String>,
     ) -> Result<TickLog, DatasetError> {
-        self.check_time()?;
-        let mut rolled = 0;
-        let [left, right] = [0, 1].map(|wheel| self.unroll(wheel, robot, bits, &mut rolled));
+        order::put_in_order(&mut self, warnings)?;
+        if self.per_cycle {
+            self.add_up();
+        }
+        let mut mended = Mended::default();
+        let [left, right] = [0, 1].map(|wheel| self.unroll(wheel, robot, bits, &mut mended));
         let (left, right) = (left?, right?);
-        if let (Some(bits), 1..) = (bits, rolled) {
-            warnings.push(format!("{}: {rolled} roll-overs of the {bits}-bit counters undone", self.file));
+        if let (Some(bits), 1..) = (bits, mended.rolled) {
+            warnings.push(format!("{}: {} roll-overs of the {bits}-bit counters undone", self.file, mended.rolled));
+        }
+        mended.reset.sort_unstable();
+        mended.reset.dedup();
+        if let [first, ..] = mended.reset[..] {
+            warnings.push(format!(
+                "{}:{}: {} counter resets: counted on from zero; what the wheels turned between the rows around each is lost",
+                self.file,
+                self.lines[first],
+                mended.reset.len()
+            ));
         }
         Ok(TickLog { time: self.time, left, right, reference: self.reference })
     }
 
-    fn check_time(&self) -> Result<(), DatasetError> {
-        let Some(at) = self.time.windows(2).position(|pair| pair[1] <= pair[0]) else { return Ok(()) };
-        Err(DatasetError::Time {
-            file: self.file.clone(),
-            line: self.lines[at + 1],
-            column: self.columns[0].clone(),
-            before: self.time[at],
-            after: self.time[at + 1],
-        })
+    fn add_up(&mut self) {
+        for counts in &mut self.counts {
+            let mut total = 0.0;
+            for count in counts {
+                total += *count;
+                *count = total;
+            }
+        }
     }
 
     /// Cumulative ticks of a wheel from its first reading.
@@ -59,36 +86,35 @@ impl Recording {
         wheel: usize,
         robot: Option<&Robot>,
         bits: Option<u32>,
-        rolled: &mut u32,
+        mended: &mut Mended,
     ) -> Result<Vec<f64>, DatasetError> {
         let readings = &self.counts[wheel];
         if let Some(at) = bits.and(readings.iter().position(|reading| reading.fract() != 0.0)) {
-            return Err(DatasetError::Cell {
-                file: self.file.clone(),
-                line: self.lines[at],
-                column: self.columns[wheel + 1].clone(),
-                value: readings[at].to_string(),
-                allowed: "a whole number of ticks where the robot has counter_bits".into(),
-                remedy: "".into(),
-            });
+            return Err(self.fractional(wheel, at));
         }
         let usual = self.usual_rate(wheel);
         let fastest = robot.map_or(f64::INFINITY, |robot| FASTEST / metres_per_tick(robot, wheel));
-        let mut total = 0.0;
+        let (mut total, mut before_reset, mut origin) = (0.0, 0.0, readings.first().copied().unwrap_or(0.0));
         let mut ticks = vec![0.0; readings.len()];
         for (i, pair) in readings.windows(2).enumerate() {
-            let plain = pair[1] - pair[0];
-            let step = bits.map_or(plain, |bits| roll_over(pair[0] as i64, pair[1] as i64, bits) as f64);
-            *rolled += u32::from(step != plain);
             let seconds = self.time[i + 1] - self.time[i];
-            if let (None, Some(bits)) = (bits, rolled_bits(step.abs(), (usual * seconds).max(1.0))) {
+            let expected = (usual * seconds).max(1.0);
+            let plain = pair[1] - pair[0];
+            let mut step = bits.map_or(plain, |bits| roll_over(pair[0] as i64, pair[1] as i64, bits) as f64);
+            if was_reset(pair[0], pair[1], expected, bits) {
+                mended.reset.push(i + 1);
+                (before_reset, origin, step) = (total, 0.0, pair[1]);
+            } else {
+                mended.rolled += u32::from(step != plain);
+            }
+            if let (None, Some(bits)) = (bits, rolled_bits(step.abs(), expected)) {
                 return Err(self.rolled_over(wheel, i, bits));
             }
             if let Some(robot) = robot.filter(|_| step.abs() > fastest * seconds) {
                 return Err(self.jump(wheel, i, step.abs() * metres_per_tick(robot, wheel) / seconds, bits));
             }
             // Sums of whole numbers are exact; of others, the difference from the first reading is.
-            total = if bits.is_some() { total + step } else { pair[1] - readings[0] };
+            total = if bits.is_some() { total + step } else { before_reset + (pair[1] - origin) };
             ticks[i + 1] = total;
         }
         Ok(ticks)
@@ -104,6 +130,17 @@ impl Recording {
         }
         let place = (rates.len() - 1) * 99 / 100;
         *rates.select_nth_unstable_by(place, f64::total_cmp).1
+    }
+
+    fn fractional(&self, wheel: usize, at: usize) -> DatasetError {
+        DatasetError::Cell {
+            file: self.file.clone(),
+            line: self.lines[at],
+            column: self.columns[wheel + 1].clone(),
+            value: self.counts[wheel][at].to_string(),
+            allowed: "a whole number of ticks where the robot has counter_bits".into(),
+            remedy: "".into(),
+        }
     }
 
     fn rolled_over(&self, wheel: usize, at: usize, bits: u32) -> DatasetError {
@@ -135,10 +172,41 @@ impl Recording {
     }
 }
 
+/// Whether a counter was set back to zero: it showed many steps and shows next to none, and it did not roll over, after
+/// which it would show next to none as well, but before which it would have been full.
+fn was_reset(before: f64, after: f64, expected: f64, bits: Option<u32>) -> bool {
+    let fell = after.abs() <= AFTER_RESET * expected && before.abs() > BEFORE_RESET * expected;
+    let full = |bits: u32| (f64::from(bits).exp2() - before).abs() <= 4.0 * expected;
+    let rolled = match bits {
+        Some(bits) => full(bits),
+        None => USUAL_BITS.into_iter().any(full),
+    };
+    fell && !rolled
+}
+
 /// The counter that rolled over where a wheel went `size` ticks and about `expected` are usual.
 fn rolled_bits(size: f64, expected: f64) -> Option<u32> {
     let near = |bits: &u32| (size - f64::from(*bits).exp2()).abs() <= 4.0 * expected;
     USUAL_BITS.into_iter().find(near).filter(|_| size > 10.0 * expected)
+}
+
+/// The error of time that goes back, or stands still, at row `at`.
+pub(super) fn time_error(
+    file: &str,
+    column: &str,
+    lines: &[usize],
+    time: &[f64],
+    at: usize,
+    remedy: &str,
+) -> DatasetError {
+    DatasetError::Time {
+        file: file.to_owned(),
+        line: lines[at],
+        column: column.to_owned(),
+        before: time[at.saturating_sub(1)],
+        after: time[at],
+        remedy: remedy.into(),
+    }
 }
 
 fn metres_per_tick(robot: &Robot, wheel: usize) -> f64 {

@@ -147,8 +147,10 @@ fn read_path_table(table: &Table) -> Result<Path, DatasetError> {
     };
     let speed = read_speed(table)?;
     Path::new(shape, &values, speed).map_err(|error| match (&error, table.get(POINTS)) {
-        (PathError::Waypoint { index, .. }, Some(points)) => points
-            .wrong("two or more finite points, each another than the one before", &format!("look at point {index}")),
+        (PathError::Waypoint { index, .. }, Some(points)) => points.wrong(
+            "two or more points of at most 1e6 m either way, each another than the one before",
+            &format!("look at point {index}"),
+        ),
         (_, Some(points)) => points.wrong(&error.to_string(), ""),
         (_, None) => entry.wrong(&error.to_string(), ""),
     })

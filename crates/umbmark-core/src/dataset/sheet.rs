@@ -123,25 +123,27 @@ fn check_separator(file: &str, line: usize, text: &str) -> Result<(), DatasetErr
 /// Cuts a line at its commas, but not at those in quotation marks.
 pub(super) fn split<'a>(line: &'a str, cells: &mut Vec<&'a str>) {
     cells.clear();
-    if !line.contains('"') {
-        cells.extend(line.split(',').map(str::trim));
-        return;
-    }
     let (mut start, mut inside) = (0, false);
     for (at, byte) in line.bytes().enumerate() {
         match byte {
             b'"' => inside = !inside,
             b',' if !inside => {
-                cells.push(unquoted(&line[start..at]));
+                cells.push(tidy(&line[start..at]));
                 start = at + 1;
             }
             _ => {}
         }
     }
-    cells.push(unquoted(&line[start..]));
+    cells.push(tidy(&line[start..]));
 }
 
-fn unquoted(cell: &str) -> &str {
+/// A cell without the spaces and quotation marks round it; most have none.
+fn tidy(cell: &str) -> &str {
+    let plain = |byte: Option<&u8>| byte.is_none_or(|byte| byte.is_ascii_graphic() && *byte != b'"');
+    let bytes = cell.as_bytes();
+    if plain(bytes.first()) && plain(bytes.last()) {
+        return cell;
+    }
     let cell = cell.trim();
     cell.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).map_or(cell, str::trim)
 }

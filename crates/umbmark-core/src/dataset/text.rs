@@ -1,12 +1,14 @@
 //! Files as text.
 
 use super::error::DatasetError;
+use super::packed::unpacked;
 use std::path::Path;
 
 /// The text of a file, without byte order mark.
 pub(super) fn read_text(file: &Path) -> Result<String, DatasetError> {
     let bytes = std::fs::read(file).map_err(|error| unreadable(file, &error))?;
-    decode(&file.display().to_string(), bytes)
+    let name = file.display().to_string();
+    decode(&name, unpacked(&name, bytes)?)
 }
 
 /// Bytes as text, without byte order mark.

@@ -10,7 +10,7 @@ use Quantity::{Angle, Bare, Length, Time};
 /// The header of messages and of files that are written.
 pub(super) const HEADER: &str = "t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad";
 
-struct ReferenceColumns {
+pub(super) struct ReferenceColumns {
     x: Column,
     y: Column,
     heading: Option<Column>,
@@ -45,7 +45,7 @@ pub(super) fn parse_tick_log(file: &str, text: &str, warnings: &mut Vec<String>)
 }
 
 impl ReferenceColumns {
-    fn find(columns: &mut Columns) -> Result<Option<ReferenceColumns>, DatasetError> {
+    pub fn find(columns: &mut Columns) -> Result<Option<ReferenceColumns>, DatasetError> {
         let x = columns.find("x_ref", Length)?;
         let y = columns.find("y_ref", Length)?;
         let heading = columns.find("theta_ref", Angle)?;
@@ -59,7 +59,7 @@ impl ReferenceColumns {
     }
 
     /// The pose of a row, if one was measured there.
-    fn read(&self, row: &Row, sample: usize) -> Result<Option<ReferencePose>, DatasetError> {
+    pub fn read(&self, row: &Row, sample: usize) -> Result<Option<ReferencePose>, DatasetError> {
         let heading = self.heading.as_ref().map(|column| row.number_or(column)).transpose()?.flatten();
         match (row.number_or(&self.x)?, row.number_or(&self.y)?) {
             (Some(x), Some(y)) => Ok(Some(ReferencePose { sample, x, y, heading })),

@@ -1,8 +1,8 @@
 //! A model: a choice of effects with values.
 
-use super::{CATALOGUE, Entry, Evaluate, MAX_PARAMETERS, Mean, find};
+use super::{CATALOGUE, Context, Entry, Evaluate, MAX_PARAMETERS, Mean, Sight, find};
 use crate::drive::{DifferentialDrive, Robot, WheelTravel};
-use crate::geometry::Displacement2;
+use crate::geometry::{Displacement2, Pose2};
 use crate::parameter::{ParameterError, nearest};
 
 /// What makes a model impossible.
@@ -118,6 +118,11 @@ impl Model {
         Some(part.values[index])
     }
 
+    /// Whether some effect changes motion along the way, so that driving has to be cut into small pieces.
+    pub fn varies(&self) -> bool {
+        self.parts.iter().any(|part| part.effect.varies)
+    }
+
     /// All values of all parts, one after the other: the order of [`Model::chain_with`].
     pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
         self.parts.iter().flat_map(|part| part.values.iter().copied())
@@ -170,30 +175,46 @@ impl<T: Evaluate> Chain<T> {
         }
     }
 
+    /// Where the robot truly stands at START on average, seen from where it is believed to stand.
+    pub fn start(&self) -> Pose2<T> {
+        let start = Pose2::IDENTITY.lift();
+        self.links.iter().fold(start, |pose, link| pose.compose(&(link.mean.start)(&link.values)))
+    }
+
     /// True wheel travel for a believed one.
     #[inline]
-    pub fn wheel_travel(&self, believed: &WheelTravel) -> WheelTravel<T> {
+    pub fn wheel_travel(&self, at: &Context<T>, believed: &WheelTravel) -> WheelTravel<T> {
         let mut travel = WheelTravel { left: T::from(believed.left), right: T::from(believed.right) };
         for link in &self.links {
-            (link.mean.wheels)(&link.values, &mut travel);
+            (link.mean.wheels)(&link.values, at, &mut travel);
         }
         travel
     }
 
     /// Body motion that a true wheel travel makes.
     #[inline]
-    pub fn body(&self, travel: &WheelTravel<T>) -> Displacement2<T> {
+    pub fn body(&self, at: &Context<T>, travel: &WheelTravel<T>) -> Displacement2<T> {
         let mut motion = self.drive.displacement(travel);
         for link in &self.links {
-            (link.mean.body)(&link.values, &mut motion);
+            (link.mean.body)(&link.values, at, &mut motion);
         }
         motion
     }
 
     /// Body motion for a believed wheel travel at constant ratio of the wheel speeds.
     #[inline]
-    pub fn displacement(&self, believed: &WheelTravel) -> Displacement2<T> {
-        self.body(&self.wheel_travel(believed))
+    pub fn displacement(&self, at: &Context<T>, believed: &WheelTravel) -> Displacement2<T> {
+        self.body(at, &self.wheel_travel(at, believed))
+    }
+
+    /// What a measurement without noise shows of a true pose.
+    #[inline]
+    pub fn seen(&self, at: &Sight, pose: &Pose2<T>) -> Pose2<T> {
+        let mut seen = *pose;
+        for link in &self.links {
+            (link.mean.seen)(&link.values, at, &mut seen);
+        }
+        seen
     }
 }
 
@@ -220,7 +241,7 @@ mod tests {
             model.add(entry.about.name).unwrap();
         }
         let believed = WheelTravel { left: 0.7, right: -0.2 };
-        assert_eq!(model.chain().displacement(&believed), robot.drive.displacement(&believed));
+        assert_eq!(model.chain().displacement(&Context::default(), &believed), robot.drive.displacement(&believed));
     }
 
     #[test]
@@ -230,10 +251,10 @@ mod tests {
         model.set("wheelbase", "e_b", 1.05).unwrap();
         model.set("scale", "e_s", 0.99).unwrap();
         let chain = model.chain();
-        let travel = chain.wheel_travel(&WheelTravel { left: 1.0, right: 1.0 });
+        let travel = chain.wheel_travel(&Context::default(), &WheelTravel { left: 1.0, right: 1.0 });
         assert!((travel.right / travel.left - 1.02).abs() < 1e-15);
         assert!((travel.right + travel.left - 2.0 * 0.99).abs() < 1e-15);
-        let motion = chain.body(&travel);
+        let motion = chain.body(&Context::default(), &travel);
         assert!((motion.rotation - (travel.right - travel.left) / (0.340 * 1.05)).abs() < 1e-15);
     }
 
@@ -248,11 +269,11 @@ mod tests {
         for i in 0..3 {
             let duals: Vec<Dual> =
                 values.iter().enumerate().map(|(j, v)| Dual::new(*v, f64::from(u8::from(i == j)))).collect();
-            let exact = model.chain_with(&duals).displacement(&believed);
+            let exact = model.chain_with(&duals).displacement(&Context::default().headed(duals[0]), &believed);
             let at = |step: f64| {
                 let mut v = values.clone();
                 v[i] += step;
-                model.chain_with(&v).displacement(&believed)
+                model.chain_with(&v).displacement(&Context::default(), &believed)
             };
             let (h, l) = (at(1e-6), at(-1e-6));
             assert!((exact.forward.eps - (h.forward - l.forward) / 2e-6).abs() < 1e-8);

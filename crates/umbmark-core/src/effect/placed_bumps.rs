@@ -35,7 +35,7 @@ impl Effect for PlacedBumps {
                   time the wheel counts travel that the body does not make.",
         signature: "The heading turns by D/b per bump towards the inside wheel: the return heading error is the sum, whatever \
                     the places; the return position depends on the places.",
-        confused_with: &["start_pose"],
+        confused_with: &["start_pose", "floor_slope_yaw"],
         separated_by: "subtracting the regular test, as Eq. (5) does",
         source: "Borenstein & Feng (1995), section 3.3 and Table II",
     };

@@ -36,7 +36,7 @@ impl Effect for ReferenceNoise {
         equation: "measured = true + N(0, diag(sd²))",
         physics: "A tape read to 2 mm and a heading from two such readings (0.15 degree), or the noise of motion capture.",
         signature: "Scatter that does not grow with the length of the path.",
-        confused_with: &["start_pose"],
+        confused_with: &["start_pose", "encoder_resolution"],
         separated_by: "measuring the same pose twice without driving",
         source: "usual sizes of tape and motion capture",
     };

@@ -1,6 +1,6 @@
 //! E_s: the scale.
 
-use super::{About, ActsOn, Effect};
+use super::{About, ActsOn, Context, Effect};
 use crate::drive::WheelTravel;
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
@@ -28,12 +28,12 @@ impl Effect for Scale {
                   0.5 % is what a tape leaves.",
         signature: "Legs are longer than believed, which a closed square does not show; turns are larger by the same share, \
                     which looks like E_b. A square determines only E_b/E_s.",
-        confused_with: &["wheelbase", "speed_slip"],
+        confused_with: &["wheelbase", "turn_slip", "turn_slip_rate", "speed_slip", "bumps"],
         separated_by: "the length of one straight leg by tape, or the pose at a stop",
         source: "Borenstein & Feng (1995), section 2",
     };
 
-    fn wheels<T: Real>(p: &[T], travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= p[0];
         travel.right *= p[0];
     }

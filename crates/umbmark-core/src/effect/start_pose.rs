@@ -1,7 +1,7 @@
 //! Misplacement at START.
 
 use super::{About, ActsOn, Effect};
-use crate::geometry::Pose2;
+use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 use crate::random::Stream;
 
@@ -48,14 +48,18 @@ impl Effect for StartPose {
         physics: "The robot is pushed to a mark on the floor, and its odometry set to zero whether it stands there or not.",
         signature: "A heading error δ turns the whole path about START: invisible at the end of a closed path but for the \
                     heading itself. A position error shifts the return by as much.",
-        confused_with: &["floor_slope", "placed_bumps"],
+        confused_with: &["floor_slope", "carpet_nap", "placed_bumps", "reference_noise"],
         separated_by: "measuring START in every run",
         source: "Borenstein & Feng (1995), section 3.4, step 1",
     };
 
-    fn start(p: &[f64], stream: &mut Stream) -> Pose2 {
+    fn start<T: Real>(p: &[T]) -> Pose2<T> {
+        Pose2::new(p[0], p[1], p[2])
+    }
+
+    fn start_scatter(p: &[f64], stream: &mut Stream) -> Pose2 {
         let mut scatter = |sd: f64| if sd > 0.0 { sd * stream.normal() } else { 0.0 };
-        Pose2::new(p[0] + scatter(p[3]), p[1] + scatter(p[3]), p[2] + scatter(p[4]))
+        Pose2::new(scatter(p[3]), scatter(p[3]), scatter(p[4]))
     }
 }
 
@@ -64,14 +68,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bias_and_scatter_have_the_stated_sizes() {
+    fn the_scatter_has_the_stated_size_about_the_bias() {
+        assert_eq!(StartPose::start(&[0.1, 0.2, 0.3, 0.02, 0.0]), Pose2::new(0.1, 0.2, 0.3));
         let n = 20_000;
         let mut stream = Stream::new(5, 0, 0);
         let (mut sum, mut squares) = (0.0, 0.0);
         for _ in 0..n {
-            let d = StartPose::start(&[0.1, 0.0, 0.0, 0.02, 0.0], &mut stream);
+            let d = StartPose::start_scatter(&[0.1, 0.0, 0.0, 0.02, 0.0], &mut stream);
             assert_eq!(d.heading, 0.0);
-            sum += d.x - 0.1;
+            sum += d.x;
             squares += d.y * d.y;
         }
         let n = f64::from(n);

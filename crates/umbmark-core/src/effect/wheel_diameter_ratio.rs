@@ -1,6 +1,6 @@
 //! E_d: unequal wheel diameters.
 
-use super::{About, ActsOn, Effect};
+use super::{About, ActsOn, Context, Effect};
 use crate::drive::WheelTravel;
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
@@ -28,13 +28,19 @@ impl Effect for WheelDiameterRatio {
                   other. The wheel that is larger rolls farther for the same count.",
         signature: "A straight leg becomes an arc of curvature (E_d - 1)/b; turns on the spot are unharmed. The return \
                     heading error per side is L (E_d - 1)/b in both directions of driving.",
-        confused_with: &["direction_dependent_wheelbase", "leg_kick", "speed_slip_right"],
+        confused_with: &[
+            "direction_dependent_wheelbase",
+            "leg_kick",
+            "speed_slip_left",
+            "speed_slip_right",
+            "missed_counts",
+        ],
         separated_by: "a long straight (the heading grows with distance), and spins, which it leaves alone",
         source: "Borenstein & Feng (1995), section 2; split: Borenstein & Feng (1996), IEEE Trans. Robotics and \
                  Automation 12(6)",
     };
 
-    fn wheels<T: Real>(p: &[T], travel: &mut WheelTravel<T>) {
+    fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
         let left = (p[0] + 1.0).recip() * 2.0;
         travel.left *= left;
         travel.right *= left * p[0];

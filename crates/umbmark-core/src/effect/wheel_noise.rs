@@ -27,7 +27,7 @@ impl Effect for WheelNoise {
                   parquet; 1e-3 gives the paper's scatter.",
         signature: "Scatter only: heading variance grows as 2 k²/b² per metre, position scatter as the distance to the power \
                     3/2. The means stay.",
-        confused_with: &["bumps"],
+        confused_with: &["bumps", "encoder_resolution"],
         separated_by: "the shape of the heading increments; a smoother floor",
         source: "Chong & Kleeman (1997), ICRA, accurate odometry and error modelling",
     };

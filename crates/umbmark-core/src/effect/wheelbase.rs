@@ -1,6 +1,6 @@
 //! E_b: the effective wheelbase.
 
-use super::{About, ActsOn, Effect};
+use super::{About, ActsOn, Context, Effect};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -27,12 +27,12 @@ impl Effect for Wheelbase {
                   of the wheelbase. Scrub in turns on the spot acts the same way and is part of what is measured.",
         signature: "Every turn is too small (E_b > 1) or too large. The return heading error per side is -(E_b - 1) π/2 in \
                     ccw runs and the opposite in cw runs.",
-        confused_with: &["scale", "turn_slip", "turn_slip_rate", "speed_slip"],
+        confused_with: &["scale", "turn_slip", "turn_slip_rate", "speed_slip", "caster_kick", "centripetal_load"],
         separated_by: "spins together with one measured straight leg",
         source: "Borenstein & Feng (1995), section 2",
     };
 
-    fn body<T: Real>(p: &[T], motion: &mut Displacement2<T>) {
+    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation /= p[0];
     }
 }

@@ -1,8 +1,9 @@
 //! Odometry from counters read at given instants.
 
 use blocks::Blocks;
+use directions::Directions;
 pub use profile::Profile;
-use profile::Steps;
+use ramp::Ramps;
 
 use super::oracle::CompensatedSum;
 use super::{Instructions, Motion, TickGeometry, WheelLine};
@@ -11,7 +12,9 @@ use crate::geometry::{Pose2, Real};
 mod blocks;
 mod carries;
 mod constant_rate;
+mod directions;
 mod profile;
+mod ramp;
 
 /// How the pose is advanced by one change of the counters, of distance d and rotation θ at heading φ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -50,8 +53,9 @@ pub struct SampledOdometry {
     geometry: TickGeometry,
     update: Update,
     instructions: Instructions,
+    directions: Directions,
     blocks: Blocks,
-    steps: Steps,
+    ramps: Ramps,
 }
 
 impl SampledOdometry {
@@ -61,8 +65,9 @@ impl SampledOdometry {
             geometry,
             update,
             instructions: Instructions::best(),
+            directions: Directions::default(),
             blocks: Blocks::default(),
-            steps: Steps::default(),
+            ramps: Ramps::default(),
         }
     }
 

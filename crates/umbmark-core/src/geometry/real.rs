@@ -22,6 +22,9 @@ pub trait Real: DualNum<Primitive = f64> + Copy + Send + Sync {
         let (sinc, cosine) = self.sinc_cos();
         (sinc * self, cosine)
     }
+
+    /// e^x by `libm`, the same bits on every machine.
+    fn exponential(self) -> Self;
 }
 
 impl Real for f64 {
@@ -49,6 +52,11 @@ impl Real for f64 {
             sin_cos_reduced(self)
         }
     }
+
+    #[inline]
+    fn exponential(self) -> f64 {
+        libm::exp(self)
+    }
 }
 
 impl Real for Dual {
@@ -69,6 +77,12 @@ impl Real for Dual {
     #[inline]
     fn value(self) -> f64 {
         self.re
+    }
+
+    #[inline]
+    fn exponential(self) -> Dual {
+        let value = libm::exp(self.re);
+        Dual::new(value, value * self.eps)
     }
 }
 
@@ -157,6 +171,22 @@ mod tests {
             let sinc = |v: f64| if v == 0.0 { 1.0 } else { libm::sin(v) / v };
             let numeric = (8.0 * (sinc(x + h) - sinc(x - h)) - (sinc(x + 2.0 * h) - sinc(x - 2.0 * h))) / (12.0 * h);
             assert!((slope - numeric).abs() < 1e-10, "{x}: {slope} {numeric}");
+        }
+    }
+    #[test]
+    fn the_exponential_is_its_power_series_and_its_own_derivative() {
+        for x in [-20.0_f64, -1.5, -1e-9, 0.0, 0.3, 2.0] {
+            // Oracle: the series of e^(x/64), squared six times.
+            let small = x / 64.0;
+            let (mut sum, mut term) = (1.0, 1.0);
+            for k in 1..16 {
+                term *= small / f64::from(k);
+                sum += term;
+            }
+            let oracle = (0..6).fold(sum, |power, _| power * power);
+            let (value, slope) = first_derivative(|d: Dual| d.exponential(), x);
+            assert_eq!(value, x.exponential());
+            assert!((value / oracle - 1.0).abs() < 1e-13 && slope == value, "{x}: {value} {oracle} {slope}");
         }
     }
 }

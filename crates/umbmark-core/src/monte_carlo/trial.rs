@@ -58,8 +58,9 @@ impl Bench {
         let draws = all.enumerate().filter_map(|(index, draw)| Some((index, draw?.clone()))).collect();
         let room = |n: usize| vec![ReturnError::default(); n];
         Ok(Bench {
-            simulator: Simulator::new(study.robot(), &study.path, study.odometry, study.phase)?,
-            truth: Truth::new(&model),
+            simulator: Simulator::new(study.robot(), &study.path, study.odometry, study.phase)?
+                .limited_to(study.instructions),
+            truth: Truth::new(&model).limited_to(study.instructions),
             values: model.values().collect(),
             draws,
             extended: study.extended(),

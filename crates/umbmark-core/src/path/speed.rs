@@ -115,6 +115,23 @@ impl Trapezoid {
             1.0 - 0.5 * left * left / self.ramp / total
         }
     }
+
+    /// When a share of the travel in [0, 1] is done \[s\]: the inverse of [`Trapezoid::fraction`].
+    pub fn time(&self, fraction: f64) -> f64 {
+        let total = self.ramp + self.cruise;
+        let (fraction, mirrored) = if fraction > 0.5 { (1.0 - fraction, true) } else { (fraction, false) };
+        let done = fraction * total;
+        let time = if done < 0.5 * self.ramp { (2.0 * done * self.ramp).sqrt() } else { done + 0.5 * self.ramp };
+        if mirrored { self.duration() - time } else { time }
+    }
+
+    /// Share of the travel made per second at `time` \[1/s\].
+    pub fn rate(&self, time: f64) -> f64 {
+        let edge = time.min(self.duration() - time).max(0.0);
+        let ramped = if self.ramp > 0.0 { (edge / self.ramp).min(1.0) } else { 0.0 };
+        let total = self.ramp + self.cruise;
+        if total > 0.0 { ramped / total } else { 0.0 }
+    }
 }
 
 #[cfg(test)]
@@ -139,6 +156,23 @@ mod tests {
             assert!((before - travel.abs()).abs() < 1e-4, "{travel}: {before}");
             let expected = 0.5_f64.min((travel.abs() * 0.25).sqrt());
             assert!((fastest - expected).abs() < 1e-4 && steepest < 0.25 + 1e-3, "{travel}: {fastest} {steepest}");
+        }
+    }
+
+    #[test]
+    fn time_undoes_fraction_and_rate_is_its_slope_on_trapezoids_and_triangles() {
+        for travel in [4.0, 0.3] {
+            let t = SpeedProfile::new(0.5, 0.25, 1.0).unwrap().over(travel);
+            for k in 0..=100 {
+                let fraction = f64::from(k) / 100.0;
+                let time = t.time(fraction);
+                assert!((t.fraction(time) - fraction).abs() < 1e-12, "{travel} {fraction}");
+                let slope = (t.fraction(time + 1e-6) - t.fraction(time - 1e-6)) / 2e-6;
+                assert!(
+                    (0.0..=t.duration()).contains(&time) && (t.rate(time) - slope).abs() < 1e-5,
+                    "{travel} {fraction}"
+                );
+            }
         }
     }
 

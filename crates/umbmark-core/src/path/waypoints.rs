@@ -12,12 +12,15 @@ pub static WAYPOINTS: Shape = Shape {
     moves,
 };
 
-/// Points must be finite, and none the same as the one before.
+/// No floor is larger \[m\].
+const FARTHEST: f64 = 1e6;
+
+/// Points must be on a floor, and none the same as the one before.
 pub(super) fn check(values: &[f64]) -> Result<(), PathError> {
     let points = values.chunks_exact(2).map(|p| (p[0], p[1]));
     let mut before = (0.0, 0.0);
     for (i, (x, y)) in points.enumerate() {
-        if !x.is_finite() || !y.is_finite() || (x, y) == before {
+        if !(x.abs() <= FARTHEST && y.abs() <= FARTHEST) || (x, y) == before {
             return Err(PathError::Waypoint { index: i + 1, x, y });
         }
         before = (x, y);

@@ -29,6 +29,7 @@ pub struct Course {
     pub direction: Direction,
     /// The moves.
     pub legs: Vec<Leg>,
+    ranks: Vec<usize>,
 }
 
 impl Course {
@@ -53,7 +54,19 @@ impl Course {
             legs.push(Leg { travel, stop: [left.round() as i64, right.round() as i64], begins: clock, profile });
             clock += profile.duration() + path.speed.pause();
         }
-        Ok(Course { direction, legs })
+        // The turn of a move tells legs from turns, and both from arcs.
+        let turn = |index: &usize| (legs[*index].travel.right - legs[*index].travel.left).abs();
+        let mut alike: Vec<usize> = (0..legs.len()).collect();
+        alike.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
+        let mut ranks = vec![0; legs.len()];
+        alike.iter().enumerate().for_each(|(rank, index)| ranks[*index] = rank);
+        Ok(Course { direction, legs, ranks })
+    }
+
+    /// The place of move `index` in an order in which moves that turn alike are neighbours.
+    #[inline]
+    pub(super) fn rank(&self, index: usize) -> usize {
+        self.ranks[index]
     }
 
     /// When the last move ends \[s\].

@@ -24,48 +24,66 @@ pub struct Diffusion {
     factor: [f64; 6],
 }
 
-/// Gauss-Legendre nodes and weights on [0, 1], four points: exact for polynomials of degree seven.
-const NODES: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-];
+/// What the integrals over a stretch of rotation ω have in common, h = ω/2: smooth and even in ω, so that nothing is
+/// divided by a rotation.
+struct Integrals {
+    /// (sinc h - cos h) / ω²
+    lag: f64,
+    /// (1/2 - 3/2 sinc ω + cos² h) / ω⁴
+    bow: f64,
+    /// (1 - sinc ω) / 2ω²
+    swing: f64,
+}
+
+/// Rotations up to which the integrals are taken from their series: beyond it the closed forms lose less than two digits.
+const SERIES_REACH: f64 = 2.0;
+
+/// Terms of the series: the first one left out is below 1e-17 of the sum for every rotation within reach.
+const TERMS: usize = 12;
+
+/// Coefficients of ω^2k in the three integrals, k from 0.
+const SERIES: [[f64; 3]; TERMS] = {
+    let mut series = [[0.0; 3]; TERMS];
+    // (2k + 3)!, 4^k and the sign of the term.
+    let (mut factorial, mut power, mut sign) = (6.0, 1.0, 1.0);
+    let mut k = 0;
+    while k < TERMS {
+        let n = k as f64;
+        let next = (2.0 * n + 4.0) * (2.0 * n + 5.0);
+        series[k] = [
+            sign * (2.0 * n + 2.0) / (4.0 * factorial * power),
+            sign * (n + 1.0) / (factorial * next),
+            sign / (2.0 * factorial),
+        ];
+        factorial *= next;
+        power *= 4.0;
+        sign = -sign;
+        k += 1;
+    }
+    series
+};
+
+impl Integrals {
+    /// For the rotation ω, given sinc h and cos h.
+    #[inline]
+    fn new(rotation: f64, sinc: f64, cosine: f64) -> Integrals {
+        let z = rotation * rotation;
+        let [lag, bow, swing] = if rotation.abs() <= SERIES_REACH {
+            SERIES.iter().rev().fold([0.0; 3], |sum, term| [0, 1, 2].map(|i| sum[i] * z + term[i]))
+        } else {
+            let whole_sinc = sinc * cosine;
+            [(sinc - cosine) / z, (0.5 - 1.5 * whole_sinc + cosine * cosine) / (z * z), 0.5 * (1.0 - whole_sinc) / z]
+        };
+        Integrals { lag, bow, swing }
+    }
+}
 
 impl Diffusion {
     /// The distribution for a stretch of true motion `motion` with wheel variances `variance`; `rotation_per_metre` is the
     /// rotation \[rad/m\] that a metre of difference between the wheels makes, 1/b.
+    #[inline]
     pub fn new(motion: &Displacement2, variance: &WheelVariance, rotation_per_metre: f64) -> Diffusion {
-        let (v, w, inverse_b) = (motion.forward, motion.rotation, rotation_per_metre);
-        let heading_variance = (variance.left + variance.right) * inverse_b * inverse_b;
-        let lean = 0.25 * (variance.right - variance.left) * inverse_b;
-        let panels = (w.abs().ceil() as usize).max(1);
-        let (mut mean, mut covariance) = ([0.0; 2], [0.0; 6]);
-        for panel in 0..panels {
-            for (node, weight) in NODES {
-                let t = (panel as f64 + node) / panels as f64;
-                let weight = weight / panels as f64;
-                let (sine, cosine) = (w * t).sine_cosine();
-                let rest = 1.0 - t;
-                let (sinc, _) = (0.5 * w * rest).sinc_cos();
-                let (sine_mid, cosine_mid) = (0.5 * w * (1.0 + t)).sine_cosine();
-                let lever = v * rest * sinc * inverse_b;
-                let turned = [-lever * sine_mid, lever * cosine_mid];
-                for (sign, variance) in [(1.0, variance.right), (-1.0, variance.left)] {
-                    let g = [0.5 * cosine + sign * turned[0], 0.5 * sine + sign * turned[1], sign * inverse_b];
-                    let scale = weight * variance;
-                    covariance[0] += scale * g[0] * g[0];
-                    covariance[1] += scale * g[1] * g[0];
-                    covariance[2] += scale * g[1] * g[1];
-                    covariance[3] += scale * g[2] * g[0];
-                    covariance[4] += scale * g[2] * g[1];
-                    covariance[5] += scale * g[2] * g[2];
-                }
-                let shrink = -0.5 * v * heading_variance * t * weight;
-                mean[0] += shrink * cosine - lean * weight * sine;
-                mean[1] += shrink * sine + lean * weight * cosine;
-            }
-        }
+        let (mean, covariance) = moments(motion, variance, rotation_per_metre);
         Diffusion { mean, factor: cholesky(covariance) }
     }
 
@@ -76,6 +94,44 @@ impl Diffusion {
         let f = &self.factor;
         [self.mean[0] + f[0] * z[0], self.mean[1] + f[1] * z[0] + f[2] * z[1], f[3] * z[0] + f[4] * z[1] + f[5] * z[2]]
     }
+}
+
+/// Mean (x, y) and lower triangle of the covariance of (x, y, heading), by rows; arguments as of [`Diffusion::new`].
+///
+/// Seen from the heading halfway, a stretch looks the same from either end: half of the integrals vanish, the others are
+/// closed forms. Turned by half the rotation they are those seen from the start.
+#[inline]
+fn moments(motion: &Displacement2, variance: &WheelVariance, rotation_per_metre: f64) -> ([f64; 2], [f64; 6]) {
+    let (v, w, inverse_b) = (motion.forward, motion.rotation, rotation_per_metre);
+    let (sum, difference) = (variance.right + variance.left, variance.right - variance.left);
+    let half = 0.5 * w;
+    let (sinc, cosine) = half.sinc_cos();
+    let sine = sinc * half;
+    let Integrals { lag, bow, swing } = Integrals::new(w, sinc, cosine);
+    let per_metre = v * inverse_b;
+    let (along, lean) = (sum * per_metre, difference * per_metre);
+
+    let x_x = sum * (0.125 * (1.0 + sinc * cosine)) + along * per_metre * (w * w * bow) - lean * (w * swing);
+    let x_y = 0.25 * lean * sinc * sinc - 0.5 * along * per_metre * (sinc * w * lag);
+    let y_y = sum * (0.25 * w * w * swing) + along * per_metre * (0.25 * sinc * sinc + swing) - lean * (w * swing);
+    let x_h = inverse_b * (0.5 * difference * sinc - along * (w * lag));
+    let y_h = inverse_b * (0.5 * along * sinc);
+    let h_h = sum * inverse_b * inverse_b;
+
+    let shortening = -0.5 * v * h_h;
+    let mean = [0.5 * shortening * sinc, shortening * w * lag + 0.25 * difference * inverse_b * sinc];
+    let turned = |[x, y]: [f64; 2]| [cosine * x - sine * y, sine * x + cosine * y];
+    let (c_c, c_s, s_s) = (cosine * cosine, cosine * sine, sine * sine);
+    let [x_h, y_h] = turned([x_h, y_h]);
+    let covariance = [
+        c_c * x_x - 2.0 * c_s * x_y + s_s * y_y,
+        c_s * (x_x - y_y) + (c_c - s_s) * x_y,
+        s_s * x_x + 2.0 * c_s * x_y + c_c * y_y,
+        x_h,
+        y_h,
+        h_h,
+    ];
+    (turned(mean), covariance)
 }
 
 /// Lower Cholesky factor of a 3 x 3 covariance given and returned as its lower triangle by rows; a direction without
@@ -92,127 +148,4 @@ fn cholesky(c: [f64; 6]) -> [f64; 6] {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::drive::WheelTravel;
-    use crate::geometry::Pose2;
-
-    const WHEELBASE: f64 = 0.34;
-
-    fn plain_kinematics(travel: &WheelTravel) -> Displacement2 {
-        Displacement2 {
-            forward: 0.5 * (travel.left + travel.right),
-            sideways: 0.0,
-            rotation: (travel.right - travel.left) / WHEELBASE,
-        }
-    }
-
-    /// The stretch in `steps` short arcs with independent noise on each wheel: the definition of the noise.
-    fn stepped(travel: &WheelTravel, k: f64, steps: usize, stream: &mut Stream) -> Pose2 {
-        let step = travel.scaled(1.0 / steps as f64);
-        let (sd_left, sd_right) = (k * step.left.abs().sqrt(), k * step.right.abs().sqrt());
-        (0..steps).fold(Pose2::IDENTITY, |pose, _| {
-            let noisy = WheelTravel {
-                left: step.left + sd_left * stream.normal(),
-                right: step.right + sd_right * stream.normal(),
-            };
-            pose.moved(&plain_kinematics(&noisy))
-        })
-    }
-
-    /// Two-sample Kolmogorov-Smirnov distance.
-    fn ks(mut a: Vec<f64>, mut b: Vec<f64>) -> f64 {
-        a.sort_by(f64::total_cmp);
-        b.sort_by(f64::total_cmp);
-        let (mut i, mut j, mut d) = (0, 0, 0.0_f64);
-        while i < a.len() && j < b.len() {
-            if a[i] <= b[j] {
-                i += 1;
-            } else {
-                j += 1;
-            }
-            d = d.max((i as f64 / a.len() as f64 - j as f64 / b.len() as f64).abs());
-        }
-        d
-    }
-
-    /// n = 6000 on each side, 300 steps, seed 11; alpha = 0.001 for each of the fifteen comparisons, so a correct closed
-    /// form fails once in 67 seeds: D < 1.949 sqrt(2/n) = 0.0356.
-    #[test]
-    fn the_closed_form_has_the_distribution_of_fine_stepping_on_legs_turns_and_arcs() {
-        let (n, k) = (6000, 1e-3);
-        let turn = 0.5 * WHEELBASE * std::f64::consts::FRAC_PI_2;
-        for (case, (left, right)) in
-            [(4.0, 4.0), (4.01, 3.99), (-turn, turn), (0.0, 2.0), (5.0, 12.0)].into_iter().enumerate()
-        {
-            let travel = WheelTravel { left, right };
-            let motion = plain_kinematics(&travel);
-            let variance = WheelVariance { left: k * k * left.abs(), right: k * k * right.abs() };
-            let diffusion = Diffusion::new(&motion, &variance, 1.0 / WHEELBASE);
-            let end = Pose2::exp(&motion);
-            let mut stream = Stream::new(11, 1, case as u64);
-            let drawn: Vec<Pose2> = (0..n)
-                .map(|_| {
-                    let [dx, dy, turned] = diffusion.draw(&mut stream);
-                    Pose2::new(end.x + dx, end.y + dy, end.heading + turned)
-                })
-                .collect();
-            let walked: Vec<Pose2> = (0..n).map(|_| stepped(&travel, k, 300, &mut stream)).collect();
-            let distances = [|p: &Pose2| p.x, |p: &Pose2| p.y, |p: &Pose2| p.heading]
-                .map(|of| ks(drawn.iter().map(of).collect(), walked.iter().map(of).collect()));
-            assert!(distances.iter().all(|d| *d < 0.0356), "{travel:?}: {distances:?}");
-            let sample_covariance = |poses: &[Pose2]| {
-                let mean = |of: fn(&Pose2) -> f64| poses.iter().map(of).sum::<f64>() / n as f64;
-                let (my, mh) = (mean(|p| p.y), mean(|p| p.heading));
-                poses.iter().map(|p| (p.y - my) * (p.heading - mh)).sum::<f64>() / n as f64
-            };
-            let scale = (sample_covariance(&drawn) - sample_covariance(&walked)).abs();
-            let size = libm::hypot(diffusion.factor[1], diffusion.factor[2]) * diffusion.factor[5].max(1e-3);
-            assert!(scale < 0.2 * size, "{travel:?}: covariance of y and heading differs by {scale:e}");
-        }
-    }
-
-    /// The second-order mean where the wheels roll unequally, with noise so large that it shows: n = 20 000 walks of 60
-    /// steps, seed 12; the mean's standard error is 2e-4 m, its shift 2e-3 m.
-    #[test]
-    fn unequal_wheels_shift_the_mean_as_in_the_limit_of_fine_stepping() {
-        let (n, k): (usize, f64) = (20_000, 0.1);
-        let travel = WheelTravel { left: 0.0, right: 0.34 };
-        let motion = plain_kinematics(&travel);
-        let variance = WheelVariance { left: 0.0, right: k * k * travel.right };
-        let diffusion = Diffusion::new(&motion, &variance, 1.0 / WHEELBASE);
-        let end = Pose2::exp(&motion);
-        let mut stream = Stream::new(12, 1, 0);
-        let (mut x, mut y) = (0.0, 0.0);
-        for _ in 0..n {
-            let walked = stepped(&travel, k, 60, &mut stream);
-            x += (walked.x - end.x) / n as f64;
-            y += (walked.y - end.y) / n as f64;
-        }
-        let [mean_x, mean_y] = diffusion.mean;
-        assert!((x - mean_x).abs() < 8e-4 && (y - mean_y).abs() < 8e-4, "{x} {mean_x} {y} {mean_y}");
-        assert!(libm::hypot(mean_x, mean_y) > 1.6e-3);
-    }
-
-    #[test]
-    fn a_straight_leg_scatters_sideways_with_the_power_three_halves_of_its_length() {
-        let k: f64 = 1e-3;
-        let sd = |length: f64| {
-            let variance = WheelVariance { left: k * k * length, right: k * k * length };
-            let motion = Displacement2 { forward: length, sideways: 0.0, rotation: 0.0 };
-            let d = Diffusion::new(&motion, &variance, 1.0 / WHEELBASE);
-            libm::hypot(d.factor[1], d.factor[2])
-        };
-        // var y = L² var θ / 3 with var θ = 2 k² L/b².
-        let expected = (2.0 * k * k * 64.0 / (WHEELBASE * WHEELBASE) / 3.0).sqrt();
-        assert!((sd(4.0) / expected - 1.0).abs() < 1e-9, "{} {expected}", sd(4.0));
-        assert!((sd(4.0) / sd(1.0) - 8.0).abs() < 1e-6);
-    }
-
-    #[test]
-    fn no_variance_moves_nothing() {
-        let motion = Displacement2 { forward: 1.0, sideways: 0.0, rotation: 0.3 };
-        let d = Diffusion::new(&motion, &WheelVariance::default(), 3.0);
-        assert_eq!(d.draw(&mut Stream::new(0, 0, 0)), [0.0; 3]);
-    }
-}
+mod tests;

@@ -1,17 +1,16 @@
 //! When the counters are read along a move.
 
 use super::Leg;
-use crate::engine::{Integrator, Method, Motion, Profile, SampledOdometry, Segment, TickGeometry, Update, WheelLine};
+use crate::engine::{Instructions, Motion, Profile, SampledOdometry, TickGeometry, Update, WheelLine};
 
 /// Odometry of a robot that reads its counters at a fixed rate, along moves with acceleration ramps.
 ///
-/// The clock ticks on through the moves and pauses. Readings on the ramps are taken one by one; those at constant speed,
-/// nearly all, go through the engine's fast path for equal steps. Splitting a move there rounds its wheel angles to 2^-32
+/// The clock ticks on through the moves and pauses. Readings on the ramps are looked up one by one; those at constant
+/// speed, nearly all, go through the engine's fast path for equal steps. Splitting a move there rounds its wheel angles to 2^-32
 /// tick.
 #[derive(Debug)]
 pub(super) struct SampledMoves {
-    ramps: SampledOdometry,
-    cruise: Integrator,
+    odometry: SampledOdometry,
     courses: [Vec<Readings>; 2],
 }
 
@@ -77,10 +76,13 @@ impl Readings {
 impl SampledMoves {
     pub(super) fn new(geometry: TickGeometry, update: Update, rate: f64, courses: [&[Leg]; 2]) -> SampledMoves {
         SampledMoves {
-            ramps: SampledOdometry::new(geometry, update),
-            cruise: Integrator::new(geometry, Method::Sampled(update)),
+            odometry: SampledOdometry::new(geometry, update),
             courses: courses.map(|legs| legs.iter().map(|leg| Readings::new(leg, rate)).collect()),
         }
+    }
+
+    pub(super) fn limited_to(self, instructions: Instructions) -> SampledMoves {
+        SampledMoves { odometry: self.odometry.limited_to(instructions), ..self }
     }
 
     /// The motion that the counters report for move `index` of course `course`, driven along `line`.
@@ -91,14 +93,14 @@ impl SampledMoves {
         let piece =
             |start, travel| WheelLine::new(start, travel).expect("a piece of a line is no longer than the line");
         let up = piece(line.start(), a);
-        let motion = self.ramps.along(&up, &readings.up);
+        let motion = self.odometry.along(&up, &readings.up);
         if readings.cruise_from == 1.0 {
             return motion;
         }
         let level = piece(up.end_phases(), [b[0] - a[0], b[1] - a[1]]);
         let down = piece(level.end_phases(), [line.travel()[0] - b[0], line.travel()[1] - b[1]]);
-        let motion = motion.then(&self.cruise.motion(&Segment::sampled(level, readings.cruise)));
-        motion.then(&self.ramps.along(&down, &readings.down))
+        let motion = motion.then(&self.odometry.at_constant_rate(&level, readings.cruise));
+        motion.then(&self.odometry.along(&down, &readings.down))
     }
 }
 

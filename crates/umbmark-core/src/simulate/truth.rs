@@ -1,16 +1,17 @@
 //! The true motion of a robot whose odometry believes something else.
 
 use super::diffusion::Diffusion;
+use super::pieces::{Piece, Pieces};
 use crate::drive::{Wheel, WheelTravel};
-use crate::effect::{Bump, Chain, Entry, Model, Stretch, WheelVariance};
-use crate::engine::Motion;
+use crate::effect::{Bump, Chain, Context, Entry, Model, Stretch, WheelVariance};
+use crate::engine::Instructions;
 use crate::geometry::{Displacement2, Pose2};
 use crate::random::Stream;
 
 /// Purpose of the stream that wheel noise is drawn from; no hash of a name gives so small a number.
 const WHEEL_NOISE: u64 = 2;
 
-/// The effects of a model at work in one trial: deterministic chain, random parts with their streams, true pose.
+/// The effects of a model at work in one trial: deterministic chain, random parts with their streams, true poses.
 #[derive(Debug)]
 pub struct Truth {
     chain: Chain<f64>,
@@ -18,9 +19,10 @@ pub struct Truth {
     rotation_per_metre: f64,
     noisy: bool,
     noise: Stream,
-    pose: Motion,
-    stretch: Option<Stretch>,
-    /// Travel that the stretch was commanded to have, the same in every trial.
+    pieces: Pieces,
+    /// Travel of the present stretch as the robot believes it.
+    believed: WheelTravel,
+    /// Travel that it was commanded to have, the same in every trial.
     commanded: WheelTravel,
     /// Bumps of the stretch that lie ahead, the nearest last.
     ahead: Vec<Bump>,
@@ -49,15 +51,20 @@ impl Truth {
             rotation_per_metre: 0.0,
             noisy: false,
             noise: Stream::new(0, 0, 0),
-            pose: Motion::IDENTITY,
-            stretch: None,
+            pieces: Pieces::new(Instructions::best()),
+            believed: WheelTravel::default(),
             commanded: WheelTravel::default(),
             ahead: Vec::new(),
-            done: 0.0,
+            done: 1.0,
             whole: Vec::new(),
         };
         truth.refresh();
         truth
+    }
+
+    /// The same, with registers no wider than these: the same bits, maybe slower.
+    pub fn limited_to(self, instructions: Instructions) -> Truth {
+        Truth { pieces: Pieces::new(instructions), ..self }
     }
 
     /// Takes new values for all parameters, in the order of [`Model::values`].
@@ -77,7 +84,8 @@ impl Truth {
 
     fn refresh(&mut self) {
         self.whole.clear();
-        self.rotation_per_metre = self.chain.body(&WheelTravel { left: -0.5, right: 0.5 }).rotation;
+        self.rotation_per_metre =
+            self.chain.body(&Context::default(), &WheelTravel { left: -0.5, right: 0.5 }).rotation;
         let variance = self.variance(&WheelTravel { left: 1.0, right: 1.0 });
         self.noisy = variance != WheelVariance::default();
     }
@@ -99,11 +107,22 @@ impl Truth {
 
     /// Puts the robot at START, as far as the effects let it stand there.
     pub fn start(&mut self) {
-        let start = self.random.iter_mut().fold(Pose2::IDENTITY, |pose, part| {
-            pose.compose(&(part.effect.scatter.start)(&part.values, &mut part.stream))
+        self.forget();
+        self.start_another();
+    }
+
+    /// Forgets all runs.
+    pub(super) fn forget(&mut self) {
+        self.pieces.clear();
+    }
+
+    /// Begins one more run at START; where those before it end can still be asked for.
+    pub(super) fn start_another(&mut self) {
+        let start = self.random.iter_mut().fold(self.chain.start(), |pose, part| {
+            pose.compose(&(part.effect.scatter.start_scatter)(&part.values, &mut part.stream))
         });
-        self.pose = Motion::from(start);
-        self.stretch = None;
+        self.pieces.start(start);
+        self.done = 1.0;
     }
 
     /// Begins a stretch that was commanded to have a certain travel; what it meets on the way is drawn now.
@@ -114,7 +133,7 @@ impl Truth {
             (part.effect.scatter.bumps)(&part.values, &stretch, &mut part.stream, &mut self.ahead);
         }
         self.ahead.sort_unstable_by(|a, b| b.at.total_cmp(&a.at));
-        self.stretch = Some(stretch);
+        self.believed = stretch.travel;
         self.done = 0.0;
     }
 
@@ -134,24 +153,22 @@ impl Truth {
     }
 
     fn roll(&mut self, share: f64) {
-        let Some(stretch) = self.stretch else { return };
         let piece = share - self.done;
         if piece <= 0.0 {
             return;
         }
         let whole = piece == 1.0;
-        let travel = self.chain.wheel_travel(&stretch.travel.scaled(piece));
-        let motion = self.chain.body(&travel);
-        let from = self.pose;
-        self.pose = from.then(&Motion::exp(&motion));
-        if self.noisy {
-            let diffusion = if whole { self.whole_diffusion() } else { self.diffusion(&travel, &motion) };
-            let [dx, dy, turned] = diffusion.draw(&mut self.noise);
-            // Moved in the frame of the start, turned about the end.
-            self.pose.pose.x += from.cosine * dx - from.sine * dy;
-            self.pose.pose.y += from.sine * dx + from.cosine * dy;
-            self.pose = self.pose.then(&Motion::from(Pose2::new(0.0, 0.0, turned)));
-        }
+        let travel = self.chain.wheel_travel(&Context::default(), &self.believed.scaled(piece));
+        let motion = self.chain.body(&Context::default(), &travel);
+        let scatter = match (self.noisy, whole) {
+            (false, _) => [0.0; 3],
+            (true, false) => self.diffusion(&travel, &motion).draw(&mut self.noise),
+            (true, true) => {
+                let known = self.find_whole_diffusion();
+                self.whole[known].1.draw(&mut self.noise)
+            }
+        };
+        self.pieces.push(&Piece { motion, scatter });
         self.done = share;
     }
 
@@ -161,15 +178,13 @@ impl Truth {
 
     /// The noise of a whole stretch, taken for its commanded travel: the driven one differs by less than a tick or two,
     /// and all stretches of one kind share it.
-    fn whole_diffusion(&mut self) -> Diffusion {
+    fn find_whole_diffusion(&mut self) -> usize {
         let commanded = self.commanded;
-        if let Some((_, known)) = self.whole.iter().find(|(travel, _)| *travel == commanded) {
-            return *known;
-        }
-        let travel = self.chain.wheel_travel(&commanded);
-        let diffusion = self.diffusion(&travel, &self.chain.body(&travel));
-        self.whole.push((commanded, diffusion));
-        diffusion
+        self.whole.iter().position(|(travel, _)| *travel == commanded).unwrap_or_else(|| {
+            let travel = self.chain.wheel_travel(&Context::default(), &commanded);
+            self.whole.push((commanded, self.diffusion(&travel, &self.chain.body(&Context::default(), &travel))));
+            self.whole.len() - 1
+        })
     }
 
     fn meet(&mut self, bump: &Bump) {
@@ -177,20 +192,33 @@ impl Truth {
             Wheel::Left => WheelTravel { left: -bump.lost, right: 0.0 },
             Wheel::Right => WheelTravel { left: 0.0, right: -bump.lost },
         };
-        self.pose = self.pose.then(&Motion::exp(&self.chain.body(&travel)));
+        self.pieces.push(&Piece { motion: self.chain.body(&Context::default(), &travel), scatter: [0.0; 3] });
     }
 
     /// The true pose.
-    pub fn pose(&self) -> Pose2 {
-        self.pose.pose
+    pub fn pose(&mut self) -> Pose2 {
+        self.pieces.settle();
+        self.pieces.reached().last().unwrap_or_default()
     }
 
     /// The true pose as the absolute measurement shows it.
     pub fn measure(&mut self) -> Pose2 {
-        let mut pose = self.pose.pose;
-        for part in &mut self.random {
-            (part.effect.scatter.measured)(&part.values, &mut part.stream, &mut pose);
-        }
-        pose
+        let pose = self.pose();
+        measured(&mut self.random, pose)
     }
+
+    /// The ends of all runs as the absolute measurement shows them, in the order in which they were begun.
+    pub(super) fn measure_all(&mut self) -> impl Iterator<Item = Pose2> + '_ {
+        self.pieces.settle();
+        let Truth { pieces, random, .. } = self;
+        pieces.reached().map(|pose| measured(random, pose))
+    }
+}
+
+/// A true pose as the absolute measurement shows it.
+fn measured(random: &mut [RandomPart], mut pose: Pose2) -> Pose2 {
+    for part in random {
+        (part.effect.scatter.measured)(&part.values, &mut part.stream, &mut pose);
+    }
+    pose
 }

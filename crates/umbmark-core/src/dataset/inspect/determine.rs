@@ -6,7 +6,7 @@
 
 use super::{Coverage, Group, LogFacts};
 use crate::drive::Robot;
-use crate::effect::{Model, TestKind};
+use crate::effect::{Context, Model, TestKind};
 use crate::geometry::{Dual, Pose2};
 use crate::path::{Direction, Path};
 use nalgebra::DMatrix;
@@ -31,12 +31,13 @@ const PIECES: usize = 8;
 /// Combinations weaker than this \[m or rad per unit of the ratio\], or this share of the strongest, are rounding.
 const WEAKEST: f64 = 1e-9;
 
+/// The answers, and how many combinations of the three ratios are shown.
 pub(super) fn determine(
     groups: &[Group],
     logs: &[LogFacts],
     robot: Option<&Robot>,
     path: Option<&Path>,
-) -> Vec<Determined> {
+) -> (Vec<Determined>, usize) {
     let robot = robot.cloned().unwrap_or_else(Robot::labmate);
     let path = path.cloned().unwrap_or_else(Path::umbmark);
     let mut seen = Vec::new();
@@ -57,7 +58,7 @@ pub(super) fn determine(
     let mut answers =
         vec![ratio("E_d", &seen, 0, tracked), ratio("E_b (if E_s = 1)", &seen, 1, tracked), scale(&seen, tracked)];
     answers.extend(other_answers(groups));
-    answers
+    (answers, rank(&seen, &[0, 1, 2]))
 }
 
 /// Derivatives of the pose by each quantity, along the path.
@@ -75,7 +76,10 @@ fn jacobian(robot: &Robot, path: &Path, direction: Direction) -> Vec<[Pose2; 3]>
         let mut pose: Pose2<Dual> = Pose2::IDENTITY.lift();
         let mut poses = Vec::new();
         for m in path.moves(direction) {
-            let motion = chain.displacement(&m.wheel_travel(&robot.drive).scaled(1.0 / PIECES as f64));
+            let motion = chain.displacement(
+                &Context::default().headed(pose.heading),
+                &m.wheel_travel(&robot.drive).scaled(1.0 / PIECES as f64),
+            );
             for _ in 0..PIECES {
                 pose = pose.moved(&motion);
                 poses.push(Pose2::new(pose.x.eps, pose.y.eps, pose.heading.eps));

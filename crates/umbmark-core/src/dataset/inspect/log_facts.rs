@@ -1,8 +1,11 @@
 //! What one log is like.
 
 use super::super::dead_reckoning::{computed_poses, mean_pose, standing_at_end, standing_at_start};
-use super::super::{ReferencePose, Run, TickLog};
+use super::super::reference_track::count_turns;
+use super::super::synchronise::{Alignment, synchronise};
+use super::super::{ReferencePose, ReferenceTrack, Run, TickLog};
 use super::heading_off;
+use super::moves::MovesFound;
 use super::wheels::{WheelsFound, find_wheels};
 use crate::drive::Robot;
 use crate::geometry::wrap;
@@ -25,6 +28,8 @@ pub struct LogFacts {
     pub jitter: f64,
     /// Longest time between samples \[s\].
     pub longest_gap: f64,
+    /// Times between samples that are more than five usual ones.
+    pub gaps: usize,
     /// Length of the path of the axle's centre by the ticks \[m\], where the robot is known.
     pub length: Option<f64>,
     /// Heading at the end by the ticks, full turns counted \[rad\], where the robot is known.
@@ -33,6 +38,10 @@ pub struct LogFacts {
     pub heading_off: Option<f64>,
     /// Whether the wheels are what they are called.
     pub wheels: Option<WheelsFound>,
+    /// What the robot did, where it is known.
+    pub moves: Option<MovesFound>,
+    /// How the poses lie against the ticks, by the motion: delay, rate, lever arm and yaw; where it shows them.
+    pub alignment: Option<Alignment>,
     /// The absolute poses.
     pub reference: Option<ReferenceFacts>,
 }
@@ -99,12 +108,27 @@ impl LogFacts {
             rate: 1.0 / period,
             jitter: departures[(departures.len() - 1) * 99 / 100],
             longest_gap: *steps.last()?,
+            gaps: steps.iter().filter(|step| **step > 5.0 * period).count(),
             length,
             heading: poses.last().map(|pose| pose.heading),
             heading_off: path.and_then(|path| Some(heading_off(path, run.direction, poses.last()?))),
             wheels: robot.and_then(|robot| find_wheels(log, robot, path)),
+            moves: robot.map(|robot| MovesFound::of(log, robot)),
+            alignment: robot.and_then(|robot| synchronise(log, &own_track(log), robot).ok()),
             reference: ReferenceFacts::of(log, length.unwrap_or(0.0)),
         })
+    }
+}
+
+/// The poses of a log as a track, by the ticks' clock.
+fn own_track(log: &TickLog) -> ReferenceTrack {
+    let mut heading: Option<Vec<f64>> = log.reference.iter().map(|pose| pose.heading).collect();
+    count_turns(heading.iter_mut().flatten());
+    ReferenceTrack {
+        time: log.reference.iter().map(|pose| log.time[pose.sample]).collect(),
+        x: log.reference.iter().map(|pose| pose.x).collect(),
+        y: log.reference.iter().map(|pose| pose.y).collect(),
+        heading,
     }
 }
 

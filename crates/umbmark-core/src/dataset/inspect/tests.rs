@@ -42,7 +42,14 @@ fn drive(direction: Direction, every: usize, wheels: impl Fn(f64, f64) -> (f64, 
 
 fn dataset(runs: Vec<Run>) -> Dataset {
     let path = Path::new(&crate::path::SQUARE, &[2.0], SpeedProfile::default()).unwrap();
-    Dataset { robot: Some(Robot::labmate()), path: Some(path), runs, warnings: Vec::new() }
+    Dataset {
+        robot: Some(Robot::labmate()),
+        path: Some(path),
+        runs,
+        clocks: Vec::new(),
+        topics: Vec::new(),
+        warnings: Vec::new(),
+    }
 }
 
 fn same(left: f64, right: f64) -> (f64, f64) {
@@ -189,4 +196,25 @@ fn what_cannot_be_determined_is_said_with_what_would_help() {
     assert!(found(Vec::new())[0].because.contains("no return error"));
     let tracked = found(vec![drive(Direction::Cw, 5, same)]);
     assert!(tracked[..3].iter().all(|answer| answer.yes));
+}
+
+#[test]
+fn late_poses_and_a_tracked_point_beside_the_axle_are_seen_by_the_motion() {
+    for (late, ahead) in [(0.0, 0.0), (0.1, 0.0), (0.0, 0.05)] {
+        let mut run = drive(Direction::Ccw, 5, same);
+        let log = run.log.as_mut().unwrap();
+        log.reference.truncate(log.reference.len() - 2);
+        for pose in &mut log.reference {
+            pose.sample += (50.0 * late) as usize;
+            let heading = pose.heading.unwrap();
+            (pose.x, pose.y) = (pose.x + ahead * heading.cos(), pose.y + ahead * heading.sin());
+        }
+        let found = dataset(vec![run]).inspect();
+        let alignment = found.logs[0].alignment.as_ref().unwrap();
+        assert!((alignment.offset.value - late).abs() < 0.01, "{late}: {alignment:?}");
+        assert!((alignment.lever_ahead.unwrap().value - ahead).abs() < 2e-3, "{ahead}: {alignment:?}");
+        assert_eq!(check(&found, "clock of the poses").ok, late == 0.0);
+        assert_eq!(check(&found, "tracked point").ok, ahead == 0.0);
+        assert!(check(&found, "tracked heading").ok && check(&found, "path by ticks").ok);
+    }
 }

@@ -26,6 +26,11 @@ pub(super) struct Clock {
 /// double no better than 0.2 µs.
 const CALENDAR: i64 = 1 << 52;
 
+/// Whether a time \[ns\] is of a calendar.
+pub(super) fn is_calendar(nanoseconds: i64) -> bool {
+    nanoseconds.saturating_abs() > CALENDAR
+}
+
 impl Clock {
     /// Stamps where both topics have them, else the recorder's time for both: one clock, not two.
     pub fn of<'t>(
@@ -37,7 +42,7 @@ impl Clock {
         let stamps = wheels.clone().any(stamped) && (reference.peek().is_none() || reference.any(stamped));
         let mut clock = Clock { stamps, zero: 0 };
         let nanoseconds = |times: &Times| if stamps { times.stamped } else { times.logged };
-        if wheels.clone().any(|times| nanoseconds(times).saturating_abs() > CALENDAR) {
+        if wheels.clone().any(|times| is_calendar(nanoseconds(times))) {
             clock.zero = wheels.map(nanoseconds).next().unwrap_or(0);
         }
         clock

@@ -38,7 +38,7 @@ fn log() -> TickLog {
 
 fn file_of(log: &TickLog) -> Vec<u8> {
     let mut file = Cursor::new(Vec::new());
-    write(&mut file, &Robot::labmate(), None, log).unwrap();
+    write(&mut file, &Robot::labmate(), None, log, 0.0).unwrap();
     file.into_inner()
 }
 

@@ -1,5 +1,6 @@
 //! Where the robot was, message by message.
 
+use super::super::reference_track::TrackRows;
 use super::clock::{Clock, Times};
 use super::fields::{Fields, Number};
 use super::message_type::MessageType;
@@ -18,13 +19,6 @@ pub(super) struct Place {
     pub y: f64,
     /// Missing where the orientation is all zeros.
     pub heading: Option<f64>,
-}
-
-/// A pose with its time \[s\].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct TimedPlace {
-    pub time: f64,
-    pub place: Place,
 }
 
 /// The poses of one frame in another.
@@ -128,7 +122,14 @@ pub(super) fn place(fields: &Fields) -> Result<Place, String> {
     Ok(Place { x, y, heading: Some(heading) })
 }
 
-/// The rows on a clock.
-pub(super) fn timed(rows: Vec<(Times, Place)>, clock: &Clock) -> Vec<TimedPlace> {
-    rows.into_iter().map(|(times, place)| TimedPlace { time: clock.seconds(&times), place }).collect()
+/// The rows on a clock, as those of any track.
+pub(super) fn timed(rows: Vec<(Times, Place)>, clock: &Clock, file: &str, topic: &str) -> TrackRows {
+    TrackRows {
+        file: file.to_owned(),
+        column: format!("{topic} {}", clock.name()),
+        lines: (1..=rows.len()).collect(),
+        time: rows.iter().map(|(times, _)| clock.seconds(times)).collect(),
+        poses: rows.iter().map(|(_, place)| (place.x, place.y, place.heading)).collect(),
+        lost: 0,
+    }
 }

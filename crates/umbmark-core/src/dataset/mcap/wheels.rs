@@ -125,6 +125,7 @@ impl Wheels {
             lines: (1..=self.times.len()).collect(),
             time: self.times.iter().map(|times| clock.seconds(times)).collect(),
             counts: self.values,
+            per_cycle: false,
             reference: Vec::new(),
         }
     }

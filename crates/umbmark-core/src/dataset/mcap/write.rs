@@ -25,8 +25,14 @@ const JOINTS: [&str; 2] = ["left_wheel_joint", "right_wheel_joint"];
 /// Not packed smaller by more: the level of zstd that it calls its default.
 const LEVEL: u32 = 3;
 
-/// Writes a log into a file.
-pub(super) fn write(file: impl Write + Seek, robot: &Robot, path: Option<&Path>, log: &TickLog) -> McapResult<()> {
+/// Writes a log into a file, its stamps counted from `begin` \[s\].
+pub(super) fn write(
+    file: impl Write + Seek,
+    robot: &Robot,
+    path: Option<&Path>,
+    log: &TickLog,
+    begin: f64,
+) -> McapResult<()> {
     let options = WriteOptions::new()
         .profile("ros2")
         .library(format!("umbmark {}", crate::VERSION))
@@ -47,7 +53,7 @@ pub(super) fn write(file: impl Write + Seek, robot: &Robot, path: Option<&Path>,
     let poses = computed_poses(log, robot);
     let mut references = log.reference.iter().peekable();
     for (sample, pose) in poses.iter().enumerate() {
-        let time = nanoseconds(log.time[sample]);
+        let time = nanoseconds(log.time[sample] - begin);
         let positions = [log.left[sample] * per_radian, log.right[sample] * per_radian];
         joint_states.write(&mut writer, time, |cdr| joint_state(cdr, time, positions))?;
         let before = sample.saturating_sub(1);
@@ -61,9 +67,10 @@ pub(super) fn write(file: impl Write + Seek, robot: &Robot, path: Option<&Path>,
     writer.finish().map(|_| ())
 }
 
-/// A time as ROS writes it \[ns\].
+/// A time as ROS writes it \[ns\]. A double does not hold the nanoseconds of a calendar's time, so these are apart.
 pub(super) fn nanoseconds(seconds: f64) -> u64 {
-    (seconds * 1e9).round() as u64
+    let whole = seconds.floor();
+    whole as u64 * 1_000_000_000 + ((seconds - whole) * 1e9).round() as u64
 }
 
 struct Topic {

@@ -10,18 +10,15 @@
 
 use super::carries::{WORD, carry_words};
 use super::constant_rate::{EqualPieces, Step};
+use super::directions::{Directions, sum, turned};
 use super::{TickGeometry, Update};
 use crate::engine::Instructions;
-use crate::geometry::Real;
 
 /// Words of eight carries at a constant rate.
 const WORDS: usize = 76;
 
 /// Tables of rates kept at the same time; 92 KB each.
 const KEPT: usize = 16;
-
-/// Headings up to so many ticks \[δ/b\] are tabulated: 1 MB for each direction.
-const HEADING_LIMIT: i64 = 1 << 16;
 
 /// Segments with fewer readings are not worth a table.
 const FEWEST_READINGS: u32 = 64;
@@ -129,82 +126,46 @@ impl Motions {
     }
 }
 
-/// Cosine and sine of the multiples of δ/b from `-reach` to `reach`.
-#[derive(Clone, Debug, Default)]
-struct Directions {
-    reach: i64,
-    table: Vec<[f64; 2]>,
-}
-
-impl Directions {
-    fn reach_to(&mut self, reach: i64, geometry: &TickGeometry) {
-        if self.table.is_empty() || self.reach < reach {
-            self.reach = (reach as u64).next_power_of_two() as i64;
-            self.table = (-self.reach..=self.reach)
-                .map(|ticks| {
-                    let (sine, cosine) = geometry.heading([0, ticks]).sine_cosine();
-                    [cosine, sine]
-                })
-                .collect();
-        }
-    }
-}
-
-#[inline(always)]
-fn turned([cosine, sine]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
-    [cosine * x - sine * y, sine * x + cosine * y]
-}
-
-#[inline(always)]
-fn sum(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] + b[0], a[1] + b[1]]
-}
-
 /// Scratch memory for segments at constant rates. What is in it changes the time a segment takes, never its result.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Blocks {
     motions: Vec<Motions>,
     next_replaced: usize,
-    directions: Directions,
     words: [Vec<u8>; 2],
 }
 
 impl Blocks {
     /// Whether these pieces can be done eight at a time: headings must be multiples of one angle, and not too many.
     pub fn suit(geometry: &TickGeometry, pieces: &EqualPieces, counts: [i64; 2]) -> bool {
-        geometry.left() == geometry.right()
-            && pieces.readings >= FEWEST_READINGS
-            && (counts[1] - counts[0]).abs() < HEADING_LIMIT
+        pieces.readings >= FEWEST_READINGS && Directions::suit(geometry, counts)
     }
 
-    /// Where the pieces lead: x, y \[m\]. `counts` are those at the end.
+    /// Where the pieces lead: x, y \[m\]. `directions` reach to where they end.
     pub fn end(
         &mut self,
         geometry: &TickGeometry,
         update: Update,
         instructions: Instructions,
+        directions: &Directions,
         pieces: &EqualPieces,
-        counts: [i64; 2],
     ) -> (f64, f64) {
         let words = (pieces.readings / WORD) as usize;
         for wheel in 0..2 {
             self.words[wheel].resize(words, 0);
             carry_words(instructions, pieces.phase[wheel], pieces.rest[wheel], &mut self.words[wheel]);
         }
-        // Between readings both counters round down, so on the way the heading strays from the line by less than 2.
-        self.directions.reach_to((counts[1] - counts[0]).abs() + 2, geometry);
         let motions = self.find_motions(geometry, update, pieces);
-        let (motions, directions) = (&self.motions[motions], &self.directions);
+        let motions = &self.motions[motions];
 
         let [left_sign, right_sign] = pieces.sign;
         let whole = right_sign * pieces.whole[1] - left_sign * pieces.whole[0];
-        let mut heading = directions.reach;
+        let (directions, mut heading) = directions.table();
         let ranks = |sign: i64| if sign > 0 { &COUNTER_CLOCKWISE } else { &CLOCKWISE };
         let (left_ranks, right_ranks) = (ranks(-left_sign), ranks(right_sign));
         let mut eight = |left: u8, right: u8| {
             let (left, right) = (left_ranks[usize::from(left)], right_ranks[usize::from(right)]);
             let motion = motions.eight[usize::from(left.column) + usize::from(right.row)];
-            let turned = turned(directions.table[heading as usize], motion);
+            let turned = turned(directions[heading as usize], motion);
             heading += 8 * whole + i64::from(left.turn + right.turn);
             turned
         };
@@ -229,7 +190,7 @@ impl Blocks {
             }
             let [left, right] = carries;
             let step = &motions.single[usize::from(left) + 2 * usize::from(right)];
-            odd = sum(odd, turned(directions.table[heading as usize], [step.x, step.y]));
+            odd = sum(odd, turned(directions[heading as usize], [step.x, step.y]));
             heading += whole + right_sign * i64::from(right) - left_sign * i64::from(left);
         }
         let [x, y] = sum(even, odd);

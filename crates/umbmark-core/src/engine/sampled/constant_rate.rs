@@ -103,7 +103,8 @@ impl SampledOdometry {
         if !Blocks::suit(&self.geometry, &pieces, counts) {
             return self.one_by_one(line, readings);
         }
-        let (x, y) = self.blocks.end(&self.geometry, self.update, self.instructions, &pieces, counts);
+        self.directions.reach_to(counts, &self.geometry);
+        let (x, y) = self.blocks.end(&self.geometry, self.update, self.instructions, &self.directions, &pieces);
         Motion::with_counts(x, y, counts, &self.geometry)
     }
 

@@ -1,0 +1,124 @@
+//! `umbmark convert`: a dataset in another layout.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use serde_json::{Value, json};
+use umbmark_core::dataset::{Alignment, Dataset, Measured, RunClock};
+
+use crate::Session;
+use crate::data_arguments::DataArguments;
+use crate::output_arguments::{OutputArguments, layouts};
+use crate::prose::hanging;
+use crate::table::{table, with_precision_of};
+
+/// Arguments of `convert`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = about())]
+pub struct Arguments {
+    #[command(flatten)]
+    data: DataArguments,
+
+    #[command(flatten)]
+    output: OutputArguments,
+}
+
+fn about() -> String {
+    format!(
+        "{}\nWhere a track has a clock of its own (reference/NAME.csv or .tum beside runs/NAME.csv; *_opti.csv of OptiOdom), \
+         its clock is set by the motion, and its poses are written into the log.",
+        layouts()
+    )
+}
+
+pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
+    let data = arguments.data.load()?;
+    let lost = arguments.output.write(&data)?;
+    if session.json() {
+        session.print_json(&document(&arguments.output, &data, &lost))?;
+    } else {
+        write!(session.out(), "{}", text(&arguments.output, &data, &lost))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn text(arguments: &OutputArguments, data: &Dataset, lost: &[String]) -> String {
+    let (place, runs) = (arguments.output.display(), data.runs.len());
+    let mut text = format!("wrote {runs} runs to {place} as {}\n", arguments.layout().name);
+    if !data.clocks.is_empty() {
+        text += &format!("\n{}\n", clocks_table(&data.clocks));
+    }
+    text += "\nwhat is lost\n";
+    if lost.is_empty() {
+        text += &hanging("  -", 4, "nothing");
+    }
+    for sentence in lost {
+        text += &hanging("  -", 4, sentence);
+    }
+    if !data.warnings.is_empty() {
+        text += "\nnoticed while reading\n";
+        for warning in &data.warnings {
+            text += &hanging("  -", 4, warning);
+        }
+    }
+    text
+}
+
+/// Clocks set by the motion, each with half its 95 % interval.
+pub(super) fn clocks_table(clocks: &[RunClock]) -> String {
+    let rows = clocks.iter().map(|clock| {
+        let a = &clock.alignment;
+        let cell = |measured: &Measured, scale: f64| {
+            let half = scale * (measured.interval.high - measured.value);
+            let value = with_precision_of(scale * measured.value, half);
+            format!("{value} ± {}", with_precision_of(half, half))
+        };
+        let or_dash = |measured: &Option<Measured>, scale: f64| {
+            measured.as_ref().map_or("-".into(), |m| format!("{:.1}", scale * m.value))
+        };
+        vec![
+            clock.run.clone(),
+            cell(&a.offset, 1.0),
+            cell(&a.rate, 1.0),
+            or_dash(&a.lever_ahead, 1e3),
+            or_dash(&a.lever_left, 1e3),
+            or_dash(&a.yaw, 1f64.to_degrees()),
+        ]
+    });
+    table(&["clock; 95 %", "offset s", "rate", "ahead mm", "left", "yaw deg"], rows)
+}
+
+fn document(arguments: &OutputArguments, data: &Dataset, lost: &[String]) -> Value {
+    json!({
+        "output": arguments.output.display().to_string(),
+        "layout": arguments.layout().name,
+        "runs": data.runs.len(),
+        "clocks": data.clocks.iter().map(clock_json).collect::<Vec<Value>>(),
+        "lost": lost,
+        "warnings": data.warnings,
+        "version": umbmark_core::VERSION,
+    })
+}
+
+/// A clock that was set, with its run and its track.
+pub(super) fn clock_json(clock: &RunClock) -> Value {
+    let mut document = alignment_json(&clock.alignment);
+    document["run"] = json!(clock.run);
+    document["track"] = json!(clock.track);
+    document
+}
+
+/// An alignment: each quantity with standard error and 95 % interval.
+pub(super) fn alignment_json(alignment: &Alignment) -> Value {
+    let measured = |m: &Measured| json!({ "value": m.value, "std_error": m.std_error, "interval": [m.interval.low, m.interval.high] });
+    json!({
+        "offset_s": measured(&alignment.offset),
+        "rate": measured(&alignment.rate),
+        "lever_ahead_m": alignment.lever_ahead.as_ref().map(measured),
+        "lever_left_m": alignment.lever_left.as_ref().map(measured),
+        "yaw_rad": alignment.yaw.as_ref().map(measured),
+        "misfit_m": alignment.misfit,
+        "windows": alignment.windows,
+        "left_out": alignment.left_out,
+    })
+}

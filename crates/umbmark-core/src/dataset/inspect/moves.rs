@@ -1,0 +1,254 @@
+//! What the robot did by its ticks: legs, turns, arcs and stops, and the shape that they make.
+
+use super::super::TickLog;
+use super::super::dead_reckoning::computed_poses;
+use crate::drive::Robot;
+use crate::geometry::Pose2;
+use std::f64::consts::FRAC_PI_2;
+
+/// Speeds are those over so long a time \[s\], and over two samples at least.
+const OVER: f64 = 0.2;
+/// Below this share of the greatest speed of a wheel the robot stands.
+const STANDING: f64 = 0.05;
+/// Shorter stops \[s\], legs \[m\] and turns \[rad\] are transitions.
+const LEAST_STOP: f64 = 0.1;
+const LEAST_LEG: f64 = 0.05;
+const LEAST_TURN: f64 = 0.1;
+/// Legs and turns are alike when they differ by less than this share.
+const ALIKE: f64 = 0.1;
+/// A corner that a real robot turns begins and ends in curves; what is left is this near to a right angle \[rad\].
+const CORNER: f64 = 0.4;
+/// Places and speeds kept for a picture.
+const SKETCH: usize = 400;
+
+/// A move, as the ticks have it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Done {
+    Stop,
+    Leg { length: f64 },
+    Turn { angle: f64 },
+    Arc { length: f64, angle: f64 },
+}
+
+/// What a log shows of the path.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MovesFound {
+    /// Times that the robot stood between moves.
+    pub stops: usize,
+    /// Straight legs.
+    pub legs: usize,
+    /// Turns on the spot.
+    pub turns: usize,
+    /// Curved pieces.
+    pub arcs: usize,
+    /// The name of the shape that they make, where they make one.
+    pub shape: Option<&'static str>,
+    /// The shape in words, with its size.
+    pub described: String,
+    /// Places along the path by the ticks \[m\], for a picture.
+    pub computed: Vec<(f64, f64)>,
+    /// The places that were measured \[m\], for a picture.
+    pub measured: Vec<(f64, f64)>,
+    /// Speed of the faster wheel, evenly over the time \[m/s\], for a picture.
+    pub speed: Vec<f64>,
+}
+
+impl MovesFound {
+    pub(super) fn of(log: &TickLog, robot: &Robot) -> MovesFound {
+        let poses = computed_poses(log, robot);
+        let moves = moves(&log.time, &poses, 0.5 * robot.drive.wheelbase());
+        let count = |is: fn(&Done) -> bool| moves.iter().filter(|done| is(done)).count();
+        let inner = moves.len().saturating_sub(1);
+        let (shape, described) = shape(&moves);
+        MovesFound {
+            stops: moves.iter().take(inner).skip(1).filter(|done| **done == Done::Stop).count(),
+            legs: count(|done| matches!(done, Done::Leg { .. })),
+            turns: count(|done| matches!(done, Done::Turn { .. })),
+            arcs: count(|done| matches!(done, Done::Arc { .. })),
+            shape,
+            described,
+            computed: poses.iter().step_by(poses.len() / SKETCH + 1).map(|pose| (pose.x, pose.y)).collect(),
+            measured: log.reference.iter().step_by(log.reference.len() / SKETCH + 1).map(|p| (p.x, p.y)).collect(),
+            speed: speeds(&log.time, &poses, 0.5 * robot.drive.wheelbase()),
+        }
+    }
+}
+
+/// Speed of the faster wheel over each of at most `SKETCH` equal times.
+fn speeds(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<f64> {
+    let (Some(first), Some(last)) = (time.first(), time.last()) else { return Vec::new() };
+    let count = SKETCH.min(time.len() / 4).max(1);
+    let at = |i: usize| {
+        let when = first + (last - first) * i as f64 / count as f64;
+        time.partition_point(|t| *t < when).min(time.len() - 1)
+    };
+    let speed = |i: usize| {
+        let (a, b) = (at(i), at(i + 1));
+        let moved = poses[a].between(&poses[b]);
+        let seconds = time[b] - time[a];
+        if seconds > 0.0 { (libm::hypot(moved.x, moved.y) + arm * moved.heading.abs()) / seconds } else { 0.0 }
+    };
+    (0..count).map(speed).collect()
+}
+
+/// The moves in order. A leg that bends a little, as a robot does that steers back to its line, is a leg; what is too short to
+/// be meant is a transition.
+fn moves(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<Done> {
+    let kinds = kinds(time, poses, arm);
+    let mut pieces: Vec<Done> = Vec::new();
+    let mut start = 0;
+    for same in kinds.chunk_by(|a, b| a == b) {
+        let end = (start + same.len()).min(poses.len() - 1);
+        let length: f64 = poses[start..=end].windows(2).map(|p| libm::hypot(p[1].x - p[0].x, p[1].y - p[0].y)).sum();
+        let angle = poses[end].heading - poses[start].heading;
+        pieces.extend(match same[0] {
+            Kind::Standing => (time[end] - time[start] > LEAST_STOP).then_some(Done::Stop),
+            Kind::Turning => (angle.abs() > LEAST_TURN).then_some(Done::Turn { angle }),
+            Kind::Going if angle.abs() < CORNER => Some(Done::Leg { length }),
+            Kind::Going => Some(Done::Arc { length, angle }),
+        });
+        start = end;
+    }
+    let mut moves = joined(pieces);
+    moves.retain(|done| !matches!(done, Done::Leg { length } if *length < LEAST_LEG));
+    joined(moves)
+}
+
+/// Neighbours of one kind as one move.
+fn joined(pieces: Vec<Done>) -> Vec<Done> {
+    let mut moves: Vec<Done> = Vec::new();
+    for piece in pieces {
+        match (moves.last_mut(), piece) {
+            (Some(Done::Stop), Done::Stop) => {}
+            (Some(Done::Leg { length }), Done::Leg { length: more }) => *length += more,
+            (Some(Done::Turn { angle }), Done::Turn { angle: more }) => *angle += more,
+            (Some(Done::Arc { length, angle }), Done::Arc { length: l, angle: a }) if *angle * a > 0.0 => {
+                (*length, *angle) = (*length + l, *angle + a);
+            }
+            _ => moves.push(piece),
+        }
+    }
+    moves
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Standing,
+    Going,
+    Turning,
+}
+
+/// What the robot does at each sample, by how far it goes in the time around it.
+fn kinds(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<Kind> {
+    let around = |i: usize| {
+        let from = time.partition_point(|t| *t < time[i] - 0.5 * OVER).min(i.saturating_sub(1));
+        let to = (time.partition_point(|t| *t <= time[i] + 0.5 * OVER) - 1).max((i + 1).min(time.len() - 1));
+        let moved = poses[from].between(&poses[to]);
+        let seconds = (time[to] - time[from]).max(f64::MIN_POSITIVE);
+        (libm::hypot(moved.x, moved.y) / seconds, arm * moved.heading.abs() / seconds)
+    };
+    let speeds: Vec<(f64, f64)> = (0..time.len()).map(around).collect();
+    let fastest = speeds.iter().map(|(forward, turn)| forward + turn).fold(0.0, f64::max);
+    let kind = |(forward, turn): &(f64, f64)| match () {
+        () if forward + turn <= STANDING * fastest => Kind::Standing,
+        () if *forward < 0.5 * turn => Kind::Turning,
+        () => Kind::Going,
+    };
+    speeds.iter().map(kind).collect()
+}
+
+/// The shape that moves make, and its size in words.
+fn shape(moves: &[Done]) -> (Option<&'static str>, String) {
+    let legs: Vec<f64> =
+        moves.iter().filter_map(|d| if let Done::Leg { length } = d { Some(*length) } else { None }).collect();
+    let turns: Vec<f64> =
+        moves.iter().filter_map(|d| if let Done::Turn { angle } = d { Some(*angle) } else { None }).collect();
+    let arcs: Vec<(f64, f64)> = moves
+        .iter()
+        .filter_map(|d| if let Done::Arc { length, angle } = d { Some((*length, *angle)) } else { None })
+        .collect();
+    let alike = |a: f64, b: f64| (a - b).abs() <= ALIKE * a.abs().max(b.abs());
+    let right = |angle: &f64| (angle.abs() - FRAC_PI_2).abs() < CORNER && *angle * turns[0] > 0.0;
+    let way: f64 = legs.iter().sum();
+    match (&legs[..], &arcs[..]) {
+        ([a, b, c, d], [])
+            if (3..=4).contains(&turns.len()) && turns.iter().all(right) && alike(*a, *c) && alike(*b, *d) =>
+        {
+            if alike(*a, *b) {
+                (Some("square"), format!("a square of {:.2} m", way / 4.0))
+            } else {
+                (Some("rectangle"), format!("a rectangle of {:.2} by {:.2} m", 0.5 * (a + c), 0.5 * (b + d)))
+            }
+        }
+        ([length], []) if turns.is_empty() => (Some("straight"), format!("a straight of {length:.2} m")),
+        ([], []) if !turns.is_empty() => {
+            let round = turns.iter().sum::<f64>().abs() / std::f64::consts::TAU;
+            (Some("spin"), format!("a spin of {round:.2} turns"))
+        }
+        (_, [(length, angle)]) if *length > 0.8 * (length + way) && angle.abs() > 5.0 => {
+            let turns = angle.abs() / std::f64::consts::TAU;
+            (Some("circle"), format!("a circle of {:.2} m radius, {turns:.2} turns", length / angle.abs()))
+        }
+        (_, [(a, left), (b, right)]) if left * right < 0.0 && alike(*a, *b) && a + b > 0.8 * (a + b + way) => {
+            (Some("figure_eight"), format!("a figure of eight of {:.2} m radius", (a + b) / (left.abs() + right.abs())))
+        }
+        _ => (None, format!("no usual shape: {} legs, {} turns, {} arcs", legs.len(), turns.len(), arcs.len())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::{Direction, Path, SpeedProfile};
+    use std::f64::consts::PI;
+
+    /// A path driven at 50 Hz by a perfect robot, with rests between the moves.
+    fn found(shape: &'static crate::path::Shape, values: &[f64], direction: Direction) -> MovesFound {
+        let robot = Robot::labmate();
+        let per_tick = robot.metres_per_tick();
+        let path = Path::new(shape, values, SpeedProfile::default()).unwrap();
+        let mut log = TickLog::default();
+        let (mut left, mut right) = (0.0, 0.0);
+        let write = |log: &mut TickLog, left: f64, right: f64| {
+            log.time.push(0.02 * log.time.len() as f64);
+            log.left.push(left);
+            log.right.push(right);
+        };
+        (0..50).for_each(|_| write(&mut log, left, right));
+        for m in path.moves(direction) {
+            let travel = m.wheel_travel(&robot.drive);
+            let steps = (travel.left.abs().max(travel.right.abs()) / 0.004).ceil();
+            for _ in 0..steps as usize {
+                left += travel.left / per_tick.left / steps;
+                right += travel.right / per_tick.right / steps;
+                write(&mut log, left, right);
+            }
+            (0..40).for_each(|_| write(&mut log, left, right));
+        }
+        MovesFound::of(&log, &robot)
+    }
+
+    #[test]
+    fn every_shape_is_told_by_its_moves_both_ways_round() {
+        use crate::path::{CIRCLE, FIGURE_EIGHT, RECTANGLE, SPIN, STRAIGHT};
+        for direction in Direction::BOTH {
+            let square = found(&crate::path::SQUARE, &[2.0], direction);
+            assert_eq!(square.described, "a square of 2.00 m");
+            assert_eq!((square.legs, square.turns, square.arcs, square.stops), (4, 4, 0, 7));
+            assert_eq!(found(&RECTANGLE, &[3.0, 1.0], direction).described, "a rectangle of 3.00 by 1.00 m");
+            assert_eq!(found(&STRAIGHT, &[2.5], direction).described, "a straight of 2.50 m");
+            assert_eq!(found(&SPIN, &[3.0], direction).described, "a spin of 3.00 turns");
+            assert_eq!(found(&CIRCLE, &[1.0, 2.0], direction).described, "a circle of 1.00 m radius, 2.00 turns");
+            let eight = found(&FIGURE_EIGHT, &[1.0], direction);
+            assert_eq!((eight.shape, eight.stops), (Some("figure_eight"), 1), "{}", eight.described);
+        }
+    }
+
+    #[test]
+    fn what_is_no_shape_is_said_by_its_pieces() {
+        let points = [1.0, 0.0, 1.0, 1.0, 3.0, 1.0 + PI];
+        let waypoints = found(&crate::path::WAYPOINTS, &points, Direction::Ccw);
+        assert_eq!(waypoints.shape, None);
+        assert_eq!(waypoints.described, "no usual shape: 3 legs, 2 turns, 0 arcs");
+    }
+}

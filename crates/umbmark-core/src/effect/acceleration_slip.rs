@@ -1,0 +1,72 @@
+//! Slip under drive and brake.
+
+use super::{About, ActsOn, Context, Effect};
+use crate::drive::WheelTravel;
+use crate::geometry::Real;
+use crate::parameter::Parameter;
+
+/// The share of travel that each wheel loses per acceleration, and gains per deceleration.
+pub struct AccelerationSlip;
+
+impl Effect for AccelerationSlip {
+    const ABOUT: About = About {
+        name: "acceleration_slip",
+        title: "slip under acceleration",
+        acts_on: ActsOn::Wheels,
+        parameters: &[Parameter::size(
+            "s2_per_m",
+            "acceleration-slip",
+            "s^2/m",
+            0.02,
+            (-1.0, 1.0),
+            "share of the travel that is lost per m/s^2 of acceleration",
+        )],
+        equation: "s_w ← (1 - k d|v_w|/dt) s_w",
+        physics: "A wheel that pulls turns more than it gets ahead; one that brakes is pushed along and turns less.",
+        signature: "k v²/2 is lost at the start of each leg and gained at its stop: nothing is left in return poses or at \
+                    stops. A track shows the robot late while it drives.",
+        confused_with: &["reference_delay"],
+        separated_by: "a second acceleration at the same speed: a delay does not care",
+        source: "linear creep of a rolling tyre; 2 % per m/s² is assumed",
+    };
+    const VARIES: bool = true;
+
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.left *= -p[0] * gain(at, 0) + 1.0;
+        travel.right *= -p[0] * gain(at, 1) + 1.0;
+    }
+}
+
+/// How fast a wheel's speed grows in size \[m/s²\].
+fn gain<T>(at: &Context<T>, wheel: usize) -> f64 {
+    if at.duration > 0.0 { at.speed_change[wheel] * at.wheel_speed[wheel].signum() / at.duration } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{along_with, ccw_and_cw, circle_speeds, halfway_round_with, stops_with};
+
+    #[test]
+    fn the_robot_is_behind_by_half_k_v_squared_while_it_cruises_and_comes_right_at_the_stop() {
+        for k in [0.1, -0.1] {
+            let model = [("acceleration_slip", "s2_per_m", k)];
+            for (direction, _) in ccw_and_cw() {
+                let behind = along_with(&model, direction, 2.0);
+                assert!((behind.forward + k * 0.02).abs() < 1e-4 * k.abs(), "{behind:?}");
+                for (stop, believed) in stops_with(&model, direction).iter().zip(stops_with(&[], direction)) {
+                    let off = (stop.x - believed.x).hypot(stop.y - believed.y);
+                    assert!(off < 1e-3 * k.abs(), "{stop:?}");
+                }
+            }
+        }
+    }
+    #[test]
+    fn on_a_circle_the_faster_wheel_is_behind_by_more() {
+        for (direction, _) in ccw_and_cw() {
+            let [left, right] = circle_speeds(direction);
+            let expected = 0.1 * 0.5 * (left * left - right * right) / 0.34;
+            let error = halfway_round_with(&[("acceleration_slip", "s2_per_m", 0.1)], direction);
+            assert!((error - expected).abs() < 1e-3 * expected.abs(), "{error} {expected}");
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! The outer tyre gives way in arcs.
+
+use super::{About, ActsOn, Context, Effect};
+use crate::drive::WheelTravel;
+use crate::geometry::Real;
+use crate::parameter::Parameter;
+
+/// A difference of the wheel radii that grows with centripetal acceleration.
+pub struct CentripetalLoad;
+
+impl Effect for CentripetalLoad {
+    const ABOUT: About = About {
+        name: "centripetal_load",
+        title: "tyres under centripetal load",
+        acts_on: ActsOn::Wheels,
+        parameters: &[Parameter::size(
+            "s2_per_m",
+            "centripetal-load",
+            "s^2/m",
+            1e-3,
+            (-0.1, 0.1),
+            "difference of the wheel radii per m/s^2 towards the centre of the arc, as a share",
+        )],
+        equation: "s_R ← (1 - c v ω/2) s_R,  s_L ← (1 + c v ω/2) s_L",
+        physics: "In an arc load moves to the outer wheel, by height over width of the robot, and its tyre is compressed.",
+        signature: "None on the square, where the robot either drives or turns. Circles come out too wide, the more the \
+                    faster: on arcs of one speed as E_b.",
+        confused_with: &["wheelbase"],
+        separated_by: "circles driven slowly and fast, both ways",
+        source: "load transfer on a linear tyre; 0.1 % per m/s² is assumed",
+    };
+    const VARIES: bool = true;
+
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        let half = p[0] * (0.5 * at.speed * at.turn_rate);
+        travel.left *= half + 1.0;
+        travel.right *= -half + 1.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, circle, stops_with, watched_with};
+
+    #[test]
+    fn a_circle_turns_too_little_by_the_acceleration_times_the_forward_way_over_the_wheelbase() {
+        for c in [0.01, -0.01] {
+            let model = [("centripetal_load", "s2_per_m", c)];
+            for (direction, sign) in ccw_and_cw() {
+                let (track, poses) = watched_with(&model, &circle(), direction);
+                // The faster wheel's trapezoid sets v; v ω ds = v² κ ds summed over the believed pieces is the oracle.
+                let squared: f64 = track.contexts().iter().map(|at| at.speed * at.turn_rate * at.length).sum();
+                let end = poses[poses.len() - 1].heading;
+                let expected = sign * std::f64::consts::TAU - c * squared / 0.34;
+                assert!((end - expected).abs() < 1e-9, "{end} {expected}");
+                let square = stops_with(&model, direction)[7];
+                assert!(square.x.hypot(square.y) < 1e-9);
+            }
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! Where and how a robot drives, as effects may depend on it.
+
+use crate::drive::{Robot, WheelTravel};
+use crate::geometry::Real;
+use crate::path::Direction;
+
+/// One piece of a run, in the terms of the robot's own odometry.
+///
+/// Quantities that add up along the run stand as they are at the beginning of the piece, rates as their mean over it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Context<T = f64> {
+    /// Heading in the room \[rad\], counter-clockwise from the heading at START, at the beginning of the piece.
+    pub heading: T,
+    /// How long the piece takes \[s\].
+    pub duration: f64,
+    /// Speed of the axle's centre \[m/s\], forward positive.
+    pub speed: f64,
+    /// \[rad/s\], counter-clockwise positive.
+    pub turn_rate: f64,
+    /// Speeds of the left and the right wheel \[m/s\].
+    pub wheel_speed: [f64; 2],
+    /// How much faster the left and the right wheel are at the end of the piece than at its beginning \[m/s\].
+    pub speed_change: [f64; 2],
+    /// Angles of the left and the right wheel since START \[rad\].
+    pub wheel_angle: [f64; 2],
+    /// How far each wheel turns on in the piece \[rad\].
+    pub wheel_rotation: [f64; 2],
+    /// +1 or -1 where the left or the right wheel has just begun to roll forward or backward after the opposite.
+    pub reversed: [f64; 2],
+    /// Path length driven in this run \[m\].
+    pub distance: f64,
+    /// Time since the run began \[s\].
+    pub time: f64,
+    /// Path length driven in all runs of the session so far \[m\].
+    pub session_distance: f64,
+    /// Path length since the last turn \[m\]; since START where there was none.
+    pub since_turn: f64,
+    /// Path length of the piece \[m\].
+    pub length: f64,
+    /// Sense of the last turn: +1 to the left, -1 to the right, 0 before the first.
+    pub last_turn: f64,
+    /// Number of the run in the session, from 0.
+    pub run: f64,
+    /// Sense of the run: +1 counter-clockwise, -1 clockwise, 0 where it has none.
+    pub direction: f64,
+    /// Whether the wheel travel was recorded by encoders; otherwise it is what the robot was told to drive.
+    pub recorded: bool,
+}
+
+impl Context {
+    /// The same piece with another heading, value or dual.
+    #[inline]
+    pub fn headed<T: Real>(&self, heading: T) -> Context<T> {
+        Context {
+            heading,
+            duration: self.duration,
+            speed: self.speed,
+            turn_rate: self.turn_rate,
+            wheel_speed: self.wheel_speed,
+            speed_change: self.speed_change,
+            wheel_angle: self.wheel_angle,
+            wheel_rotation: self.wheel_rotation,
+            reversed: self.reversed,
+            distance: self.distance,
+            time: self.time,
+            session_distance: self.session_distance,
+            since_turn: self.since_turn,
+            length: self.length,
+            last_turn: self.last_turn,
+            run: self.run,
+            direction: self.direction,
+            recorded: self.recorded,
+        }
+    }
+}
+
+impl<T> Context<T> {
+    /// Mean acceleration of the axle's centre \[m/s²\].
+    pub fn acceleration(&self) -> f64 {
+        if self.duration > 0.0 { 0.5 * (self.speed_change[0] + self.speed_change[1]) / self.duration } else { 0.0 }
+    }
+}
+
+/// Where a run stands among the others.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Place {
+    /// Its number in the session, from 0.
+    pub run: usize,
+    /// Path length driven in the session before it \[m\].
+    pub session_distance: f64,
+    /// Its sense, where it has one.
+    pub direction: Option<Direction>,
+}
+
+/// The moment of an absolute measurement.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sight {
+    /// Time since the run began \[s\].
+    pub time: f64,
+    /// Speed of the axle's centre at that moment \[m/s\].
+    pub speed: f64,
+    /// \[rad/s\]
+    pub turn_rate: f64,
+}
+
+/// A turn is rotation by more than this \[rad\] about a point within a wheelbase of the axle's centre.
+const LEAST_TURN: f64 = 0.35;
+/// A turn is over when the robot has gone so far \[m\].
+const AWAY_FROM_TURN: f64 = 0.01;
+/// A wheel has reversed when it has rolled back by more than this \[m\] from where it was farthest.
+const LEAST_REVERSAL: f64 = 0.5e-3;
+
+/// Follows a run piece by piece and keeps what effects may depend on.
+#[derive(Clone, Debug)]
+pub struct Progress {
+    now: Context,
+    wheelbase: f64,
+    radius: [f64; 2],
+    least_reversal: [f64; 2],
+    /// Rotation of the turn under way \[rad\], and distance gone since it rotated last \[m\].
+    turned: f64,
+    gone: f64,
+    /// Sense in which each wheel rolls, and how far it is behind its farthest point \[m\].
+    sense: [f64; 2],
+    behind: [f64; 2],
+}
+
+impl Progress {
+    /// A run of `robot` that begins at START.
+    pub fn new(robot: &Robot, place: Place, recorded: bool) -> Progress {
+        let per_tick = robot.metres_per_tick();
+        let now = Context {
+            session_distance: place.session_distance,
+            run: place.run as f64,
+            direction: place.direction.map_or(0.0, Direction::sign),
+            recorded,
+            ..Context::default()
+        };
+        Progress {
+            now,
+            wheelbase: robot.drive.wheelbase(),
+            radius: [0.5 * robot.drive.wheel_diameter_left(), 0.5 * robot.drive.wheel_diameter_right()],
+            least_reversal: [per_tick.left, per_tick.right].map(|tick| LEAST_REVERSAL.max(2.0 * tick)),
+            turned: 0.0,
+            gone: 0.0,
+            sense: [0.0; 2],
+            behind: [0.0; 2],
+        }
+    }
+
+    /// The next piece: its believed wheel travel \[m\], how long it takes \[s\], and the speeds of the left and the right
+    /// wheel at its beginning and end \[m/s\].
+    pub fn piece(&mut self, travel: &WheelTravel, duration: f64, from: [f64; 2], to: [f64; 2]) -> Context {
+        let wheels = [travel.left, travel.right];
+        let forward = 0.5 * (travel.left + travel.right);
+        let rotation = (travel.right - travel.left) / self.wheelbase;
+        self.follow_turn(forward, rotation);
+        let mean = [0, 1].map(|w| 0.5 * (from[w] + to[w]));
+        let now = &mut self.now;
+        now.duration = duration;
+        now.speed = 0.5 * (mean[0] + mean[1]);
+        now.turn_rate = (mean[1] - mean[0]) / self.wheelbase;
+        now.wheel_speed = mean;
+        now.speed_change = [to[0] - from[0], to[1] - from[1]];
+        now.wheel_rotation = [0, 1].map(|w| wheels[w] / self.radius[w]);
+        now.length = forward.abs();
+        now.reversed =
+            [0, 1].map(|w| reversal(&mut self.sense[w], &mut self.behind[w], wheels[w], self.least_reversal[w]));
+        let piece = *now;
+        now.heading += rotation;
+        now.wheel_angle = [0, 1].map(|w| now.wheel_angle[w] + now.wheel_rotation[w]);
+        now.distance += now.length;
+        now.session_distance += now.length;
+        now.since_turn += now.length;
+        now.time += duration;
+        piece
+    }
+
+    /// Time since the run began \[s\].
+    pub fn time(&self) -> f64 {
+        self.now.time
+    }
+
+    fn follow_turn(&mut self, forward: f64, rotation: f64) {
+        if rotation.abs() * self.wheelbase > forward.abs() {
+            self.turned += rotation;
+            self.gone = 0.0;
+        } else {
+            self.gone += forward.abs();
+            if self.gone > AWAY_FROM_TURN {
+                self.turned = 0.0;
+            }
+        }
+        if self.turned.abs() > LEAST_TURN && self.gone == 0.0 {
+            self.now.last_turn = self.turned.signum();
+            self.now.since_turn = 0.0;
+        }
+    }
+}
+
+/// The new sense of a wheel where it reverses in this piece, else 0.
+fn reversal(sense: &mut f64, behind: &mut f64, travel: f64, least: f64) -> f64 {
+    if *sense == 0.0 {
+        *sense = if travel == 0.0 { 0.0 } else { travel.signum() };
+        return 0.0;
+    }
+    *behind = (*behind - *sense * travel).max(0.0);
+    if *behind <= least {
+        return 0.0;
+    }
+    *sense = -*sense;
+    *behind = 0.0;
+    *sense
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drive(pieces: &[(f64, f64)]) -> Vec<Context> {
+        let mut progress = Progress::new(&Robot::labmate(), Place::default(), true);
+        let travel = |(left, right): &(f64, f64)| WheelTravel { left: *left, right: *right };
+        pieces.iter().map(|p| progress.piece(&travel(p), 0.1, [0.0; 2], [0.1; 2])).collect()
+    }
+
+    #[test]
+    fn a_turn_on_the_spot_is_remembered_with_its_sense_and_the_way_since() {
+        let quarter = 0.5 * 0.34 * std::f64::consts::FRAC_PI_2 / 10.0;
+        let mut pieces = vec![(0.1, 0.1); 3];
+        pieces.extend([(quarter, -quarter); 10]);
+        pieces.extend([(0.1, 0.1); 2]);
+        let seen = drive(&pieces);
+        assert_eq!((seen[2].last_turn, seen[12].last_turn, seen[14].last_turn), (0.0, -1.0, -1.0));
+        assert!((seen[2].since_turn - 0.2).abs() < 1e-12 && (seen[14].since_turn - 0.1).abs() < 1e-12);
+        assert!((seen[14].heading + std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+        assert!((seen[14].distance - 0.4).abs() < 1e-12 && (seen[14].time - 1.4).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_correction_of_the_heading_is_no_turn() {
+        let seen = drive(&[(0.1, 0.1), (0.01, -0.01), (0.1, 0.1)]);
+        assert_eq!(seen[2].last_turn, 0.0);
+        assert!((seen[2].since_turn - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_wheel_that_trembles_has_not_reversed_and_one_that_rolls_back_has_once() {
+        let tremble = [(1e-4, 1e-4), (-1e-4, 1e-4), (1e-4, 1e-4), (-1e-4, 1e-4)];
+        assert!(drive(&tremble).iter().all(|c| c.reversed == [0.0; 2]));
+        let back = [(0.01, 0.01), (-4e-4, 0.01), (-4e-4, 0.01), (-0.01, 0.01), (0.01, 0.01)];
+        let reversed: Vec<f64> = drive(&back).iter().map(|c| c.reversed[0]).collect();
+        assert_eq!(reversed, [0.0, 0.0, -1.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn rates_are_means_and_acceleration_is_the_change_over_the_duration() {
+        let piece = drive(&[(0.005, 0.005)])[0];
+        assert!((piece.speed - 0.05).abs() < 1e-15 && (piece.acceleration() - 1.0).abs() < 1e-12);
+        assert_eq!(Context::<f64>::default().acceleration(), 0.0);
+    }
+}

@@ -1,0 +1,73 @@
+//! Wheel diameters that change as the robot drives.
+
+use super::{About, ActsOn, Context, Effect};
+use crate::drive::WheelTravel;
+use crate::geometry::Real;
+use crate::parameter::Parameter;
+
+/// A ratio of the wheel diameters that grows with the way driven, in the run and in the session.
+pub struct DiameterDrift;
+
+impl Effect for DiameterDrift {
+    const ABOUT: About = About {
+        name: "diameter_drift",
+        title: "drift of the wheel diameters",
+        acts_on: ActsOn::Wheels,
+        parameters: &[
+            Parameter::size(
+                "per_m",
+                "diameter-drift",
+                "1/m",
+                7.5e-5,
+                (-0.1, 0.1),
+                "change of D_R/D_L per metre since the run began",
+            ),
+            Parameter::size(
+                "per_session_m",
+                "diameter-drift-session",
+                "1/m",
+                7.5e-6,
+                (-0.1, 0.1),
+                "change of D_R/D_L per metre since the session began",
+            ),
+        ],
+        equation: "s_R ← (1 + d/2) s_R,  s_L ← (1 - d/2) s_L,  d = k · way in the run + k' · way in the session",
+        physics: "Tyres warm up, wear, and lose air; a battery or a load shifts. One wheel does so more than the other.",
+        signature: "Later legs curve more than earlier ones: the path does not close as any constant E_d would leave it. Over \
+                    a session the return poses wander with the number of the run.",
+        confused_with: &[],
+        separated_by: "the heading along the track; cw and ccw runs in random order",
+        source: "0.12 % over a run is assumed",
+    };
+    const VARIES: bool = true;
+
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        let half = 0.5 * at.length;
+        let d = p[0] * (at.distance + half) + p[1] * (at.session_distance + half);
+        travel.left *= -d * 0.5 + 1.0;
+        travel.right *= d * 0.5 + 1.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, stops_with};
+
+    #[test]
+    fn the_heading_grows_as_the_square_of_the_way() {
+        for k in [1e-5, -1e-5] {
+            for name in ["per_m", "per_session_m"] {
+                for (direction, sign) in ccw_and_cw() {
+                    let stops = stops_with(&[("diameter_drift", name, k)], direction);
+                    for leg in 0..4 {
+                        let way = 4.0 * (f64::from(leg) + 1.0);
+                        let error =
+                            stops[2 * leg as usize].heading - sign * f64::from(leg) * std::f64::consts::FRAC_PI_2;
+                        let expected = k * 0.5 * way * way / 0.34;
+                        assert!((error - expected).abs() < 1e-10, "{error} {expected}");
+                    }
+                }
+            }
+        }
+    }
+}

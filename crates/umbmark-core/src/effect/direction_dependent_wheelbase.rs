@@ -1,0 +1,66 @@
+//! A wheelbase that is not the same for left and right turns.
+
+use super::{About, ActsOn, Context, Effect};
+use crate::geometry::{Displacement2, Real};
+use crate::parameter::Parameter;
+
+/// How much longer the effective wheelbase is in left turns than in right turns.
+pub struct DirectionDependentWheelbase;
+
+impl Effect for DirectionDependentWheelbase {
+    const ABOUT: About = About {
+        name: "direction_dependent_wheelbase",
+        title: "wheelbase that depends on the sense of the turn",
+        acts_on: ActsOn::Body,
+        parameters: &[Parameter::size(
+            "difference",
+            "wheelbase-difference",
+            "",
+            4e-3,
+            (-1.0, 1.0),
+            "wheelbase in left turns less that in right turns, as a share of their mean",
+        )],
+        equation: "Δθ ← Δθ / (1 + sgn(ω) δ/2)",
+        physics: "Coned or worn tyres, a caster or a cable that drags to one side: the wheels' contact moves outward in \
+                  turns of one sense and inward in those of the other.",
+        signature: "Left turns fall short and right turns go too far, so the heading is off to the right in both directions \
+                    of driving: E_d exactly, as far as return poses can tell.",
+        confused_with: &["wheel_diameter_ratio", "leg_kick"],
+        separated_by: "spins both ways, or a heading at each corner before and after the turn",
+        source: "first-order theory of side-periodic errors; 0.4 % is assumed",
+    };
+    const VARIES: bool = true;
+
+    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        if at.turn_rate != 0.0 {
+            motion.rotation /= p[0] * (0.5 * at.turn_rate.signum()) + 1.0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, stops_with};
+    use crate::path::Direction;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn left_and_right_turns_err_in_the_same_sense_and_legs_not_at_all() {
+        for d in [0.01, -0.01] {
+            for (direction, sign) in ccw_and_cw() {
+                let stops = stops_with(&[("direction_dependent_wheelbase", "difference", d)], direction);
+                let error = stops[7].heading - sign * TAU;
+                assert!((error + TAU * 0.5 * d).abs() < 2.0 * d * d, "{error}");
+                assert_eq!((stops[0].y, stops[0].heading), (0.0, 0.0));
+                assert_eq!(stops[1].heading, stops[2].heading);
+            }
+        }
+    }
+
+    #[test]
+    fn a_leg_that_unequal_wheels_bend_is_no_turn() {
+        let bent = [("wheel_diameter_ratio", "e_d", 1.01)];
+        let both = [bent[0], ("direction_dependent_wheelbase", "difference", 0.1)];
+        assert_eq!(stops_with(&both, Direction::Ccw)[0], stops_with(&bent, Direction::Ccw)[0]);
+    }
+}

@@ -1,0 +1,81 @@
+//! What lies between two counts.
+
+use super::{About, ActsOn, Effect};
+use crate::geometry::{Pose2, Real};
+use crate::parameter::{DefaultValue, Parameter};
+use crate::random::Stream;
+
+/// The rounding of each counter where a pose is measured.
+pub struct EncoderResolution;
+
+impl Effect for EncoderResolution {
+    const ABOUT: About = About {
+        name: "encoder_resolution",
+        title: "resolution of the encoders",
+        acts_on: ActsOn::Odometry,
+        parameters: &[
+            Parameter::size(
+                "quantum_m",
+                "encoder-quantum",
+                "m",
+                2.36e-4,
+                (0.0, 1.0),
+                "travel of a wheel per count that it is read to",
+            ),
+            Parameter {
+                name: "wheelbase_m",
+                flag: "encoder-quantum-wheelbase",
+                unit: "m",
+                default: DefaultValue::OfRobot(|robot| robot.drive.wheelbase()),
+                typical: 0.34,
+                bounds: (1e-3, 100.0),
+                meaning: "distance between the wheels that are counted",
+                choices: &[],
+            },
+        ],
+        equation: "(forward, Δθ) ← (forward, Δθ) + ((e_L + e_R)/2, (e_R - e_L)/b),  e_w uniform in ±q/2",
+        physics: "A counter knows its wheel to half a count only. `mc` and `simulate` count the robot's own ticks already: \
+                  this adds a reading coarser than those, or stands for it in a model.",
+        signature: "Scatter that does not grow with the length of the path: q/(b√6) in heading, q/√24 along it.",
+        confused_with: &["wheel_noise", "reference_noise"],
+        separated_by: "the scatter of standing poses against that of driven ones; counting finer",
+        source: "variance q²/12 of rounding; a count of the assumed LabMate is 0.236 mm",
+    };
+
+    fn measured(p: &[f64], stream: &mut Stream, pose: &mut Pose2) {
+        if p[0] == 0.0 {
+            return;
+        }
+        let mut rounding = || p[0] * (stream.uniform() - 0.5);
+        let (left, right) = (rounding(), rounding());
+        let (sine, cosine) = pose.heading.sine_cosine();
+        let forward = 0.5 * (left + right);
+        pose.x += forward * cosine;
+        pose.y += forward * sine;
+        pose.heading += (right - left) / p[1];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scatter_is_that_of_rounding_along_the_heading_only() {
+        let (n, q, b) = (20_000, 1e-3, 0.34);
+        let mut stream = Stream::new(7, 0, 0);
+        let (mut heading, mut along) = (0.0, 0.0);
+        for _ in 0..n {
+            let mut pose = Pose2::new(1.0, 2.0, 0.5 * std::f64::consts::PI);
+            EncoderResolution::measured(&[q, b], &mut stream, &mut pose);
+            heading += (pose.heading - 0.5 * std::f64::consts::PI).powi(2);
+            along += (pose.y - 2.0).powi(2);
+            assert!((pose.x - 1.0).abs() < 1e-15 && (pose.y - 2.0).abs() <= 0.5 * q);
+        }
+        // The sum of two uniform numbers has kurtosis 2.4: its standard deviation is known to sqrt(1.4/4n).
+        let n = f64::from(n);
+        let tolerance = 4.0 * (1.4 / (4.0 * n)).sqrt();
+        assert!(((heading / n).sqrt() / (q / (b * 6_f64.sqrt())) - 1.0).abs() < tolerance);
+        assert!(((along / n).sqrt() / (q / 24_f64.sqrt()) - 1.0).abs() < tolerance);
+    }
+}

@@ -1,0 +1,84 @@
+//! Odometry that lays each step along the heading at its beginning.
+
+use super::crab::turn_course;
+use super::{About, ActsOn, Context, Effect};
+use crate::geometry::{Displacement2, Real};
+use crate::parameter::Parameter;
+
+/// Euler steps of the robot's own odometry, where what it believes is not computed anew from its counts.
+pub struct EncoderSampling;
+
+impl Effect for EncoderSampling {
+    const ABOUT: About = About {
+        name: "encoder_sampling",
+        title: "sampling with Euler steps",
+        acts_on: ActsOn::Odometry,
+        parameters: &[Parameter::size(
+            "period_s",
+            "encoder-period",
+            "s",
+            0.05,
+            (-10.0, 10.0),
+            "time between two steps of the robot's own odometry",
+        )],
+        equation: "(forward, sideways) ← R(ω T/2) (forward, sideways),  not where the ticks were recorded",
+        physics: "Odometry that advances along the heading at the beginning of each step lays every chord of an arc too far \
+                  to the outside, by half the rotation of the step. Ticks that were recorded are integrated along exact \
+                  arcs, and nothing is left to correct.",
+        signature: "Nothing at all on the square, where the robot either drives or turns; on circles a course that is off by \
+                    ω T/2.",
+        confused_with: &[],
+        separated_by: "replaying the recorded ticks: it must vanish",
+        source: "Euler's rule against the mid-point rule; 50 ms is assumed",
+    };
+    const VARIES: bool = true;
+
+    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        if !at.recorded {
+            turn_course(motion, p[0] * (0.5 * at.turn_rate));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::WheelTravel;
+    use crate::effect::tests::{ccw_and_cw, model_with, stops_with};
+    use crate::geometry::Pose2;
+
+    #[test]
+    fn it_turns_the_end_of_euler_steps_onto_the_arc() {
+        let (speed, period, n) = (0.5, 0.05, 100);
+        for rate in [0.4, -0.4] {
+            let (mut x, mut y) = (0.0, 0.0);
+            for step in 0..n {
+                let heading = rate * period * f64::from(step);
+                x += speed * period * libm::cos(heading);
+                y += speed * period * libm::sin(heading);
+            }
+            let turned = rate * period * f64::from(n);
+            let mut motion = Pose2::new(x, y, turned).log();
+            EncoderSampling::body(&[period], &Context { turn_rate: rate, ..Context::default() }, &mut motion);
+            let end = Pose2::exp(&motion);
+            let radius = speed / rate;
+            let arc = (radius * libm::sin(turned), radius * (1.0 - libm::cos(turned)));
+            // A chord is shorter than its arc by (ωT)²/24.
+            assert!((end.x - arc.0).abs() < 1e-4 && (end.y - arc.1).abs() < 1e-4, "{end:?} {arc:?}");
+            assert!((x - arc.0).hypot(y - arc.1) > 0.01);
+        }
+    }
+
+    #[test]
+    fn the_square_and_recorded_ticks_know_nothing_of_it() {
+        let model = [("encoder_sampling", "period_s", 0.5)];
+        for (direction, _) in ccw_and_cw() {
+            let end = stops_with(&model, direction)[7];
+            assert!(end.x.hypot(end.y) < 1e-12);
+        }
+        let chain = model_with(&model).chain();
+        let at = Context { turn_rate: 0.3, recorded: true, ..Context::default() };
+        let moved = chain.displacement(&at, &WheelTravel { left: 0.1, right: 0.2 });
+        assert_eq!(moved.sideways, 0.0);
+    }
+}

@@ -1,0 +1,83 @@
+//! A sloping floor that lets the robot drift downhill.
+
+use super::{About, ActsOn, Context, Effect};
+use crate::geometry::{Displacement2, Real};
+use crate::parameter::Parameter;
+
+/// A drift that points one way in the room, whatever the heading.
+pub struct FloorSlope;
+
+impl Effect for FloorSlope {
+    const ABOUT: About = About {
+        name: "floor_slope",
+        title: "drift on a sloping floor",
+        acts_on: ActsOn::Body,
+        parameters: &[
+            Parameter {
+                flag: "slope-x",
+                meaning: "drift downhill along the heading at START, per metre driven",
+                ..DRIFT_X
+            },
+            Parameter {
+                flag: "slope-y",
+                meaning: "drift downhill to the left of the heading at START, per metre driven",
+                ..DRIFT_Y
+            },
+        ],
+        equation: DRIFT,
+        physics: "Gravity pulls sideways on rolling tyres, which answer with a slip angle of slope over cornering stiffness: \
+                  1 % of slope and a stiffness of ten times the load per radian give 1 mm per metre.",
+        signature: "The return point is off by the drift times the length of the path, the same in ccw and cw, and the \
+                    heading is right: no E_d and E_b together can do that.",
+        confused_with: &["carpet_nap", "start_pose"],
+        separated_by: "starting the square turned by 90 or 180 degrees; from nap, turning the carpet",
+        source: "linear tyre model; the stiffness is assumed, and 3 mm per metre as a usual size",
+    };
+    const VARIES: bool = true;
+
+    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        drift(p, at, motion);
+    }
+}
+
+pub(super) const DRIFT: &str =
+    "(forward, sideways) ← (forward, sideways) + R(-h) (g_x, g_y) · length,  h the mean heading";
+
+pub(super) const DRIFT_X: Parameter = Parameter::size("drift_x", "", "m/m", 3e-3, (-1.0, 1.0), "");
+
+pub(super) const DRIFT_Y: Parameter = Parameter::size("drift_y", "", "m/m", 3e-3, (-1.0, 1.0), "");
+
+/// Adds a drift that is fixed in the room, (p₀, p₁) per metre driven.
+pub(super) fn drift<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+    let (sine, cosine) = (at.heading + motion.rotation * 0.5).sine_cosine();
+    motion.forward += (cosine * p[0] + sine * p[1]) * at.length;
+    motion.sideways += (cosine * p[1] - sine * p[0]) * at.length;
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, circle_end_with, stops_with};
+
+    #[test]
+    fn the_robot_drifts_with_its_way_in_the_room_and_keeps_its_heading() {
+        for name in ["floor_slope", "carpet_nap"] {
+            for (x, y) in [(3e-3, 0.0), (0.0, -3e-3)] {
+                let model = [(name, "drift_x", x), (name, "drift_y", y)];
+                for (direction, sign) in ccw_and_cw() {
+                    let stops = stops_with(&model, direction);
+                    for (index, (corner_x, corner_y)) in
+                        [(4.0, 0.0), (4.0, 4.0 * sign), (0.0, 4.0 * sign), (0.0, 0.0)].into_iter().enumerate()
+                    {
+                        let way = 4.0 * (index as f64 + 1.0);
+                        let stop = stops[2 * index];
+                        let off = (stop.x - corner_x - x * way, stop.y - corner_y - y * way);
+                        assert!(off.0.abs() < 1e-12 && off.1.abs() < 1e-12, "{name} {stop:?}");
+                    }
+                    let circle = circle_end_with(&model, direction);
+                    let way = 4.0 * std::f64::consts::PI;
+                    assert!((circle.x - x * way).abs() < 1e-6 && (circle.y - y * way).abs() < 1e-6, "{circle:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! A marker that is mounted askew.
+
+use super::{About, ActsOn, Effect, Sight};
+use crate::geometry::{Pose2, Real};
+use crate::parameter::Parameter;
+
+/// The angle between what the reference calls the robot's heading and its heading.
+pub struct MarkerYaw;
+
+impl Effect for MarkerYaw {
+    const ABOUT: About = About {
+        name: "marker_yaw",
+        title: "yaw of the marker",
+        acts_on: ActsOn::Reference,
+        parameters: &[Parameter::size(
+            "yaw_rad",
+            "marker-yaw",
+            "rad",
+            6.6e-3,
+            (-4.0, 4.0),
+            "how far the measured heading is counter-clockwise of the true one",
+        )],
+        equation: "θ ← θ + ψ",
+        physics: "The marker's own axes were not laid along the robot's: every measured heading is off by the same angle, and \
+                  no position is.",
+        signature: "A constant angle between the course and the measured heading, at rest and driving: crab, but for a turn \
+                    of the whole path about START.",
+        confused_with: &["crab", "encoder_skew"],
+        separated_by: "from encoder skew, a second speed; from crab, nothing but how the marker is mounted",
+        source: "a gauge freedom of the reference frame; 0.38 degree of it, or of crab, is in the public OptiOdom runs",
+    };
+
+    fn seen<T: Real>(p: &[T], _at: &Sight, pose: &mut Pose2<T>) {
+        pose.heading += p[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, stops_with};
+
+    #[test]
+    fn with_start_turned_back_it_is_crab_wherever_the_robot_stands() {
+        for yaw in [0.02, -0.02] {
+            for (direction, _) in ccw_and_cw() {
+                let turned = [("marker_yaw", "yaw_rad", -yaw), ("start_pose", "heading_rad", yaw)];
+                let crab = [("crab", "angle_rad", yaw)];
+                for (a, b) in stops_with(&turned, direction).iter().zip(stops_with(&crab, direction)) {
+                    assert!((a.x - b.x).abs() < 1e-12 && (a.y - b.y).abs() < 1e-12, "{a:?} {b:?}");
+                    assert!((a.heading - b.heading).abs() < 1e-12);
+                }
+            }
+        }
+    }
+}

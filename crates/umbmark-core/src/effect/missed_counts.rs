@@ -1,0 +1,99 @@
+//! Encoders that are too slow for the wheel.
+
+use super::{About, ActsOn, Context, Effect};
+use crate::drive::WheelTravel;
+use crate::geometry::Real;
+use crate::parameter::{DefaultValue, Parameter};
+
+/// The share of its counts that each wheel misses above a speed.
+pub struct MissedCounts;
+
+impl Effect for MissedCounts {
+    const ABOUT: About = About {
+        name: "missed_counts",
+        title: "counts missed at speed",
+        acts_on: ActsOn::Odometry,
+        parameters: &[
+            Parameter::size(
+                "left_s_per_m",
+                "missed-left",
+                "s/m",
+                0.01,
+                (-1.0, 1.0),
+                "travel that the left counter misses per m/s above the threshold, as a share",
+            ),
+            Parameter::size(
+                "right_s_per_m",
+                "missed-right",
+                "s/m",
+                0.01,
+                (-1.0, 1.0),
+                "travel that the right counter misses per m/s above the threshold, as a share",
+            ),
+            Parameter {
+                name: "threshold_m_s",
+                flag: "missed-threshold",
+                unit: "m/s",
+                default: DefaultValue::Value(0.1),
+                typical: 0.1,
+                bounds: (0.0, 100.0),
+                meaning: "wheel speed up to which every count is kept",
+                choices: &[],
+            },
+        ],
+        equation: "s_w ← (1 + k_w max(0, |v_w| - v₀)) s_w",
+        physics: "Counts come faster than an interrupt routine or an input filter takes them, and some are lost: the wheel \
+                  has rolled farther than was counted. A negative share counts edges twice.",
+        signature: "Legs driven fast curve away from the wheel that misses counts, as E_d does; both wheels alike are E_s. \
+                    Below the threshold nothing.",
+        confused_with: &["wheel_diameter_ratio", "speed_slip_left", "speed_slip_right"],
+        separated_by: "ten turns of each wheel by hand or motor, off the floor, counted",
+        source: "reports of users of small controllers; sizes are assumed",
+    };
+    const VARIES: bool = true;
+
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.left *= p[0] * above(at.wheel_speed[0], p[2]) + 1.0;
+        travel.right *= p[1] * above(at.wheel_speed[1], p[2]) + 1.0;
+    }
+}
+
+/// By how much a wheel is faster than the threshold \[m/s\].
+fn above<T: Real>(speed: f64, threshold: T) -> T {
+    let over = -threshold + speed.abs();
+    if over.value() > 0.0 { over } else { T::from(0.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, circle_speeds, halfway_round_with, stops_with};
+
+    #[test]
+    fn a_leg_counts_short_in_cruise_and_in_the_upper_half_of_its_ramps_only() {
+        // Integral of (v - 0.1) v: 0.1 * 0.2 * 19 s of cruise, and twice that of (v - 0.1) v dv / 0.2 from 0.1 to 0.2.
+        let ramp = ((0.008 - 0.001) / 3.0 - 0.1 * (0.04 - 0.01) / 2.0) / 0.2;
+        let integral = 0.1 * 0.2 * 19.0 + 2.0 * ramp;
+        for k in [0.01, -0.01] {
+            for (direction, _) in ccw_and_cw() {
+                for (name, sign) in [("left_s_per_m", -1.0), ("right_s_per_m", 1.0)] {
+                    let leg = stops_with(&[("missed_counts", name, k)], direction)[0];
+                    let expected = sign * k * integral / 0.34;
+                    assert!((leg.heading - expected).abs() < 2e-3 * expected.abs(), "{leg:?} {expected}");
+                }
+                let slow = [("missed_counts", "left_s_per_m", k), ("missed_counts", "threshold_m_s", 0.2)];
+                assert_eq!(stops_with(&slow, direction)[0].heading, 0.0);
+            }
+        }
+    }
+    #[test]
+    fn on_a_circle_only_the_wheel_above_the_threshold_counts_short() {
+        for (direction, _) in ccw_and_cw() {
+            for (name, wheel, sign) in [("left_s_per_m", 0, -1.0), ("right_s_per_m", 1, 1.0)] {
+                let model = [("missed_counts", name, 0.01), ("missed_counts", "threshold_m_s", 0.18)];
+                let error = sign * halfway_round_with(&model, direction);
+                let outer = circle_speeds(direction)[wheel] > 0.18;
+                assert!(if outer { error > 0.0 } else { error == 0.0 }, "{name} {direction:?}: {error}");
+            }
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! A reference whose clock runs slow.
+
+use super::reference_delay::go_back;
+use super::{About, ActsOn, Effect, Sight};
+use crate::geometry::{Pose2, Real};
+use crate::parameter::Parameter;
+
+/// By how much the clock of the reference and that of the encoders part, per time.
+pub struct ReferenceClockRate;
+
+impl Effect for ReferenceClockRate {
+    const ABOUT: About = About {
+        name: "reference_clock_rate",
+        title: "clock rate of the reference",
+        acts_on: ActsOn::Reference,
+        parameters: &[Parameter::size(
+            "ratio",
+            "reference-clock-rate",
+            "",
+            2e-4,
+            (-0.5, 0.5),
+            "delay of the measured poses that builds up per time since the run began",
+        )],
+        equation: "seen(t) = true(t - ρ t)",
+        physics: "Robot and reference stamp with clocks of their own, which agree when a run begins and part at the rate of \
+                  their oscillators, or of a timer that is not quite what it is said to be.",
+        signature: "As a delay that grows through the run: early legs in time, late legs behind. Return poses at rest do not \
+                    show it.",
+        confused_with: &["reference_delay"],
+        separated_by: "the delay of the first leg against that of the last; stamping both with one clock",
+        source: "two free-running clocks; 200 parts in a million are assumed",
+    };
+
+    fn seen<T: Real>(p: &[T], at: &Sight, pose: &mut Pose2<T>) {
+        go_back(p[0] * at.time, at, pose);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{along_with, ccw_and_cw};
+
+    #[test]
+    fn the_lag_is_the_ratio_of_the_time_gone_times_the_speed() {
+        // At constant speed half a second is lost to the ramp: 2 m take 10.5 s, the middle of leg 3 is 40 s and two turns on.
+        let turn = 0.17 * std::f64::consts::FRAC_PI_2 / 0.2 + 1.0;
+        let later = 2.0 * (21.0 + 1.0) + 2.0 * (turn + 1.0) + 10.5;
+        for ratio in [1e-3, -1e-3] {
+            let model = [("reference_clock_rate", "ratio", ratio)];
+            for (direction, _) in ccw_and_cw() {
+                for (way, time) in [(2.0, 10.5), (10.0, later)] {
+                    let lag = along_with(&model, direction, way).forward;
+                    assert!((lag + ratio * time * 0.2).abs() < 1e-3 * ratio.abs() * time, "{lag} at {time} s");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! A reference whose clock is behind.
+
+use super::{About, ActsOn, Effect, Sight};
+use crate::geometry::{Displacement2, Pose2, Real};
+use crate::parameter::Parameter;
+
+/// How old a measured pose is when it is stamped.
+pub struct ReferenceDelay;
+
+impl Effect for ReferenceDelay {
+    const ABOUT: About = About {
+        name: "reference_delay",
+        title: "delay of the reference",
+        acts_on: ActsOn::Reference,
+        parameters: &[Parameter::size(
+            "delay_s",
+            "reference-delay",
+            "s",
+            0.02,
+            (-10.0, 10.0),
+            "how much older the measured pose is than its time stamp says",
+        )],
+        equation: "seen(t) = true(t - τ) = true(t) · exp(-τ (v, 0, ω))",
+        physics: "Cameras expose, compute and send before a pose gets its time: 10 to 100 ms are usual. At 1 m/s 10 ms are \
+                  10 mm.",
+        signature: "Late along the course by v τ and in turns by ω τ; right again at rest, so return poses do not show it.",
+        confused_with: &["acceleration_slip", "reference_clock_rate"],
+        separated_by: "a dense track, always, before any physics is judged",
+        source: "delays that makers and users of motion capture state",
+    };
+
+    fn seen<T: Real>(p: &[T], at: &Sight, pose: &mut Pose2<T>) {
+        go_back(p[0], at, pose);
+    }
+}
+
+/// Moves a pose to where it was `delay` \[s\] earlier.
+pub(super) fn go_back<T: Real>(delay: T, at: &Sight, pose: &mut Pose2<T>) {
+    let back = Displacement2 { forward: -delay * at.speed, sideways: T::from(0.0), rotation: -delay * at.turn_rate };
+    *pose = pose.moved(&back);
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{along_with, ccw_and_cw, circle, stops_with, watched_with};
+
+    #[test]
+    fn a_circle_is_seen_where_the_robot_was() {
+        for delay in [0.5, -0.5] {
+            for (direction, sign) in ccw_and_cw() {
+                let (track, seen) = watched_with(&[("reference_delay", "delay_s", delay)], &circle(), direction);
+                let (_, truth) = watched_with(&[], &circle(), direction);
+                let middle = seen.len() / 2;
+                let sight = track.sights()[middle];
+                // On the circle about (0, ±2) the delayed pose is that of an earlier angle.
+                let angle = truth[middle].heading - delay * sight.turn_rate;
+                let (x, y) = (2.0 * libm::sin(sign * angle), sign * 2.0 * (1.0 - libm::cos(angle)));
+                assert!((seen[middle].x - x).abs() < 1e-9 && (seen[middle].y - y).abs() < 1e-9, "{:?}", seen[middle]);
+                assert!((seen[middle].heading - angle).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn the_robot_is_late_by_speed_times_delay_and_on_time_at_rest() {
+        for (direction, _) in ccw_and_cw() {
+            let model = [("reference_delay", "delay_s", 0.05)];
+            assert!((along_with(&model, direction, 2.0).forward + 0.01).abs() < 1e-9);
+            let end = stops_with(&model, direction)[7];
+            assert!(end.x.hypot(end.y) < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Slip of both wheels that grows with their speed.
+
+use super::{About, ActsOn, Context, Effect};
+use crate::drive::WheelTravel;
+use crate::geometry::Real;
+use crate::parameter::Parameter;
+
+/// The share of travel that each wheel loses per speed.
+pub struct SpeedSlip;
+
+impl Effect for SpeedSlip {
+    const ABOUT: About = About {
+        name: "speed_slip",
+        title: "slip that grows with speed, both wheels",
+        acts_on: ActsOn::Wheels,
+        parameters: &[Parameter {
+            flag: "speed-slip",
+            meaning: "share of its travel that each wheel loses per m/s of its speed",
+            ..PER_SPEED
+        }],
+        equation: "s_w ← (1 - k |v_w|) s_w  for both wheels",
+        physics: CREEP,
+        signature: "Legs and turns fall short by k v: at one speed it is E_s, and so on the square looks like E_b.",
+        confused_with: &["scale", "wheelbase", "turn_slip", "turn_slip_rate"],
+        separated_by: "one measured straight leg at each of two speeds",
+        source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
+    };
+    const VARIES: bool = true;
+
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.left *= kept(p[0], at.wheel_speed[0]);
+        travel.right *= kept(p[0], at.wheel_speed[1]);
+    }
+}
+
+pub(super) const CREEP: &str = "Rolling resistance grows with speed, and a tyre passes on force only by creeping: the wheel turns \
+     a little more than it gets ahead.";
+
+pub(super) const PER_SPEED: Parameter = Parameter::size("s_per_m", "", "s/m", 0.015, (-1.0, 1.0), "");
+
+/// The share of a wheel's travel that is left at its speed \[m/s\].
+pub(super) fn kept<T: Real>(s_per_m: T, speed: f64) -> T {
+    -s_per_m * speed.abs() + 1.0
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, circle_end_with, circle_speeds, stops_with};
+
+    /// A leg of 4 m, ramps of 1 s to 0.2 m/s: the integral of v² is 0.04 (cruise 19 s + 2/3 of a second).
+    const SQUARED: f64 = 0.04 * (19.0 + 2.0 / 3.0);
+
+    #[test]
+    fn both_wheels_shorten_the_leg_and_one_wheel_bends_it_towards_itself() {
+        for k in [0.01, -0.01] {
+            for (direction, _) in ccw_and_cw() {
+                let leg = |name| stops_with(&[(name, "s_per_m", k)], direction)[0];
+                let lost = k * SQUARED;
+                assert!((4.0 - leg("speed_slip").x - lost).abs() < 1e-3 * lost.abs());
+                for (name, sign) in [("speed_slip_left", 1.0), ("speed_slip_right", -1.0)] {
+                    let stop = leg(name);
+                    assert!((stop.heading - sign * lost / 0.34).abs() < 1e-3 * lost.abs(), "{stop:?}");
+                }
+            }
+        }
+    }
+    #[test]
+    fn each_wheel_slips_at_its_own_speed_on_a_circle() {
+        // The outer wheel goes 2.17 m times a full turn at 0.2 m/s with ramps of 1 s.
+        let duration = std::f64::consts::TAU * 2.17 / 0.2 - 1.0 + 2.0 / 3.0;
+        for (direction, sign) in ccw_and_cw() {
+            let [left, right] = circle_speeds(direction).map(|v| 0.01 * v * v * duration / 0.34);
+            for (name, error) in [("speed_slip", left - right), ("speed_slip_left", left), ("speed_slip_right", -right)]
+            {
+                let turned = circle_end_with(&[(name, "s_per_m", 0.01)], direction).heading;
+                let off = turned - sign * std::f64::consts::TAU - error;
+                assert!(off.abs() < 1e-3 * error.abs(), "{name} {direction:?}: {off}");
+            }
+        }
+    }
+}

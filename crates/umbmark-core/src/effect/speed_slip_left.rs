@@ -1,0 +1,34 @@
+//! Slip of the left wheel that grows with its speed.
+
+use super::speed_slip::{CREEP, PER_SPEED, kept};
+use super::{About, ActsOn, Context, Effect};
+use crate::drive::WheelTravel;
+use crate::geometry::Real;
+use crate::parameter::Parameter;
+
+/// The share of travel that the left wheel loses per speed.
+pub struct SpeedSlipLeft;
+
+impl Effect for SpeedSlipLeft {
+    const ABOUT: About = About {
+        name: "speed_slip_left",
+        title: "slip that grows with speed, left wheel",
+        acts_on: ActsOn::Wheels,
+        parameters: &[Parameter {
+            flag: "speed-slip-left",
+            meaning: "share of its travel that the left wheel loses per m/s of its speed",
+            ..PER_SPEED
+        }],
+        equation: "s_L ← (1 - k |v_L|) s_L",
+        physics: CREEP,
+        signature: "Legs curve to the left by k v/b per metre; turns lose half the share. At one speed as E_d on the legs.",
+        confused_with: &["wheel_diameter_ratio", "speed_slip_right", "missed_counts"],
+        separated_by: "a long straight at two speeds: the curvature of E_d stays",
+        source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
+    };
+    const VARIES: bool = true;
+
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.left *= kept(p[0], at.wheel_speed[0]);
+    }
+}

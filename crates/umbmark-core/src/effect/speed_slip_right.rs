@@ -1,0 +1,34 @@
+//! Slip of the right wheel that grows with its speed.
+
+use super::speed_slip::{CREEP, PER_SPEED, kept};
+use super::{About, ActsOn, Context, Effect};
+use crate::drive::WheelTravel;
+use crate::geometry::Real;
+use crate::parameter::Parameter;
+
+/// The share of travel that the right wheel loses per speed.
+pub struct SpeedSlipRight;
+
+impl Effect for SpeedSlipRight {
+    const ABOUT: About = About {
+        name: "speed_slip_right",
+        title: "slip that grows with speed, right wheel",
+        acts_on: ActsOn::Wheels,
+        parameters: &[Parameter {
+            flag: "speed-slip-right",
+            meaning: "share of its travel that the right wheel loses per m/s of its speed",
+            ..PER_SPEED
+        }],
+        equation: "s_R ← (1 - k |v_R|) s_R",
+        physics: CREEP,
+        signature: "Legs curve to the right by k v/b per metre; turns lose half the share. At one speed as E_d on the legs.",
+        confused_with: &["wheel_diameter_ratio", "speed_slip_left", "missed_counts"],
+        separated_by: "a long straight at two speeds: the curvature of E_d stays",
+        source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
+    };
+    const VARIES: bool = true;
+
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.right *= kept(p[0], at.wheel_speed[1]);
+    }
+}

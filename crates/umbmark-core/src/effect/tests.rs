@@ -1,0 +1,256 @@
+//! What holds for every effect, and the paths that single effects are tested on.
+
+use super::*;
+use crate::drive::Robot;
+use crate::path::{CIRCLE, Path, SQUARE, SpeedProfile};
+use crate::replay::Track;
+
+/// An effect's parameter and its value.
+pub(super) type Setting<'a> = (&'a str, &'a str, f64);
+
+pub(super) fn ccw_and_cw() -> [(Direction, f64); 2] {
+    [(Direction::Ccw, 1.0), (Direction::Cw, -1.0)]
+}
+
+pub(super) fn model_with(settings: &[Setting]) -> Model {
+    let mut model = Model::new(&Robot::labmate());
+    for (effect, parameter, value) in settings {
+        model.set(effect, parameter, *value).unwrap();
+    }
+    model
+}
+
+/// A circle of radius 2 m, driven once.
+pub(super) fn circle() -> Path {
+    Path::new(&CIRCLE, &[2.0, 1.0], SpeedProfile::default()).unwrap()
+}
+
+/// The poses seen after each leg and each turn of the paper's square.
+pub(super) fn stops_with(settings: &[Setting], direction: Direction) -> Vec<Pose2> {
+    Track::with_stops(&Path::umbmark(), direction, &Robot::labmate()).poses(&model_with(settings).chain())
+}
+
+pub(super) fn circle_end_with(settings: &[Setting], direction: Direction) -> Pose2 {
+    Track::in_pieces(&circle(), direction, &Robot::labmate()).end(&model_with(settings).chain())
+}
+
+/// A path watched all along, and the poses seen.
+pub(super) fn watched_with(settings: &[Setting], path: &Path, direction: Direction) -> (Track, Vec<Pose2>) {
+    let track = Track::watched(path, direction, &Robot::labmate());
+    let poses = track.poses(&model_with(settings).chain());
+    (track, poses)
+}
+
+/// The pose seen from where the robot believes to be, when it has gone `way` \[m\] along the paper's square.
+pub(super) fn along_with(settings: &[Setting], direction: Direction, way: f64) -> Displacement2 {
+    let (track, seen) = watched_with(settings, &Path::umbmark(), direction);
+    let (_, believed) = watched_with(&[], &Path::umbmark(), direction);
+    let there = track.contexts().iter().position(|at| at.distance + at.length > way - 1e-6).unwrap();
+    let error = believed[there].between(&seen[there]);
+    Displacement2 { forward: error.x, sideways: error.y, rotation: error.heading }
+}
+
+/// How much farther than believed the robot has turned halfway round the circle \[rad\].
+pub(super) fn halfway_round_with(settings: &[Setting], direction: Direction) -> f64 {
+    let (_, seen) = watched_with(settings, &circle(), direction);
+    let (_, believed) = watched_with(&[], &circle(), direction);
+    let middle = seen.len() / 2;
+    seen[middle].heading - believed[middle].heading
+}
+
+/// Speeds of the left and the right wheel halfway round it \[m/s\]: 0.2 for the outer one, on a circle of 2.17 m.
+pub(super) fn circle_speeds(direction: Direction) -> [f64; 2] {
+    let inner = 0.2 * 1.83 / 2.17;
+    if direction == Direction::Ccw { [inner, 0.2] } else { [0.2, inner] }
+}
+
+/// Tracks on which every deterministic effect shows: a small square and a circle, both ways.
+fn probes() -> Vec<Track> {
+    let robot = Robot::labmate();
+    let square = Path::new(&SQUARE, &[0.5], SpeedProfile::default()).unwrap();
+    let mut tracks = Vec::new();
+    for (direction, _) in ccw_and_cw() {
+        tracks.push(Track::watched(&square, direction, &robot));
+        tracks.push(Track::watched(&circle(), direction, &robot));
+    }
+    tracks
+}
+
+/// Everything that is seen on the probes.
+fn seen<T: Evaluate>(model: &Model, values: &[T], probes: &[Track]) -> Vec<T> {
+    let chain = model.chain_with(values);
+    probes.iter().flat_map(|track| track.poses(&chain)).flat_map(|pose| [pose.x, pose.y, pose.heading]).collect()
+}
+
+/// The model of one effect with each of its numbers at `value(parameter)`.
+fn alone(entry: &Entry, value: fn(&Parameter, &Robot) -> f64) -> Model {
+    let robot = Robot::labmate();
+    let mut model = Model::new(&robot);
+    for p in entry.about.parameters {
+        model.set(entry.about.name, p.name, value(p, &robot)).unwrap();
+    }
+    model
+}
+
+fn neutral(p: &Parameter, robot: &Robot) -> f64 {
+    p.default.resolve(robot)
+}
+
+/// The derivative of everything seen by parameter `i`, by duals.
+fn column(model: &Model, i: usize, probes: &[Track]) -> Vec<f64> {
+    let seeded: Vec<Dual> =
+        model.values().enumerate().map(|(j, v)| Dual::new(v, f64::from(u8::from(i == j)))).collect();
+    seen(model, &seeded, probes).iter().map(|d| d.eps).collect()
+}
+
+fn stepped(model: &Model, i: usize, step: f64, probes: &[Track]) -> Vec<f64> {
+    let mut values: Vec<f64> = model.values().collect();
+    values[i] += step;
+    seen(model, &values, probes)
+}
+
+#[test]
+fn the_catalogue_is_complete_and_consistent() {
+    let mut flags = Vec::new();
+    for entry in CATALOGUE {
+        let about = &entry.about;
+        assert!(std::ptr::eq(find(about.name).unwrap(), entry), "{} stands twice", about.name);
+        for text in [about.title, about.equation, about.physics, about.signature, about.separated_by, about.source] {
+            assert!(text.len() > 3, "{} leaves a text empty", about.name);
+        }
+        for p in about.parameters {
+            assert!(!p.flag.is_empty() && !flags.contains(&p.flag), "--{} of {} stands twice", p.flag, about.name);
+            flags.push(p.flag);
+            assert!(!p.meaning.is_empty());
+            p.check(p.default.resolve(&Robot::labmate())).unwrap();
+            p.check(p.usual(&Robot::labmate())).unwrap();
+        }
+    }
+    let mut purposes: Vec<u64> = CATALOGUE.iter().map(Entry::purpose).collect();
+    purposes.sort_unstable();
+    purposes.dedup();
+    assert_eq!(purposes.len(), CATALOGUE.len());
+}
+
+#[test]
+fn every_effect_that_files_may_name_is_there() {
+    let names = "wheel_diameter_ratio wheelbase scale crab wheel_eccentricity_left wheel_eccentricity_right turn_slip \
+                 turn_slip_rate speed_slip speed_slip_left speed_slip_right acceleration_slip \
+                 direction_dependent_wheelbase caster_kick leg_kick backlash floor_slope floor_slope_yaw carpet_nap \
+                 diameter_drift centripetal_load missed_counts bumps placed_bumps wheel_noise encoder_skew \
+                 encoder_resolution encoder_sampling reference_delay reference_clock_rate reference_noise \
+                 marker_offset marker_yaw start_pose";
+    for name in names.split_whitespace() {
+        find(name).unwrap();
+    }
+    assert_eq!(names.split_whitespace().count(), CATALOGUE.len());
+}
+
+#[test]
+fn effects_that_look_alike_name_each_other() {
+    for entry in CATALOGUE {
+        for other in entry.about.confused_with {
+            assert_ne!(*other, entry.about.name);
+            let back = find(other).unwrap().about.confused_with;
+            assert!(back.contains(&entry.about.name), "{other} does not name {}", entry.about.name);
+        }
+    }
+}
+
+#[test]
+fn a_misspelt_effect_is_told_its_neighbour() {
+    let error = find("wheel_base").unwrap_err().to_string();
+    assert_eq!(error, "there is no effect \"wheel_base\"; did you mean \"wheelbase\"?");
+}
+
+#[test]
+fn an_effect_with_its_default_values_does_nothing_to_the_last_bit() {
+    let probes = probes();
+    let nothing = seen::<f64>(&Model::new(&Robot::labmate()), &[], &probes);
+    for entry in CATALOGUE {
+        let model = alone(entry, neutral);
+        let values: Vec<f64> = model.values().collect();
+        assert!(seen(&model, &values, &probes) == nothing, "{}", entry.about.name);
+    }
+}
+
+#[test]
+fn each_number_but_those_of_chance_shows_and_its_derivative_is_that_of_finite_differences() {
+    let probes = probes();
+    let mut silent = Vec::new();
+    for entry in CATALOGUE {
+        let model = alone(entry, Parameter::usual);
+        for (i, p) in entry.about.parameters.iter().enumerate() {
+            let exact = column(&model, i, &probes);
+            let h = 1e-3 * p.typical.max(1e-6);
+            let (high, low) = (stepped(&model, i, h, &probes), stepped(&model, i, -h, &probes));
+            for (k, e) in exact.iter().enumerate() {
+                let numeric = (high[k] - low[k]) / (2.0 * h);
+                assert!((e - numeric).abs() < 1e-5 * (1.0 + e.abs()), "{} {}: {e} {numeric}", entry.about.name, p.name);
+            }
+            if exact.iter().all(|e| *e == 0.0) {
+                silent.push((entry.about.name, p.name));
+            }
+        }
+    }
+    let chance: Vec<(&str, &str)> = CATALOGUE
+        .iter()
+        .flat_map(|entry| entry.about.parameters.iter().map(move |p| (entry.about.name, p.name)))
+        .filter(|(effect, parameter)| {
+            ["placed_bumps", "bumps", "wheel_noise", "encoder_resolution", "reference_noise"].contains(effect)
+                || parameter.contains("_sd_")
+        })
+        .collect();
+    assert_eq!(silent, chance);
+}
+
+#[test]
+fn each_number_acts_linearly_where_the_effect_does_nothing() {
+    let probes = probes();
+    for entry in CATALOGUE {
+        let model = alone(entry, neutral);
+        for (i, p) in entry.about.parameters.iter().enumerate() {
+            let exact = column(&model, i, &probes);
+            let h = 1e-4 * p.typical.max(1e-6);
+            for step in [h, -h] {
+                let (there, here) = (stepped(&model, i, step, &probes), stepped(&model, i, 0.0, &probes));
+                let scale = exact.iter().fold(0.0_f64, |most, e| most.max(e.abs()));
+                for (k, e) in exact.iter().enumerate() {
+                    let slope = (there[k] - here[k]) / step;
+                    let what = (entry.about.name, p.name);
+                    assert!((slope - e).abs() < 1e-3 * scale + 1e-6, "{what:?} by {step:e}: {slope} {e}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn an_effect_says_whether_it_depends_on_where_and_how_the_robot_drives() {
+    let other = Context {
+        heading: 1.0,
+        duration: 0.1,
+        speed: 0.2,
+        turn_rate: 0.9,
+        wheel_speed: [0.05, 0.35],
+        speed_change: [0.01, 0.02],
+        wheel_angle: [2.0, 3.0],
+        wheel_rotation: [0.1, 0.2],
+        reversed: [1.0, -1.0],
+        distance: 3.0,
+        time: 20.0,
+        session_distance: 40.0,
+        since_turn: 0.02,
+        length: 0.02,
+        last_turn: -1.0,
+        run: 2.0,
+        direction: 1.0,
+        recorded: false,
+    };
+    let travel = WheelTravel { left: 0.005, right: 0.035 };
+    for entry in CATALOGUE {
+        let chain = alone(entry, Parameter::usual).chain();
+        let depends = chain.displacement(&other, &travel) != chain.displacement(&Context::default(), &travel);
+        assert_eq!(depends, entry.varies, "{}", entry.about.name);
+    }
+}

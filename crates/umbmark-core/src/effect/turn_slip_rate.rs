@@ -1,0 +1,59 @@
+//! Slip that grows with the rate of turn.
+
+use super::{About, ActsOn, Context, Effect};
+use crate::geometry::{Displacement2, Real};
+use crate::parameter::Parameter;
+
+/// The share of rotation that is lost per rate of turn.
+pub struct TurnSlipRate;
+
+impl Effect for TurnSlipRate {
+    const ABOUT: About = About {
+        name: "turn_slip_rate",
+        title: "slip that grows with the rate of turn",
+        acts_on: ActsOn::Body,
+        parameters: &[Parameter::size(
+            "s_per_rad",
+            "turn-slip-rate",
+            "s/rad",
+            8e-3,
+            (-1.0, 1.0),
+            "share of the rotation that is lost per rad/s",
+        )],
+        equation: "Δθ ← (1 - k |ω|) Δθ",
+        physics: "The faster a robot turns, the more sideways force its tyres pass on, and the more they creep.",
+        signature: "As E_b at any one rate of turn. The ramps of a turn lose less than its middle, which a dense track shows.",
+        confused_with: &["wheelbase", "scale", "turn_slip", "speed_slip"],
+        separated_by: "spins at two rates of turn",
+        source: "linear creep of a rolling tyre; 0.8 % per rad/s is assumed",
+    };
+    const VARIES: bool = true;
+
+    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        motion.rotation *= -p[0] * at.turn_rate.abs() + 1.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, stops_with};
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn a_quarter_turn_loses_the_mean_rate_of_its_trapezoid() {
+        // Wheels at 0.2 m/s over 0.34 m: top rate w; ramps of 1 s at 0.2 m/s². The integral of w² over the turn is
+        // w² (cruise + 2/3 ramp), cruise and ramp from the wheel's way of 0.267 m = 0.2 (cruise + ramp). Pieces of a
+        // centimetre take the ramps in coarse steps.
+        let top: f64 = 0.4 / 0.34;
+        let way = 0.17 * FRAC_PI_2;
+        let (ramp, cruise) = (1.0, way / 0.2 - 1.0);
+        let integral = top * top * (cruise + 2.0 * ramp / 3.0);
+        for k in [0.01, -0.01] {
+            for (direction, sign) in ccw_and_cw() {
+                let turned = stops_with(&[("turn_slip_rate", "s_per_rad", k)], direction)[1].heading;
+                let expected = sign * (FRAC_PI_2 - k * integral);
+                assert!((turned - expected).abs() < 0.01 * k.abs(), "{turned} {expected}");
+            }
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! Run-out of the left wheel.
+
+use super::{About, ActsOn, Context, Effect};
+use crate::drive::WheelTravel;
+use crate::geometry::Real;
+use crate::parameter::Parameter;
+
+/// A left wheel whose axle misses its centre.
+pub struct WheelEccentricityLeft;
+
+impl Effect for WheelEccentricityLeft {
+    const ABOUT: About = About {
+        name: "wheel_eccentricity_left",
+        title: "run-out of the left wheel",
+        acts_on: ActsOn::Wheels,
+        parameters: &[
+            Parameter {
+                flag: "eccentricity-left-cosine",
+                meaning: "amplitude in the cosine of the left wheel's angle since START",
+                ..COSINE
+            },
+            Parameter {
+                flag: "eccentricity-left-sine",
+                meaning: "amplitude in the sine of the left wheel's angle since START",
+                ..SINE
+            },
+        ],
+        equation: "s_L ← s_L + c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀),  φ the wheel's angle since START",
+        physics: RUN_OUT,
+        signature: "A wave in heading of amplitude e/b that repeats with each wheel revolution, and half of it in the way \
+                    gone. Where the wave begins at its crest its mean turns the whole path, as crab does; return poses hardly show \
+                    either.",
+        confused_with: &["wheel_eccentricity_right"],
+        separated_by: "the track against the wheel's angle: in turns the wheels roll opposite ways and their waves part",
+        source: "geometry of an off-centre wheel; 0.3 mm is assumed",
+    };
+    const VARIES: bool = true;
+
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.left += wave(p, at, 0);
+    }
+}
+
+pub(super) const RUN_OUT: &str = "A wheel bored or mounted e off its centre has an effective radius that swings by e within each \
+     revolution: it rolls ahead of its count on one half and falls behind on the other.";
+
+pub(super) const COSINE: Parameter = Parameter::size("cosine_m", "", "m", 3e-4, (-0.1, 0.1), "");
+
+pub(super) const SINE: Parameter = Parameter::size("sine_m", "", "m", 3e-4, (-0.1, 0.1), "");
+
+/// c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀) over a piece \[m\].
+pub(super) fn wave<T: Real>(p: &[T], at: &Context<T>, wheel: usize) -> T {
+    let from = at.wheel_angle[wheel];
+    let (sine_from, cosine_from) = from.sine_cosine();
+    let (sine_to, cosine_to) = (from + at.wheel_rotation[wheel]).sine_cosine();
+    p[0] * (cosine_to - cosine_from) + p[1] * (sine_to - sine_from)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, stops_with};
+
+    #[test]
+    fn each_wheel_is_ahead_by_its_wave_at_the_angle_where_it_stops() {
+        // 4 m on a wheel of 0.15 m are 53.33 rad.
+        let angle: f64 = 4.0 / 0.075;
+        for (side, sign) in [("left", -1.0), ("right", 1.0)] {
+            let name = &*format!("wheel_eccentricity_{side}");
+            for (c, s) in [(1e-4, 0.0), (-1e-4, 0.0), (0.0, 1e-4)] {
+                let ahead = c * (libm::cos(angle) - 1.0) + s * libm::sin(angle);
+                for (direction, _) in ccw_and_cw() {
+                    let stop = stops_with(&[(name, "cosine_m", c), (name, "sine_m", s)], direction)[0];
+                    assert!((stop.heading - sign * ahead / 0.34).abs() < 1e-12, "{stop:?}");
+                    assert!((stop.x - 4.0 - 0.5 * ahead).abs() < 1e-6, "{stop:?}");
+                }
+            }
+        }
+    }
+    #[test]
+    fn in_a_turn_each_wheel_has_an_angle_of_its_own() {
+        let c = 1e-4;
+        for (direction, sign) in ccw_and_cw() {
+            let turn = sign * 0.17 * std::f64::consts::FRAC_PI_2;
+            for (name, way, side) in
+                [("wheel_eccentricity_left", 4.0 - turn, -1.0), ("wheel_eccentricity_right", 4.0 + turn, 1.0)]
+            {
+                let ahead = c * (libm::cos(way / 0.075) - 1.0);
+                let error =
+                    stops_with(&[(name, "cosine_m", c)], direction)[1].heading - sign * std::f64::consts::FRAC_PI_2;
+                assert!((error - side * ahead / 0.34).abs() < 1e-12, "{name} {direction:?}: {error}");
+            }
+        }
+    }
+}

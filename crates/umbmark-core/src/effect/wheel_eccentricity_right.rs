@@ -1,0 +1,42 @@
+//! Run-out of the right wheel.
+
+use super::wheel_eccentricity_left::{COSINE, RUN_OUT, SINE, wave};
+use super::{About, ActsOn, Context, Effect};
+use crate::drive::WheelTravel;
+use crate::geometry::Real;
+use crate::parameter::Parameter;
+
+/// A right wheel whose axle misses its centre.
+pub struct WheelEccentricityRight;
+
+impl Effect for WheelEccentricityRight {
+    const ABOUT: About = About {
+        name: "wheel_eccentricity_right",
+        title: "run-out of the right wheel",
+        acts_on: ActsOn::Wheels,
+        parameters: &[
+            Parameter {
+                flag: "eccentricity-right-cosine",
+                meaning: "amplitude in the cosine of the right wheel's angle since START",
+                ..COSINE
+            },
+            Parameter {
+                flag: "eccentricity-right-sine",
+                meaning: "amplitude in the sine of the right wheel's angle since START",
+                ..SINE
+            },
+        ],
+        equation: "s_R ← s_R + c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀),  φ the wheel's angle since START",
+        physics: RUN_OUT,
+        signature: "As run-out of the left wheel, with the wave in heading turned over: amplitude e/b, wavelength one \
+                    circumference, next to nothing in return poses.",
+        confused_with: &["wheel_eccentricity_left"],
+        separated_by: "the track against the wheel's angle: in turns the wheels roll opposite ways and their waves part",
+        source: "geometry of an off-centre wheel; 0.3 mm is assumed",
+    };
+    const VARIES: bool = true;
+
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.right += wave(p, at, 1);
+    }
+}

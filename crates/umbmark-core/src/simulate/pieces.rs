@@ -1,0 +1,270 @@
+//! Pieces of true motion: first listed, then worked out side by side, then chained run by run.
+//!
+//! Whatever makes a stretch of driving into true motion does so as a list of pieces with constant twist: one where nothing
+//! interrupts the stretch, more where bumps, or a law that changes along the way, cut it. Where a piece ends as seen from
+//! where it began does not depend on the others. So the pieces of all runs of a test are worked out in one loop without a
+//! branch, and only the products along each run wait for each other.
+
+use crate::engine::{Instructions, Motion};
+use crate::geometry::{Displacement2, Pose2, sinc_cos_near_zero};
+
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+/// A motion with constant twist, whose end is then moved in the frame of its start and turned about itself.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    /// Twist times time.
+    pub motion: Displacement2,
+    /// What noise adds at the end: (x, y) \[m\] and heading \[rad\].
+    pub scatter: [f64; 3],
+}
+
+/// Pieces side by side.
+const WIDTH: usize = 8;
+
+/// Some pieces, number by number, so that one instruction does several of them.
+#[derive(Clone, Debug, Default)]
+#[repr(align(64))]
+struct Block {
+    forward: [f64; WIDTH],
+    sideways: [f64; WIDTH],
+    rotation: [f64; WIDTH],
+    scatter: [[f64; WIDTH]; 3],
+}
+
+/// (sinc h, sin h, cos h) from q = h/2 within the polynomials' range, |q| <= π/4: no quarter or half turn is past it.
+#[inline(always)]
+fn from_half(q: f64) -> (f64, f64, f64) {
+    let (sinc, cosine) = sinc_cos_near_zero(q);
+    let sine = sinc * q;
+    (sinc * cosine, 2.0 * sine * cosine, 1.0 - 2.0 * (sine * sine))
+}
+
+impl Block {
+    fn set(&mut self, place: usize, piece: &Piece) {
+        self.forward[place] = piece.motion.forward;
+        self.sideways[place] = piece.motion.sideways;
+        self.rotation[place] = piece.motion.rotation;
+        for (row, value) in self.scatter.iter_mut().zip(piece.scatter) {
+            row[place] = value;
+        }
+    }
+
+    /// Rotation with scatter.
+    #[inline(always)]
+    fn turned(&self, place: usize) -> f64 {
+        self.rotation[place] + self.scatter[2][place]
+    }
+
+    #[inline(always)]
+    fn is_large(&self, place: usize) -> bool {
+        !(self.rotation[place].abs() <= std::f64::consts::PI && self.turned(place).abs() <= std::f64::consts::PI)
+    }
+
+    /// Where the pieces end as seen from where they begin, scatter included.
+    #[inline(always)]
+    fn ends(&self, ends: &mut [Motion; WIDTH]) {
+        let mut x = [0.0; WIDTH];
+        let (mut y, mut cosines, mut sines) = (x, x, x);
+        let mut any_large = false;
+        for i in 0..WIDTH {
+            any_large |= self.is_large(i);
+            let (sinc, sine, cosine) = from_half(0.25 * self.rotation[i]);
+            let (ahead, aside) = (sinc * self.forward[i], sinc * self.sideways[i]);
+            x[i] = (cosine * ahead - sine * aside) + self.scatter[0][i];
+            y[i] = (sine * ahead + cosine * aside) + self.scatter[1][i];
+            let (_, sine, cosine) = from_half(0.25 * self.turned(i));
+            cosines[i] = 1.0 - 2.0 * (sine * sine);
+            sines[i] = 2.0 * sine * cosine;
+        }
+        for (i, end) in ends.iter_mut().enumerate() {
+            // Number by number: a struct put together first is written and read again in different widths.
+            (end.pose.x, end.pose.y, end.pose.heading) = (x[i], y[i], self.turned(i));
+            (end.cosine, end.sine) = (cosines[i], sines[i]);
+        }
+        if any_large {
+            self.replace_large(ends);
+        }
+    }
+
+    /// Rotations past half a turn, one by one.
+    #[cold]
+    fn replace_large(&self, ends: &mut [Motion; WIDTH]) {
+        for (i, motion) in ends.iter_mut().enumerate().filter(|(i, _)| self.is_large(*i)) {
+            let (forward, sideways, rotation) = (self.forward[i], self.sideways[i], self.rotation[i]);
+            let end = Pose2::exp(&Displacement2 { forward, sideways, rotation });
+            *motion = Motion::from(Pose2 {
+                x: end.x + self.scatter[0][i],
+                y: end.y + self.scatter[1][i],
+                heading: self.turned(i),
+            });
+        }
+    }
+}
+
+/// The ends of all pieces of `blocks`, one block after the other.
+#[inline(always)]
+fn all_ends(blocks: &[Block], ends: &mut [[Motion; WIDTH]]) {
+    for (block, ends) in blocks.iter().zip(ends) {
+        block.ends(ends);
+    }
+}
+
+fn work_out(instructions: Instructions, blocks: &[Block], ends: &mut [[Motion; WIDTH]]) {
+    #[cfg(target_arch = "x86_64")]
+    match instructions {
+        // SAFETY: `instructions` is never more than what the machine was found to have.
+        Instructions::Avx512 => return unsafe { x86::all_ends_by_eight(blocks, ends) },
+        // SAFETY: as above.
+        Instructions::Avx2 => return unsafe { x86::all_ends_by_four(blocks, ends) },
+        Instructions::Portable => {}
+    }
+    let _ = instructions;
+    all_ends(blocks, ends);
+}
+
+/// A run under way.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    /// Where it has come, as far as its pieces are worked out.
+    reached: Motion,
+    /// The first of its pieces that are not.
+    first: usize,
+}
+
+/// The runs under way and the pieces that they have yet to drive.
+#[derive(Clone, Debug)]
+pub(super) struct Pieces {
+    instructions: Instructions,
+    runs: Vec<Run>,
+    blocks: Vec<Block>,
+    count: usize,
+    ends: Vec<[Motion; WIDTH]>,
+}
+
+impl Pieces {
+    /// No runs, and registers no wider than these to work them out with: the same bits on all.
+    pub(super) fn new(instructions: Instructions) -> Pieces {
+        Pieces {
+            instructions: instructions.min(Instructions::best()),
+            runs: Vec::new(),
+            blocks: Vec::new(),
+            count: 0,
+            ends: Vec::new(),
+        }
+    }
+
+    /// Forgets all runs.
+    pub(super) fn clear(&mut self) {
+        self.runs.clear();
+        self.blocks.clear();
+        self.count = 0;
+    }
+
+    /// Begins one more run at `start`; the pieces that follow are its own.
+    pub(super) fn start(&mut self, start: Pose2) {
+        self.runs.push(Run { reached: Motion::from(start), first: self.count });
+    }
+
+    /// Adds a piece to the run begun last.
+    #[inline]
+    pub(super) fn push(&mut self, piece: &Piece) {
+        let place = self.count % WIDTH;
+        if place == 0 {
+            self.blocks.push(Block::default());
+        }
+        if let Some(block) = self.blocks.last_mut() {
+            block.set(place, piece);
+        }
+        self.count += 1;
+    }
+
+    /// Moves every run to the end of its pieces.
+    pub(super) fn settle(&mut self) {
+        self.ends.resize(self.blocks.len(), [Motion::IDENTITY; WIDTH]);
+        work_out(self.instructions, &self.blocks, &mut self.ends);
+        let ends = self.ends.as_flattened();
+        let mut end = self.count;
+        for run in self.runs.iter_mut().rev() {
+            run.reached = ends[run.first..end].iter().fold(run.reached, |pose, piece| pose.then(piece));
+            (end, run.first) = (run.first, 0);
+        }
+        self.blocks.clear();
+        self.count = 0;
+    }
+
+    /// Where the runs have come, in the order in which they were begun.
+    pub(super) fn reached(&self) -> impl Iterator<Item = Pose2> + '_ {
+        self.runs.iter().map(|run| run.reached.pose)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pieces_of(run: usize) -> impl Iterator<Item = Piece> {
+        let rotations = [0.0, 1e-9, -1.57, 1.572, 3.13, -3.145, 3.2, -7.0, 20.0, 0.3, -0.02];
+        rotations.into_iter().cycle().skip(run).take(5 + 7 * run).enumerate().map(|(i, rotation)| Piece {
+            motion: Displacement2 { forward: 4.0 - i as f64, sideways: 0.1 * i as f64, rotation },
+            scatter: [1e-2, -2e-2, 1e-3 * (i as f64 - 5.0)],
+        })
+    }
+
+    /// The piece by its definition, pose by pose.
+    fn driven(pose: Pose2, piece: &Piece) -> Pose2 {
+        let [x, y, turned] = piece.scatter;
+        let end = Pose2::exp(&piece.motion);
+        pose.compose(&Pose2::new(end.x + x, end.y + y, end.heading + turned))
+    }
+
+    #[test]
+    fn runs_end_where_their_pieces_lead_one_by_one_past_half_and_whole_turns_too() {
+        for instructions in [Instructions::Portable, Instructions::Avx2, Instructions::Avx512] {
+            let mut pieces = Pieces::new(instructions);
+            // Settled in the middle of the last run, as a recording does, and at the end.
+            let mut expected = Vec::new();
+            for run in 0..4 {
+                let start = Pose2::new(0.1 * run as f64, -0.2, 0.3 * run as f64);
+                pieces.start(start);
+                pieces_of(run).for_each(|piece| pieces.push(&piece));
+                expected.push(pieces_of(run).fold(start, |pose, piece| driven(pose, &piece)));
+            }
+            pieces.settle();
+            let last =
+                Piece { motion: Displacement2 { forward: 1.0, sideways: 0.0, rotation: -0.5 }, scatter: [0.0; 3] };
+            pieces.push(&last);
+            expected[3] = driven(expected[3], &last);
+            pieces.settle();
+            let reached: Vec<Pose2> = pieces.reached().collect();
+            assert_eq!(reached.len(), 4);
+            for (reached, expected) in reached.iter().zip(&expected) {
+                let gap = [reached.x - expected.x, reached.y - expected.y, reached.heading - expected.heading];
+                assert!(gap.iter().all(|gap| gap.abs() < 1e-12), "{instructions:?}: {reached:?} {expected:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_bits_of_a_piece_do_not_depend_on_its_neighbours_or_the_instruction_set() {
+        let alone = |piece: &Piece| {
+            let mut pieces = Pieces::new(Instructions::Portable);
+            pieces.start(Pose2::IDENTITY);
+            pieces.push(piece);
+            pieces.settle();
+            pieces.reached().next().unwrap()
+        };
+        for instructions in [Instructions::Portable, Instructions::Avx2, Instructions::Avx512] {
+            let mut pieces = Pieces::new(instructions);
+            for piece in pieces_of(3) {
+                pieces.start(Pose2::IDENTITY);
+                pieces.push(&piece);
+            }
+            pieces.settle();
+            for (piece, reached) in pieces_of(3).zip(pieces.reached()) {
+                assert_eq!(reached, alone(&piece), "{instructions:?} {piece:?}");
+            }
+        }
+    }
+}

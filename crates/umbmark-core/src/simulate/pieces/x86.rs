@@ -1,0 +1,13 @@
+//! The same loop compiled for wider registers.
+
+use super::{Block, Motion, WIDTH, all_ends};
+
+#[target_feature(enable = "avx512f,avx512dq")]
+pub(super) fn all_ends_by_eight(blocks: &[Block], ends: &mut [[Motion; WIDTH]]) {
+    all_ends(blocks, ends);
+}
+
+#[target_feature(enable = "avx2")]
+pub(super) fn all_ends_by_four(blocks: &[Block], ends: &mut [[Motion; WIDTH]]) {
+    all_ends(blocks, ends);
+}
