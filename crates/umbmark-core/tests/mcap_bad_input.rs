@@ -72,6 +72,7 @@ fn containers() -> Vec<Case> {
         case("a text", b"t_s,ticks_left,ticks_right\n".to_vec()),
         case("a bag of ROS 1", b"#ROSBAG V2.0\n".to_vec()),
         case("a bag in SQLite", b"SQLite format 3\0".to_vec()),
+        case("a log packed by gzip", b"\x1f\x8b\x08\0\0\0\0\0\0\x03".to_vec()),
         case("nothing behind the first bytes", mcap::MAGIC.to_vec()),
         case("a record that does not exist", [mcap::MAGIC, &[0; 40]].concat()),
         case("a record that claims a terabyte", huge),

@@ -99,6 +99,7 @@ impl Container {
         let found = match magic {
             _ if magic.is_empty() => "is empty".to_owned(),
             _ if magic.starts_with(b"#ROSBAG") => "is a ROS 1 bag".to_owned(),
+            _ if magic.starts_with(&[0x1f, 0x8b]) => "is packed by gzip (unpack it first)".to_owned(),
             _ if magic.starts_with(b"SQLite") => "is an SQLite bag (.db3)".to_owned(),
             _ => format!("begins with the bytes {magic:02x?}"),
         };
