@@ -71,7 +71,7 @@ def install() -> Path:
     wanted = REQUIREMENTS.read_text()
     if installed.exists() and installed.read_text() == wanted:
         return python
-    say("installing numpy, numba and JAX")
+    say("installing numpy, numba, JAX and readers of MCAP")
     venv.create(ENVIRONMENT, clear=True, with_pip=True)
     pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     names = [line for line in wanted.splitlines() if not line.startswith("#")]

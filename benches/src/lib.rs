@@ -2,6 +2,7 @@
 //! the studies made of them.
 
 pub mod logs;
+pub mod mcap_logs;
 pub mod plain_trials;
 pub mod studies;
 

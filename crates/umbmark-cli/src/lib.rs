@@ -4,10 +4,12 @@
 //! computed. Results go to stdout, messages and progress to stderr.
 
 mod checkpoint;
+mod data_arguments;
 mod effect_flags;
 mod ensemble_report;
 mod files;
 mod model_report;
+mod output_arguments;
 mod prose;
 mod robot_flags;
 mod session;

@@ -2,6 +2,7 @@
 
 use snapbox::cmd::{Command, OutputAssert, cargo_bin};
 use snapbox::str;
+use std::path::Path;
 use umbmark_core::dataset::Dataset;
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::Direction;
@@ -81,4 +82,71 @@ fn a_narrow_counter_rolls_over_in_the_file_and_is_unrolled_when_it_is_read() {
     let log = Dataset::load(&place).unwrap().runs.remove(0).log.unwrap();
     // Four legs of 2122 ticks, and a turn to the right at each corner.
     assert!(*log.left.last().unwrap() > 10_000.0, "{:?}", log.left.last());
+}
+
+#[test]
+fn one_run_can_be_written_as_a_log_of_ros_2_which_brings_its_robot_along() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("run.mcap");
+    let name = place.to_str().unwrap();
+    let assert =
+        simulate(&["-o", name, "--side", "0.5", "--wheelbase", "0.4", "--direction", "cw", "--json"]).success();
+    let document: serde_json::Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
+    assert_eq!(document["runs"].as_array().unwrap().len(), 1);
+    let dataset = Dataset::load(&place).unwrap();
+    assert_eq!(dataset.nominal_robot().unwrap().drive.wheelbase(), 0.4);
+    assert_eq!(dataset.runs[0].direction, Some(Direction::Cw));
+    let log = dataset.runs[0].log.as_ref().unwrap();
+    assert!(log.time.len() > 1000 && log.reference.len() > 200);
+    let inspect = |flags: &[&str]| {
+        Command::new(cargo_bin!("umbmark")).arg("inspect").arg(&place).args(flags).args(["--json"]).assert()
+    };
+    let poses = |flags: &[&str]| {
+        let assert = inspect(flags).success();
+        let document: serde_json::Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
+        document["logs"][0]["reference"]["poses"].as_u64()
+    };
+    assert_eq!(poses(&[]), Some(log.reference.len() as u64));
+    assert_eq!(poses(&["--reference", "none"]), None);
+    assert_eq!(poses(&["--ticks", "/joint_states", "--reference", "/odom"]), Some(log.time.len() as u64));
+    inspect(&["--ticks", "/wheels"]).code(1).stderr_eq(str![[r#"
+error: [..]run.mcap: there is no topic "/wheels" for --ticks; there are: /ground_truth (geometry_msgs/msg/PoseStamped), /joint_states (sensor_msgs/msg/JointState), /odom (nav_msgs/msg/Odometry), /tf (tf2_msgs/msg/TFMessage)
+
+"#]]);
+    let told =
+        String::from_utf8(Command::new(cargo_bin!("umbmark")).arg("inspect").arg(&place).output().unwrap().stdout);
+    let told = told.unwrap();
+    let topics = told.lines().find(|line| line.contains("/joint_states")).unwrap();
+    assert_eq!(topics.split_whitespace().collect::<Vec<_>>(), ["run", "/joint_states", "/ground_truth"]);
+    simulate(&["-o", name]).code(1);
+    simulate(&["-o", name, "--force", "--runs", "2"]).code(1).stderr_eq(str![[r#"
+error: an MCAP log holds one run, got --runs 2; leave it out, or name a folder
+
+"#]]);
+}
+
+#[test]
+fn a_test_written_as_mcap_is_converted_to_csv_with_the_topics_that_were_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name).display().to_string();
+    let run = |arguments: &[&str]| Command::new(cargo_bin!("umbmark")).args(arguments).assert().success();
+    let setup = ["--side", "0.5", "--runs", "2", "--seed", "7", "--eb", "1.02"];
+    for to in ["csv", "mcap"] {
+        simulate(&[&["-o", &place(to), "--to", to][..], &setup].concat()).success();
+    }
+    assert!(Path::new(&place("mcap/runs/ccw_02.mcap")).is_file() && Path::new(&place("mcap/returns.csv")).is_file());
+    run(&["convert", &place("mcap"), "-o", &place("back")]);
+    let (written, back) = (Dataset::load(place("csv")).unwrap(), Dataset::load(place("back")).unwrap());
+    assert_eq!(written.runs.len(), 4);
+    for (a, b) in written.runs.iter().zip(&back.runs) {
+        let (log, read) = (a.log.as_ref().unwrap(), b.log.as_ref().unwrap());
+        assert_eq!((&a.name, a.returned, &log.left, &log.right), (&b.name, b.returned, &read.left, &read.right));
+        assert_eq!(log.reference.len(), read.reference.len());
+        for (a, b) in log.reference.iter().zip(&read.reference) {
+            assert_eq!((a.sample, a.x, a.y), (b.sample, b.x, b.y));
+            assert!((a.heading.unwrap() - b.heading.unwrap()).abs() < 4e-14);
+        }
+    }
+    run(&["convert", &place("mcap"), "-o", &place("without"), "--reference", "none"]);
+    assert!(Dataset::load(place("without")).unwrap().runs[0].log.as_ref().unwrap().reference.is_empty());
 }

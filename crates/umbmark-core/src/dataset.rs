@@ -1,9 +1,9 @@
 //! Measured (or simulated) robots: what a dataset folder holds, in memory, and its files.
 //!
-//! [`Dataset::load`] takes a folder (`robot.toml`, `returns.csv`, `runs/*.csv`; or one of OptiOdom) or one file of it.
-//! Inside, one file per layout reads text into rows (`returns`, `tick_log`, `optiodom`, `motive`, `tum`), a `Recording` mends rows
-//! and counts, `synchronise` sets the clock of a track by the motion, `start_frame` moves tracks into the frame of START, and an
-//! `Assembly` matches returns with logs.
+//! [`Dataset::load`] takes a folder (`robot.toml`, `returns.csv`, `runs/*.csv`, `runs/*.mcap`; or one of OptiOdom) or one
+//! file of it. Inside, one file per layout reads rows (`returns`, `tick_log`, `optiodom`, `motive`, `tum`, `mcap`), a
+//! `Recording` mends rows and counts, `synchronise` sets the clock of a track by the motion, `place` puts its poses into the
+//! log, `start_frame` moves them into the frame of START, and an `Assembly` matches returns with logs.
 //!
 //! ```no_run
 //! use umbmark_core::dataset::Dataset;
@@ -21,6 +21,7 @@ mod folder;
 mod inspect;
 mod label;
 mod layout;
+mod mcap;
 mod model_file;
 mod model_text;
 mod motive;
@@ -28,6 +29,7 @@ mod motive;
 mod mutated_input;
 mod optiodom;
 mod packed;
+mod place;
 mod recording;
 mod reference_file;
 mod reference_track;
@@ -50,6 +52,7 @@ pub use inspect::{
     Check, Coverage, Determined, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, Wheels, WheelsFound,
 };
 pub use layout::{LAYOUTS, Layout};
+pub use mcap::{McapProblem, Topics};
 pub use model_file::{parse_model, read_model};
 pub use model_text::model_text;
 pub use reference_track::ReferenceTrack;
@@ -128,6 +131,17 @@ pub struct RunClock {
     pub alignment: Alignment,
 }
 
+/// Where the log of a run was found in an MCAP file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RunTopics {
+    /// The run's name.
+    pub run: String,
+    /// Topic of the wheels.
+    pub wheels: String,
+    /// Topic of the absolute poses, where there were some.
+    pub reference: Option<String>,
+}
+
 /// A robot and its runs.
 #[derive(Clone, Debug)]
 pub struct Dataset {
@@ -139,6 +153,8 @@ pub struct Dataset {
     pub runs: Vec<Run>,
     /// The clocks that were set while reading: one for each log whose poses came from a track with its own clock.
     pub clocks: Vec<RunClock>,
+    /// The topics that were read: those of each MCAP log.
+    pub topics: Vec<RunTopics>,
     /// What the reader noticed and mended, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -148,7 +164,12 @@ impl Dataset {
     ///
     /// A single file is taken with the `robot.toml` beside it, if there is one.
     pub fn load(path: impl AsRef<std::path::Path>) -> Result<Dataset, DatasetError> {
-        folder::load(path.as_ref())
+        Dataset::load_with(path, &Topics::default())
+    }
+
+    /// Reads a dataset whose MCAP logs hold wheels and reference on the given topics.
+    pub fn load_with(path: impl AsRef<std::path::Path>, topics: &Topics) -> Result<Dataset, DatasetError> {
+        folder::load(path.as_ref(), topics)
     }
 
     /// The nominal robot, for questions that need one.

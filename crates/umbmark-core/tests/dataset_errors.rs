@@ -3,8 +3,11 @@
 #![allow(clippy::unwrap_used)]
 
 mod bad_input;
+#[path = "bad_input/sentences.rs"]
+mod sentences;
 
 use bad_input::{Case, cases};
+use sentences::sentences;
 use std::path::Path;
 use umbmark_core::dataset::Dataset;
 
@@ -40,21 +43,35 @@ fn every_piece_of_bad_input_is_answered_with_its_sentence() {
     assert!(wrong.is_empty(), "{} differ:\n{}", wrong.len(), wrong.join("\n"));
 }
 
-/// The table of `docs/bad_input.md`, which is made of the cases; `SNAPSHOTS=overwrite` writes it anew.
+/// The tables of `docs/bad_input.md`, which are made of the cases; `SNAPSHOTS=overwrite` writes it anew.
 #[test]
-fn the_table_in_the_documentation_is_that_of_the_cases() {
+fn the_tables_in_the_documentation_are_those_of_the_cases() {
     let shown = |text: &str| text.replace('|', "\\|").replace('<', "&lt;");
-    let mut table = String::from(
-        "# Bad input\n\nWhat cannot be used, and what is said of it. The table is made of the cases that the tests run \
-         ([`cases.txt`](../crates/umbmark-core/tests/bad_input/cases.txt), which holds the input too).\n\n\
-         | what is wrong | what is said |\n|---|---|\n",
+    let mut text = String::from(
+        "# Bad input\n\nWhat cannot be used, and what is said of it. The tables are made of the cases that the tests run.\n",
     );
-    for case in cases() {
-        table += &format!("| {} | {} |\n", shown(&case.name), shown(&case.says));
+    let files = [
+        ("Text files", "cases.txt", "which holds the input too", include_str!("bad_input/cases.txt")),
+        (
+            "MCAP logs",
+            "mcap_cases.txt",
+            "whose input `mcap_bad_input.rs` makes",
+            include_str!("bad_input/mcap_cases.txt"),
+        ),
+    ];
+    for (heading, name, input, cases) in files {
+        let link = format!("[`{name}`](../crates/umbmark-core/tests/bad_input/{name})");
+        text += &format!("\n## {heading}\n\n{link}, {input}.\n\n| what is wrong | what is said |\n|---|---|\n");
+        for (wrong, says) in sentences(cases) {
+            text += &format!("| {} | {} |\n", shown(wrong), shown(says));
+        }
     }
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/bad_input.md");
     if std::env::var("SNAPSHOTS").is_ok_and(|what| what == "overwrite") {
-        std::fs::write(&file, &table).unwrap();
+        std::fs::write(&file, &text).unwrap();
     }
-    assert!(std::fs::read_to_string(&file).is_ok_and(|text| text == table), "write it anew with SNAPSHOTS=overwrite");
+    assert!(
+        std::fs::read_to_string(&file).is_ok_and(|written| written == text),
+        "write it anew with SNAPSHOTS=overwrite"
+    );
 }

@@ -43,11 +43,11 @@ fn return_errors_of_real_squares_have_the_largest_size_that_their_authors_publis
         let expected: f64 = cells[6].parse().unwrap();
         assert!((largest - expected).abs() < 1e-6, "{set}: {largest} {expected}");
         let robot = data.nominal_robot().unwrap();
-        assert_eq!(robot.drive.wheelbase(), cells[1].parse().unwrap());
+        assert_eq!(robot.drive.wheelbase(), cells[1].parse::<f64>().unwrap());
         assert_eq!(robot.encoder.ticks_per_revolution(), 64.0 * 43.7);
         let both = Direction::BOTH.map(|direction| data.returns(TestKind::Systematic, direction).count());
         assert_eq!(both, [data.runs.len() / 2; 2], "{set}");
-        assert_eq!(data.path.unwrap().values(), [cells[16].parse().unwrap()]);
+        assert_eq!(data.path.unwrap().values(), [cells[16].parse::<f64>().unwrap()]);
         sets += 1;
     }
     assert_eq!(sets, 6);

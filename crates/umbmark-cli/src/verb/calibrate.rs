@@ -13,6 +13,7 @@ use umbmark_core::dataset::Dataset;
 use umbmark_core::drive::Robot;
 
 use crate::Session;
+use crate::data_arguments::DataArguments;
 use crate::files::Pending;
 use crate::table::{table, with_precision_of};
 
@@ -38,9 +39,8 @@ enum WheelbaseKind {
 /// Arguments of `calibrate`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A dataset folder, an OptiOdom folder, or a return sheet beside its robot.toml
-    #[arg(value_name = "DATA")]
-    data: PathBuf,
+    #[command(flatten)]
+    data: DataArguments,
 
     /// Probability with which the intervals hold
     #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = crate::effect_flags::number)]
@@ -98,7 +98,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if !(arguments.level > 0.0 && arguments.level < 1.0) {
         anyhow::bail!("--level must be between 0 and 1, both excluded, got {}", arguments.level);
     }
-    let data = Dataset::load(&arguments.data)?;
+    let data = arguments.data.load()?;
     let mut calibration = calibrate(&data, &arguments.options())?;
     let robot = data.nominal_robot()?;
     if calibration.estimates.is_empty() {

@@ -12,6 +12,7 @@ use umbmark_core::effect::Model;
 use umbmark_core::learn::fit;
 
 use crate::Session;
+use crate::data_arguments::DataArguments;
 use crate::model_report::{circle_table, contrasts_table, p_text, square_json};
 use crate::prose::hanging;
 use crate::table::table;
@@ -19,9 +20,8 @@ use crate::table::table;
 /// Arguments of `compare`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A dataset folder, an OptiOdom folder, or a return sheet beside its robot.toml
-    #[arg(value_name = "DATA")]
-    data: PathBuf,
+    #[command(flatten)]
+    data: DataArguments,
 
     /// A model to hold against it, with the values it has; may be given more than once
     /// [default: the nominal robot, and E_d and E_b fitted to this data]
@@ -42,7 +42,7 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = Dataset::load(&arguments.data)?;
+    let data = arguments.data.load()?;
     let options = Options { size: arguments.size, draws: arguments.draws as usize, seed: session.seed() };
     let comparison = session.on_threads(|| -> anyhow::Result<Comparison> {
         Ok(compare(&data, &models(&arguments, &data)?, &options)?)

@@ -1,67 +1,50 @@
 //! `umbmark convert`: a dataset in another layout.
 
 use std::io::Write;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::builder::PossibleValuesParser;
 use serde_json::{Value, json};
-use umbmark_core::dataset::{Alignment, Dataset, Existing, LAYOUTS, Layout, Measured, RunClock};
+use umbmark_core::dataset::{Alignment, Dataset, Measured, RunClock};
 
 use crate::Session;
+use crate::data_arguments::DataArguments;
+use crate::output_arguments::{OutputArguments, layouts};
 use crate::prose::hanging;
 use crate::table::{table, with_precision_of};
 
 /// Arguments of `convert`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = layouts())]
+#[command(after_help = about())]
 pub struct Arguments {
-    /// A dataset folder, an OptiOdom folder or its metadata file, or one file of either
-    #[arg(value_name = "DATA")]
-    data: PathBuf,
+    #[command(flatten)]
+    data: DataArguments,
 
-    /// Folder to write
-    #[arg(short, long, value_name = "FOLDER")]
-    output: PathBuf,
-
-    /// The layout to write
-    #[arg(long, value_name = "LAYOUT", default_value = "csv", value_parser = names())]
-    to: String,
-
-    /// Replace files that exist
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    output: OutputArguments,
 }
 
-fn names() -> PossibleValuesParser {
-    PossibleValuesParser::new(LAYOUTS.iter().map(|layout| layout.name))
-}
-
-fn layouts() -> String {
-    let lines = LAYOUTS.iter().map(|layout| hanging(&format!("  {}", layout.name), 12, layout.about));
+fn about() -> String {
     format!(
-        "Layouts:\n{}\nWhere a track has a clock of its own (reference/NAME.csv or .tum beside runs/NAME.csv; *_opti.csv of OptiOdom), \
+        "{}\nWhere a track has a clock of its own (reference/NAME.csv or .tum beside runs/NAME.csv; *_opti.csv of OptiOdom), \
          its clock is set by the motion, and its poses are written into the log.",
-        lines.collect::<String>()
+        layouts()
     )
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = Dataset::load(&arguments.data)?;
-    let existing = if arguments.force { Existing::Replace } else { Existing::Keep };
-    let layout = LAYOUTS.iter().find(|layout| layout.name == arguments.to).unwrap_or(&LAYOUTS[0]);
-    let lost = data.convert(layout, &arguments.output, existing)?;
+    let data = arguments.data.load()?;
+    let lost = arguments.output.write(&data)?;
     if session.json() {
-        session.print_json(&document(&arguments, layout, &data, &lost))?;
+        session.print_json(&document(&arguments.output, &data, &lost))?;
     } else {
-        write!(session.out(), "{}", text(&arguments, layout, &data, &lost))?;
+        write!(session.out(), "{}", text(&arguments.output, &data, &lost))?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-fn text(arguments: &Arguments, layout: &Layout, data: &Dataset, lost: &[String]) -> String {
+fn text(arguments: &OutputArguments, data: &Dataset, lost: &[String]) -> String {
     let (place, runs) = (arguments.output.display(), data.runs.len());
-    let mut text = format!("wrote {runs} runs to {place} as {}\n", layout.name);
+    let mut text = format!("wrote {runs} runs to {place} as {}\n", arguments.layout().name);
     if !data.clocks.is_empty() {
         text += &format!("\n{}\n", clocks_table(&data.clocks));
     }
@@ -105,10 +88,10 @@ pub(super) fn clocks_table(clocks: &[RunClock]) -> String {
     table(&["clock; 95 %", "offset s", "rate", "ahead mm", "left", "yaw deg"], rows)
 }
 
-fn document(arguments: &Arguments, layout: &Layout, data: &Dataset, lost: &[String]) -> Value {
+fn document(arguments: &OutputArguments, data: &Dataset, lost: &[String]) -> Value {
     json!({
         "output": arguments.output.display().to_string(),
-        "layout": layout.name,
+        "layout": arguments.layout().name,
         "runs": data.runs.len(),
         "clocks": data.clocks.iter().map(clock_json).collect::<Vec<Value>>(),
         "lost": lost,

@@ -11,6 +11,7 @@ use umbmark_core::diagnose::{
 };
 
 use crate::Session;
+use crate::data_arguments::DataArguments;
 use crate::model_report::{
     circle_table, contrasts_table, estimates_json, estimates_table, finite, model_json, model_of, p_text, square_json,
     unit_of,
@@ -24,9 +25,8 @@ const EXPERIMENTS: usize = 6;
 /// Arguments of `diagnose`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A dataset folder, an OptiOdom folder, or a return sheet beside its robot.toml
-    #[arg(value_name = "DATA")]
-    data: PathBuf,
+    #[command(flatten)]
+    data: DataArguments,
 
     /// The model to question; its free effects are fitted [default: E_d and E_b]
     #[arg(long, value_name = "FILE")]
@@ -46,7 +46,7 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = Dataset::load(&arguments.data)?;
+    let data = arguments.data.load()?;
     let model = model_of(arguments.model.as_deref(), &data)?;
     let options = Options { size: arguments.size, draws: arguments.draws as usize, seed: session.seed() };
     let diagnosis = session.on_threads(|| diagnose(&data, &model, &options))??;

@@ -5,18 +5,17 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use serde_json::json;
-use umbmark_core::dataset::Dataset;
 use umbmark_core::learn::fit;
 
 use crate::Session;
+use crate::data_arguments::DataArguments;
 use crate::model_report::{estimates_json, estimates_table, model_json, model_of, write_model};
 
 /// Arguments of `fit`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A dataset folder, an OptiOdom folder, or a return sheet beside its robot.toml
-    #[arg(value_name = "DATA")]
-    data: PathBuf,
+    #[command(flatten)]
+    data: DataArguments,
 
     /// The model whose free effects are fitted [default: E_d and E_b]
     #[arg(long, value_name = "FILE")]
@@ -40,7 +39,7 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = Dataset::load(&arguments.data)?;
+    let data = arguments.data.load()?;
     let mut model = model_of(arguments.model.as_deref(), &data)?;
     for effect in &arguments.add {
         model.add(effect)?.free = true;

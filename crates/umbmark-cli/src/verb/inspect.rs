@@ -1,15 +1,18 @@
 //! `umbmark inspect`: what a dataset holds, whether it is any good, and what it can determine.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 use serde_json::{Map, Value, json};
-use umbmark_core::dataset::{Dataset, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, Wheels, WheelsFound};
+use umbmark_core::dataset::{
+    Dataset, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, RunTopics, Wheels, WheelsFound,
+};
 use umbmark_core::drive::Robot;
 use umbmark_core::path::Direction;
 
 use crate::Session;
+use crate::data_arguments::DataArguments;
 use crate::prose::hanging;
 use crate::table::table;
 use crate::terminal::{plan, sparkline};
@@ -18,16 +21,15 @@ use crate::verb::convert::{alignment_json, clock_json, clocks_table};
 /// Arguments of `inspect`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A dataset folder, an OptiOdom folder, or one file of either
-    #[arg(value_name = "DATA")]
-    data: PathBuf,
+    #[command(flatten)]
+    data: DataArguments,
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = Dataset::load(&arguments.data)?;
+    let data = arguments.data.load()?;
     let inspection = data.inspect();
     if session.json() {
-        session.print_json(&document(&arguments.data, &data, &inspection))?;
+        session.print_json(&document(&arguments.data.data, &data, &inspection))?;
     } else {
         let text = text(&data, &inspection, session.on_terminal());
         write!(session.out(), "{text}")?;
@@ -59,6 +61,9 @@ fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
     }
     text +=
         &inspection.logs.iter().find_map(|log| Some(picture(log, log.moves.as_ref()?, terminal))).unwrap_or_default();
+    if !data.topics.is_empty() {
+        text += &format!("\n{}\n", topics_table(&data.topics));
+    }
     if !data.clocks.is_empty() {
         text += &format!("\nclocks set by the motion while reading\n\n{}\n", clocks_table(&data.clocks));
     }
@@ -151,6 +156,18 @@ fn logs_table(logs: &[LogFacts]) -> String {
     table(&header, rows)
 }
 
+fn topics_table(topics: &[RunTopics]) -> String {
+    let rows = topics.iter().map(|topics| {
+        let reference = topics.reference.clone().unwrap_or_else(|| "-".into());
+        vec![topics.run.clone(), topics.wheels.clone(), reference]
+    });
+    table(&["topics", "wheels", "reference"], rows)
+}
+
+fn topics_json(topics: &RunTopics) -> Value {
+    json!({ "run": topics.run, "wheels": topics.wheels, "reference": topics.reference })
+}
+
 fn document(place: &Path, data: &Dataset, inspection: &Inspection) -> Value {
     let groups: Vec<Value> = inspection.groups.iter().map(group_json).collect();
     let logs: Vec<Value> = inspection.logs.iter().map(log_json).collect();
@@ -169,6 +186,7 @@ fn document(place: &Path, data: &Dataset, inspection: &Inspection) -> Value {
         "groups": groups,
         "logs": logs,
         "clocks": data.clocks.iter().map(clock_json).collect::<Vec<Value>>(),
+        "topics": data.topics.iter().map(topics_json).collect::<Vec<Value>>(),
         "checks": checks.collect::<Vec<Value>>(),
         "determined": determined.collect::<Vec<Value>>(),
         "rank": inspection.rank,

@@ -11,6 +11,7 @@ use umbmark_core::learn::{Learnt, Step, learn};
 
 use super::diagnose::in_words;
 use crate::Session;
+use crate::data_arguments::DataArguments;
 use crate::model_report::{estimates_json, estimates_table, finite, model_json, p_text, write_model};
 use crate::prose::hanging;
 use crate::table::table;
@@ -18,9 +19,8 @@ use crate::table::table;
 /// Arguments of `learn`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A dataset folder, an OptiOdom folder, or a return sheet beside its robot.toml
-    #[arg(value_name = "DATA")]
-    data: PathBuf,
+    #[command(flatten)]
+    data: DataArguments,
 
     /// Write the model that was learnt
     #[arg(short, long, value_name = "FILE")]
@@ -40,7 +40,7 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = Dataset::load(&arguments.data)?;
+    let data = arguments.data.load()?;
     let options = Options { size: arguments.size, draws: arguments.draws as usize, seed: session.seed() };
     let learnt = session.on_threads(|| learn(&data, &options))??;
     if let Some(file) = &arguments.output {

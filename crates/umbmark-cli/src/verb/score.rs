@@ -1,15 +1,14 @@
 //! `umbmark score`: Eqs. 1 to 6 on measured runs.
 
 use std::io::Write;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use serde_json::{Map, Value, json};
-use umbmark_core::dataset::Dataset;
 use umbmark_core::score::{CentroidInterval, Cluster, Convention, Score, score};
 use umbmark_core::stats::Interval;
 
 use crate::Session;
+use crate::data_arguments::DataArguments;
 use crate::table::table;
 
 /// How Eq. 5 joins both directions.
@@ -24,9 +23,8 @@ enum ConventionKind {
 /// Arguments of `score`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A dataset folder, or a return sheet (returns.csv)
-    #[arg(value_name = "DATA")]
-    data: PathBuf,
+    #[command(flatten)]
+    data: DataArguments,
 
     /// Probability with which the intervals hold
     #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = crate::effect_flags::number)]
@@ -38,7 +36,7 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = Dataset::load(&arguments.data)?;
+    let data = arguments.data.load()?;
     let mut score = score(&data.runs, arguments.level)?;
     score.warnings.splice(0..0, data.warnings.iter().cloned());
     let convention = match arguments.convention {

@@ -1,11 +1,10 @@
 //! `umbmark simulate`: one test, written as a dataset.
 
 use std::io::Write;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use serde_json::{Value, json};
-use umbmark_core::dataset::{Dataset, Existing, Run};
+use umbmark_core::dataset::{Dataset, Run};
 use umbmark_core::drive::{Encoder, Robot};
 use umbmark_core::effect::{Model, TestKind};
 use umbmark_core::engine::Update;
@@ -14,30 +13,47 @@ use umbmark_core::path::{Direction, Path};
 use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth};
 
 use crate::Session;
-use crate::setup::{Setup, SetupFlags};
+use crate::output_arguments::{OutputArguments, layouts};
+use crate::setup::{Directions, Setup, SetupFlags};
 use crate::table::table;
 
 /// Arguments of `simulate`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = layouts())]
 pub struct Arguments {
-    /// Folder to write: robot.toml, returns.csv and runs/*.csv
-    #[arg(short, long, value_name = "FOLDER")]
-    output: PathBuf,
+    #[command(flatten)]
+    output: OutputArguments,
 
-    /// Runs in each direction
-    #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    runs: u32,
+    /// Runs in each direction [default: 5, and 1 for NAME.mcap]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    runs: Option<u32>,
 
     /// How often the absolute pose is measured on the way; 0 for the end pose alone
     #[arg(long, default_value_t = 20.0, value_name = "HZ", value_parser = crate::effect_flags::number)]
     reference_rate: f64,
 
-    /// Replace files that exist
-    #[arg(long)]
-    force: bool,
-
     #[command(flatten)]
     setup: SetupFlags,
+}
+
+impl Arguments {
+    /// Whether one log is to be written, and no folder.
+    fn is_log(&self) -> bool {
+        self.output.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"))
+    }
+
+    /// Numbers of runs \[cw, ccw\]; a log holds one, counter-clockwise where nothing else is said.
+    fn numbers(&self) -> anyhow::Result<[usize; 2]> {
+        let direction = self.setup.direction;
+        if !self.is_log() {
+            return Ok(direction.runs(self.runs.unwrap_or(5) as usize));
+        }
+        if let Some(runs @ 2..) = self.runs {
+            anyhow::bail!("an MCAP log holds one run, got --runs {runs}; leave it out, or name a folder");
+        }
+        let direction = if direction == Directions::Both { Directions::Ccw } else { direction };
+        Ok(direction.runs(1))
+    }
 }
 
 /// How often the counters are written down where the robot file does not say \[Hz\].
@@ -48,15 +64,19 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let model = draw_parameters(&model, &draws, session.seed(), 0)?;
     let robot = with_rate(model.robot())?;
     let dataset = record(&arguments, &robot, &path, &model, session.seed())?;
-    let existing = if arguments.force { Existing::Replace } else { Existing::Keep };
-    dataset.save(&arguments.output, existing)?;
+    let lost = arguments.output.write(&dataset)?;
     for text in &assumed {
         session.message("assumed", text);
+    }
+    for text in &lost {
+        session.message("lost", text);
     }
     if session.json() {
         let runs: Vec<Value> = dataset.runs.iter().map(run_json).collect();
         session.print_json(&json!({
-            "output": arguments.output.display().to_string(),
+            "output": arguments.output.output.display().to_string(),
+            "layout": arguments.output.layout().name,
+            "lost": lost,
             "seed": session.seed(),
             "runs": runs,
             "version": umbmark_core::VERSION,
@@ -70,7 +90,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     });
     let text = table(&["run", "ex [mm]", "ey [mm]", "etheta [deg]"], rows);
     let count = dataset.runs.len();
-    let place = arguments.output.display();
+    let place = arguments.output.output.display();
     writeln!(session.out(), "{text}\n")?;
     let seed = session.seed();
     writeln!(session.out(), "{count} runs of {} in {place}, seed {seed}", robot.name)?;
@@ -92,9 +112,13 @@ fn record(arguments: &Arguments, robot: &Robot, path: &Path, model: &Model, seed
     let mut truth = Truth::new(model);
     simulator.open(&mut truth, seed, 0);
     let extended = model.get("placed_bumps", "count").is_some_and(|count| count > 0.0);
-    let tests = if extended { &[TestKind::Systematic, TestKind::Bumps][..] } else { &[TestKind::Systematic] };
+    let tests = match (extended, arguments.is_log()) {
+        (true, false) => &[TestKind::Systematic, TestKind::Bumps][..],
+        (true, true) => &[TestKind::Bumps],
+        (false, _) => &[TestKind::Systematic],
+    };
     let mut runs = Vec::new();
-    let numbers = arguments.setup.direction.runs(arguments.runs as usize);
+    let numbers = arguments.numbers()?;
     for &test in tests {
         for (direction, count) in Direction::BOTH.into_iter().zip(numbers) {
             for number in 1..=count as u32 {
@@ -116,7 +140,14 @@ fn record(arguments: &Arguments, robot: &Robot, path: &Path, model: &Model, seed
             }
         }
     }
-    Ok(Dataset { robot: Some(robot.clone()), path: Some(path.clone()), runs, clocks: Vec::new(), warnings: Vec::new() })
+    Ok(Dataset {
+        robot: Some(robot.clone()),
+        path: Some(path.clone()),
+        runs,
+        clocks: Vec::new(),
+        topics: Vec::new(),
+        warnings: Vec::new(),
+    })
 }
 
 fn run_json(run: &Run) -> Value {

@@ -9,7 +9,7 @@ use super::returns::ReturnRow;
 use super::stale::drop_stale;
 use super::start_frame::move_to_start;
 use super::synchronise::attach;
-use super::{Dataset, Run, RunClock, TickLog};
+use super::{Dataset, Run, RunClock, RunTopics, TickLog};
 use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::path::{Direction, Path};
@@ -29,6 +29,7 @@ pub(super) struct Assembly {
     places: Vec<String>,
     has_returns: bool,
     clocks: Vec<RunClock>,
+    pub topics: Vec<RunTopics>,
     pub warnings: Vec<String>,
 }
 
@@ -41,8 +42,13 @@ pub(super) struct Tracked {
 impl Assembly {
     pub fn new(robot: Option<Robot>, path: Option<Path>) -> Assembly {
         let (runs, places, warnings) = (Vec::new(), Vec::new(), Vec::new());
-        let (index, clocks) = (BTreeMap::new(), Vec::new());
-        Assembly { robot, path, runs, index, places, has_returns: false, clocks, warnings }
+        let (index, clocks, topics) = (BTreeMap::new(), Vec::new(), Vec::new());
+        Assembly { robot, path, runs, index, places, has_returns: false, clocks, topics, warnings }
+    }
+
+    /// The nominal robot, where it is known.
+    pub fn robot(&self) -> Option<&Robot> {
+        self.robot.as_ref()
     }
 
     /// Adds the rows of a return sheet; they come before the logs.
@@ -72,6 +78,18 @@ impl Assembly {
         if let Some(tracked) = tracked {
             self.set_clock(&mut log, tracked, stem)?;
         }
+        self.add_ticks(file, log, stem, named, end)
+    }
+
+    /// Adds the ticks of a file that is called `stem`.
+    pub fn add_ticks(
+        &mut self,
+        file: String,
+        mut log: TickLog,
+        stem: &str,
+        named: Named,
+        end: EndPose,
+    ) -> Result<(), DatasetError> {
         if let Some(robot) = &self.robot {
             drop_stale(&file, &mut log, robot, &mut self.warnings);
         }
@@ -107,9 +125,9 @@ impl Assembly {
 
     /// The dataset, its runs in order.
     pub fn finish(self) -> Dataset {
-        let Assembly { robot, path, mut runs, clocks, warnings, .. } = self;
+        let Assembly { robot, path, mut runs, clocks, topics, warnings, .. } = self;
         runs.sort_by_key(|run| (run.test, run.direction, run.number));
-        Dataset { robot, path, runs, clocks, warnings }
+        Dataset { robot, path, runs, clocks, topics, warnings }
     }
 
     fn push(&mut self, run: Run, file: &str, line: usize) -> Result<(), DatasetError> {

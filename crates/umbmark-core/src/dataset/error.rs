@@ -1,5 +1,7 @@
 //! What can be wrong with measurements, and what to do about it.
 
+use super::mcap::McapProblem;
+
 /// What makes a dataset, a robot file or a model file unusable.
 ///
 /// Each message names the file, the line where there is one, the column or key, the value, what is allowed, and what to
@@ -44,6 +46,14 @@ pub enum DatasetError {
     /// A dataset without the robot that the question needs.
     #[error("the nominal robot is not known: no robot.toml beside the data; `umbmark init` writes one to fill in")]
     NoRobot,
+    /// An MCAP log that cannot be used.
+    #[error("{file}: {problem}")]
+    Mcap {
+        /// The file.
+        file: String,
+        /// What is wrong with it.
+        problem: Box<McapProblem>,
+    },
     /// Something that the format allows and this version does not do.
     #[error("{file}:{line}: {key} {value} is not supported yet; {remedy}")]
     NotYet {

@@ -5,10 +5,11 @@ use super::assembly::{Assembly, Tracked};
 use super::dead_reckoning::EndPose;
 use super::error::DatasetError;
 use super::label::{self, Named};
+use super::mcap::{Survey, Topics};
 use super::optiodom;
 use super::reference_file::parse_reference;
 use super::returns::parse_returns;
-use super::robot_file::read_robot;
+use super::robot_file::{parse_robot, read_robot};
 use super::sheet::Rows;
 use super::text::{read_text, unreadable};
 use super::tick_log::parse_tick_log;
@@ -21,15 +22,16 @@ pub(super) const RUNS: &str = "runs";
 pub(super) const REFERENCE: &str = "reference";
 /// Endings of files with poses that have a clock of their own.
 const TRACKS: [&str; 3] = ["csv", "tum", "txt"];
-const EXPECTED: &str = "a dataset has robot.toml with returns.csv or runs/*.csv (`umbmark init FOLDER` writes a start)";
+const EXPECTED: &str =
+    "a dataset has robot.toml with returns.csv, runs/*.csv or runs/*.mcap (`umbmark init FOLDER` writes a start)";
 
 /// A dataset from a folder, or from one file of it.
-pub(super) fn load(path: &Path) -> Result<Dataset, DatasetError> {
+pub(super) fn load(path: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
     let kind = std::fs::metadata(path).map_err(|error| unreadable(path, &error))?;
-    if kind.is_dir() { load_folder(path) } else { load_file(path) }
+    if kind.is_dir() { load_folder(path, topics) } else { load_file(path, topics) }
 }
 
-fn load_folder(folder: &Path) -> Result<Dataset, DatasetError> {
+fn load_folder(folder: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
     let names = names_in(folder)?;
     let has = |name: &str| names.iter().any(|n| n == name);
     if !has(ROBOT) {
@@ -52,7 +54,7 @@ fn load_folder(folder: &Path) -> Result<Dataset, DatasetError> {
     }
     let mut logs = 0;
     if has(RUNS) {
-        logs = add_logs(&mut assembly, &folder.join(RUNS))?;
+        logs = add_logs(&mut assembly, &folder.join(RUNS), topics)?;
     }
     if logs == 0 && !has(RETURNS) {
         return Err(not_a_dataset(folder, "it has a robot and no measurement".into()));
@@ -83,7 +85,7 @@ fn add_returns(assembly: &mut Assembly, file: &Path) -> Result<(), DatasetError>
 }
 
 /// Adds every log of a folder, with its track where there is one beside it, and says how many.
-fn add_logs(assembly: &mut Assembly, folder: &Path) -> Result<usize, DatasetError> {
+fn add_logs(assembly: &mut Assembly, folder: &Path, topics: &Topics) -> Result<usize, DatasetError> {
     let mut tracks = tracks_beside(folder)?;
     let mut logs = 0;
     for name in names_in(folder)? {
@@ -93,8 +95,11 @@ fn add_logs(assembly: &mut Assembly, folder: &Path) -> Result<usize, DatasetErro
                 add_log(assembly, &file, tracks.remove(&stem(&file)))?;
                 logs += 1;
             }
-            "mcap" => return Err(mcap(&file)),
-            _ => assembly.warnings.push(format!("{}: is no log (.csv) and was not read", file.display())),
+            "mcap" => {
+                add_mcap(assembly, Survey::open(&file)?, &file, topics)?;
+                logs += 1;
+            }
+            _ => assembly.warnings.push(format!("{}: is no log (.csv, .mcap) and was not read", file.display())),
         }
     }
     for track in tracks.values() {
@@ -124,6 +129,36 @@ fn add_log(assembly: &mut Assembly, file: &Path, track: Option<PathBuf>) -> Resu
 fn read_track(file: &Path, warnings: &mut Vec<String>) -> Result<Tracked, DatasetError> {
     let name = file.display().to_string();
     Ok(Tracked { track: parse_reference(&name, &read_text(file)?, warnings)?, file: name })
+}
+
+fn add_mcap(assembly: &mut Assembly, survey: Survey, file: &Path, topics: &Topics) -> Result<(), DatasetError> {
+    let mut warnings = Vec::new();
+    let reading = survey.read(topics, assembly.robot(), &mut warnings)?;
+    let stem = stem(file);
+    assembly.topics.push(reading.topics(&stem));
+    let log = reading.into_log(assembly.robot(), &mut warnings)?;
+    assembly.warnings.append(&mut warnings);
+    assembly.add_ticks(file.display().to_string(), log, &stem, label::parse(&stem), EndPose::Standing)
+}
+
+/// One MCAP log, with the robot that stands beside it, or with the one that it brings along.
+fn load_mcap(file: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
+    let survey = Survey::open(file)?;
+    let (robot, path) = match (robot_beside(folder_of(file)), &survey.robot) {
+        (Some(robot), _) => read_robot(robot).map(|(robot, path)| (Some(robot), path))?,
+        (None, Some(text)) => {
+            let place = format!("{} (its robot.toml)", file.display());
+            parse_robot(&place, text).map(|(robot, path)| (Some(robot), path))?
+        }
+        (None, None) => (None, None),
+    };
+    let mut assembly = Assembly::new(robot, path);
+    add_mcap(&mut assembly, survey, file, topics)?;
+    Ok(assembly.finish())
+}
+
+fn folder_of(file: &Path) -> &Path {
+    file.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 fn load_optiodom(folder: &Path, set: &str, names: &[String]) -> Result<Dataset, DatasetError> {
@@ -160,16 +195,16 @@ fn add_optiodom_run(assembly: &mut Assembly, folder: &Path, run: &optiodom::RunF
 }
 
 /// One file, with the robot that stands beside it where there is one.
-fn load_file(file: &Path) -> Result<Dataset, DatasetError> {
+fn load_file(file: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
     match extension(file).as_str() {
         "toml" => {
             let (file, found) = (file.display().to_string(), "it describes one".into());
             return Err(DatasetError::NotADataset { file, found, remedy: "give the folder it is in, or returns.csv" });
         }
-        "mcap" => return Err(mcap(file)),
+        "mcap" => return load_mcap(file, topics),
         _ => {}
     }
-    let folder = file.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder_of(file);
     if let Some(set) =
         optiodom::set_of(&name_of(file)).filter(|set| folder.join(format!("{set}_metadata.csv")).is_file())
     {
@@ -212,15 +247,6 @@ fn robot_beside(folder: &Path) -> Option<PathBuf> {
     let in_runs = folder.file_name().is_some_and(|name| name == RUNS);
     let above = in_runs.then(|| folder.join("..").join(ROBOT));
     [Some(folder.join(ROBOT)), above].into_iter().flatten().find(|robot| robot.is_file())
-}
-
-fn mcap(file: &Path) -> DatasetError {
-    let remedy = "export it as CSV (t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad)";
-    DatasetError::NotADataset {
-        file: file.display().to_string(),
-        found: "it is an MCAP log, which is not read yet".into(),
-        remedy,
-    }
 }
 
 fn name_of(file: &Path) -> String {

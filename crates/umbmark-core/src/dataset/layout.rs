@@ -26,12 +26,26 @@ pub struct Layout {
 type Write = fn(&Dataset, &Path, Existing) -> Result<Vec<String>, DatasetError>;
 
 /// All of them.
-pub const LAYOUTS: [Layout; 4] = [
+pub static LAYOUTS: [Layout; 5] = [
     Layout { name: "csv", about: "robot.toml, returns.csv and runs/*.csv: holds everything", write: csv },
+    Layout { name: "mcap", about: "the same with logs of ROS 2, runs/*.mcap; one run as NAME.mcap", write: mcap },
     Layout { name: "optiodom", about: "a set of OptiOdom: *_metadata.csv and *_run-NN.csv", write: optiodom::write },
     Layout { name: "tum", about: "TUM trajectories: *_reference.tum and *_odometry.tum", write: tum::write },
     Layout { name: "returns", about: "the return sheet alone: returns.csv", write: returns::write },
 ];
+
+impl Layout {
+    /// The layout of a name.
+    pub fn named(name: &str) -> Option<&'static Layout> {
+        LAYOUTS.iter().find(|layout| layout.name == name)
+    }
+
+    /// The layout that the name of a place asks for: `mcap` where it ends in `.mcap`, else `csv`.
+    pub fn of_place(place: impl AsRef<Path>) -> &'static Layout {
+        let is_log = place.as_ref().extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"));
+        &LAYOUTS[usize::from(is_log)]
+    }
+}
 
 impl Dataset {
     /// Writes the dataset into a folder in another layout, and says what that layout cannot hold, one sentence each.
@@ -52,6 +66,10 @@ impl Dataset {
     fn logs(&self) -> impl Iterator<Item = (&super::Run, &TickLog)> {
         self.runs.iter().filter_map(|run| Some((run, run.log.as_ref()?)))
     }
+}
+
+fn mcap(data: &Dataset, place: &Path, existing: Existing) -> Result<Vec<String>, DatasetError> {
+    data.save_mcap(place, existing)
 }
 
 /// The project's own layout. Counts between two readings, which a track put there, are no counts of a counter that rolls over:

@@ -4,12 +4,13 @@
 //! `UMBMARK_TEST_CASES=1000000` damages each of the files a million times and prints how many were read.
 
 use super::model_file::parse_model;
+use super::place::place;
 use super::recording::Recording;
-use super::reference_track::ReferenceTrack;
+use super::reference_track::{PoseRow, ReferenceTrack};
 use super::robot_file::parse_robot;
 use super::stale::drop_stale;
 use super::start_frame::move_to_start;
-use super::synchronise::{place, synchronise};
+use super::synchronise::synchronise;
 use super::{TickLog, motive, optiodom, packed, reference_file, returns, text, tick_log, tum};
 use crate::drive::Robot;
 use crate::random::Stream;
@@ -44,8 +45,8 @@ const PIECES: [&str; 20] = [
 ];
 
 /// `good` with up to five bytes changed, pieces put in, or parts cut out or doubled.
-fn damaged(good: &str, stream: &mut Stream) -> Vec<u8> {
-    let mut bytes = good.as_bytes().to_vec();
+pub(super) fn damage(good: &[u8], stream: &mut Stream) -> Vec<u8> {
+    let mut bytes = good.to_vec();
     let mut below = |n: usize| ((stream.uniform() * n as f64) as usize).min(n.saturating_sub(1));
     for _ in 0..=below(5) {
         let (a, b) = (below(bytes.len() + 1), below(bytes.len() + 1));
@@ -70,7 +71,7 @@ fn survive(good: &str, purpose: u64, read: impl Fn(&str) -> bool) {
     let mut fine = 0;
     let rounds = rounds();
     for _ in 0..rounds {
-        let Ok(text) = text::decode("file", damaged(good, &mut stream)) else { continue };
+        let Ok(text) = text::decode("file", damage(good.as_bytes(), &mut stream)) else { continue };
         fine += u64::from(read(&text));
     }
     println!("file {purpose}: {rounds} damaged, {fine} of them still read");
@@ -154,7 +155,9 @@ fn placed(track: &ReferenceTrack) -> bool {
     if let Ok(found) = synchronise(&log, track, &Robot::labmate()) {
         assert!(found.offset.value.is_finite() && found.rate.std_error.is_finite());
     }
-    place(&mut log, track, |time| time);
+    let poses = track.x.iter().zip(&track.y).enumerate();
+    let poses: Vec<PoseRow> = poses.map(|(i, (x, y))| (*x, *y, track.heading.as_ref().map(|h| h[i]))).collect();
+    place(&mut log, &track.time, &poses);
     log.time.windows(2).all(|pair| pair[0] < pair[1]) && log.reference.iter().all(|pose| pose.sample < log.time.len())
 }
 

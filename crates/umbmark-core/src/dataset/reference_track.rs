@@ -2,7 +2,7 @@
 
 use super::error::DatasetError;
 use super::recording::time_error;
-use crate::geometry::wrap;
+use std::f64::consts::TAU;
 
 /// Poses of a tracked body in the frame of a room, in the order of their own clock.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,7 +17,10 @@ pub struct ReferenceTrack {
     pub heading: Option<Vec<f64>>,
 }
 
-/// The rows of a track, before they are put in order.
+/// x, y \[m\], and the heading \[rad\] where it was measured.
+pub(super) type PoseRow = (f64, f64, Option<f64>);
+
+/// The rows of a track.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TrackRows {
     pub file: String,
@@ -25,8 +28,7 @@ pub(super) struct TrackRows {
     pub column: String,
     pub lines: Vec<usize>,
     pub time: Vec<f64>,
-    /// x, y \[m\], and the heading \[rad\] where it was measured.
-    pub poses: Vec<(f64, f64, Option<f64>)>,
+    pub poses: Vec<PoseRow>,
     /// Rows where the body was not seen.
     pub lost: usize,
 }
@@ -36,7 +38,7 @@ const MOST_LATE: f64 = 0.05;
 
 impl TrackRows {
     /// Puts late rows where they belong, leaves repeated time stamps out, and says so.
-    pub fn into_track(self, warnings: &mut Vec<String>) -> Result<ReferenceTrack, DatasetError> {
+    pub fn put_in_order(&mut self, warnings: &mut Vec<String>) -> Result<(), DatasetError> {
         let mut order: Vec<usize> = (0..self.time.len()).collect();
         order.sort_by(|a, b| self.time[*a].total_cmp(&self.time[*b]));
         let mut latest = f64::NEG_INFINITY;
@@ -61,24 +63,36 @@ impl TrackRows {
         note(late.len(), "rows out of order were put where their time stamps say");
         note(rows - order.len(), "rows that repeat a time stamp were left out");
         note(self.lost, "frames without a pose (the body was not seen) are gaps");
-        Ok(self.ordered(&order))
+        self.lines = order.iter().map(|i| self.lines[*i]).collect();
+        self.time = order.iter().map(|i| self.time[*i]).collect();
+        self.poses = order.iter().map(|i| self.poses[*i]).collect();
+        Ok(())
     }
 
-    fn ordered(&self, order: &[usize]) -> ReferenceTrack {
-        let heading: Option<Vec<f64>> = order.iter().map(|i| self.poses[*i].2).collect();
-        ReferenceTrack {
-            time: order.iter().map(|i| self.time[*i]).collect(),
-            x: order.iter().map(|i| self.poses[*i].0).collect(),
-            y: order.iter().map(|i| self.poses[*i].1).collect(),
-            heading: heading.map(unwrapped),
-        }
+    /// Counts full turns of the headings.
+    pub fn count_turns(&mut self) {
+        count_turns(self.poses.iter_mut().filter_map(|pose| pose.2.as_mut()));
+    }
+
+    /// The rows in order, as a track.
+    pub fn into_track(mut self, warnings: &mut Vec<String>) -> Result<ReferenceTrack, DatasetError> {
+        self.put_in_order(warnings)?;
+        self.count_turns();
+        let heading: Option<Vec<f64>> = self.poses.iter().map(|pose| pose.2).collect();
+        Ok(ReferenceTrack {
+            time: self.time,
+            x: self.poses.iter().map(|pose| pose.0).collect(),
+            y: self.poses.iter().map(|pose| pose.1).collect(),
+            heading,
+        })
     }
 }
 
-/// Headings without leaps of full turns.
-pub(super) fn unwrapped(mut headings: Vec<f64>) -> Vec<f64> {
-    for i in 1..headings.len() {
-        headings[i] = headings[i - 1] + wrap(headings[i] - headings[i - 1]);
+/// Adds full turns, so that headings that follow each other differ by less than half a turn.
+pub(super) fn count_turns<'h>(headings: impl Iterator<Item = &'h mut f64>) {
+    let mut before = None;
+    for heading in headings {
+        *heading += TAU * ((before.unwrap_or(*heading) - *heading) / TAU).round();
+        before = Some(*heading);
     }
-    headings
 }

@@ -5,7 +5,7 @@ use super::folder::{RETURNS, ROBOT, RUNS};
 use super::label;
 use super::robot_text::robot_text;
 use super::sheets::{returns_text, tick_log_text};
-use super::{Dataset, Run};
+use super::{Dataset, Run, TickLog};
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -19,6 +19,22 @@ pub enum Existing {
     Replace,
 }
 
+/// How the logs of a dataset are written.
+pub(super) struct LogFormat {
+    /// Ending of the files.
+    pub ending: &'static str,
+    /// The bytes of a file.
+    pub bytes: fn(&Dataset, &Run, &TickLog) -> Result<Vec<u8>, DatasetError>,
+    /// Whether the first log was read back as the second.
+    pub same: fn(&TickLog, &TickLog) -> bool,
+}
+
+const CSV: LogFormat = LogFormat { ending: "csv", bytes: csv, same: TickLog::eq };
+
+fn csv(data: &Dataset, _: &Run, log: &TickLog) -> Result<Vec<u8>, DatasetError> {
+    Ok(tick_log_text(log, &data.nominal_robot()?.encoder).into_bytes())
+}
+
 impl Dataset {
     /// Writes `robot.toml`, `returns.csv` and `runs/*.csv` into a folder, which is made where it is not there.
     ///
@@ -26,21 +42,30 @@ impl Dataset {
     /// is checked before anything is put in place, so a folder never holds half of a file. A folder that holds logs of
     /// other runs is refused, lest the two datasets mix.
     pub fn save(&self, folder: impl AsRef<Path>, existing: Existing) -> Result<(), DatasetError> {
-        let folder = folder.as_ref();
+        self.save_with(folder.as_ref(), existing, &CSV).map(|_| ())
+    }
+
+    /// The same with logs of any format; returns what was read back.
+    pub(super) fn save_with(
+        &self,
+        folder: &Path,
+        existing: Existing,
+        format: &LogFormat,
+    ) -> Result<Dataset, DatasetError> {
         let robot = self.nominal_robot()?;
         let mut files = BTreeMap::new();
-        files.insert(PathBuf::from(ROBOT), robot_text(robot, self.path.as_ref()));
-        files.extend(returns_text(&self.runs).map(|text| (PathBuf::from(RETURNS), text)));
+        files.insert(PathBuf::from(ROBOT), robot_text(robot, self.path.as_ref()).into_bytes());
+        files.extend(returns_text(&self.runs).map(|text| (PathBuf::from(RETURNS), text.into_bytes())));
         for run in &self.runs {
             let Some(log) = &run.log else { continue };
-            let name = format!("{}.csv", label::label(run.test, run.direction, run.number));
-            files.insert(Path::new(RUNS).join(name), tick_log_text(log, &robot.encoder));
+            let name = format!("{}.{}", label::label(run.test, run.direction, run.number), format.ending);
+            files.insert(Path::new(RUNS).join(name), (format.bytes)(self, run, log)?);
         }
-        put(folder, &files, existing, |written| self.check(folder, written))
+        put(folder, &files, existing, |written| self.check(folder, written, format))
     }
 
     /// Refuses what would be read back as something else.
-    fn check(&self, folder: &Path, written: &Path) -> Result<(), DatasetError> {
+    fn check(&self, folder: &Path, written: &Path, format: &LogFormat) -> Result<Dataset, DatasetError> {
         let refuse = |reason: String| DatasetError::Unwritable { file: folder.display().to_string(), reason };
         let read = Dataset::load(written).map_err(|error| {
             let place = written.display().to_string();
@@ -57,7 +82,10 @@ impl Dataset {
         }
         let same = |(a, b): (&&Run, &Run)| {
             (a.test, a.direction, a.number) == (b.test, b.direction, b.number)
-                && a.log == b.log
+                && match (&a.log, &b.log) {
+                    (Some(log), Some(read)) => (format.same)(log, read),
+                    (log, read) => log.is_none() && read.is_none(),
+                }
                 && (a.returned == b.returned || a.returned.is_none())
         };
         if runs.len() != read.runs.len() {
@@ -67,41 +95,45 @@ impl Dataset {
             Some((run, _)) => {
                 let name = label::label(run.test, run.direction, run.number);
                 // The last remark: roll-overs, which are undone as they were written, come before any reason.
-                let why = read.warnings.iter().rev().find_map(|w| Some(w.split_once(&format!("{name}.csv: "))?.1));
+                let why = read
+                    .warnings
+                    .iter()
+                    .rev()
+                    .find_map(|w| Some(w.split_once(&format!("{name}.{}: ", format.ending))?.1));
                 let why = why.map(|why| format!("; the reader says: {why}")).unwrap_or_default();
                 Err(refuse(format!("{name} would not be read back as it is{why}")))
             }
-            None => Ok(()),
+            None => Ok(read),
         }
     }
 }
 
 /// Writes files beside `folder`, has them checked, and renames them into it.
-pub(super) fn put(
+pub(super) fn put<Checked>(
     folder: &Path,
-    files: &BTreeMap<PathBuf, String>,
+    files: &BTreeMap<PathBuf, impl AsRef<[u8]>>,
     existing: Existing,
-    check: impl FnOnce(&Path) -> Result<(), DatasetError>,
-) -> Result<(), DatasetError> {
+    check: impl FnOnce(&Path) -> Result<Checked, DatasetError>,
+) -> Result<Checked, DatasetError> {
     refuse_existing(folder, files, existing)?;
     let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let beside = temporary_folder(parent).map_err(|error| unwritable(parent, &error))?;
-    for (name, text) in files {
+    for (name, bytes) in files {
         let file = beside.path().join(name);
-        write_file(&file, text).map_err(|error| unwritable(&folder.join(name), &error))?;
+        write_file(&file, bytes.as_ref()).map_err(|error| unwritable(&folder.join(name), &error))?;
     }
-    check(beside.path())?;
+    let checked = check(beside.path())?;
     if !folder.exists() {
-        return std::fs::rename(beside.path(), folder).map_err(|error| unwritable(folder, &error)).map(|()| {
-            let _ = beside.keep();
-        });
+        std::fs::rename(beside.path(), folder).map_err(|error| unwritable(folder, &error))?;
+        let _ = beside.keep();
+        return Ok(checked);
     }
     for name in files.keys() {
         let to = folder.join(name);
         let made = to.parent().map_or(Ok(()), std::fs::create_dir_all);
         made.and_then(|()| std::fs::rename(beside.path().join(name), &to)).map_err(|error| unwritable(&to, &error))?;
     }
-    Ok(())
+    Ok(checked)
 }
 
 /// A new folder with the rights that the user's folders have.
@@ -116,14 +148,18 @@ fn temporary_folder(parent: &Path) -> std::io::Result<tempfile::TempDir> {
     builder.tempdir_in(parent)
 }
 
-fn write_file(file: &Path, text: &str) -> std::io::Result<()> {
+fn write_file(file: &Path, bytes: &[u8]) -> std::io::Result<()> {
     file.parent().map_or(Ok(()), std::fs::create_dir_all)?;
     let mut handle = std::fs::File::create(file)?;
-    handle.write_all(text.as_bytes())?;
+    handle.write_all(bytes)?;
     handle.sync_all()
 }
 
-fn refuse_existing(folder: &Path, files: &BTreeMap<PathBuf, String>, existing: Existing) -> Result<(), DatasetError> {
+fn refuse_existing(
+    folder: &Path,
+    files: &BTreeMap<PathBuf, impl AsRef<[u8]>>,
+    existing: Existing,
+) -> Result<(), DatasetError> {
     let refuse = |file: PathBuf, remedy| DatasetError::AlreadyThere { file: file.display().to_string(), remedy };
     let there = files.keys().map(|name| folder.join(name)).find(|file| file.exists());
     if let (Some(file), Existing::Keep) = (there, existing) {
@@ -140,7 +176,7 @@ fn refuse_existing(folder: &Path, files: &BTreeMap<PathBuf, String>, existing: E
     }
 }
 
-fn unwritable(file: &Path, error: &std::io::Error) -> DatasetError {
+pub(super) fn unwritable(file: &Path, error: &std::io::Error) -> DatasetError {
     let reason = match error.kind() {
         std::io::ErrorKind::NotFound => "there is no such folder".to_owned(),
         std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),

@@ -11,18 +11,18 @@
 
 mod coarse;
 mod motion;
-mod place;
 mod windows;
 
 use super::dead_reckoning::{computed_poses, standing_at_start};
-use super::reference_track::ReferenceTrack;
+use super::place::place;
+use super::reference_track::{PoseRow, ReferenceTrack};
 use super::{DatasetError, TickLog};
 use crate::drive::Robot;
 use crate::fit::{Options, jackknife_covariance, least_squares};
+use crate::geometry::Pose2;
 use crate::stats::{Interval, student_t_quantile};
 use motion::Motion;
 use nalgebra::DMatrix;
-pub(super) use place::place;
 use windows::{OFFSET, RATE, Windows};
 
 /// Stretches of a run that are left out in turn.
@@ -83,6 +83,18 @@ impl Alignment {
     /// The ticks' time of a time of the track \[s\].
     pub fn tick_time(&self, track_time: f64) -> f64 {
         self.middle.0 + (track_time - self.middle.1) / self.rate.value
+    }
+
+    /// The poses of the axle's centre, with the robot's headings, where the alignment shows how the tracked body sits on the
+    /// robot. Without headings the tracked point stays what it is.
+    pub(super) fn of_axle(&self, track: &ReferenceTrack) -> Vec<PoseRow> {
+        let positions = track.x.iter().zip(&track.y);
+        let Some(headings) = &track.heading else { return positions.map(|(x, y)| (*x, *y, None)).collect() };
+        let value = |measured: &Option<Measured>| measured.map_or(0.0, |m| m.value);
+        let body = Pose2::new(value(&self.lever_ahead), value(&self.lever_left), value(&self.yaw));
+        let axle = body.inverse();
+        let poses = positions.zip(headings).map(|((x, y), heading)| Pose2::new(*x, *y, *heading).compose(&axle));
+        poses.map(|pose| (pose.x, pose.y, Some(pose.heading))).collect()
     }
 }
 
@@ -215,7 +227,8 @@ pub(super) fn attach(
 ) -> Result<Alignment, DatasetError> {
     let found = synchronise(log, track, robot)
         .map_err(|reason| DatasetError::Clocks { file: file.to_owned(), reason: reason.to_string() })?;
-    let dropped = place(log, &track.of_axle(&found), |time| found.tick_time(time));
+    let times: Vec<f64> = track.time.iter().map(|time| found.tick_time(*time)).collect();
+    let dropped = place(log, &times, &found.of_axle(track));
     if standing_at_start(log).is_empty() {
         let reason =
             "it does not see the robot before it moves, so START is not known; record some seconds of rest first";

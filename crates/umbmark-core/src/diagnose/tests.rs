@@ -34,7 +34,14 @@ pub(crate) fn dataset(path: &Path, errors: &[(Direction, ReturnError)]) -> Datas
         returned: Some(*error),
     };
     let runs = errors.iter().enumerate().map(run).collect();
-    Dataset { robot: Some(Robot::labmate()), path: Some(path.clone()), runs, warnings: vec![], clocks: vec![] }
+    Dataset {
+        robot: Some(Robot::labmate()),
+        path: Some(path.clone()),
+        runs,
+        warnings: vec![],
+        clocks: vec![],
+        topics: vec![],
+    }
 }
 
 /// Tests of n + n runs on a path: the end poses that the model predicts with the scatter that its wheel noise gives them.

@@ -1,7 +1,7 @@
 //! What one log is like.
 
 use super::super::dead_reckoning::{computed_poses, mean_pose, standing_at_end, standing_at_start};
-use super::super::reference_track::unwrapped;
+use super::super::reference_track::count_turns;
 use super::super::synchronise::{Alignment, synchronise};
 use super::super::{ReferencePose, ReferenceTrack, Run, TickLog};
 use super::heading_off;
@@ -122,12 +122,13 @@ impl LogFacts {
 
 /// The poses of a log as a track, by the ticks' clock.
 fn own_track(log: &TickLog) -> ReferenceTrack {
-    let headings: Option<Vec<f64>> = log.reference.iter().map(|pose| pose.heading).collect();
+    let mut heading: Option<Vec<f64>> = log.reference.iter().map(|pose| pose.heading).collect();
+    count_turns(heading.iter_mut().flatten());
     ReferenceTrack {
         time: log.reference.iter().map(|pose| log.time[pose.sample]).collect(),
         x: log.reference.iter().map(|pose| pose.x).collect(),
         y: log.reference.iter().map(|pose| pose.y).collect(),
-        heading: headings.map(unwrapped),
+        heading,
     }
 }
 

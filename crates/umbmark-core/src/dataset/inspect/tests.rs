@@ -42,7 +42,14 @@ fn drive(direction: Direction, every: usize, wheels: impl Fn(f64, f64) -> (f64, 
 
 fn dataset(runs: Vec<Run>) -> Dataset {
     let path = Path::new(&crate::path::SQUARE, &[2.0], SpeedProfile::default()).unwrap();
-    Dataset { robot: Some(Robot::labmate()), path: Some(path), runs, clocks: Vec::new(), warnings: Vec::new() }
+    Dataset {
+        robot: Some(Robot::labmate()),
+        path: Some(path),
+        runs,
+        clocks: Vec::new(),
+        topics: Vec::new(),
+        warnings: Vec::new(),
+    }
 }
 
 fn same(left: f64, right: f64) -> (f64, f64) {

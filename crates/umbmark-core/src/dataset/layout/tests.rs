@@ -34,21 +34,22 @@ fn dataset(every: usize) -> Dataset {
         path: Some(DrivenPath::umbmark()),
         runs: runs.into_iter().map(|(direction, number)| run(direction, number)).collect(),
         clocks: Vec::new(),
+        topics: Vec::new(),
         warnings: Vec::new(),
     }
 }
 
-fn layout(name: &str) -> Layout {
-    LAYOUTS.into_iter().find(|layout| layout.name == name).unwrap()
+fn layout(name: &str) -> &'static Layout {
+    Layout::named(name).unwrap()
 }
 
 /// What is read back, and what was lost.
 fn round_trip(data: &Dataset, name: &str) -> (Dataset, Vec<String>) {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path().join("out");
-    let lost = data.convert(&layout(name), &folder, Existing::Keep).unwrap();
-    assert!(data.convert(&layout(name), &folder, Existing::Keep).is_err(), "{name}: what is there is kept");
-    data.convert(&layout(name), &folder, Existing::Replace).unwrap();
+    let lost = data.convert(layout(name), &folder, Existing::Keep).unwrap();
+    assert!(data.convert(layout(name), &folder, Existing::Keep).is_err(), "{name}: what is there is kept");
+    data.convert(layout(name), &folder, Existing::Replace).unwrap();
     (Dataset::load(&folder).unwrap_or_else(|error| panic!("{name}: {error}")), lost)
 }
 
@@ -101,7 +102,7 @@ fn optiodom_says_how_many_rows_had_no_pose_and_keeps_their_ticks() {
 fn tum_holds_the_measured_poses() {
     let data = dataset(2);
     let place = tempfile::tempdir().unwrap();
-    data.convert(&layout("tum"), place.path().join("out"), Existing::Keep).unwrap();
+    data.convert(layout("tum"), place.path().join("out"), Existing::Keep).unwrap();
     let text = std::fs::read_to_string(place.path().join("out/cw_02_reference.tum")).unwrap();
     let rows = crate::dataset::tum::parse_tum("file", &text).unwrap();
     let log = data.runs[1].log.as_ref().unwrap();
@@ -116,7 +117,7 @@ fn tum_holds_the_measured_poses() {
 fn the_return_sheet_holds_the_return_errors() {
     let data = dataset(1);
     let place = tempfile::tempdir().unwrap();
-    let lost = data.convert(&layout("returns"), place.path().join("out"), Existing::Keep).unwrap();
+    let lost = data.convert(layout("returns"), place.path().join("out"), Existing::Keep).unwrap();
     let read = Dataset::load(place.path().join("out/returns.csv")).unwrap();
     let errors = |data: &Dataset| {
         let mut found: Vec<_> = data.runs.iter().map(|run| (run.direction, run.number, run.returned)).collect();
@@ -150,8 +151,102 @@ fn what_a_layout_cannot_hold_at_all_is_refused() {
     }
     let place = tempfile::tempdir().unwrap();
     for name in ["optiodom", "returns"] {
-        let error = data.convert(&layout(name), place.path().join("out"), Existing::Keep).unwrap_err();
+        let error = data.convert(layout(name), place.path().join("out"), Existing::Keep).unwrap_err();
         assert!(matches!(error, DatasetError::Unwritable { .. }), "{error}");
         assert!(!place.path().join("out").exists());
     }
+}
+
+/// Logs as they differ after a way through MCAP: counts, positions and samples to the last bit, times and headings nearly.
+fn assert_near(ours: &Dataset, theirs: &Dataset, origin: impl Fn(&TickLog) -> f64) {
+    let mut runs = ours.runs.clone();
+    runs.sort_by_key(|run| (run.test, run.direction, run.number));
+    assert_eq!(runs.len(), theirs.runs.len());
+    for (a, b) in runs.iter().zip(&theirs.runs) {
+        assert_eq!((&a.name, a.number, a.direction, a.returned), (&b.name, b.number, b.direction, b.returned));
+        let (a, b) = (a.log.as_ref().unwrap(), b.log.as_ref().unwrap());
+        assert_eq!((&a.left, &a.right, a.reference.len()), (&b.left, &b.right, b.reference.len()));
+        let zero = origin(a);
+        assert!(a.time.iter().zip(&b.time).all(|(a, b)| (a - zero - b).abs() <= 1e-9));
+        for (a, b) in a.reference.iter().zip(&b.reference) {
+            assert_eq!((a.sample, a.x, a.y, a.heading.is_some()), (b.sample, b.x, b.y, b.heading.is_some()));
+            let (a, b) = (a.heading.unwrap_or(0.0), b.heading.unwrap_or(0.0));
+            assert!((a - b).abs() <= 4e-15 * (1.0 + a.abs()), "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn mcap_loses_nothing_but_last_digits_from_csv_to_mcap_to_csv() {
+    let mut data = dataset(3);
+    for pose in &mut data.runs[0].log.as_mut().unwrap().reference {
+        pose.heading = pose.heading.map(|heading| 7.0 * heading).filter(|_| pose.sample % 9 == 0);
+    }
+    let place = tempfile::tempdir().unwrap();
+    let [first, logs, second] = ["first", "logs", "second"].map(|name| place.path().join(name));
+    assert!(data.convert(layout("csv"), &first, Existing::Keep).unwrap().is_empty());
+    let read = Dataset::load(&first).unwrap();
+    let lost = read.convert(layout("mcap"), &logs, Existing::Keep).unwrap();
+    let known = ["times are rounded to the nanosecond", "headings are rounded in their last digits (4e-15 rad)"];
+    assert!(lost.len() == 2 && lost.iter().zip(known).all(|(said, known)| said.ends_with(known)), "{lost:?}");
+    let read = Dataset::load(&logs).unwrap();
+    assert_eq!(read.topics.len(), 4);
+    assert_eq!(
+        (&*read.topics[0].wheels, read.topics[0].reference.as_deref()),
+        ("/joint_states", Some("/ground_truth"))
+    );
+    assert_near(&data, &read, |_| 0.0);
+    read.convert(layout("csv"), &second, Existing::Keep).unwrap();
+    let read = Dataset::load(&second).unwrap();
+    assert_near(&data, &read, |_| 0.0);
+    assert_eq!((&read.robot, read.path.unwrap().values()), (&data.robot, data.path.as_ref().unwrap().values()));
+    for name in ["robot.toml", "returns.csv"] {
+        let text = |folder: &Path| std::fs::read_to_string(folder.join(name)).unwrap();
+        assert_eq!((text(&first), text(&second)), (text(&logs), text(&logs)), "{name}");
+    }
+}
+
+#[test]
+fn mcap_counts_times_of_a_calendar_and_times_below_zero_from_the_first_row_and_says_so() {
+    for origin in [1.7e9, -20.0] {
+        let mut data = dataset(3);
+        for run in &mut data.runs {
+            run.log.as_mut().unwrap().time.iter_mut().for_each(|time| *time += origin);
+        }
+        let (read, lost) = round_trip(&data, "mcap");
+        assert_eq!(lost[0], "4 logs keep no date: their times are counted from the first row");
+        assert_near(&data, &read, |log| log.time[0]);
+    }
+}
+
+#[test]
+fn mcap_keeps_counts_between_readings_but_for_their_last_digits_and_says_how_many() {
+    let mut data = dataset(1);
+    for run in &mut data.runs {
+        run.log.as_mut().unwrap().left.iter_mut().skip(7).step_by(2).for_each(|count| *count += 1.0 / 3.0);
+    }
+    let (read, lost) = round_trip(&data, "mcap");
+    assert!(
+        lost.iter().any(|said| said.ends_with("counts between readings are rounded in their last digits")),
+        "{lost:?}"
+    );
+    let mut ours: Vec<&TickLog> = logs(&data);
+    ours.rotate_left(if data.runs[0].direction == read.runs[0].direction { 0 } else { 2 });
+    for (a, b) in ours.iter().zip(logs(&read)) {
+        assert!(a.left.iter().zip(&b.left).all(|(a, b)| (a - b).abs() <= 4e-15 * a.abs()));
+    }
+}
+
+#[test]
+fn a_place_that_ends_in_mcap_holds_one_run() {
+    let mut data = dataset(1);
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("one.MCAP");
+    assert_eq!((Layout::of_place(&file).name, Layout::of_place(place.path()).name), ("mcap", "csv"));
+    let error = data.convert(Layout::of_place(&file), &file, Existing::Keep).unwrap_err().to_string();
+    assert!(error.contains("there are 4 runs, and an MCAP file holds one"), "{error}");
+    data.runs.truncate(1);
+    let lost = data.convert(Layout::of_place(&file), &file, Existing::Keep).unwrap();
+    assert_eq!(lost.last().unwrap(), "the return error: it follows from the log");
+    assert_eq!(logs(&Dataset::load(&file).unwrap())[0].left, data.runs[0].log.as_ref().unwrap().left);
 }

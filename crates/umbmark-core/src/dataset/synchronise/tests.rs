@@ -1,5 +1,4 @@
 use super::*;
-use crate::dataset::ReferencePose;
 use crate::geometry::Pose2;
 use crate::random::Stream;
 use std::f64::consts::FRAC_PI_2;
@@ -218,24 +217,4 @@ fn nineteen_intervals_of_twenty_hold_the_true_clock() {
         println!("{name}: offset {:.1} %, rate {:.1} %, {:.2} ms", share(offsets), share(rates), 1e3 * errors.sqrt());
         assert!(share(offsets) > 80.0 && share(rates) > 80.0, "{name}: {offsets} {rates} of {trials}");
     }
-}
-
-#[test]
-fn poses_are_put_between_samples_and_never_into_a_gap() {
-    let mut log = TickLog {
-        time: vec![0.0, 1.0, 2.0, 10.0, 11.0],
-        left: vec![0.0, 10.0, 20.0, 100.0, 110.0],
-        right: vec![0.0, 10.0, 20.0, 100.0, 120.0],
-        reference: vec![],
-    };
-    let time = vec![-0.5, 0.5, 1.0, 1.25, 5.0, 10.5, 12.0];
-    let x: Vec<f64> = (0..7).map(f64::from).collect();
-    let track = ReferenceTrack { time, y: x.clone(), x, heading: None };
-    let dropped = place(&mut log, &track, |time| time);
-    assert_eq!(dropped, 3);
-    assert_eq!(log.time, [0.0, 0.5, 1.0, 1.25, 2.0, 10.0, 10.5, 11.0]);
-    assert_eq!(log.left, [0.0, 5.0, 10.0, 12.5, 20.0, 100.0, 105.0, 110.0]);
-    let poses: Vec<(usize, f64)> = log.reference.iter().map(|p: &ReferencePose| (p.sample, p.x)).collect();
-    // The first is START, half way between the first two.
-    assert_eq!(poses, [(0, 0.5), (1, 1.0), (2, 2.0), (3, 3.0), (6, 5.0)]);
 }

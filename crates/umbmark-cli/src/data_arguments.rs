@@ -1,0 +1,29 @@
+//! The arguments of every verb that reads measurements.
+
+use std::path::PathBuf;
+
+use umbmark_core::dataset::{Dataset, DatasetError, Topics};
+
+/// Where the measurements are.
+#[derive(Debug, clap::Args)]
+pub struct DataArguments {
+    /// A dataset folder, an OptiOdom folder, or one file of either (returns.csv, a CSV or MCAP log)
+    #[arg(value_name = "DATA")]
+    pub data: PathBuf,
+
+    /// Topic of the wheels in MCAP logs, where it is not found by type; :LEFT,RIGHT behind it names the joints,
+    /// :left,right or :right,left the order in a list of counts
+    #[arg(long, value_name = "TOPIC", help_heading = "MCAP logs")]
+    ticks: Option<String>,
+
+    /// Topic of the absolute poses in MCAP logs; :FRAME behind it picks one of several transforms, "none" reads no poses
+    #[arg(long, value_name = "TOPIC", help_heading = "MCAP logs")]
+    reference: Option<String>,
+}
+
+impl DataArguments {
+    /// Reads them.
+    pub fn load(&self) -> Result<Dataset, DatasetError> {
+        Dataset::load_with(&self.data, &Topics { ticks: self.ticks.clone(), reference: self.reference.clone() })
+    }
+}

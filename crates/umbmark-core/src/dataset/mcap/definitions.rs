@@ -1,0 +1,73 @@
+//! Message definitions of ROS 2 that are written into logs, so that every tool can decode them.
+//!
+//! Source: common_interfaces, geometry2 and rcl_interfaces of ROS 2, without comments.
+
+const HEADER: (&str, &str) = ("std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n");
+const TIME: (&str, &str) = ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n");
+const POSE: (&str, &str) =
+    ("geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n");
+const POINT: (&str, &str) = ("geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n");
+const QUATERNION: (&str, &str) = ("geometry_msgs/Quaternion", "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n");
+const VECTOR: (&str, &str) = ("geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n");
+
+/// The type of a message, its own definition, and those that it needs.
+pub(super) struct Definition {
+    /// As ROS 2 writes it, with the folder.
+    pub name: &'static str,
+    own: &'static str,
+    needs: &'static [(&'static str, &'static str)],
+}
+
+pub(super) const JOINT_STATE: Definition = Definition {
+    name: "sensor_msgs/msg/JointState",
+    own: "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n",
+    needs: &[HEADER, TIME],
+};
+
+pub(super) const ODOMETRY: Definition = Definition {
+    name: "nav_msgs/msg/Odometry",
+    own: "std_msgs/Header header\nstring child_frame_id\n\
+          geometry_msgs/PoseWithCovariance pose\ngeometry_msgs/TwistWithCovariance twist\n",
+    needs: &[
+        HEADER,
+        TIME,
+        ("geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"),
+        POSE,
+        POINT,
+        QUATERNION,
+        ("geometry_msgs/TwistWithCovariance", "geometry_msgs/Twist twist\nfloat64[36] covariance\n"),
+        ("geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"),
+        VECTOR,
+    ],
+};
+
+pub(super) const POSE_STAMPED: Definition = Definition {
+    name: "geometry_msgs/msg/PoseStamped",
+    own: "std_msgs/Header header\ngeometry_msgs/Pose pose\n",
+    needs: &[HEADER, TIME, POSE, POINT, QUATERNION],
+};
+
+pub(super) const TF: Definition = Definition {
+    name: "tf2_msgs/msg/TFMessage",
+    own: "geometry_msgs/TransformStamped[] transforms\n",
+    needs: &[
+        (
+            "geometry_msgs/TransformStamped",
+            "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n",
+        ),
+        HEADER,
+        TIME,
+        ("geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"),
+        VECTOR,
+        QUATERNION,
+    ],
+};
+
+impl Definition {
+    /// The definition with all that it needs, in the form `ros2msg`.
+    pub fn text(&self) -> String {
+        let rule = "=".repeat(80);
+        let needed = self.needs.iter().map(|(name, own)| format!("{rule}\nMSG: {name}\n{own}"));
+        self.own.to_owned() + &needed.collect::<String>()
+    }
+}

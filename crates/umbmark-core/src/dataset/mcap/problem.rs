@@ -1,0 +1,81 @@
+//! What can be wrong with an MCAP log.
+
+use std::fmt;
+
+/// What makes an MCAP log unusable, without the name of its file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum McapProblem {
+    /// The file does not begin as MCAP files do.
+    #[error("is no MCAP file: it {found}; record with `ros2 bag record -s mcap`, or convert the log")]
+    NotMcap {
+        /// What it does instead.
+        found: String,
+    },
+    /// Nothing could be read before the damage.
+    #[error("cannot be read as MCAP: {damage}; nothing before that can be used; record or copy the log again")]
+    Damaged {
+        /// Where and what.
+        damage: String,
+    },
+    /// No topic has what is needed.
+    #[error(
+        "no topic holds wheel counts; it needs sensor_msgs/JointState positions, integers called left and right, or nav_msgs/Odometry; there are: {topics}"
+    )]
+    NoTicks {
+        /// The topics that are there, with their types.
+        topics: String,
+    },
+    /// Two topics or more could be meant.
+    #[error("{role} could be {topics}; say which with {flag} TOPIC")]
+    AmbiguousTopic {
+        /// "the wheels" or "the reference".
+        role: &'static str,
+        /// The candidates.
+        topics: String,
+        /// The flag that decides.
+        flag: &'static str,
+    },
+    /// A topic that was asked for and is not there.
+    #[error("there is no topic {topic} for {flag}; {remedy}")]
+    UnknownTopic {
+        /// What was asked for, quoted.
+        topic: String,
+        /// The flag.
+        flag: &'static str,
+        /// What is there.
+        remedy: String,
+    },
+    /// A topic whose messages cannot be what it is needed for.
+    #[error("topic {topic}: {found}; {remedy}")]
+    Topic {
+        /// The topic, quoted.
+        topic: String,
+        /// What is wrong with it.
+        found: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// A message that cannot be decoded, or that holds what cannot be.
+    #[error("topic {topic}: message {number} {found}; record again, or cut the message out")]
+    Message {
+        /// The topic, quoted.
+        topic: String,
+        /// Which message of the topic, from 1.
+        number: usize,
+        /// What is wrong with it.
+        found: String,
+    },
+}
+
+/// Names for a message: as they are, separated by commas, and no more than a few.
+pub(super) fn listed<T: fmt::Display>(names: impl IntoIterator<Item = T>) -> String {
+    const MOST: usize = 12;
+    let mut names = names.into_iter();
+    let mut shown: Vec<String> = names.by_ref().take(MOST).map(|name| name.to_string()).collect();
+    let others = names.count();
+    if others > 0 {
+        shown.push(format!("and {others} more"));
+    }
+    if shown.is_empty() { "none".to_owned() } else { shown.join(", ") }
+}

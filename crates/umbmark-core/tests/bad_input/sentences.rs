@@ -1,0 +1,16 @@
+//! What is said of each case in a file of cases.
+
+/// The name of each case and its sentence, in the order of the file.
+pub fn sentences(cases: &'static str) -> Vec<(&'static str, &'static str)> {
+    let mut sentences: Vec<(&str, &str)> = Vec::new();
+    let mut name = "";
+    for line in cases.lines() {
+        if let Some(next) = line.strip_prefix("# ") {
+            name = next;
+        } else if let Some(says) = line.strip_prefix("says ") {
+            assert!(sentences.iter().all(|(other, _)| *other != name), "{name} stands twice");
+            sentences.push((name, says));
+        }
+    }
+    sentences
+}

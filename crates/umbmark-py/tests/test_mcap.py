@@ -1,0 +1,361 @@
+"""MCAP logs that other packages write are read as the CSV of the same runs, and they read ours."""
+
+import csv
+import json
+import math
+import os
+import random
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from foxglove_schemas_protobuf.PoseInFrame_pb2 import PoseInFrame
+from mcap.reader import make_reader
+from mcap.writer import CompressionType
+from mcap.writer import Writer as PlainWriter
+from mcap_protobuf.writer import Writer as ProtobufWriter
+from mcap_ros2.decoder import DecoderFactory
+from mcap_ros2.writer import Writer as Ros2Writer
+from rosbags.highlevel import AnyReader
+from rosbags.rosbag2 import StoragePlugin
+from rosbags.rosbag2 import Writer as BagWriter
+from rosbags.typesys import Stores, get_typestore
+
+ROOT = Path(__file__).parents[3]
+TICKS_PER_REVOLUTION = 2000
+STORE = get_typestore(Stores.ROS2_JAZZY)
+# Times of a calendar, as recorders have them.
+EPOCH_NS = 1_760_000_000_000_000_000
+NO_RATES: dict[str, list[float]] = {"velocity": [], "effort": []}
+
+
+@pytest.fixture(scope="session")
+def umbmark() -> Path:
+    """Return the command, built."""
+    build = ["cargo", "build", "--package", "umbmark-cli", "--message-format", "json"]
+    lines = subprocess.run(build, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    messages = [json.loads(line) for line in lines.splitlines()]
+    return Path(next(m["executable"] for m in reversed(messages) if m.get("executable")))
+
+
+def answer(command: Path, *arguments: str | Path) -> Any:
+    """Return the JSON document that the command prints."""
+    run = [command, *arguments, "--json"]
+    return json.loads(subprocess.run(run, check=True, capture_output=True, text=True).stdout)
+
+
+@pytest.fixture(scope="session")
+def measured(umbmark: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a dataset in CSV."""
+    folder = tmp_path_factory.mktemp("measured") / "robot"
+    flags = [
+        "--side",
+        "0.5",
+        "--runs",
+        "3",
+        "--eb",
+        "1.01",
+        "--ed",
+        "1.002",
+        "--ticks-per-revolution",
+        str(TICKS_PER_REVOLUTION),
+    ]
+    subprocess.run([umbmark, "simulate", "-o", folder, *flags], check=True, capture_output=True)
+    return folder
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of a tick log."""
+
+    stamp: int
+    left: int
+    right: int
+    pose: tuple[float, float, float] | None
+
+    @property
+    def time(self) -> dict[str, int]:
+        return {"sec": self.stamp // 10**9, "nanosec": self.stamp % 10**9}
+
+    @property
+    def positions(self) -> list[float]:
+        scale = math.tau / TICKS_PER_REVOLUTION
+        return [self.left * scale, self.right * scale]
+
+    @property
+    def quaternion(self) -> dict[str, float]:
+        assert self.pose is not None
+        half = 0.5 * self.pose[2]
+        return {"x": 0.0, "y": 0.0, "z": math.sin(half), "w": math.cos(half)}
+
+
+def rows(file: Path) -> Iterator[Row]:
+    with file.open() as text:
+        for row in csv.DictReader(text):
+            stamp = EPOCH_NS + round(float(row["t_s"]) * 1e9)
+            cells = [row["x_ref_m"], row["y_ref_m"], row["theta_ref_rad"]]
+            pose = tuple(map(float, cells)) if cells[0] else None
+            yield Row(stamp, int(row["ticks_left"]), int(row["ticks_right"]), pose)  # type: ignore[arg-type]
+
+
+def definition(name: str) -> str:
+    return STORE.generate_msgdef(name, ros_version=2)[0]
+
+
+def write_ros2(compression: CompressionType, chunked: bool) -> Callable[[Path, list[Row]], None]:
+    """Write with mcap-ros2-support."""
+
+    def write(file: Path, log: list[Row]) -> None:
+        with file.open("wb") as stream:
+            writer = Ros2Writer(
+                stream, compression=compression, chunk_size=50_000 if chunked else 1 << 30
+            )
+            names = ["sensor_msgs/msg/JointState", "geometry_msgs/msg/PoseStamped"]
+            joints, poses = [writer.register_msgdef(name, definition(name)) for name in names]
+            for row in log:
+                times = {"log_time": row.stamp + 5_000_000, "publish_time": row.stamp}
+                header = {"stamp": row.time, "frame_id": "map"}
+                right, left = reversed(row.positions)
+                state = {
+                    "header": header,
+                    "name": ["arm", "wheel_right_joint", "wheel_left_joint"],
+                    "position": [0.1, right, left],
+                    **NO_RATES,
+                }
+                writer.write_message("/joint_states", joints, state, **times)
+                if row.pose:
+                    position = {"x": row.pose[0], "y": row.pose[1], "z": 0.2}
+                    pose = {"position": position, "orientation": row.quaternion}
+                    writer.write_message("/mocap", poses, {"header": header, "pose": pose}, **times)
+            writer.finish()  # type: ignore[no-untyped-call]
+
+    return write
+
+
+def write_rosbags(file: Path, log: list[Row]) -> None:
+    """Write with rosbags: counts of the wheels in a type of one's own, poses in TF."""
+    own = "demo_msgs/msg/WheelTicks"
+    from rosbags.typesys import get_types_from_msg
+
+    text = "std_msgs/Header header\nint64 ticks_left\nint64 ticks_right\n"
+    store = get_typestore(Stores.ROS2_JAZZY)
+    store.register(get_types_from_msg(text, own))
+    t = store.types
+    bag = file.with_suffix("")
+    with BagWriter(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        ticks = writer.add_connection("/ticks", own, typestore=store)
+        tf = writer.add_connection("/tf", "tf2_msgs/msg/TFMessage", typestore=store)
+        for row in log:
+            stamp = t["builtin_interfaces/msg/Time"](**row.time)
+            header = t["std_msgs/msg/Header"](stamp, "world")
+            message = t[own](header, row.left, row.right)
+            writer.write(ticks, row.stamp, store.serialize_cdr(message, own))
+            if row.pose:
+                translation = t["geometry_msgs/msg/Vector3"](row.pose[0], row.pose[1], 0.0)
+                rotation = t["geometry_msgs/msg/Quaternion"](**row.quaternion)
+                transform = t["geometry_msgs/msg/Transform"](translation, rotation)
+                stamped = t["geometry_msgs/msg/TransformStamped"](header, "base_link", transform)
+                tfs = t["tf2_msgs/msg/TFMessage"]([stamped])
+                writer.write(tf, row.stamp, store.serialize_cdr(tfs, "tf2_msgs/msg/TFMessage"))
+    shutil.move(next(bag.glob("*.mcap")), file)
+    shutil.rmtree(bag)
+
+
+def write_json(file: Path, log: list[Row]) -> None:
+    """Write JSON with mcap."""
+    with file.open("wb") as stream:
+        writer = PlainWriter(stream, compression=CompressionType.LZ4)
+        writer.start()
+        properties = {"left": {"type": "integer"}, "right": {"type": "integer"}}
+        schemas = {
+            "/ticks": ("wheel_ticks", {"type": "object", "properties": properties}),
+            "/mocap": ("foxglove.PoseInFrame", {"type": "object"}),
+        }
+        channels = {}
+        for topic, (name, schema) in schemas.items():
+            number = writer.register_schema(name, "jsonschema", json.dumps(schema).encode())
+            channels[topic] = writer.register_channel(topic, "json", number)
+
+        def add(topic: str, stamp: int, message: dict[str, Any]) -> None:
+            data = json.dumps(message).encode()
+            writer.add_message(channels[topic], log_time=stamp, publish_time=stamp, data=data)
+
+        for row in log:
+            add("/ticks", row.stamp, {"left": row.left, "right": row.right})
+            if row.pose:
+                time = {"sec": row.stamp // 10**9, "nsec": row.stamp % 10**9}
+                position = {"x": row.pose[0], "y": row.pose[1], "z": 0.0}
+                pose = {"position": position, "orientation": row.quaternion}
+                message = {"timestamp": time, "frame_id": "map", "pose": pose}
+                add("/mocap", row.stamp, message)
+        writer.finish()  # type: ignore[no-untyped-call]
+
+
+def write_protobuf(file: Path, log: list[Row]) -> None:
+    """Write poses with mcap-protobuf-support, counts in JSON."""
+    with file.open("wb") as stream, ProtobufWriter(stream) as writer:
+        plain = writer._writer
+        properties = {"ticks_left": {"type": "integer"}, "ticks_right": {"type": "integer"}}
+        schema = json.dumps({"type": "object", "properties": properties}).encode()
+        number = plain.register_schema("wheel_ticks", "jsonschema", schema)
+        channel = plain.register_channel("/ticks", "json", number)
+        for row in log:
+            data = json.dumps({"ticks_left": row.left, "ticks_right": row.right}).encode()
+            plain.add_message(channel, log_time=row.stamp, publish_time=row.stamp, data=data)
+            if row.pose:
+                pose = PoseInFrame(frame_id="map")
+                pose.timestamp.FromNanoseconds(row.stamp)
+                pose.pose.position.x, pose.pose.position.y = row.pose[:2]
+                for name, value in row.quaternion.items():
+                    setattr(pose.pose.orientation, name, value)
+                writer.write_message("/mocap", pose, log_time=row.stamp, publish_time=row.stamp)
+
+
+WRITERS = {
+    "mcap-ros2-support, zstd": write_ros2(CompressionType.ZSTD, chunked=True),
+    "mcap-ros2-support, lz4": write_ros2(CompressionType.LZ4, chunked=True),
+    "mcap-ros2-support, not packed, one chunk": write_ros2(CompressionType.NONE, chunked=False),
+    "rosbags": write_rosbags,
+    "mcap, JSON": write_json,
+    "mcap-protobuf-support": write_protobuf,
+}
+
+
+def numbers(value: Any) -> Iterator[float]:
+    """Yield every number in a document."""
+    if isinstance(value, dict):
+        for key in sorted(value):
+            yield from numbers(value[key])
+    elif isinstance(value, list):
+        for item in value:
+            yield from numbers(item)
+    elif isinstance(value, float):
+        yield value
+
+
+@pytest.mark.parametrize("writer", WRITERS)
+def test_what_other_packages_write_calibrates_as_the_csv_does(
+    writer: str, umbmark: Path, measured: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "robot"
+    (folder / "runs").mkdir(parents=True)
+    for name in ["robot.toml", "returns.csv"]:
+        shutil.copy(measured / name, folder)
+    for file in (measured / "runs").iterdir():
+        WRITERS[writer](folder / "runs" / f"{file.stem}.mcap", list(rows(file)))
+    ours = answer(umbmark, "calibrate", measured)
+    theirs = answer(umbmark, "calibrate", folder)
+    assert theirs["warnings"] == ours["warnings"]
+    expected = list(numbers(ours))
+    assert len(expected) > 50
+    assert list(numbers(theirs)) == pytest.approx(expected, rel=1e-6, abs=1e-9)
+
+
+@pytest.fixture(scope="session")
+def written(umbmark: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+    """Return a log that umbmark wrote, and what it said of it."""
+    file = tmp_path_factory.mktemp("written") / "run.mcap"
+    said = answer(
+        umbmark, "simulate", "-o", file, "--side", "1", "--eb", "1.01", "--direction", "cw"
+    )
+    return file, said
+
+
+def test_a_log_with_a_camera_takes_little_memory(
+    umbmark: Path, measured: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / "run.mcap"
+    with file.open("wb") as stream:
+        writer = Ros2Writer(stream, compression=CompressionType.ZSTD)
+        names = ["sensor_msgs/msg/JointState", "std_msgs/msg/ByteMultiArray"]
+        joints, images = [writer.register_msgdef(name, definition(name)) for name in names]
+        layout = {"dim": [], "data_offset": 0}
+        image = {"layout": layout, "data": random.Random(1).randbytes(1 << 20)}
+        log = list(rows(measured / "runs" / "ccw_01.csv"))
+        for number, row in enumerate(log):
+            names = ["left_wheel", "right_wheel"]
+            header = {"stamp": row.time, "frame_id": ""}
+            state = {"header": header, "name": names, "position": row.positions}
+            writer.write_message("/joint_states", joints, state | NO_RATES, log_time=row.stamp)
+            if number % 5 == 0:
+                writer.write_message("/camera", images, image, log_time=row.stamp)
+        writer.finish()  # type: ignore[no-untyped-call]
+    shutil.copy(measured / "robot.toml", tmp_path)
+    with (tmp_path / "out.json").open("wb") as out:
+        process = subprocess.Popen([umbmark, "inspect", file, "--json"], stdout=out)
+        _, process.returncode, usage = os.wait4(process.pid, 0)
+    assert process.returncode == 0
+    said = json.loads((tmp_path / "out.json").read_text())
+    assert said["logs"][0]["rows"] == len(log)
+    assert file.stat().st_size > 200e6
+    unit = 1 if sys.platform == "darwin" else 1024
+    # Linux counts what this interpreter had when it started the command.
+    assert usage.ru_maxrss * unit < 150e6, "more than a chunk or two"
+
+
+TOPICS = {
+    "/joint_states": "sensor_msgs/msg/JointState",
+    "/odom": "nav_msgs/msg/Odometry",
+    "/tf": "tf2_msgs/msg/TFMessage",
+    "/ground_truth": "geometry_msgs/msg/PoseStamped",
+}
+
+
+def check(messages: dict[str, list[Any]], said: dict[str, Any]) -> None:
+    """Hold what was read against what umbmark said: whole ticks, and the return error."""
+    scale = TICKS_PER_REVOLUTION / math.tau
+    ticks = [scale * p for message in messages["/joint_states"] for p in message.position]
+    assert max(abs(tick - round(tick)) for tick in ticks) < 1e-6
+    assert len(messages["/odom"]) == len(messages["/tf"]) == len(messages["/joint_states"]) > 1000
+    true, computed = messages["/ground_truth"][-1].pose, messages["/odom"][-1].pose.pose
+    transform = messages["/tf"][-1].transforms[0].transform
+    assert (transform.translation.x, transform.rotation.z) == (
+        computed.position.x,
+        computed.orientation.z,
+    )
+    run = said["runs"][0]
+    assert true.position.x - computed.position.x == pytest.approx(run["ex_m"], abs=1e-12)
+    assert true.position.y - computed.position.y == pytest.approx(run["ey_m"], abs=1e-12)
+    turn = [2 * math.atan2(p.orientation.z, p.orientation.w) for p in (true, computed)]
+    assert math.remainder(turn[0] - turn[1] - run["etheta_rad"], math.tau) == pytest.approx(
+        0, abs=1e-12
+    )
+
+
+def test_mcap_ros2_support_reads_what_umbmark_writes(written: tuple[Path, dict[str, Any]]) -> None:
+    file, said = written
+    messages: dict[str, list[Any]] = {}
+    with file.open("rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()], validate_crcs=True)
+        assert reader.get_header().profile == "ros2"
+        for schema, channel, message, decoded in reader.iter_decoded_messages():
+            assert schema is not None
+            assert schema.name == TOPICS[channel.topic]
+            stamp = (
+                decoded.transforms[0].header.stamp
+                if channel.topic == "/tf"
+                else decoded.header.stamp
+            )
+            assert stamp.sec * 10**9 + stamp.nanosec == message.log_time
+            messages.setdefault(channel.topic, []).append(decoded)
+        summary = reader.get_summary()
+    assert summary is not None
+    assert summary.statistics is not None
+    assert summary.statistics.message_count == sum(map(len, messages.values()))
+    check(messages, said)
+
+
+def test_rosbags_reads_what_umbmark_writes(written: tuple[Path, dict[str, Any]]) -> None:
+    file, said = written
+    messages: dict[str, list[Any]] = {}
+    with AnyReader([file]) as reader:
+        assert {c.topic: c.msgtype for c in reader.connections} == TOPICS
+        for connection, _, raw in reader.messages():
+            message = reader.deserialize(raw, connection.msgtype)
+            messages.setdefault(connection.topic, []).append(message)
+    check(messages, said)
