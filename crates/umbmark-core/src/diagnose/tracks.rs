@@ -60,12 +60,11 @@ pub(crate) fn missing(exam: &Examination, options: &Options, most: usize) -> Mis
         let best = if enough { first_with_gain(exam, &findings, &found, options) } else { None };
         let explains = best.map_or(0.0, |finding| finding.answer.drop);
         let unlisted = smooth.filter(|s| explains < EXPLAINED * s.answer.drop && smooth_gains(exam, s, &found));
-        if let (Some(finding), None) = (best, &unlisted) {
-            if let Some(suspect) = look::suspect(exam, finding, &found) {
-                found.extend(&finding.answer.columns);
-                effects.push((finding.clone(), suspect));
-                continue;
-            }
+        let next = best.filter(|_| unlisted.is_none());
+        if let Some((finding, suspect)) = next.and_then(|f| look::suspect(exam, f, &found).map(|s| (f, s))) {
+            found.extend(&finding.answer.columns);
+            effects.push((finding.clone(), suspect));
+            continue;
         }
         let others = findings.iter().filter_map(|finding| look::suspect(exam, finding, &found)).collect();
         let smooth = unlisted.and_then(|finding| dependence(exam, &finding).map(|told| (finding, told)));
