@@ -98,9 +98,7 @@ pub(super) fn document(diagnosis: &Diagnosis, options: &Options) -> Value {
             json!({ "separates": e.separates, "experiment": e.experiment, "minutes": e.minutes, "sd": e.sd })
         }).collect::<Vec<_>>(),
         "identifiability": identifiability_json(&diagnosis.identifiability),
-        "unlisted": diagnosis.dependence.as_ref().map(|told| {
-            json!({ "acts_on": told.acts_on, "depends_on": told.depends_on, "p_adjusted": told.p_adjusted })
-        }),
+        "unlisted": unlisted_json(diagnosis),
         "model": model_json(&diagnosis.model),
         "remarks": diagnosis.remarks,
         "size": options.size,
@@ -112,6 +110,14 @@ pub(super) fn document(diagnosis: &Diagnosis, options: &Options) -> Value {
         map.extend(square_json(&diagnosis.contrasts, &diagnosis.circle));
     }
     document
+}
+
+/// What is missing and not in the catalogue; null where nothing is.
+pub(super) fn unlisted_json(diagnosis: &Diagnosis) -> Value {
+    let told = diagnosis.dependence.as_ref();
+    json!(told.map(|told| {
+        json!({ "acts_on": told.acts_on, "depends_on": told.depends_on, "p_adjusted": told.p_adjusted })
+    }))
 }
 
 fn suspect_json(suspect: &Suspect) -> Value {

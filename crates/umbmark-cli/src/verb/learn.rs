@@ -77,6 +77,7 @@ fn document(learnt: &Learnt, options: &Options) -> Value {
     json!({
         "steps": learnt.steps.iter().map(step).collect::<Vec<_>>(),
         "verdict": learnt.verdict.name(),
+        "unlisted": super::diagnose::unlisted_json(&learnt.diagnosis),
         "model": model_json(&learnt.model),
         "fitted": estimates_json(&learnt.diagnosis.fitted, 1.0 - options.size),
         "remarks": learnt.remarks,

@@ -1,0 +1,98 @@
+"""`learn` on tick logs with motion capture, against causes that it does not know of.
+
+UMBMARK_HIDDEN_CASES=all takes every case of the generator that tracks can show; a few stand for them where it is silent.
+"""
+
+import json
+import os
+import subprocess
+from pathlib import Path as File
+from typing import Any
+
+import pytest
+from generate import main
+
+COMMAND = File(__file__).parents[2] / "target/debug/umbmark"
+ALL = os.environ.get("UMBMARK_HIDDEN_CASES") == "all"
+
+pytestmark = pytest.mark.skipif(
+    not COMMAND.exists(), reason=f"{COMMAND} is not built (cargo build)"
+)
+
+FOUND = ["caster_kick", "floor_slope", "wheel_eccentricity_left"]
+ALSO_FOUND = [
+    "crab",
+    "turn_slip_rate",
+    "speed_slip",
+    "speed_slip_left",
+    "speed_slip_right",
+    "direction_dependent_wheelbase",
+    "leg_kick",
+    "backlash",
+    "floor_slope_yaw",
+    "carpet_nap",
+    "diameter_drift",
+    "centripetal_load",
+    "encoder_skew",
+    "marker_offset",
+    "marker_yaw",
+    "reference_delay",
+    "wheel_eccentricity_right",
+]
+NOTHING = ["none"]
+ALSO_NOTHING = [
+    "none_at_speeds",
+    "none_on_figure_eight",
+    "none_on_circle",
+    "none_on_rectangle",
+    "none_on_waypoints",
+    "none_on_straight",
+    "wheel_diameter_ratio",
+    "wheelbase",
+    "scale",
+]
+OUTSIDE = {"second_harmonic_yaw": ("yaw", "heading")}
+ALSO_OUTSIDE = {
+    "warm_up_yaw": ("yaw", "time"),
+    "turn_loss_at_ramps": ("yaw", "turn_acceleration"),
+    "room_scale": ("forward", None),
+}
+BASE = 4
+
+
+def learnt(case: str, folder: File) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What is learnt of a case, and the sealed answer."""
+    main([case, str(folder), "--seed", "7"])
+    words = [str(COMMAND), "learn", str(folder), "--json"]
+    done = subprocess.run(words, capture_output=True, check=True, text=True)
+    answer: dict[str, Any] = json.loads(done.stdout)
+    sealed: dict[str, Any] = json.loads(folder.with_name(f"{folder.name}.truth.json").read_text())
+    return answer, sealed
+
+
+@pytest.mark.parametrize("case", FOUND + (ALSO_FOUND if ALL else []))
+def test_the_class_of_a_hidden_effect_is_added_and_the_error_left_out_falls(
+    case: str, tmp_path: File
+) -> None:
+    answer, sealed = learnt(case, tmp_path / "data")
+    causes = [cause for cause in sealed["causes"] if cause["kind"] != "base"]
+    added = answer["steps"][BASE:]
+    for cause in causes:
+        assert any(set(step["class"]) & set(cause["acceptable"]) for step in added), added
+    assert added[-1]["heldout_rmse_m"] < 1.02 * answer["steps"][BASE - 1]["heldout_rmse_m"]
+
+
+@pytest.mark.parametrize("case", NOTHING + (ALSO_NOTHING if ALL else []))
+def test_nothing_is_added_where_nothing_is_hidden(case: str, tmp_path: File) -> None:
+    answer, _ = learnt(case, tmp_path / "data")
+    assert [step["added"] for step in answer["steps"][BASE:]] == []
+    assert answer["verdict"] == "explained"
+
+
+@pytest.mark.parametrize("case", [*OUTSIDE, *(ALSO_OUTSIDE if ALL else [])])
+def test_what_the_catalogue_does_not_list_is_called_unlisted(case: str, tmp_path: File) -> None:
+    answer, _ = learnt(case, tmp_path / "data")
+    assert answer["verdict"] == "unlisted_effect"
+    acts_on, depends_on = (OUTSIDE | ALSO_OUTSIDE)[case]
+    assert answer["unlisted"]["acts_on"] == acts_on
+    assert depends_on in (None, answer["unlisted"]["depends_on"])

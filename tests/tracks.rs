@@ -1,0 +1,62 @@
+//! The loop on tracks: made data with a known cause, and a real robot's. Nothing here reads the answers but the assertions.
+
+use std::io::Write;
+use std::path::PathBuf;
+use umbmark_core::dataset::Dataset;
+use umbmark_core::diagnose::{Options, Verdict};
+use umbmark_core::learn::{Learnt, learn};
+
+/// What is learnt of shared data; nothing, with a notice, where it is absent.
+fn learnt(place: &str) -> Option<Learnt> {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data").join(place);
+    if !folder.exists() {
+        let _ = writeln!(std::io::stderr(), "skipped: {} is not there", folder.display());
+        return None;
+    }
+    let data = Dataset::load(&folder).unwrap();
+    Some(learn(&data, &Options::default()).unwrap())
+}
+
+/// Steps beyond the nominal robot, E_d, E_b and E_s.
+fn added(learnt: &Learnt) -> Vec<&'static str> {
+    learnt.steps[4..].iter().filter_map(|step| step.added).collect()
+}
+
+#[test]
+fn the_hidden_effect_of_made_data_is_added_and_nothing_else() {
+    for (set, class, parameter, truth) in [
+        ("s51", "", "", 0.0),
+        ("s52", "caster_kick", "kick_rad", 0.03),
+        ("s53", "wheel_eccentricity_left", "", 0.0),
+        ("s54", "floor_slope", "", 0.0),
+        ("s55", "encoder_skew", "delay_right_s", -0.02),
+        ("s56", "turn_slip_rate", "s_per_rad", 0.05),
+        ("s57", "direction_dependent_wheelbase", "difference", 0.018),
+    ] {
+        let Some(learnt) = learnt(&format!("made/{set}")) else { return };
+        let named = learnt.steps.get(4).map_or(vec![], |step| step.class.clone());
+        assert_eq!(added(&learnt).len(), usize::from(!class.is_empty()), "{set}: {:?}", added(&learnt));
+        assert!(class.is_empty() || named.contains(&class), "{set}: {named:?}");
+        assert_eq!(learnt.verdict, Verdict::Explained, "{set}");
+        if let Some(found) = learnt.diagnosis.fitted.iter().find(|e| e.parameter == parameter) {
+            let apart = (found.value - truth).abs() / found.standard_error;
+            assert!(apart < 3.0, "{set}: {} ± {}, truth {truth}", found.value, found.standard_error);
+        }
+    }
+}
+
+#[test]
+fn bumps_on_the_first_leg_are_found_in_an_engines_data() {
+    let Some(learnt) = learnt("made/p56") else { return };
+    assert_eq!(added(&learnt), ["placed_bumps"]);
+    assert!(learnt.steps[4].held_out.position < 0.5 * learnt.steps[3].held_out.position);
+}
+
+#[test]
+fn a_scale_error_that_end_poses_cannot_see_shows_on_the_tracks_of_a_real_robot() {
+    let Some(learnt) = learnt("optiodom/raw/square/230620202317") else { return };
+    let scale = learnt.diagnosis.fitted.iter().find(|e| e.parameter == "e_s").unwrap();
+    assert!((0.9953..0.9958).contains(&scale.value), "{}", scale.value);
+    assert!((learnt.steps[0].held_out.position - 13.3e-3).abs() < 0.5e-3);
+    assert!(learnt.steps.last().unwrap().held_out.position < 8.8e-3);
+}
