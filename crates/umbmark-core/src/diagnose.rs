@@ -67,12 +67,14 @@ pub struct Options {
     pub draws: usize,
     /// Seed of those.
     pub seed: u64,
+    /// Whether to use return poses alone, even where the runs were observed on the way.
+    pub ends_only: bool,
 }
 
 impl Default for Options {
     /// 5 %, 999 draws, seed 1.
     fn default() -> Self {
-        Options { size: 0.05, draws: 999, seed: 1 }
+        Options { size: 0.05, draws: 999, seed: 1, ends_only: false }
     }
 }
 
@@ -316,9 +318,31 @@ fn places(run: &Run) -> usize {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diagnosis, DiagnoseError> {
-    match level(data) {
-        Level::Ends => ends::diagnose(&ends::Ends::new(data)?, model, options),
-        Level::Tracks => tracks::diagnose(tracks::fit(&tracks_of(data)?, model)?, options),
+    if options.evidence(data) == Level::Ends {
+        return ends::diagnose(&ends::Ends::new(data)?, model, options);
+    }
+    let mut diagnosis = tracks::diagnose(tracks::fit(&tracks_of(data)?, model)?, options)?;
+    // Where return poses tell of the same runs, what they alone would have said stands beside it.
+    if let Ok(returns) = ends::Ends::new(data)
+        .map_err(DiagnoseError::from)
+        .and_then(|ends| ends::diagnose(&ends, &base_model(model.robot())?, options))
+    {
+        diagnosis.contrasts = returns.contrasts;
+        diagnosis.circle = returns.circle;
+        diagnosis.goodness_of_fit.extend(
+            returns
+                .goodness_of_fit
+                .into_iter()
+                .map(|test| GoodnessOfFit { name: "E_d and E_b for the return poses alone", ..test }),
+        );
+    }
+    Ok(diagnosis)
+}
+
+impl Options {
+    /// What is used of a dataset.
+    pub(crate) fn evidence(&self, data: &Dataset) -> Level {
+        if self.ends_only { Level::Ends } else { level(data) }
     }
 }
 

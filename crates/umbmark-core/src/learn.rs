@@ -140,7 +140,7 @@ pub(crate) trait Evidence: Sized + Sync {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn learn(data: &Dataset, options: &diagnose::Options) -> Result<Learnt, DiagnoseError> {
-    match diagnose::level(data) {
+    match options.evidence(data) {
         Level::Ends => from_evidence(&diagnose::ends::Ends::new(data)?, options),
         Level::Tracks => tracks::learn(&diagnose::tracks_of(data)?, options),
     }

@@ -19,7 +19,12 @@ fn recorded(set: &str) -> Option<Dataset> {
 }
 
 fn diagnosis(data: &Dataset) -> Diagnosis {
-    diagnose(data, &base_model(data.robot.as_ref().unwrap()).unwrap(), &Options::default()).unwrap()
+    diagnose(
+        data,
+        &base_model(data.robot.as_ref().unwrap()).unwrap(),
+        &Options { ends_only: true, ..Options::default() },
+    )
+    .unwrap()
 }
 
 #[test]

@@ -43,7 +43,8 @@ pub struct Arguments {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
-    let options = Options { size: arguments.size, draws: arguments.draws as usize, seed: session.seed() };
+    let options =
+        Options { size: arguments.size, draws: arguments.draws as usize, seed: session.seed(), ends_only: true };
     let comparison = session.on_threads(|| -> anyhow::Result<Comparison> {
         Ok(compare(&data, &models(&arguments, &data)?, &options)?)
     })??;

@@ -26,6 +26,10 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 
+    /// Use return poses alone, even where the runs were observed on the way
+    #[arg(long)]
+    return_poses: bool,
+
     /// Simulated tests for p-values that have no closed form
     #[arg(long, default_value_t = 999, value_name = "N", value_parser = clap::value_parser!(u32).range(99..=99_999))]
     draws: u32,
@@ -41,7 +45,12 @@ pub struct Arguments {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
-    let options = Options { size: arguments.size, draws: arguments.draws as usize, seed: session.seed() };
+    let options = Options {
+        size: arguments.size,
+        draws: arguments.draws as usize,
+        seed: session.seed(),
+        ends_only: arguments.return_poses,
+    };
     let learnt = session.on_threads(|| learn(&data, &options))??;
     if let Some(file) = &arguments.output {
         write_model(&learnt.model, file, arguments.force)?;
