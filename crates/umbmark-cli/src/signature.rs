@@ -47,20 +47,22 @@ pub struct Moment {
 }
 
 impl Signature {
-    /// The signature of an effect on the paper's square, or on a circle where the square shows nothing; `None` where it
+    /// The signature of an effect's first number that has one, on the paper's square, or on a circle where the square shows nothing; `None` where it
     /// acts by chance only.
     pub fn of(entry: &'static Entry) -> anyhow::Result<Option<Signature>> {
-        let Some(parameter) = entry.about.parameters.first() else { return Ok(None) };
         let robot = Robot::labmate();
-        let value = parameter.usual(&robot);
-        let mut model = Model::new(&robot);
-        model.set(entry.about.name, parameter.name, value)?;
         let circle = Path::new(&CIRCLE, &[1.0, 1.0], SpeedProfile::default())?;
-        for (words, path) in [("4 m square", Path::umbmark()), ("circle of radius 1 m", circle)] {
-            let runs = [Direction::Ccw, Direction::Cw].map(|direction| run(&model, &path, direction));
-            let shown = |m: &Moment| m.forward.abs().max(m.sideways.abs()).max(m.heading.abs()) > NOTHING;
-            if runs.iter().flatten().any(shown) {
-                return Ok(Some(Signature { parameter, value, path: words, runs }));
+        let paths = [("4 m square", Path::umbmark()), ("circle of radius 1 m", circle)];
+        for parameter in entry.about.parameters {
+            let value = parameter.usual(&robot);
+            let mut model = Model::new(&robot);
+            model.set(entry.about.name, parameter.name, value)?;
+            for (words, path) in &paths {
+                let runs = [Direction::Ccw, Direction::Cw].map(|direction| run(&model, path, direction));
+                let shown = |m: &Moment| m.forward.abs().max(m.sideways.abs()).max(m.heading.abs()) > NOTHING;
+                if runs.iter().flatten().any(shown) {
+                    return Ok(Some(Signature { parameter, value, path: words, runs }));
+                }
             }
         }
         Ok(None)

@@ -86,15 +86,46 @@ fn a_single_trial_has_null_for_what_it_cannot_know_and_never_nan() {
 
 #[test]
 fn threads_change_nothing_but_the_time() {
-    let of = |threads| {
-        let mut document = json(&["-n", "3000", "--ed-sd", "0.0005", "--threads", threads]);
-        document.as_object_mut().unwrap().remove("trials_per_s");
-        document
-    };
-    let one = of("1");
-    assert_eq!(one, of("2"));
-    assert_eq!(one, of("8"));
+    let plain: &[&str] = &["-n", "3000", "--ed-sd", "0.0005"];
+    // In pieces: an effect that depends on the heading, one on the speed, and one drawn anew for each trial.
+    let varying: &[&str] =
+        &["-n", "600", "--side", "1", "--slope-x", "0.003", "--turn-slip-rate", "0.01", "--backlash-sd", "0.001"];
+    for study in [plain, varying] {
+        let of = |threads| results(json(&[study, &["--threads", threads]].concat()));
+        let one = of("1");
+        assert_eq!(one, of("2"));
+        assert_eq!(one, of("8"));
+    }
 }
+
+#[test]
+fn effects_that_depend_on_the_way_or_on_the_measurement_move_the_return_as_their_laws_say() {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let turn = 0.17 * quarter;
+    let driven = 4.0 * ((4.0 + turn) / 0.2 + 2.0);
+    for (flags, metric, expected) in [
+        (&["--slope-x", "0.003"][..], "centroid_cw_x_m", 0.048),
+        (&["--nap-y", "-0.003"], "centroid_ccw_y_m", -0.048),
+        (&["--slope-creep-y", "0.001"], "centroid_cw_y_m", 0.001 * driven),
+        (&["--backlash", "0.001"], "return_heading_ccw_rad", -0.001 / 0.34),
+        (&["--turn-slip", "0.005"], "return_heading_ccw_rad", -4.0 * quarter * 0.005),
+        (&["--caster-kick", "0.003"], "return_heading_cw_rad", -3.0 * 0.003),
+        (&["--leg-kick", "0.003"], "return_heading_cw_rad", 4.0 * 0.003),
+        (&["--bump-loss", "0.009"], "return_heading_cw_rad", -0.009 * 4.0 / 0.34),
+        (&["--diameter-drift", "0.0001"], "return_heading_ccw_rad", 0.0001 * 8.0 * 16.0 / 0.34),
+        (&["--speed-slip-right", "0.01", "--acceleration", "1000"], "return_heading_cw_rad", RIGHT_SLIP),
+        (&["--marker-yaw", "0.01"], "return_heading_ccw_rad", 0.01),
+        (&["--reference-delay", "0.5"], "centroid_cw_x_m", 0.0),
+    ] {
+        let study = ["-n", "2", "--runs", "1", "--wheel-noise", "0", "--odometry", "continuous"];
+        let found = json(&[&study[..], flags].concat())["metrics"][metric]["mean"].as_f64().unwrap();
+        assert!((found - expected).abs() < 2e-5, "{flags:?}: {metric} {found}, expected {expected}");
+    }
+}
+
+/// At 0.2 m/s throughout a right wheel that slips by 0.01 s/m loses 0.2 % of its way: 16 m and, turning to the right, four
+/// quarter turns backward.
+const RIGHT_SLIP: f64 = -0.002 * (16.0 - 4.0 * 0.17 * std::f64::consts::FRAC_PI_2) / 0.34;
 
 #[test]
 fn every_trial_can_be_written_down_and_no_file_is_replaced_unasked() {

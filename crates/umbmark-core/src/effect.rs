@@ -234,8 +234,11 @@ pub trait Effect {
     /// What people should know of it.
     const ABOUT: About;
 
-    /// Whether its change of motion depends on the [`Context`], so that driving has to be cut into small pieces for it.
-    const VARIES: bool = false;
+    /// Whether with these values its change of motion depends on the [`Context`], so that driving has to be cut into small
+    /// pieces for it.
+    fn varies(_p: &[f64]) -> bool {
+        false
+    }
 
     /// Changes believed into true wheel travel \[m\].
     fn wheels<T: Real>(_p: &[T], _at: &Context<T>, _travel: &mut WheelTravel<T>) {}
@@ -266,6 +269,11 @@ pub trait Effect {
 
     /// Changes a true pose into the measured one.
     fn measured(_p: &[f64], _stream: &mut Stream, _pose: &mut Pose2) {}
+}
+
+/// Whether an effect whose numbers are all sizes is at work.
+fn at_work(sizes: &[f64]) -> bool {
+    sizes.iter().any(|size| *size != 0.0)
 }
 
 /// The deterministic part of an effect, for one kind of number.
@@ -299,8 +307,8 @@ pub struct Scatter {
 pub struct Entry {
     /// What people should know of it.
     pub about: About,
-    /// See [`Effect::VARIES`].
-    pub varies: bool,
+    /// See [`Effect::varies`].
+    pub varies: fn(&[f64]) -> bool,
     pub(crate) values: Mean<f64>,
     pub(crate) duals: Mean<Dual>,
     pub(crate) scatter: Scatter,
@@ -311,7 +319,7 @@ impl Entry {
         assert!(E::ABOUT.parameters.len() <= MAX_PARAMETERS);
         Entry {
             about: E::ABOUT,
-            varies: E::VARIES,
+            varies: E::varies,
             values: Mean {
                 start: E::start::<f64>,
                 wheels: E::wheels::<f64>,

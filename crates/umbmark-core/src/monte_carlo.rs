@@ -138,8 +138,8 @@ impl Study {
 
     /// Whether each trial includes the extended test, because bumps are placed in it.
     pub fn extended(&self) -> bool {
-        self.model.get("placed_bumps", "count").is_some_and(|count| count > 0.0)
-            || self.draws.iter().any(|draw| draw.effect() == "placed_bumps")
+        let placed = |draw: &Draw| draw.effect() == "placed_bumps" && draw.parameter().name == "count";
+        self.model.get("placed_bumps", "count").is_some_and(|count| count > 0.0) || self.draws.iter().any(placed)
     }
 
     /// The metrics of a trial, in the order of its [`Row`]; those that the test does not have are left out.

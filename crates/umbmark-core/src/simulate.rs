@@ -9,10 +9,11 @@ mod pieces;
 mod record;
 mod sampling;
 mod truth;
+mod way;
 
 use crate::dataset::ReturnError;
 use crate::drive::{Robot, WheelTravel};
-use crate::effect::{Stretch, TestKind};
+use crate::effect::{Sight, Stretch, TestKind};
 use crate::engine::{
     EngineError, Instructions, Integrator, Method, Motion, Segment, TickGeometry, UNITS_PER_TICK, Update, WheelLine,
 };
@@ -207,18 +208,19 @@ impl Simulator {
         for course in &self.courses {
             let direction = course.direction;
             for run in 0..runs[direction as usize] {
-                truth.start_another();
+                truth.start_another(direction, false);
                 for (index, leg) in course.legs.iter().enumerate() {
                     let travel = match self.computer {
                         Computer::Continuous => leg.travel,
                         _ => self.per_tick.of(&self.segments[self.place(runs, direction, run, index)].line),
                     };
-                    truth.begin(Stretch { index, direction, test, travel }, leg.travel);
+                    truth.begin(Stretch { index, direction, test, travel }, leg);
                     truth.advance(1.0);
                 }
             }
         }
-        let mut measured = truth.measure_all();
+        let at_rest = Sight { time: self.course(Direction::Cw).duration(), ..Sight::default() };
+        let mut measured = truth.measure_all(at_rest);
         for (direction, returned) in Direction::BOTH.into_iter().zip(returned) {
             for (run, (returned, measured)) in returned.iter_mut().zip(&mut measured).enumerate() {
                 let moves = 0..self.course(direction).legs.len();
@@ -309,6 +311,9 @@ pub(crate) fn return_error(absolute: &Pose2, computed: &Pose2) -> ReturnError {
         heading: Some(wrap(absolute.heading - computed.heading)),
     }
 }
+
+#[cfg(test)]
+mod agreement;
 
 #[cfg(test)]
 mod tests {

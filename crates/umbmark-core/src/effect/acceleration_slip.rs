@@ -1,6 +1,6 @@
 //! Slip under drive and brake.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::drive::WheelTravel;
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -29,7 +29,10 @@ impl Effect for AccelerationSlip {
         separated_by: "a second acceleration at the same speed: a delay does not care",
         source: "linear creep of a rolling tyre; 2 % per m/s² is assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= -p[0] * gain(at, 0) + 1.0;

@@ -1,6 +1,6 @@
 //! Play between motor and wheel.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::drive::WheelTravel;
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -29,7 +29,10 @@ impl Effect for Backlash {
         separated_by: "turning each wheel by hand with its motor held; a track",
         source: "geometry; hobby drives with about 1 degree of body heading are reported, 0.5 mm is assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left -= p[0] * at.reversed[0];

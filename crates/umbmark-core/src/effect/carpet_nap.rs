@@ -1,7 +1,7 @@
 //! A carpet whose pile leans one way.
 
 use super::floor_slope::{DRIFT, DRIFT_X, DRIFT_Y, drift};
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -34,7 +34,10 @@ impl Effect for CarpetNap {
         separated_by: "turning the carpet by 90 degrees: nap turns with it, slope stays. Nothing else does",
         source: "the carpet-drift vector of vacuum robots (patents of iRobot, US 9,223,312 and family); size assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         drift(p, at, motion);

@@ -36,7 +36,10 @@ impl Effect for CasterKick {
         separated_by: "a track; 0.3 m of driving straight before each turn, on and off; ball casters",
         source: "users' reports of drift after a change of direction; 0.2 degree and 5 cm are assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        p[0] != 0.0
+    }
 
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation += p[0] * faded(at, p[1]) * at.last_turn;

@@ -1,6 +1,6 @@
 //! The outer tyre gives way in arcs.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::drive::WheelTravel;
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -29,7 +29,10 @@ impl Effect for CentripetalLoad {
         separated_by: "circles driven slowly and fast, both ways",
         source: "load transfer on a linear tyre; 0.1 % per m/s² is assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         let half = p[0] * (0.5 * at.speed * at.turn_rate);

@@ -35,7 +35,7 @@ pub struct Context<T = f64> {
     pub session_distance: f64,
     /// Path length since the last turn \[m\]; since START where there was none.
     pub since_turn: f64,
-    /// Path length of the piece \[m\].
+    /// Path length of the piece \[m\]; less than 0 where it was recorded against the sense of driving, as single counts are.
     pub length: f64,
     /// Sense of the last turn: +1 to the left, -1 to the right, 0 before the first.
     pub last_turn: f64,
@@ -75,6 +75,12 @@ impl Context {
 }
 
 impl<T> Context<T> {
+    /// Whether the robot turns about a point within a wheelbase of its axle's centre: |v_R - v_L| > |v|.
+    pub fn turns_on_the_spot(&self) -> bool {
+        let [left, right] = self.wheel_speed;
+        (right - left).abs() > self.speed.abs()
+    }
+
     /// Mean acceleration of the axle's centre \[m/s²\].
     pub fn acceleration(&self) -> f64 {
         if self.duration > 0.0 { 0.5 * (self.speed_change[0] + self.speed_change[1]) / self.duration } else { 0.0 }
@@ -163,7 +169,8 @@ impl Progress {
         now.wheel_speed = mean;
         now.speed_change = [to[0] - from[0], to[1] - from[1]];
         now.wheel_rotation = [0, 1].map(|w| wheels[w] / self.radius[w]);
-        now.length = forward.abs();
+        // Counters that tremble about zero, as in a turn on the spot, make no way.
+        now.length = if now.speed == 0.0 { forward.abs() } else { forward * now.speed.signum() };
         now.reversed =
             [0, 1].map(|w| reversal(&mut self.sense[w], &mut self.behind[w], wheels[w], self.least_reversal[w]));
         let piece = *now;
@@ -179,6 +186,11 @@ impl Progress {
     /// Time since the run began \[s\].
     pub fn time(&self) -> f64 {
         self.now.time
+    }
+
+    /// Path length driven in all runs of the session so far \[m\].
+    pub fn session_distance(&self) -> f64 {
+        self.now.session_distance
     }
 
     fn follow_turn(&mut self, forward: f64, rotation: f64) {
@@ -234,6 +246,23 @@ mod tests {
         assert!((seen[2].since_turn - 0.2).abs() < 1e-12 && (seen[14].since_turn - 0.1).abs() < 1e-12);
         assert!((seen[14].heading + std::f64::consts::FRAC_PI_2).abs() < 1e-12);
         assert!((seen[14].distance - 0.4).abs() < 1e-12 && (seen[14].time - 1.4).abs() < 1e-12);
+    }
+
+    #[test]
+    fn counters_that_tremble_in_a_turn_make_no_way_and_driving_backward_does() {
+        let mut progress = Progress::new(&Robot::labmate(), Place::default(), true);
+        let mut piece = |left: f64, right: f64, speeds: [f64; 2]| {
+            progress.piece(&WheelTravel { left, right }, 0.01, speeds, speeds);
+            progress.session_distance()
+        };
+        // Nine ticks against eight and eight against nine, at a mean speed that is not quite zero.
+        for _ in 0..50 {
+            piece(-9e-4, 8e-4, [-0.2, 0.2001]);
+            piece(-8e-4, 9e-4, [-0.2, 0.2001]);
+        }
+        assert!(piece(0.0, 0.0, [0.0; 2]).abs() < 1e-12);
+        assert!((piece(-0.01, -0.01, [-0.2; 2]) - 0.01).abs() < 1e-12);
+        assert!((piece(-0.01, -0.01, [0.0; 2]) - 0.02).abs() < 1e-12);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Wheel diameters that change as the robot drives.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::drive::WheelTravel;
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -39,7 +39,10 @@ impl Effect for DiameterDrift {
         separated_by: "the heading along the track; cw and ccw runs in random order",
         source: "0.12 % over a run is assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         let half = 0.5 * at.length;

@@ -1,6 +1,6 @@
 //! A wheelbase that is not the same for left and right turns.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -29,7 +29,10 @@ impl Effect for DirectionDependentWheelbase {
         separated_by: "spins both ways, or a heading at each corner before and after the turn",
         source: "first-order theory of side-periodic errors; 0.4 % is assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if at.turn_rate != 0.0 {

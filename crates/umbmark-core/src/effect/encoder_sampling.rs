@@ -31,7 +31,10 @@ impl Effect for EncoderSampling {
         separated_by: "replaying the recorded ticks: it must vanish",
         source: "Euler's rule against the mid-point rule; 50 ms is assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        p[0] != 0.0
+    }
 
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if !at.recorded {

@@ -1,6 +1,6 @@
 //! Encoders that are not read at the same moment.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::drive::WheelTravel;
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -30,7 +30,10 @@ impl Effect for EncoderSkew {
         separated_by: "a second speed, or the heading just before and just after a stop",
         source: "kinematics: 10 ms at 0.2 m/s is 0.34 degree with b = 0.34 m",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.right -= p[0] * at.speed_change[1];

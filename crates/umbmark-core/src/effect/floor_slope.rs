@@ -1,6 +1,6 @@
 //! A sloping floor that lets the robot drift downhill.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -23,20 +23,48 @@ impl Effect for FloorSlope {
                 meaning: "drift downhill to the left of the heading at START, per metre driven",
                 ..DRIFT_Y
             },
+            Parameter::size(
+                "creep_x_m_s",
+                "slope-creep-x",
+                "m/s",
+                1e-3,
+                (-1.0, 1.0),
+                "drift along the heading at START per second of driving",
+            ),
+            Parameter::size(
+                "creep_y_m_s",
+                "slope-creep-y",
+                "m/s",
+                1e-3,
+                (-1.0, 1.0),
+                "drift to the left of the heading at START per second of driving",
+            ),
         ],
-        equation: DRIFT,
+        equation: "(forward, sideways) ← (forward, sideways) + R(-h) ((g_x, g_y) · length + (c_x, c_y) · duration),  h the \
+                   mean heading, duration where a wheel rolls",
         physics: "Gravity pulls sideways on rolling tyres, which answer with a slip angle of slope over cornering stiffness: \
-                  1 % of slope and a stiffness of ten times the load per radian give 1 mm per metre.",
-        signature: "The return point is off by the drift times the length of the path, the same in ccw and cw, and the \
-                    heading is right: no E_d and E_b together can do that.",
+                  1 % of slope and a stiffness of ten times the load per radian give 1 mm per metre. Soft tyres give way \
+                  under the same force with time as well, so that the drift per metre is larger the slower they roll.",
+        signature: "The return point is off by the drift times the length of the path and the creep times the time driven, \
+                    the same in ccw and cw, and the heading is right: no E_d and E_b together can do that.",
         confused_with: &["carpet_nap", "start_pose"],
-        separated_by: "starting the square turned by 90 or 180 degrees; from nap, turning the carpet",
-        source: "linear tyre model; the stiffness is assumed, and 3 mm per metre as a usual size",
+        separated_by: "starting the square turned by 90 or 180 degrees; from nap, turning the carpet; creep from drift, \
+                       driving at half the speed",
+        source: "linear tyre model, its stiffness assumed, and 3 mm per metre as a usual size; creep as of any viscoelastic \
+                 body in rolling contact, 1 mm per second assumed and not measured",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         drift(p, at, motion);
+        if at.wheel_rotation != [0.0; 2] {
+            let (sine, cosine) = mean_heading(at, motion).sine_cosine();
+            motion.forward += (cosine * p[2] + sine * p[3]) * at.duration;
+            motion.sideways += (cosine * p[3] - sine * p[2]) * at.duration;
+        }
     }
 }
 
@@ -49,14 +77,20 @@ pub(super) const DRIFT_Y: Parameter = Parameter::size("drift_y", "", "m/m", 3e-3
 
 /// Adds a drift that is fixed in the room, (p₀, p₁) per metre driven.
 pub(super) fn drift<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-    let (sine, cosine) = (at.heading + motion.rotation * 0.5).sine_cosine();
+    let (sine, cosine) = mean_heading(at, motion).sine_cosine();
     motion.forward += (cosine * p[0] + sine * p[1]) * at.length;
     motion.sideways += (cosine * p[1] - sine * p[0]) * at.length;
 }
 
+fn mean_heading<T: Real>(at: &Context<T>, motion: &Displacement2<T>) -> T {
+    at.heading + motion.rotation * 0.5
+}
+
 #[cfg(test)]
 mod tests {
-    use crate::effect::tests::{ccw_and_cw, circle_end_with, stops_with};
+    use crate::effect::tests::{ccw_and_cw, circle_end_with, model_with, stops_with};
+    use crate::path::{Direction, Path, SQUARE, SpeedProfile};
+    use crate::replay::Track;
 
     #[test]
     fn the_robot_drifts_with_its_way_in_the_room_and_keeps_its_heading() {
@@ -77,6 +111,21 @@ mod tests {
                     let way = 4.0 * std::f64::consts::PI;
                     assert!((circle.x - x * way).abs() < 1e-6 && (circle.y - y * way).abs() < 1e-6, "{circle:?}");
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn creep_grows_with_the_time_of_driving_and_not_with_the_pauses() {
+        let model = model_with(&[("floor_slope", "creep_x_m_s", 1e-3), ("floor_slope", "creep_y_m_s", -2e-3)]);
+        for (speed, pause) in [(0.2, 1.0), (0.1, 1.0), (0.2, 5.0)] {
+            let path = Path::new(&SQUARE, &[4.0], SpeedProfile::new(speed, 0.2, pause).unwrap()).unwrap();
+            // A ramp up and one down cost as much time as half of them each at full speed.
+            let turn = 0.17 * std::f64::consts::FRAC_PI_2;
+            let time = 4.0 * ((4.0 + turn) / speed + 2.0 * speed / 0.2);
+            for direction in Direction::BOTH {
+                let end = Track::in_pieces(&path, direction, model.robot()).end(&model.chain());
+                assert!((end.x - 1e-3 * time).abs() < 5e-6 && (end.y + 2e-3 * time).abs() < 5e-6, "{end:?} {time}");
             }
         }
     }

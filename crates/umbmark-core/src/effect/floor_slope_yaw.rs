@@ -1,6 +1,6 @@
 //! A sloping floor that turns the robot as it drives across.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -39,7 +39,10 @@ impl Effect for FloorSlopeYaw {
         separated_by: "starting the square turned by 90 or 180 degrees; a heading at each corner",
         source: "load transfer on a slope; 1 mrad per metre is assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         let (sine, cosine) = (at.heading + motion.rotation * 0.5).sine_cosine();

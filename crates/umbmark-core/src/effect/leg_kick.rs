@@ -37,7 +37,10 @@ impl Effect for LegKick {
         separated_by: "a heading in the middle of a leg and at its end; sides of another length",
         source: "first-order theory of side-periodic errors; 0.2 degree and 5 cm are assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        p[0] != 0.0
+    }
 
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation += p[0] * faded(at, p[1]);

@@ -50,7 +50,10 @@ impl Effect for MissedCounts {
         separated_by: "ten turns of each wheel by hand or motor, off the floor, counted",
         source: "reports of users of small controllers; sizes are assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        p[0] != 0.0 || p[1] != 0.0
+    }
 
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= p[0] * above(at.wheel_speed[0], p[2]) + 1.0;

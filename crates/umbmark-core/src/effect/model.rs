@@ -118,9 +118,10 @@ impl Model {
         Some(part.values[index])
     }
 
-    /// Whether some effect changes motion along the way, so that driving has to be cut into small pieces.
+    /// Whether some effect with its present values changes motion along the way, so that driving has to be cut into small
+    /// pieces. A derivative by a size that is 0 needs them all the same.
     pub fn varies(&self) -> bool {
-        self.parts.iter().any(|part| part.effect.varies)
+        self.parts.iter().any(|part| (part.effect.varies)(&part.values))
     }
 
     /// All values of all parts, one after the other: the order of [`Model::chain_with`].

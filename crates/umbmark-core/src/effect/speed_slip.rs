@@ -1,6 +1,6 @@
 //! Slip of both wheels that grows with their speed.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::drive::WheelTravel;
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -25,7 +25,10 @@ impl Effect for SpeedSlip {
         separated_by: "one measured straight leg at each of two speeds",
         source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= kept(p[0], at.wheel_speed[0]);

@@ -1,7 +1,7 @@
 //! Slip of the right wheel that grows with its speed.
 
 use super::speed_slip::{CREEP, PER_SPEED, kept};
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::drive::WheelTravel;
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -26,7 +26,10 @@ impl Effect for SpeedSlipRight {
         separated_by: "a long straight at two speeds: the curvature of E_d stays",
         source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.right *= kept(p[0], at.wheel_speed[1]);

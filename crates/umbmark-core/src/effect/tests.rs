@@ -197,8 +197,9 @@ fn each_number_but_those_of_chance_shows_and_its_derivative_is_that_of_finite_di
         .iter()
         .flat_map(|entry| entry.about.parameters.iter().map(move |p| (entry.about.name, p.name)))
         .filter(|(effect, parameter)| {
-            ["placed_bumps", "bumps", "wheel_noise", "encoder_resolution", "reference_noise"].contains(effect)
+            ["bumps", "wheel_noise", "encoder_resolution", "reference_noise"].contains(effect)
                 || parameter.contains("_sd_")
+                || (*effect == "placed_bumps" && *parameter != "lost_per_m")
         })
         .collect();
     assert_eq!(silent, chance);
@@ -247,10 +248,30 @@ fn an_effect_says_whether_it_depends_on_where_and_how_the_robot_drives() {
         direction: 1.0,
         recorded: false,
     };
+    let first_leg = Context { last_turn: 0.0, wheel_speed: [0.2; 2], ..other };
     let travel = WheelTravel { left: 0.005, right: 0.035 };
     for entry in CATALOGUE {
-        let chain = alone(entry, Parameter::usual).chain();
-        let depends = chain.displacement(&other, &travel) != chain.displacement(&Context::default(), &travel);
-        assert_eq!(depends, entry.varies, "{}", entry.about.name);
+        let model = alone(entry, Parameter::usual);
+        let chain = model.chain();
+        let anywhere = chain.displacement(&Context::default(), &travel);
+        let depends = [other, first_leg].iter().any(|at| chain.displacement(at, &travel) != anywhere);
+        assert_eq!(depends, model.varies(), "{}", entry.about.name);
+    }
+}
+
+#[test]
+fn an_effect_varies_from_the_first_of_its_sizes_that_is_not_zero_and_not_before() {
+    for entry in CATALOGUE {
+        let nothing = alone(entry, neutral);
+        assert!(!nothing.varies(), "{}", entry.about.name);
+        if !alone(entry, Parameter::usual).varies() {
+            continue;
+        }
+        let sizes = entry.about.parameters.iter().filter(|p| p.default.resolve(nothing.robot()) == 0.0);
+        for p in sizes.filter(|p| p.choices.is_empty() && p.name != "count") {
+            let mut one = nothing.clone();
+            one.set(entry.about.name, p.name, p.typical).unwrap();
+            assert!(one.varies(), "{} {}", entry.about.name, p.name);
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Scrub in turns on the spot.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -29,11 +29,13 @@ impl Effect for TurnSlip {
         separated_by: "another surface or load; wide arcs beside spins",
         source: "Borenstein & Feng (1995), section 2 (up to 1 %); factors 1.5 to 1.9 that users set for skid-steer robots",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        let [left, right] = at.wheel_speed;
-        if (right - left).abs() > at.speed.abs() {
+        if at.turns_on_the_spot() {
             motion.rotation *= -p[0] + 1.0;
         }
     }

@@ -1,6 +1,6 @@
 //! Slip that grows with the rate of turn.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -27,7 +27,10 @@ impl Effect for TurnSlipRate {
         separated_by: "spins at two rates of turn",
         source: "linear creep of a rolling tyre; 0.8 % per rad/s is assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation *= -p[0] * at.turn_rate.abs() + 1.0;

@@ -1,6 +1,6 @@
 //! Run-out of the left wheel.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::drive::WheelTravel;
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -34,7 +34,10 @@ impl Effect for WheelEccentricityLeft {
         separated_by: "the track against the wheel's angle: in turns the wheels roll opposite ways and their waves part",
         source: "geometry of an off-centre wheel; 0.3 mm is assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left += wave(p, at, 0);

@@ -1,7 +1,7 @@
 //! Run-out of the right wheel.
 
 use super::wheel_eccentricity_left::{COSINE, RUN_OUT, SINE, wave};
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Context, Effect, at_work};
 use crate::drive::WheelTravel;
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -34,7 +34,10 @@ impl Effect for WheelEccentricityRight {
         separated_by: "the track against the wheel's angle: in turns the wheels roll opposite ways and their waves part",
         source: "geometry of an off-centre wheel; 0.3 mm is assumed",
     };
-    const VARIES: bool = true;
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
 
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.right += wave(p, at, 1);

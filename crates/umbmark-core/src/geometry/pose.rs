@@ -27,6 +27,11 @@ pub struct Displacement2<T = f64> {
     pub rotation: T,
 }
 
+impl Displacement2 {
+    /// No motion.
+    pub const NONE: Displacement2 = Displacement2 { forward: 0.0, sideways: 0.0, rotation: 0.0 };
+}
+
 impl Default for Pose2 {
     fn default() -> Self {
         Pose2::IDENTITY

@@ -22,21 +22,41 @@ pub struct Piece {
     pub to: [f64; 2],
 }
 
-/// The pieces of a move, equal in travel.
+/// The pieces of a move, equal in travel unless something else [cuts](Pieces::until) it.
 #[derive(Clone, Debug)]
 pub struct Pieces {
     travel: WheelTravel,
     profile: Trapezoid,
     count: usize,
+    /// Number of the next cut, from 1.
     next: usize,
+    reached: Moment,
+}
+
+/// How far a move has come.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moment {
+    /// Share of its travel.
+    share: f64,
+    /// \[s\]
+    time: f64,
+    /// Speeds of the left and the right wheel \[m/s\].
+    speeds: [f64; 2],
 }
 
 impl Pieces {
     /// The pieces of a move of believed wheel travel `travel` \[m\], from rest to rest.
     pub fn of(travel: &WheelTravel, speed: &SpeedProfile) -> Pieces {
+        Pieces::along(travel, speed.over(travel.left.abs().max(travel.right.abs())))
+    }
+
+    /// The same, spread over time by `profile`.
+    pub fn along(travel: &WheelTravel, profile: Trapezoid) -> Pieces {
         let most = travel.left.abs().max(travel.right.abs());
         let count = (most / LENGTH).ceil().clamp(0.0, MOST) as usize;
-        Pieces { travel: *travel, profile: speed.over(most), count, next: 0 }
+        let mut pieces = Pieces { travel: *travel, profile, count, next: 1, reached: Moment::default() };
+        pieces.reached = pieces.moment(0.0);
+        pieces
     }
 
     /// The whole move as one piece.
@@ -45,11 +65,32 @@ impl Pieces {
         Pieces { count: all.count.min(1), ..all }
     }
 
-    /// Time since the move began \[s\] and wheel speeds \[m/s\] at piece `k`.
-    fn moment(&self, k: usize) -> (f64, [f64; 2]) {
-        let time = self.profile.time(k as f64 / self.count as f64);
+    /// The next piece, up to the next cut or to where `share` of the travel is done, whichever comes first; none where it
+    /// is done already.
+    #[inline]
+    pub fn until(&mut self, share: f64) -> Option<Piece> {
+        if self.count == 0 || self.reached.share >= share.min(1.0) {
+            return None;
+        }
+        let cut = self.next as f64 / self.count as f64;
+        if cut <= share {
+            self.next += 1;
+        }
+        let (from, to) = (self.reached, self.moment(cut.min(share)));
+        self.reached = to;
+        Some(Piece {
+            begins: from.share,
+            travel: self.travel.scaled(to.share - from.share),
+            duration: (to.time - from.time).max(0.0),
+            from: from.speeds,
+            to: to.speeds,
+        })
+    }
+
+    fn moment(&self, share: f64) -> Moment {
+        let time = self.profile.time(share);
         let rate = self.profile.rate(time);
-        (time, [self.travel.left * rate, self.travel.right * rate])
+        Moment { share, time, speeds: [self.travel.left * rate, self.travel.right * rate] }
     }
 }
 
@@ -57,21 +98,7 @@ impl Iterator for Pieces {
     type Item = Piece;
 
     fn next(&mut self) -> Option<Piece> {
-        if self.next == self.count {
-            return None;
-        }
-        let (begins, from) = self.moment(self.next);
-        let (ends, to) = self.moment(self.next + 1);
-        let share = 1.0 / self.count as f64;
-        let piece = Piece {
-            begins: self.next as f64 * share,
-            travel: self.travel.scaled(share),
-            duration: ends - begins,
-            from,
-            to,
-        };
-        self.next += 1;
-        Some(piece)
+        self.until(1.0)
     }
 }
 
@@ -90,6 +117,20 @@ mod tests {
         assert!(pieces.windows(2).all(|pair| pair[0].to == pair[1].from));
         assert_eq!((pieces[0].from, pieces[199].to), ([0.0; 2], [0.0; 2]));
         assert!((pieces[100].from[0] - 0.5).abs() < 1e-12 && (pieces[100].from[1] + 0.25).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_move_can_be_cut_anywhere_and_stays_cut_where_it_was() {
+        let speed = SpeedProfile::default();
+        let mut pieces = Pieces::of(&WheelTravel { left: 0.04, right: 0.02 }, &speed);
+        let mut begins = Vec::new();
+        for share in [0.1, 0.1, 0.3, 0.5, 0.9, 1.0] {
+            while let Some(piece) = pieces.until(share) {
+                begins.push(piece.begins);
+            }
+        }
+        assert_eq!(begins, [0.0, 0.1, 0.25, 0.3, 0.5, 0.75, 0.9]);
+        assert_eq!(pieces.next(), None);
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! A run written down: what the encoders showed, and where the robot really was.
 
-use super::{Rest, SimulateError, Simulator, Truth, return_error};
+use super::{Leg, Rest, SimulateError, Simulator, Truth, return_error};
 use crate::dataset::{ReferencePose, ReturnError, TickLog};
-use crate::effect::{Stretch, TestKind};
+use crate::effect::{Sight, Stretch, TestKind};
 use crate::engine::{SampledOdometry, TickGeometry, UNITS_PER_TICK, Update};
 use crate::geometry::Pose2;
 use crate::path::Direction;
@@ -28,7 +28,8 @@ impl Simulator {
     /// `reference_rate` times a second, both while standing before and after too.
     ///
     /// The wheel angles are those that [`Simulator::run`] with the same streams would make; the true motion is drawn from
-    /// the same distribution, sample by sample.
+    /// the same distribution, sample by sample. Effects see a [recorded](crate::effect::Context::recorded) run: what only the
+    /// steps of the robot's own odometry make is not in its ticks.
     pub fn record(
         &mut self,
         truth: &mut Truth,
@@ -41,7 +42,8 @@ impl Simulator {
                 return Err(SimulateError::Rate { what, value });
             }
         }
-        truth.start();
+        truth.start(direction);
+        truth.rest(STANDING);
         let per_tick = self.robot().metres_per_tick();
         let geometry = TickGeometry::new(per_tick.left, per_tick.right, self.robot().drive.wheelbase())?;
         let mut track = SampledOdometry::new(geometry, Update::Arc).track();
@@ -64,10 +66,9 @@ impl Simulator {
             // Every move that ended since the last sample is driven to its end, the present one as far as it has come.
             while begun > 0 && begun < legs.len() && driving >= legs[begun].begins || begun == 0 && driving >= 0.0 {
                 truth.advance(1.0);
-                let leg = &legs[begun];
                 let line = rests[begun].line_to(&rests[begun + 1]);
                 let stretch = Stretch { index: begun, direction, test, travel: self.per_tick.of(&line) };
-                truth.begin(stretch, leg.travel);
+                truth.begin(stretch, &legs[begun]);
                 begun += 1;
             }
             let counts = match begun.checked_sub(1) {
@@ -89,7 +90,8 @@ impl Simulator {
             recording.truth.push(truth.pose());
             recording.computed.push(track.pose());
             if time + 1e-9 >= next_reference || sample == samples {
-                let pose = truth.measure();
+                let leg = begun.checked_sub(1).map(|index| &legs[index]);
+                let pose = truth.measure(&self.sight(leg, driving, time));
                 recording.log.reference.push(ReferencePose {
                     sample,
                     x: pose.x,
@@ -99,8 +101,16 @@ impl Simulator {
                 next_reference += 1.0 / reference_rate;
             }
         }
-        let measured = truth.measure();
+        let measured = truth.measure(&Sight { time: samples as f64 / rate, ..Sight::default() });
         recording.returned = return_error(&measured, &track.pose());
         Ok(recording)
+    }
+
+    /// How the robot moves at `time` \[s\] of the recording, `driving` of it since START.
+    fn sight(&self, leg: Option<&Leg>, driving: f64, time: f64) -> Sight {
+        let Some(leg) = leg else { return Sight { time, ..Sight::default() } };
+        let rate = leg.profile.rate(driving - leg.begins);
+        let per_second = self.robot().drive.displacement(&leg.travel.scaled(rate));
+        Sight { time, speed: per_second.forward, turn_rate: per_second.rotation }
     }
 }

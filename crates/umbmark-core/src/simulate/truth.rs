@@ -1,23 +1,33 @@
 //! The true motion of a robot whose odometry believes something else.
 
+use super::Leg;
 use super::diffusion::Diffusion;
 use super::pieces::{Piece, Pieces};
+use super::way::Way;
 use crate::drive::{Wheel, WheelTravel};
-use crate::effect::{Bump, Chain, Context, Entry, Model, Stretch, WheelVariance};
+use crate::effect::{Bump, Chain, Context, Entry, Model, Sight, Stretch, WheelVariance};
 use crate::engine::Instructions;
-use crate::geometry::{Displacement2, Pose2};
+use crate::geometry::{Displacement2, Pose2, Real};
+use crate::path::Direction;
 use crate::random::Stream;
 
 /// Purpose of the stream that wheel noise is drawn from; no hash of a name gives so small a number.
 const WHEEL_NOISE: u64 = 2;
 
 /// The effects of a model at work in one trial: deterministic chain, random parts with their streams, true poses.
+///
+/// Where an effect [varies](Model::varies), stretches are driven in pieces of a centimetre, each with its own [`Context`];
+/// otherwise a stretch is one piece from bump to bump. Wheel noise is the same either way, one draw from bump to bump: what
+/// it turns the robot by is in the heading that later stretches see.
 #[derive(Debug)]
 pub struct Truth {
     chain: Chain<f64>,
     random: Vec<RandomPart>,
     rotation_per_metre: f64,
     noisy: bool,
+    /// Whether effects vary along the way.
+    varies: bool,
+    way: Way,
     noise: Stream,
     pieces: Pieces,
     /// Travel of the present stretch as the robot believes it.
@@ -50,6 +60,8 @@ impl Truth {
             random,
             rotation_per_metre: 0.0,
             noisy: false,
+            varies: false,
+            way: Way::new(model.robot()),
             noise: Stream::new(0, 0, 0),
             pieces: Pieces::new(Instructions::best()),
             believed: WheelTravel::default(),
@@ -88,6 +100,7 @@ impl Truth {
             self.chain.body(&Context::default(), &WheelTravel { left: -0.5, right: 0.5 }).rotation;
         let variance = self.variance(&WheelTravel { left: 1.0, right: 1.0 });
         self.noisy = variance != WheelVariance::default();
+        self.varies = self.random.iter().any(|part| (part.effect.varies)(&part.values));
     }
 
     fn variance(&self, travel: &WheelTravel) -> WheelVariance {
@@ -97,18 +110,19 @@ impl Truth {
         })
     }
 
-    /// Opens the random streams of a trial.
+    /// Opens the random streams of a trial; its runs make one session.
     pub fn open(&mut self, seed: u64, trial: u64) {
+        self.way.open();
         self.noise = Stream::new(seed, WHEEL_NOISE, trial);
         for part in &mut self.random {
             part.stream = Stream::new(seed, part.effect.purpose(), trial);
         }
     }
 
-    /// Puts the robot at START, as far as the effects let it stand there.
-    pub fn start(&mut self) {
+    /// Puts the robot at START, as far as the effects let it stand there, for a run whose ticks are recorded.
+    pub fn start(&mut self, direction: Direction) {
         self.forget();
-        self.start_another();
+        self.start_another(direction, true);
     }
 
     /// Forgets all runs.
@@ -117,17 +131,30 @@ impl Truth {
     }
 
     /// Begins one more run at START; where those before it end can still be asked for.
-    pub(super) fn start_another(&mut self) {
+    pub(super) fn start_another(&mut self, direction: Direction, recorded: bool) {
         let start = self.random.iter_mut().fold(self.chain.start(), |pose, part| {
             pose.compose(&(part.effect.scatter.start_scatter)(&part.values, &mut part.stream))
         });
+        if self.varies {
+            // Room for the pieces of one run, not of all.
+            self.pieces.settle();
+            self.way.start(direction, recorded, start.heading);
+        }
         self.pieces.start(start);
         self.done = 1.0;
     }
 
-    /// Begins a stretch that was commanded to have a certain travel; what it meets on the way is drawn now.
-    pub fn begin(&mut self, stretch: Stretch, commanded: WheelTravel) {
-        self.commanded = commanded;
+    /// Stands still \[s\].
+    pub fn rest(&mut self, duration: f64) {
+        self.way.rest(duration);
+    }
+
+    /// Begins a stretch, as a move of the course commands it; what it meets on the way is drawn now.
+    pub fn begin(&mut self, stretch: Stretch, leg: &Leg) {
+        if self.varies {
+            self.way.begin(leg, &stretch.travel);
+        }
+        self.commanded = leg.travel;
         self.ahead.clear();
         for part in &mut self.random {
             (part.effect.scatter.bumps)(&part.values, &stretch, &mut part.stream, &mut self.ahead);
@@ -153,10 +180,18 @@ impl Truth {
     }
 
     fn roll(&mut self, share: f64) {
-        let piece = share - self.done;
-        if piece <= 0.0 {
-            return;
+        if share > self.done {
+            if self.varies {
+                self.roll_in_pieces(share)
+            } else {
+                self.roll_at_once(share)
+            }
+            self.done = share;
         }
+    }
+
+    fn roll_at_once(&mut self, share: f64) {
+        let piece = share - self.done;
         let whole = piece == 1.0;
         let travel = self.chain.wheel_travel(&Context::default(), &self.believed.scaled(piece));
         let motion = self.chain.body(&Context::default(), &travel);
@@ -169,7 +204,30 @@ impl Truth {
             }
         };
         self.pieces.push(&Piece { motion, scatter });
-        self.done = share;
+    }
+
+    fn roll_in_pieces(&mut self, share: f64) {
+        let (mut rolled, mut moved) = (WheelTravel { left: 0.0, right: 0.0 }, Displacement2::NONE);
+        while let Some((at, believed)) = self.way.until(share) {
+            let travel = self.chain.wheel_travel(&at, &believed);
+            let motion = self.chain.body(&at, &travel);
+            self.way.turn(motion.rotation);
+            self.pieces.push(&Piece { motion, scatter: [0.0; 3] });
+            rolled = WheelTravel { left: rolled.left + travel.left, right: rolled.right + travel.right };
+            moved = Displacement2 {
+                forward: moved.forward + motion.forward,
+                sideways: moved.sideways + motion.sideways,
+                rotation: moved.rotation + motion.rotation,
+            };
+        }
+        if self.noisy {
+            // Drawn as seen from where all this began, and added as seen from where it ends.
+            let [x, y, turned] = self.diffusion(&rolled, &moved).draw(&mut self.noise);
+            let (sine, cosine) = moved.rotation.sine_cosine();
+            let scatter = [cosine * x + sine * y, cosine * y - sine * x, turned];
+            self.way.turn(turned);
+            self.pieces.push(&Piece { motion: Displacement2::NONE, scatter });
+        }
     }
 
     fn diffusion(&self, travel: &WheelTravel, motion: &Displacement2) -> Diffusion {
@@ -192,7 +250,10 @@ impl Truth {
             Wheel::Left => WheelTravel { left: -bump.lost, right: 0.0 },
             Wheel::Right => WheelTravel { left: 0.0, right: -bump.lost },
         };
-        self.pieces.push(&Piece { motion: self.chain.body(&Context::default(), &travel), scatter: [0.0; 3] });
+        let at = if self.varies { self.way.moment() } else { Context::default() };
+        let motion = self.chain.body(&at, &travel);
+        self.way.turn(motion.rotation);
+        self.pieces.push(&Piece { motion, scatter: [0.0; 3] });
     }
 
     /// The true pose.
@@ -201,24 +262,25 @@ impl Truth {
         self.pieces.reached().last().unwrap_or_default()
     }
 
-    /// The true pose as the absolute measurement shows it.
-    pub fn measure(&mut self) -> Pose2 {
+    /// The true pose as an absolute measurement at this moment shows it.
+    pub fn measure(&mut self, at: &Sight) -> Pose2 {
         let pose = self.pose();
-        measured(&mut self.random, pose)
+        measured(&self.chain, &mut self.random, at, &pose)
     }
 
-    /// The ends of all runs as the absolute measurement shows them, in the order in which they were begun.
-    pub(super) fn measure_all(&mut self) -> impl Iterator<Item = Pose2> + '_ {
+    /// The ends of all runs as absolute measurements at this moment of each show them, in the order in which they were begun.
+    pub(super) fn measure_all(&mut self, at: Sight) -> impl Iterator<Item = Pose2> + '_ {
         self.pieces.settle();
-        let Truth { pieces, random, .. } = self;
-        pieces.reached().map(|pose| measured(random, pose))
+        let Truth { pieces, random, chain, .. } = self;
+        pieces.reached().map(move |pose| measured(chain, random, &at, &pose))
     }
 }
 
-/// A true pose as the absolute measurement shows it.
-fn measured(random: &mut [RandomPart], mut pose: Pose2) -> Pose2 {
+/// A true pose as an absolute measurement at this moment shows it.
+fn measured(chain: &Chain<f64>, random: &mut [RandomPart], at: &Sight, pose: &Pose2) -> Pose2 {
+    let mut seen = chain.seen(at, pose);
     for part in random {
-        (part.effect.scatter.measured)(&part.values, &mut part.stream, &mut pose);
+        (part.effect.scatter.measured)(&part.values, &mut part.stream, &mut seen);
     }
-    pose
+    seen
 }
