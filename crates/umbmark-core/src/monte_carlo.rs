@@ -149,7 +149,7 @@ impl Study {
 
     /// Everything that decides the numbers of a trial, in words: two studies with the same identity have the same trials.
     pub fn identity(&self) -> String {
-        let effects = self.model.parts().iter().map(|part| format!("{} {:?}", part.effect.about.name, part.values));
+        let effects = self.model.parts().iter().map(|part| format!("{} {:?}", part.effect, part.values));
         let draws = self.draws.iter().map(|d| format!("{}.{} {:?}", d.effect(), d.parameter().name, d.distribution()));
         format!(
             "umbmark {}, seed {}, {:?}, {} {:?} {:?}, {:?} {:?}, {:?} runs, effects [{}], drawn [{}]",

@@ -4,12 +4,12 @@ use super::document::{Entry, Source, Table};
 use super::error::{DatasetError, did_you_mean};
 use super::text::read_text;
 use crate::drive::Robot;
-use crate::effect::{CATALOGUE, Entry as Effect, Model};
+use crate::effect::{CATALOGUE, Entry as Effect, Formula, FormulaError, Model, Target};
 use crate::monte_carlo::{Distribution, Draw};
 use crate::parameter::Parameter;
 
-/// Keys that only effects of the user's own have.
-const OWN: [&str; 3] = ["acts_on", "formula", "parameters"];
+/// Keys of an effect of the user's own, those first that no other has.
+const OWN: [&str; 5] = ["acts_on", "formula", "parameters", "name", "free"];
 const FORMS: &str = "a number, { mean = .., sd = .. } or { min = .., max = .. }";
 
 /// The effects of a `model.toml` on a robot, and those of their parameters that are drawn from a distribution.
@@ -42,24 +42,24 @@ pub fn parse_model(file: &str, text: &str, robot: &Robot) -> Result<(Model, Vec<
     for effect in effects.list("a list of tables, each headed [[effect]]")? {
         let table = effect.table("[[effect]]".into())?;
         let name = table.need("name", "e.g. name = \"wheelbase\" (`umbmark effects` lists them)")?;
-        let entry = find(&table, &name)?;
         let same = |other: &&Entry| other.word("").ok() == name.word("").ok();
         if let Some(first) = names.iter().find(same) {
             return Err(first.again(&name));
         }
         names.push(name);
-        add(&mut model, &mut draws, entry, &table)?;
+        if OWN[..3].iter().any(|key| table.get(key).is_some()) {
+            add_own(&mut model, &name, &table)?;
+        } else {
+            add(&mut model, &mut draws, find(&name)?, &table)?;
+        }
     }
     Ok((model, draws))
 }
 
-fn find(table: &Table, name: &Entry) -> Result<&'static Effect, DatasetError> {
+fn find(name: &Entry) -> Result<&'static Effect, DatasetError> {
     let word = name.word("the name of an effect")?;
     if let Some(entry) = CATALOGUE.iter().find(|entry| entry.about.name == word) {
         return Ok(entry);
-    }
-    if let Some(own) = OWN.iter().find_map(|key| table.get(key)) {
-        return Err(own.not_yet("effects of your own come later; `umbmark effects` lists those there are".into()));
     }
     let near = did_you_mean(word, CATALOGUE.iter().map(|entry| entry.about.name));
     let remedy = if near.is_empty() { "`umbmark effects` lists them" } else { &near };
@@ -85,6 +85,55 @@ fn add(model: &mut Model, draws: &mut Vec<Draw>, effect: &Effect, table: &Table)
     let impossible = |error: crate::effect::ModelError| table.missing("possible values", &error.to_string());
     model.add(about.name).map_err(impossible)?.free = free;
     values.into_iter().try_for_each(|(name, value)| model.set(about.name, name, value)).map_err(impossible)
+}
+
+/// Adds an effect of the user's own.
+fn add_own(model: &mut Model, name: &Entry, table: &Table) -> Result<(), DatasetError> {
+    table.only(&OWN)?;
+    let (acts_on, text) = (
+        table.need("acts_on", "e.g. acts_on = \"heading_per_metre\"")?,
+        table.need("formula", "e.g. formula = \"k * sin(heading)\"")?,
+    );
+    let target = read_target(&acts_on)?;
+    let parameters = table.get("parameters");
+    let numbers = parameters.map_or(Ok(Vec::new()), |entry| read_parameters(&entry))?;
+    let names: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
+    let values: Vec<f64> = numbers.iter().map(|(_, value)| *value).collect();
+    let word = text.word("a formula, e.g. \"k * sin(heading)\"")?;
+    let formula = Formula::new(name.word("the name of an effect")?, target, word, &names);
+    let formula = formula.map_err(|error| match (&error, parameters) {
+        (FormulaError::Naming { what: "an effect", .. }, _) => name.wrong("a name of its own", &error.to_string()),
+        (
+            FormulaError::Naming { .. } | FormulaError::Unused { .. } | FormulaError::TooManyParameters { .. },
+            Some(entry),
+        ) => entry.wrong("the formula's own", &error.to_string()),
+        _ => text.wrong("one that can be evaluated", &error.to_string()),
+    })?;
+    let free = table.get("free").map_or(Ok(false), |entry| entry.flag())?;
+    let impossible = |error: crate::effect::ModelError| table.missing("possible values", &error.to_string());
+    model.add_formula(formula, &values).map_err(impossible)?.free = free;
+    Ok(())
+}
+
+fn read_target(entry: &Entry) -> Result<Target, DatasetError> {
+    let names = Target::ALL.map(Target::name);
+    let allowed = format!("one of {}", names.join(", "));
+    let word = entry.word(&allowed)?;
+    let target = Target::ALL.into_iter().find(|target| target.name() == word);
+    target.ok_or_else(|| entry.wrong(&allowed, &did_you_mean(word, names)))
+}
+
+/// Names and start values of the parameters of a formula.
+fn read_parameters<'a>(entry: &Entry<'a>) -> Result<Vec<(&'a str, f64)>, DatasetError> {
+    if !entry.is_table() {
+        return Err(entry.wrong("a table of start values, e.g. { k = 0.0 }", ""));
+    }
+    let number = |start: Entry<'a>| {
+        let value = start.any_number().filter(|value| value.is_finite());
+        let wrong = || start.wrong("a finite number, its start value", "");
+        value.map(|value| (start.key, value)).ok_or_else(wrong)
+    };
+    entry.table("parameters".into())?.entries().into_iter().map(number).collect()
 }
 
 /// The value of a parameter, or the middle of its distribution and the distribution.
@@ -181,10 +230,6 @@ mod tests {
             (
                 "name = \"placed_bumps\"\nprofile = { min = 0, max = 1 }",
                 "3: profile must be one of cable, edge, got { min = 0, max = 1 }; it cannot be drawn",
-            ),
-            (
-                "name = \"carpet\"\nformula = \"k\"",
-                "3: formula \"k\" is not supported yet; effects of your own come later; `umbmark effects` lists those there are",
             ),
             (
                 "name = \"scale\"\n[[effect]]\nname = \"scale\"",

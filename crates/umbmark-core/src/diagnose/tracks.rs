@@ -149,7 +149,7 @@ pub(crate) fn estimates(fitted: &Fitted) -> Vec<Estimate> {
     let names = model
         .parts()
         .iter()
-        .flat_map(|part| part.effect.about.parameters.iter().map(|parameter| (part.effect.about.name, parameter.name)));
+        .flat_map(|part| part.effect.parameters().iter().map(|parameter| (part.effect.name(), parameter.name)));
     let (names, values): (Vec<_>, Vec<f64>) = (names.collect(), model.values().collect());
     let of = |(k, index): (usize, &usize)| Estimate {
         effect: names[*index].0,

@@ -79,7 +79,7 @@ impl Fitted {
 
     /// The derivatives by the same values where the model does nothing: all its values at their defaults.
     pub fn nominal_jacobian(&self, ends: &Ends) -> Vec<DMatrix<f64>> {
-        slopes(ends, &at_rest(&self.model), &self.free)
+        slopes(ends, &self.model.at_rest(), &self.free)
     }
 
     fn estimate(&self, ends: &Ends, information: Option<DMatrix<f64>>) -> Vec<Estimate> {
@@ -112,8 +112,7 @@ impl Fitted {
 /// Effect and parameter of each value of a model.
 pub(crate) fn names(model: &Model) -> Vec<(&'static str, &'static str)> {
     let of_part = |part: &crate::effect::Part| {
-        let about = &part.effect.about;
-        about.parameters.iter().map(|p| (about.name, p.name)).collect::<Vec<_>>()
+        part.effect.parameters().iter().map(|p| (part.effect.name(), p.name)).collect::<Vec<_>>()
     };
     model.parts().iter().flat_map(of_part).collect()
 }
@@ -152,7 +151,7 @@ fn derivative(pose: &Pose2<Dual>) -> Vector3<f64> {
 fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     let flags = model.parts().iter().flat_map(|part| part.values.iter().map(|_| part.free));
     let names = names(model);
-    let nominal = at_rest(model);
+    let nominal = model.at_rest();
     let mut asked: Vec<usize> =
         flags.enumerate().filter(|(i, free)| *free && is_size(ends, &nominal, *i)).map(|(i, _)| i).collect();
     asked.sort_by_key(|i| !FIRST.contains(&names[*i].0));
@@ -187,17 +186,6 @@ fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     free.sort_unstable();
     let open = asked.into_iter().filter(|i| !free.contains(i)).collect();
     (free, open)
-}
-
-/// The same effects, doing nothing.
-fn at_rest(model: &Model) -> Model {
-    let mut rest = Model::new(model.robot());
-    for part in model.parts() {
-        if let Ok(own) = rest.add(part.effect.about.name) {
-            own.free = part.free;
-        }
-    }
-    rest
 }
 
 /// Whether a value moves the end poses where its effect does nothing yet: not a length, threshold, scatter or choice.
