@@ -199,6 +199,89 @@ mod tests {
     }
 
     #[test]
+    fn an_effect_of_ones_own_is_a_formula_with_start_values() {
+        let text = "[[effect]]\nname = \"carpet\"\nacts_on = \"heading_per_metre\"\n\
+                    formula = \"k * sin(heading - h0)\"\nparameters = { k = 0.25, h0 = 2 }\nfree = true\n";
+        let (model, draws) = read(text).unwrap();
+        assert_eq!((model.get("carpet", "k"), model.get("carpet", "h0"), draws.len()), (Some(0.25), Some(2.0), 0));
+        assert!(model.parts()[0].free);
+        let (model, _) = read(&text.replace("{ k = 0.25, h0 = 2 }", "{ h0 = 2, k = 0.25 }")).unwrap();
+        assert_eq!(model.values().collect::<Vec<_>>(), [2.0, 0.25], "in the order of the file");
+        let none = "[[effect]]\nname = \"push\"\nacts_on = \"forward_scale\"\nformula = \"0.001\"\n";
+        assert!(read(none).unwrap().0.parts()[0].values.is_empty());
+    }
+
+    #[test]
+    fn a_formula_that_cannot_be_meant_is_refused_with_its_line_and_column() {
+        let good = [
+            ("name", "\"carpet\""),
+            ("acts_on", "\"heading_per_metre\""),
+            ("formula", "\"k * sin(heading)\""),
+            ("parameters", "{ k = 0.0 }"),
+        ];
+        for (key, value, said) in [
+            ("acts_on", "", "1: [[effect]] has no acts_on; add e.g. acts_on = \"heading_per_metre\""),
+            (
+                "acts_on",
+                "\"heading_per_meter\"",
+                "3: acts_on must be one of heading_per_metre, forward_scale, sideways_per_metre, left_wheel_scale, \
+                 right_wheel_scale, got \"heading_per_meter\"; did you mean \"heading_per_metre\"?",
+            ),
+            ("formula", "", "1: [[effect]] has no formula; add e.g. formula = \"k * sin(heading)\""),
+            (
+                "formula",
+                "3",
+                "4: formula must be a formula, e.g. \"k * sin(heading)\", got 3; put it in quotation marks",
+            ),
+            (
+                "formula",
+                "\"k * sin(hedding)\"",
+                "4: formula must be one that can be evaluated, got \"k * sin(hedding)\"; column 9: there is no \"hedding\"; \
+                 did you mean \"heading\"?",
+            ),
+            (
+                "formula",
+                "\"k * (time + distance)\"",
+                "4: formula must be one that can be evaluated, got \"k * (time + distance)\"; column 13: \"time\" is in s and \
+                 \"distance\" in m: they do not add up or compare",
+            ),
+            (
+                "parameters",
+                "",
+                "4: formula must be one that can be evaluated, got \"k * sin(heading)\"; column 1: there is no \"k\"; name \
+                 it among the parameters, or use speed, turn_rate, acceleration, heading, wheel_angle_left, wheel_angle_right, \
+                 distance, time, session_distance, since_turn, last_turn, direction, pi and the functions sin, cos, tan, \
+                 exp, log, sqrt, abs, sign, min, max, tanh",
+            ),
+            ("parameters", "[1]", "5: parameters must be a table of start values, e.g. { k = 0.0 }, got [1]"),
+            ("parameters", "{ k = \"0\" }", "5: k must be a finite number, its start value, got \"0\""),
+            (
+                "parameters",
+                "{ k = { mean = 0.0, sd = 1.0 } }",
+                "5: k must be a finite number, its start value, got { mean = 0.0, sd = 1.0 }",
+            ),
+            (
+                "parameters",
+                "{ k = 0.0, q = 1.0 }",
+                "5: parameters must be the formula's own, got { k = 0.0, q = 1.0 }; the parameter q does not occur in the \
+                 formula; take it away",
+            ),
+            (
+                "name",
+                "\"scale\"",
+                "2: name must be a name of its own, got \"scale\"; \"scale\" cannot be the name of an effect: \
+                 `umbmark effects` lists an effect of this name",
+            ),
+        ] {
+            let value_of = |k: &str, v| if k == key { value } else { v };
+            let lines = good.map(|(k, v)| (k, value_of(k, v))).into_iter().filter(|(_, v)| !v.is_empty());
+            let text: String = lines.map(|(k, v)| format!("{k} = {v}\n")).collect();
+            let error = read(&format!("[[effect]]\n{text}")).map(|_| ()).unwrap_err().to_string();
+            assert_eq!(error, format!("model.toml:{said}"));
+        }
+    }
+
+    #[test]
     fn what_cannot_be_meant_is_refused_with_line_key_and_range() {
         for (lines, said) in [
             (

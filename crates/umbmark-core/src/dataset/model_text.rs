@@ -57,7 +57,7 @@ mod tests {
     use super::*;
     use crate::dataset::parse_model;
     use crate::drive::Robot;
-    use crate::effect::CATALOGUE;
+    use crate::effect::{CATALOGUE, Target};
 
     #[test]
     fn a_model_of_every_effect_reads_back_to_the_last_bit() {
@@ -70,6 +70,10 @@ mod tests {
                 model.set(entry.about.name, parameter.name, value).unwrap();
             }
         }
+        let own = Formula::new("own", Target::LeftWheelScale, "a *\tsin(heading / b)", &["b", "a"]).unwrap();
+        model.add_formula(own, &[1.0 / 3.0, -1e-300]).unwrap().free = true;
+        let bare = Formula::new("bare", Target::ForwardScale, "0.001", &[]).unwrap();
+        model.add_formula(bare, &[]).unwrap();
         let (read, draws) = parse_model("model.toml", &model_text(&model), &robot).unwrap();
         assert_eq!(read, model);
         assert!(draws.is_empty());

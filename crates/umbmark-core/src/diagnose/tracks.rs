@@ -261,5 +261,11 @@ fn remarks(exam: &Examination, unlisted: Option<&Dependence>) -> Vec<String> {
 
 /// Fits the free parameters of a model to tracks.
 pub(crate) fn fit(observed: &Observed, model: &crate::effect::Model) -> Result<Fitted, DiagnoseError> {
-    Ok(observed.fit(model, &crate::likelihood::Noise::default(), &[])?)
+    model.check_along(observed.tracks().flat_map(|track| track.contexts()))?;
+    let fitted = observed.fit(model, &crate::likelihood::Noise::default(), &[])?;
+    // Where the size of a formula began at 0, its shape shows only now.
+    if model.has_formulas() && observed.free_values(&fitted.model).len() > fitted.free.len() {
+        return Ok(observed.fit(&fitted.model, &fitted.noise, &[])?);
+    }
+    Ok(fitted)
 }

@@ -199,6 +199,11 @@ impl Model {
         rest
     }
 
+    /// Whether some effect is a formula.
+    pub fn has_formulas(&self) -> bool {
+        self.parts.iter().any(|part| part.effect.formula().is_some())
+    }
+
     /// Refuses formulas that are no finite numbers somewhere along the way.
     pub fn check_along<'a>(&self, contexts: impl IntoIterator<Item = &'a Context>) -> Result<(), ModelError> {
         let formulas: Vec<_> =

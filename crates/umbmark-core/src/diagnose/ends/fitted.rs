@@ -38,6 +38,7 @@ pub(crate) struct Fitted {
 
 impl Fitted {
     pub fn new(ends: &Ends, model: &Model) -> Result<Fitted, DiagnoseError> {
+        ends.check(model)?;
         let (free, open) = what_shows(ends, model);
         let start: Vec<f64> = model.values().collect();
         let problem = Returns { ends, model, start: &start, free: &free };
@@ -47,6 +48,10 @@ impl Fitted {
             return Err(DiagnoseError::NotConverged { how: fit.termination.name() });
         }
         let fitted = with_values(model, &problem.all(&fit.values))?;
+        // Where the size of a formula began at 0, its shape shows only now.
+        if fitted.has_formulas() && what_shows(ends, &fitted).0.len() > free.len() {
+            return Fitted::new(ends, &fitted);
+        }
         let residuals = ends.residuals(&fitted);
         let residuals = ends.runs.iter().zip(&residuals).map(|(run, r)| mirrored(run.direction, r)).collect();
         let jacobian = slopes(ends, &fitted, &free);

@@ -52,7 +52,9 @@ pub enum FormulaError {
         column: usize,
     },
     /// Two sides of a sum or comparison with different units.
-    #[error("column {column}: \"{left}\" is in {left_unit} and \"{right}\" in {right_unit}: they do not add up or compare")]
+    #[error(
+        "column {column}: \"{left}\" is in {left_unit} and \"{right}\" in {right_unit}: they do not add up or compare"
+    )]
     Units {
         /// Where the right side begins.
         column: usize,
@@ -66,7 +68,9 @@ pub enum FormulaError {
         right_unit: String,
     },
     /// A function of something that has a unit.
-    #[error("column {column}: {function} takes a plain number or an angle, and \"{argument}\" is in {unit}; divide it by a parameter of that unit")]
+    #[error(
+        "column {column}: {function} takes a plain number or an angle, and \"{argument}\" is in {unit}; divide it by a parameter of that unit"
+    )]
     Argument {
         /// Where the argument begins.
         column: usize,
@@ -78,7 +82,9 @@ pub enum FormulaError {
         unit: String,
     },
     /// A result that is not what the formula acts on.
-    #[error("the formula is in {unit}, and {acts_on} in {wanted}; multiply it by a parameter, which then has the unit that is missing")]
+    #[error(
+        "the formula is in {unit}, and {acts_on} in {wanted}; multiply it by a parameter, which then has the unit that is missing"
+    )]
     Result {
         /// What the formula acts on.
         acts_on: &'static str,
@@ -112,7 +118,7 @@ pub enum FormulaError {
 }
 
 /// What formulas are made of.
-const OFFERED: &str = "there are the formula's parameters, speed, turn_rate, acceleration, heading, wheel_angle_left, \
+const OFFERED: &str = "name it among the parameters, or use speed, turn_rate, acceleration, heading, wheel_angle_left, \
                        wheel_angle_right, distance, time, session_distance, since_turn, last_turn, direction, pi and the \
                        functions sin, cos, tan, exp, log, sqrt, abs, sign, min, max, tanh";
 

@@ -170,7 +170,8 @@ impl<'a> Parser<'a> {
             Some(op) => self.push(op, span),
             None => {
                 let known = self.parameters.iter().copied().chain(builtin_names().map(|known| -> &str { known }));
-                let nearest = nearest(name, known).map(str::to_owned);
+                // Every name of a letter or two is near to some other.
+                let nearest = nearest(name, known).filter(|_| name.len() > 2).map(str::to_owned);
                 Err(FormulaError::Name { column, name: name.to_owned(), nearest })
             }
         }
@@ -207,7 +208,9 @@ impl<'a> Parser<'a> {
         const EXPECTED: &str = "a whole number from -16 to 16 after \"^\" (sqrt takes roots)";
         let opened = self.take_sign('(');
         let sign = if self.take_sign('-') { -1.0 } else { 1.0 };
-        let (Token::Number(size), mut end) = (self.peek(), self.here().end) else { return Err(self.expected(EXPECTED)) };
+        let (Token::Number(size), mut end) = (self.peek(), self.here().end) else {
+            return Err(self.expected(EXPECTED));
+        };
         if size.fract() != 0.0 || size > MOST {
             return Err(self.expected(EXPECTED));
         }

@@ -172,8 +172,20 @@ impl Program {
                 Op::Divide => below[count] / top,
                 Op::Power(n) => power(top, n),
                 Op::Apply(function) => function.of(top),
-                Op::Smaller => if top.value() < below[count].value() { top } else { below[count] },
-                Op::Larger => if top.value() > below[count].value() { top } else { below[count] },
+                Op::Smaller => {
+                    if top.value() < below[count].value() {
+                        top
+                    } else {
+                        below[count]
+                    }
+                }
+                Op::Larger => {
+                    if top.value() > below[count].value() {
+                        top
+                    } else {
+                        below[count]
+                    }
+                }
             };
             watch(i, top);
         }
@@ -182,10 +194,7 @@ impl Program {
 
     /// Another meaning of the operations: `result` makes the result of each from the numbers of its arguments and all
     /// results so far.
-    pub fn interpret<D, E>(
-        &self,
-        mut result: impl FnMut(usize, &[usize], &[D]) -> Result<D, E>,
-    ) -> Result<Vec<D>, E> {
+    pub fn interpret<D, E>(&self, mut result: impl FnMut(usize, &[usize], &[D]) -> Result<D, E>) -> Result<Vec<D>, E> {
         let (mut stack, mut results): (Vec<usize>, Vec<D>) = Default::default();
         for (i, op) in self.ops.iter().enumerate() {
             let arguments = stack.split_off(stack.len() - op.arity());

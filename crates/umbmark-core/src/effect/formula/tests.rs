@@ -170,7 +170,13 @@ impl Tree {
                     "log" => libm::log(x),
                     "sqrt" => libm::sqrt(x),
                     "abs" => x.abs(),
-                    "sign" => if x == 0.0 { 0.0 } else { x.signum() },
+                    "sign" => {
+                        if x == 0.0 {
+                            0.0
+                        } else {
+                            x.signum()
+                        }
+                    }
                     _ => libm::tanh(x),
                 }
             }
@@ -237,15 +243,21 @@ fn a_formula_has_the_value_of_the_tree_that_it_was_written_from() {
 fn derivatives_are_those_of_finite_differences() {
     let mut compared = 0;
     for (_, text, program) in trees(2) {
+        // Where a part is huge, rounding decides.
+        let mut tame = true;
+        program.watched(&[0.7], &Context::default(), 0.4, |_, part: f64| tame &= part.abs() < 1e6);
         let at = |k: f64| program.evaluate(&[k], &Context::default(), 0.4);
         let still = Dual::from(0.4);
         let dual = program.evaluate(&[Dual::new(0.7, 1.0)], &Context::default().headed(still), still);
-        let close = (dual.re - at(0.7)).abs() <= 1e-9 * at(0.7).abs();
-        assert!(close || !at(0.7).is_finite() || at(0.7).abs() > 1e9, "{text}: {} {}", dual.re, at(0.7));
+        assert!(!tame || (dual.re - at(0.7)).abs() <= 1e-7 * (1.0 + at(0.7).abs()), "{text}: {} {}", dual.re, at(0.7));
         let numeric = |h: f64| (at(0.7 + h) - at(0.7 - h)) / (2.0 * h);
         let (fine, coarse) = (numeric(1e-5), numeric(2e-5));
         // Where the two steps differ there is a corner or a pole near.
-        if fine != 0.0 && (fine - coarse).abs() < 1e-6 * (1.0 + fine.abs()) && fine.abs().max(at(0.7).abs()) < 1e4 {
+        if tame
+            && fine != 0.0
+            && (fine - coarse).abs() < 1e-6 * (1.0 + fine.abs())
+            && fine.abs().max(at(0.7).abs()) < 1e4
+        {
             compared += 1;
             assert!((dual.eps - fine).abs() < 1e-5 * (1.0 + fine.abs()), "{text}: {} {fine}", dual.eps);
         }
@@ -256,7 +268,8 @@ fn derivatives_are_those_of_finite_differences() {
 #[test]
 fn no_text_makes_the_parser_panic() {
     let mut stream = Stream::new(3, 0, 0);
-    let words = ["+", "-", "*", "/", "^", "(", ")", ",", ".", " ", "k", "sin", "max", "2", "1e", "é", "speed", "\n", "1e-"];
+    let words =
+        ["+", "-", "*", "/", "^", "(", ")", ",", ".", " ", "k", "sin", "max", "2", "1e", "é", "speed", "\n", "1e-"];
     for _ in 0..50_000 {
         let count = pick(&mut stream, 12);
         let text: String = (0..count).map(|_| words[pick(&mut stream, words.len())]).collect();
@@ -301,7 +314,10 @@ fn what_cannot_be_meant_is_refused_with_its_column() {
         ("k + .", "column 5: expected a finite number, got \".\""),
         ("k ** 2", "column 4: expected a number, a name or \"(\", got \"*\""),
         ("k^0.5", "column 3: expected a whole number from -16 to 16 after \"^\" (sqrt takes roots), got \"0.5\""),
-        ("k^heading", "column 3: expected a whole number from -16 to 16 after \"^\" (sqrt takes roots), got \"heading\""),
+        (
+            "k^heading",
+            "column 3: expected a whole number from -16 to 16 after \"^\" (sqrt takes roots), got \"heading\"",
+        ),
         ("k^2^3", "column 4: expected parentheses round the power that is raised again, got \"^\""),
         ("sin", "column 1: \"sin\" is a function: it takes 1 argument in parentheses"),
         ("k * min(heading)", "column 5: \"min\" takes 2 arguments, got 1"),
@@ -314,7 +330,7 @@ fn what_cannot_be_meant_is_refused_with_its_column() {
         assert_eq!(error, said, "{text}");
     }
     let unknown = Formula::new("own", Target::ForwardScale, "zzzzzz", &[]).unwrap_err().to_string();
-    assert!(unknown.starts_with("column 1: there is no \"zzzzzz\"; there are the formula's parameters, speed"));
+    assert!(unknown.starts_with("column 1: there is no \"zzzzzz\"; name it among the parameters, or use speed"));
     assert!(Variable::ALL.iter().all(|(name, ..)| unknown.contains(name)));
     assert!(Function::ALL.iter().all(|(name, _)| unknown.contains(name)));
 }
@@ -340,7 +356,11 @@ fn names_are_letters_and_nobody_elses() {
     for (name, parameters, said) in [
         ("own", &["a", "b", "c", "d", "e", "f", "g"][..], "an effect has 6 parameters at most, got 7"),
         ("scale", &[], "\"scale\" cannot be the name of an effect: `umbmark effects` lists an effect of this name"),
-        ("a b", &[], "\"a b\" cannot be the name of an effect: it takes letters, digits and _, and begins with a letter"),
+        (
+            "a b",
+            &[],
+            "\"a b\" cannot be the name of an effect: it takes letters, digits and _, and begins with a letter",
+        ),
         ("own", &["speed"], "\"speed\" cannot be the name of a parameter: it has a meaning in every formula"),
         ("own", &["sin"], "\"sin\" cannot be the name of a parameter: it has a meaning in every formula"),
         ("own", &["a", "a"], "\"a\" cannot be the name of a parameter: another one has it"),
@@ -353,10 +373,7 @@ fn names_are_letters_and_nobody_elses() {
 fn units_that_do_not_agree_are_refused_with_both_sides() {
     let compile = |text: &str| Formula::new("own", Target::HeadingPerMetre, text, &["k"]).map_err(|e| e.to_string());
     for (text, said) in [
-        (
-            "k * (distance + time)",
-            "column 17: \"distance\" is in m and \"time\" in s: they do not add up or compare",
-        ),
+        ("k * (distance + time)", "column 17: \"distance\" is in m and \"time\" in s: they do not add up or compare"),
         (
             "k * max(speed^2, acceleration)",
             "column 18: \"speed^2\" is in m^2/s^2 and \"acceleration\" in m/s^2: they do not add up or compare",

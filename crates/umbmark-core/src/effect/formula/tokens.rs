@@ -56,7 +56,10 @@ fn number(text: &str, at: usize) -> Result<(Token<'_>, usize), FormulaError> {
     }
     let word = &text[at..at + length];
     let value = word.parse().ok().filter(|value: &f64| value.is_finite());
-    let wrong =
-        || FormulaError::Expected { column: column(text, at), expected: "a finite number", found: format!("\"{word}\"") };
+    let wrong = || FormulaError::Expected {
+        column: column(text, at),
+        expected: "a finite number",
+        found: format!("\"{word}\""),
+    };
     Ok((Token::Number(value.ok_or_else(wrong)?), length))
 }
