@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 use umbmark_core::dataset::{Dataset, model_text, read_model};
 use umbmark_core::diagnose::{Contrast, Estimate, OnCircle, first_model};
 use umbmark_core::effect::{Model, find};
+use umbmark_core::parameter::Parameter;
 use umbmark_core::stats::{Interval, student_t_quantile};
 
 use crate::files::Pending;
@@ -29,11 +30,19 @@ pub fn write_model(model: &Model, file: &Path, force: bool) -> anyhow::Result<()
 /// As in `model.toml`.
 pub fn model_json(model: &Model) -> Value {
     let part = |part: &umbmark_core::effect::Part| {
-        let about = &part.effect.about;
-        let mut effect = Map::from_iter([("name".to_owned(), json!(about.name))]);
-        for (parameter, value) in about.parameters.iter().zip(&part.values) {
+        let mut effect = Map::from_iter([("name".to_owned(), json!(part.effect.name()))]);
+        let number = |(parameter, value): (&Parameter, &f64)| {
             let word = parameter.choices.get(*value as usize);
-            effect.insert(parameter.name.to_owned(), word.map_or(json!(value), |word| json!(word)));
+            (parameter.name.to_owned(), word.map_or(json!(value), |word| json!(word)))
+        };
+        let mut numbers: Map<String, Value> = part.effect.parameters().iter().zip(&part.values).map(number).collect();
+        match part.effect.formula() {
+            Some(formula) => {
+                effect.insert("acts_on".to_owned(), json!(formula.target().name()));
+                effect.insert("formula".to_owned(), json!(formula.text()));
+                effect.insert("parameters".to_owned(), Value::Object(numbers));
+            }
+            None => effect.append(&mut numbers),
         }
         effect.insert("free".to_owned(), json!(part.free));
         Value::Object(effect)

@@ -7,6 +7,7 @@ use umbmark_core::drive::Robot;
 use umbmark_core::effect::Model;
 use umbmark_core::monte_carlo::Draw;
 use umbmark_core::path::Path;
+use umbmark_core::replay::check_on_path;
 
 use crate::effect_flags::EffectFlags;
 use crate::robot_flags::RobotFlags;
@@ -96,6 +97,7 @@ impl SetupFlags {
             assumed.push(format!("wheel noise k = {ASSUMED_WHEEL_NOISE} m^0.5 (--wheel-noise 0 for none)"));
         }
         self.effects.apply(&mut model, &mut draws)?;
+        check_on_path(&model, &path)?;
         if model.get("wheel_noise", "k_sqrt_m").is_none() {
             assumed.push("no wheel noise (--wheel-noise 0.001 gives about the paper's scatter)".to_owned());
         }

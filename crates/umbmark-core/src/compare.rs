@@ -86,6 +86,7 @@ impl Judged {
 /// ```
 pub fn compare(data: &Dataset, models: &[(String, Model)], options: &Options) -> Result<Comparison, DiagnoseError> {
     let ends = Ends::new(data)?;
+    models.iter().try_for_each(|(_, model)| ends.check(model))?;
     let fitted = Fitted::new(&ends, &base_model(&ends.robot)?)?;
     let confidence = 1.0 - options.size;
     let circle = ends::circle(&ends, &fitted, confidence);

@@ -28,11 +28,14 @@ mod encoder_sampling;
 mod encoder_skew;
 mod floor_slope;
 mod floor_slope_yaw;
+mod formula;
+mod law;
 mod leg_kick;
 mod marker_offset;
 mod marker_yaw;
 mod missed_counts;
 mod model;
+mod name;
 mod placed_bumps;
 mod reference_clock_rate;
 mod reference_delay;
@@ -58,6 +61,8 @@ use crate::random::Stream;
 
 pub use bumps::extra_travel;
 pub use context::{Context, Place, Progress, Sight};
+pub use formula::{Formula, FormulaError, Target};
+pub use law::Law;
 pub use model::{Chain, Model, ModelError, Part};
 
 /// The largest number of parameters of one effect.
@@ -302,7 +307,48 @@ pub struct Scatter {
     pub measured: fn(&[f64], &mut Stream, &mut Pose2),
 }
 
-/// An effect of the catalogue.
+/// An effect as data: of the catalogue, or of a program that adds its own by [`Model::add_entry`].
+///
+/// ```
+/// use umbmark_core::{drive::Robot, geometry::{Displacement2, Real}, parameter::{DefaultValue, Parameter}};
+/// use umbmark_core::effect::{About, ActsOn, Context, Effect, Entry, Model};
+/// struct Draught;
+/// impl Effect for Draught {
+///     const ABOUT: About = About {
+///         name: "draught",
+///         title: "a door left open",
+///         acts_on: ActsOn::Body,
+///         parameters: &[Parameter {
+///             name: "push_m_per_m",
+///             flag: "",
+///             unit: "m/m",
+///             default: DefaultValue::Value(0.0),
+///             typical: 1e-3,
+///             bounds: (-1.0, 1.0),
+///             meaning: "drift to the left per metre",
+///             choices: &[],
+///         }],
+///         equation: "sideways ← sideways + k · length",
+///         physics: "Wind.",
+///         signature: "A drift to the left on every leg.",
+///         confused_with: &["crab"],
+///         separated_by: "closing the door",
+///         source: "none",
+///     };
+///     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+///         motion.sideways += p[0] * at.length;
+///     }
+///     fn varies(p: &[f64]) -> bool {
+///         p[0] != 0.0
+///     }
+/// }
+/// static DRAUGHT: Entry = Entry::of::<Draught>();
+/// let mut model = Model::new(&Robot::labmate());
+/// model.add_entry(&DRAUGHT)?.free = true;
+/// model.set("draught", "push_m_per_m", 2e-3)?;
+/// assert!(model.varies() && model.set("draught", "push_m_per_m", 2.0).is_err());
+/// # Ok::<(), umbmark_core::effect::ModelError>(())
+/// ```
 #[derive(Debug)]
 pub struct Entry {
     /// What people should know of it.
@@ -315,7 +361,8 @@ pub struct Entry {
 }
 
 impl Entry {
-    const fn of<E: Effect>() -> Entry {
+    /// The entry of an effect. One with more than [`MAX_PARAMETERS`] parameters does not compile.
+    pub const fn of<E: Effect>() -> Entry {
         assert!(E::ABOUT.parameters.len() <= MAX_PARAMETERS);
         Entry {
             about: E::ABOUT,

@@ -23,7 +23,7 @@ use crate::effect::{Model, ModelError};
 use crate::engine::Instructions;
 use crate::parameter::ParameterError;
 use crate::path::{Direction, Path};
-use crate::replay::Track;
+use crate::replay::{Track, check_on_path};
 use crate::simulate::{self, Odometry, Phase, SimulateError};
 
 pub use distribution::{Distribution, DistributionError, Draw};
@@ -149,7 +149,7 @@ impl Study {
 
     /// Everything that decides the numbers of a trial, in words: two studies with the same identity have the same trials.
     pub fn identity(&self) -> String {
-        let effects = self.model.parts().iter().map(|part| format!("{} {:?}", part.effect.about.name, part.values));
+        let effects = self.model.parts().iter().map(|part| format!("{} {:?}", part.effect, part.values));
         let draws = self.draws.iter().map(|d| format!("{}.{} {:?}", d.effect(), d.parameter().name, d.distribution()));
         format!(
             "umbmark {}, seed {}, {:?}, {} {:?} {:?}, {:?} {:?}, {:?} runs, effects [{}], drawn [{}]",
@@ -258,6 +258,7 @@ impl Study {
             count(what, runs as u64, 0..MAX_RUNS + 1)?;
         }
         count("number of runs", (self.runs[0] + self.runs[1]) as u64, 1..2 * MAX_RUNS + 1)?;
+        check_on_path(&self.model, &self.path)?;
         self.draws.iter().try_for_each(Draw::check)
     }
 }

@@ -13,7 +13,7 @@ mod pace;
 
 use crate::dataset::TickLog;
 use crate::drive::{Robot, WheelTravel};
-use crate::effect::{Chain, Context, Evaluate, Place, Progress, Sight};
+use crate::effect::{Chain, Context, Evaluate, Model, ModelError, Place, Progress, Sight};
 use crate::geometry::Pose2;
 use crate::path::{Direction, Path, Pieces, SpeedProfile};
 
@@ -245,6 +245,14 @@ impl Track {
     }
 }
 
+/// Refuses a model whose formulas are no finite numbers somewhere on a path, driven in either direction.
+pub fn check_on_path(model: &Model, path: &Path) -> Result<(), ModelError> {
+    let directions = Direction::BOTH.into_iter().filter(|_| model.has_formulas());
+    directions
+        .map(|direction| Track::in_pieces(path, direction, model.robot()))
+        .try_for_each(|track| model.check_along(track.contexts()))
+}
+
 /// When a robot on a path is observed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Observed {
@@ -281,7 +289,6 @@ fn check(log: &TickLog) -> Result<(), ReplayError> {
 mod tests {
     use super::*;
     use crate::dataset::ReferencePose;
-    use crate::effect::Model;
     use crate::geometry::Dual;
     use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -48,7 +48,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         anyhow::bail!("no effect of the model is free: say free = true in its file, or --add EFFECT");
     }
     let (model, estimates) = fit(&data, &model)?;
-    let free = model.parts().iter().filter(|part| part.free).map(|part| part.effect.about.name);
+    let free = model.parts().iter().filter(|part| part.free).map(|part| part.effect.name());
     let unfitted: Vec<&str> = free.filter(|name| estimates.iter().all(|e| e.effect != *name)).collect();
     if let Some(file) = &arguments.output {
         write_model(&model, file, arguments.force)?;

@@ -297,16 +297,16 @@ fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
     ];
     let mut effects = Vec::new();
     for part in study.model.parts() {
-        let about = &part.effect.about;
-        let mut entry = Map::from_iter([("name".to_owned(), json!(about.name))]);
+        let name = part.effect.name();
+        let mut entry = Map::from_iter([("name".to_owned(), json!(name))]);
         let mut words = Vec::new();
-        for (parameter, value) in about.parameters.iter().zip(&part.values) {
-            let draw = drawn(about.name, parameter);
+        for (parameter, value) in part.effect.parameters().iter().zip(&part.values) {
+            let draw = drawn(name, parameter);
             entry.insert(parameter.name.to_owned(), draw.map_or(json!(value), distribution_json));
             words.push(format!("{} {}", parameter.name, value_text(parameter, *value, draw)));
         }
         effects.push(Value::Object(entry));
-        heading.push(format!("  {}: {}", about.name, words.join(", ")));
+        heading.push(format!("  {name}: {}", words.join(", ")));
     }
     heading.extend(assumed.iter().map(|assumption| format!("  assumed: {assumption}")));
     let sizes: Map<String, Value> = sizes().map(|(p, v)| (p.name.to_owned(), json!(v))).collect();

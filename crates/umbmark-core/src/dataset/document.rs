@@ -81,6 +81,19 @@ impl<'a> Table<'a> {
         Some(Entry { source: self.source, key: key.get_ref(), at: key.span().start, value })
     }
 
+    /// All entries, in the order of the file.
+    pub fn entries(&self) -> Vec<Entry<'a>> {
+        let entry = |(key, value): (&'a Spanned<std::borrow::Cow<'a, str>>, &'a Spanned<DeValue<'a>>)| Entry {
+            source: self.source,
+            key: key.get_ref(),
+            at: key.span().start,
+            value,
+        };
+        let mut entries: Vec<Entry> = self.entries.iter().map(entry).collect();
+        entries.sort_by_key(|entry| entry.at);
+        entries
+    }
+
     /// The entry of a key that must be there; `example` says how it may look.
     pub fn need(&self, key: &str, example: &str) -> Result<Entry<'a>, DatasetError> {
         self.get(key).ok_or_else(|| self.missing(key, example))

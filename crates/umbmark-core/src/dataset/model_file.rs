@@ -4,12 +4,12 @@ use super::document::{Entry, Source, Table};
 use super::error::{DatasetError, did_you_mean};
 use super::text::read_text;
 use crate::drive::Robot;
-use crate::effect::{CATALOGUE, Entry as Effect, Model};
+use crate::effect::{CATALOGUE, Entry as Effect, Formula, FormulaError, Model, Target};
 use crate::monte_carlo::{Distribution, Draw};
 use crate::parameter::Parameter;
 
-/// Keys that only effects of the user's own have.
-const OWN: [&str; 3] = ["acts_on", "formula", "parameters"];
+/// Keys of an effect of the user's own, those first that no other has.
+const OWN: [&str; 5] = ["acts_on", "formula", "parameters", "name", "free"];
 const FORMS: &str = "a number, { mean = .., sd = .. } or { min = .., max = .. }";
 
 /// The effects of a `model.toml` on a robot, and those of their parameters that are drawn from a distribution.
@@ -42,24 +42,24 @@ pub fn parse_model(file: &str, text: &str, robot: &Robot) -> Result<(Model, Vec<
     for effect in effects.list("a list of tables, each headed [[effect]]")? {
         let table = effect.table("[[effect]]".into())?;
         let name = table.need("name", "e.g. name = \"wheelbase\" (`umbmark effects` lists them)")?;
-        let entry = find(&table, &name)?;
         let same = |other: &&Entry| other.word("").ok() == name.word("").ok();
         if let Some(first) = names.iter().find(same) {
             return Err(first.again(&name));
         }
         names.push(name);
-        add(&mut model, &mut draws, entry, &table)?;
+        if OWN[..3].iter().any(|key| table.get(key).is_some()) {
+            add_own(&mut model, &name, &table)?;
+        } else {
+            add(&mut model, &mut draws, find(&name)?, &table)?;
+        }
     }
     Ok((model, draws))
 }
 
-fn find(table: &Table, name: &Entry) -> Result<&'static Effect, DatasetError> {
+fn find(name: &Entry) -> Result<&'static Effect, DatasetError> {
     let word = name.word("the name of an effect")?;
     if let Some(entry) = CATALOGUE.iter().find(|entry| entry.about.name == word) {
         return Ok(entry);
-    }
-    if let Some(own) = OWN.iter().find_map(|key| table.get(key)) {
-        return Err(own.not_yet("effects of your own come later; `umbmark effects` lists those there are".into()));
     }
     let near = did_you_mean(word, CATALOGUE.iter().map(|entry| entry.about.name));
     let remedy = if near.is_empty() { "`umbmark effects` lists them" } else { &near };
@@ -85,6 +85,55 @@ fn add(model: &mut Model, draws: &mut Vec<Draw>, effect: &Effect, table: &Table)
     let impossible = |error: crate::effect::ModelError| table.missing("possible values", &error.to_string());
     model.add(about.name).map_err(impossible)?.free = free;
     values.into_iter().try_for_each(|(name, value)| model.set(about.name, name, value)).map_err(impossible)
+}
+
+/// Adds an effect of the user's own.
+fn add_own(model: &mut Model, name: &Entry, table: &Table) -> Result<(), DatasetError> {
+    table.only(&OWN)?;
+    let (acts_on, text) = (
+        table.need("acts_on", "e.g. acts_on = \"heading_per_metre\"")?,
+        table.need("formula", "e.g. formula = \"k * sin(heading)\"")?,
+    );
+    let target = read_target(&acts_on)?;
+    let parameters = table.get("parameters");
+    let numbers = parameters.map_or(Ok(Vec::new()), |entry| read_parameters(&entry))?;
+    let names: Vec<&str> = numbers.iter().map(|(name, _)| *name).collect();
+    let values: Vec<f64> = numbers.iter().map(|(_, value)| *value).collect();
+    let word = text.word("a formula, e.g. \"k * sin(heading)\"")?;
+    let formula = Formula::new(name.word("the name of an effect")?, target, word, &names);
+    let formula = formula.map_err(|error| match (&error, parameters) {
+        (FormulaError::Naming { what: "an effect", .. }, _) => name.wrong("a name of its own", &error.to_string()),
+        (
+            FormulaError::Naming { .. } | FormulaError::Unused { .. } | FormulaError::TooManyParameters { .. },
+            Some(entry),
+        ) => entry.wrong("the formula's own", &error.to_string()),
+        _ => text.wrong("one that can be evaluated", &error.to_string()),
+    })?;
+    let free = table.get("free").map_or(Ok(false), |entry| entry.flag())?;
+    let impossible = |error: crate::effect::ModelError| table.missing("possible values", &error.to_string());
+    model.add_formula(formula, &values).map_err(impossible)?.free = free;
+    Ok(())
+}
+
+fn read_target(entry: &Entry) -> Result<Target, DatasetError> {
+    let names = Target::ALL.map(Target::name);
+    let allowed = format!("one of {}", names.join(", "));
+    let word = entry.word(&allowed)?;
+    let target = Target::ALL.into_iter().find(|target| target.name() == word);
+    target.ok_or_else(|| entry.wrong(&allowed, &did_you_mean(word, names)))
+}
+
+/// Names and start values of the parameters of a formula.
+fn read_parameters<'a>(entry: &Entry<'a>) -> Result<Vec<(&'a str, f64)>, DatasetError> {
+    if !entry.is_table() {
+        return Err(entry.wrong("a table of start values, e.g. { k = 0.0 }", ""));
+    }
+    let number = |start: Entry<'a>| {
+        let value = start.any_number().filter(|value| value.is_finite());
+        let wrong = || start.wrong("a finite number, its start value", "");
+        value.map(|value| (start.key, value)).ok_or_else(wrong)
+    };
+    entry.table("parameters".into())?.entries().into_iter().map(number).collect()
 }
 
 /// The value of a parameter, or the middle of its distribution and the distribution.
@@ -150,6 +199,89 @@ mod tests {
     }
 
     #[test]
+    fn an_effect_of_ones_own_is_a_formula_with_start_values() {
+        let text = "[[effect]]\nname = \"carpet\"\nacts_on = \"heading_per_metre\"\n\
+                    formula = \"k * sin(heading - h0)\"\nparameters = { k = 0.25, h0 = 2 }\nfree = true\n";
+        let (model, draws) = read(text).unwrap();
+        assert_eq!((model.get("carpet", "k"), model.get("carpet", "h0"), draws.len()), (Some(0.25), Some(2.0), 0));
+        assert!(model.parts()[0].free);
+        let (model, _) = read(&text.replace("{ k = 0.25, h0 = 2 }", "{ h0 = 2, k = 0.25 }")).unwrap();
+        assert_eq!(model.values().collect::<Vec<_>>(), [2.0, 0.25], "in the order of the file");
+        let none = "[[effect]]\nname = \"push\"\nacts_on = \"forward_scale\"\nformula = \"0.001\"\n";
+        assert!(read(none).unwrap().0.parts()[0].values.is_empty());
+    }
+
+    #[test]
+    fn a_formula_that_cannot_be_meant_is_refused_with_its_line_and_column() {
+        let good = [
+            ("name", "\"carpet\""),
+            ("acts_on", "\"heading_per_metre\""),
+            ("formula", "\"k * sin(heading)\""),
+            ("parameters", "{ k = 0.0 }"),
+        ];
+        for (key, value, said) in [
+            ("acts_on", "", "1: [[effect]] has no acts_on; add e.g. acts_on = \"heading_per_metre\""),
+            (
+                "acts_on",
+                "\"heading_per_meter\"",
+                "3: acts_on must be one of heading_per_metre, forward_scale, sideways_per_metre, left_wheel_scale, \
+                 right_wheel_scale, got \"heading_per_meter\"; did you mean \"heading_per_metre\"?",
+            ),
+            ("formula", "", "1: [[effect]] has no formula; add e.g. formula = \"k * sin(heading)\""),
+            (
+                "formula",
+                "3",
+                "4: formula must be a formula, e.g. \"k * sin(heading)\", got 3; put it in quotation marks",
+            ),
+            (
+                "formula",
+                "\"k * sin(hedding)\"",
+                "4: formula must be one that can be evaluated, got \"k * sin(hedding)\"; column 9: there is no \"hedding\"; \
+                 did you mean \"heading\"?",
+            ),
+            (
+                "formula",
+                "\"k * (time + distance)\"",
+                "4: formula must be one that can be evaluated, got \"k * (time + distance)\"; column 13: \"time\" is in s and \
+                 \"distance\" in m: they do not add up or compare",
+            ),
+            (
+                "parameters",
+                "",
+                "4: formula must be one that can be evaluated, got \"k * sin(heading)\"; column 1: there is no \"k\"; name \
+                 it among the parameters, or use speed, turn_rate, acceleration, heading, wheel_angle_left, wheel_angle_right, \
+                 distance, time, session_distance, since_turn, last_turn, direction, pi and the functions sin, cos, tan, \
+                 exp, log, sqrt, abs, sign, min, max, tanh",
+            ),
+            ("parameters", "[1]", "5: parameters must be a table of start values, e.g. { k = 0.0 }, got [1]"),
+            ("parameters", "{ k = \"0\" }", "5: k must be a finite number, its start value, got \"0\""),
+            (
+                "parameters",
+                "{ k = { mean = 0.0, sd = 1.0 } }",
+                "5: k must be a finite number, its start value, got { mean = 0.0, sd = 1.0 }",
+            ),
+            (
+                "parameters",
+                "{ k = 0.0, q = 1.0 }",
+                "5: parameters must be the formula's own, got { k = 0.0, q = 1.0 }; the parameter q does not occur in the \
+                 formula; take it away",
+            ),
+            (
+                "name",
+                "\"scale\"",
+                "2: name must be a name of its own, got \"scale\"; \"scale\" cannot be the name of an effect: \
+                 `umbmark effects` lists an effect of this name",
+            ),
+        ] {
+            let value_of = |k: &str, v| if k == key { value } else { v };
+            let lines = good.map(|(k, v)| (k, value_of(k, v))).into_iter().filter(|(_, v)| !v.is_empty());
+            let text: String = lines.map(|(k, v)| format!("{k} = {v}\n")).collect();
+            let error = read(&format!("[[effect]]\n{text}")).map(|_| ()).unwrap_err().to_string();
+            assert_eq!(error, format!("model.toml:{said}"));
+        }
+    }
+
+    #[test]
     fn what_cannot_be_meant_is_refused_with_line_key_and_range() {
         for (lines, said) in [
             (
@@ -181,10 +313,6 @@ mod tests {
             (
                 "name = \"placed_bumps\"\nprofile = { min = 0, max = 1 }",
                 "3: profile must be one of cable, edge, got { min = 0, max = 1 }; it cannot be drawn",
-            ),
-            (
-                "name = \"carpet\"\nformula = \"k\"",
-                "3: formula \"k\" is not supported yet; effects of your own come later; `umbmark effects` lists those there are",
             ),
             (
                 "name = \"scale\"\n[[effect]]\nname = \"scale\"",

@@ -1,9 +1,11 @@
 //! `model.toml` as text.
 
-use crate::effect::Model;
+use crate::effect::{Formula, Model, Part};
+use crate::parameter::Parameter;
 use std::fmt::Write;
 
-/// A `model.toml` that reads back as this model, to the last bit. Scatter of parameters from trial to trial is not in a model.
+/// A `model.toml` that reads back as this model, to the last bit. Scatter of parameters from trial to trial is not in a model,
+/// and effects that a program has added to the catalogue's are read by nobody.
 ///
 /// ```
 /// use umbmark_core::{dataset::{model_text, parse_model}, drive::Robot, effect::Model};
@@ -22,13 +24,8 @@ pub fn model_text(model: &Model) -> String {
             text.push('\n');
         }
         // Writing to a string does not fail.
-        let _ = writeln!(text, "[[effect]]\nname = \"{}\"", part.effect.about.name);
-        for (parameter, value) in part.effect.about.parameters.iter().zip(&part.values) {
-            let _ = match parameter.choices.get(*value as usize) {
-                Some(word) => writeln!(text, "{} = \"{word}\"", parameter.name),
-                None => writeln!(text, "{} = {value:?}", parameter.name),
-            };
-        }
+        let _ = writeln!(text, "[[effect]]\nname = \"{}\"", part.effect.name());
+        text += &part.effect.formula().map_or_else(|| numbers(part), |formula| own(formula, &part.values));
         if part.free {
             text.push_str("free = true\n");
         }
@@ -36,12 +33,31 @@ pub fn model_text(model: &Model) -> String {
     text
 }
 
+/// The numbers of an effect of the catalogue.
+fn numbers(part: &Part) -> String {
+    let line = |(parameter, value): (&Parameter, &f64)| match parameter.choices.get(*value as usize) {
+        Some(word) => format!("{} = \"{word}\"\n", parameter.name),
+        None => format!("{} = {value:?}\n", parameter.name),
+    };
+    part.effect.parameters().iter().zip(&part.values).map(line).collect()
+}
+
+/// An effect of the user's own.
+fn own(formula: &Formula, values: &[f64]) -> String {
+    let pair = |(parameter, value): (&Parameter, &f64)| format!("{} = {value:?}", parameter.name);
+    let pairs: Vec<String> = formula.parameters().iter().zip(values).map(pair).collect();
+    let numbers = if pairs.is_empty() { "{}".to_owned() } else { format!("{{ {} }}", pairs.join(", ")) };
+    // A formula holds nothing that TOML wants escaped.
+    let (target, text) = (formula.target().name(), formula.text());
+    format!("acts_on = \"{target}\"\nformula = \"{text}\"\nparameters = {numbers}\n")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::dataset::parse_model;
     use crate::drive::Robot;
-    use crate::effect::CATALOGUE;
+    use crate::effect::{CATALOGUE, Target};
 
     #[test]
     fn a_model_of_every_effect_reads_back_to_the_last_bit() {
@@ -54,6 +70,10 @@ mod tests {
                 model.set(entry.about.name, parameter.name, value).unwrap();
             }
         }
+        let own = Formula::new("own", Target::LeftWheelScale, "a *\tsin(heading / b)", &["b", "a"]).unwrap();
+        model.add_formula(own, &[1.0 / 3.0, -1e-300]).unwrap().free = true;
+        let bare = Formula::new("bare", Target::ForwardScale, "0.001", &[]).unwrap();
+        model.add_formula(bare, &[]).unwrap();
         let (read, draws) = parse_model("model.toml", &model_text(&model), &robot).unwrap();
         assert_eq!(read, model);
         assert!(draws.is_empty());

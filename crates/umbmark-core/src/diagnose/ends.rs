@@ -16,7 +16,7 @@ use crate::calibrate::evidence::{Drive, end_poses};
 use crate::calibrate::{CalibrateError, noise_shape};
 use crate::dataset::Dataset;
 use crate::drive::Robot;
-use crate::effect::{Evaluate, Model};
+use crate::effect::{Evaluate, Model, ModelError};
 use crate::geometry::{Pose2, wrap};
 use crate::path::{Direction, Path};
 use crate::replay::Track;
@@ -129,6 +129,11 @@ impl Ends {
     /// Tracks that differ, cut as the model needs it.
     pub fn tracks(&self, varies: bool) -> Vec<&Track> {
         self.tracks.iter().map(|t| t.track(varies)).collect()
+    }
+
+    /// Refuses a model whose formulas are no finite numbers somewhere on the way.
+    pub fn check(&self, model: &Model) -> Result<(), ModelError> {
+        model.check_along(self.tracks(model.varies()).into_iter().flat_map(Track::contexts))
     }
 
     /// A value for every run from one for every track.

@@ -80,11 +80,10 @@ fn of_tracks(
     runs: &[(Direction, usize)],
     with_heading: bool,
 ) -> Result<Identifiability, DiagnoseError> {
-    let mut nominal = Model::new(model.robot());
+    let nominal = model.at_rest();
     let mut asked = Vec::new();
     for part in model.parts() {
-        nominal.add(part.effect.about.name)?;
-        asked.extend(part.effect.about.parameters.iter().map(|p| (part.free, part.effect.about.name, p.name)));
+        asked.extend(part.effect.parameters().iter().map(|p| (part.free, part.effect.name(), p.name)));
     }
     let (mut shares, mut columns): (Vec<Share>, Vec<DVector<f64>>) = Default::default();
     for (index, (free, effect, parameter)) in asked.into_iter().enumerate() {

@@ -178,7 +178,7 @@ pub(crate) fn estimates(fitted: &Fitted) -> Vec<Estimate> {
     let names = model
         .parts()
         .iter()
-        .flat_map(|part| part.effect.about.parameters.iter().map(|parameter| (part.effect.about.name, parameter.name)));
+        .flat_map(|part| part.effect.parameters().iter().map(|parameter| (part.effect.name(), parameter.name)));
     let (names, values): (Vec<_>, Vec<f64>) = (names.collect(), model.values().collect());
     let of = |(k, index): (usize, &usize)| Estimate {
         effect: names[*index].0,
@@ -290,5 +290,11 @@ fn remarks(exam: &Examination, unlisted: Option<&Dependence>) -> Vec<String> {
 
 /// Fits the free parameters of a model to tracks.
 pub(crate) fn fit(observed: &Observed, model: &crate::effect::Model) -> Result<Fitted, DiagnoseError> {
-    Ok(observed.fit(model, &crate::likelihood::Noise::default(), &[])?)
+    model.check_along(observed.tracks().flat_map(|track| track.contexts()))?;
+    let fitted = observed.fit(model, &crate::likelihood::Noise::default(), &[])?;
+    // Where the size of a formula began at 0, its shape shows only now.
+    if model.has_formulas() && observed.free_values(&fitted.model).len() > fitted.free.len() {
+        return Ok(observed.fit(&fitted.model, &fitted.noise, &[])?);
+    }
+    Ok(fitted)
 }

@@ -1,9 +1,10 @@
 //! A model: a choice of effects with values.
 
-use super::{CATALOGUE, Context, Entry, Evaluate, MAX_PARAMETERS, Mean, Sight, find};
+use super::{Context, Entry, Evaluate, Formula, Law, MAX_PARAMETERS, Mean, Sight, find};
 use crate::drive::{DifferentialDrive, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
 use crate::parameter::{DefaultValue, Parameter, ParameterError, nearest};
+use std::sync::Arc;
 
 /// What makes a model impossible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -35,6 +36,39 @@ pub enum ModelError {
         /// The parameter, its value and its range.
         problem: ParameterError,
     },
+    /// A second effect of the same name.
+    #[error("there is another effect \"{name}\"; give one of them another name")]
+    Taken {
+        /// The name.
+        name: &'static str,
+    },
+    /// A formula with more or fewer values than parameters.
+    #[error("{effect} has {parameters} parameters, got {values} values")]
+    Values {
+        /// The effect.
+        effect: &'static str,
+        /// How many parameters it has.
+        parameters: usize,
+        /// How many values were given.
+        values: usize,
+    },
+    /// A formula that is no number somewhere on the way.
+    #[error(
+        "{effect}: \"{part}\", or its derivative, is not finite {time:.2} s after START in run {run}, where {values}; change \
+         the formula so that it is finite there too, for instance x / max(y, 0.01) instead of x / y"
+    )]
+    Singular {
+        /// The effect.
+        effect: &'static str,
+        /// The part of its formula.
+        part: String,
+        /// What it depends on, there.
+        values: String,
+        /// Time since START \[s\].
+        time: f64,
+        /// Number of the run in the session, from 0.
+        run: f64,
+    },
 }
 
 fn did_you_mean(nearest: Option<&str>) -> String {
@@ -45,14 +79,14 @@ fn did_you_mean(nearest: Option<&str>) -> String {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// The effect.
-    pub effect: &'static Entry,
+    pub effect: Law,
     /// Its parameters, in the order of its description.
     pub values: Vec<f64>,
     /// Whether a fit may change it.
     pub free: bool,
 }
 
-/// A chain of effects, in the order of the catalogue.
+/// A chain of effects, in the order of the catalogue; those that are not in it come last.
 ///
 /// ```
 /// use umbmark_core::{drive::Robot, effect::Model};
@@ -85,50 +119,123 @@ impl Model {
         &self.parts
     }
 
-    /// Adds an effect with its default values, or finds it where it is there already.
+    /// Adds an effect of the catalogue with its default values, or finds an effect where it is there already.
     pub fn add(&mut self, effect: &str) -> Result<&mut Part, ModelError> {
-        let entry = find(effect)?;
-        let order = |e: &Entry| CATALOGUE.iter().position(|c| c == e);
-        let place = self.parts.partition_point(|part| order(part.effect) < order(entry));
-        if self.parts.get(place).is_none_or(|part| part.effect != entry) {
-            let values = entry.about.parameters.iter().map(|p| p.default.resolve(&self.robot)).collect();
-            self.parts.insert(place, Part { effect: entry, values, free: false });
+        let law = self.law(effect)?;
+        Ok(self.place(law))
+    }
+
+    /// Adds an effect with its default values, in the catalogue or not, or finds it where it is there already.
+    pub fn add_entry(&mut self, entry: &'static Entry) -> Result<&mut Part, ModelError> {
+        match self.law(entry.about.name) {
+            Ok(Law::Entry(known)) if std::ptr::eq(known, entry) => Ok(self.place(Law::Entry(known))),
+            Ok(_) => Err(ModelError::Taken { name: entry.about.name }),
+            Err(_) => Ok(self.place(Law::Entry(entry))),
         }
-        Ok(&mut self.parts[place])
+    }
+
+    /// Adds an effect of the user's own with these values of its parameters.
+    pub fn add_formula(&mut self, formula: Formula, values: &[f64]) -> Result<&mut Part, ModelError> {
+        let effect = formula.name();
+        if self.law(effect).is_ok() {
+            return Err(ModelError::Taken { name: effect });
+        }
+        let (parameters, given) = (formula.parameters(), values.len());
+        if parameters.len() != given {
+            return Err(ModelError::Values { effect, parameters: parameters.len(), values: given });
+        }
+        for (parameter, value) in parameters.iter().zip(values) {
+            parameter.check(*value).map_err(|problem| ModelError::Value { effect, problem })?;
+        }
+        let part = self.place(Law::Formula(Arc::new(formula)));
+        part.values.copy_from_slice(values);
+        Ok(part)
+    }
+
+    /// The law that a name stands for in this model: that of a part, or one of the catalogue.
+    fn law(&self, name: &str) -> Result<Law, ModelError> {
+        let own = self.parts.iter().find(|part| part.effect.name() == name);
+        own.map_or_else(|| find(name).map(Law::Entry), |part| Ok(part.effect.clone()))
+    }
+
+    /// The part of a law, new where there is none.
+    fn place(&mut self, law: Law) -> &mut Part {
+        let known = self.parts.iter().position(|part| part.effect == law);
+        let place = known.unwrap_or_else(|| {
+            let place = self.parts.partition_point(|part| part.effect.order() <= law.order());
+            let values = law.parameters().iter().map(|p| p.default.resolve(&self.robot)).collect();
+            self.parts.insert(place, Part { effect: law, values, free: false });
+            place
+        });
+        &mut self.parts[place]
     }
 
     /// Sets a parameter of an effect, adding the effect where it is not there.
     pub fn set(&mut self, effect: &str, parameter: &str, value: f64) -> Result<(), ModelError> {
-        let about = &find(effect)?.about;
-        let index = about.parameters.iter().position(|p| p.name == parameter).ok_or_else(|| {
-            let nearest = nearest(parameter, about.parameters.iter().map(|p| p.name));
-            ModelError::UnknownParameter { effect: about.name, name: parameter.to_owned(), nearest }
+        let law = self.law(effect)?;
+        let (effect, parameters) = (law.name(), law.parameters());
+        let index = parameters.iter().position(|p| p.name == parameter).ok_or_else(|| {
+            let nearest = nearest(parameter, parameters.iter().map(|p| p.name));
+            ModelError::UnknownParameter { effect, name: parameter.to_owned(), nearest }
         })?;
-        let value = about.parameters[index]
-            .check(value)
-            .map_err(|problem| ModelError::Value { effect: about.name, problem })?;
-        self.add(effect)?.values[index] = value;
+        let value = parameters[index].check(value).map_err(|problem| ModelError::Value { effect, problem })?;
+        self.place(law).values[index] = value;
         Ok(())
     }
 
     /// The value of a parameter, if its effect is in the model.
     pub fn get(&self, effect: &str, parameter: &str) -> Option<f64> {
-        let part = self.parts.iter().find(|part| part.effect.about.name == effect)?;
-        let index = part.effect.about.parameters.iter().position(|p| p.name == parameter)?;
+        let part = self.parts.iter().find(|part| part.effect.name() == effect)?;
+        let index = part.effect.parameters().iter().position(|p| p.name == parameter)?;
         Some(part.values[index])
+    }
+
+    /// The same effects at their defaults, where most do nothing; a formula has none and stays as it is.
+    pub fn at_rest(&self) -> Model {
+        let mut rest = self.clone();
+        for part in rest.parts.iter_mut().filter(|part| part.effect.formula().is_none()) {
+            part.values = part.effect.parameters().iter().map(|p| p.default.resolve(&self.robot)).collect();
+        }
+        rest
+    }
+
+    /// Whether some effect is a formula.
+    pub fn has_formulas(&self) -> bool {
+        self.parts.iter().any(|part| part.effect.formula().is_some())
+    }
+
+    /// Refuses formulas that are no finite numbers somewhere along the way.
+    pub fn check_along<'a>(&self, contexts: impl IntoIterator<Item = &'a Context>) -> Result<(), ModelError> {
+        let formulas: Vec<_> =
+            self.parts.iter().filter_map(|part| Some((part.effect.formula()?, &part.values))).collect();
+        if formulas.is_empty() {
+            return Ok(());
+        }
+        for at in contexts {
+            for (formula, values) in &formulas {
+                formula.finite_at(values, at).map_err(|singular| ModelError::Singular {
+                    effect: formula.name(),
+                    part: singular.part,
+                    values: singular.values,
+                    time: at.time,
+                    run: at.run,
+                })?;
+            }
+        }
+        Ok(())
     }
 
     /// Whether some effect with its present values changes motion along the way, so that driving has to be cut into small
     /// pieces. For derivatives see [`Model::may_vary`].
     pub fn varies(&self) -> bool {
-        self.parts.iter().any(|part| (part.effect.varies)(&part.values))
+        self.parts.iter().any(|part| part.effect.varies(&part.values))
     }
 
     /// Whether it would vary with some values: what a derivative must ask, since a size that is 0 has one.
     pub fn may_vary(&self) -> bool {
         self.parts.iter().any(|part| {
-            let usual: Vec<f64> = part.effect.about.parameters.iter().map(|p| p.usual(&self.robot)).collect();
-            (part.effect.varies)(&usual)
+            let usual: Vec<f64> = part.effect.parameters().iter().map(|p| p.usual(&self.robot)).collect();
+            part.effect.varies(&usual)
         })
     }
 
@@ -140,9 +247,12 @@ impl Model {
     /// Which of the [values](Model::values) are shapes: numbers (a length, a threshold) that change nothing where their effect
     /// is at zero.
     pub fn shapes(&self) -> Vec<usize> {
-        let all = self.parts.iter().flat_map(|part| part.effect.about.parameters);
-        let shape = |p: &Parameter| !matches!(p.default, DefaultValue::Value(value) if value == 0.0 || value == 1.0);
-        all.enumerate().filter(|(_, p)| shape(p)).map(|(index, _)| index).collect()
+        let shape = |law: &Law, index: usize| match law {
+            Law::Entry(entry) => is_shape(&entry.about.parameters[index]),
+            Law::Formula(formula) => !formula.is_size(index),
+        };
+        let of_part = |part: &Part| (0..part.values.len()).map(|index| shape(&part.effect, index)).collect::<Vec<_>>();
+        self.parts.iter().flat_map(of_part).enumerate().filter(|(_, shape)| *shape).map(|(value, _)| value).collect()
     }
 
     /// The same effects with some of the [values](Model::values), named by their place, replaced.
@@ -156,9 +266,9 @@ impl Model {
                 inside
             };
             let Some(part) = model.parts.iter_mut().find(holds) else { continue };
-            let about = &part.effect.about;
-            let checked = about.parameters[index].check(*value);
-            part.values[index] = checked.map_err(|problem| ModelError::Value { effect: about.name, problem })?;
+            let checked = part.effect.parameters()[index].check(*value);
+            part.values[index] =
+                checked.map_err(|problem| ModelError::Value { effect: part.effect.name(), problem })?;
         }
         Ok(model)
     }
@@ -172,7 +282,10 @@ impl Model {
     /// The model's deterministic chain with `values` (numbers or duals) in the order of [`Model::values`].
     pub fn chain_with<T: Evaluate>(&self, values: &[T]) -> Chain<T> {
         let links = self.parts.iter().map(|part| Link {
-            mean: *T::mean(part.effect),
+            work: match &part.effect {
+                Law::Entry(entry) => Work::Entry(*T::mean(entry)),
+                Law::Formula(formula) => Work::Formula(Arc::clone(formula)),
+            },
             count: part.values.len(),
             values: [T::from(0.0); MAX_PARAMETERS],
         });
@@ -180,6 +293,11 @@ impl Model {
         chain.set_values(values);
         chain
     }
+}
+
+/// Whether a parameter shapes what others do.
+fn is_shape(parameter: &Parameter) -> bool {
+    !matches!(parameter.default, DefaultValue::Value(value) if value == 0.0 || value == 1.0)
 }
 
 /// The deterministic effects of a model, ready to turn believed into true motion.
@@ -191,9 +309,15 @@ pub struct Chain<T: Evaluate> {
 
 #[derive(Clone, Debug)]
 struct Link<T: Evaluate> {
-    mean: Mean<T>,
+    work: Work<T>,
     count: usize,
     values: [T; MAX_PARAMETERS],
+}
+
+#[derive(Clone, Debug)]
+enum Work<T: Evaluate> {
+    Entry(Mean<T>),
+    Formula(Arc<Formula>),
 }
 
 impl<T: Evaluate> Chain<T> {
@@ -213,7 +337,10 @@ impl<T: Evaluate> Chain<T> {
     /// Where the robot truly stands at START on average, seen from where it is believed to stand.
     pub fn start(&self) -> Pose2<T> {
         let start = Pose2::IDENTITY.lift();
-        self.links.iter().fold(start, |pose, link| pose.compose(&(link.mean.start)(&link.values)))
+        self.links.iter().fold(start, |pose, link| match &link.work {
+            Work::Entry(mean) => pose.compose(&(mean.start)(&link.values)),
+            Work::Formula(_) => pose,
+        })
     }
 
     /// True wheel travel for a believed one.
@@ -221,7 +348,13 @@ impl<T: Evaluate> Chain<T> {
     pub fn wheel_travel(&self, at: &Context<T>, believed: &WheelTravel) -> WheelTravel<T> {
         let mut travel = WheelTravel { left: T::from(believed.left), right: T::from(believed.right) };
         for link in &self.links {
-            (link.mean.wheels)(&link.values, at, &mut travel);
+            match &link.work {
+                Work::Entry(mean) => (mean.wheels)(&link.values, at, &mut travel),
+                Work::Formula(formula) => {
+                    let rotation = self.drive.displacement(&travel).rotation;
+                    formula.wheels(&link.values, at, rotation, &mut travel);
+                }
+            }
         }
         travel
     }
@@ -231,7 +364,10 @@ impl<T: Evaluate> Chain<T> {
     pub fn body(&self, at: &Context<T>, travel: &WheelTravel<T>) -> Displacement2<T> {
         let mut motion = self.drive.displacement(travel);
         for link in &self.links {
-            (link.mean.body)(&link.values, at, &mut motion);
+            match &link.work {
+                Work::Entry(mean) => (mean.body)(&link.values, at, &mut motion),
+                Work::Formula(formula) => formula.body(&link.values, at, &mut motion),
+            }
         }
         motion
     }
@@ -247,7 +383,9 @@ impl<T: Evaluate> Chain<T> {
     pub fn seen(&self, at: &Sight, pose: &Pose2<T>) -> Pose2<T> {
         let mut seen = *pose;
         for link in &self.links {
-            (link.mean.seen)(&link.values, at, &mut seen);
+            if let Work::Entry(mean) = &link.work {
+                (mean.seen)(&link.values, at, &mut seen);
+            }
         }
         seen
     }
@@ -256,6 +394,7 @@ impl<T: Evaluate> Chain<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::CATALOGUE;
     use crate::geometry::Dual;
 
     #[test]
@@ -264,7 +403,7 @@ mod tests {
         for name in ["scale", "wheel_diameter_ratio", "wheelbase", "scale"] {
             model.add(name).unwrap();
         }
-        let names: Vec<_> = model.parts().iter().map(|p| p.effect.about.name).collect();
+        let names: Vec<_> = model.parts().iter().map(|p| p.effect.name()).collect();
         assert_eq!(names, ["wheel_diameter_ratio", "wheelbase", "scale"]);
     }
 

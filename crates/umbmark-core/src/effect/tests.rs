@@ -65,7 +65,7 @@ pub(super) fn circle_speeds(direction: Direction) -> [f64; 2] {
 }
 
 /// Tracks on which every deterministic effect shows: a small square and a circle, both ways.
-fn probes() -> Vec<Track> {
+pub(super) fn probes() -> Vec<Track> {
     let robot = Robot::labmate();
     let square = Path::new(&SQUARE, &[0.5], SpeedProfile::default()).unwrap();
     let mut tracks = Vec::new();
@@ -77,7 +77,7 @@ fn probes() -> Vec<Track> {
 }
 
 /// Everything that is seen on the probes.
-fn seen<T: Evaluate>(model: &Model, values: &[T], probes: &[Track]) -> Vec<T> {
+pub(super) fn seen<T: Evaluate>(model: &Model, values: &[T], probes: &[Track]) -> Vec<T> {
     let chain = model.chain_with(values);
     probes.iter().flat_map(|track| track.poses(&chain)).flat_map(|pose| [pose.x, pose.y, pose.heading]).collect()
 }
@@ -97,7 +97,7 @@ fn neutral(p: &Parameter, robot: &Robot) -> f64 {
 }
 
 /// The derivative of everything seen by parameter `i`, by duals.
-fn column(model: &Model, i: usize, probes: &[Track]) -> Vec<f64> {
+pub(super) fn column(model: &Model, i: usize, probes: &[Track]) -> Vec<f64> {
     let seeded: Vec<Dual> =
         model.values().enumerate().map(|(j, v)| Dual::new(v, f64::from(u8::from(i == j)))).collect();
     seen(model, &seeded, probes).iter().map(|d| d.eps).collect()

@@ -25,6 +25,10 @@ pub trait Real: DualNum<Primitive = f64> + Copy + Send + Sync {
 
     /// e^x by `libm`, the same bits on every machine.
     fn exponential(self) -> Self;
+
+    /// Any other function of this number, from its value and its slope here. Where this number does not change, the slope
+    /// need not be finite.
+    fn mapped(self, value: f64, slope: f64) -> Self;
 }
 
 impl Real for f64 {
@@ -57,6 +61,11 @@ impl Real for f64 {
     fn exponential(self) -> f64 {
         libm::exp(self)
     }
+
+    #[inline]
+    fn mapped(self, value: f64, _slope: f64) -> f64 {
+        value
+    }
 }
 
 impl Real for Dual {
@@ -83,6 +92,11 @@ impl Real for Dual {
     fn exponential(self) -> Dual {
         let value = libm::exp(self.re);
         Dual::new(value, value * self.eps)
+    }
+
+    #[inline]
+    fn mapped(self, value: f64, slope: f64) -> Dual {
+        Dual::new(value, if self.eps == 0.0 { 0.0 } else { slope * self.eps })
     }
 }
 

@@ -31,12 +31,12 @@ pub(super) fn centred(model: &Model, draws: &[Draw]) -> Result<Model, ModelError
 }
 
 /// For each parameter of a part, in order, its draw if it has one.
-fn draws_of<'a>(part: &Part, draws: &'a [Draw]) -> impl Iterator<Item = Option<&'a Draw>> {
-    let about = &part.effect.about;
-    about
-        .parameters
+fn draws_of<'a>(part: &'a Part, draws: &'a [Draw]) -> impl Iterator<Item = Option<&'a Draw>> {
+    let effect = part.effect.name();
+    part.effect
+        .parameters()
         .iter()
-        .map(move |p| draws.iter().find(|draw| draw.effect() == about.name && draw.parameter().name == p.name))
+        .map(move |p| draws.iter().find(|draw| draw.effect() == effect && draw.parameter().name == p.name))
 }
 
 /// What a thread needs to run trials, allocated once.

@@ -5,7 +5,7 @@ use super::diffusion::Diffusion;
 use super::pieces::{Piece, Pieces};
 use super::way::Way;
 use crate::drive::{Wheel, WheelTravel};
-use crate::effect::{Bump, Chain, Context, Entry, Model, Sight, Stretch, WheelVariance};
+use crate::effect::{Bump, Chain, Context, Law, Model, Sight, Stretch, WheelVariance};
 use crate::engine::Instructions;
 use crate::geometry::{Displacement2, Pose2, Real};
 use crate::path::Direction;
@@ -42,7 +42,7 @@ pub struct Truth {
 
 #[derive(Debug)]
 struct RandomPart {
-    effect: &'static Entry,
+    effect: Law,
     values: Vec<f64>,
     stream: Stream,
 }
@@ -53,7 +53,11 @@ impl Truth {
         let random = model
             .parts()
             .iter()
-            .map(|part| RandomPart { effect: part.effect, values: part.values.clone(), stream: Stream::new(0, 0, 0) })
+            .map(|part| RandomPart {
+                effect: part.effect.clone(),
+                values: part.values.clone(),
+                stream: Stream::new(0, 0, 0),
+            })
             .collect();
         let mut truth = Truth {
             chain: model.chain(),
@@ -100,12 +104,12 @@ impl Truth {
             self.chain.body(&Context::default(), &WheelTravel { left: -0.5, right: 0.5 }).rotation;
         let variance = self.variance(&WheelTravel { left: 1.0, right: 1.0 });
         self.noisy = variance != WheelVariance::default();
-        self.varies = self.random.iter().any(|part| (part.effect.varies)(&part.values));
+        self.varies = self.random.iter().any(|part| part.effect.varies(&part.values));
     }
 
     fn variance(&self, travel: &WheelTravel) -> WheelVariance {
         self.random.iter().fold(WheelVariance::default(), |sum, part| {
-            let v = (part.effect.scatter.diffusion)(&part.values, travel);
+            let v = (part.effect.scatter().diffusion)(&part.values, travel);
             WheelVariance { left: sum.left + v.left, right: sum.right + v.right }
         })
     }
@@ -133,7 +137,7 @@ impl Truth {
     /// Begins one more run at START; where those before it end can still be asked for.
     pub(super) fn start_another(&mut self, direction: Direction, recorded: bool) {
         let start = self.random.iter_mut().fold(self.chain.start(), |pose, part| {
-            pose.compose(&(part.effect.scatter.start_scatter)(&part.values, &mut part.stream))
+            pose.compose(&(part.effect.scatter().start_scatter)(&part.values, &mut part.stream))
         });
         if self.varies {
             // Room for the pieces of one run, not of all.
@@ -157,7 +161,7 @@ impl Truth {
         self.commanded = leg.travel;
         self.ahead.clear();
         for part in &mut self.random {
-            (part.effect.scatter.bumps)(&part.values, &stretch, &mut part.stream, &mut self.ahead);
+            (part.effect.scatter().bumps)(&part.values, &stretch, &mut part.stream, &mut self.ahead);
         }
         self.ahead.sort_unstable_by(|a, b| b.at.total_cmp(&a.at));
         self.believed = stretch.travel;
@@ -277,7 +281,7 @@ impl Truth {
 fn measured(chain: &Chain<f64>, random: &mut [RandomPart], at: &Sight, pose: &Pose2) -> Pose2 {
     let mut seen = chain.seen(at, pose);
     for part in random {
-        (part.effect.scatter.measured)(&part.values, &mut part.stream, &mut seen);
+        (part.effect.scatter().measured)(&part.values, &mut part.stream, &mut seen);
     }
     seen
 }

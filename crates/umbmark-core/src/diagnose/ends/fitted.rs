@@ -38,6 +38,7 @@ pub(crate) struct Fitted {
 
 impl Fitted {
     pub fn new(ends: &Ends, model: &Model) -> Result<Fitted, DiagnoseError> {
+        ends.check(model)?;
         let (free, open) = what_shows(ends, model);
         let start: Vec<f64> = model.values().collect();
         let problem = Returns { ends, model, start: &start, free: &free };
@@ -47,6 +48,10 @@ impl Fitted {
             return Err(DiagnoseError::NotConverged { how: fit.termination.name() });
         }
         let fitted = with_values(model, &problem.all(&fit.values))?;
+        // Where the size of a formula began at 0, its shape shows only now.
+        if fitted.has_formulas() && what_shows(ends, &fitted).0.len() > free.len() {
+            return Fitted::new(ends, &fitted);
+        }
         let residuals = ends.residuals(&fitted);
         let residuals = ends.runs.iter().zip(&residuals).map(|(run, r)| mirrored(run.direction, r)).collect();
         let jacobian = slopes(ends, &fitted, &free);
@@ -80,7 +85,7 @@ impl Fitted {
     /// The derivatives by the same values where the model does nothing, all its values at their defaults, on the path that was
     /// meant to be driven (where it is known), run by run.
     pub fn nominal_jacobian(&self, ends: &Ends) -> Vec<DMatrix<f64>> {
-        slopes(&ends.as_meant(), &at_rest(&self.model), &self.free)
+        slopes(&ends.as_meant(), &self.model.at_rest(), &self.free)
     }
 
     fn estimate(&self, ends: &Ends, information: Option<DMatrix<f64>>) -> Vec<Estimate> {
@@ -113,8 +118,7 @@ impl Fitted {
 /// Effect and parameter of each value of a model.
 pub(crate) fn names(model: &Model) -> Vec<(&'static str, &'static str)> {
     let of_part = |part: &crate::effect::Part| {
-        let about = &part.effect.about;
-        about.parameters.iter().map(|p| (about.name, p.name)).collect::<Vec<_>>()
+        part.effect.parameters().iter().map(|p| (part.effect.name(), p.name)).collect::<Vec<_>>()
     };
     model.parts().iter().flat_map(of_part).collect()
 }
@@ -153,7 +157,7 @@ fn derivative(pose: &Pose2<Dual>) -> Vector3<f64> {
 fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     let flags = model.parts().iter().flat_map(|part| part.values.iter().map(|_| part.free));
     let names = names(model);
-    let nominal = at_rest(model);
+    let nominal = model.at_rest();
     let mut asked: Vec<usize> =
         flags.enumerate().filter(|(i, free)| *free && is_size(ends, &nominal, *i)).map(|(i, _)| i).collect();
     asked.sort_by_key(|i| !FIRST.contains(&names[*i].0));
@@ -188,17 +192,6 @@ fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     free.sort_unstable();
     let open = asked.into_iter().filter(|i| !free.contains(i)).collect();
     (free, open)
-}
-
-/// The same effects, doing nothing.
-fn at_rest(model: &Model) -> Model {
-    let mut rest = Model::new(model.robot());
-    for part in model.parts() {
-        if let Ok(own) = rest.add(part.effect.about.name) {
-            own.free = part.free;
-        }
-    }
-    rest
 }
 
 /// Whether a value moves the end poses where its effect does nothing yet: not a length, threshold, scatter or choice.

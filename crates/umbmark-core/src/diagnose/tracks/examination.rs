@@ -195,7 +195,7 @@ impl Examination {
             self.fitted.model.parts().iter().find_map(|part| {
                 let inside = rest < part.values.len();
                 rest -= if inside { 0 } else { part.values.len() };
-                inside.then_some(part.effect.about.name)
+                inside.then_some(part.effect.name())
             })
         });
         own.or_else(|| asked.and_then(Asked::effect).map(|effect| effect.about.name))

@@ -1,0 +1,303 @@
+//! An effect of the user's own: a formula, compiled once.
+//!
+//! ```text
+//! heading_per_metre    Δθ ← Δθ + f · length                f [rad/m]
+//! sideways_per_metre   sideways ← sideways + f · length    f [m/m], to the left
+//! forward_scale        forward ← (1 + f) · forward         f [-]
+//! left_wheel_scale     s_L ← (1 + f) · s_L                 f [-]
+//! right_wheel_scale    s_R ← (1 + f) · s_R                 f [-]
+//! ```
+//!
+//! *length* is the path length of a piece, always positive; where it is 0, laws per metre do nothing. f is taken in the
+//! middle of the piece. So a formula that is 0 does nothing.
+
+mod error;
+mod parser;
+mod program;
+mod tokens;
+mod units;
+mod variable;
+
+use super::name::lasting;
+use super::{CATALOGUE, Context, MAX_PARAMETERS};
+use crate::drive::WheelTravel;
+use crate::geometry::{Displacement2, Dual, Real};
+use crate::parameter::{DefaultValue, Parameter};
+use program::{Op, Program};
+use std::fmt;
+use units::Unit;
+
+pub use error::FormulaError;
+
+/// What a formula acts on, by the laws of [`Formula`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// Rotation per path length \[rad/m\], counter-clockwise positive.
+    HeadingPerMetre,
+    /// Share by which motion ahead grows.
+    ForwardScale,
+    /// Sideways motion per path length, to the left positive.
+    SidewaysPerMetre,
+    /// Share by which the left wheel's travel grows.
+    LeftWheelScale,
+    /// Share by which the right wheel's travel grows.
+    RightWheelScale,
+}
+
+impl Target {
+    /// All of them.
+    pub const ALL: [Target; 5] = [
+        Target::HeadingPerMetre,
+        Target::ForwardScale,
+        Target::SidewaysPerMetre,
+        Target::LeftWheelScale,
+        Target::RightWheelScale,
+    ];
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Target::HeadingPerMetre => "heading_per_metre",
+            Target::ForwardScale => "forward_scale",
+            Target::SidewaysPerMetre => "sideways_per_metre",
+            Target::LeftWheelScale => "left_wheel_scale",
+            Target::RightWheelScale => "right_wheel_scale",
+        }
+    }
+
+    fn unit(self) -> Unit {
+        match self {
+            Target::HeadingPerMetre => Unit { metres: -1.0, seconds: 0.0 },
+            _ => Unit::PLAIN,
+        }
+    }
+
+    fn per_metre(self) -> bool {
+        matches!(self, Target::HeadingPerMetre | Target::SidewaysPerMetre)
+    }
+}
+
+/// A law of the user's own. Its numbers have their values in the [`Part`](super::Part) of a model.
+///
+/// It is made of `+ - * /`, `^` with a whole number, parentheses, numbers, `pi`, the functions `sin`, `cos`, `tan`, `exp`, `log`
+/// (natural), `sqrt`, `abs`, `sign`, `min`, `max` and `tanh`, its parameters, and what the robot's own odometry knows in the
+/// middle of a piece: `speed` \[m/s\], `turn_rate` \[rad/s\], `acceleration` \[m/s²\], `heading` \[rad\] in the room from the
+/// heading at START, `wheel_angle_left`, `wheel_angle_right` \[rad\] since START, `distance`, `session_distance`, `since_turn`
+/// \[m\], `time` \[s\] since START, `last_turn` and `direction` (+1 to the left, -1 to the right, 0 for neither).
+///
+/// Units must agree: an angle is a plain number, and parameters and written numbers have whatever unit makes it so.
+/// Derivatives are exact; those of `abs`, `sign`, `min` and `max` at a corner are those of one side, or 0.
+///
+/// ```
+/// use umbmark_core::{drive::Robot, effect::{Formula, Model, Target}};
+/// let nap = Formula::new("nap", Target::HeadingPerMetre, "k * sin(heading - h0)", &["k", "h0"])?;
+/// let mut model = Model::new(&Robot::labmate());
+/// model.add_formula(nap, &[0.001, 0.5])?.free = true;
+/// assert_eq!(model.get("nap", "h0"), Some(0.5));
+/// let error = Formula::new("nap", Target::HeadingPerMetre, "sin(speed)", &[]).unwrap_err();
+/// assert!(error.to_string().starts_with("column 5: sin takes a plain number or an angle, and \"speed\" is in m/s"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Formula {
+    name: &'static str,
+    target: Target,
+    text: String,
+    parameters: Vec<Parameter>,
+    sizes: Vec<bool>,
+    turns: bool,
+    program: Program,
+}
+
+/// A place where a formula is no number.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Singular {
+    /// The part of the formula.
+    pub part: String,
+    /// The variables and parameters in it, with their values.
+    pub values: String,
+}
+
+impl Formula {
+    /// Compiles a formula whose parameters have these names.
+    pub fn new(name: &str, target: Target, text: &str, parameters: &[&str]) -> Result<Formula, FormulaError> {
+        if CATALOGUE.iter().any(|entry| entry.about.name == name) {
+            let why = "`umbmark effects` lists an effect of this name";
+            return Err(FormulaError::Naming { name: name.to_owned(), what: "an effect", why });
+        }
+        check_name(name, "an effect")?;
+        check_parameters(parameters)?;
+        let text: String = text.chars().map(|c| if c.is_whitespace() { ' ' } else { c }).collect();
+        let program = parser::parse(&text, parameters)?;
+        let occurs = |p: usize| program.ops().contains(&Op::Parameter(p));
+        if let Some(unused) = (0..parameters.len()).find(|p| !occurs(*p)) {
+            return Err(FormulaError::Unused { name: parameters[unused].to_owned() });
+        }
+        let units = units::check(&text, &program, parameters.len(), (target.name(), target.unit()))?;
+        Ok(Formula {
+            name: lasting(name),
+            target,
+            text,
+            parameters: parameters.iter().zip(&units).map(|(name, unit)| described(name, unit)).collect(),
+            sizes: program.sizes(parameters.len()),
+            turns: program.ops().contains(&Op::Variable(variable::Variable::Heading)),
+            program,
+        })
+    }
+
+    /// The effect's name in files.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// What it acts on.
+    pub fn target(&self) -> Target {
+        self.target
+    }
+
+    /// As it was written, in one line.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Its numbers, with their units where those follow from the formula.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// Whether a parameter is a size: one that the formula is linear in; all are where it is linear in none. The others shape
+    /// what the sizes do, and change nothing where those are 0.
+    pub(super) fn is_size(&self, parameter: usize) -> bool {
+        self.sizes[parameter]
+    }
+
+    /// Changes believed into true wheel travel \[m\]; `rotation` is what the piece turns the robot by \[rad\].
+    #[inline]
+    pub(super) fn wheels<T: Real>(&self, p: &[T], at: &Context<T>, rotation: T, travel: &mut WheelTravel<T>) {
+        let side = match self.target {
+            Target::LeftWheelScale => &mut travel.left,
+            Target::RightWheelScale => &mut travel.right,
+            _ => return,
+        };
+        *side *= self.program.evaluate(p, at, at.heading + rotation * 0.5) + 1.0;
+    }
+
+    /// Changes the body motion that true wheel travel makes.
+    #[inline]
+    pub(super) fn body<T: Real>(&self, p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        if matches!(self.target, Target::LeftWheelScale | Target::RightWheelScale) || self.is_idle(at.length) {
+            return;
+        }
+        let f = self.program.evaluate(p, at, at.heading + motion.rotation * 0.5);
+        match self.target {
+            Target::HeadingPerMetre => motion.rotation += f * at.length,
+            Target::SidewaysPerMetre => motion.sideways += f * at.length,
+            _ => motion.forward *= f + 1.0,
+        }
+    }
+
+    /// Whether it does nothing over such a path length.
+    fn is_idle(&self, length: f64) -> bool {
+        self.target.per_metre() && length == 0.0
+    }
+
+    /// Refuses a piece where the formula, or a derivative of it, is no finite number.
+    pub(super) fn finite_at(&self, values: &[f64], at: &Context) -> Result<(), Singular> {
+        if self.is_idle(at.length) {
+            return Ok(());
+        }
+        // Heading after the parameters.
+        let seeds = values.len() + usize::from(self.turns);
+        for seed in 0..seeds.max(1) {
+            let seeded = |(i, v): (usize, &f64)| Dual::new(*v, f64::from(u8::from(i == seed)));
+            let mut duals = [Dual::from(0.0); MAX_PARAMETERS];
+            duals.iter_mut().zip(values.iter().enumerate().map(seeded)).for_each(|(to, from)| *to = from);
+            let heading = Dual::new(at.heading, f64::from(u8::from(seed == values.len())));
+            let mut first = None;
+            self.program.watched(&duals, &at.headed(heading), heading, |i, value| {
+                if !(value.re.is_finite() && value.eps.is_finite()) && first.is_none() {
+                    first = Some(i);
+                }
+            });
+            if let Some(op) = first {
+                return Err(self.singular(op, values, at));
+            }
+        }
+        Ok(())
+    }
+
+    fn singular(&self, op: usize, values: &[f64], at: &Context) -> Singular {
+        let span = self.program.span(op);
+        let mut said: Vec<String> = Vec::new();
+        for (i, inside) in self.program.ops().iter().enumerate() {
+            let own = self.program.span(i);
+            let text = match inside {
+                Op::Variable(variable) => {
+                    let (name, unit) = variable.described();
+                    format!("{name} = {} {unit}", variable.of(at, at.heading)).trim_end().to_owned()
+                }
+                Op::Parameter(p) => format!("{} = {}", self.parameters[*p].name, values[*p]),
+                _ => continue,
+            };
+            if own.start >= span.start && own.end <= span.end && !said.contains(&text) {
+                said.push(text);
+            }
+        }
+        Singular { part: self.text[span].to_owned(), values: said.join(", ") }
+    }
+}
+
+fn described(name: &str, unit: &Option<Unit>) -> Parameter {
+    Parameter {
+        name: lasting(name),
+        flag: "",
+        unit: lasting(&unit.map(|unit| unit.to_string()).unwrap_or_default()),
+        default: DefaultValue::Value(0.0),
+        typical: 1.0,
+        bounds: (f64::NEG_INFINITY, f64::INFINITY),
+        meaning: "",
+        choices: &[],
+    }
+}
+
+fn check_name(name: &str, what: &'static str) -> Result<(), FormulaError> {
+    let letters = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if letters && name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
+        return Ok(());
+    }
+    let why = "it takes letters, digits and _, and begins with a letter";
+    Err(FormulaError::Naming { name: name.to_owned(), what, why })
+}
+
+fn check_parameters(names: &[&str]) -> Result<(), FormulaError> {
+    if names.len() > MAX_PARAMETERS {
+        return Err(FormulaError::TooManyParameters { count: names.len() });
+    }
+    for (i, name) in names.iter().enumerate() {
+        check_name(name, "a parameter")?;
+        let why = match () {
+            () if parser::is_taken(name) => "it has a meaning in every formula",
+            () if names[..i].contains(name) => "another one has it",
+            () => continue,
+        };
+        return Err(FormulaError::Naming { name: (*name).to_owned(), what: "a parameter", why });
+    }
+    Ok(())
+}
+
+impl fmt::Display for Formula {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let names: Vec<&str> = self.parameters.iter().map(|p| p.name).collect();
+        write!(f, "{}({}): {} = {}", self.name, names.join(", "), self.target.name(), self.text)
+    }
+}
+
+impl PartialEq for Formula {
+    fn eq(&self, other: &Formula) -> bool {
+        let names = |formula: &Formula| formula.parameters.iter().map(|p| p.name).collect::<Vec<_>>();
+        (self.name, self.target, &self.text) == (other.name, other.target, &other.text) && names(self) == names(other)
+    }
+}
+
+#[cfg(test)]
+mod tests;

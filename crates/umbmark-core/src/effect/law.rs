@@ -1,0 +1,108 @@
+//! What an effect of a model does: an entry, or a formula of the user's own.
+
+use super::{CATALOGUE, Entry, Formula, Scatter, WheelVariance};
+use crate::geometry::Pose2;
+use crate::parameter::Parameter;
+use std::fmt;
+use std::sync::Arc;
+
+/// The law of one effect of a model.
+#[derive(Clone, Debug)]
+pub enum Law {
+    /// An effect written in Rust, in the [`CATALOGUE`] or not.
+    Entry(&'static Entry),
+    /// A formula.
+    Formula(Arc<Formula>),
+}
+
+impl Law {
+    /// The effect's name in files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Law::Entry(entry) => entry.about.name,
+            Law::Formula(formula) => formula.name(),
+        }
+    }
+
+    /// The effect's numbers.
+    pub fn parameters(&self) -> &[Parameter] {
+        match self {
+            Law::Entry(entry) => entry.about.parameters,
+            Law::Formula(formula) => formula.parameters(),
+        }
+    }
+
+    /// The entry, where it is no formula.
+    pub fn entry(&self) -> Option<&'static Entry> {
+        match self {
+            Law::Entry(entry) => Some(entry),
+            Law::Formula(_) => None,
+        }
+    }
+
+    /// The formula, where it is one.
+    pub fn formula(&self) -> Option<&Formula> {
+        match self {
+            Law::Entry(_) => None,
+            Law::Formula(formula) => Some(formula),
+        }
+    }
+
+    /// Whether it changes motion along the way at these values; a formula is taken to.
+    pub fn varies(&self, values: &[f64]) -> bool {
+        self.entry().is_none_or(|entry| (entry.varies)(values))
+    }
+
+    /// Its random part; a formula has none.
+    pub(crate) fn scatter(&self) -> &'static Scatter {
+        static NONE: Scatter = Scatter {
+            diffusion: |_, _| WheelVariance::default(),
+            bumps: |_, _, _, _| (),
+            start_scatter: |_, _| Pose2::IDENTITY,
+            measured: |_, _, _| (),
+        };
+        self.entry().map_or(&NONE, |entry| &entry.scatter)
+    }
+
+    /// A number that names its random stream.
+    pub(crate) fn purpose(&self) -> u64 {
+        self.entry().map_or(0, Entry::purpose)
+    }
+
+    /// Its place in the catalogue; effects that are not in it come after all others.
+    pub(super) fn order(&self) -> usize {
+        CATALOGUE.iter().position(|entry| self == entry).unwrap_or(CATALOGUE.len())
+    }
+}
+
+impl fmt::Display for Law {
+    /// The name, and all of a formula: laws that differ are written differently.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Law::Entry(entry) => f.write_str(entry.about.name),
+            Law::Formula(formula) => formula.fmt(f),
+        }
+    }
+}
+
+impl PartialEq for Law {
+    fn eq(&self, other: &Law) -> bool {
+        match (self, other) {
+            (Law::Entry(a), Law::Entry(b)) => a == b,
+            (Law::Formula(a), Law::Formula(b)) => a == b,
+            _ => false,
+        }
+    }
+}
+
+impl PartialEq<Entry> for Law {
+    fn eq(&self, other: &Entry) -> bool {
+        self.entry() == Some(other)
+    }
+}
+
+impl PartialEq<&Entry> for Law {
+    fn eq(&self, other: &&Entry) -> bool {
+        self.entry() == Some(other)
+    }
+}
