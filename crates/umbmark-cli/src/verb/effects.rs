@@ -54,26 +54,33 @@ fn list() -> String {
         }
     }
     text += "\n`umbmark effects NAME` explains one: equation, signature, parameters, source.\n";
-    text + OWN
+    text + &own()
 }
 
 /// How to write an effect that is not listed.
-const OWN: &str = "
-One of your own is a formula in model.toml, fitted, simulated and compared as those above:
-
-  [[effect]]
-  name = \"carpet\"
-  acts_on = \"heading_per_metre\"
-  formula = \"k * sin(heading - h0)\"
-  parameters = { k = 0.0, h0 = 0.5 }
-  free = true
-
-  acts_on     heading_per_metre [rad/m], sideways_per_metre [m/m] to the left, forward_scale, left_wheel_scale or
-              right_wheel_scale [-]: what the formula adds, so that a formula of 0 does nothing
-  variables   speed [m/s], turn_rate [rad/s], acceleration [m/s^2], heading, wheel_angle_left, wheel_angle_right [rad],
-              distance, session_distance, since_turn [m], time [s], last_turn, direction (+1 left, -1 right)
-  functions   sin cos tan exp log sqrt abs sign min max tanh; + - * / ^ with a whole number; pi
-";
+fn own() -> String {
+    let mut text = String::from(
+        "\nOne of your own is a formula in model.toml, for every verb that takes a model:\n\n  \
+         [[effect]]\n  name = \"carpet\"\n  acts_on = \"heading_per_metre\"\n  formula = \"k * sin(heading - h0)\"\n  \
+         parameters = { k = 0.0, h0 = 0.5 }\n  free = true\n\n",
+    );
+    for (head, body) in [
+        (
+            "acts_on",
+            "heading_per_metre [rad/m], sideways_per_metre [m/m] to the left, forward_scale, left_wheel_scale or \
+             right_wheel_scale: what the formula adds to the motion that odometry believes, so that 0 does nothing",
+        ),
+        (
+            "variables",
+            "speed [m/s], turn_rate [rad/s], acceleration [m/s²], heading, wheel_angle_left, wheel_angle_right [rad], distance, \
+             session_distance, since_turn [m], time [s], last_turn, direction (+1 left, -1 right)",
+        ),
+        ("besides", "+ - * /, ^ with a whole number, ( ), pi, sin cos tan exp log sqrt abs sign min max tanh"),
+    ] {
+        text += &hanging(&format!("  {head}"), INDENT, body);
+    }
+    text
+}
 
 fn explanation(about: &About, signature: Option<&Signature>) -> String {
     let mut text = format!("{}: {}\n\n", about.name, about.title);

@@ -6,7 +6,10 @@ use crate::random::Stream;
 use program::Function;
 use variable::Variable;
 
-fn model_of(formulas: &[(Target, &str, &[(&str, f64)])]) -> Model {
+/// What a formula acts on, its text, and its parameters with their values.
+type Own<'a> = (Target, &'a str, &'a [(&'a str, f64)]);
+
+fn model_of(formulas: &[Own]) -> Model {
     let mut model = Model::new(&Robot::labmate());
     for (i, (target, text, parameters)) in formulas.iter().enumerate() {
         let (names, values): (Vec<&str>, Vec<f64>) = parameters.iter().copied().unzip();

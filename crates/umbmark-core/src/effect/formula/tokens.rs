@@ -43,7 +43,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Placed<'_>>, FormulaError> {
 
 /// A number: digits with a point anywhere among them, and an exponent.
 fn number(text: &str, at: usize) -> Result<(Token<'_>, usize), FormulaError> {
-    let rest = text[at..].as_bytes();
+    let rest = &text.as_bytes()[at..];
     let digits = |from: usize| rest[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
     let mut length = digits(0);
     if rest.get(length) == Some(&b'.') {
