@@ -302,7 +302,7 @@ fn places(run: &Run) -> usize {
 /// truth.set("wheel_noise", "k_sqrt_m", 1e-3)?;
 /// # let mut simulator = Simulator::new(&robot, &path, Odometry::Continuous, Phase::Edge)?;
 /// # let mut truth = Truth::new(&truth);
-/// # simulator.open(&mut truth, 1, 0);
+/// # simulator.open(&mut truth, 2, 0);
 /// # let mut runs = Vec::new();
 /// # for direction in Direction::BOTH {
 /// #     for number in 1..=5 {
