@@ -1,6 +1,7 @@
 """`learn` on tick logs with motion capture, against causes that it does not know of.
 
-UMBMARK_HIDDEN_CASES=all takes every case of the generator that tracks can show; a few stand for them where it is silent.
+UMBMARK_HIDDEN_CASES=all takes every case that tracks can show; a few stand for them where it is
+silent.
 """
 
 import json
