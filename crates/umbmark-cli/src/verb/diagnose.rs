@@ -28,7 +28,7 @@ pub struct Arguments {
     #[command(flatten)]
     data: DataArguments,
 
-    /// The model to question; its free effects are fitted [default: E_d and E_b]
+    /// The model to question; its free effects are fitted [default: E_d and E_b, on tracks E_s too]
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
 

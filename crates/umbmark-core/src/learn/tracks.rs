@@ -28,7 +28,7 @@ pub(super) fn learn(observed: &Observed, options: &Options) -> Result<Learnt, Di
         let next = found.effects.first().filter(|_| steps.len() < MOST + BASE.len());
         let Some((finding, suspect)) = next else { return finish(exam, found, steps, options) };
         let grown = exam.fitted.model.clone();
-        fitted = refit(&exam, with(grown, suspect)?)?;
+        fitted = refit(&exam, with(grown, suspect)?, suspect.best)?;
         let after = Examination::bare(fitted.clone());
         let told = (suspect.best, suspect.class.clone(), Some(finding.p_adjusted()));
         steps.push(step(&after, Some(told)));
@@ -71,14 +71,14 @@ fn with(mut model: Model, suspect: &Suspect) -> Result<Model, DiagnoseError> {
     Ok(model)
 }
 
-/// Fits a grown model: its sizes first, then its shapes too where the data shows them.
-fn refit(exam: &Examination, model: Model) -> Result<Fitted, DiagnoseError> {
+/// Fits a model grown by `effect`: its sizes first, then its shapes too where the size of that effect stands out.
+fn refit(exam: &Examination, model: Model, effect: &str) -> Result<Fitted, DiagnoseError> {
     let observed = &exam.fitted.observed;
     let shapes = model.shapes();
     let sized = observed.fit(&model, &Noise::default(), &shapes)?;
     let shaped = observed.free_values(&sized.model).iter().any(|value| shapes.contains(value));
-    let stands_out = |e: &Estimate| (e.value / e.standard_error).abs() > SHOWN;
-    let clear = tracks::estimates(&sized).iter().rev().any(stands_out);
+    let stands_out = |e: &Estimate| e.effect == effect && (e.value / e.standard_error).abs() > SHOWN;
+    let clear = tracks::estimates(&sized).iter().any(stands_out);
     if !(shaped && clear) {
         return Ok(sized);
     }

@@ -48,8 +48,7 @@ pub fn look(exam: &Examination, found: &[usize], smooths: bool, options: &Option
     let residual = exam.system.residual();
     let mut findings = Vec::new();
     for (index, asked) in exam.asked.iter().enumerate() {
-        if matches!(asked.question, Question::Smooth(..)) != smooths || asked.columns.iter().any(|c| found.contains(c))
-        {
+        if matches!(asked.question, Question::Smooth(..)) != smooths || exam.is_found(asked, found) {
             continue;
         }
         let own = asked.nuisance.then(|| Projected::new(&products, &with(exam.base(Some(index)), found)));
