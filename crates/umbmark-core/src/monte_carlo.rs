@@ -8,8 +8,10 @@
 mod distribution;
 mod ensemble;
 mod metric;
+mod quantity;
 mod shard;
 mod statistics;
+mod sweep;
 mod trial;
 
 use std::ops::{ControlFlow, Range};
@@ -29,12 +31,13 @@ use crate::simulate::{self, Odometry, Phase, SimulateError};
 pub use distribution::{Distribution, DistributionError, Draw};
 pub use ensemble::{Ensemble, MergeError};
 pub use metric::Metric;
+pub use quantity::{Quantity, QuantityError};
 pub use shard::{Shard, ShardError};
 pub use statistics::Statistics;
-
+pub use sweep::{Axis, MetricSummary, Sweep, SweepError, SweepPoint};
 pub use trial::draw_parameters;
 
-use trial::Bench;
+pub(crate) use trial::{Bench, row};
 
 /// Trials that one thread runs at a time. Shards begin and end at multiples of it.
 pub const CHUNK: u64 = 256;
@@ -67,6 +70,9 @@ pub enum StudyError {
         /// The parameter, its value and its range.
         problem: ParameterError,
     },
+    /// A quantity that cannot be set.
+    #[error(transparent)]
+    Quantity(#[from] QuantityError),
     /// No trials, or a test without runs.
     #[error("{what} must be between {} and {}, got {value}", range.start, range.end - 1)]
     Count {

@@ -114,6 +114,11 @@ impl Model {
         &self.robot
     }
 
+    /// The same effects with the same values on another nominal robot.
+    pub fn on(&self, robot: &Robot) -> Model {
+        Model { robot: robot.clone(), parts: self.parts.clone() }
+    }
+
     /// The effects of the model, in the order in which they act.
     pub fn parts(&self) -> &[Part] {
         &self.parts
@@ -242,6 +247,14 @@ impl Model {
     /// All values of all parts, one after the other: the order of [`Model::chain_with`].
     pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
         self.parts.iter().flat_map(|part| part.values.iter().copied())
+    }
+
+    /// The place of a parameter among the [values](Model::values), if its effect is in the model.
+    pub fn place_of(&self, effect: &str, parameter: &str) -> Option<usize> {
+        let part = self.parts.iter().position(|part| part.effect.name() == effect)?;
+        let before: usize = self.parts[..part].iter().map(|part| part.values.len()).sum();
+        let own = self.parts[part].effect.parameters().iter().position(|p| p.name == parameter)?;
+        Some(before + own)
     }
 
     /// Which of the [values](Model::values) are shapes: numbers (a length, a threshold) that change nothing where their effect
