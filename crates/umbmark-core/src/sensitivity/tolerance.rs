@@ -79,6 +79,8 @@ pub struct Findings {
     pub now: Choice,
     /// One parameter at another grade than now, for each that there is.
     pub alone: Vec<Choice>,
+    /// The last grade of every parameter.
+    pub last: Choice,
     /// The cheapest choice that keeps the target, judged by robots that the search did not see.
     pub cheapest: Option<Choice>,
     /// Choices that were looked at in the search.
@@ -152,7 +154,7 @@ impl Tolerances<'_> {
         self.parameters.iter().zip(grades).map(|(one, grade)| one.grades[*grade].cost).sum()
     }
 
-    /// How good the robots are now, what each other grade would do by itself, and the cheapest choice of grades that keeps the
+    /// How good the robots are now and with every last grade, what each other grade would do by itself, and the cheapest choice of grades that keeps the
     /// target.
     ///
     /// Choices are looked at in the order of their cost. One is dropped as soon as the share of its robots that keep the limit
@@ -173,6 +175,8 @@ impl Tolerances<'_> {
             grades[parameter] = grade;
             alone.push(self.choice(&grades, target.output, watch)?);
         }
+        let last: Vec<usize> = self.parameters.iter().map(|one| one.grades.len() - 1).collect();
+        let last = self.choice(&last, target.output, watch)?;
         let (mut looked_at, mut partial) = (0, false);
         let mut cheapest = None;
         for grades in ByCost::new(self.parameters) {
@@ -191,7 +195,7 @@ impl Tolerances<'_> {
                 other => drop(other?),
             }
         }
-        Ok(Findings { now, alone, cheapest, looked_at, partial })
+        Ok(Findings { now, alone, last, cheapest, looked_at, partial })
     }
 
     fn choices(&self) -> f64 {
