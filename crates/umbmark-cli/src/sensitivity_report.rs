@@ -59,7 +59,8 @@ impl SensitivityReport<'_> {
         names.chain(self.noisy.then_some("noise")).collect()
     }
 
-    fn is_partial(&self) -> bool {
+    /// Whether less was done than was asked for.
+    pub fn is_partial(&self) -> bool {
         match self.found {
             Found::Sobol(indices) => indices.partial,
             Found::Morris(screening) => screening.partial,

@@ -69,7 +69,7 @@ seed 1, umbmark [..]
 
 #[test]
 fn noise_is_a_parameter_of_its_own_and_threads_change_nothing() {
-    let study = [&VARIED[..], &["--wheel-noise-sd", "0.0002", "-n", "256"]].concat();
+    let study = [&VARIED[..], &["--wheel-noise", "0.001", "--wheel-noise-sd", "0.0002", "-n", "256"]].concat();
     let on = |threads| json(&[&study[..], &["--threads", threads]].concat());
     let one = on("1");
     assert!(one == on("2") && one == on("8"));
@@ -111,7 +111,7 @@ fn every_method_answers_for_robot_encoder_path_and_runs() {
     assert!((0.004..0.01).contains(&one), "{one}");
     let shares = with(&["-n", "64"]);
     assert_eq!(shares["parameters"].as_array().unwrap().len(), 7);
-    assert!(bumps(&shares, "total", "placed_bumps.count") > 0.3);
+    assert!(bumps(&shares, "total", "placed_bumps.count") > 0.1);
 }
 
 #[test]

@@ -8,6 +8,7 @@
 mod distribution;
 mod ensemble;
 mod metric;
+mod noise_free;
 mod quantity;
 mod shard;
 mod statistics;
@@ -24,9 +25,9 @@ use crate::drive::Robot;
 use crate::effect::{Model, ModelError};
 use crate::engine::Instructions;
 use crate::parameter::ParameterError;
-use crate::path::{Direction, Path};
-use crate::replay::{Track, check_on_path};
-use crate::simulate::{self, Odometry, Phase, SimulateError};
+use crate::path::Path;
+use crate::replay::check_on_path;
+use crate::simulate::{Odometry, Phase, SimulateError};
 
 pub use distribution::{Distribution, DistributionError, Draw};
 pub use ensemble::{Ensemble, MergeError};
@@ -37,6 +38,7 @@ pub use statistics::Statistics;
 pub use sweep::{Axis, MetricSummary, Sweep, SweepError, SweepPoint};
 pub use trial::draw_parameters;
 
+pub(crate) use noise_free::NoiseFree;
 pub(crate) use trial::{Bench, row};
 
 /// Trials that one thread runs at a time. Shards begin and end at multiples of it.
@@ -177,11 +179,7 @@ impl Study {
     /// by exact kinematics.
     pub fn noise_free(&self) -> Result<[ReturnError; 2], StudyError> {
         let model = trial::centred(&self.model, &self.draws)?;
-        let (chain, track) = (model.chain(), if model.varies() { Track::in_pieces } else { Track::from_path });
-        Ok(Direction::BOTH.map(|direction| {
-            let end = track(&self.path, direction, self.robot()).end(&chain);
-            simulate::return_error(&end, &self.path.end(direction))
-        }))
+        Ok(NoiseFree::new(&model, &self.path, model.varies()).returned())
     }
 
     /// Runs the study on the present rayon pool.

@@ -79,6 +79,9 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         noisy: noise == Noise::Simulated,
         assumed: &assumed,
     };
+    if report.is_partial() {
+        session.message("partial", "stopped before all tests that were asked for");
+    }
     if session.json() {
         session.print_json(&report.json())?;
     } else {

@@ -1,7 +1,8 @@
 //! Whole UMBmark tests as a function of the numbers that decide them.
 
 use super::{Evaluator, Input, Response, SensitivityError};
-use crate::monte_carlo::{Bench, Distribution, Metric, Quantity, Row, Study, StudyError, row};
+use crate::dataset::ReturnError;
+use crate::monte_carlo::{Bench, Distribution, Metric, NoiseFree, Quantity, Row, Study, StudyError, row};
 use crate::score::summarise;
 
 /// What is made of the noise of a test.
@@ -77,13 +78,10 @@ impl Tests {
         Ok(Bench::new(study)?.with_extended_test(self.study.extended()))
     }
 
-    /// A test without noise.
-    fn noise_free(&self, values: &[f64]) -> Result<Row, StudyError> {
-        let study = self.with(values)?;
-        let [cw, ccw] = study.noise_free()?;
-        let runs = [(study.runs[0], [cw]), (study.runs[1], [ccw])];
-        let [cw, ccw] = runs.each_ref().map(|(runs, errors)| &errors[..errors.len().min(*runs)]);
-        Ok(row(&summarise(cw, ccw), f64::NAN))
+    /// What the return errors without noise are as a row.
+    fn give_noise_free(&self, runs: [usize; 2], returned: &[ReturnError; 2], outputs: &mut [f64]) {
+        let [cw, ccw] = [0, 1].map(|i| if runs[i] > 0 { &returned[i..=i] } else { &[] });
+        self.give(&row(&summarise(cw, ccw), f64::NAN), outputs);
     }
 
     fn give(&self, row: &Row, outputs: &mut [f64]) {
@@ -118,8 +116,20 @@ impl Response for Tests {
                 self.give(&self.bench(&study)?.test_with(&all, seed, noise), outputs);
                 Ok(())
             }),
-            (Noise::Absent, _) => Box::new(move |values, _, outputs| {
-                self.give(&self.noise_free(values)?, outputs);
+            (Noise::Absent, Some(places)) => {
+                let Study { model, path, runs, .. } = &self.study;
+                let mut exact = NoiseFree::new(model, path, model.may_vary());
+                let mut all: Vec<f64> = model.values().collect();
+                Box::new(move |values, _, outputs| {
+                    places.iter().zip(values).for_each(|(place, value)| all[*place] = *value);
+                    exact.set_values(&all);
+                    self.give_noise_free(*runs, &exact.returned(), outputs);
+                    Ok(())
+                })
+            }
+            (Noise::Absent, None) => Box::new(move |values, _, outputs| {
+                let study = self.with(values)?;
+                self.give_noise_free(study.runs, &study.noise_free()?, outputs);
                 Ok(())
             }),
         })
@@ -191,6 +201,9 @@ mod tests {
         assert_eq!(tests.metrics()[0], Metric::EMaxSys);
         assert!(!tests.metrics().contains(&Metric::Sigma));
         let row = row_of(&tests, &[1.00121, 337.2 / 340.0], 5);
+        let anew = self::varied(&[("ed", 1.00121), ("eb", 337.2 / 340.0), ("side", 4.0)]);
+        let made_anew = Tests::new(&study(), &anew, Noise::Absent).unwrap();
+        assert_eq!(row_of(&made_anew, &[1.00121, 337.2 / 340.0, 4.0], 5), row);
         assert!((row[0] - 0.3056).abs() < 1e-4 && row == row_of(&tests, &[1.00121, 337.2 / 340.0], 6), "{row:?}");
     }
 }
