@@ -13,6 +13,7 @@ mod heat_map;
 mod model_report;
 mod output_arguments;
 mod prose;
+mod residual_strips;
 mod robot_flags;
 mod sensitivity_report;
 mod session;
@@ -23,6 +24,8 @@ mod study_flags;
 mod sweep;
 mod table;
 mod terminal;
+mod test_arguments;
+mod tracks_report;
 mod vary;
 mod verb;
 

@@ -2,6 +2,7 @@
 
 use umbmark_core::engine::Update;
 use umbmark_core::monte_carlo::Study;
+use umbmark_core::preset::Published;
 use umbmark_core::simulate::{Odometry, Phase};
 
 use crate::setup::{Setup, SetupFlags};
@@ -39,6 +40,17 @@ enum PhaseKind {
     Edge,
 }
 
+/// What is to be said of a study beside its numbers.
+#[derive(Debug)]
+pub struct Known {
+    /// Where its numbers come from.
+    pub sources: Vec<String>,
+    /// What nobody said and was assumed.
+    pub assumed: Vec<String>,
+    /// What was published of such a robot.
+    pub published: Option<Published>,
+}
+
 /// What was said of the tests.
 #[derive(Debug, clap::Args)]
 pub struct StudyFlags {
@@ -63,9 +75,9 @@ pub struct StudyFlags {
 }
 
 impl StudyFlags {
-    /// The study of so many trials, and what nobody said and was assumed.
-    pub fn resolve(&self, trials: u64, seed: u64) -> anyhow::Result<(Study, Vec<String>)> {
-        let Setup { path, model, draws, assumed } = self.setup.resolve()?;
+    /// The study of so many trials, and what is to be said of it beside its numbers.
+    pub fn resolve(&self, trials: u64, seed: u64) -> anyhow::Result<(Study, Known)> {
+        let Setup { path, model, draws, sources, assumed, published } = self.setup.resolve()?;
         let robot = model.robot();
         let update = match self.update {
             UpdateKind::Arc => Update::Arc,
@@ -84,6 +96,6 @@ impl StudyFlags {
         };
         let runs = self.setup.direction.runs(self.runs);
         let study = Study { draws, odometry, path, phase, runs, ..Study::new(model, trials, seed) };
-        Ok((study, assumed))
+        Ok((study, Known { sources, assumed, published }))
     }
 }

@@ -18,7 +18,7 @@ use crate::checkpoint::Checkpoint;
 use crate::distribution_text::{distribution_json, distribution_words};
 use crate::effect_flags::number;
 use crate::ensemble_report::{Description, Report};
-use crate::study_flags::StudyFlags;
+use crate::study_flags::{Known, StudyFlags};
 use crate::sweep::{self, SweepFlags};
 use crate::{Session, files};
 
@@ -116,7 +116,7 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let (study, assumed) = arguments.study.resolve(arguments.trials(), session.seed())?;
+    let (study, known) = arguments.study.resolve(arguments.trials(), session.seed())?;
     if arguments.sweep.is_asked_for() {
         let files = sweep::Files {
             checkpoint: arguments.checkpoint.as_deref(),
@@ -124,9 +124,9 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
             resume: arguments.resume,
             force: arguments.force,
         };
-        return sweep::run(&arguments.sweep, &study, &assumed, &files, session);
+        return sweep::run(&arguments.sweep, &study, &known.assumed, &files, session);
     }
-    let description = describe(&study, &assumed)?;
+    let description = describe(&study, &known)?;
     let mut checkpoint = arguments.checkpoint(&study, &description)?;
     let metrics = study.metrics();
     let mut out =
@@ -212,7 +212,7 @@ impl TrialsFile {
 }
 
 /// The study in words and numbers.
-fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
+fn describe(study: &Study, known: &Known) -> anyhow::Result<Description> {
     let theory = Theory::of(study)?;
     let path = &study.path;
     let sizes = || path.shape().parameters.iter().zip(path.values());
@@ -244,7 +244,8 @@ fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
         effects.push(Value::Object(entry));
         heading.push(format!("  {name}: {}", words.join(", ")));
     }
-    heading.extend(assumed.iter().map(|assumption| format!("  assumed: {assumption}")));
+    heading.extend(known.sources.iter().map(|source| format!("  from the paper: {source}")));
+    heading.extend(known.assumed.iter().map(|assumption| format!("  assumed: {assumption}")));
     let sizes: Map<String, Value> = sizes().map(|(p, v)| (p.name.to_owned(), json!(v))).collect();
     let document = json!({
         "noise_free": { "e_max_sys_m": theory.exact, "first_order_e_max_sys_m": theory.first_order },
@@ -252,11 +253,14 @@ fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
         "robot": study.robot().name,
         "path": { "shape": path.shape().name, "sizes": sizes },
         "effects": effects,
-        "assumed": assumed,
+        "sources": known.sources,
+        "assumed": known.assumed,
+        "published": known.published.map(|p| json!({ "row": p.row, "e_max_sys_m": p.e_max_sys, "sigma_m": p.sigma })),
         "version": umbmark_core::VERSION,
     });
     let document = document.as_object().cloned().unwrap_or_default();
-    Ok(Description { heading, theory: theory.text(study.runs), seed: study.seed, document })
+    let published = known.published.map(|p| (p.row.to_owned(), p.e_max_sys, p.sigma));
+    Ok(Description { heading, theory: theory.text(study.runs), seed: study.seed, document, published })
 }
 
 fn value_text(parameter: &Parameter, value: f64, draw: Option<&Draw>) -> String {

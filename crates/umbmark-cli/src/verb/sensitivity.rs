@@ -62,7 +62,7 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let (study, assumed) = arguments.study.resolve(arguments.trials, session.seed())?;
+    let (study, known) = arguments.study.resolve(arguments.trials, session.seed())?;
     let metric = metric_named(&arguments.metric)?;
     let varied = arguments.vary.resolve(&study)?;
     let noise = if arguments.noise_free { Noise::Absent } else { Noise::Simulated };
@@ -77,7 +77,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         metric,
         study: tests.study(),
         noisy: noise == Noise::Simulated,
-        assumed: &assumed,
+        assumed: &known.assumed,
     };
     if report.is_partial() {
         session.message("partial", "stopped before all tests that were asked for");

@@ -58,7 +58,7 @@ fn size(text: &str) -> Result<(f64, bool), String> {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let (study, assumed) = arguments.study.resolve(1, session.seed())?;
+    let (study, known) = arguments.study.resolve(1, session.seed())?;
     let file = read_parameters(&arguments.file, &study)?;
     let metric = metric_named(&arguments.metric)?;
     let (at_most, is_angle) = arguments.target;
@@ -80,7 +80,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         seed: session.seed(),
     };
     let findings = search(&tolerances, &target, session)?;
-    let assumed = if arguments.with_noise { assumed } else { Vec::new() };
+    let assumed = if arguments.with_noise { known.assumed } else { Vec::new() };
     let report = Report { findings: &findings, file: &file, target: &target, metric, assumed: &assumed };
     if findings.partial {
         session.message("partial", "stopped before all choices were looked at");

@@ -114,9 +114,9 @@ impl Model {
         &self.robot
     }
 
-    /// The same effects with the same values on another nominal robot.
-    pub fn on(&self, robot: &Robot) -> Model {
-        Model { robot: robot.clone(), parts: self.parts.clone() }
+    /// The same effects of another nominal robot.
+    pub fn of(self, robot: &Robot) -> Model {
+        Model { robot: robot.clone(), ..self }
     }
 
     /// The effects of the model, in the order in which they act.

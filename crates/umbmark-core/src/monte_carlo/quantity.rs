@@ -220,7 +220,7 @@ impl Quantity {
             study.odometry = Odometry::Sampled { rate: value, update };
         }
         let encoder = Encoder::new(ticks, rate, encoder.counter_bits())?;
-        study.model = study.model.on(&Robot { name, drive, encoder });
+        study.model = study.model.clone().of(&Robot { name, drive, encoder });
         Ok(())
     }
 
