@@ -13,7 +13,9 @@ mod learn;
 mod mc;
 mod merge;
 mod score;
+mod sensitivity;
 mod simulate;
+mod tolerance;
 
 use std::process::ExitCode;
 
@@ -40,6 +42,10 @@ pub enum Verb {
     Fit(fit::Arguments),
     /// Learn a model: fit, diagnose, add, until nothing is missing
     Learn(learn::Arguments),
+    /// Which parameter drives which metric: Sobol indices, Morris screening, derivatives
+    Sensitivity(Box<sensitivity::Arguments>),
+    /// How many robots are good enough, and the cheapest tolerances that make it enough
+    Tolerance(Box<tolerance::Arguments>),
     /// Look at a dataset: what it holds, whether it is any good, what it can determine
     Inspect(inspect::Arguments),
     /// Write a dataset in another layout; sets clocks that disagree by the motion
@@ -64,6 +70,8 @@ impl Verb {
             Verb::Diagnose(arguments) => diagnose::run(arguments, session),
             Verb::Fit(arguments) => fit::run(arguments, session),
             Verb::Learn(arguments) => learn::run(arguments, session),
+            Verb::Sensitivity(arguments) => sensitivity::run(*arguments, session),
+            Verb::Tolerance(arguments) => tolerance::run(*arguments, session),
             Verb::Inspect(arguments) => inspect::run(arguments, session),
             Verb::Convert(arguments) => convert::run(arguments, session),
             Verb::Init(arguments) => init::run(arguments, session),

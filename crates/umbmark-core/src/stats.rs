@@ -52,6 +52,11 @@ pub fn normal_quantile(probability: f64) -> f64 {
     quantile(Normal::new(0.0, 1.0), probability)
 }
 
+/// The probability that a standard normal draw stays below `value`.
+pub fn standard_normal_share(value: f64) -> f64 {
+    0.5 * libm::erfc(-value * std::f64::consts::FRAC_1_SQRT_2)
+}
+
 /// The probability that F with these degrees of freedom exceeds `f`.
 ///
 /// NaN for degrees of freedom that are not positive, or an F that is no number.
