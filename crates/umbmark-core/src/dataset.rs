@@ -56,6 +56,7 @@ pub use mcap::{McapProblem, Topics};
 pub use model_file::{parse_model, read_model};
 pub use model_text::model_text;
 pub use reference_track::ReferenceTrack;
+pub use returns::HEADER as RETURNS_COLUMNS;
 pub use robot_file::{parse_robot, read_robot};
 pub use robot_text::robot_text;
 pub use save::Existing;

@@ -175,7 +175,7 @@ impl Arguments {
 const MOST_UNTIL: u64 = 1_000_000_000;
 
 /// A length with its unit: m, mm or um.
-fn length(text: &str) -> Result<f64, String> {
+pub(super) fn length(text: &str) -> Result<f64, String> {
     let wrong = || "write a length with its unit, as in 0.1mm, 100um or 1e-4m".to_owned();
     let units = [("mm", 1e-3), ("um", 1e-6), ("m", 1.0)];
     let (number, factor) =
