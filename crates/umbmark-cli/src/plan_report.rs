@@ -106,10 +106,7 @@ fn brief(value: f64) -> String {
 }
 
 fn name_of(sought: &Sought) -> String {
-    let (effect, parameter) = (sought.effect.about.name, sought.parameter.name);
-    let unit = unit_of(effect, parameter);
-    let unit = if unit.is_empty() { unit } else { format!(" [{}]", unit.trim()) };
-    format!("{parameter} of {effect}{unit}")
+    format!("{} of {}", sought.parameter.name, sought.effect.about.name)
 }
 
 /// For people.
@@ -234,8 +231,7 @@ fn least(report: &Report) -> String {
 }
 
 fn alternatives(report: &Report) -> String {
-    let mut header =
-        vec!["instead".to_owned(), "runs".into(), "min".into(), "sigma [mm]".into(), "E_max ± [mm]".into()];
+    let mut header = vec!["instead".to_owned(), "runs".into(), "min".into(), "sigma [mm]".into(), "± [mm]".into()];
     header.extend(report.watched.iter().map(|s| format!("least {}", s.parameter.name)));
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let row = |a: &Alternative| {
@@ -374,24 +370,17 @@ impl Separation {
             text += &hanging("", 2, "Nothing on offer tells them apart by as much as a standard deviation.");
             return text;
         }
-        let row = |e: &Experiment| {
-            vec![
-                format!("{:.1}", e.sd),
-                format!("{:.0}", e.minutes),
-                format!("{:.2}", e.sd * e.sd / e.minutes),
-                if e.sd >= ENOUGH { "yes".to_owned() } else { "no".to_owned() },
-                e.experiment.clone(),
-            ]
-        };
-        text += &table(
-            &["sd", "min", "sd^2/min", "sure", "experiment"],
-            self.experiments.iter().take(EXPERIMENTS).map(row),
-        );
-        text += "\n\n";
+        text += "    sd  min  sd^2/min\n";
+        for e in self.experiments.iter().take(EXPERIMENTS) {
+            let sure = if e.sd >= ENOUGH { "" } else { " (not sure)" };
+            let numbers = format!("{:>6.1} {:>4.0} {:>9.2}", e.sd, e.minutes, e.sd * e.sd / e.minutes);
+            text += &hanging(&numbers, 24, &format!("{}{sure}", e.experiment));
+        }
+        text += "\n";
         text += &hanging(
             "",
             2,
-            "sd: how far apart they are then, at usual sizes; sure: 3.24 sd or more, told in nine cases of ten at 5 %.",
+            "sd: how far apart they then are, at usual sizes; from 3.24 on, nine cases of ten are told at 5 %.",
         );
         text
     }

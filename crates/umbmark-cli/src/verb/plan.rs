@@ -234,7 +234,9 @@ impl Arguments {
         let sizes = planned.sizes();
         let rows = self.rows(setting, &sizes, options, stop, progress)?;
         let partial = rows.len() < RUNS.count();
-        let watched: Vec<Sought> = sizes.iter().take(2).chain(&sought).copied().collect();
+        let mut watched: Vec<Sought> = sizes.iter().take(2).copied().collect();
+        let others = sought.iter().filter(|s| sizes.iter().take(2).all(|w| w.parameter.name != s.parameter.name));
+        watched.extend(others);
         let bumps = Some(bumps(setting)).filter(|bumps| *bumps > 0.0).unwrap_or(10.0);
         let report = Report {
             summary: sheet.summary.clone(),

@@ -46,7 +46,7 @@ pub(super) fn next_experiments(
 /// Every experiment on offer for telling two effects apart, the most telling per minute first; none where the runs have no
 /// scatter to judge by.
 ///
-/// Each effect is taken at its usual size, the hardest of its sizes; what the model has is fitted.
+/// Each effect is taken at its usual size, the hardest of those of its sizes that show at all; what the model has is fitted.
 pub(crate) fn separating(ends: &Ends, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
     let [first, second] = [find(pair[0])?, find(pair[1])?];
     let has = |model: &Model, entry: &Entry| model.parts().iter().any(|part| part.effect.name() == entry.about.name);
@@ -64,7 +64,11 @@ pub(crate) fn separating(ends: &Ends, model: &Model, pair: [&str; 2]) -> Result<
             .collect::<Vec<usize>>()
     });
     let Some(offer) = Offer::new(ends, &fitted, sizes)? else { return Ok(Vec::new()) };
-    let shows = |size: &usize| offer.columns.iter().any(|columns| columns.sizes[*size].norm() > 0.0);
+    // Thresholds and scatters move nothing, and some sizes show nowhere: the effect is known by its others.
+    let shows = |size: &usize| {
+        let alone = |columns: &Columns| columns.beside(*size, &[]) * offer.sizes[*size].1.typical;
+        offer.columns.iter().any(|columns| alone(columns) >= LEAST)
+    };
     let pair = Rivals {
         names: [first.about.name, second.about.name],
         sizes: of_both.map(|numbers| numbers.into_iter().filter(shows).collect()),
@@ -195,13 +199,16 @@ impl Columns {
 
     /// Standard deviations between two rivals: the least of both ways.
     fn distance(&self, pair: &Rivals, sizes: &[SizeOf]) -> f64 {
-        let apart = |truth: usize, rivals: &[usize]| {
-            let others: Vec<&DVector<f64>> = self.base.iter().chain(rivals.iter().map(|k| &self.sizes[*k])).collect();
-            residual(&self.sizes[truth], &others) * sizes[truth].1.typical
-        };
+        let apart = |truth: usize, rivals: &[usize]| self.beside(truth, rivals) * sizes[truth].1.typical;
         let [a, b] = &pair.sizes;
         let ways = a.iter().map(|j| apart(*j, b)).chain(b.iter().map(|k| apart(*k, a)));
         ways.reduce(f64::min).unwrap_or(0.0)
+    }
+
+    /// What a unit of a size leaves beside the model and these sizes.
+    fn beside(&self, size: usize, rivals: &[usize]) -> f64 {
+        let others: Vec<&DVector<f64>> = self.base.iter().chain(rivals.iter().map(|k| &self.sizes[*k])).collect();
+        residual(&self.sizes[size], &others)
     }
 }
 
