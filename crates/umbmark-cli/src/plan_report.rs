@@ -9,8 +9,10 @@ use crate::model_report::unit_of;
 use crate::prose::hanging;
 use crate::table::table;
 
-/// Numbers of runs that are printed; --json has all.
-const PRINTED: [usize; 7] = [3, 4, 5, 7, 10, 20, 30];
+/// Numbers of runs that are printed.
+pub const PRINTED: [usize; 7] = [3, 4, 5, 7, 10, 20, 30];
+/// Those of them that least sizes are printed for.
+const LEAST_AT: [usize; 5] = [3, 5, 10, 20, 30];
 /// So many experiments are printed.
 const EXPERIMENTS: usize = 5;
 
@@ -192,10 +194,6 @@ fn answers(report: &Report) -> String {
 /// Standard deviations that are seen in nine cases of ten.
 const ENOUGH: f64 = 3.24;
 
-fn printed(report: &Report) -> impl Iterator<Item = &Row> {
-    report.rows.iter().filter(|row| PRINTED.contains(&row.interval.runs))
-}
-
 fn intervals(report: &Report) -> String {
     let row = |row: &Row| {
         let i = &row.interval;
@@ -209,11 +207,11 @@ fn intervals(report: &Report) -> String {
         ]
     };
     let header = ["runs", "min", "E_max,sys reads [mm]", "interval ± [mm]", "holds [%]", "chance alone [mm]"];
-    format!("\n{}\n", table(&header, printed(report).map(row)))
+    format!("\n{}\n", table(&header, report.rows.iter().map(row)))
 }
 
 fn least(report: &Report) -> String {
-    let runs: Vec<&Row> = printed(report).filter(|row| row.interval.runs != 4 && row.interval.runs != 7).collect();
+    let runs: Vec<&Row> = report.rows.iter().filter(|row| LEAST_AT.contains(&row.interval.runs)).collect();
     let mut header = vec![format!("least size seen with {:.0} %, runs:", 100.0 * report.power)];
     header.extend(runs.iter().map(|row| row.interval.runs.to_string()));
     let header: Vec<&str> = header.iter().map(String::as_str).collect();

@@ -33,7 +33,7 @@ pub fn markdown(sheet: &Protocol) -> String {
     text
 }
 
-/// One page of A4, whatever the number of runs up to some thirty: rows are as high as there is room.
+/// One page of A4 for up to sixty runs: rows are as high as there is room.
 pub fn html(sheet: &Protocol) -> String {
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{TITLE}: {0}</title>\n<style>\n{1}</style>\n\
@@ -61,9 +61,9 @@ pub fn html(sheet: &Protocol) -> String {
     page + "</table>\n</body>\n</html>\n"
 }
 
-/// The page has some 150 mm for the table.
+/// The page has some 160 mm for the table.
 fn style(rows: usize) -> String {
-    let height = (150.0 / (rows + 1) as f64).clamp(3.4, 9.0);
+    let height = (160.0 / (rows + 1) as f64).clamp(2.6, 9.0);
     let size = (height * 1.7).clamp(6.0, 9.5);
     format!(
         "@page {{ size: A4; margin: 12mm; }}\n\

@@ -34,7 +34,7 @@ fn refused(arguments: &[&str]) -> String {
 fn a_plan_says_how_many_runs_and_what_they_show() {
     let text = said(&data(), &["--see", "eb=1.005", "--see", "es=1.003", "--sigma", "50mm"]);
     assert_data_eq!(&text, file!["golden/plan.txt"]);
-    assert!(text.lines().all(|line| line.chars().count() <= 84), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
 }
 
 #[test]

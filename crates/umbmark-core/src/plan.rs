@@ -161,18 +161,6 @@ impl Setting {
         Ok(setting)
     }
 
-    /// The robot of some measurements: E_d and E_b as fitted to its return poses, and the wheel noise that scatters as they do.
-    pub fn of_data(data: &Dataset) -> Result<(Path, Model, bool), PlanError> {
-        let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
-        let path = data.path.clone().ok_or(PlanError::NoPath)?;
-        let ends = Ends::new(data)?;
-        let fitted = Fitted::new(&ends, &base_model(robot)?)?;
-        let k = experiments::wheel_noise(&ends, &fitted).filter(|_| ends.enough()).ok_or(PlanError::TooFewRuns)?;
-        let mut truth = fitted.model.clone();
-        truth.set("wheel_noise", "k_sqrt_m", k)?;
-        Ok((path, truth, ends.with_heading))
-    }
-
     /// The same robot, its runs scattering so that σ (one coordinate, [`score`](crate::score)) is as given \[m\].
     pub fn with_sigma(mut self, sigma: f64) -> Setting {
         let factor = (sigma / self.sigma()).powi(2);
@@ -215,6 +203,31 @@ impl Setting {
     /// Time that one run takes, carrying the robot to START and writing down where it ended included \[min\].
     pub fn minutes_a_run(&self) -> f64 {
         experiments::MINUTES_A_RUN + experiments::minutes(&self.path, self.robot())
+    }
+}
+
+/// The robot of some measurements.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// Its path.
+    pub path: Path,
+    /// E_d and E_b as fitted to its return poses, and the wheel noise that scatters as they do.
+    pub truth: Model,
+    /// Whether return headings were measured.
+    pub with_heading: bool,
+}
+
+impl Measured {
+    /// From its runs: 3 or more a direction.
+    pub fn new(data: &Dataset) -> Result<Measured, PlanError> {
+        let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
+        let path = data.path.clone().ok_or(PlanError::NoPath)?;
+        let ends = Ends::new(data)?;
+        let fitted = Fitted::new(&ends, &base_model(robot)?)?;
+        let k = experiments::wheel_noise(&ends, &fitted).filter(|_| ends.enough()).ok_or(PlanError::TooFewRuns)?;
+        let mut truth = fitted.model;
+        truth.set("wheel_noise", "k_sqrt_m", k)?;
+        Ok(Measured { path, truth, with_heading: ends.with_heading })
     }
 }
 

@@ -80,8 +80,8 @@ pub fn f_upper_tail(f: f64, degrees_of_freedom: [f64; 2]) -> f64 {
 /// assert!((noncentral_f_upper_tail(5.317_655, [1.0, 8.0], 10.507) - 0.809_635_4).abs() < 1e-6);
 /// ```
 pub fn noncentral_f_upper_tail(f: f64, [a, b]: [f64; 2], noncentrality: f64) -> f64 {
-    let proper = [a, b, noncentrality].iter().all(|x| x.is_finite()) && a > 0.0 && b > 0.0;
-    if !proper || !(noncentrality >= 0.0 && f >= 0.0) {
+    let finite = [a, b, noncentrality].iter().all(|x| x.is_finite());
+    if !(finite && a > 0.0 && b > 0.0 && noncentrality >= 0.0 && f >= 0.0) {
         return f64::NAN;
     }
     if noncentrality == 0.0 {

@@ -10,10 +10,11 @@ use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{base_model, separating};
 use umbmark_core::effect::CATALOGUE;
 use umbmark_core::plan::{
-    Options, Order, Planned, Protocol, Setting, Shown, Sought, alternatives, drifts, expected_dataset, extended_test,
-    intervals, runs_needed,
+    Measured, Options, Order, Planned, Protocol, Setting, Shown, Sought, alternatives, drifts, expected_dataset,
+    extended_test, intervals, runs_needed,
 };
 use umbmark_core::score::score;
+use umbmark_core::stats::Interval;
 
 use crate::effect_flags::number;
 use crate::files::Pending;
@@ -23,7 +24,7 @@ use crate::session::Progress;
 use crate::setup::{Directions, Setup, SetupFlags};
 use crate::{Session, plan_report};
 
-/// Numbers of runs a direction that are looked at.
+/// Numbers of runs a direction that documents tell of.
 const RUNS: std::ops::RangeInclusive<usize> = 3..=30;
 
 /// The order in which runs are driven.
@@ -102,6 +103,13 @@ pub struct Arguments {
     setup: SetupFlags,
 }
 
+/// Numbers of runs to look at, the wish to stop, and how far it is.
+struct Looked<'a> {
+    numbers: &'a [usize],
+    stop: &'a AtomicBool,
+    progress: &'a mut Progress,
+}
+
 /// "NAME=VALUE".
 fn assignment(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("write SIZE=VALUE, as in eb=1.005")?;
@@ -133,8 +141,10 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         return answer(session, text, &document);
     }
     let stop = session.catch_interrupt()?;
-    let mut progress = session.progress(RUNS.count() as u64 + 1, "numbers of runs");
-    let report = session.on_threads(|| arguments.report(&setting, known, &sheet, &options, &stop, &mut progress))??;
+    let numbers: Vec<usize> = if session.json() { RUNS.collect() } else { plan_report::PRINTED.to_vec() };
+    let mut progress = session.progress(numbers.len() as u64 + 1, "numbers of runs");
+    let mut looked = Looked { numbers: &numbers, stop: &stop, progress: &mut progress };
+    let report = session.on_threads(|| arguments.report(&setting, known, &sheet, &options, &mut looked))??;
     drop(progress);
     if report.partial {
         session.message("partial", "stopped before all numbers of runs were looked at");
@@ -163,10 +173,10 @@ impl Arguments {
         let (setup, with_heading) = match data {
             None => (self.setup.resolve()?, true),
             Some(data) => {
-                let (path, model, with_heading) = Setting::of_data(data)?;
+                let Measured { path, truth, with_heading } = Measured::new(data)?;
                 let intervals = score(&data.runs, 0.95)?.intervals;
                 sigma_interval = intervals.map(|i| i.sigma_axis).filter(|_| self.sigma.is_none());
-                (self.setup.over(path, model)?, with_heading)
+                (self.setup.over(path, truth)?, with_heading)
             }
         };
         let Setup { path, mut model, draws, mut assumed } = setup;
@@ -217,8 +227,7 @@ impl Arguments {
         known: Known,
         sheet: &Protocol,
         options: &Options,
-        stop: &AtomicBool,
-        progress: &mut Progress,
+        looked: &mut Looked,
     ) -> anyhow::Result<Report> {
         let n = usize::from(self.runs);
         let planned = Planned::new(setting, n, options)?;
@@ -232,10 +241,12 @@ impl Arguments {
             .map(|(sought, (_, value))| self.seen(setting, &planned, sought, *value, known.sigma_interval, options))
             .collect::<anyhow::Result<_>>()?;
         let sizes = planned.sizes();
-        let rows = self.rows(setting, &sizes, options, stop, progress)?;
-        let partial = rows.len() < RUNS.count();
+        let rows = self.rows(setting, &sizes, options, looked)?;
+        let partial = rows.len() < looked.numbers.len();
         let mut watched: Vec<Sought> = sizes.iter().take(2).copied().collect();
-        let others = sought.iter().filter(|s| sizes.iter().take(2).all(|w| w.parameter.name != s.parameter.name));
+        let is_new = |s: &&Sought| watched.iter().all(|known| known.parameter.name != s.parameter.name);
+        let others = sought.iter().filter(|s| matches!(planned.shown(s), Shown::Fitted(_) | Shown::Asked));
+        let others: Vec<Sought> = others.filter(is_new).copied().collect();
         watched.extend(others);
         let bumps = Some(bumps(setting)).filter(|bumps| *bumps > 0.0).unwrap_or(10.0);
         let report = Report {
@@ -255,7 +266,7 @@ impl Arguments {
             rows,
             partial,
         };
-        progress.at(RUNS.count() as u64 + 1);
+        looked.progress.at(looked.numbers.len() as u64 + 1);
         Ok(report)
     }
 
@@ -266,17 +277,14 @@ impl Arguments {
         planned: &Planned,
         sought: &Sought,
         value: f64,
-        sigma: Option<umbmark_core::stats::Interval>,
+        sigma: Option<Interval>,
         options: &Options,
     ) -> anyhow::Result<Answer> {
         let needed = |setting: &Setting| runs_needed(setting, sought, self.power, options);
         let runs = needed(setting)?;
-        let at_sigma = match sigma {
-            Some(sigma) => Some([sigma.low, sigma.high].map(|sigma| needed(&setting.clone().with_sigma(sigma)))),
-            None => None,
-        };
-        let runs_at_sigma = match at_sigma {
-            Some([low, high]) => Some([low?, high?]),
+        let at = |sigma: f64| needed(&setting.clone().with_sigma(sigma));
+        let runs_at_sigma = match sigma {
+            Some(sigma) => Some([at(sigma.low)?, at(sigma.high)?]),
             None => None,
         };
         let shown = planned.shown(sought);
@@ -296,16 +304,15 @@ impl Arguments {
         setting: &Setting,
         sizes: &[Sought],
         options: &Options,
-        stop: &AtomicBool,
-        progress: &mut Progress,
+        looked: &mut Looked,
     ) -> anyhow::Result<Vec<Row>> {
         let mut rows = Vec::new();
-        for n in RUNS.take_while(|_| !stop.load(Ordering::Relaxed)) {
+        for n in looked.numbers.iter().copied().take_while(|_| !looked.stop.load(Ordering::Relaxed)) {
             let planned = Planned::new(setting, n, options)?;
-            let least: Vec<Option<f64>> = sizes.iter().map(|sought| planned.least(sought, self.power)).collect();
+            let least = planned.least_of(sizes, self.power);
             let expected = intervals(setting, &[n], 1.0 - self.size, 2 * self.draws, options.seed);
             rows.extend(expected.first().map(|interval| Row { interval: *interval, least }));
-            progress.at(rows.len() as u64);
+            looked.progress.at(rows.len() as u64);
         }
         Ok(rows)
     }

@@ -60,7 +60,7 @@ pub fn alternatives(
             minutes: 2.0 * n as f64 * other.minutes_a_run(),
             sigma: other.sigma(),
             half_width: expected.first().map(|e| e.half_width),
-            least: sought.iter().map(|sought| planned.least(sought, power)).collect(),
+            least: planned.least_of(sought, power),
         });
     }
     found.push(Alternative {

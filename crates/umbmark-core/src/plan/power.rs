@@ -20,6 +20,7 @@ use crate::score::FEWEST_RUNS;
 use crate::stats::{noncentral_f_upper_tail, student_t_quantile};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use std::cell::OnceCell;
 
 /// The most runs a direction that are planned.
 pub const MOST_RUNS: usize = 1000;
@@ -150,15 +151,27 @@ impl Planned {
 
     /// The least departure that is seen with this probability; `None` where none ever is.
     pub fn least(&self, sought: &Sought, power: f64) -> Option<f64> {
-        if let Some(estimate) = self.estimate(sought) {
-            return Some(self.of_estimate(estimate).needed(power)? * estimate.standard_error);
-        }
-        let unit = self.unit(sought)?;
-        let shift = self.asked.units[unit].shift.norm();
-        match self.exact(unit) {
-            Some(test) => Some(test.needed(power)? / shift),
-            None => rising(|root| self.simulated(unit, root / shift), power).map(|root| root / shift),
-        }
+        self.least_of(std::slice::from_ref(sought), power).pop().flatten()
+    }
+
+    /// The same of several sizes at once.
+    pub fn least_of(&self, sought: &[Sought], power: f64) -> Vec<Option<f64>> {
+        // All tests of a kind need the same non-centrality.
+        let (of_fit, exact) = (OnceCell::new(), OnceCell::new());
+        let least = |sought: &Sought| {
+            if let Some(estimate) = self.estimate(sought) {
+                let needed = of_fit.get_or_init(|| self.of_estimate(estimate).needed(power));
+                return Some((*needed)? * estimate.standard_error);
+            }
+            let unit = self.unit(sought)?;
+            let shift = self.asked.units[unit].shift.norm();
+            let root = match self.exact(unit) {
+                Some(test) => *exact.get_or_init(|| test.needed(power)),
+                None => rising(|root| self.simulated(unit, root / shift), power),
+            };
+            Some(root? / shift)
+        };
+        sought.iter().map(least).collect()
     }
 
     /// Every size that the test would show, at its usual value: E_d and E_b first.
@@ -232,7 +245,8 @@ struct AdjustedTest {
 impl AdjustedTest {
     /// The probability of an F beyond the critical one, for the non-centrality that the pattern would have without covariates.
     ///
-    /// With B = sin²φ, the density of φ is proportional to sin^(c - 1) φ cos^freedom φ for c covariates: Simpson's rule.
+    /// With B = sin²φ, the density of φ is proportional to sin^(c - 1) φ cos^freedom φ for c covariates: Simpson's rule, as
+    /// far as that is not negligible.
     fn power(&self, noncentrality: f64) -> f64 {
         const INTERVALS: usize = 32;
         let beyond = |noncentrality: f64| noncentral_f_upper_tail(self.critical, [1.0, self.freedom], noncentrality);
@@ -243,8 +257,9 @@ impl AdjustedTest {
             return beyond(noncentrality);
         }
         let (mut sum, mut weights) = (0.0, 0.0);
+        let last = std::f64::consts::FRAC_PI_2.min(8.0 / self.freedom.sqrt());
         for i in 0..INTERVALS {
-            let (sine, cosine) = libm::sincos(std::f64::consts::FRAC_PI_2 * i as f64 / INTERVALS as f64);
+            let (sine, cosine) = libm::sincos(last * i as f64 / INTERVALS as f64);
             let simpson = if i == 0 { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
             let weight = simpson * libm::pow(sine, (self.covariates - 1) as f64) * libm::pow(cosine, self.freedom);
             sum += weight * beyond(noncentrality * cosine * cosine);

@@ -195,6 +195,45 @@ fn a_sheet_lists_every_run_once_in_its_order_with_the_columns_of_returns() {
     assert!(sheet.steps[0].contains("free for 4.0 m ahead of START and 4.0 m to either side"), "{}", sheet.steps[0]);
 }
 
+/// Seed 33, 20 runs a direction: k is known to some 8 %.
+#[test]
+fn the_robot_of_some_runs_has_their_errors_and_their_scatter() {
+    let data = driven(&labmate(&[("wheelbase", "e_b", 1.01)]), &Path::umbmark(), 20, 33, 1).remove(0);
+    let measured = Measured::new(&data).unwrap();
+    let k = measured.truth.get("wheel_noise", "k_sqrt_m").unwrap();
+    assert!((k / 1e-3 - 1.0).abs() < 0.25, "{k}");
+    assert!((measured.truth.get("wheelbase", "e_b").unwrap() - 1.01).abs() < 1.5e-3);
+    let mut few = data.clone();
+    few.runs.retain(|run| run.number <= 2 || run.number > 38);
+    assert_eq!(Measured::new(&few).unwrap_err(), PlanError::TooFewRuns);
+    let pathless = Dataset { path: None, ..data };
+    assert_eq!(Measured::new(&pathless).unwrap_err(), PlanError::NoPath);
+}
+
+/// Headings of ten bumps of 0.573 degrees, and the interval that `score` would give.
+#[test]
+fn the_extended_test_reads_the_turn_of_its_bumps() {
+    let setting = setting(&Path::umbmark());
+    let test = extended_test(&setting, 5, 10.0, &Options::default()).unwrap();
+    assert!((test.orientation.to_degrees() - 5.73).abs() < 0.1, "{test:?}");
+    let more = extended_test(&setting, 20, 10.0, &Options::default()).unwrap();
+    assert!(more.half_width < 0.6 * test.half_width && test.half_width > 0.0);
+}
+
+#[test]
+fn a_larger_square_shows_e_d_better_and_e_b_worse_and_one_direction_neither() {
+    let setting = setting(&Path::umbmark());
+    let options = Options { draws: 199, ..Options::default() };
+    let sought = ["ed", "eb"].map(|flag| Sought::named(flag, 1.01, setting.robot()).unwrap());
+    let found = alternatives(&setting, 5, &sought, 0.9, &options).unwrap();
+    let least = |i: usize, which: usize| found[i].least[which].unwrap();
+    // Least E_d falls and least E_b rises as the root of the side.
+    for (which, expected) in [(0, 0.5f64.sqrt()), (1, 2f64.sqrt())] {
+        assert!((least(2, which) / least(0, which) / expected - 1.0).abs() < 0.08, "{found:?}");
+    }
+    assert_eq!((found[4].runs, &found[4].least), ([10, 0], &vec![None, None]));
+}
+
 #[test]
 fn what_cannot_be_planned_is_refused_with_the_reason() {
     let robot = Robot::labmate();
