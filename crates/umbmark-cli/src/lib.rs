@@ -13,6 +13,7 @@ mod output_arguments;
 mod plan_report;
 mod prose;
 mod protocol_sheet;
+mod residual_strips;
 mod robot_flags;
 mod session;
 mod setup;
@@ -20,6 +21,8 @@ mod signature;
 mod strip;
 mod table;
 mod terminal;
+mod test_arguments;
+mod tracks_report;
 mod verb;
 
 use std::ffi::OsString;

@@ -179,7 +179,7 @@ impl Arguments {
                 (self.setup.over(path, truth)?, with_heading)
             }
         };
-        let Setup { path, mut model, draws, mut assumed } = setup;
+        let Setup { path, mut model, draws, mut assumed, .. } = setup;
         anyhow::ensure!(draws.is_empty(), "one robot is planned for; leave --{}-sd out", draws[0].parameter().flag);
         if self.sigma.is_some() && model.get("wheel_noise", "k_sqrt_m").is_none_or(|k| k == 0.0) {
             model.set("wheel_noise", "k_sqrt_m", 1e-3)?;
