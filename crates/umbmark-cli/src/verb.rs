@@ -12,6 +12,7 @@ mod inspect;
 mod learn;
 mod mc;
 mod merge;
+mod plan;
 mod score;
 mod sensitivity;
 mod simulate;
@@ -38,6 +39,8 @@ pub enum Verb {
     Compare(compare::Arguments),
     /// Find which class of effects a model is missing, and what to measure next
     Diagnose(diagnose::Arguments),
+    /// Plan a test: how many runs, what they would show, and the sheet to drive by
+    Plan(Box<plan::Arguments>),
     /// Fit the free effects of a model
     Fit(fit::Arguments),
     /// Learn a model: fit, diagnose, add, until nothing is missing
@@ -68,6 +71,7 @@ impl Verb {
             Verb::Calibrate(arguments) => calibrate::run(arguments, session),
             Verb::Compare(arguments) => compare::run(arguments, session),
             Verb::Diagnose(arguments) => diagnose::run(arguments, session),
+            Verb::Plan(arguments) => plan::run(*arguments, session),
             Verb::Fit(arguments) => fit::run(arguments, session),
             Verb::Learn(arguments) => learn::run(arguments, session),
             Verb::Sensitivity(arguments) => sensitivity::run(*arguments, session),

@@ -60,6 +60,7 @@ pub use model_file::{parse_model, read_model};
 pub use model_text::model_text;
 pub use parameter_file::{Grade, ParameterFile, Varied, parse_parameters, read_parameters};
 pub use reference_track::ReferenceTrack;
+pub use returns::HEADER as RETURNS_COLUMNS;
 pub use robot_file::{parse_robot, read_robot};
 pub use robot_text::robot_text;
 pub use save::Existing;
