@@ -16,6 +16,7 @@ mod session;
 mod setup;
 mod signature;
 mod strip;
+mod study_arguments;
 mod table;
 mod terminal;
 mod verb;

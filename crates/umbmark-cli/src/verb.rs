@@ -12,6 +12,8 @@ mod inspect;
 mod learn;
 mod mc;
 mod merge;
+mod plot;
+mod report;
 mod score;
 mod simulate;
 
@@ -40,6 +42,10 @@ pub enum Verb {
     Fit(fit::Arguments),
     /// Learn a model: fit, diagnose, add, until nothing is missing
     Learn(learn::Arguments),
+    /// Put everything on one page: a report to send
+    Report(report::Arguments),
+    /// Draw one figure as SVG, PNG or PDF
+    Plot(plot::Arguments),
     /// Look at a dataset: what it holds, whether it is any good, what it can determine
     Inspect(inspect::Arguments),
     /// Write a dataset in another layout; sets clocks that disagree by the motion
@@ -64,6 +70,8 @@ impl Verb {
             Verb::Diagnose(arguments) => diagnose::run(arguments, session),
             Verb::Fit(arguments) => fit::run(arguments, session),
             Verb::Learn(arguments) => learn::run(arguments, session),
+            Verb::Report(arguments) => report::run(arguments, session),
+            Verb::Plot(arguments) => plot::run(arguments, session),
             Verb::Inspect(arguments) => inspect::run(arguments, session),
             Verb::Convert(arguments) => convert::run(arguments, session),
             Verb::Init(arguments) => init::run(arguments, session),
@@ -74,7 +82,7 @@ impl Verb {
 }
 
 /// A probability between 0 and 1, both excluded.
-fn size(text: &str) -> Result<f64, String> {
+pub(crate) fn size(text: &str) -> Result<f64, String> {
     let size = crate::effect_flags::number(text)?;
     if size > 0.0 && size < 1.0 { Ok(size) } else { Err("must be between 0 and 1, both excluded".to_owned()) }
 }
