@@ -37,9 +37,9 @@ pub const KINDS: [Kind; 9] = [
     Kind { name: "circle", about: "end points beside the circle through START", build: circle::figure },
     Kind { name: "tracks", about: "measured, computed and modelled path, the error magnified", build: tracks::figure },
     Kind { name: "learning", about: "the error falling as effects are added", build: learning::figure },
+    Kind { name: "confusability", about: "which effects look alike in these runs", build: confusability::figure },
     Kind { name: "parameters", about: "the model's numbers with their intervals", build: parameters::figure },
     Kind { name: "correlations", about: "how far the model's numbers are tied", build: correlations::figure },
-    Kind { name: "confusability", about: "which effects look alike in these runs", build: confusability::figure },
     Kind {
         name: "monte_carlo",
         about: "E_max,sys of simulated tests, the measured one among them",

@@ -18,7 +18,7 @@ use crate::study::Study;
 use crate::tone::Tone;
 
 pub use provenance::{Origin, Provenance};
-pub use verdict::{in_words, verdict};
+pub use verdict::verdict;
 
 const TEMPLATE: &str = include_str!("page/report.html");
 const TABLE: &str = include_str!("page/table.html");
@@ -91,7 +91,7 @@ pub fn page(studies: &[Study], provenance: &Provenance) -> Result<String, Error>
                 sections.push(list_section(studies, "unseen", "What these runs cannot show", unseen::unseen));
                 sections.push(list_section(studies, "next", "What to measure next", unseen::next));
             }
-            "monte_carlo" => {
+            "runs" => {
                 sections.push(list_section(studies, "quality", "Is the data any good?", quality::quality));
             }
             _ => {}

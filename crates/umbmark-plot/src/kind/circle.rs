@@ -106,7 +106,8 @@ fn told(circle: &[OnCircle], level: f64) -> Told {
     let one = |c: &OnCircle| {
         let half = 0.5 * MM * (c.off_interval.high - c.off_interval.low);
         let judged = if c.explained() { "on it" } else { "off it, or turned otherwise than their heading says" };
-        format!("{} runs end {:.0} ± {half:.0} mm outside the circle: {judged}", c.direction.name(), MM * c.mean_off)
+        let off = crate::scale::written(MM * c.mean_off, 0);
+        format!("{} runs end {off} ± {half:.0} mm outside the circle: {judged}", c.direction.name())
     };
     Told {
         shows:

@@ -9,7 +9,7 @@ use crate::tone::Tone;
 
 const MM: f64 = 1e3;
 /// About so many bars.
-const BARS: f64 = 20.0;
+const BARS: f64 = 16.0;
 
 pub(super) fn figure(study: &Study) -> Result<Figure, Absent> {
     let chance = study.chance()?;

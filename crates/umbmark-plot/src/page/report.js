@@ -53,6 +53,7 @@
     for (const axis of Object.keys(layout).filter((key) => /^[xy]axis/.test(key))) {
       layout[axis] = { ...layout[axis], gridcolor: grid, linecolor: soft };
     }
+    layout.modebar = { bgcolor: "rgba(0,0,0,0)", color: soft, activecolor: ink };
     layout.hoverlabel = { bgcolor: raised, bordercolor: soft, font: { color: ink, size } };
     return layout;
   };
@@ -60,7 +61,8 @@
   const config = {
     responsive: true,
     displaylogo: false,
-    modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],
+    // A closed list: some of the others send the data elsewhere.
+    modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]],
     toImageButtonOptions: { format: "svg" },
   };
 

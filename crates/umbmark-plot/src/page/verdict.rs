@@ -4,17 +4,6 @@ use umbmark_core::diagnose::{Diagnosis, Verdict};
 
 use crate::study::Study;
 
-/// A verdict in a few words.
-pub fn in_words(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Explained => "no sign of a further effect",
-        Verdict::MissingEffect => "one class of effects is missing",
-        Verdict::SeveralMissing => "more than one class of effects is missing",
-        Verdict::UnlistedEffect => "something is missing that no single effect of the catalogue explains",
-        Verdict::NotEnoughData => "not enough data to tell",
-    }
-}
-
 /// What a study comes to, in one sentence.
 pub fn verdict(study: &Study) -> String {
     let robot = study.data.robot.as_ref().map_or("The robot", |robot| robot.name.as_str());

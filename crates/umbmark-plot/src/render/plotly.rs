@@ -120,7 +120,7 @@ fn trace(layer: &Layer, number: &str) -> Value {
             let line = json!({ "width": 2, "color": colour });
             json!({ "mode": "markers", "marker": { "color": colour, "size": 13, "symbol": "cross-thin", "line": line } })
         }
-        Mark::Bars(width) => json!({ "type": "bar", "width": rounded(*width), "marker": { "color": colour } }),
+        Mark::Bars(width) => json!({ "type": "bar", "textposition": "none", "width": rounded(*width), "marker": { "color": colour } }),
         Mark::Spans(low, high) => spans(layer, low, high),
         Mark::Cells(values) => cells(layer, values),
         Mark::Words(words) => json!({ "mode": "text", "text": words.iter().map(|w| escaped(w)).collect::<Vec<_>>() }),
@@ -175,6 +175,7 @@ fn cells(layer: &Layer, values: &[f64]) -> Value {
     let shades: Vec<String> = values.iter().map(|value| shade(*value, false)).collect();
     json!({
         "type": "bar",
+        "textposition": "none",
         "y": vec![1; values.len()],
         "base": layer.y.iter().map(|y| y - 0.5).collect::<Vec<_>>(),
         "width": 1,
