@@ -51,6 +51,7 @@ pub use error::DatasetError;
 pub use inspect::{
     Check, Coverage, Determined, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, Wheels, WheelsFound,
 };
+pub(crate) use inspect::{Done, MoveDone, moves_of};
 pub use layout::{LAYOUTS, Layout};
 pub use mcap::{McapProblem, Topics};
 pub use model_file::{parse_model, read_model};

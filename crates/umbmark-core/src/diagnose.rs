@@ -347,7 +347,7 @@ pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diag
 
 impl Options {
     /// What is used of a dataset.
-    pub(crate) fn evidence(&self, data: &Dataset) -> Level {
+    pub fn evidence(&self, data: &Dataset) -> Level {
         if self.ends_only { Level::Ends } else { level(data) }
     }
 }

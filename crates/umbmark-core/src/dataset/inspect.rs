@@ -17,6 +17,7 @@ use crate::path::{Direction, Path};
 pub use determine::Determined;
 pub use log_facts::{Coverage, LogFacts, ReferenceFacts};
 pub use moves::MovesFound;
+pub(crate) use moves::{Done, MoveDone, moves_of};
 pub use wheels::{Wheels, WheelsFound};
 
 /// The findings on a dataset.
