@@ -6,6 +6,7 @@ mod correlations;
 mod learning;
 mod monte_carlo;
 mod parameters;
+mod residuals;
 mod return_errors;
 mod runs;
 mod tracks;
@@ -28,7 +29,7 @@ pub struct Kind {
 }
 
 /// All kinds, in the order of a report.
-pub const KINDS: [Kind; 9] = [
+pub const KINDS: [Kind; 15] = [
     Kind {
         name: "return_errors",
         about: "return errors, centres of gravity, E_max,sys: the paper's Fig. 5",
@@ -36,6 +37,20 @@ pub const KINDS: [Kind; 9] = [
     },
     Kind { name: "circle", about: "end points beside the circle through START", build: circle::figure },
     Kind { name: "tracks", about: "measured, computed and modelled path, the error magnified", build: tracks::figure },
+    Kind { name: "residuals_along", about: "errors of the model along each run", build: residuals::along },
+    Kind { name: "residuals_by_move", about: "errors that each leg and turn adds", build: residuals::by_move },
+    Kind { name: "residuals_by_speed", about: "errors against the speed", build: residuals::by_speed },
+    Kind { name: "residuals_by_turn_rate", about: "errors against the turn rate", build: residuals::by_turn_rate },
+    Kind {
+        name: "residuals_by_wheel_angle",
+        about: "errors against the wheels' angles",
+        build: residuals::by_wheel_angle,
+    },
+    Kind {
+        name: "residuals_by_heading",
+        about: "errors against the heading in the room",
+        build: residuals::by_heading,
+    },
     Kind { name: "learning", about: "the error falling as effects are added", build: learning::figure },
     Kind { name: "confusability", about: "which effects look alike in these runs", build: confusability::figure },
     Kind { name: "parameters", about: "the model's numbers with their intervals", build: parameters::figure },

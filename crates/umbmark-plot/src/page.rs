@@ -80,11 +80,12 @@ impl From<Table> for Rows {
     }
 }
 
-/// The page of one study, or of several side by side.
-pub fn page(studies: &[Study], provenance: &Provenance) -> Result<String, Error> {
+/// The page of one study, or of several side by side; `seen` hears how many of [`KINDS`] are built.
+pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usize)) -> Result<String, Error> {
     let mut figures = serde_json::Map::new();
     let mut sections: Vec<Section> = Vec::new();
-    for kind in &KINDS {
+    for (index, kind) in KINDS.iter().enumerate() {
+        seen(index);
         sections.push(figure_section(studies, kind, &mut figures));
         match kind.name {
             "confusability" => {

@@ -6,7 +6,8 @@ mod paths;
 use std::sync::OnceLock;
 
 use umbmark_core::calibrate::{self, Calibration, Estimate, Method, calibrate};
-use umbmark_core::compare::{Comparison, compare};
+use umbmark_core::compare::tracks::TrackComparison;
+use umbmark_core::compare::{Comparison, compare, compare_tracks};
 use umbmark_core::dataset::{Dataset, Inspection, ReturnError};
 use umbmark_core::diagnose::{self, Diagnosis, diagnose};
 use umbmark_core::effect::{Model, TestKind};
@@ -62,6 +63,7 @@ pub struct Study {
     learnt: OnceLock<Result<Learnt, Absent>>,
     diagnosis: OnceLock<Result<Diagnosis, Absent>>,
     comparison: OnceLock<Result<Comparison, Absent>>,
+    along: OnceLock<Result<TrackComparison, Absent>>,
     chance: OnceLock<Result<Chance, Absent>>,
     paths: OnceLock<Result<Paths, Absent>>,
 }
@@ -85,6 +87,7 @@ impl Study {
             learnt: OnceLock::new(),
             diagnosis: OnceLock::new(),
             comparison: OnceLock::new(),
+            along: OnceLock::new(),
             chance: OnceLock::new(),
             paths: OnceLock::new(),
         }
@@ -144,13 +147,28 @@ impl Study {
         self.given.as_ref().map_or("the learnt model", |(name, _)| name)
     }
 
-    /// The nominal robot and the model beside the runs.
+    /// The nominal robot and the model, named.
+    fn models(&self) -> Result<[(String, Model); 2], Absent> {
+        let nominal = Model::new(self.data.nominal_robot().map_err(Absent::because)?);
+        Ok([("nominal robot".to_owned(), nominal), (self.model_name().to_owned(), self.model()?.clone())])
+    }
+
+    /// The nominal robot and the model beside the return poses.
     pub fn comparison(&self) -> Result<&Comparison, Absent> {
-        once(&self.comparison, || {
-            let nominal = Model::new(self.data.nominal_robot().map_err(Absent::because)?);
-            let models = [("nominal robot".to_owned(), nominal), (self.model_name().to_owned(), self.model()?.clone())];
-            compare(&self.data, &models, &self.options.diagnose).map_err(Absent::because)
-        })
+        let work = || compare(&self.data, &self.models()?, &self.options.diagnose).map_err(Absent::because);
+        once(&self.comparison, work)
+    }
+
+    /// The nominal robot and the model beside the tracks.
+    pub fn along(&self) -> Result<&TrackComparison, Absent> {
+        let work = || {
+            let along = compare_tracks(&self.data, &self.models()?, &self.options.diagnose).map_err(Absent::because)?;
+            match along.poses {
+                0 => Err(Absent("The runs were not observed on the way, only at their ends.".into())),
+                _ => Ok(along),
+            }
+        };
+        once(&self.along, work)
     }
 
     /// Simulated tests of the model.

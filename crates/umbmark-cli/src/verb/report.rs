@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use anyhow::Context;
 use serde_json::json;
 use umbmark_core::dataset::Dataset;
+use umbmark_plot::kind::KINDS;
 use umbmark_plot::page::{Origin, Provenance, page, verdict};
 use umbmark_plot::study::Study;
 
@@ -56,7 +57,10 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let provenance = arguments.provenance(session)?;
     // Refused before the long work, not after it.
     let mut file = Pending::create(&arguments.output, arguments.force)?;
-    let text = session.on_threads(|| page(&studies, &provenance))?.context("the page cannot be put together")?;
+    let mut progress = session.progress(KINDS.len() as u64, "figures");
+    let made = session.on_threads(|| page(&studies, &provenance, |done| progress.at(done as u64)))?;
+    drop(progress);
+    let text = made.context("the page cannot be put together")?;
     file.write_all(text.as_bytes()).with_context(|| file.failed())?;
     file.finish()?;
     let output = arguments.output.display().to_string();

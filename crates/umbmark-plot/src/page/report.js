@@ -50,6 +50,10 @@
     const [ink, grid, soft, raised] = ["--ink", "--grid", "--soft", "--raised"].map((name) => style.getPropertyValue(name).trim());
     const size = Math.max(11, 0.78 * parseFloat(style.fontSize));
     const layout = { ...figure.layout, font: { ...figure.layout.font, color: ink, size } };
+    // Figures grow with their letters.
+    const grown = size / figure.layout.font.size;
+    layout.height *= grown;
+    layout.margin = Object.fromEntries(Object.entries(layout.margin).map(([side, room]) => [side, room * grown]));
     for (const axis of Object.keys(layout).filter((key) => /^[xy]axis/.test(key))) {
       layout[axis] = { ...layout[axis], gridcolor: grid, linecolor: soft };
     }
@@ -68,8 +72,10 @@
 
   const draw = (plot) => {
     const figure = figures[plot.id];
+    const layout = layoutOf(figure);
+    plot.style.height = `${layout.height}px`;
     const traces = figure.data.map((trace) => coloured(filtered(named(trace, figure.study), figure.study)));
-    return Plotly.react(plot, traces, layoutOf(figure), config).then(() => { plot.dataset.drawn = "1"; });
+    return Plotly.react(plot, traces, layout, config).then(() => { plot.dataset.drawn = "1"; });
   };
 
   const redraw = () => document.querySelectorAll(".plot[data-drawn]").forEach(draw);

@@ -1,6 +1,6 @@
 //! What the runs cannot show, and what would.
 
-use umbmark_core::diagnose::{Diagnosis, Why};
+use umbmark_core::diagnose::{Detectable, Diagnosis, Why};
 
 use super::{List, Rows};
 use crate::study::Study;
@@ -26,6 +26,19 @@ pub(super) fn unseen(study: &Study) -> Vec<List> {
         lists.push(List { title, table: Some(table), ..List::default() });
     }
     lists
+}
+
+/// Of each parameter, the least size: where the shape of an effect is not known, several are tried.
+fn smallest(sizes: &[Detectable]) -> Vec<&Detectable> {
+    let mut least: Vec<&Detectable> = Vec::new();
+    for size in sizes {
+        match least.iter_mut().find(|known| (known.effect, known.parameter) == (size.effect, size.parameter)) {
+            Some(known) if known.size <= size.size => {}
+            Some(known) => *known = size,
+            None => least.push(size),
+        }
+    }
+    least
 }
 
 fn hidden(diagnosis: &Diagnosis) -> Vec<String> {

@@ -55,6 +55,7 @@ fn height(panel: &Panel) -> f64 {
         (true, 0) => 400.0,
         (true, names) => (names as f64 * 20.0 + 60.0).clamp(220.0, 560.0),
         (false, 0) => 230.0,
+        (false, names) if names > 6 => names as f64 * 25.0,
         (false, names) => (names as f64 * 38.0).max(90.0),
     }
 }
@@ -120,7 +121,9 @@ fn trace(layer: &Layer, number: &str) -> Value {
             let line = json!({ "width": 2, "color": colour });
             json!({ "mode": "markers", "marker": { "color": colour, "size": 13, "symbol": "cross-thin", "line": line } })
         }
-        Mark::Bars(width) => json!({ "type": "bar", "textposition": "none", "width": rounded(*width), "marker": { "color": colour } }),
+        Mark::Bars(width) => {
+            json!({ "type": "bar", "textposition": "none", "width": rounded(*width), "marker": { "color": colour } })
+        }
         Mark::Spans(low, high) => spans(layer, low, high),
         Mark::Cells(values) => cells(layer, values),
         Mark::Words(words) => json!({ "mode": "text", "text": words.iter().map(|w| escaped(w)).collect::<Vec<_>>() }),
