@@ -15,14 +15,7 @@ pub(crate) fn watched_on(path: &Path, model: &Model, runs: u64, seed: u64) -> Da
     let robot = model.robot();
     let mut simulator = Simulator::new(robot, path, Odometry::EveryTick, Phase::Random).unwrap();
     let mut truth = Truth::new(model);
-    let mut data = Dataset {
-        robot: Some(robot.clone()),
-        path: Some(path.clone()),
-        runs: vec![],
-        clocks: vec![],
-        topics: vec![],
-        warnings: vec![],
-    };
+    let mut data = Dataset { robot: Some(robot.clone()), path: Some(path.clone()), runs: vec![], ..Dataset::default() };
     for (direction, number) in Direction::BOTH.into_iter().flat_map(|d| (0..runs).map(move |n| (d, n))) {
         simulator.open(&mut truth, seed, 2 * number + direction as u64);
         let recording = simulator.record(&mut truth, direction, TestKind::Systematic, [100.0, 20.0]).unwrap();
