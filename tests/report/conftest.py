@@ -57,7 +57,9 @@ def hostile(folder: Path) -> Path:
         run.rename(run.with_name(f"{run.stem} {HOSTILE}.csv"))
     robot = data / "robot.toml"
     named = [
-        line if not line.startswith("name") else 'name = "</script><script>window.broken=1</script>"'
+        line
+        if not line.startswith("name")
+        else 'name = "</script><script>window.broken=1</script>"'
         for line in robot.read_text().splitlines()
     ]
     robot.write_text("\n".join(named))

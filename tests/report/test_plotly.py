@@ -4,7 +4,7 @@ import json
 import re
 from pathlib import Path
 
-import plotly.graph_objects as go
+import plotly.graph_objects as go  # type: ignore[import-untyped]
 import pytest
 from conftest import COMMAND, DATA, umbmark
 

@@ -46,7 +46,9 @@ fn a_kind_that_there_is_not_is_answered_by_those_that_there_are() {
     let output = umbmark(folder.path(), &["plot", "pie", &data("slope"), "-o", "a.svg"]);
     assert_eq!(output.status.code(), Some(2));
     let error = said(&output).1;
-    for line in ["there is no such kind of figure", "  return_errors   return errors, centres", "  tracks          measured"] {
+    for line in
+        ["there is no such kind of figure", "  return_errors   return errors, centres", "  tracks          measured"]
+    {
         assert!(error.contains(line), "{error}");
     }
 }

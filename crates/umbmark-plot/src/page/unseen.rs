@@ -15,9 +15,8 @@ pub(super) fn unseen(study: &Study) -> Vec<List> {
     if sentences.is_empty() && diagnosis.minimum_detectable.is_empty() {
         return vec![nothing("No test could be made, so nothing can be said of what is not seen.")];
     }
-    let rows = diagnosis
-        .minimum_detectable
-        .iter()
+    let rows = smallest(&diagnosis.minimum_detectable)
+        .into_iter()
         .map(|d| vec![d.effect.to_owned(), d.parameter.to_owned(), format!("{:.2e}", d.size)]);
     let table = Rows { header: ["effect", "parameter", "least size"].map(str::to_owned).into(), rows: rows.collect() };
     let mut lists = vec![List { sentences, ..List::default() }];

@@ -183,8 +183,8 @@ mod tests {
     fn a_plan_has_marks_axes_and_a_legend() {
         let text = plan(&panel(), Look::default(), 21, 10);
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines[0], "      y [mm]");
-        assert!(lines[6].starts_with("    0 |") && lines[6].ends_with('S'), "{text}");
+        assert_eq!(lines[0], "    y [mm]");
+        assert!(lines[6].starts_with("  0 |") && lines[6].ends_with('S'), "{text}");
         assert!(lines[3].ends_with('x'), "{text}");
         assert_eq!(lines[lines.len() - 1].trim(), "S START  x cw runs");
         assert!(text.is_ascii());

@@ -101,7 +101,7 @@ fn driven(log: &TickLog, robot: &Robot, model: &Model, place: Place, most: usize
     watched.extend(between.map(|sample| (ReferencePose { sample, x: 0.0, y: 0.0, heading: None }, false)));
     watched.sort_by_key(|(pose, _)| pose.sample);
     let reference = watched.iter().map(|(pose, _)| *pose).collect();
-    let log = TickLog { time: log.time.clone(), left: log.left.clone(), right: log.right.clone(), reference };
+    let log = TickLog { reference, ..log.clone() };
     let track = Track::from_log_at(&log, robot, place).map_err(Absent::because)?;
     let computed = xy(&track.poses(&Model::new(robot).chain()));
     let modelled = xy(&track.poses(&model.chain()));
