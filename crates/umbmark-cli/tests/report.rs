@@ -33,7 +33,7 @@ fn a_figure_is_written_in_the_format_that_its_name_says_and_the_same_each_time()
         let arguments = ["plot", "return_errors", &slope, "-o", file, "--draws", "99", "--force"];
         let first = written(folder.path(), &arguments, file);
         assert!(first.starts_with(begin), "{file}");
-        assert_eq!(first, written(folder.path(), &arguments, file), "{file}");
+        assert!(first == written(folder.path(), &arguments, file), "{file}");
     }
     let again = umbmark(folder.path(), &["plot", "return_errors", &slope, "-o", "a.svg", "--draws", "99"]);
     assert_eq!(again.status.code(), Some(1));

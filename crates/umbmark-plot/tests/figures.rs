@@ -100,13 +100,13 @@ fn pictures_and_pages_for_paper_are_the_same_each_time() {
     let figure = (find("return_errors").unwrap().build)(&SLOPE).unwrap();
     let drawing = svg::svg(&figure, &svg::Style::default());
     let png = bitmap::png(&drawing, 192.0).unwrap();
-    assert_eq!(png, bitmap::png(&drawing, 192.0).unwrap());
+    assert!(png == bitmap::png(&drawing, 192.0).unwrap());
     assert_eq!(&png[1..4], b"PNG");
     // 88 mm at 192 dots per inch.
     let width = u32::from_be_bytes(png[16..20].try_into().unwrap());
     assert_eq!(width, (88.0 * 192.0 / 25.4f64).ceil() as u32);
     let pdf = bitmap::pdf(&drawing).unwrap();
-    assert_eq!(pdf, bitmap::pdf(&drawing).unwrap());
+    assert!((0..8).all(|_| pdf == bitmap::pdf(&drawing).unwrap()));
     assert!(pdf.starts_with(b"%PDF"));
 }
 

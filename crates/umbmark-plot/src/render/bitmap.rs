@@ -49,6 +49,37 @@ pub fn pdf(svg: &str) -> Result<Vec<u8>, DrawError> {
     let tree = tree(svg)?;
     // A point of a PDF is 1/72 inch, a pixel of the SVG 1/96.
     let page = svg2pdf::PageOptions { dpi: 96.0 };
-    svg2pdf::to_pdf(&tree, svg2pdf::ConversionOptions::default(), page)
-        .map_err(|error| DrawError::Pdf(error.to_string()))
+    let pdf = svg2pdf::to_pdf(&tree, svg2pdf::ConversionOptions::default(), page);
+    pdf.map(|pdf| in_order(&pdf)).map_err(|error| DrawError::Pdf(error.to_string()))
+}
+
+/// The same file with neighbouring entries of dictionaries in the order of their names.
+///
+/// svg2pdf writes references to resources in the order of a hash table, another one each time. Their order means nothing, and
+/// sorting keeps the length, so the table of objects stays right.
+fn in_order(pdf: &[u8]) -> Vec<u8> {
+    let mut lines: Vec<&[u8]> = pdf.split(|byte| *byte == b'\n').collect();
+    lines.chunk_by_mut(|a, b| is_reference(a) && is_reference(b)).for_each(|entries| entries.sort_unstable());
+    lines.join(&b'\n')
+}
+
+/// Whether a line is an entry such as `/F0 12 0 R`.
+fn is_reference(line: &[u8]) -> bool {
+    let Some(words) = std::str::from_utf8(line).ok().and_then(|line| line.trim_start().strip_prefix('/')) else {
+        return false;
+    };
+    let words: Vec<&str> = words.split(' ').collect();
+    matches!(words[..], [_, number, "0", "R"] if number.parse::<u32>().is_ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn references_are_sorted_where_they_stand_side_by_side_only() {
+        let pdf = b"<<\n  /gs1 8 0 R\n  /gs0 7 0 R\n>>\n/b 2 0 R\n/Type /Page\n/a 1 0 R\n\xff\n";
+        let sorted = b"<<\n  /gs0 7 0 R\n  /gs1 8 0 R\n>>\n/b 2 0 R\n/Type /Page\n/a 1 0 R\n\xff\n";
+        assert_eq!(in_order(pdf), sorted);
+    }
 }

@@ -9,7 +9,6 @@ use ttf_parser::Face;
 pub const FAMILY: &str = "Roboto, Arial, sans-serif";
 
 static REGULAR: &[u8] = include_bytes!("../../fonts/Roboto-Regular.ttf");
-static BOLD: &[u8] = include_bytes!("../../fonts/Roboto-Bold.ttf");
 
 static FACE: LazyLock<Option<Face<'static>>> = LazyLock::new(|| Face::parse(REGULAR, 0).ok());
 
@@ -23,11 +22,10 @@ pub fn width(text: &str, size: f64) -> f64 {
     text.chars().map(advance).sum::<f64>() * size / f64::from(face.units_per_em())
 }
 
-/// This font and no other.
+/// This font and no other; of two, PDFs would not be the same each time (svg2pdf).
 pub fn database() -> Arc<fontdb::Database> {
     let mut database = fontdb::Database::new();
     database.load_font_data(REGULAR.to_vec());
-    database.load_font_data(BOLD.to_vec());
     database.set_sans_serif_family("Roboto");
     Arc::new(database)
 }
