@@ -22,6 +22,7 @@ mod session;
 mod setup;
 mod signature;
 mod strip;
+mod study_arguments;
 mod study_flags;
 mod sweep;
 mod table;

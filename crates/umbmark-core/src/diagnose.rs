@@ -9,6 +9,7 @@ pub mod classes;
 pub(crate) mod ends;
 pub(crate) mod experiments;
 mod identifiability;
+mod likeness;
 pub(crate) mod tracks;
 
 use crate::calibrate::CalibrateError;
@@ -21,6 +22,7 @@ use crate::replay::ReplayError;
 pub use candidates::{Candidate, Size, candidates, columns};
 pub use ends::{Contrast, OnCircle};
 pub use identifiability::{Identifiability, Share, identifiability};
+pub use likeness::Likeness;
 
 /// What was observed of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -211,6 +213,8 @@ pub struct Diagnosis {
     pub model: Model,
     /// Those parameters.
     pub fitted: Vec<Estimate>,
+    /// Their correlations, a row each; empty where they are not known.
+    pub correlations: Vec<Vec<f64>>,
     /// Tests of the model as a whole.
     pub goodness_of_fit: Vec<GoodnessOfFit>,
     /// All classes that were asked: those that may be certified first, and of these the likeliest first.
@@ -219,6 +223,8 @@ pub struct Diagnosis {
     pub certified: usize,
     /// What this data cannot see.
     pub invisible: Vec<Unseen>,
+    /// How alike the effects that it can see look.
+    pub likeness: Likeness,
     /// What it would have seen.
     pub minimum_detectable: Vec<Detectable>,
     /// What to measure next, the most telling per minute first.

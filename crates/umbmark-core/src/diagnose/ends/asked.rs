@@ -4,7 +4,7 @@ use super::exact::{Pattern, wilks};
 use super::fitted::names;
 use super::moments::{Moments, Whitened};
 use super::{Ends, Fitted, mirrored};
-use crate::diagnose::{DiagnoseError, Size, Unseen, Why, candidates, classes};
+use crate::diagnose::{DiagnoseError, Likeness, Size, Unseen, Why, candidates, classes};
 use crate::drive::WheelTravel;
 use crate::effect::{CATALOGUE, Context, Entry, Model, Sight};
 use crate::fit::RANK_TOLERANCE;
@@ -186,6 +186,13 @@ impl Asked {
             along * along / column.norm_squared()
         };
         self.units.iter().map(drop).collect()
+    }
+
+    /// How alike the effects look, each size at its usual value.
+    pub fn likeness(&self) -> Likeness {
+        let names: Vec<&'static str> = self.units.iter().map(|unit| unit.effect.about.name).collect();
+        let shift = |i: usize| &self.units[i].shift * self.units[i].parameter.typical;
+        Likeness::new(&names, &DMatrix::from_fn(names.len(), names.len(), |i, j| shift(i).dot(&shift(j))))
     }
 
     /// Units that these means cannot tell apart, as indices.
