@@ -12,6 +12,7 @@ mod inspect;
 mod learn;
 mod mc;
 mod merge;
+mod paper;
 mod score;
 mod simulate;
 
@@ -28,6 +29,8 @@ pub enum Verb {
     Merge(merge::Arguments),
     /// Simulate one test and write it as a dataset
     Simulate(Box<simulate::Arguments>),
+    /// Repeat the paper's experiments, beside its numbers
+    Paper(paper::Arguments),
     /// Score a measured test: E_max,sys, centroids, sigma, extended test
     Score(score::Arguments),
     /// Calibrate a measured robot: E_d, E_b, E_s, and files to put them to use
@@ -58,6 +61,7 @@ impl Verb {
             Verb::Mc(arguments) => mc::run(*arguments, session),
             Verb::Merge(arguments) => merge::run(arguments, session),
             Verb::Simulate(arguments) => simulate::run(*arguments, session),
+            Verb::Paper(arguments) => paper::run(arguments, session),
             Verb::Score(arguments) => score::run(arguments, session),
             Verb::Calibrate(arguments) => calibrate::run(arguments, session),
             Verb::Compare(arguments) => compare::run(arguments, session),

@@ -258,6 +258,7 @@ impl Study {
             count(what, runs as u64, 0..MAX_RUNS + 1)?;
         }
         count("number of runs", (self.runs[0] + self.runs[1]) as u64, 1..2 * MAX_RUNS + 1)?;
+        self.model.check_drive()?;
         check_on_path(&self.model, &self.path)?;
         self.draws.iter().try_for_each(Draw::check)
     }

@@ -4,7 +4,7 @@ use super::Leg;
 use super::diffusion::Diffusion;
 use super::pieces::{Piece, Pieces};
 use super::way::Way;
-use crate::drive::{Wheel, WheelTravel};
+use crate::drive::{Drive, WheelTravel};
 use crate::effect::{Bump, Chain, Context, Law, Model, Sight, Stretch, WheelVariance};
 use crate::engine::Instructions;
 use crate::geometry::{Displacement2, Pose2, Real};
@@ -21,6 +21,7 @@ const WHEEL_NOISE: u64 = 2;
 /// it turns the robot by is in the heading that later stretches see.
 #[derive(Debug)]
 pub struct Truth {
+    drive: Drive,
     chain: Chain<f64>,
     random: Vec<RandomPart>,
     rotation_per_metre: f64,
@@ -60,6 +61,7 @@ impl Truth {
             })
             .collect();
         let mut truth = Truth {
+            drive: model.robot().drive,
             chain: model.chain(),
             random,
             rotation_per_metre: 0.0,
@@ -247,10 +249,7 @@ impl Truth {
     }
 
     fn meet(&mut self, bump: &Bump) {
-        let travel = match bump.wheel {
-            Wheel::Left => WheelTravel { left: -bump.lost, right: 0.0 },
-            Wheel::Right => WheelTravel { left: 0.0, right: -bump.lost },
-        };
+        let travel = self.drive.bumped(bump.wheel, bump.lost);
         let at = if self.varies { self.way.moment() } else { Context::default() };
         let motion = self.chain.body(&at, &travel);
         self.way.turn(motion.rotation);
