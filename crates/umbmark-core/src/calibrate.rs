@@ -46,6 +46,15 @@ pub enum CalibrateError {
         /// The kind of the drive.
         drive: &'static str,
     },
+    /// A drive whose returns no model of one axle predicts.
+    #[error(
+        "drive = \"{drive}\" is not supported here: its returns are corrected by its link as it drives, and are not predicted by a \
+         model of effects; `umbmark mc`, `score` and `paper` take it"
+    )]
+    NotPredicted {
+        /// The kind of the drive.
+        drive: &'static str,
+    },
     /// No run with an observation that can be predicted.
     #[error(
         "none of {runs} runs can be predicted: each needs a return error and a path in robot.toml, \

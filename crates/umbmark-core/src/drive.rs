@@ -5,12 +5,14 @@
 //! file says how its two counters become travel of the axle, and back; [`Encoder`] is what they count with.
 
 mod ackermann;
+mod clapper;
 mod differential;
 mod encoder;
 mod kind;
 mod synchro;
 
 pub use ackermann::AckermannDrive;
+pub use clapper::ClapperDrive;
 pub use differential::{DifferentialDrive, WheelTravel};
 pub use encoder::{Encoder, MAX_COUNTER_BITS, roll_over};
 pub use kind::{Kind, Kinds};
@@ -85,6 +87,8 @@ pub enum Drive {
     Synchro(SynchroDrive),
     /// A driven axle, and a steered wheel before it.
     Ackermann(AckermannDrive),
+    /// Two trucks and their link; its axle is that of a truck.
+    Clapper(ClapperDrive),
 }
 
 impl From<DifferentialDrive> for Drive {
@@ -101,6 +105,7 @@ impl Deref for Drive {
             Drive::Differential(axle) => axle,
             Drive::Synchro(synchro) => &synchro.axle,
             Drive::Ackermann(ackermann) => &ackermann.axle,
+            Drive::Clapper(clapper) => clapper.truck(),
         }
     }
 }
@@ -112,6 +117,7 @@ impl Drive {
             Kind::Differential => DifferentialDrive::new(values[0], values[1], values[2]).map(Drive::Differential),
             Kind::Synchro => SynchroDrive::from_values(values).map(Drive::Synchro),
             Kind::Ackermann => AckermannDrive::from_values(values).map(Drive::Ackermann),
+            Kind::Clapper => ClapperDrive::from_values(values).map(Drive::Clapper),
         }
     }
 
@@ -123,6 +129,7 @@ impl Drive {
             }
             Drive::Synchro(drive) => drive.values(),
             Drive::Ackermann(drive) => drive.values(),
+            Drive::Clapper(drive) => drive.values(),
         }
     }
 
@@ -138,6 +145,8 @@ impl Drive {
             }
             Drive::Synchro(drive) => drive.corrected(first).map(Drive::Synchro),
             Drive::Ackermann(drive) => drive.corrected(first).map(Drive::Ackermann),
+            // What its own trucks have is corrected by the link; nothing of it is known from returns.
+            Drive::Clapper(drive) => Ok(Drive::Clapper(*drive)),
         }
     }
 
@@ -147,6 +156,7 @@ impl Drive {
             Drive::Differential(_) => Kind::Differential,
             Drive::Synchro(_) => Kind::Synchro,
             Drive::Ackermann(_) => Kind::Ackermann,
+            Drive::Clapper(_) => Kind::Clapper,
         }
     }
 
@@ -214,8 +224,8 @@ impl Robot {
     /// constant ratio of the two; `None` for a turn that the drive cannot make.
     pub fn counting(&self, forward: f64, rotation: f64) -> Option<Counting> {
         match &self.drive {
-            Drive::Differential(axle) => {
-                let (per_tick, travel) = (self.metres_per_tick(), axle.wheel_travel(forward, rotation));
+            Drive::Differential(_) | Drive::Clapper(_) => {
+                let (per_tick, travel) = (self.metres_per_tick(), self.drive.wheel_travel(forward, rotation));
                 let left = WheelTravel { left: per_tick.left, right: 0.0 };
                 let right = WheelTravel { left: 0.0, right: per_tick.right };
                 let gain = [travel.left / per_tick.left, travel.right / per_tick.right];
@@ -229,11 +239,11 @@ impl Robot {
     /// Ticks of the axle's wheels since START, as logs hold them, for readings of the drive's own counters.
     pub fn axle_ticks(&self, counters: &[Vec<f64>; 2]) -> [Vec<f64>; 2] {
         let travel = |before, after| match &self.drive {
-            Drive::Differential(_) => WheelTravel::default(),
+            Drive::Differential(_) | Drive::Clapper(_) => WheelTravel::default(),
             Drive::Synchro(drive) => drive.travel(&self.encoder, before, after),
             Drive::Ackermann(drive) => drive.travel(&self.encoder, before, after),
         };
-        if self.drive.kind() == Kind::Differential {
+        if self.drive.kind().counters() == Kind::Differential.counters() {
             return counters.clone();
         }
         let per_tick = self.metres_per_tick();
@@ -252,7 +262,7 @@ impl Robot {
 
     /// Whole readings of the drive's own counters from which [`Robot::axle_ticks`] makes these ticks of the axle's wheels.
     pub fn counters(&self, ticks: [&[f64]; 2]) -> [Vec<f64>; 2] {
-        if self.drive.kind() == Kind::Differential || ticks[0].is_empty() {
+        if self.drive.kind().counters() == Kind::Differential.counters() || ticks[0].is_empty() {
             return ticks.map(<[f64]>::to_vec);
         }
         let per_tick = self.metres_per_tick();
@@ -266,7 +276,7 @@ impl Robot {
         let mut counters = [vec![now[0]], vec![now[1]]];
         for (i, travel) in travels.iter().enumerate() {
             now = match &self.drive {
-                Drive::Differential(_) => now,
+                Drive::Differential(_) | Drive::Clapper(_) => now,
                 Drive::Synchro(drive) => drive.reading(&self.encoder, now, travel),
                 // It steers while it stands, ahead of the next move.
                 Drive::Ackermann(_) if *travel == WheelTravel::default() => {

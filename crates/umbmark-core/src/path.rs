@@ -15,7 +15,7 @@ mod square;
 mod straight;
 mod waypoints;
 
-use crate::drive::{DifferentialDrive, WheelTravel};
+use crate::drive::{DifferentialDrive, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
 use crate::parameter::{Parameter, ParameterError};
 
@@ -212,6 +212,11 @@ impl Path {
             Direction::Ccw => self.moves.clone(),
             Direction::Cw => self.moves.iter().map(|m| m.mirrored()).collect(),
         }
+    }
+
+    /// Whether a robot can make all of its moves: one that cannot turn on the spot needs arcs.
+    pub fn suits(&self, robot: &Robot) -> bool {
+        self.moves.iter().map(Move::displacement).all(|d| robot.counting(d.forward, d.rotation).is_some())
     }
 
     /// Length travelled by the axle's centre \[m\].

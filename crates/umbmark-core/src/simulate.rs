@@ -3,6 +3,7 @@
 //! The robot drives by its own odometry, as in the paper: it stops when its counters say so. What it believes is then the
 //! path itself, up to quantisation, and what it does is what the effects of the model make of it.
 
+mod convoy;
 mod counters;
 mod course;
 mod diffusion;
@@ -27,6 +28,7 @@ pub use course::{Course, Leg};
 pub use record::Recording;
 pub use truth::Truth;
 
+use convoy::Convoy;
 use course::Rest;
 use sampling::SampledMoves;
 
@@ -57,6 +59,14 @@ pub enum SimulateError {
         drive: &'static str,
         /// The move, from 1.
         index: usize,
+    },
+    /// Something that is not simulated of a drive.
+    #[error("drive = \"{drive}\" does not support {what}")]
+    Unsupported {
+        /// Kind of the drive.
+        drive: &'static str,
+        /// What.
+        what: &'static str,
     },
     /// A robot or an update rule that the integrator refuses.
     #[error(transparent)]
@@ -138,6 +148,8 @@ pub struct Simulator {
     per_tick: PerTick,
     courses: [Course; 2],
     computer: Computer,
+    /// The plan of a drive of two trucks, which nothing of the rest applies to.
+    convoy: Option<Convoy>,
     phase: Phase,
     phases: Stream,
     segments: Vec<Segment>,
@@ -174,6 +186,7 @@ impl Simulator {
             per_tick: PerTick(per_tick),
             courses: [cw, ccw],
             computer,
+            convoy: Convoy::new(robot, path)?,
             phase,
             phases: Stream::new(0, 0, 0),
             segments: Vec::new(),
@@ -221,6 +234,13 @@ impl Simulator {
     ///
     /// The same as one run after the other, to the last bit; the odometry of all moves is computed at once.
     pub fn test(&mut self, truth: &mut Truth, test: TestKind, returned: [&mut [ReturnError]; 2]) {
+        if let Some(convoy) = &self.convoy {
+            for (direction, returned) in Direction::BOTH.into_iter().zip(returned) {
+                let legs = &self.courses[direction as usize].legs;
+                returned.iter_mut().for_each(|returned| *returned = convoy.run(truth, legs, direction, test));
+            }
+            return;
+        }
         let runs = returned.each_ref().map(|returned| returned.len());
         self.command(runs);
         self.compute(runs);

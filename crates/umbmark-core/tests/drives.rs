@@ -174,6 +174,52 @@ fn a_hidden_effect_of_an_ackermann_drive_is_learnt() {
 }
 
 #[test]
+fn a_path_with_turns_on_the_spot_suits_no_ackermann_drive() {
+    let ((k2a, square), (tricycle, rounded)) = (k2a(), tricycle());
+    assert!(square.suits(&k2a) && rounded.suits(&k2a) && rounded.suits(&tricycle) && !square.suits(&tricycle));
+    let refused = Simulator::new(&tricycle, &square, Odometry::EveryTick, Phase::Edge).unwrap_err().to_string();
+    assert!(refused.contains("cannot turn as tightly as in move 2"), "{refused}");
+}
+
+/// What no model predicts is refused with a reason, and never answered with a number of something else.
+#[test]
+fn a_clapper_is_simulated_and_scored_and_refused_by_what_predicts() {
+    let preset = Preset::find("clapper").unwrap();
+    let (robot, path, model) = (preset.robot(), preset.path(), preset.model().unwrap());
+    let mut simulator = Simulator::new(&robot, &path, Odometry::of(&robot), Phase::Random).unwrap();
+    let mut truth = Truth::new(&model);
+    simulator.open(&mut truth, 1, 0);
+    assert!(simulator.record(&mut truth, Direction::Cw, TestKind::Systematic, [50.0, 2.0]).is_err());
+    let mut runs = Vec::new();
+    for direction in Direction::BOTH {
+        for number in 1..=5 {
+            let returned = Some(simulator.run(&mut truth, direction, TestKind::Systematic));
+            let name = format!("{}_{number:02}", direction.name());
+            runs.push(Run {
+                name,
+                number,
+                direction: Some(direction),
+                test: TestKind::Systematic,
+                log: None,
+                returned,
+            });
+        }
+    }
+    let (clocks, topics, warnings) = Default::default();
+    let data = Dataset { robot: Some(robot.clone()), path: Some(path), runs, clocks, topics, warnings };
+    let folder = tempfile::tempdir().unwrap();
+    data.save(folder.path().join("data"), Existing::Keep).unwrap();
+    assert_eq!(Dataset::load(folder.path().join("data")).unwrap().robot, Some(robot));
+    assert!(umbmark_core::score::score(&data.runs, 0.95).is_ok());
+    for refused in [
+        learn(&data, &Options::default()).map(|_| ()).unwrap_err().to_string(),
+        calibrate_gears(&data).map(|_| ()).unwrap_err().to_string(),
+    ] {
+        assert!(refused.contains("drive = \"clapper\" is not supported here"), "{refused}");
+    }
+}
+
+#[test]
 fn return_poses_of_a_complete_synchro_model_are_explained() {
     let data = returns_of(recorded(&k2a(), &[("wheel_noise", "k_sqrt_m", 1e-3), ("steer_scale", "ratio", 1.005)], 17));
     let learnt = learn(&data, &Options::default()).unwrap();

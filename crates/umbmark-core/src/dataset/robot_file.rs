@@ -53,12 +53,13 @@ pub fn parse_robot(file: &str, text: &str) -> Result<(Robot, Option<Path>), Data
 fn read_robot_table(table: &Table) -> Result<Robot, DatasetError> {
     let kind = table.get("drive").map_or(Ok(Kind::Differential), |drive| read_kind(&drive))?;
     let mut keys = vec!["name", "drive"];
-    keys.extend([TICKS, RATE, BITS].map(|p| p.name));
     if kind == Kind::Differential {
         keys.extend(WHEELBASE_NAMES);
         keys.extend([DIAMETER, DIAMETER_LEFT, DIAMETER_RIGHT, RADIUS].map(|p| p.name));
+    } else {
+        keys.extend(kind.parameters().iter().map(|p| p.name));
     }
-    keys.extend(kind.parameters().iter().map(|p| p.name));
+    keys.extend([TICKS, RATE, BITS].map(|p| p.name));
     table.only(&keys)?;
     let name = table.get("name").map(|entry| entry.word("text")).transpose()?.unwrap_or("robot");
     let drive = match kind {
@@ -83,13 +84,9 @@ fn read_differential(table: &Table) -> Result<Result<Drive, DriveError>, Dataset
 fn read_kind(drive: &Entry) -> Result<Kind, DatasetError> {
     let names = Kind::ALL.map(Kind::name);
     let allowed = format!("one of {}", names.join(", "));
-    match drive.word(&allowed)? {
-        "clapper" => Err(drive.not_yet("the drives that are: differential, synchro, ackermann".into())),
-        word => {
-            let kind = Kind::ALL.into_iter().find(|kind| kind.name() == word);
-            kind.ok_or_else(|| drive.wrong(&allowed, &did_you_mean(word, names)))
-        }
-    }
+    let word = drive.word(&allowed)?;
+    let kind = Kind::ALL.into_iter().find(|kind| kind.name() == word);
+    kind.ok_or_else(|| drive.wrong(&allowed, &did_you_mean(word, names)))
 }
 
 /// The numbers of a drive; those that do nothing at 0 may be left out.

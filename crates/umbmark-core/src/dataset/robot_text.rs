@@ -37,7 +37,8 @@ pub fn robot_text(robot: &Robot, path: Option<&Path>) -> String {
 fn push_lengths(text: &mut String, robot: &Robot) {
     if robot.drive.kind() != Kind::Differential {
         for (parameter, value) in robot.drive.kind().parameters().iter().zip(robot.drive.values()) {
-            line(text, parameter.name, &number(value), parameter.meaning);
+            let word = parameter.choices.get(value as usize).map(|word| format!("\"{word}\""));
+            line(text, parameter.name, &word.unwrap_or_else(|| number(value)), parameter.meaning);
         }
         return;
     }

@@ -11,11 +11,13 @@ pub enum Kind {
     Synchro,
     /// A driven axle and a steered wheel, or two, before it: cars and tricycles.
     Ackermann,
+    /// Two differential trucks and a link that corrects their headings.
+    Clapper,
 }
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Kind; 3] = [Kind::Differential, Kind::Synchro, Kind::Ackermann];
+    pub const ALL: [Kind; 4] = [Kind::Differential, Kind::Synchro, Kind::Clapper, Kind::Ackermann];
 
     /// As in files.
     pub fn name(self) -> &'static str {
@@ -23,13 +25,14 @@ impl Kind {
             Kind::Differential => "differential",
             Kind::Synchro => "synchro",
             Kind::Ackermann => "ackermann",
+            Kind::Clapper => "clapper",
         }
     }
 
     /// What its two counters are called in files.
     pub fn counters(self) -> [&'static str; 2] {
         match self {
-            Kind::Differential => ["left", "right"],
+            Kind::Differential | Kind::Clapper => ["left", "right"],
             Kind::Synchro | Kind::Ackermann => ["drive", "steering"],
         }
     }
@@ -41,6 +44,7 @@ impl Kind {
             Kind::Differential => &super::differential::PARAMETERS,
             Kind::Synchro => &super::synchro::PARAMETERS,
             Kind::Ackermann => &super::ackermann::PARAMETERS,
+            Kind::Clapper => &super::clapper::PARAMETERS,
         }
     }
 
@@ -48,7 +52,7 @@ impl Kind {
     /// way. On a square driven both ways, the first shows as Type B of the paper's companion and the second as Type A.
     pub fn first_effects(self) -> [&'static str; 3] {
         match self {
-            Kind::Differential => ["wheel_diameter_ratio", "wheelbase", "scale"],
+            Kind::Differential | Kind::Clapper => ["wheel_diameter_ratio", "wheelbase", "scale"],
             Kind::Synchro => ["steer_coupling", "steer_scale", "drive_scale"],
             Kind::Ackermann => ["steering_zero", "steering_gain", "scale"],
         }
@@ -61,7 +65,10 @@ pub struct Kinds(u8);
 
 impl Kinds {
     /// Every drive.
-    pub const ALL: Kinds = Kinds(0b111);
+    pub const ALL: Kinds = Kinds(0b1111);
+
+    /// Those whose motion is that of one axle.
+    pub const OF_ONE_AXLE: Kinds = Kinds(0b0111);
 
     /// One kind.
     pub const fn of(kind: Kind) -> Kinds {

@@ -31,7 +31,7 @@ impl Effect for Crab {
         source: "geometry; first-order theory of side-periodic errors on closed paths; size assumed",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         turn_course(motion, p[0]);

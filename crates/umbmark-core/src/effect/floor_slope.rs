@@ -56,7 +56,7 @@ impl Effect for FloorSlope {
                  against the slip whatever its size, 1 mm per radian assumed",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

@@ -41,7 +41,7 @@ impl Effect for FloorSlopeYaw {
         source: "load transfer on a slope; 1 mrad per metre is assumed",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

@@ -52,7 +52,7 @@ impl Effect for PlacedBumps {
         source: "Borenstein & Feng (1995), section 3.3 and Table II",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro);
+    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro).and(Kind::Clapper);
 
     fn varies(p: &[f64]) -> bool {
         p[4] != 0.0

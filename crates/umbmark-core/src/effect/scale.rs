@@ -33,7 +33,7 @@ impl Effect for Scale {
         source: "Borenstein & Feng (1995), section 2",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Ackermann);
+    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Ackermann).and(Kind::Clapper);
 
     fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= p[0];

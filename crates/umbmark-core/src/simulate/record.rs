@@ -58,6 +58,12 @@ impl Simulator {
                 return Err(SimulateError::Rate { what, value });
             }
         }
+        if self.convoy.is_some() {
+            return Err(SimulateError::Unsupported {
+                drive: Kind::Clapper.name(),
+                what: "tick logs; `umbmark mc` simulates it",
+            });
+        }
         truth.start(direction);
         truth.rest(STANDING);
         let per_tick = self.robot().metres_per_tick();
