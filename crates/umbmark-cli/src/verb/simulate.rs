@@ -140,14 +140,7 @@ fn record(arguments: &Arguments, robot: &Robot, path: &Path, model: &Model, seed
             }
         }
     }
-    Ok(Dataset {
-        robot: Some(robot.clone()),
-        path: Some(path.clone()),
-        runs,
-        clocks: Vec::new(),
-        topics: Vec::new(),
-        warnings: Vec::new(),
-    })
+    Ok(Dataset { robot: Some(robot.clone()), path: Some(path.clone()), runs, ..Dataset::default() })
 }
 
 fn run_json(run: &Run) -> Value {
