@@ -97,7 +97,7 @@ pub static PRESETS: &[Preset] = &[
         ],
         assumed: &[
             WHEELS,
-            "link of 1 m, 8192 counts a revolution of its angles, read 25 times a second, ramps of 0.45 m/s²",
+            "link of 1 m, 8192 counts a revolution of its angles, its length exactly known, read 25 times a second, ramps of 0.45 m/s²",
             "in corners the trucks turn across the link and drive it round its middle; the paper's stops and maneuvers are not known",
             "no systematic error: the paper names some of the link and gives none",
         ],

@@ -511,6 +511,6 @@ mod tests {
         let mut robot = Robot::labmate();
         robot.encoder = crate::drive::Encoder::new(1e8, None, None).unwrap();
         let error = Simulator::new(&robot, &path, Odometry::EveryTick, Phase::Edge).unwrap_err().to_string();
-        assert!(error.starts_with("the left wheel makes 2.122e12 ticks in move 1 of the path"), "{error}");
+        assert!(error.starts_with("the left counter makes 2.122e12 ticks in move 1 of the path"), "{error}");
     }
 }

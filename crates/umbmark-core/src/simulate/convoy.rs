@@ -6,7 +6,8 @@
 //! odometries, is good for the next moment, and each truck's heading is that direction less the angle at which its rotary
 //! encoder sees the link. What is left of a heading error δ is the sideways step δ · (way of a period)/2, seen over the link.
 //!
-//! The link's length is measured too, and is not used: lengths say nothing of headings.
+//! The link's length, by its linear encoder, sets both odometries as far apart as the trucks are. Without it a believed length
+//! that is wrong by a share a (a bump makes it so) would turn the believed direction by a · φ in a corner of φ: 2πa a round.
 
 use super::{Leg, SimulateError, Truth, return_error};
 use crate::dataset::ReturnError;
@@ -87,9 +88,15 @@ impl Convoy {
         self.drive.truck().wheel_travel(forward, turn)
     }
 
-    /// Gives each truck the heading at which it would see the other where both odometries have it.
+    /// Sets the trucks as far apart as the link is long, half of the difference each, and gives each the heading at which it
+    /// would see the other there.
     fn correct(&self, believed: &mut [Pose2; 2], real: &[Pose2; 2]) {
         let (expected, there) = (direction_of(believed), direction_of(real));
+        let share = 0.5 * (1.0 - length_of(real) / length_of(believed));
+        let [front, rear] = *believed;
+        let (x, y) = (share * (front.x - rear.x), share * (front.y - rear.y));
+        believed[0] = Pose2 { x: front.x - x, y: front.y - y, ..front };
+        believed[1] = Pose2 { x: rear.x + x, y: rear.y + y, ..rear };
         for (truck, behind) in [(0, PI), (1, 0.0)] {
             let seen = self.drive.shown(wrap(there + behind - real[truck].heading));
             let heading = &mut believed[truck].heading;
@@ -101,6 +108,11 @@ impl Convoy {
 /// The direction of the front truck from the rear one.
 fn direction_of([front, rear]: &[Pose2; 2]) -> f64 {
     libm::atan2(front.y - rear.y, front.x - rear.x)
+}
+
+/// How far the trucks are apart \[m\].
+fn length_of([front, rear]: &[Pose2; 2]) -> f64 {
+    libm::hypot(front.x - rear.x, front.y - rear.y)
 }
 
 /// Both trucks at START, the front one at the origin.
@@ -211,8 +223,7 @@ mod tests {
             let [front, rear] = plan.last().unwrap().target;
             assert!(front.x.abs() < 1e-9 && front.y.abs() < 1e-9 && (rear.x + 1.0).abs() < 1e-9 && rear.y.abs() < 1e-9);
             for step in plan {
-                let [front, rear] = step.target;
-                assert!((libm::hypot(front.x - rear.x, front.y - rear.y) - 1.0).abs() < 1e-9, "{step:?}");
+                assert!((length_of(&step.target) - 1.0).abs() < 1e-9, "{step:?}");
             }
         }
     }
