@@ -139,6 +139,7 @@ impl SetupFlags {
             Origin::File => {}
         }
         self.effects.apply(&mut model, &mut draws)?;
+        model.check_drive()?;
         check_on_path(&model, &path)?;
         if model.get("wheel_noise", "k_sqrt_m").is_none() {
             assumed.push("no wheel noise (--wheel-noise 0.001 gives about the paper's scatter)".to_owned());

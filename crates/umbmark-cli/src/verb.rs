@@ -15,6 +15,7 @@ mod merge;
 mod plan;
 mod plot;
 mod report;
+mod paper;
 mod score;
 mod sensitivity;
 mod simulate;
@@ -33,6 +34,8 @@ pub enum Verb {
     Merge(merge::Arguments),
     /// Simulate one test and write it as a dataset
     Simulate(Box<simulate::Arguments>),
+    /// Repeat the paper's experiments, beside its numbers
+    Paper(paper::Arguments),
     /// Score a measured test: E_max,sys, centroids, sigma, extended test
     Score(score::Arguments),
     /// Calibrate a measured robot: E_d, E_b, E_s, and files to put them to use
@@ -73,6 +76,7 @@ impl Verb {
             Verb::Mc(arguments) => mc::run(*arguments, session),
             Verb::Merge(arguments) => merge::run(arguments, session),
             Verb::Simulate(arguments) => simulate::run(*arguments, session),
+            Verb::Paper(arguments) => paper::run(arguments, session),
             Verb::Score(arguments) => score::run(arguments, session),
             Verb::Calibrate(arguments) => calibrate::run(arguments, session),
             Verb::Compare(arguments) => compare::run(arguments, session),

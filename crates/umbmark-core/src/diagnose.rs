@@ -268,15 +268,15 @@ pub fn first_model(data: &Dataset) -> Result<Model, DiagnoseError> {
     let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
     let mut model = base_model(robot)?;
     if level(data) == Level::Tracks {
-        model.add("scale")?.free = true;
+        model.add(robot.drive.kind().first_effects()[2])?.free = true;
     }
     Ok(model)
 }
 
-/// The model of the paper: E_d and E_b, both free.
+/// The model of the paper: E_d and E_b, both free; for other drives, the two that do alike on a square.
 pub fn base_model(robot: &Robot) -> Result<Model, ModelError> {
     let mut model = Model::new(robot);
-    for effect in ["wheel_diameter_ratio", "wheelbase"] {
+    for effect in &robot.drive.kind().first_effects()[..2] {
         model.add(effect)?.free = true;
     }
     Ok(model)

@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 
 use crate::dataset::ReturnError;
-use crate::drive::Robot;
+use crate::drive::{Kind, Robot};
 use crate::effect::{Model, ModelError};
 use crate::engine::Instructions;
 use crate::parameter::ParameterError;
@@ -262,6 +262,11 @@ impl Study {
             count(what, runs as u64, 0..MAX_RUNS + 1)?;
         }
         count("number of runs", (self.runs[0] + self.runs[1]) as u64, 1..2 * MAX_RUNS + 1)?;
+        self.model.check_drive()?;
+        if self.robot().drive.kind() == Kind::Clapper && self.model.varies() {
+            let (drive, what) = (Kind::Clapper.name(), "effects that change along the way");
+            return Err(SimulateError::Unsupported { drive, what }.into());
+        }
         check_on_path(&self.model, &self.path)?;
         self.draws.iter().try_for_each(Draw::check)
     }

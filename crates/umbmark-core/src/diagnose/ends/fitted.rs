@@ -17,9 +17,6 @@ const INVOLVED: f64 = 0.01;
 /// When a fit has settled: predictions over thousands of small pieces are good to some 1e-13.
 const SETTLED: fit::Options = fit::Options { iterations: 100, step_tolerance: 1e-10, decrease_tolerance: 1e-12 };
 
-/// Parameters that are settled first: what others share with them counts as theirs.
-const FIRST: [&str; 2] = ["wheel_diameter_ratio", "wheelbase"];
-
 /// A model fitted to return poses.
 #[derive(Clone, Debug)]
 pub(crate) struct Fitted {
@@ -163,7 +160,9 @@ fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     let nominal = model.at_rest();
     let mut asked: Vec<usize> =
         flags.enumerate().filter(|(i, free)| *free && is_size(ends, &nominal, *i)).map(|(i, _)| i).collect();
-    asked.sort_by_key(|i| !FIRST.contains(&names[*i].0));
+    // What others share with these counts as theirs.
+    let first = &model.robot().drive.kind().first_effects()[..2];
+    asked.sort_by_key(|i| !first.contains(&names[*i].0));
     let start: Vec<f64> = nominal.values().collect();
     let column = |index: usize| {
         let problem = Returns { ends, model: &nominal, start: &start, free: &[index] };
@@ -185,7 +184,7 @@ fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
             continue;
         }
         kept.pop();
-        if FIRST.contains(&names[asked[k]].0) {
+        if first.contains(&names[asked[k]].0) {
             // Neither of two that act alike is known.
             let involved = |at: usize| null.iter().any(|direction| direction[at].abs() > INVOLVED);
             kept = kept.iter().enumerate().filter(|(at, _)| !involved(*at)).map(|(_, k)| *k).collect();

@@ -198,7 +198,7 @@ pub(super) fn designs(ends: &Ends) -> Vec<Design> {
 
 /// A path driven as it is, one way or both.
 fn plain(what: &str, path: Option<Path>, robot: &Robot, runs: usize, both: bool) -> Option<Design> {
-    let path = path?;
+    let path = path.filter(|path| path.suits(robot))?;
     let directions: &[Direction] = if both { &Direction::BOTH } else { &[Direction::Ccw] };
     let leg = |d: &Direction| Leg {
         track: Track::in_pieces(&path, *d, robot),
