@@ -18,6 +18,7 @@ mod signature;
 mod strip;
 mod table;
 mod terminal;
+mod unlisted;
 mod verb;
 
 use std::ffi::OsString;

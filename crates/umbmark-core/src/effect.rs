@@ -52,8 +52,9 @@ mod wheel_eccentricity_left;
 mod wheel_eccentricity_right;
 mod wheel_noise;
 mod wheelbase;
+mod words;
 
-use crate::drive::{Wheel, WheelTravel};
+use crate::drive::{Robot, Wheel, WheelTravel};
 use crate::geometry::{Displacement2, Dual, Pose2, Real};
 use crate::parameter::{Parameter, nearest};
 use crate::path::Direction;
@@ -239,6 +240,11 @@ pub trait Effect {
     /// What people should know of it.
     const ABOUT: About;
 
+    /// What these values mean for the robot: a sentence. Empty where there is nothing to say.
+    fn means(_p: &[f64], _robot: &Robot) -> String {
+        String::new()
+    }
+
     /// Whether with these values its change of motion depends on the [`Context`], so that driving has to be cut into small
     /// pieces for it.
     fn varies(_p: &[f64]) -> bool {
@@ -353,6 +359,8 @@ pub struct Scatter {
 pub struct Entry {
     /// What people should know of it.
     pub about: About,
+    /// See [`Effect::means`].
+    pub means: fn(&[f64], &Robot) -> String,
     /// See [`Effect::varies`].
     pub varies: fn(&[f64]) -> bool,
     pub(crate) values: Mean<f64>,
@@ -366,6 +374,7 @@ impl Entry {
         assert!(E::ABOUT.parameters.len() <= MAX_PARAMETERS);
         Entry {
             about: E::ABOUT,
+            means: E::means,
             varies: E::varies,
             values: Mean {
                 start: E::start::<f64>,

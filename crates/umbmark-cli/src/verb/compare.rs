@@ -63,7 +63,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
 fn models(arguments: &Arguments, data: &Dataset) -> anyhow::Result<Vec<(String, Model)>> {
     let robot = data.nominal_robot()?;
     if arguments.model.is_empty() {
-        let (fitted, _) = fit(data, &base_model(robot)?)?;
+        let fitted = fit(data, &base_model(robot)?)?.model;
         return Ok(vec![
             ("nominal robot".into(), Model::new(robot)),
             ("E_d and E_b, fitted to these runs".into(), fitted),

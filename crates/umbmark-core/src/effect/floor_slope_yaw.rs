@@ -1,6 +1,8 @@
 //! A sloping floor that turns the robot as it drives across.
 
+use super::words::deg;
 use super::{About, ActsOn, Context, Effect, at_work};
+use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -39,6 +41,14 @@ impl Effect for FloorSlopeYaw {
         separated_by: "starting the square turned by 90 or 180 degrees; a heading at each corner",
         source: "load transfer on a slope; 1 mrad per metre is assumed",
     };
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!(
+            "The floor turns the robot by up to {} on each metre: most to the left where it heads {} degrees from its heading at START.",
+            deg(libm::hypot(p[0], p[1])),
+            libm::round(libm::atan2(p[1], p[0]).to_degrees())
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

@@ -162,10 +162,31 @@ impl Noise {
     }
 }
 
+/// Rows that are taken at once: the sums are read and written once for all of them.
+const TOGETHER: usize = 8;
+
 /// XᵀX of a matrix stored row by row.
 pub(crate) fn gram(values: &[f64], columns: usize) -> DMatrix<f64> {
     let mut sum = DMatrix::zeros(columns, columns);
-    for row in values.chunks_exact(columns.max(1)) {
+    let columns = columns.max(1);
+    let whole = values.chunks_exact(TOGETHER * columns);
+    let rest = whole.remainder();
+    for rows in whole {
+        let rows: [&[f64]; TOGETHER] = std::array::from_fn(|k| &rows[k * columns..(k + 1) * columns]);
+        for (j, mut own) in sum.column_iter_mut().enumerate() {
+            let own = &mut own.as_mut_slice()[..=j];
+            let weights = rows.map(|row| row[j]);
+            let rows = rows.map(|row| &row[..=j]);
+            for i in 0..=j {
+                let mut added = 0.0;
+                for k in 0..TOGETHER {
+                    added += weights[k] * rows[k][i];
+                }
+                own[i] += added;
+            }
+        }
+    }
+    for row in rest.chunks_exact(columns) {
         for j in 0..columns {
             for i in 0..=j {
                 sum[(i, j)] += row[i] * row[j];

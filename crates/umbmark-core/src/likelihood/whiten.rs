@@ -67,6 +67,9 @@ impl Noise {
         let mut p = self.start(run.start_seen);
         for (index, block) in run.blocks.iter().enumerate() {
             p += self.growth(&block.growth);
+            if block.afresh {
+                p += self.start(true);
+            }
             let h = observation(block);
             for (column, (state, innovation)) in columns.iter().zip(states.iter().zip(&mut innovations)) {
                 *innovation = Vector3::from(column[index]) - h * state;
@@ -136,7 +139,15 @@ mod tests {
                     *sum = [g[0] * g[0], g[1] * g[0], g[1] * g[1], g[0], g[1], 1.0].map(|v| i as f64 * v);
                 }
                 let headings = if i == 2 { 0 } else { 2 };
-                Block { first: 2 * i, count: 2, headings, place: Pose2::new(*x, *y, 0.0), growth, unit: 0 }
+                Block {
+                    first: 2 * i,
+                    count: 2,
+                    headings,
+                    place: Pose2::new(*x, *y, 0.0),
+                    growth,
+                    unit: 0,
+                    afresh: false,
+                }
             })
             .collect();
         ObservedRun { name: "a few".into(), direction: None, track: track.into(), seen: [].into(), blocks, start_seen }

@@ -9,7 +9,7 @@ use crate::replay::Track;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, Vector3};
 
 /// Carrying the robot to START, lining it up and writing the end pose down \[min\].
-const MINUTES_A_RUN: f64 = 1.0;
+pub(in crate::diagnose) const MINUTES_A_RUN: f64 = 1.0;
 /// Taping a pose on the way \[min\].
 const MINUTES_A_STOP: f64 = 0.5;
 /// What a tape and a protractor scatter: 2 mm and 0.15 degrees.
@@ -220,7 +220,7 @@ fn again(path: &Path, robot: &Robot, how: &str, stops: bool, turned: f64) -> Opt
 }
 
 /// Time on the way \[min\].
-fn minutes(path: &Path, robot: &Robot) -> f64 {
+pub(in crate::diagnose) fn minutes(path: &Path, robot: &Robot) -> f64 {
     let moves = path.moves(Direction::Ccw);
     let seconds: f64 = moves
         .iter()
