@@ -13,6 +13,9 @@ mod noise;
 mod observed;
 mod outliers;
 mod simplex;
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+pub(crate) mod watched;
 mod whiten;
 
 pub(crate) use fitting::seeded;

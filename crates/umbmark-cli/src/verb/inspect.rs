@@ -71,9 +71,7 @@ fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
     for check in &inspection.checks {
         let mark = if check.ok { "ok" } else { "LOOK" };
         text += &hanging(&format!("  {mark:<6}{}", check.name), 32, &check.found);
-        if !check.ok {
-            text += &hanging("", 32, &format!("good: {}", check.good));
-        }
+        text += &hanging("", 32, &format!("good: {}", check.good));
     }
     text += "\nwhat can it determine?\n";
     text += &hanging("  rank", 32, &format!("{} of 3 combinations of E_d, E_b and E_s", inspection.rank));
@@ -238,6 +236,13 @@ fn log_json(log: &LogFacts) -> Value {
         "jitter": log.jitter,
         "longest_gap_s": log.longest_gap,
         "gaps": log.gaps,
+        "mended": {
+            "roll_overs": log.mended.roll_overs,
+            "resets": log.mended.resets,
+            "rows_out_of_order": log.mended.late,
+            "rows_repeated": log.mended.repeated,
+            "stale_poses": log.mended.stale,
+        },
         "length_m": log.length,
         "heading_rad": log.heading,
         "heading_off_rad": log.heading_off,

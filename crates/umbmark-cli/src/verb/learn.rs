@@ -18,6 +18,7 @@ use crate::model_report::{
 };
 use crate::prose::hanging;
 use crate::table::table;
+use crate::test_arguments::TestArguments;
 use crate::unlisted::{unlisted_json, unlisted_text};
 
 /// Arguments of `learn`.
@@ -34,17 +35,8 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 
-    /// Use return poses alone, even where the runs were observed on the way
-    #[arg(long)]
-    return_poses: bool,
-
-    /// Simulated tests for p-values that have no closed form
-    #[arg(long, default_value_t = 999, value_name = "N", value_parser = clap::value_parser!(u32).range(99..=99_999))]
-    draws: u32,
-
-    /// Probability with which an effect is added to a complete model
-    #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = super::size)]
-    size: f64,
+    #[command(flatten)]
+    test: TestArguments,
 
     /// Replace a file that exists
     #[arg(long)]
@@ -53,12 +45,7 @@ pub struct Arguments {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
-    let options = Options {
-        size: arguments.size,
-        draws: arguments.draws as usize,
-        seed: session.seed(),
-        ends_only: arguments.return_poses,
-    };
+    let options = arguments.test.options(session);
     let start = arguments.model.as_deref().map(|file| model_of(Some(file), &data)).transpose()?;
     let learnt = session.on_threads(|| match &start {
         Some(start) => learn_from(&data, start, &options),

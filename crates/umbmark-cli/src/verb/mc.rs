@@ -13,6 +13,7 @@ use umbmark_core::engine::Update;
 use umbmark_core::monte_carlo::{Distribution, Draw, Ensemble, Metric, Row, Shard, Statistics, Study};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{Direction, SQUARE};
+use umbmark_core::preset::Published;
 use umbmark_core::score::summarise;
 use umbmark_core::simulate::{Odometry, Phase};
 
@@ -113,8 +114,8 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    fn study(&self, seed: u64) -> anyhow::Result<(Study, Vec<String>)> {
-        let Setup { path, model, draws, assumed } = self.setup.resolve()?;
+    fn study(&self, seed: u64) -> anyhow::Result<(Study, Known)> {
+        let Setup { path, model, draws, sources, assumed, published } = self.setup.resolve()?;
         let robot = model.robot();
         let update = match self.update {
             UpdateKind::Arc => Update::Arc,
@@ -133,7 +134,7 @@ impl Arguments {
         };
         let runs = self.setup.direction.runs(self.runs);
         let study = Study { draws, odometry, path, phase, runs, ..Study::new(model, self.trials(), seed) };
-        Ok((study, assumed))
+        Ok((study, Known { sources, assumed, published }))
     }
 
     fn trials(&self) -> u64 {
@@ -185,8 +186,8 @@ fn length(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let (study, assumed) = arguments.study(session.seed())?;
-    let description = describe(&study, &assumed)?;
+    let (study, known) = arguments.study(session.seed())?;
+    let description = describe(&study, &known)?;
     let mut checkpoint = arguments.checkpoint(&study, &description)?;
     let metrics = study.metrics();
     let mut out =
@@ -278,8 +279,15 @@ fn distribution_json(draw: &Draw) -> Value {
     }
 }
 
+/// What is to be said of a study beside its numbers.
+struct Known {
+    sources: Vec<String>,
+    assumed: Vec<String>,
+    published: Option<Published>,
+}
+
 /// The study in words and numbers.
-fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
+fn describe(study: &Study, known: &Known) -> anyhow::Result<Description> {
     let theory = Theory::of(study)?;
     let path = &study.path;
     let sizes = || path.shape().parameters.iter().zip(path.values());
@@ -308,7 +316,8 @@ fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
         effects.push(Value::Object(entry));
         heading.push(format!("  {name}: {}", words.join(", ")));
     }
-    heading.extend(assumed.iter().map(|assumption| format!("  assumed: {assumption}")));
+    heading.extend(known.sources.iter().map(|source| format!("  from the paper: {source}")));
+    heading.extend(known.assumed.iter().map(|assumption| format!("  assumed: {assumption}")));
     let sizes: Map<String, Value> = sizes().map(|(p, v)| (p.name.to_owned(), json!(v))).collect();
     let document = json!({
         "noise_free": { "e_max_sys_m": theory.exact, "first_order_e_max_sys_m": theory.first_order },
@@ -316,11 +325,14 @@ fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
         "robot": study.robot().name,
         "path": { "shape": path.shape().name, "sizes": sizes },
         "effects": effects,
-        "assumed": assumed,
+        "sources": known.sources,
+        "assumed": known.assumed,
+        "published": known.published.map(|p| json!({ "row": p.row, "e_max_sys_m": p.e_max_sys, "sigma_m": p.sigma })),
         "version": umbmark_core::VERSION,
     });
     let document = document.as_object().cloned().unwrap_or_default();
-    Ok(Description { heading, theory: theory.text(study.runs), seed: study.seed, document })
+    let published = known.published.map(|p| (p.row.to_owned(), p.e_max_sys, p.sigma));
+    Ok(Description { heading, theory: theory.text(study.runs), seed: study.seed, document, published })
 }
 
 fn value_text(parameter: &Parameter, value: f64, draw: Option<&Draw>) -> String {

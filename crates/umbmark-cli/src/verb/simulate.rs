@@ -60,7 +60,7 @@ impl Arguments {
 const LOG_RATE: f64 = 100.0;
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let Setup { path, model, draws, assumed } = arguments.setup.resolve()?;
+    let Setup { path, model, draws, assumed, .. } = arguments.setup.resolve()?;
     let model = draw_parameters(&model, &draws, session.seed(), 0)?;
     let robot = with_rate(model.robot())?;
     let dataset = record(&arguments, &robot, &path, &model, session.seed())?;
@@ -140,14 +140,7 @@ fn record(arguments: &Arguments, robot: &Robot, path: &Path, model: &Model, seed
             }
         }
     }
-    Ok(Dataset {
-        robot: Some(robot.clone()),
-        path: Some(path.clone()),
-        runs,
-        clocks: Vec::new(),
-        topics: Vec::new(),
-        warnings: Vec::new(),
-    })
+    Ok(Dataset { robot: Some(robot.clone()), path: Some(path.clone()), runs, ..Dataset::default() })
 }
 
 fn run_json(run: &Run) -> Value {
