@@ -42,6 +42,8 @@ const EXPLAINED: f64 = 0.85;
 const TELLING: f64 = 0.1;
 /// So many certified effects are tried for their gain.
 const TRIES: usize = 4;
+/// p by F below which a suspect is spoken of though no flips certify it.
+const LOUD: f64 = 1e-20;
 /// A diagnosis names at most so many classes.
 const MOST: usize = 3;
 /// Fewer runs give no certificate.
@@ -196,6 +198,7 @@ pub(crate) fn diagnose(fitted: Fitted, options: &Options) -> Result<Diagnosis, D
         hints.extend(hint);
         certified.push(suspect.clone());
     }
+    hints.extend(uncertified(&left.asked, options));
     let asked = left.asked.into_iter().filter(|other| certified.iter().all(|known| known.best != other.best));
     let ranking = certified.iter().cloned().chain(asked.collect::<Vec<_>>()).collect();
     let mut diagnosis = conclude(exams.swap_remove(0), told, options)?;
@@ -225,6 +228,18 @@ pub(crate) fn next_experiments(
         }
     }
     Ok((told, hints))
+}
+
+/// What stands far out by F and is not certified by the flips: these runs are too few, or too unlike, to vouch for it.
+pub(crate) fn uncertified(asked: &[Suspect], options: &Options) -> Option<String> {
+    let loud = asked.first().filter(|s| s.p < LOUD && s.p_adjusted > options.size)?;
+    Some(format!(
+        "{} stands out by F (p = {:.0e}), but with the signs of whole runs flipped as much comes about by chance (p = {:.2}): \
+         more runs would tell.",
+        loud.class.join(" or "),
+        loud.p,
+        loud.p_adjusted
+    ))
 }
 
 /// The answer to a search in one word.

@@ -53,6 +53,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     }
     let Some(last) = search.exams.pop() else { return Err(DiagnoseError::NotConverged { how: "has no model" }) };
     let diagnosis = tracks::conclude(last, told, options)?;
+    hints.extend(tracks::uncertified(&search.left.asked, options));
     let mut remarks = [diagnosis.remarks.clone(), hints].concat();
     let ranking = search.left.asked;
     if let Some(suspect) = ranking.first().filter(|s| s.p_adjusted <= options.size) {

@@ -51,6 +51,9 @@ impl Default for Noise {
 
 /// No size falls below this share of its usual value, or rises above its inverse.
 const RANGE: f64 = 1e-2;
+/// Edge of the first simplex, in logarithms of sizes: from usual sizes, and from sizes that were estimated before.
+const FIRST_EDGE: f64 = 0.7;
+const LATER_EDGE: f64 = 0.2;
 /// Evaluations of the likelihood.
 const EVALUATIONS: usize = 110;
 
@@ -99,7 +102,8 @@ impl Noise {
             let pull: f64 = x.iter().map(|v| 0.02 * v * v).sum();
             sizes(x).deviance(&observed.runs, columns) + pull
         };
-        sizes(&simplex::minimise(first, 0.7, EVALUATIONS, cost))
+        let edge = if *from == usual { FIRST_EDGE } else { LATER_EDGE };
+        sizes(&simplex::minimise(first, edge, EVALUATIONS, cost))
     }
 
     /// -2 log of the restricted likelihood, up to a constant. The last column of each run is its residuals.

@@ -104,3 +104,85 @@ fn ways(run: &ObservedRun, wheelbase: f64) -> Vec<f64> {
     };
     run.blocks.iter().scan(0.0, along).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::Dataset;
+    use crate::diagnose::first_model;
+    use crate::drive::Robot;
+    use crate::effect::Model;
+    use crate::geometry::wrap;
+    use crate::likelihood::watched::watched;
+    use crate::likelihood::{Noise, Observed};
+
+    /// 3 + 3 squares of a robot with usual errors.
+    fn data(effects: &[(&str, &str, f64)]) -> Dataset {
+        let mut model = Model::new(&Robot::labmate());
+        let usual = [
+            ("wheelbase", "e_b", 0.993),
+            ("wheel_noise", "k_sqrt_m", 4e-4),
+            ("reference_noise", "position_sd_m", 8e-4),
+            ("reference_noise", "heading_sd_rad", 8e-4),
+        ];
+        for (effect, parameter, value) in usual.iter().chain(effects) {
+            model.set(effect, parameter, *value).unwrap();
+        }
+        watched(&model, 3, 5)
+    }
+
+    fn fitted(data: &Dataset) -> Fitted {
+        let observed = Observed::new(data, &Robot::labmate()).unwrap();
+        observed.fit(&first_model(data).unwrap(), &Noise::default(), &[]).unwrap()
+    }
+
+    /// The run turned by 3 degrees where it is after `at` of its poses: somebody kicked the robot.
+    fn kicked(mut data: Dataset, run: usize, at: usize) -> Dataset {
+        let poses = &mut data.runs[run].log.as_mut().unwrap().reference;
+        let (sine, cosine) = libm::sincos(0.052);
+        let pivot = poses[at];
+        for pose in &mut poses[at..] {
+            let (dx, dy) = (pose.x - pivot.x, pose.y - pivot.y);
+            (pose.x, pose.y) = (pivot.x + cosine * dx - sine * dy, pivot.y + sine * dx + cosine * dy);
+            pose.heading = pose.heading.map(|heading| wrap(heading + 0.052));
+        }
+        data
+    }
+
+    #[test]
+    fn a_kicked_robot_is_named_with_run_and_time_and_changes_no_estimate_by_much() {
+        let (plain, hurt) = (data(&[]), kicked(data(&[]), 1, 250));
+        let (before, after) = (fitted(&plain), fitted(&hurt));
+        assert_eq!(before.outliers, []);
+        assert!((1..=2).contains(&after.outliers.len()), "{:?}", after.outliers);
+        let log = hurt.runs[1].log.as_ref().unwrap();
+        let time = log.time[log.reference[250].sample] - log.time[0];
+        for outlier in &after.outliers {
+            assert_eq!(outlier.run, hurt.runs[1].name);
+            assert!((outlier.time - time).abs() < 0.3 && outlier.deviations > BEYOND, "{outlier:?} {time}");
+        }
+        let turned: f64 = after.outliers.iter().filter_map(|o| o.turned).sum();
+        assert!((turned - 0.052).abs() < 0.01, "{turned}");
+        let covariance = before.covariance.as_ref().unwrap();
+        for (k, (a, b)) in before.model.values().zip(after.model.values()).enumerate() {
+            assert!((a - b).abs() < covariance[(k, k)].sqrt(), "{k}: {a} {b}");
+        }
+    }
+
+    #[test]
+    fn a_glitch_of_the_reference_is_left_out() {
+        let mut data = data(&[]);
+        for pose in &mut data.runs[4].log.as_mut().unwrap().reference[300..302] {
+            pose.x += 0.05;
+        }
+        let outliers = fitted(&data).outliers;
+        assert!(!outliers.is_empty() && outliers.len() <= 3, "{outliers:?}");
+        assert!(outliers.iter().all(|o| o.run == data.runs[4].name), "{outliers:?}");
+        assert!(outliers.iter().any(|o| o.moved > 0.015), "{outliers:?}");
+    }
+
+    #[test]
+    fn what_happens_in_every_run_is_no_accident() {
+        assert_eq!(fitted(&data(&[("caster_kick", "kick_rad", 0.05)])).outliers, []);
+    }
+}

@@ -17,7 +17,7 @@ pub struct Finding {
     pub answer: Answer,
     /// Family-wise p by F and Bonferroni, among effects (or among smooths).
     pub p_f: f64,
-    /// Family-wise p by sign flips.
+    /// Family-wise p by sign flips; 1 where F does not accuse, which no flips can change.
     pub p_flips: f64,
     /// Degrees of freedom of F.
     pub degrees_of_freedom: [f64; 2],
@@ -68,8 +68,10 @@ pub fn look(exam: &Examination, smooths: bool, options: &Options) -> Vec<Finding
     }
     let asked = findings.len() as f64;
     findings.iter_mut().for_each(|finding| finding.p_f = (asked * finding.p).min(1.0));
-    let flipped = findings.iter().map(|finding| by_flips(exam, finding, &findings, options)).collect::<Vec<_>>();
-    findings.iter_mut().zip(flipped).for_each(|(finding, p)| finding.p_flips = p);
+    let scores: Vec<Scores> = findings.iter().map(|finding| scores(exam, finding)).collect();
+    for (finding, own) in findings.iter_mut().zip(&scores).filter(|(finding, _)| finding.p_f <= options.size) {
+        finding.p_flips = family_wise(own, &scores, options.seed);
+    }
     findings.sort_by(|a, b| worth(&b.answer).total_cmp(&worth(&a.answer)));
     let mut named = Vec::new();
     findings.retain(|finding| {
@@ -91,24 +93,13 @@ pub fn possible(exam: &Examination, finding: &Finding) -> bool {
     })
 }
 
-/// The family-wise p of a finding by sign flips; 1 where F does not accuse it, which no flips can change.
-fn by_flips(exam: &Examination, finding: &Finding, all: &[Finding], options: &Options) -> f64 {
-    if finding.p_f > options.size {
-        return 1.0;
-    }
-    let base = [finding.base(), &finding.answer.columns].concat();
-    let fitted = Projected::new(&exam.system.whole, &base);
-    let groups: Vec<Scores> = all.iter().map(|other| scores(exam, other, &fitted)).collect();
-    family_wise(&scores(exam, finding, &finding.projected), &groups, options.seed)
-}
-
-/// Scores of a group by run, or by quarter of a run where runs are few, of what is left after `fitted`.
-fn scores(exam: &Examination, finding: &Finding, fitted: &Projected) -> Scores {
+/// Scores of a group by run, or by quarter of a run where runs are few.
+fn scores(exam: &Examination, finding: &Finding) -> Scores {
     let by_quarter = exam.fitted.observed.runs.len() < ENOUGH_RUNS;
     let columns = &finding.answer.columns;
     let (mut units, mut parts, mut before) = (Vec::new(), Vec::new(), None);
     for unit in &exam.system.units {
-        let (score, held) = finding.projected.score(&unit.white, columns, fitted);
+        let (score, held) = finding.projected.score(&unit.white, columns);
         match (units.last_mut(), parts.last_mut()) {
             (Some(last), Some(part)) if !by_quarter && before == Some(unit.run) => {
                 *last += score;

@@ -144,17 +144,16 @@ impl Projected {
         }
     }
 
-    /// What a unit says for and against a group, after `fitted` was fitted, and how much of the columns fitted there, made
-    /// orthonormal, the group's hold in it.
-    pub fn score(&self, unit: &DMatrix<f64>, group: &[usize], fitted: &Projected) -> (DVector<f64>, DMatrix<f64>) {
+    /// What a unit says for and against a group, and how much of the base's columns, made orthonormal, the group's hold in it.
+    pub fn score(&self, unit: &DMatrix<f64>, group: &[usize]) -> (DVector<f64>, DMatrix<f64>) {
         let residual = self.products.ncols() - 1;
         let between =
             |from: &[usize], to: &[usize]| DMatrix::from_fn(from.len(), to.len(), |i, j| unit[(from[i], to[j])]);
         let taken = DMatrix::from_fn(self.base.len(), group.len(), |i, k| self.coefficients[(i, group[k])]);
-        let held = between(&fitted.base, group) - between(&fitted.base, &self.base) * &taken;
+        let held = between(&self.base, group) - between(&self.base, &self.base) * &taken;
         let observed = between(group, &[residual]) - taken.tr_mul(&between(&self.base, &[residual]));
-        let scores = observed.column(0) - held.tr_mul(&fitted.coefficients.column(residual));
-        let half = fitted.solver.as_ref().map_or_else(|| DMatrix::zeros(0, group.len()), |solver| solver.half(&held));
+        let scores = observed.column(0) - held.tr_mul(&self.coefficients.column(residual));
+        let half = self.solver.as_ref().map_or_else(|| DMatrix::zeros(0, group.len()), |solver| solver.half(&held));
         (scores, half)
     }
 
