@@ -8,11 +8,11 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use umbmark_core::calibrate::Correction;
 use umbmark_core::dataset::Dataset;
-use umbmark_core::diagnose::{Options, base_model, first_model};
+use umbmark_core::diagnose::{Options, first_model};
 use umbmark_core::drive::{DifferentialDrive, Robot};
 use umbmark_core::effect::Model;
 use umbmark_core::geometry::wrap;
-use umbmark_core::learn::{fit, fit_to_returns, learn};
+use umbmark_core::learn::{fit, learn};
 use umbmark_core::replay::Track;
 
 /// Squares to learn from, and the sets of other paths that were driven within the same days.
@@ -107,16 +107,13 @@ impl Ends {
 /// A name, and the model that it makes of squares: of the folder, a set's name, and its data.
 type Way = (&'static str, fn(&Path, &str, &Dataset) -> Model);
 
-const WAYS: [Way; 7] = [
+const WAYS: [Way; 6] = [
     ("nominal", |_, _, data| Model::new(data.robot.as_ref().unwrap())),
     ("authors: UMBmark", |folder, set, data| published(folder, "UMBmark", set, data.robot.as_ref().unwrap())),
     ("authors: Jung & Chung", |folder, set, data| {
         published(folder, "Jung-and-Chung", set, data.robot.as_ref().unwrap())
     }),
     ("authors: OptiOdom", |folder, set, data| published(folder, "Sousa", set, data.robot.as_ref().unwrap())),
-    ("E_d, E_b from end poses", |_, _, data| {
-        fit_to_returns(data, &base_model(data.robot.as_ref().unwrap()).unwrap()).unwrap().0
-    }),
     ("E_d, E_b, E_s from tracks", |_, _, data| fit(data, &first_model(data).unwrap()).unwrap().0),
     ("learn", |_, _, data| learn(data, &Options::default()).unwrap().model),
 ];
