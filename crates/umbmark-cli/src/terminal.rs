@@ -1,7 +1,7 @@
 //! Small pictures made of characters.
 
 /// A horizontal bar of `width` characters' full length: in eighths of a character, or of `#`.
-fn bar(share: f64, width: usize, unicode: bool) -> String {
+pub fn bar(share: f64, width: usize, unicode: bool) -> String {
     const EIGHTHS: [char; 8] = [' ', '▏', '▎', '▍', '▌', '▋', '▊', '▉'];
     if !unicode {
         return "#".repeat((share * width as f64).round() as usize);

@@ -7,7 +7,7 @@
 mod candidates;
 pub mod classes;
 pub(crate) mod ends;
-mod experiments;
+pub(crate) mod experiments;
 mod identifiability;
 mod likeness;
 pub(crate) mod tracks;
@@ -350,6 +350,14 @@ impl Options {
     pub fn evidence(&self, data: &Dataset) -> Level {
         if self.ends_only { Level::Ends } else { level(data) }
     }
+}
+
+/// Every experiment on offer for telling two effects apart, together with this data; the most telling per minute first.
+///
+/// What the model has is fitted to the return poses; each effect is taken at its usual size, the hardest of its sizes. None
+/// where the runs have no scatter to judge by.
+pub fn separating(data: &Dataset, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
+    experiments::separating(&ends::Ends::new(data)?, model, pair)
 }
 
 /// The tracks of a dataset.

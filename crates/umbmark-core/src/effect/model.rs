@@ -249,6 +249,14 @@ impl Model {
         self.parts.iter().flat_map(|part| part.values.iter().copied())
     }
 
+    /// The place of a parameter among the [values](Model::values), if its effect is in the model.
+    pub fn place_of(&self, effect: &str, parameter: &str) -> Option<usize> {
+        let part = self.parts.iter().position(|part| part.effect.name() == effect)?;
+        let before: usize = self.parts[..part].iter().map(|part| part.values.len()).sum();
+        let own = self.parts[part].effect.parameters().iter().position(|p| p.name == parameter)?;
+        Some(before + own)
+    }
+
     /// Which of the [values](Model::values) are shapes: numbers (a length, a threshold) that change nothing where their effect
     /// is at zero.
     pub fn shapes(&self) -> Vec<usize> {
