@@ -84,9 +84,13 @@ impl From<Table> for Rows {
 pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usize)) -> Result<String, Error> {
     let mut figures = serde_json::Map::new();
     let mut sections: Vec<Section> = Vec::new();
+    let mut absent = Vec::new();
     for (index, kind) in KINDS.iter().enumerate() {
         seen(index);
-        sections.push(figure_section(studies, kind, &mut figures));
+        match figure_section(studies, kind, &mut figures) {
+            section if section.parts.iter().any(|part| part.figure.is_some()) => sections.push(section),
+            section => absent.push(section),
+        }
         match kind.name {
             "confusability" => {
                 sections.push(list_section(studies, "unseen", "What these runs cannot show", unseen::unseen));
@@ -114,6 +118,7 @@ pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usi
         verdicts => studies.iter().map(|s| (s.name.clone(), verdict(s))).collect::<Vec<_>>(),
         many => studies.len() > 1,
         sections => Value::from(Serde(&sections)),
+        absent => Value::from(Serde(&absent)),
         filters => Value::from(Serde(&filters)),
         tones => Tone::ALL.map(|t| (t.name(), t.on_white(), t.on_black())),
         provenance => Value::from(Serde(provenance)),
