@@ -100,7 +100,7 @@ impl Report<'_> {
 
     fn table(&self) -> String {
         let rows = self.ensemble.statistics().map(|(metric, s)| {
-            let (unit, factor) = if metric.is_angle() { ("deg", 180.0 / std::f64::consts::PI) } else { ("mm", 1e3) };
+            let (unit, factor) = unit(metric);
             let cell = |value: f64| with_precision_of(value * factor, s.std_error() * factor);
             let mut row = vec![format!("{} [{unit}]", title(metric)), cell(s.mean()), cell(s.std_error())];
             row.push(cell(s.std_dev()));
@@ -111,8 +111,13 @@ impl Report<'_> {
     }
 }
 
+/// The unit that people read a metric in, and how many of it are one of SI.
+pub fn unit(metric: Metric) -> (&'static str, f64) {
+    if metric.is_angle() { ("deg", 180.0 / std::f64::consts::PI) } else { ("mm", 1e3) }
+}
+
 /// What people call a metric.
-fn title(metric: Metric) -> &'static str {
+pub fn title(metric: Metric) -> &'static str {
     match metric {
         Metric::EMaxSys => "E_max,sys",
         Metric::Sigma => "sigma (per axis)",

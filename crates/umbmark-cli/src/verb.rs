@@ -13,8 +13,11 @@ mod learn;
 mod mc;
 mod merge;
 mod paper;
+mod plan;
 mod score;
+mod sensitivity;
 mod simulate;
+mod tolerance;
 
 use std::process::ExitCode;
 
@@ -39,10 +42,16 @@ pub enum Verb {
     Compare(compare::Arguments),
     /// Find which class of effects a model is missing, and what to measure next
     Diagnose(diagnose::Arguments),
+    /// Plan a test: how many runs, what they would show, and the sheet to drive by
+    Plan(Box<plan::Arguments>),
     /// Fit the free effects of a model
     Fit(fit::Arguments),
     /// Learn a model: fit, diagnose, add, until nothing is missing
     Learn(learn::Arguments),
+    /// Which parameter drives which metric: Sobol indices, Morris screening, derivatives
+    Sensitivity(Box<sensitivity::Arguments>),
+    /// How many robots are good enough, and the cheapest tolerances that make it enough
+    Tolerance(Box<tolerance::Arguments>),
     /// Look at a dataset: what it holds, whether it is any good, what it can determine
     Inspect(inspect::Arguments),
     /// Write a dataset in another layout; sets clocks that disagree by the motion
@@ -66,8 +75,11 @@ impl Verb {
             Verb::Calibrate(arguments) => calibrate::run(arguments, session),
             Verb::Compare(arguments) => compare::run(arguments, session),
             Verb::Diagnose(arguments) => diagnose::run(arguments, session),
+            Verb::Plan(arguments) => plan::run(*arguments, session),
             Verb::Fit(arguments) => fit::run(arguments, session),
             Verb::Learn(arguments) => learn::run(arguments, session),
+            Verb::Sensitivity(arguments) => sensitivity::run(*arguments, session),
+            Verb::Tolerance(arguments) => tolerance::run(*arguments, session),
             Verb::Inspect(arguments) => inspect::run(arguments, session),
             Verb::Convert(arguments) => convert::run(arguments, session),
             Verb::Init(arguments) => init::run(arguments, session),

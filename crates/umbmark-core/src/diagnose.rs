@@ -7,13 +7,13 @@
 mod candidates;
 pub mod classes;
 pub(crate) mod ends;
-mod experiments;
+pub(crate) mod experiments;
 mod identifiability;
 pub(crate) mod tracks;
 
 use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, Run};
-use crate::drive::Robot;
+use crate::drive::{Kind, Robot};
 use crate::effect::{Model, ModelError, TestKind};
 use crate::likelihood::Observed;
 use crate::replay::ReplayError;
@@ -269,6 +269,9 @@ pub fn first_model(data: &Dataset) -> Result<Model, DiagnoseError> {
 
 /// The model of the paper: E_d and E_b, both free; for other drives, the two that do alike on a square.
 pub fn base_model(robot: &Robot) -> Result<Model, ModelError> {
+    if robot.drive.kind() == Kind::Clapper {
+        return Err(ModelError::NotPredicted { drive: robot.drive.kind().name() });
+    }
     let mut model = Model::new(robot);
     for effect in &robot.drive.kind().first_effects()[..2] {
         model.add(effect)?.free = true;
@@ -344,6 +347,14 @@ impl Options {
     pub fn evidence(&self, data: &Dataset) -> Level {
         if self.ends_only { Level::Ends } else { level(data) }
     }
+}
+
+/// Every experiment on offer for telling two effects apart, together with this data; the most telling per minute first.
+///
+/// What the model has is fitted to the return poses; each effect is taken at its usual size, the hardest of its sizes. None
+/// where the runs have no scatter to judge by.
+pub fn separating(data: &Dataset, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
+    experiments::separating(&ends::Ends::new(data)?, model, pair)
 }
 
 /// The tracks of a dataset.

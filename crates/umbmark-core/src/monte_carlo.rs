@@ -8,8 +8,11 @@
 mod distribution;
 mod ensemble;
 mod metric;
+mod noise_free;
+mod quantity;
 mod shard;
 mod statistics;
+mod sweep;
 mod trial;
 
 use std::ops::{ControlFlow, Range};
@@ -22,19 +25,21 @@ use crate::drive::{Kind, Robot};
 use crate::effect::{Model, ModelError};
 use crate::engine::Instructions;
 use crate::parameter::ParameterError;
-use crate::path::{Direction, Path};
-use crate::replay::{Track, check_on_path};
-use crate::simulate::{self, Odometry, Phase, SimulateError};
+use crate::path::Path;
+use crate::replay::check_on_path;
+use crate::simulate::{Odometry, Phase, SimulateError};
 
 pub use distribution::{Distribution, DistributionError, Draw};
 pub use ensemble::{Ensemble, MergeError};
 pub use metric::Metric;
+pub use quantity::{Quantity, QuantityError};
 pub use shard::{Shard, ShardError};
 pub use statistics::Statistics;
-
+pub use sweep::{Axis, MetricSummary, Sweep, SweepError, SweepPoint};
 pub use trial::draw_parameters;
 
-use trial::Bench;
+pub(crate) use noise_free::NoiseFree;
+pub(crate) use trial::{Bench, row};
 
 /// Trials that one thread runs at a time. Shards begin and end at multiples of it.
 pub const CHUNK: u64 = 256;
@@ -67,6 +72,9 @@ pub enum StudyError {
         /// The parameter, its value and its range.
         problem: ParameterError,
     },
+    /// A quantity that cannot be set.
+    #[error(transparent)]
+    Quantity(#[from] QuantityError),
     /// No trials, or a test without runs.
     #[error("{what} must be between {} and {}, got {value}", range.start, range.end - 1)]
     Count {
@@ -170,12 +178,11 @@ impl Study {
     /// The test without noise, bumps and quantisation, all drawn parameters in their middle: its return errors \[cw, ccw\]
     /// by exact kinematics.
     pub fn noise_free(&self) -> Result<[ReturnError; 2], StudyError> {
+        if self.robot().drive.kind() == Kind::Clapper {
+            return Err(ModelError::NotPredicted { drive: Kind::Clapper.name() }.into());
+        }
         let model = trial::centred(&self.model, &self.draws)?;
-        let (chain, track) = (model.chain(), if model.varies() { Track::in_pieces } else { Track::from_path });
-        Ok(Direction::BOTH.map(|direction| {
-            let end = track(&self.path, direction, self.robot()).end(&chain);
-            simulate::return_error(&end, &self.path.end(direction))
-        }))
+        Ok(NoiseFree::new(&model, &self.path, model.varies()).returned())
     }
 
     /// Runs the study on the present rayon pool.

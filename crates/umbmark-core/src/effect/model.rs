@@ -46,6 +46,15 @@ pub enum ModelError {
         /// The robot's.
         drive: &'static str,
     },
+    /// A drive whose poses no model of one axle predicts.
+    #[error(
+        "drive = \"{drive}\" is not supported here: its returns are corrected by its link as it drives, and are not predicted by a \
+         model of effects; `umbmark mc`, `score` and `paper` take it"
+    )]
+    NotPredicted {
+        /// The kind of the drive.
+        drive: &'static str,
+    },
     /// A second effect of the same name.
     #[error("there is another effect \"{name}\"; give one of them another name")]
     Taken {
@@ -272,6 +281,14 @@ impl Model {
     /// All values of all parts, one after the other: the order of [`Model::chain_with`].
     pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
         self.parts.iter().flat_map(|part| part.values.iter().copied())
+    }
+
+    /// The place of a parameter among the [values](Model::values), if its effect is in the model.
+    pub fn place_of(&self, effect: &str, parameter: &str) -> Option<usize> {
+        let part = self.parts.iter().position(|part| part.effect.name() == effect)?;
+        let before: usize = self.parts[..part].iter().map(|part| part.values.len()).sum();
+        let own = self.parts[part].effect.parameters().iter().position(|p| p.name == parameter)?;
+        Some(before + own)
     }
 
     /// Which of the [values](Model::values) are shapes: numbers (a length, a threshold) that change nothing where their effect
