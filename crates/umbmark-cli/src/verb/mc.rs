@@ -9,6 +9,7 @@ use std::time::Instant;
 use anyhow::Context;
 use serde_json::{Map, Value, json};
 use umbmark_core::calibrate::{Angles, Correction};
+use umbmark_core::drive::Kind;
 use umbmark_core::monte_carlo::{Draw, Ensemble, Metric, Row, Shard, Statistics, Study};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{Direction, SQUARE};
@@ -281,6 +282,9 @@ struct Theory {
 
 impl Theory {
     fn of(study: &Study) -> anyhow::Result<Theory> {
+        if study.robot().drive.kind() == Kind::Clapper {
+            return Ok(Theory { exact: None, first_order: None });
+        }
         let [cw, ccw] = study.noise_free()?;
         let middle = |effect: &str, parameter: &str| {
             let drawn = study.draws.iter().find(|d| d.effect() == effect && d.parameter().name == parameter);
@@ -289,7 +293,8 @@ impl Theory {
         let e_d = middle("wheel_diameter_ratio", "e_d");
         // A square sees the ratio of the two only.
         let e_b = middle("wheelbase", "e_b") / middle("scale", "e_s");
-        let side = study.path.values().first().filter(|_| std::ptr::eq(study.path.shape(), &SQUARE));
+        let of_paper = std::ptr::eq(study.path.shape(), &SQUARE) && study.robot().drive.kind() == Kind::Differential;
+        let side = study.path.values().first().filter(|_| of_paper);
         let first_order = side.and_then(|side| {
             let angles = Angles::of(&Correction { e_d, e_b, e_s: 1.0 }, *side, &study.robot().drive);
             let [cw, ccw] = Direction::BOTH.map(|direction| angles.first_order_return(direction, *side));
