@@ -1,6 +1,8 @@
 //! A marker that is mounted askew.
 
+use super::words::{deg, side};
 use super::{About, ActsOn, Effect, Sight};
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -29,6 +31,12 @@ impl Effect for MarkerYaw {
         separated_by: "from encoder skew, a second speed; from crab, nothing but how the marker is mounted",
         source: "a gauge freedom of the reference frame; 0.38 degree of it, or of crab, is in the public OptiOdom runs",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!("The marker faces {} to the {} of where the robot does.", deg(p[0]), side(p[0]))
+    }
 
     fn seen<T: Real>(p: &[T], _at: &Sight, pose: &mut Pose2<T>) {
         pose.heading += p[0];

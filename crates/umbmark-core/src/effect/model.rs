@@ -1,7 +1,7 @@
 //! A model: a choice of effects with values.
 
 use super::{Context, Entry, Evaluate, Formula, Law, MAX_PARAMETERS, Mean, Sight, find};
-use crate::drive::{DifferentialDrive, Robot, WheelTravel};
+use crate::drive::{DifferentialDrive, Kinds, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
 use crate::parameter::{DefaultValue, Parameter, ParameterError, nearest};
 use std::sync::Arc;
@@ -35,6 +35,16 @@ pub enum ModelError {
         effect: &'static str,
         /// The parameter, its value and its range.
         problem: ParameterError,
+    },
+    /// An effect that the robot's drive cannot have.
+    #[error("{effect} is an effect of other drives ({drives}), and the robot has drive = \"{drive}\"; leave it out")]
+    OtherDrive {
+        /// The effect.
+        effect: &'static str,
+        /// The drives that may have it.
+        drives: Kinds,
+        /// The robot's.
+        drive: &'static str,
     },
     /// A second effect of the same name.
     #[error("there is another effect \"{name}\"; give one of them another name")]
@@ -124,6 +134,21 @@ impl Model {
         &self.parts
     }
 
+    /// Refuses effects that the robot's drive cannot have.
+    pub fn check_drive(&self) -> Result<(), ModelError> {
+        let kind = self.robot.drive.kind();
+        let entries = self.parts.iter().filter_map(|part| match &part.effect {
+            Law::Entry(entry) => Some(*entry),
+            Law::Formula(_) => None,
+        });
+        match entries.into_iter().find(|entry| !entry.drives.contains(kind)) {
+            Some(entry) => {
+                Err(ModelError::OtherDrive { effect: entry.about.name, drives: entry.drives, drive: kind.name() })
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Adds an effect of the catalogue with its default values, or finds an effect where it is there already.
     pub fn add(&mut self, effect: &str) -> Result<&mut Part, ModelError> {
         let law = self.law(effect)?;
@@ -155,6 +180,13 @@ impl Model {
         let part = self.place(Law::Formula(Arc::new(formula)));
         part.values.copy_from_slice(values);
         Ok(part)
+    }
+
+    /// Takes over a part of another model, with its values.
+    pub fn adopt(&mut self, part: &Part) {
+        let own = self.place(part.effect.clone());
+        own.values.clone_from(&part.values);
+        own.free = part.free;
     }
 
     /// The law that a name stands for in this model: that of a part, or one of the catalogue.
@@ -204,6 +236,14 @@ impl Model {
         rest
     }
 
+    /// What an effect of the model means for the robot, in a sentence of its own; `None` where it is not in the model or says
+    /// nothing, as formulas do.
+    pub fn meaning(&self, effect: &str) -> Option<String> {
+        let part = self.parts.iter().find(|part| part.effect.name() == effect)?;
+        let said = (part.effect.entry()?.means)(&part.values, &self.robot);
+        (!said.is_empty()).then_some(said)
+    }
+
     /// Whether some effect is a formula.
     pub fn has_formulas(&self) -> bool {
         self.parts.iter().any(|part| part.effect.formula().is_some())
@@ -247,6 +287,14 @@ impl Model {
     /// All values of all parts, one after the other: the order of [`Model::chain_with`].
     pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
         self.parts.iter().flat_map(|part| part.values.iter().copied())
+    }
+
+    /// The place of a parameter among the [values](Model::values), if its effect is in the model.
+    pub fn place_of(&self, effect: &str, parameter: &str) -> Option<usize> {
+        let part = self.parts.iter().position(|part| part.effect.name() == effect)?;
+        let before: usize = self.parts[..part].iter().map(|part| part.values.len()).sum();
+        let own = self.parts[part].effect.parameters().iter().position(|p| p.name == parameter)?;
+        Some(before + own)
     }
 
     /// Which of the [values](Model::values) are shapes: numbers (a length, a threshold) that change nothing where their effect
@@ -294,7 +342,7 @@ impl Model {
             count: part.values.len(),
             values: [T::from(0.0); MAX_PARAMETERS],
         });
-        let mut chain = Chain { drive: self.robot.drive, links: links.collect() };
+        let mut chain = Chain { drive: *self.robot.drive, links: links.collect() };
         chain.set_values(values);
         chain
     }

@@ -1,6 +1,8 @@
 //! Noise of the absolute measurement.
 
+use super::words::{deg, mm};
 use super::{About, ActsOn, Effect};
+use crate::drive::{Kinds, Robot};
 use crate::geometry::Pose2;
 use crate::parameter::Parameter;
 use crate::random::Stream;
@@ -40,6 +42,12 @@ impl Effect for ReferenceNoise {
         separated_by: "measuring the same pose twice without driving",
         source: "usual sizes of tape and motion capture",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!("A measured position scatters by {} along each axis, a heading by {}.", mm(p[0]), deg(p[1]))
+    }
 
     fn measured(p: &[f64], stream: &mut Stream, pose: &mut Pose2) {
         if p[0] > 0.0 {
