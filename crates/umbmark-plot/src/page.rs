@@ -212,13 +212,11 @@ fn align(mut figures: Vec<&mut Figure>) {
         return;
     }
     for index in 0..panels {
-        let ends: Vec<_> = figures.iter().map(|figure| scale::ends(&figure.panels[index])).collect();
-        let all = |of: fn(&([f64; 2], [f64; 2])) -> [f64; 2]| {
-            ends.iter()
-                .map(of)
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)])
+        let (x, y): (Vec<_>, Vec<_>) = figures.iter().map(|figure| scale::ends(&figure.panels[index])).unzip();
+        let widest = |ends: Vec<[f64; 2]>| {
+            ends.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)])
         };
-        let (x, y) = (all(|e| e.0), all(|e| e.1));
+        let (x, y) = (widest(x), widest(y));
         for figure in &mut figures {
             let panel = &mut figure.panels[index];
             for (axis, ends) in [(&mut panel.x, x), (&mut panel.y, y)] {
