@@ -110,7 +110,7 @@ fn one_run_can_be_written_as_a_log_of_ros_2_which_brings_its_robot_along() {
     assert_eq!(poses(&["--reference", "none"]), None);
     assert_eq!(poses(&["--ticks", "/joint_states", "--reference", "/odom"]), Some(log.time.len() as u64));
     inspect(&["--ticks", "/wheels"]).code(1).stderr_eq(str![[r#"
-error: [..]run.mcap: there is no topic "/wheels" for --ticks; there are: /ground_truth (geometry_msgs/msg/PoseStamped), /joint_states (sensor_msgs/msg/JointState), /odom (nav_msgs/msg/Odometry), /tf (tf2_msgs/msg/TFMessage)
+error: [..]run.mcap: there is no topic "/wheels" for --ticks; there are: /ground_truth (geometry_msgs/msg/PoseStamped), /joint_states (sensor_msgs/msg/JointState), /odom (nav_msgs/msg/Odometry), /scene/computed_path (nav_msgs/msg/Path), /scene/errors (visualization_msgs/msg/MarkerArray), /scene/true_path (nav_msgs/msg/Path), /tf (tf2_msgs/msg/TFMessage)
 
 "#]]);
     let told =
