@@ -22,12 +22,14 @@ mod session;
 mod setup;
 mod signature;
 mod strip;
+mod study_arguments;
 mod study_flags;
 mod sweep;
 mod table;
 mod terminal;
 mod test_arguments;
 mod tracks_report;
+mod unlisted;
 mod vary;
 mod verb;
 

@@ -7,10 +7,12 @@ use serde_json::{Map, Value, json};
 use umbmark_core::dataset::{Dataset, model_text, read_model};
 use umbmark_core::diagnose::{Contrast, Estimate, OnCircle, first_model};
 use umbmark_core::effect::{Model, find};
+use umbmark_core::likelihood::Outlier;
 use umbmark_core::parameter::Parameter;
 use umbmark_core::stats::{Interval, student_t_quantile};
 
 use crate::files::Pending;
+use crate::prose::hanging;
 use crate::table::{table, with_precision_of};
 
 /// The model of a file, or the one that is asked first.
@@ -90,6 +92,62 @@ pub fn estimates_table(estimates: &[Estimate], level: f64) -> String {
         vec![format!("{} of {}", e.parameter, e.effect), format!("{value}{}", unit_of(e.effect, e.parameter)), half]
     };
     table(&["fitted", "value", &format!("± ({} %)", 100.0 * level)], estimates.iter().map(row))
+}
+
+/// Each fitted effect with what it means for the robot.
+fn meanings(estimates: &[Estimate], model: &Model) -> Vec<(&'static str, String)> {
+    let mut said: Vec<(&str, String)> = Vec::new();
+    for e in estimates {
+        if said.iter().all(|(name, _)| *name != e.effect) {
+            said.extend(model.meaning(e.effect).map(|sentence| (e.effect, sentence)));
+        }
+    }
+    said
+}
+
+/// What the fitted effects mean for the robot, a paragraph each.
+pub fn meaning_text(estimates: &[Estimate], model: &Model) -> String {
+    let paragraphs: String = meanings(estimates, model).iter().map(|(_, said)| hanging("", 2, said)).collect();
+    if paragraphs.is_empty() { paragraphs } else { format!("\nthat is\n{paragraphs}") }
+}
+
+/// The same for machines.
+pub fn meaning_json(estimates: &[Estimate], model: &Model) -> Value {
+    let pairs = meanings(estimates, model).into_iter().map(|(name, said)| (name.to_owned(), json!(said)));
+    Value::Object(Map::from_iter(pairs))
+}
+
+/// Disturbed places that are told one by one; --json has all.
+const OUTLIERS: usize = 5;
+
+/// Where runs were disturbed, a paragraph each.
+pub fn outliers_text(outliers: &[Outlier]) -> String {
+    let one = |o: &Outlier| {
+        let turned = o.turned.map(|t| format!(" and {:.2} deg", t.abs().to_degrees())).unwrap_or_default();
+        let jump =
+            format!("a jump of {:.1} mm{turned}, {:.0} standard deviations of the noise", 1e3 * o.moved, o.deviations);
+        let said = format!("{} after {:.2} s: {jump}, is left out; the run starts anew there.", o.run, o.time);
+        hanging("outlier", 10, &said)
+    };
+    let mut text: String = outliers.iter().take(OUTLIERS).map(one).collect();
+    if let rest @ 1.. = outliers.len().saturating_sub(OUTLIERS) {
+        text += &hanging("", 10, &format!("and {rest} more (--json)"));
+    }
+    text
+}
+
+/// The same for machines.
+pub fn outliers_json(outliers: &[Outlier]) -> Value {
+    let one = |o: &Outlier| {
+        json!({
+            "run": o.run,
+            "time_s": o.time,
+            "moved_m": o.moved,
+            "turned_rad": o.turned,
+            "standard_deviations": finite(o.deviations),
+        })
+    };
+    json!(outliers.iter().map(one).collect::<Vec<_>>())
 }
 
 /// Closure contrasts, in mm and degrees.

@@ -39,6 +39,8 @@ pub struct SensitivityReport<'a> {
     pub noisy: bool,
     /// What nobody said and was assumed.
     pub assumed: &'a [String],
+    /// Whether bars may be drawn in more than ASCII.
+    pub unicode: bool,
 }
 
 fn estimate_json(estimate: &Estimate) -> Value {
@@ -159,6 +161,12 @@ impl SensitivityReport<'_> {
         }
     }
 
+    /// To the left of its cell, which is set to the right as numbers are.
+    fn bars(&self, share: f64) -> String {
+        let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
+        format!("{:<BAR$}", bar(share, BAR, self.unicode))
+    }
+
     fn sobol(&self, output: &OutputIndices) -> String {
         let (unit, factor) = unit(self.metric);
         let scaled = |estimate: &Estimate| with_half_width(estimate, factor);
@@ -171,7 +179,7 @@ impl SensitivityReport<'_> {
         let names = self.names();
         let rows = by_size(&output.total).into_iter().map(|i| {
             let (first, total) = (&output.first[i], &output.total[i]);
-            vec![names[i].to_owned(), with_half_width(first, 1.0), with_half_width(total, 1.0), bars(total.value)]
+            vec![names[i].to_owned(), share(first), share(total), self.bars(total.value)]
         });
         text += &table(&["share of the variance", "alone, S", "with others, T", ""], rows);
         text.push('\n');
@@ -184,7 +192,7 @@ impl SensitivityReport<'_> {
             let mut pairs: Vec<_> = output.second.iter().collect();
             pairs.sort_by(|a, b| b.1.value.total_cmp(&a.1.value));
             let rows = pairs.iter().take(PAIRS).map(|([i, j], estimate)| {
-                vec![format!("{} x {}", names[*i], names[*j]), with_half_width(estimate, 1.0), bars(estimate.value)]
+                vec![format!("{} x {}", names[*i], names[*j]), share(estimate), self.bars(estimate.value)]
             });
             text += &format!("\n{}\n", table(&["pairs beyond each alone", "S_ij", ""], rows));
         }
@@ -199,7 +207,7 @@ impl SensitivityReport<'_> {
         let rows = by_size(&sizes).into_iter().map(|i| {
             let Screened { mean, size, spread } = &effects[i];
             let cells = [size, mean, spread].map(|estimate| with_half_width(estimate, factor));
-            [vec![names[i].to_owned()], cells.to_vec(), vec![bars(size.value / most)]].concat()
+            [vec![names[i].to_owned()], cells.to_vec(), vec![self.bars(size.value / most)]].concat()
         });
         let header = format!("{} [{unit}]", title(self.metric));
         table(&[header.as_str(), "size, mu*", "mean, mu", "spread, sigma", ""], rows) + "\n"
@@ -215,7 +223,7 @@ impl SensitivityReport<'_> {
             let of = self.varied.parameters[i].0.parameter().unit;
             let per = if of.is_empty() { unit.to_owned() } else { format!("{unit} per {of}") };
             let slope = format!("{} {per}", with_half_width(per_unit, factor));
-            vec![names[i].to_owned(), with_half_width(per_spread, factor), slope, bars(sizes[i].value / most)]
+            vec![names[i].to_owned(), with_half_width(per_spread, factor), slope, self.bars(sizes[i].value / most)]
         });
         let header = format!("{} [{unit}]", title(self.metric));
         table(&[header.as_str(), "per spread", "per unit", ""], rows) + "\n"
@@ -256,11 +264,6 @@ const PAIRS: usize = 10;
 /// Characters of a bar of 1.
 const BAR: usize = 20;
 
-fn bars(share: f64) -> String {
-    // To the left of its cell, which is set to the right as numbers are.
-    format!("{:<BAR$}", if share.is_finite() { bar(share.clamp(0.0, 1.0), BAR) } else { String::new() })
-}
-
 /// Places in the order of falling values.
 fn by_size(estimates: &[Estimate]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..estimates.len()).collect();
@@ -271,6 +274,16 @@ fn by_size(estimates: &[Estimate]) -> Vec<usize> {
 fn absolute(estimate: &Estimate) -> Estimate {
     Estimate { value: estimate.value.abs(), ..*estimate }
 }
+
+/// A share of the variance, to four digits at most.
+fn share(estimate: &Estimate) -> String {
+    let half = 0.5 * (estimate.interval.high - estimate.interval.low);
+    let value = with_precision_of(estimate.value, half.max(FINEST));
+    if value == "-" { value } else { format!("{value} ± {}", with_precision_of(half, half.max(FINEST))) }
+}
+
+/// Smaller parts of the variance are of no interest.
+const FINEST: f64 = 1e-3;
 
 /// `0.412 ± 0.006`, to the digits that the interval leaves.
 fn with_half_width(estimate: &Estimate, factor: f64) -> String {

@@ -14,6 +14,8 @@ mod mc;
 mod merge;
 mod paper;
 mod plan;
+mod plot;
+mod report;
 mod score;
 mod sensitivity;
 mod simulate;
@@ -52,6 +54,10 @@ pub enum Verb {
     Sensitivity(Box<sensitivity::Arguments>),
     /// How many robots are good enough, and the cheapest tolerances that make it enough
     Tolerance(Box<tolerance::Arguments>),
+    /// Put everything on one page: a report to send
+    Report(report::Arguments),
+    /// Draw one figure as SVG, PNG or PDF
+    Plot(plot::Arguments),
     /// Look at a dataset: what it holds, whether it is any good, what it can determine
     Inspect(inspect::Arguments),
     /// Write a dataset in another layout; sets clocks that disagree by the motion
@@ -80,6 +86,8 @@ impl Verb {
             Verb::Learn(arguments) => learn::run(arguments, session),
             Verb::Sensitivity(arguments) => sensitivity::run(*arguments, session),
             Verb::Tolerance(arguments) => tolerance::run(*arguments, session),
+            Verb::Report(arguments) => report::run(arguments, session),
+            Verb::Plot(arguments) => plot::run(arguments, session),
             Verb::Inspect(arguments) => inspect::run(arguments, session),
             Verb::Convert(arguments) => convert::run(arguments, session),
             Verb::Init(arguments) => init::run(arguments, session),

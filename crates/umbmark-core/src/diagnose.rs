@@ -9,18 +9,21 @@ pub mod classes;
 pub(crate) mod ends;
 pub(crate) mod experiments;
 mod identifiability;
+mod likeness;
 pub(crate) mod tracks;
 
 use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, Run};
 use crate::drive::{Kind, Robot};
 use crate::effect::{Model, ModelError, TestKind};
-use crate::likelihood::Observed;
+use crate::likelihood::{Observed, Outlier};
 use crate::replay::ReplayError;
 
 pub use candidates::{Candidate, Size, candidates, columns};
 pub use ends::{Contrast, OnCircle};
 pub use identifiability::{Identifiability, Share, identifiability};
+pub use likeness::Likeness;
+pub use tracks::Suggestion;
 
 /// What was observed of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,6 +161,18 @@ pub struct Suspect {
     pub expected_drop: f64,
 }
 
+impl Suspect {
+    /// What the best effect would mean for the robot at its estimated size, in a sentence; `None` where it says nothing or
+    /// cannot have that size.
+    pub fn meaning(&self, robot: &Robot) -> Option<String> {
+        let mut model = Model::new(robot);
+        for e in &self.estimate {
+            model.set(e.effect, e.parameter, e.value).ok()?;
+        }
+        model.meaning(self.best)
+    }
+}
+
 /// An effect that this data says nothing of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unseen {
@@ -211,6 +226,8 @@ pub struct Diagnosis {
     pub model: Model,
     /// Those parameters.
     pub fitted: Vec<Estimate>,
+    /// Their correlations, a row each; empty where they are not known.
+    pub correlations: Vec<Vec<f64>>,
     /// Tests of the model as a whole.
     pub goodness_of_fit: Vec<GoodnessOfFit>,
     /// All classes that were asked: those that may be certified first, and of these the likeliest first.
@@ -219,6 +236,8 @@ pub struct Diagnosis {
     pub certified: usize,
     /// What this data cannot see.
     pub invisible: Vec<Unseen>,
+    /// How alike the effects that it can see look.
+    pub likeness: Likeness,
     /// What it would have seen.
     pub minimum_detectable: Vec<Detectable>,
     /// What to measure next, the most telling per minute first.
@@ -231,6 +250,8 @@ pub struct Diagnosis {
     pub identifiability: Identifiability,
     /// What an effect outside the catalogue acts on and depends on; from tracks only.
     pub dependence: Option<Dependence>,
+    /// Where runs were disturbed, and what happened there left out; from tracks only.
+    pub outliers: Vec<Outlier>,
     /// What else should be said, a sentence each.
     pub remarks: Vec<String>,
 }
@@ -248,6 +269,34 @@ pub struct Dependence {
     pub p_adjusted: f64,
     /// By how much the misfit would fall, in units of the noise variance.
     pub drop: f64,
+    /// What it adds, over all that the runs show of what it depends on.
+    pub curve: Curve,
+    /// A formula that does the same, where one of a small family does.
+    pub suggestion: Option<Suggestion>,
+    /// The effect of the catalogue that comes nearest, and the share of the drop that it explains.
+    pub nearest: Option<(&'static str, f64)>,
+}
+
+/// A smooth dependence, in numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Unit of what it depends on; empty for a pure number.
+    pub at_unit: &'static str,
+    /// Unit of what it adds.
+    pub unit: String,
+    /// In increasing order.
+    pub points: Vec<CurvePoint>,
+}
+
+/// A place on a [`Curve`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// What it depends on.
+    pub at: f64,
+    /// What it adds.
+    pub value: f64,
+    /// Half the width of its 95 % interval, taken by itself.
+    pub half_width: f64,
 }
 
 impl Diagnosis {

@@ -9,16 +9,18 @@ use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{
     Detectable, Diagnosis, Experiment, Identifiability, Level, Options, Suspect, Unseen, Verdict, Why, diagnose,
 };
+use umbmark_core::drive::Robot;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::model_report::{
-    circle_table, contrasts_table, estimates_json, estimates_table, finite, model_json, model_of, p_text, square_json,
-    unit_of,
+    circle_table, contrasts_table, estimates_json, estimates_table, finite, meaning_json, meaning_text, model_json,
+    model_of, outliers_json, outliers_text, p_text, square_json, unit_of,
 };
 use crate::prose::hanging;
 use crate::table::{table, with_precision_of};
 use crate::test_arguments::TestArguments;
+use crate::unlisted::{unlisted_json, unlisted_text};
 
 /// So many experiments are printed; --json has all.
 const EXPERIMENTS: usize = 6;
@@ -52,7 +54,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if session.json() {
         session.print_json(&document(&diagnosis, &options))?;
     } else {
-        write!(session.out(), "{}", text(&data, &diagnosis, &options))?;
+        let text = text(&data, &diagnosis, &options, session.on_terminal());
+        write!(session.out(), "{text}")?;
     }
     let missing = !matches!(diagnosis.verdict, Verdict::Explained | Verdict::NotEnoughData);
     Ok(if arguments.check && missing { ExitCode::from(3) } else { ExitCode::SUCCESS })
@@ -82,7 +85,7 @@ pub(super) fn document(diagnosis: &Diagnosis, options: &Options) -> Value {
         "observed": level,
         "fitted": estimates_json(&diagnosis.fitted, 1.0 - options.size),
         "goodness_of_fit": gof.collect::<Vec<_>>(),
-        "ranking": diagnosis.ranking.iter().map(suspect_json).collect::<Vec<_>>(),
+        "ranking": diagnosis.ranking.iter().map(|s| suspect_json(s, diagnosis.model.robot())).collect::<Vec<_>>(),
         "certified": diagnosis.certified,
         "invisible": diagnosis.invisible.iter().map(|u| u.effect).collect::<Vec<_>>(),
         "absorbed": absorbed_json(&diagnosis.invisible),
@@ -90,12 +93,12 @@ pub(super) fn document(diagnosis: &Diagnosis, options: &Options) -> Value {
         "minimum_detectable_sizes": diagnosis.minimum_detectable.iter().map(|d| {
             json!({ "effect": d.effect, "parameter": d.parameter, "size": finite(d.size) })
         }).collect::<Vec<_>>(),
-        "next_experiments": diagnosis.next_experiments.iter().map(|e| {
-            json!({ "separates": e.separates, "experiment": e.experiment, "minutes": e.minutes, "sd": e.sd })
-        }).collect::<Vec<_>>(),
+        "next_experiments": experiments_json(&diagnosis.next_experiments),
         "identifiability": identifiability_json(&diagnosis.identifiability),
-        "unlisted": unlisted_json(diagnosis),
+        "unlisted": unlisted_json(diagnosis.dependence.as_ref()),
         "model": model_json(&diagnosis.model),
+        "meaning": meaning_json(&diagnosis.fitted, &diagnosis.model),
+        "outliers": outliers_json(&diagnosis.outliers),
         "remarks": diagnosis.remarks,
         "size": options.size,
         "draws": options.draws,
@@ -108,15 +111,12 @@ pub(super) fn document(diagnosis: &Diagnosis, options: &Options) -> Value {
     document
 }
 
-/// What is missing and not in the catalogue; null where nothing is.
-pub(super) fn unlisted_json(diagnosis: &Diagnosis) -> Value {
-    let told = diagnosis.dependence.as_ref();
-    json!(told.map(|told| {
-        json!({ "acts_on": told.acts_on, "depends_on": told.depends_on, "p_adjusted": told.p_adjusted })
-    }))
+pub(super) fn experiments_json(experiments: &[Experiment]) -> Value {
+    let one = |e: &Experiment| json!({ "separates": e.separates, "experiment": e.experiment, "minutes": e.minutes, "sd": e.sd });
+    json!(experiments.iter().map(one).collect::<Vec<_>>())
 }
 
-fn suspect_json(suspect: &Suspect) -> Value {
+fn suspect_json(suspect: &Suspect, robot: &Robot) -> Value {
     let of = |value: &dyn Fn(&umbmark_core::diagnose::Estimate) -> f64| {
         let pairs = suspect.estimate.iter().map(|e| (e.parameter.to_owned(), finite(value(e))));
         Value::Object(Map::from_iter(pairs))
@@ -132,6 +132,7 @@ fn suspect_json(suspect: &Suspect) -> Value {
         "estimate": of(&|e| e.value),
         "standard_error": of(&|e| e.standard_error),
         "expected_drop": suspect.expected_drop,
+        "meaning": suspect.meaning(robot),
     })
 }
 
@@ -173,7 +174,7 @@ fn identifiability_json(identifiability: &Identifiability) -> Value {
     })
 }
 
-fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options) -> String {
+fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, terminal: bool) -> String {
     let robot = data.robot.as_ref().map_or("", |robot| robot.name.as_str());
     let from = match diagnosis.level {
         Level::Ends => "return poses",
@@ -183,12 +184,17 @@ fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options) -> String {
     text += &hanging("verdict", 10, in_words(diagnosis.verdict));
     for suspect in diagnosis.certified() {
         text += &hanging("missing", 10, &suspect.class.join(" or "));
+        let said = suspect.meaning(diagnosis.model.robot());
+        text += &said.map_or_else(String::new, |said| hanging("", 10, &said));
     }
+    text += &outliers_text(&diagnosis.outliers);
     for remark in &diagnosis.remarks {
         text += &hanging("note", 10, remark);
     }
+    text += &unlisted_text(diagnosis.dependence.as_ref(), terminal);
     if !diagnosis.fitted.is_empty() {
         text += &format!("\n{}\n", estimates_table(&diagnosis.fitted, 1.0 - options.size));
+        text += &meaning_text(&diagnosis.fitted, &diagnosis.model);
     }
     text += &identifiability_text(&diagnosis.identifiability);
     for gof in &diagnosis.goodness_of_fit {
@@ -299,11 +305,16 @@ fn experiments_text(experiments: &[Experiment]) -> String {
     }
     let mut text = String::from("\nwhat to measure next, the most telling per minute first\n");
     for e in experiments.iter().take(EXPERIMENTS) {
-        let what = format!("tells {} from {}: {:.1} sd in {:.0} min", e.separates[0], e.separates[1], e.sd, e.minutes);
-        text += &hanging("", 2, &format!("{}; {what}", e.experiment));
+        text += &hanging("", 2, &experiment_text(e));
     }
     if let rest @ 1.. = experiments.len().saturating_sub(EXPERIMENTS) {
         text += &hanging("", 2, &format!("and {rest} more (--json)"));
     }
     text
+}
+
+/// An experiment with what it tells, in a line.
+pub(super) fn experiment_text(e: &Experiment) -> String {
+    let what = format!("tells {} from {}: {:.1} sd in {:.0} min", e.separates[0], e.separates[1], e.sd, e.minutes);
+    format!("{}; {what}", e.experiment)
 }

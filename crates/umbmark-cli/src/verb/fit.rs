@@ -5,11 +5,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use serde_json::json;
-use umbmark_core::learn::fit;
+use umbmark_core::learn::{Fit, fit};
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
-use crate::model_report::{estimates_json, estimates_table, model_json, model_of, write_model};
+use crate::model_report::{
+    estimates_json, estimates_table, meaning_json, meaning_text, model_json, model_of, outliers_json, outliers_text,
+    write_model,
+};
 
 /// Arguments of `fit`.
 #[derive(Debug, clap::Args)]
@@ -47,7 +50,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if model.parts().iter().all(|part| !part.free) {
         anyhow::bail!("no effect of the model is free: say free = true in its file, or --add EFFECT");
     }
-    let (model, estimates) = fit(&data, &model)?;
+    let Fit { model, estimates, outliers } = session.on_threads(|| fit(&data, &model))??;
     let free = model.parts().iter().filter(|part| part.free).map(|part| part.effect.name());
     let unfitted: Vec<&str> = free.filter(|name| estimates.iter().all(|e| e.effect != *name)).collect();
     if let Some(file) = &arguments.output {
@@ -57,6 +60,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         session.print_json(&json!({
             "fitted": estimates_json(&estimates, arguments.level),
             "not_shown": unfitted,
+            "meaning": meaning_json(&estimates, &model),
+            "outliers": outliers_json(&outliers),
             "model": model_json(&model),
             "level": arguments.level,
             "version": umbmark_core::VERSION,
@@ -71,6 +76,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         session.message("warning", &format!("{effect} was not fitted: {why}"));
     }
     writeln!(session.out(), "{}", estimates_table(&estimates, arguments.level))?;
+    write!(session.out(), "{}{}", meaning_text(&estimates, &model), outliers_text(&outliers))?;
     if let Some(file) = &arguments.output {
         writeln!(session.out(), "\nwrote {}", file.display())?;
     }

@@ -78,6 +78,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         study: tests.study(),
         noisy: noise == Noise::Simulated,
         assumed: &known.assumed,
+        unicode: session.on_terminal(),
     };
     if report.is_partial() {
         session.message("partial", "stopped before all tests that were asked for");

@@ -4,7 +4,7 @@ use super::exact::{Pattern, wilks};
 use super::fitted::names;
 use super::moments::{Moments, Whitened};
 use super::{Ends, Fitted, mirrored};
-use crate::diagnose::{DiagnoseError, Size, Unseen, Why, candidates, classes};
+use crate::diagnose::{DiagnoseError, Likeness, Size, Unseen, Why, candidates, classes};
 use crate::drive::WheelTravel;
 use crate::effect::{Context, Entry, Model, Sight, of_drive};
 use crate::fit::RANK_TOLERANCE;
@@ -188,6 +188,13 @@ impl Asked {
         self.units.iter().map(drop).collect()
     }
 
+    /// How alike the effects look, each size at its usual value.
+    pub fn likeness(&self) -> Likeness {
+        let names: Vec<&'static str> = self.units.iter().map(|unit| unit.effect.about.name).collect();
+        let shift = |i: usize| &self.units[i].shift * self.units[i].parameter.typical;
+        Likeness::new(&names, &DMatrix::from_fn(names.len(), names.len(), |i, j| shift(i).dot(&shift(j))))
+    }
+
     /// Units that these means cannot tell apart, as indices.
     pub fn classes(&self) -> Vec<Vec<usize>> {
         let shifts: Vec<DVector<f64>> = self.units.iter().map(|unit| unit.shift.clone()).collect();
@@ -317,6 +324,7 @@ fn moves_means(entry: &'static Entry, model: &Model) -> bool {
         turn_rate: 0.4,
         wheel_speed: [0.2, 0.4],
         speed_change: [0.02, 0.03],
+        turn_rate_change: 0.02,
         wheel_angle: [1.0, 2.0],
         wheel_rotation: [0.3, 0.4],
         reversed: [1.0, -1.0],

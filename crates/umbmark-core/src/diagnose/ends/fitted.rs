@@ -31,6 +31,8 @@ pub(crate) struct Fitted {
     pub jacobian: Vec<DMatrix<f64>>,
     /// What was fitted, with its uncertainty; standard errors are NaN for too few runs.
     pub estimates: Vec<Estimate>,
+    /// Their covariance; `None` for too few runs.
+    pub covariance: Option<DMatrix<f64>>,
 }
 
 impl Fitted {
@@ -52,8 +54,9 @@ impl Fitted {
         let residuals = ends.residuals(&fitted);
         let residuals = ends.runs.iter().zip(&residuals).map(|(run, r)| mirrored(run.direction, r)).collect();
         let jacobian = slopes(ends, &fitted, &free);
-        let mut result = Fitted { model: fitted, free, open, residuals, jacobian, estimates: Vec::new() };
-        result.estimates = result.estimate(ends, fit.covariance());
+        let mut result =
+            Fitted { model: fitted, free, open, residuals, jacobian, estimates: Vec::new(), covariance: None };
+        result.estimate(ends, fit.covariance());
         Ok(result)
     }
 
@@ -85,12 +88,11 @@ impl Fitted {
         slopes(&ends.as_meant(), &self.model.at_rest(), &self.free)
     }
 
-    fn estimate(&self, ends: &Ends, information: Option<DMatrix<f64>>) -> Vec<Estimate> {
+    fn estimate(&mut self, ends: &Ends, information: Option<DMatrix<f64>>) {
         let (scatter, freedom) = self.scatter(ends);
         let d = ends.coordinates();
-        let mut covariance = DMatrix::from_element(self.free.len(), self.free.len(), f64::NAN);
         if let Some(inverse) = information.filter(|_| freedom > 0) {
-            covariance.fill(0.0);
+            let mut covariance = DMatrix::zeros(self.free.len(), self.free.len());
             for (run, slope) in ends.runs.iter().zip(&self.jacobian) {
                 // The weights are lower triangular in the run's own frame; mirroring twice is no change.
                 let mirror = Matrix3::from_diagonal(&Vector3::new(1.0, run.direction.sign(), run.direction.sign()));
@@ -98,6 +100,7 @@ impl Fitted {
                 let influence = &inverse * slope.rows(0, d).transpose() * weight.transpose() * weight;
                 covariance += &influence * scatter.view((0, 0), (d, d)) * influence.transpose();
             }
+            self.covariance = Some(covariance);
         }
         let names: Vec<_> = names(&self.model);
         let values: Vec<f64> = self.model.values().collect();
@@ -105,10 +108,10 @@ impl Fitted {
             effect: names[*i].0,
             parameter: names[*i].1,
             value: values[*i],
-            standard_error: covariance[(j, j)].max(0.0).sqrt(),
+            standard_error: self.covariance.as_ref().map_or(f64::NAN, |c| c[(j, j)].max(0.0).sqrt()),
             degrees_of_freedom: freedom as f64,
         };
-        self.free.iter().enumerate().map(estimate).collect()
+        self.estimates = self.free.iter().enumerate().map(estimate).collect();
     }
 }
 
