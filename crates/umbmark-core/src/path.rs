@@ -32,7 +32,7 @@ pub use waypoints::WAYPOINTS;
 pub static SHAPES: &[&Shape] = &[&SQUARE, &RECTANGLE, &FIGURE_EIGHT, &CIRCLE, &STRAIGHT, &SPIN, &WAYPOINTS];
 
 /// The sense in which a path is driven round.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Direction {
     /// Clockwise: right turns.
     Cw,

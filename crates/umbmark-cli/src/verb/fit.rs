@@ -4,12 +4,12 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use serde_json::json;
+use umbmark_core::document;
 use umbmark_core::learn::fit;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
-use crate::model_report::{estimates_json, estimates_table, model_json, model_of, write_model};
+use crate::model_report::{estimates_table, model_of, write_model};
 
 /// Arguments of `fit`.
 #[derive(Debug, clap::Args)]
@@ -48,25 +48,17 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         anyhow::bail!("no effect of the model is free: say free = true in its file, or --add EFFECT");
     }
     let (model, estimates) = fit(&data, &model)?;
-    let free = model.parts().iter().filter(|part| part.free).map(|part| part.effect.name());
-    let unfitted: Vec<&str> = free.filter(|name| estimates.iter().all(|e| e.effect != *name)).collect();
     if let Some(file) = &arguments.output {
         write_model(&model, file, arguments.force)?;
     }
     if session.json() {
-        session.print_json(&json!({
-            "fitted": estimates_json(&estimates, arguments.level),
-            "not_shown": unfitted,
-            "model": model_json(&model),
-            "level": arguments.level,
-            "version": umbmark_core::VERSION,
-        }))?;
+        session.print_json(&document::fitted(&model, &estimates, arguments.level))?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &data.warnings {
         session.message("warning", warning);
     }
-    for effect in &unfitted {
+    for effect in document::not_shown(&model, &estimates) {
         let why = "this data does not show it apart from the rest of the model; it keeps its values";
         session.message("warning", &format!("{effect} was not fitted: {why}"));
     }

@@ -1,0 +1,111 @@
+//! `diagnose`.
+
+use super::square::square;
+use super::{finite, fitted::estimates, model::model};
+use crate::diagnose::{Detectable, Diagnosis, Estimate, Identifiability, Level, Options, Suspect, Unseen, Why};
+use serde_json::{Map, Value, json};
+
+/// A diagnosis.
+pub fn diagnosis(diagnosis: &Diagnosis, options: &Options) -> Value {
+    let level = match diagnosis.level {
+        Level::Ends => "end_poses",
+        Level::Tracks => "tracks",
+    };
+    let gof = diagnosis.goodness_of_fit.iter().map(
+        |g| json!({ "name": g.name, "statistic": g.statistic, "degrees_of_freedom": g.degrees_of_freedom, "p": g.p }),
+    );
+    let mut document = json!({
+        "verdict": diagnosis.verdict.name(),
+        "observed": level,
+        "fitted": estimates(&diagnosis.fitted, 1.0 - options.size),
+        "goodness_of_fit": gof.collect::<Vec<_>>(),
+        "ranking": diagnosis.ranking.iter().map(suspect_json).collect::<Vec<_>>(),
+        "certified": diagnosis.certified,
+        "invisible": diagnosis.invisible.iter().map(|u| u.effect).collect::<Vec<_>>(),
+        "absorbed": absorbed_json(&diagnosis.invisible),
+        "minimum_detectable": detectable_json(&diagnosis.minimum_detectable),
+        "minimum_detectable_sizes": diagnosis.minimum_detectable.iter().map(|d| {
+            json!({ "effect": d.effect, "parameter": d.parameter, "size": finite(d.size) })
+        }).collect::<Vec<_>>(),
+        "next_experiments": diagnosis.next_experiments.iter().map(|e| {
+            json!({ "separates": e.separates, "experiment": e.experiment, "minutes": e.minutes, "sd": e.sd })
+        }).collect::<Vec<_>>(),
+        "identifiability": identifiability_json(&diagnosis.identifiability),
+        "unlisted": unlisted(diagnosis),
+        "model": model(&diagnosis.model),
+        "remarks": diagnosis.remarks,
+        "size": options.size,
+        "draws": options.draws,
+        "seed": options.seed,
+        "version": crate::VERSION,
+    });
+    if let Some(map) = document.as_object_mut() {
+        map.extend(square(&diagnosis.contrasts, &diagnosis.circle));
+    }
+    document
+}
+
+/// What is missing and not in the catalogue; null where nothing is.
+pub(super) fn unlisted(diagnosis: &Diagnosis) -> Value {
+    let told = diagnosis.dependence.as_ref();
+    json!(told.map(|told| {
+        json!({ "acts_on": told.acts_on, "depends_on": told.depends_on, "p_adjusted": told.p_adjusted })
+    }))
+}
+
+fn suspect_json(suspect: &Suspect) -> Value {
+    let of = |value: &dyn Fn(&Estimate) -> f64| {
+        let pairs = suspect.estimate.iter().map(|e| (e.parameter.to_owned(), finite(value(e))));
+        Value::Object(Map::from_iter(pairs))
+    };
+    json!({
+        "class": suspect.class,
+        "best": suspect.best,
+        "f": suspect.f,
+        "degrees_of_freedom": suspect.degrees_of_freedom,
+        "p": suspect.p,
+        "p_adjusted": suspect.p_adjusted,
+        "p_flips": suspect.p_flips,
+        "estimate": of(&|e| e.value),
+        "standard_error": of(&|e| e.standard_error),
+        "expected_drop": suspect.expected_drop,
+    })
+}
+
+fn absorbed_json(unseen: &[Unseen]) -> Value {
+    let pairs = unseen.iter().filter_map(|u| match &u.why {
+        Why::Absorbed(by) => Some((u.effect.to_owned(), json!(by))),
+        Why::BelowNoise => None,
+    });
+    Value::Object(Map::from_iter(pairs))
+}
+
+/// For each effect, the largest of its sizes' least.
+fn detectable_json(detectable: &[Detectable]) -> Value {
+    let mut sizes: Map<String, Value> = Map::new();
+    for d in detectable {
+        let before = sizes.get(d.effect).and_then(Value::as_f64).unwrap_or(0.0);
+        sizes.insert(d.effect.to_owned(), finite(d.size.max(before)));
+    }
+    Value::Object(sizes)
+}
+
+fn identifiability_json(identifiability: &Identifiability) -> Value {
+    let parameters = identifiability.shares.iter().map(|s| {
+        json!({
+            "effect": s.effect,
+            "parameter": s.parameter,
+            "position_m_per_unit": s.position,
+            "heading_rad_per_unit": s.heading,
+        })
+    });
+    let hidden = identifiability.hidden.iter().map(|h| {
+        let weights = h.weights.iter().map(|(name, w)| ((*name).to_owned(), json!(w)));
+        json!({ "weights": Map::from_iter(weights), "ratio": h.ratio })
+    });
+    json!({
+        "parameters": parameters.collect::<Vec<_>>(),
+        "rank": identifiability.rank,
+        "hidden": hidden.collect::<Vec<_>>(),
+    })
+}
