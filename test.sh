@@ -103,8 +103,8 @@ begin 'Python: module'
 "$python" -m maturin develop --manifest-path "$package/Cargo.toml"
 
 begin 'Python: formatting and lints'
-"$python" -m ruff format --check --config "$package/pyproject.toml" "$package" tests/reference .ci
-"$python" -m ruff check --config "$package/pyproject.toml" "$package" tests/reference .ci
+"$python" -m ruff format --check --config "$package/pyproject.toml" "$package" tests/reference notebooks .ci
+"$python" -m ruff check --config "$package/pyproject.toml" "$package" tests/reference notebooks .ci
 
 begin 'Python: types'
 "$python" -m mypy --config-file "$package/pyproject.toml" "$package/python" "$package/tests" .ci
@@ -114,6 +114,16 @@ begin 'Python: types'
 begin 'Python: tests'
 "$python" -m pytest "$package"
 "$python" -m pytest --config-file "$package/pyproject.toml" tests/reference
+
+begin 'Python: notebooks'
+# Jupyter and matplotlib write into the home folder unless they are told otherwise.
+made=$(mktemp -d)
+export IPYTHONDIR=$made JUPYTER_CONFIG_DIR=$made JUPYTER_DATA_DIR=$made JUPYTER_RUNTIME_DIR=$made MPLCONFIGDIR=$made
+for notebook in notebooks/*.py; do
+    "$python" -m jupytext --quiet --to ipynb --output "$made/$(basename "$notebook" .py).ipynb" "$notebook"
+done
+"$python" -m pytest --nbmake --config-file "$package/pyproject.toml" "$made"
+rm -rf "$made"
 
 end_section
 printf '\nall tests passed in %d s\n' "$SECONDS"
