@@ -73,18 +73,18 @@ def kill_one(client: Client) -> int:
 
 
 def test_a_killed_worker_changes_no_bit(client: Client) -> None:
-    keys: dict[str, Any] = {"n": 60_000, "runs": 2, "seed": 9}
+    keys: dict[str, Any] = {"n": 20_000, "runs": 1, "seed": 9}
     killed: list[int] = []
 
     def at(done: int, _: int) -> None:
-        if done > 10_000 and not killed:
+        if done > 4000 and not killed:
             killed.append(kill_one(client))
 
-    many = umbmark.distributed.monte_carlo(client, MODEL, chunk=2048, progress=at, **keys)
+    many = umbmark.distributed.monte_carlo(client, MODEL, chunk=1024, progress=at, **keys)
     assert killed
     assert killed[0] not in client.run(os.getpid).values()  # type: ignore[no-untyped-call]
     one = umbmark.monte_carlo(MODEL, **keys)
-    assert (many.n, many.partial, bits(many)) == (60_000, False, bits(one))
+    assert (many.n, many.partial, bits(many)) == (20_000, False, bits(one))
     documents = [found.to_dict() | {"trials_per_s": None} for found in (many, one)]
     assert documents[0] == documents[1]
 
@@ -92,32 +92,32 @@ def test_a_killed_worker_changes_no_bit(client: Client) -> None:
 def test_a_precise_study_ends_at_the_same_trial_whatever_the_chunks_do(client: Client) -> None:
     def found(on: Client) -> umbmark.MonteCarlo:
         return umbmark.distributed.monte_carlo(
-            on, MODEL, runs=1, until_std_error_m=8e-4, chunk=1024, n=200_000
+            on, MODEL, runs=1, until_std_error_m=2e-3, chunk=512, n=200_000
         )
 
     many = found(client)
     assert not many.partial
     assert many.n < 200_000
-    assert (many.metrics["e_max_sys_m"].std_error or 1) <= 8e-4
+    assert (many.metrics["e_max_sys_m"].std_error or 1) <= 2e-3
     for alone in cluster(1):
         again = found(alone)
     assert (again.n, bits(again)) == (many.n, bits(many))
 
 
 def test_verdicts_on_complete_robots_are_those_of_one_process(client: Client) -> None:
-    keys: dict[str, Any] = {"n": 6, "size": 0.05, "draws": 99, "path": umbmark.Path(side_m=1.0)}
+    keys: dict[str, Any] = {"n": 4, "runs": 3, "draws": 99, "path": umbmark.Path(side_m=1.0)}
     many = umbmark.distributed.verdicts(client, MODEL, chunk=2, **keys)
-    assert sum(many.counts.values()) == 6
+    assert sum(many.counts.values()) == 4
     said = [
         umbmark.diagnose(
-            umbmark._umbmark.simulate(MODEL, keys["path"], (5, 5), 0.0, 1, trial),
+            umbmark._umbmark.simulate(MODEL, keys["path"], (3, 3), 0.0, 1, trial),
             draws=99,
             seed=trial,
         ).verdict
-        for trial in range(6)
+        for trial in range(4)
     ]
     assert many.counts == {verdict: said.count(verdict) for verdict in sorted(set(said))}
-    assert many == umbmark.distributed.verdicts(client, MODEL, chunk=5, **keys)
+    assert many == umbmark.distributed.verdicts(client, MODEL, chunk=3, **keys)
     share, (low, high) = many.share("explained")
     assert low <= share <= high
     assert many.table()[0]["count"] == many.counts[many.table()[0]["verdict"]]
@@ -125,7 +125,7 @@ def test_verdicts_on_complete_robots_are_those_of_one_process(client: Client) ->
 
 def test_a_hidden_effect_is_named(client: Client) -> None:
     sloped = MODEL.add("wheel_noise", k_sqrt_m=2e-4).add("floor_slope", drift_x=0.02)
-    keys: dict[str, Any] = {"n": 3, "draws": 99, "path": umbmark.Path(side_m=1.0)}
+    keys: dict[str, Any] = {"n": 1, "runs": 3, "draws": 99, "path": umbmark.Path(side_m=1.0)}
     found = umbmark.distributed.verdicts(client, sloped, ask="learn", chunk=1, **keys)
     assert found.named
     assert all("floor_slope" in names for names in found.named)

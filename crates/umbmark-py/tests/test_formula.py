@@ -70,7 +70,7 @@ def test_any_expression_keeps_its_value_without_its_own_parentheses(tree: str) -
 @pytest.mark.parametrize(
     ("function", "words"),
     [
-        (lambda at, k, q: k if at.heading > 0 else q, "'>' not supported"),
+        (lambda at, k, q: k if at.heading > 0 else q, "cannot branch on a value"),
         (lambda at, k, q: k * q if at.heading else 0.0, "cannot branch on a value"),
         (lambda at, k, q: k * math.sin(at.heading) * q, "one of another module was called"),
         (lambda at, k, q: k * np.arctan(at.heading) * q, "a formula has no np.arctan; it has"),

@@ -94,6 +94,11 @@ class Symbol:
             " or np.tanh"
         )
 
+    def _compared(self, _: Any) -> bool:
+        return bool(self)
+
+    __lt__ = __le__ = __gt__ = __ge__ = _compared
+
     def __float__(self) -> float:
         raise TypeError("a formula is made of NumPy's functions; one of another module was called")
 
