@@ -69,7 +69,7 @@ assert k.interval[0] < 0.02 < k.interval[1]
 
 # %%
 judged = umbmark.compare(data, {"without": without.model, "with it": with_it.model})
-{model.name: (model.explains, f"{1e3 * model.rmse_m:.1f} mm") for model in judged.models}
+{model.name: (model.explains, f"{1e3 * model.along.rmse_m:.1f} mm") for model in judged.models}
 
 # %% [markdown]
 # ## What has no formula is refused

@@ -29,7 +29,7 @@ fn ten_end_poses() -> Dataset {
             runs.push(Run { name, number, direction, test: TestKind::Systematic, log: None, returned });
         }
     }
-    Dataset { robot: Some(robot), path: Some(path), runs, warnings: vec![], clocks: vec![], topics: vec![] }
+    Dataset { robot: Some(robot), path: Some(path), runs, ..Dataset::default() }
 }
 
 fn diagnosis(criterion: &mut Criterion) {

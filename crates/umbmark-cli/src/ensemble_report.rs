@@ -20,6 +20,9 @@ pub struct Description {
     pub seed: u64,
     /// What the document tells beside the metrics.
     pub document: Map<String, Value>,
+    /// The row of Table I that it is of, its E_max,sys and its sigma \[m\].
+    #[serde(default)]
+    pub published: Option<(String, f64, f64)>,
 }
 
 /// An ensemble and what is to be said of it.
@@ -54,6 +57,7 @@ impl Report<'_> {
         text += &self.table();
         text += "\n\n";
         text += &self.description.theory;
+        text += &self.published();
         if let Some(e_max) = self.ensemble.get(Metric::EMaxSys) {
             text += "E_max,sys over the trials\n";
             text += &distribution_of(e_max);
@@ -62,6 +66,17 @@ impl Report<'_> {
         let partial = if self.partial { ", PARTIAL: not all trials are done" } else { "" };
         let (seed, version) = (self.description.seed, umbmark_core::VERSION);
         text + &format!("\nseed {seed}{speed}, umbmark {version}{partial}\n")
+    }
+
+    /// Where the paper's numbers lie among those of the trials.
+    fn published(&self) -> String {
+        let Some((row, e_max_sys, sigma)) = &self.description.published else { return String::new() };
+        let place = |metric: Metric, value: f64| {
+            let above = self.ensemble.get(metric).map_or(f64::NAN, |s| 100.0 * s.share_below(value));
+            format!("{:.0} mm (above {above:.0} % of the trials)", value * 1e3)
+        };
+        let (e_max_sys, sigma) = (place(Metric::EMaxSys, *e_max_sys), place(Metric::Sigma, *sigma));
+        format!("Table I, {row}: E_max,sys {e_max_sys}, sigma {sigma}\n\n")
     }
 
     fn table(&self) -> String {

@@ -11,6 +11,7 @@ mod files;
 mod model_report;
 mod output_arguments;
 mod prose;
+mod residual_strips;
 mod robot_flags;
 mod session;
 mod setup;
@@ -18,6 +19,8 @@ mod signature;
 mod strip;
 mod table;
 mod terminal;
+mod test_arguments;
+mod tracks_report;
 mod verb;
 
 use std::ffi::OsString;

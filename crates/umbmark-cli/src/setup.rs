@@ -1,12 +1,13 @@
 //! What is to be simulated: robot, path and effects, from files and flags.
 
-use std::path::PathBuf;
+use std::path::{Path as FilePath, PathBuf};
 
 use umbmark_core::dataset::{read_model, read_robot};
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::Model;
 use umbmark_core::monte_carlo::Draw;
 use umbmark_core::path::Path;
+use umbmark_core::preset::{PRESETS, Preset, Published};
 use umbmark_core::replay::check_on_path;
 
 use crate::effect_flags::EffectFlags;
@@ -40,9 +41,10 @@ const ASSUMED_WHEEL_NOISE: f64 = 1e-3;
 /// The flags of every verb that simulates. A flag overrides what stands in a file.
 #[derive(Debug, clap::Args)]
 pub struct SetupFlags {
-    /// The robot and its path, instead of the paper's LabMate on a 4 x 4 m square
-    #[arg(long, value_name = "robot.toml")]
-    robot: Option<PathBuf>,
+    /// The robot and its path, instead of the paper's LabMate on a 4 x 4 m square: a file, or one of the paper's by name,
+    /// with its errors and noise
+    #[arg(long, value_name = "robot.toml | NAME", long_help = robots())]
+    robot: Option<String>,
 
     /// Effects with their values or distributions
     #[arg(long, value_name = "model.toml")]
@@ -59,6 +61,16 @@ pub struct SetupFlags {
     effects: EffectFlags,
 }
 
+/// The help of `--robot`.
+fn robots() -> String {
+    let row = |preset: &Preset| format!("\n  {:<24} Table I, row {}", preset.name, preset.published.row);
+    let rows: String = PRESETS.iter().map(row).collect();
+    format!(
+        "The robot and its path, instead of the paper's LabMate on a 4 x 4 m square: a file, or one of the paper's robots with \
+         its errors and noise:{rows}"
+    )
+}
+
 /// A resolved choice.
 #[derive(Debug)]
 pub struct Setup {
@@ -68,39 +80,72 @@ pub struct Setup {
     pub model: Model,
     /// Parameters that differ from trial to trial.
     pub draws: Vec<Draw>,
+    /// What was taken from the paper, a phrase each.
+    pub sources: Vec<String>,
     /// What nobody said and was assumed, a phrase each.
     pub assumed: Vec<String>,
+    /// What the paper measured of this robot.
+    pub published: Option<Published>,
+}
+
+/// Where the robot is from.
+enum Origin {
+    Default,
+    File,
+    Preset(&'static Preset),
 }
 
 impl SetupFlags {
     /// Reads the files and lets the flags override them.
     pub fn resolve(&self) -> anyhow::Result<Setup> {
-        let (robot, path) = match &self.robot {
-            Some(file) => {
-                let (robot, path) = read_robot(file)?;
-                (robot, path.unwrap_or_else(Path::umbmark))
-            }
-            None => (Robot::labmate(), Path::umbmark()),
-        };
+        let (robot, path, origin) = self.robot()?;
         let robot = self.robot_flags.robot(robot)?;
         let path = self.robot_flags.path(path)?;
-        let (mut model, mut draws) = match &self.model {
-            Some(file) => read_model(file, &robot)?,
-            None => (Model::new(&robot), Vec::new()),
+        let (mut sources, mut assumed) = (Vec::new(), Vec::new());
+        let (mut model, mut draws) = match (&self.model, &origin) {
+            (Some(file), _) => read_model(file, &robot)?,
+            (None, Origin::Preset(preset)) => (preset.model()?.of(&robot), Vec::new()),
+            (None, _) => (Model::new(&robot), Vec::new()),
         };
-        let mut assumed = Vec::new();
-        if self.robot.is_none() && self.robot_flags.leaves_assumptions() {
-            assumed.push("wheel diameter 0.150 m and 2000 ticks per revolution where not given".to_owned());
-        }
-        if self.model.is_none() && self.robot.is_none() && !self.effects.mentions("wheel_noise") {
-            model.set("wheel_noise", "k_sqrt_m", ASSUMED_WHEEL_NOISE)?;
-            assumed.push(format!("wheel noise k = {ASSUMED_WHEEL_NOISE} m^0.5 (--wheel-noise 0 for none)"));
+        match origin {
+            Origin::Default => {
+                if self.robot_flags.leaves_assumptions() {
+                    assumed.push("wheel diameter 0.150 m and 2000 ticks per revolution where not given".to_owned());
+                }
+                if self.model.is_none() && !self.effects.mentions("wheel_noise") {
+                    model.set("wheel_noise", "k_sqrt_m", ASSUMED_WHEEL_NOISE)?;
+                    assumed.push(format!("wheel noise k = {ASSUMED_WHEEL_NOISE} m^0.5 (--wheel-noise 0 for none)"));
+                }
+            }
+            Origin::Preset(preset) => {
+                sources.extend(preset.sources.iter().map(|text| (*text).to_owned()));
+                assumed.extend(preset.assumed.iter().map(|text| (*text).to_owned()));
+            }
+            Origin::File => {}
         }
         self.effects.apply(&mut model, &mut draws)?;
         check_on_path(&model, &path)?;
         if model.get("wheel_noise", "k_sqrt_m").is_none() {
             assumed.push("no wheel noise (--wheel-noise 0.001 gives about the paper's scatter)".to_owned());
         }
-        Ok(Setup { path, model, draws, assumed })
+        let published = if let Origin::Preset(preset) = origin { Some(preset.published) } else { None };
+        Ok(Setup { path, model, draws, sources, assumed, published })
+    }
+
+    fn robot(&self) -> anyhow::Result<(Robot, Path, Origin)> {
+        let Some(name) = &self.robot else { return Ok((Robot::labmate(), Path::umbmark(), Origin::Default)) };
+        let near = match Preset::find(name) {
+            Ok(preset) => return Ok((preset.robot(), preset.path(), Origin::Preset(preset))),
+            Err(near) => near,
+        };
+        let file = FilePath::new(name);
+        let looks_like_a_file = file.extension().is_some() || file.components().count() > 1;
+        if !looks_like_a_file && !file.exists() {
+            let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
+            let near = near.map(|near| format!("; did you mean \"{near}\"?")).unwrap_or_default();
+            anyhow::bail!("there is no robot \"{name}\"{near}\n  give a robot.toml, or one of {}", names.join(", "));
+        }
+        let (robot, path) = read_robot(file)?;
+        Ok((robot, path.unwrap_or_else(Path::umbmark), Origin::File))
     }
 }

@@ -74,7 +74,7 @@ impl Verb {
 }
 
 /// A probability between 0 and 1, both excluded.
-fn size(text: &str) -> Result<f64, String> {
+pub(crate) fn size(text: &str) -> Result<f64, String> {
     let size = crate::effect_flags::number(text)?;
     if size > 0.0 && size < 1.0 { Ok(size) } else { Err("must be between 0 and 1, both excluded".to_owned()) }
 }

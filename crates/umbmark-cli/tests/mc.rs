@@ -364,3 +364,21 @@ fn an_interrupt_ends_with_what_is_done_marked_as_partial() {
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(message, format!("partial: stopped after {n} of 100000000 trials\n"));
 }
+
+#[test]
+fn a_robot_of_the_paper_says_what_is_published_and_what_is_assumed_and_flags_override_it() {
+    let text = stdout(&["--robot", "trc-labmate-docal", "-n", "300"]);
+    for part in [
+        "  from the paper: b = 337.2 mm, D_R/D_L = 1.00121 in the odometry (Table I)\n",
+        "  assumed: mean wheel diameter 0.150 m and 2000 ticks per revolution\n",
+        "Table I, 3. TRC-nomod/docal: E_max,sys 26 mm (above ",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+    let quiet = json(&["--robot", "trc-labmate-3loop-nocal", "--wheel-noise", "0", "-n", "20"]);
+    assert!((quiet["metrics"]["e_max_sys_m"]["mean"].as_f64().unwrap() - 0.417).abs() < 1e-3, "{quiet}");
+    assert_eq!(quiet["published"]["e_max_sys_m"], 0.423);
+    mc(&["--robot", "trc-labmate-nocall"]).code(1).stdout_eq(str![""]).stderr_eq(
+        "error: there is no robot \"trc-labmate-nocall\"; did you mean \"trc-labmate-nocal\"?\n  give a robot.toml, or one of [..]\n",
+    );
+}

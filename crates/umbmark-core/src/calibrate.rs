@@ -189,7 +189,7 @@ impl Calibration {
 ///     returned: drive_again(&robot, &path, direction, &truth, &Correction::NONE),
 /// };
 /// let runs = Direction::BOTH.map(run).to_vec();
-/// let data = Dataset { robot: Some(robot.clone()), path: Some(path.clone()), runs, clocks: vec![], topics: vec![], warnings: vec![] };
+/// let data = Dataset { robot: Some(robot.clone()), path: Some(path.clone()), runs, ..Dataset::default() };
 /// let calibration = calibrate(&data, &Options::default())?;
 /// let exact = calibration.estimate(Method::Exact).unwrap();
 /// assert!((exact.correction.e_d - 1.00203).abs() < 1e-12);

@@ -5,6 +5,7 @@
 
 mod replicas;
 mod statistics;
+pub mod tracks;
 
 use crate::dataset::Dataset;
 use crate::diagnose::ends::{self, Asked, Ends, Fitted};
@@ -15,6 +16,7 @@ use replicas::Replicas;
 
 pub use replicas::NoiseSource;
 pub use statistics::Quantity;
+pub use tracks::compare_tracks;
 
 /// A statistic of the measured test beside what a model predicts for it.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,7 +101,7 @@ pub fn compare(data: &Dataset, models: &[(String, Model)], options: &Options) ->
         remarks.push(format!("Few runs, {cw} cw and {ccw} ccw: p-values say little below 3 + 3."));
     }
     if level(data) == Level::Tracks {
-        remarks.push("The runs were observed on the way, but only their end poses are compared here.".into());
+        remarks.push("The runs were observed on the way; their return poses alone are compared here.".into());
     }
     let models = models.iter().map(|(name, model)| judge(name, model, &ends, &fitted, options)).collect();
     let contrasts = ends::contrasts(&ends, &fitted, confidence);

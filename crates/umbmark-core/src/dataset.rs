@@ -51,6 +51,7 @@ pub use error::DatasetError;
 pub use inspect::{
     Check, Coverage, Determined, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, Wheels, WheelsFound,
 };
+pub(crate) use inspect::{Done, MoveDone, moves_of};
 pub use layout::{LAYOUTS, Layout};
 pub use mcap::{McapProblem, Topics};
 pub use model_file::{parse_model, read_model};
@@ -102,6 +103,23 @@ pub struct TickLog {
     pub right: Vec<f64>,
     /// Absolute poses in the order of their samples: many, few, or none.
     pub reference: Vec<ReferencePose>,
+    /// What was mended while it was read.
+    pub mended: Mended,
+}
+
+/// What was mended in a log while it was read, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Mended {
+    /// Roll-overs of either counter that were undone.
+    pub roll_overs: usize,
+    /// Rows before which a counter was set back to zero.
+    pub resets: usize,
+    /// Rows out of order that were put where their time stamps say.
+    pub late: usize,
+    /// Rows that repeat a time stamp and were left out.
+    pub repeated: usize,
+    /// Poses that repeat the one before while the wheels turn and were left out.
+    pub stale: usize,
 }
 
 /// One drive round the path.
@@ -144,7 +162,7 @@ pub struct RunTopics {
 }
 
 /// A robot and its runs.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Dataset {
     /// The nominal robot; `None` where a return sheet was given without one, which is enough for scores.
     pub robot: Option<Robot>,

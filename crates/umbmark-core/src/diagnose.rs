@@ -320,7 +320,7 @@ fn places(run: &Run) -> usize {
 /// #         runs.push(Run { name, number, direction: Some(direction), test: TestKind::Systematic, log: None, returned });
 /// #     }
 /// # }
-/// # let data = Dataset { robot: Some(robot.clone()), path: Some(path), runs, warnings: vec![], clocks: vec![], topics: vec![] };
+/// # let data = Dataset { robot: Some(robot.clone()), path: Some(path), runs, ..Dataset::default() };
 /// // `data`: five simulated runs each way of the robot above.
 /// let diagnosis = diagnose(&data, &base_model(&robot)?, &Options::default())?;
 /// assert_eq!(diagnosis.verdict, Verdict::Explained);
@@ -350,7 +350,7 @@ pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diag
 
 impl Options {
     /// What is used of a dataset.
-    pub(crate) fn evidence(&self, data: &Dataset) -> Level {
+    pub fn evidence(&self, data: &Dataset) -> Level {
         if self.ends_only { Level::Ends } else { level(data) }
     }
 }

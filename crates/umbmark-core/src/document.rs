@@ -16,6 +16,7 @@ mod nominal;
 mod score;
 mod square;
 mod study;
+mod track_comparison;
 
 pub use about::about;
 pub use calibration::calibration;
@@ -28,7 +29,8 @@ pub use learnt::learnt;
 pub use model::model;
 pub use nominal::{path, robot};
 pub use score::score;
-pub use study::{Theory, ensemble, run, study};
+pub use study::{Theory, Told, ensemble, run, study};
+pub use track_comparison::track_comparison;
 
 use crate::stats::Interval;
 use serde_json::{Value, json};

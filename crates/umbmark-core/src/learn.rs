@@ -9,7 +9,7 @@ mod ends;
 mod tracks;
 
 use crate::dataset::Dataset;
-use crate::diagnose::{self, DiagnoseError, Diagnosis, Estimate, Level, Verdict};
+use crate::diagnose::{self, DiagnoseError, Diagnosis, Estimate, Level, Suspect, Verdict};
 use crate::effect::Model;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -149,13 +149,18 @@ pub fn learn(data: &Dataset, options: &diagnose::Options) -> Result<Learnt, Diag
 /// Fits a model's free parameters to a dataset; gives the model and what was fitted.
 pub fn fit(data: &Dataset, model: &Model) -> Result<(Model, Vec<Estimate>), DiagnoseError> {
     match diagnose::level(data) {
-        Level::Ends => diagnose::ends::Ends::new(data)?.fit(model),
+        Level::Ends => fit_to_returns(data, model),
         Level::Tracks => {
             let fitted = diagnose::tracks::fit(&diagnose::tracks_of(data)?, model)?;
             let estimates = diagnose::tracks::estimates(&fitted);
             Ok((fitted.model, estimates))
         }
     }
+}
+
+/// [`fit`] to the return poses alone, even where the runs were observed on the way.
+pub fn fit_to_returns(data: &Dataset, model: &Model) -> Result<(Model, Vec<Estimate>), DiagnoseError> {
+    diagnose::ends::Ends::new(data)?.fit(model)
 }
 
 /// The loop, whatever was observed.
@@ -167,28 +172,26 @@ pub(crate) fn from_evidence<E: Evidence>(evidence: &E, options: &diagnose::Optio
         }
     }
     let mut remarks = Vec::new();
-    loop {
-        let diagnosis = evidence.diagnose(&story.model, options)?;
-        let certified = diagnosis.certified().first().cloned();
-        if let Some(suspect) = certified.filter(|_| story.model.parts().len() < MOST) {
-            let why = match story.with_likeliest(suspect.best, suspect.class.clone(), suspect.p_adjusted) {
-                Ok(candidate) if candidate.last().held_out.weighted < story.last().held_out.weighted => {
-                    story = candidate;
-                    continue;
-                }
-                Ok(_) => "runs that are left out are predicted no better with it".to_owned(),
-                Err(error @ (DiagnoseError::NotConverged { .. } | DiagnoseError::OutOfBounds { .. })) => {
-                    error.to_string()
-                }
-                Err(error) => return Err(error),
-            };
-            let class = suspect.class.join(" or ");
-            remarks.push(format!("{class} is certified (p = {:.3}) but was not added: {why}.", suspect.p_adjusted));
-        }
-        remarks.extend(diagnosis.remarks.iter().cloned());
-        let (steps, model, verdict) = (story.steps, story.model, diagnosis.verdict);
-        return Ok(Learnt { steps, verdict, model, diagnosis, remarks });
+    let mut diagnosis = evidence.diagnose(&story.model, options)?;
+    while story.model.parts().len() < MOST {
+        let Some(suspect) = diagnosis.certified().first().cloned() else { break };
+        let why = match story.grown_by(&suspect, options) {
+            Ok(Some(further)) => {
+                (story, diagnosis) = further;
+                continue;
+            }
+            Ok(None) => "runs that are left out are predicted no better with it".to_owned(),
+            // A model that cannot be fitted, or not be asked what it lacks, is none to learn.
+            Err(error @ (DiagnoseError::NotConverged { .. } | DiagnoseError::OutOfBounds { .. })) => error.to_string(),
+            Err(error) => return Err(error),
+        };
+        let class = suspect.class.join(" or ");
+        remarks.push(format!("{class} is certified (p = {:.3}) but was not added: {why}.", suspect.p_adjusted));
+        break;
     }
+    remarks.extend(diagnosis.remarks.iter().cloned());
+    let (steps, model, verdict) = (story.steps, story.model, diagnosis.verdict);
+    Ok(Learnt { steps, verdict, model, diagnosis, remarks })
 }
 
 /// A model as it grows, on all runs and without each of them.
@@ -221,6 +224,20 @@ impl<'a, E: Evidence> Story<'a, E> {
         self.model = grown(self.evidence, &self.model, effect)?;
         self.tell(Some(effect), class, p);
         Ok(())
+    }
+
+    /// The story with a certified effect more, and what is then missing, where runs left out are predicted better with it.
+    fn grown_by(
+        &self,
+        suspect: &Suspect,
+        options: &diagnose::Options,
+    ) -> Result<Option<(Story<'a, E>, Diagnosis)>, DiagnoseError> {
+        let candidate = self.with_likeliest(suspect.best, suspect.class.clone(), suspect.p_adjusted)?;
+        if candidate.last().held_out.weighted >= self.last().held_out.weighted {
+            return Ok(None);
+        }
+        let diagnosis = self.evidence.diagnose(&candidate.model, options)?;
+        Ok(Some((candidate, diagnosis)))
     }
 
     /// The story in which all runs add `effect`, and each fold what it finds likeliest on its own.

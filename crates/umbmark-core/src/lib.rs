@@ -25,6 +25,7 @@ pub mod likelihood;
 pub mod monte_carlo;
 pub mod parameter;
 pub mod path;
+pub mod preset;
 pub mod random;
 pub mod replay;
 pub mod score;

@@ -12,6 +12,9 @@ mod fitting;
 mod noise;
 mod observed;
 mod simplex;
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+pub(crate) mod watched;
 mod whiten;
 
 pub use fitting::{Column, Fitted};

@@ -305,7 +305,7 @@ mod tests {
 
     fn log(left: &[f64], right: &[f64], reference: Vec<ReferencePose>) -> TickLog {
         let time = (0..left.len()).map(|i| i as f64).collect();
-        TickLog { time, left: left.to_vec(), right: right.to_vec(), reference }
+        TickLog { time, left: left.to_vec(), right: right.to_vec(), reference, ..TickLog::default() }
     }
 
     /// Straight 2 m, a quarter turn to the left on the spot, straight 1 m; still samples between.

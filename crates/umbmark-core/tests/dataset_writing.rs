@@ -35,7 +35,7 @@ fn awkward(seed: u64) -> Dataset {
         }
     }
     let path = Some(path::Path::new(&path::WAYPOINTS, &points, speed).unwrap());
-    Dataset { robot: Some(robot), path, runs, clocks: Vec::new(), topics: Vec::new(), warnings: Vec::new() }
+    Dataset { robot: Some(robot), path, runs, ..Dataset::default() }
 }
 
 fn walk(stream: &mut Stream, fractions: bool) -> TickLog {

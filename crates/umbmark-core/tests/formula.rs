@@ -42,7 +42,7 @@ fn driven(mut truth: Model, tracked: bool) -> Dataset {
             runs.push(Run { name, number, direction: Some(direction), test: TestKind::Systematic, log, returned });
         }
     }
-    Dataset { robot: Some(robot), path: Some(path), runs, clocks: Vec::new(), topics: Vec::new(), warnings: Vec::new() }
+    Dataset { robot: Some(robot), path: Some(path), runs, ..Dataset::default() }
 }
 
 #[test]

@@ -194,14 +194,7 @@ fn one_run(log: TickLog) -> Dataset {
         log: Some(log),
         returned: None,
     };
-    Dataset {
-        robot: Some(Robot::labmate()),
-        path: Some(Path::umbmark()),
-        runs: vec![run],
-        clocks: Vec::new(),
-        topics: Vec::new(),
-        warnings: Vec::new(),
-    }
+    Dataset { robot: Some(Robot::labmate()), path: Some(Path::umbmark()), runs: vec![run], ..Dataset::default() }
 }
 
 #[test]
@@ -212,6 +205,7 @@ fn a_log_is_read_back_as_it_was_written_with_its_robot_and_the_same_bytes_each_t
         left: (0..500).map(|i| f64::from(i / 3)).collect(),
         right: (0..500).map(|i| -f64::from(i) * 7.0).collect(),
         reference: vec![pose(0, Some(0.0)), pose(3, None), pose(7, Some(-3.0)), pose(499, Some(-3.2))],
+        ..TickLog::default()
     };
     let data = one_run(log);
     let folder = tempfile::tempdir().unwrap();
@@ -242,7 +236,7 @@ fn what_an_mcap_file_cannot_hold_is_refused_and_nothing_is_left_behind() {
         time: time.to_vec(),
         left: vec![0.0, left],
         right: vec![0.0; 2],
-        reference: Vec::new(),
+        ..TickLog::default()
     };
     assert!(said(at([0.0, 3e9], 1.0)).contains("time 3000000000 s cannot be written; stamps go from 0"));
     // Two times of the same nanosecond.

@@ -45,7 +45,7 @@ impl From<core::Dataset> for Dataset {
 }
 
 /// What a pickled dataset holds beside robot and path.
-#[derive(Serialize, Deserialize)]
+#[derive(Default, Serialize, Deserialize)]
 struct Rest {
     runs: Vec<core::Run>,
     clocks: Vec<RunClock>,
@@ -59,8 +59,7 @@ impl Dataset {
     #[pyo3(signature = (robot=None, path=None, runs=Vec::new()))]
     fn new(robot: Option<&Robot>, path: Option<&Path>, runs: Vec<Py<Run>>) -> Dataset {
         let runs = runs.iter().map(|run| run.get().core().clone()).collect();
-        let rest = Rest { runs, clocks: Vec::new(), topics: Vec::new(), warnings: Vec::new() };
-        rest.with(robot, path)
+        Rest { runs, ..Rest::default() }.with(robot, path)
     }
 
     /// The nominal robot; None where a return sheet was given without one.

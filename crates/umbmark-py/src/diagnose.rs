@@ -5,7 +5,8 @@ use std::sync::Arc;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_core::compare as comparing;
-use umbmark_core::diagnose::{self as core, DiagnoseError, Options, base_model, first_model};
+use umbmark_core::diagnose::{self as core, DiagnoseError, Level, Options, base_model, first_model};
+use umbmark_core::drive::Robot;
 use umbmark_core::{document, effect, learn as learning};
 
 use crate::dataset::Dataset;
@@ -16,31 +17,45 @@ use crate::{probability, refused};
 /// Numbers of simulated tests that a p-value may come from.
 const DRAWS: std::ops::RangeInclusive<usize> = 99..=99_999;
 
-/// Models beside measurements; without any, the nominal robot, and E_d and E_b fitted to the data.
+/// Models beside measurements; without any, the nominal robot, and the first model fitted to the data.
 #[pyfunction]
 pub fn compare(
     py: Python<'_>,
     data: &Dataset,
     models: Vec<(String, Model)>,
     options: (f64, usize, u64),
+    return_poses: bool,
     threads: usize,
 ) -> PyResult<String> {
-    let options = options_of(options, true)?;
+    let options = options_of(options, return_poses)?;
     let shared = Arc::clone(&data.0);
     let robot = shared.nominal_robot().map_err(refused)?.clone();
-    let comparison = watched(py, threads, None, move |_| -> Result<_, DiagnoseError> {
-        let models = if models.is_empty() {
-            let (fitted, _) = learning::fit(&shared, &base_model(&robot)?)?;
-            vec![
-                ("nominal robot".into(), effect::Model::new(&robot)),
-                ("E_d and E_b, fitted to these runs".into(), fitted),
-            ]
-        } else {
-            models.into_iter().map(|(name, model)| (name, model.model)).collect()
+    let given: Vec<_> = models.into_iter().map(|(name, model)| (name, model.model)).collect();
+    let document = watched(py, threads, None, move |_| -> Result<_, DiagnoseError> {
+        let level = options.evidence(&shared);
+        let models = match (given.is_empty(), level) {
+            (false, _) => given,
+            (true, Level::Ends) => {
+                let (fitted, _) = learning::fit_to_returns(&shared, &base_model(&robot)?)?;
+                vec![nominal(&robot), ("E_d and E_b, fitted to these runs".into(), fitted)]
+            }
+            (true, Level::Tracks) => {
+                let (fitted, _) = learning::fit(&shared, &first_model(&shared)?)?;
+                vec![nominal(&robot), ("E_d, E_b and E_s, fitted to these runs".into(), fitted)]
+            }
         };
-        comparing::compare(&shared, &models, &options)
+        Ok(match level {
+            Level::Ends => document::comparison(&comparing::compare(&shared, &models, &options)?, &options),
+            Level::Tracks => {
+                document::track_comparison(&comparing::compare_tracks(&shared, &models, &options)?, &options)
+            }
+        })
     })?;
-    Ok(document::comparison(&comparison.map_err(refused)?, &options).to_string())
+    Ok(document.map_err(refused)?.to_string())
+}
+
+fn nominal(robot: &Robot) -> (String, effect::Model) {
+    ("nominal robot".to_owned(), effect::Model::new(robot))
 }
 
 /// What a model is missing, and the model with its free parameters fitted.

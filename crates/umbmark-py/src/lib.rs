@@ -14,6 +14,7 @@ mod keys;
 mod model;
 mod monte_carlo;
 mod path;
+mod preset;
 mod robot;
 mod run;
 mod score;
@@ -42,6 +43,8 @@ mod _umbmark {
     use super::monte_carlo::{Ensemble, Study};
     #[pymodule_export]
     use super::path::Path;
+    #[pymodule_export]
+    use super::preset::presets;
     #[pymodule_export]
     use super::robot::Robot;
     #[pymodule_export]

@@ -8,7 +8,7 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use umbmark_core::document::{self, Theory};
+use umbmark_core::document::{self, Theory, Told};
 use umbmark_core::engine::Update;
 use umbmark_core::monte_carlo::{self as core, Batch, Metric, Shard, Statistics};
 use umbmark_core::replay::check_on_path;
@@ -202,7 +202,8 @@ impl Study {
     fn _document(&self, ensemble: &Ensemble, partial: bool, trials_per_s: Option<f64>) -> String {
         let noisy = self.study.model.get("wheel_noise", "k_sqrt_m").is_some();
         let assumed: Vec<String> = (!noisy).then(|| "no wheel noise".to_owned()).into_iter().collect();
-        let described = document::study(&self.study, &self.theory, &assumed);
+        let told = Told { assumed: &assumed, ..Told::default() };
+        let described = document::study(&self.study, &self.theory, &told);
         document::ensemble(&ensemble.0, self.study.seed, partial, trials_per_s, &described).to_string()
     }
 

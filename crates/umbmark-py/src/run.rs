@@ -69,7 +69,7 @@ impl Run {
             (Some(time), Some(left), Some(right)) => {
                 let [time, left, right] = [time, left, right].map(|array| array.as_array().to_vec());
                 let reference = references(reference_sample, reference_pose)?;
-                Some(checked(TickLog { time, left, right, reference })?)
+                Some(checked(TickLog { time, left, right, reference, ..TickLog::default() })?)
             }
             (None, None, None) => None,
             _ => return Err(PyValueError::new_err("time_s, ticks_left and ticks_right go together")),
@@ -181,9 +181,7 @@ impl Run {
     }
 
     fn alone(run: core::Run) -> Run {
-        let (clocks, topics, warnings) = (Vec::new(), Vec::new(), Vec::new());
-        let data = Dataset { robot: None, path: None, runs: vec![run], clocks, topics, warnings };
-        Run { data: Arc::new(data), index: 0 }
+        Run { data: Arc::new(Dataset { runs: vec![run], ..Dataset::default() }), index: 0 }
     }
 
     fn column<'py>(&self, py: Python<'py>, of: fn(&TickLog) -> &Vec<f64>) -> Option<Bound<'py, PyArray1<f64>>> {

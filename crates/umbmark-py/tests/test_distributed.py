@@ -35,7 +35,7 @@ def quiet() -> None:
 
 
 def cluster(workers: int) -> Iterator[Client]:
-    made: Any = LocalCluster  # type: ignore[no-untyped-call]
+    made: Any = LocalCluster
     with (
         made(
             n_workers=workers,
@@ -66,7 +66,7 @@ def bits(found: umbmark.MonteCarlo) -> list[bytes]:
 
 def kill_one(client: Client) -> int:
     """Kill the process of one worker, as a machine that fails would."""
-    pids = client.run(os.getpid)  # type: ignore[no-untyped-call]
+    pids = client.run(os.getpid)
     victim = next(iter(pids.values()))
     os.kill(victim, signal.SIGKILL)
     return int(victim)
@@ -82,7 +82,7 @@ def test_a_killed_worker_changes_no_bit(client: Client) -> None:
 
     many = umbmark.distributed.monte_carlo(client, MODEL, chunk=1024, progress=at, **keys)
     assert killed
-    assert killed[0] not in client.run(os.getpid).values()  # type: ignore[no-untyped-call]
+    assert killed[0] not in client.run(os.getpid).values()
     one = umbmark.monte_carlo(MODEL, **keys)
     assert (many.n, many.partial, bits(many)) == (20_000, False, bits(one))
     documents = [found.to_dict() | {"trials_per_s": None} for found in (many, one)]

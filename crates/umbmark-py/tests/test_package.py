@@ -3,6 +3,7 @@
 import doctest
 import importlib.metadata
 import inspect
+import subprocess
 import sys
 import threading
 import time
@@ -65,3 +66,10 @@ def test_another_thread_runs_while_scores_are_computed() -> None:
         done.set()
         sys.setswitchinterval(usual)
     assert after > before
+
+
+def test_the_import_brings_nothing_heavy_along() -> None:
+    heavy = ("matplotlib", "pandas", "polars", "distributed", "tqdm", "scipy")
+    code = f"import sys, umbmark; print([name for name in {heavy} if name in sys.modules])"
+    run = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert run.stdout == "[]\n"

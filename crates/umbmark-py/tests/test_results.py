@@ -88,6 +88,20 @@ def test_a_result_has_a_table_a_figure_and_a_pickle(verb: str, folder: Path) -> 
     pyplot.close("all")
 
 
+def test_models_are_compared_along_tracks(tracks: Path) -> None:
+    from matplotlib import pyplot
+
+    found = umbmark.compare(tracks, {"nominal": umbmark.Model()}, draws=99)
+    assert isinstance(found, umbmark.TrackComparison)
+    (nominal,) = found.models
+    assert not nominal.explains
+    assert found.table()[0]["rmse_m"] == nominal.along.rmse_m
+    assert pickle.loads(pickle.dumps(found)) == found
+    assert len(found.plot().patches) == 2
+    assert isinstance(umbmark.compare(tracks, return_poses=True, draws=99), umbmark.Comparison)
+    pyplot.close("all")
+
+
 def test_a_dataset_is_drawn_by_returns_and_by_tracks(tracks: Path) -> None:
     from matplotlib import pyplot
 

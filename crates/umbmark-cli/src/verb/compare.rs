@@ -4,18 +4,21 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use umbmark_core::compare::{Comparison, Judged, NoiseSource, Statistic, compare};
+use umbmark_core::compare::tracks::TrackComparison;
+use umbmark_core::compare::{Comparison, Judged, NoiseSource, Statistic, compare, compare_tracks};
 use umbmark_core::dataset::{Dataset, read_model};
-use umbmark_core::diagnose::{Options, base_model};
+use umbmark_core::diagnose::{Level, Options, base_model, first_model};
 use umbmark_core::document;
 use umbmark_core::effect::Model;
-use umbmark_core::learn::fit;
+use umbmark_core::learn::{fit, fit_to_returns};
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::model_report::{circle_table, contrasts_table, p_text};
 use crate::prose::hanging;
 use crate::table::table;
+use crate::test_arguments::TestArguments;
+use crate::tracks_report;
 
 /// Arguments of `compare`.
 #[derive(Debug, clap::Args)]
@@ -24,17 +27,12 @@ pub struct Arguments {
     data: DataArguments,
 
     /// A model to hold against it, with the values it has; may be given more than once
-    /// [default: the nominal robot, and E_d and E_b fitted to this data]
+    /// [default: the nominal robot, and E_d and E_b (on tracks E_s too) fitted to this data]
     #[arg(long, value_name = "FILE")]
     model: Vec<PathBuf>,
 
-    /// Simulated tests for the p-values
-    #[arg(long, default_value_t = 999, value_name = "N", value_parser = clap::value_parser!(u32).range(99..=99_999))]
-    draws: u32,
-
-    /// Probability with which a right model is accused all the same
-    #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = super::size)]
-    size: f64,
+    #[command(flatten)]
+    test: TestArguments,
 
     /// Exit with code 3 if no model explains the data
     #[arg(long)]
@@ -43,31 +41,58 @@ pub struct Arguments {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
-    let options =
-        Options { size: arguments.size, draws: arguments.draws as usize, seed: session.seed(), ends_only: true };
-    let comparison = session.on_threads(|| -> anyhow::Result<Comparison> {
-        Ok(compare(&data, &models(&arguments, &data)?, &options)?)
-    })??;
+    let options = arguments.test.options(session);
     for warning in data.warnings.iter().filter(|_| !session.json()) {
         session.message("warning", warning);
     }
-    if session.json() {
-        session.print_json(&document::comparison(&comparison, &options))?;
-    } else {
-        write!(session.out(), "{}", text(&comparison, &options))?;
-    }
-    let explained = comparison.models.iter().any(|model| model.explains(options.size));
+    let explained = match options.evidence(&data) {
+        Level::Ends => on_return_poses(&arguments, &data, &options, session)?,
+        Level::Tracks => on_tracks(&arguments, &data, &options, session)?,
+    };
     Ok(if arguments.check && !explained { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }
 
-fn models(arguments: &Arguments, data: &Dataset) -> anyhow::Result<Vec<(String, Model)>> {
+/// Says whether some model explains the data.
+fn on_return_poses(
+    arguments: &Arguments,
+    data: &Dataset,
+    options: &Options,
+    session: &mut Session,
+) -> anyhow::Result<bool> {
+    let comparison = session.on_threads(|| -> anyhow::Result<Comparison> {
+        Ok(compare(data, &models(arguments, data, Level::Ends)?, options)?)
+    })??;
+    if session.json() {
+        session.print_json(&document::comparison(&comparison, options))?;
+    } else {
+        write!(session.out(), "{}", text(&comparison, options))?;
+    }
+    Ok(comparison.models.iter().any(|model| model.explains(options.size)))
+}
+
+/// Says whether some model explains the data.
+fn on_tracks(arguments: &Arguments, data: &Dataset, options: &Options, session: &mut Session) -> anyhow::Result<bool> {
+    let comparison = session.on_threads(|| -> anyhow::Result<TrackComparison> {
+        Ok(compare_tracks(data, &models(arguments, data, Level::Tracks)?, options)?)
+    })??;
+    if session.json() {
+        session.print_json(&document::track_comparison(&comparison, options))?;
+    } else {
+        let terminal = session.on_terminal();
+        write!(session.out(), "{}", tracks_report::text(&comparison, options, terminal))?;
+    }
+    Ok(comparison.models.iter().any(|model| model.explains(options.size)))
+}
+
+/// The models that were given; else the nominal robot, and that with its first errors fitted.
+fn models(arguments: &Arguments, data: &Dataset, level: Level) -> anyhow::Result<Vec<(String, Model)>> {
     let robot = data.nominal_robot()?;
     if arguments.model.is_empty() {
-        let (fitted, _) = fit(data, &base_model(robot)?)?;
-        return Ok(vec![
-            ("nominal robot".into(), Model::new(robot)),
-            ("E_d and E_b, fitted to these runs".into(), fitted),
-        ]);
+        let (name, (fitted, _)) = match level {
+            Level::Ends => ("E_d and E_b, fitted to these runs", fit_to_returns(data, &base_model(robot)?)?),
+            Level::Tracks => ("E_d, E_b and E_s, fitted to these runs", fit(data, &first_model(data)?)?),
+        };
+        return Ok(vec![("nominal robot".into(), Model::new(robot)), (name.into(), fitted)]);
     }
     let read = |file: &PathBuf| Ok((file.display().to_string(), read_model(file, robot)?.0));
     arguments.model.iter().map(read).collect()

@@ -13,6 +13,7 @@ use crate::data_arguments::DataArguments;
 use crate::model_report::{circle_table, contrasts_table, estimates_table, model_of, p_text, unit_of};
 use crate::prose::hanging;
 use crate::table::{table, with_precision_of};
+use crate::test_arguments::TestArguments;
 
 /// So many experiments are printed; --json has all.
 const EXPERIMENTS: usize = 6;
@@ -27,17 +28,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
 
-    /// Use return poses alone, even where the runs were observed on the way
-    #[arg(long)]
-    return_poses: bool,
-
-    /// Simulated tests for p-values that have no closed form
-    #[arg(long, default_value_t = 999, value_name = "N", value_parser = clap::value_parser!(u32).range(99..=99_999))]
-    draws: u32,
-
-    /// Probability with which a complete model is accused all the same
-    #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = super::size)]
-    size: f64,
+    #[command(flatten)]
+    test: TestArguments,
 
     /// Exit with code 3 if something is missing
     #[arg(long)]
@@ -47,12 +39,7 @@ pub struct Arguments {
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
     let model = model_of(arguments.model.as_deref(), &data)?;
-    let options = Options {
-        size: arguments.size,
-        draws: arguments.draws as usize,
-        seed: session.seed(),
-        ends_only: arguments.return_poses,
-    };
+    let options = arguments.test.options(session);
     let diagnosis = session.on_threads(|| diagnose(&data, &model, &options))??;
     for warning in data.warnings.iter().filter(|_| !session.json()) {
         session.message("warning", warning);

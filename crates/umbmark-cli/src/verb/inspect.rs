@@ -68,9 +68,7 @@ fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
     for check in &inspection.checks {
         let mark = if check.ok { "ok" } else { "LOOK" };
         text += &hanging(&format!("  {mark:<6}{}", check.name), 32, &check.found);
-        if !check.ok {
-            text += &hanging("", 32, &format!("good: {}", check.good));
-        }
+        text += &hanging("", 32, &format!("good: {}", check.good));
     }
     text += "\nwhat can it determine?\n";
     text += &hanging("  rank", 32, &format!("{} of 3 combinations of E_d, E_b and E_s", inspection.rank));

@@ -15,6 +15,7 @@ use crate::data_arguments::DataArguments;
 use crate::model_report::{estimates_table, p_text, write_model};
 use crate::prose::hanging;
 use crate::table::table;
+use crate::test_arguments::TestArguments;
 
 /// Arguments of `learn`.
 #[derive(Debug, clap::Args)]
@@ -26,17 +27,8 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 
-    /// Use return poses alone, even where the runs were observed on the way
-    #[arg(long)]
-    return_poses: bool,
-
-    /// Simulated tests for p-values that have no closed form
-    #[arg(long, default_value_t = 999, value_name = "N", value_parser = clap::value_parser!(u32).range(99..=99_999))]
-    draws: u32,
-
-    /// Probability with which an effect is added to a complete model
-    #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = super::size)]
-    size: f64,
+    #[command(flatten)]
+    test: TestArguments,
 
     /// Replace a file that exists
     #[arg(long)]
@@ -45,12 +37,7 @@ pub struct Arguments {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
-    let options = Options {
-        size: arguments.size,
-        draws: arguments.draws as usize,
-        seed: session.seed(),
-        ends_only: arguments.return_poses,
-    };
+    let options = arguments.test.options(session);
     let learnt = session.on_threads(|| learn(&data, &options))??;
     if let Some(file) = &arguments.output {
         write_model(&learnt.model, file, arguments.force)?;

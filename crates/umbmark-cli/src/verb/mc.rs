@@ -11,6 +11,7 @@ use umbmark_core::document::{self, Theory};
 use umbmark_core::engine::Update;
 use umbmark_core::monte_carlo::{Distribution, Draw, Ensemble, Metric, Row, Shard, Statistics, Study};
 use umbmark_core::parameter::Parameter;
+use umbmark_core::preset::Published;
 use umbmark_core::simulate::{Odometry, Phase};
 
 use crate::checkpoint::Checkpoint;
@@ -110,8 +111,8 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    fn study(&self, seed: u64) -> anyhow::Result<(Study, Vec<String>)> {
-        let Setup { path, model, draws, assumed } = self.setup.resolve()?;
+    fn study(&self, seed: u64) -> anyhow::Result<(Study, Known)> {
+        let Setup { path, model, draws, sources, assumed, published } = self.setup.resolve()?;
         let robot = model.robot();
         let update = match self.update {
             UpdateKind::Arc => Update::Arc,
@@ -130,7 +131,7 @@ impl Arguments {
         };
         let runs = self.setup.direction.runs(self.runs);
         let study = Study { draws, odometry, path, phase, runs, ..Study::new(model, self.trials(), seed) };
-        Ok((study, assumed))
+        Ok((study, Known { sources, assumed, published }))
     }
 
     fn trials(&self) -> u64 {
@@ -182,8 +183,8 @@ fn length(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let (study, assumed) = arguments.study(session.seed())?;
-    let description = describe(&study, &assumed)?;
+    let (study, known) = arguments.study(session.seed())?;
+    let description = describe(&study, &known)?;
     let mut checkpoint = arguments.checkpoint(&study, &description)?;
     let metrics = study.metrics();
     let mut out =
@@ -268,8 +269,15 @@ impl TrialsFile {
     }
 }
 
+/// What is to be said of a study beside its numbers.
+struct Known {
+    sources: Vec<String>,
+    assumed: Vec<String>,
+    published: Option<Published>,
+}
+
 /// The study in words and numbers.
-fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
+fn describe(study: &Study, known: &Known) -> anyhow::Result<Description> {
     let theory = Theory::of(study)?;
     let path = &study.path;
     let sizes = path.shape().parameters.iter().zip(path.values());
@@ -294,9 +302,12 @@ fn describe(study: &Study, assumed: &[String]) -> anyhow::Result<Description> {
         }
         heading.push(format!("  {name}: {}", words.join(", ")));
     }
-    heading.extend(assumed.iter().map(|assumption| format!("  assumed: {assumption}")));
-    let document = document::study(study, &theory, assumed);
-    Ok(Description { heading, theory: in_words(&theory, study.runs), seed: study.seed, document })
+    heading.extend(known.sources.iter().map(|source| format!("  from the paper: {source}")));
+    heading.extend(known.assumed.iter().map(|assumption| format!("  assumed: {assumption}")));
+    let told = document::Told { sources: &known.sources, assumed: &known.assumed, published: known.published };
+    let document = document::study(study, &theory, &told);
+    let published = known.published.map(|p| (p.row.to_owned(), p.e_max_sys, p.sigma));
+    Ok(Description { heading, theory: in_words(&theory, study.runs), seed: study.seed, document, published })
 }
 
 /// What the test gives without noise.

@@ -54,7 +54,7 @@ impl Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let Setup { path, model, draws, assumed } = arguments.setup.resolve()?;
+    let Setup { path, model, draws, assumed, .. } = arguments.setup.resolve()?;
     let model = draw_parameters(&model, &draws, session.seed(), 0)?;
     let tests = match (is_extended(&model), arguments.is_log()) {
         (true, false) => &[TestKind::Systematic, TestKind::Bumps][..],

@@ -36,14 +36,7 @@ fn dataset(robot: &Robot, path: &Path, errors: &[(Direction, ReturnError)]) -> D
         returned: Some(*error),
     };
     let runs = errors.iter().enumerate().map(run).collect();
-    Dataset {
-        robot: Some(robot.clone()),
-        path: Some(path.clone()),
-        runs,
-        clocks: vec![],
-        topics: vec![],
-        warnings: vec![],
-    }
+    Dataset { robot: Some(robot.clone()), path: Some(path.clone()), runs, ..Dataset::default() }
 }
 
 fn noise_free(truth: &Correction) -> Dataset {

@@ -8,7 +8,7 @@ mod moves;
 mod wheels;
 
 use super::dead_reckoning::{EndPose, computed_poses, return_error};
-use super::{Alignment, Dataset, Measured, ReturnError, Run};
+use super::{Alignment, Dataset, Measured, Mended, ReturnError, Run};
 use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::geometry::{Pose2, wrap};
@@ -17,6 +17,7 @@ use crate::path::{Direction, Path};
 pub use determine::Determined;
 pub use log_facts::{Coverage, LogFacts, ReferenceFacts};
 pub use moves::MovesFound;
+pub(crate) use moves::{Done, MoveDone, moves_of};
 pub use wheels::{Wheels, WheelsFound};
 
 /// The findings on a dataset.
@@ -79,6 +80,7 @@ impl Dataset {
         if !self.clocks.is_empty() {
             checks.retain(|check| check.name != "jitter");
         }
+        checks.extend(mended_checks(&logs, self.robot.as_ref()));
         if let Some(robot) = &self.robot {
             checks.extend(sheet_check(&self.runs, robot));
         }
@@ -168,6 +170,43 @@ fn log_checks(logs: &[LogFacts], path: Option<&Path>) -> Vec<Check> {
     checks.extend(reference_checks(logs));
     checks.extend(alignment_checks(logs));
     checks
+}
+
+/// What had to be mended in the counts and the rows of all logs.
+fn mended_checks(logs: &[LogFacts], robot: Option<&Robot>) -> Vec<Check> {
+    if logs.is_empty() {
+        return Vec::new();
+    }
+    let sum = |of: fn(&Mended) -> usize| logs.iter().map(|log| of(&log.mended)).sum::<usize>();
+    let (roll_overs, resets) = (sum(|m| m.roll_overs), sum(|m| m.resets));
+    let (late, repeated, stale) = (sum(|m| m.late), sum(|m| m.repeated), sum(|m| m.stale));
+    let width = robot.and_then(|robot| robot.encoder.counter_bits());
+    vec![
+        Check {
+            name: "counter roll-overs",
+            found: match width {
+                Some(bits) => format!("{roll_overs} of counters of {bits} bits, undone"),
+                None => "none".into(),
+            },
+            good: "any number, with counter_bits in robot.toml",
+            ok: true,
+        },
+        Check {
+            name: "counter resets",
+            found: if resets == 0 { "none".into() } else { format!("{resets}, counted on from zero") },
+            good: "none: what the wheels turned around a reset is lost",
+            ok: resets == 0,
+        },
+        Check {
+            name: "rows and poses mended",
+            found: match late + repeated + stale {
+                0 => "none".into(),
+                _ => format!("{late} out of order, {repeated} repeated, {stale} stale poses"),
+            },
+            good: "none: a logger or tracker that keeps up",
+            ok: late + repeated + stale == 0,
+        },
+    ]
 }
 
 /// The shape of the first log that has another one than the path, else of the first.

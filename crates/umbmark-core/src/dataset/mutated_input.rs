@@ -151,7 +151,7 @@ fn placed(track: &ReferenceTrack) -> bool {
     assert!(values().all(|value| value.is_finite()));
     let time: Vec<f64> = (0..40).map(|i| 0.05 * f64::from(i)).collect();
     let counts: Vec<f64> = (0..40).map(|i| f64::from(i * i)).collect();
-    let mut log = TickLog { time, left: counts.clone(), right: counts, reference: Vec::new() };
+    let mut log = TickLog { time, left: counts.clone(), right: counts, ..TickLog::default() };
     if let Ok(found) = synchronise(&log, track, &Robot::labmate()) {
         assert!(found.offset.value.is_finite() && found.rate.std_error.is_finite());
     }

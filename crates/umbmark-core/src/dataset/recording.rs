@@ -3,7 +3,7 @@
 mod order;
 
 use super::error::DatasetError;
-use super::{ReferencePose, TickLog};
+use super::{Mended, ReferencePose, TickLog};
 use crate::drive::{Robot, roll_over};
 
 /// No wheel of a robot rolls faster \[m/s\].
@@ -31,14 +31,6 @@ pub(super) struct Recording {
     pub reference: Vec<ReferencePose>,
 }
 
-/// What was mended in the counts of a log.
-#[derive(Default)]
-struct Mended {
-    rolled: u32,
-    /// Rows before which a counter was set back to zero.
-    reset: Vec<usize>,
-}
-
 impl Recording {
     /// Puts rows in order, undoes roll-overs of a counter of `bits` bits and resets, and counts from START.
     pub fn into_log(
@@ -47,27 +39,27 @@ impl Recording {
         bits: Option<u32>,
         warnings: &mut Vec<String>,
     ) -> Result<TickLog, DatasetError> {
-        order::put_in_order(&mut self, warnings)?;
+        let mut mended = Mended::default();
+        order::put_in_order(&mut self, &mut mended, warnings)?;
         if self.per_cycle {
             self.add_up();
         }
-        let mut mended = Mended::default();
-        let [left, right] = [0, 1].map(|wheel| self.unroll(wheel, robot, bits, &mut mended));
-        let (left, right) = (left?, right?);
-        if let (Some(bits), 1..) = (bits, mended.rolled) {
-            warnings.push(format!("{}: {} roll-overs of the {bits}-bit counters undone", self.file, mended.rolled));
+        let mut reset_rows = Vec::new();
+        let mut unroll = |wheel| self.unroll(wheel, robot, bits, &mut mended.roll_overs, &mut reset_rows);
+        let (left, right) = (unroll(0)?, unroll(1)?);
+        if let (Some(bits), 1..) = (bits, mended.roll_overs) {
+            warnings.push(format!("{}: {} roll-overs of the {bits}-bit counters undone", self.file, mended.roll_overs));
         }
-        mended.reset.sort_unstable();
-        mended.reset.dedup();
-        if let [first, ..] = mended.reset[..] {
+        reset_rows.sort_unstable();
+        reset_rows.dedup();
+        mended.resets = reset_rows.len();
+        if let [first, ..] = reset_rows[..] {
             warnings.push(format!(
                 "{}:{}: {} counter resets: counted on from zero; what the wheels turned between the rows around each is lost",
-                self.file,
-                self.lines[first],
-                mended.reset.len()
+                self.file, self.lines[first], mended.resets
             ));
         }
-        Ok(TickLog { time: self.time, left, right, reference: self.reference })
+        Ok(TickLog { time: self.time, left, right, reference: self.reference, mended })
     }
 
     fn add_up(&mut self) {
@@ -80,13 +72,14 @@ impl Recording {
         }
     }
 
-    /// Cumulative ticks of a wheel from its first reading.
+    /// Cumulative ticks of a wheel from its first reading; counts roll-overs and lists the rows before which it was reset.
     fn unroll(
         &self,
         wheel: usize,
         robot: Option<&Robot>,
         bits: Option<u32>,
-        mended: &mut Mended,
+        roll_overs: &mut usize,
+        reset_rows: &mut Vec<usize>,
     ) -> Result<Vec<f64>, DatasetError> {
         let readings = &self.counts[wheel];
         if let Some(at) = bits.and(readings.iter().position(|reading| reading.fract() != 0.0)) {
@@ -102,10 +95,10 @@ impl Recording {
             let plain = pair[1] - pair[0];
             let mut step = bits.map_or(plain, |bits| roll_over(pair[0] as i64, pair[1] as i64, bits) as f64);
             if was_reset(pair[0], pair[1], expected, bits) {
-                mended.reset.push(i + 1);
+                reset_rows.push(i + 1);
                 (before_reset, origin, step) = (total, 0.0, pair[1]);
             } else {
-                mended.rolled += u32::from(step != plain);
+                *roll_overs += usize::from(step != plain);
             }
             if let (None, Some(bits)) = (bits, rolled_bits(step.abs(), expected)) {
                 return Err(self.rolled_over(wheel, i, bits));

@@ -23,6 +23,7 @@ pub(super) fn drop_stale(file: &str, log: &mut TickLog, robot: &Robot, warnings:
     }
     let stale = log.reference.len() - kept.len();
     log.reference = kept;
+    log.mended.stale = stale;
     if stale > 0 {
         warnings.push(format!(
             "{file}: {stale} poses repeat the one before while the wheels turn (stale) and were left out"

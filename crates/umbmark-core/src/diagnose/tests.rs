@@ -34,14 +34,7 @@ pub(crate) fn dataset(path: &Path, errors: &[(Direction, ReturnError)]) -> Datas
         returned: Some(*error),
     };
     let runs = errors.iter().enumerate().map(run).collect();
-    Dataset {
-        robot: Some(Robot::labmate()),
-        path: Some(path.clone()),
-        runs,
-        warnings: vec![],
-        clocks: vec![],
-        topics: vec![],
-    }
+    Dataset { robot: Some(Robot::labmate()), path: Some(path.clone()), runs, ..Dataset::default() }
 }
 
 /// Tests of n + n runs on a path: the end poses that the model predicts with the scatter that its wheel noise gives them.

@@ -61,6 +61,13 @@ fn log_json(log: &LogFacts) -> Value {
         "jitter": log.jitter,
         "longest_gap_s": log.longest_gap,
         "gaps": log.gaps,
+        "mended": {
+            "roll_overs": log.mended.roll_overs,
+            "resets": log.mended.resets,
+            "rows_out_of_order": log.mended.late,
+            "rows_repeated": log.mended.repeated,
+            "stale_poses": log.mended.stale,
+        },
         "length_m": log.length,
         "heading_rad": log.heading,
         "heading_off_rad": log.heading_off,

@@ -4,6 +4,7 @@ use crate::calibrate::{Angles, Correction};
 use crate::dataset::Run;
 use crate::monte_carlo::{Distribution, Draw, Ensemble, Metric, Statistics, Study, StudyError};
 use crate::path::{Direction, SQUARE};
+use crate::preset::Published;
 use crate::score::summarise;
 use serde_json::{Map, Value, json};
 
@@ -40,8 +41,19 @@ impl Theory {
     }
 }
 
-/// What a study is: what its [`ensemble`] tells beside the metrics. `assumed` is what nobody said, a phrase each.
-pub fn study(study: &Study, theory: &Theory, assumed: &[String]) -> Map<String, Value> {
+/// What is to be said of a study beside its numbers.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Told<'a> {
+    /// Where values are from, a phrase each.
+    pub sources: &'a [String],
+    /// What nobody said and was assumed, a phrase each.
+    pub assumed: &'a [String],
+    /// What was published of this test.
+    pub published: Option<Published>,
+}
+
+/// What a study is: what its [`ensemble`] tells beside the metrics.
+pub fn study(study: &Study, theory: &Theory, told: &Told) -> Map<String, Value> {
     let path = &study.path;
     let sizes = path.shape().parameters.iter().zip(path.values());
     let sizes: Map<String, Value> = sizes.map(|(p, v)| (p.name.to_owned(), json!(v))).collect();
@@ -51,7 +63,9 @@ pub fn study(study: &Study, theory: &Theory, assumed: &[String]) -> Map<String, 
         ("robot", json!(study.robot().name)),
         ("path", json!({ "shape": path.shape().name, "sizes": sizes })),
         ("effects", effects(study)),
-        ("assumed", json!(assumed)),
+        ("sources", json!(told.sources)),
+        ("assumed", json!(told.assumed)),
+        ("published", json!(told.published.map(published))),
         ("version", json!(crate::VERSION)),
     ];
     members.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
@@ -71,6 +85,10 @@ fn effects(study: &Study) -> Value {
         Value::Object(entry)
     });
     Value::Array(effects.collect())
+}
+
+fn published(p: Published) -> Value {
+    json!({ "row": p.row, "e_max_sys_m": p.e_max_sys, "sigma_m": p.sigma })
 }
 
 fn distribution(draw: &Draw) -> Value {

@@ -114,6 +114,11 @@ impl Model {
         &self.robot
     }
 
+    /// The same effects of another nominal robot.
+    pub fn of(self, robot: &Robot) -> Model {
+        Model { robot: robot.clone(), ..self }
+    }
+
     /// The effects of the model, in the order in which they act.
     pub fn parts(&self) -> &[Part] {
         &self.parts

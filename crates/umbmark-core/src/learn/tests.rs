@@ -15,10 +15,22 @@ fn nothing_is_added_to_a_complete_model_but_for_one_in_twenty() {
     let trials = trials(100);
     let data = simulated(&robot_with(&[]), &Path::umbmark(), 5, 29, 0..trials);
     let options = Options { draws: 499, ..Options::default() };
-    let added = data.par_iter().filter(|data| learn(data, &options).unwrap().steps.len() > 3).count();
+    let learnt: Vec<Result<Learnt, DiagnoseError>> = data.par_iter().map(|data| learn(data, &options)).collect();
+    let failed: Vec<_> = learnt.iter().enumerate().filter_map(|(trial, l)| Some((trial, l.as_ref().err()?))).collect();
+    let added = learnt.iter().flatten().filter(|learnt| learnt.steps.len() > 3).count();
     let share = added as f64 / trials as f64;
-    let _ = writeln!(std::io::stderr(), "false additions: {added} of {trials}");
+    let _ = writeln!(std::io::stderr(), "false additions: {added} of {trials}; failed: {failed:?}");
+    assert!(failed.is_empty());
     assert!(share < 0.05 + margin(0.05, trials), "{share}");
+}
+
+/// The 1207th set of the study above: the slope that seems to be missing leaves a model whose further fit does not settle.
+#[test]
+fn an_effect_after_which_nothing_can_be_asked_is_not_added_and_the_story_is_told() {
+    let data = simulated(&robot_with(&[]), &Path::umbmark(), 5, 29, 1206..1207).remove(0);
+    let learnt = learn(&data, &Options { draws: 499, ..Options::default() }).unwrap();
+    assert_eq!(learnt.steps.len(), 3);
+    assert!(learnt.remarks.iter().any(|remark| remark.contains("was not added: the fit of the model stopped")));
 }
 
 /// Held-out error of a model with some effects more, the same in every fold.

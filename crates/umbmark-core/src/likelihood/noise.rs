@@ -178,41 +178,10 @@ pub(crate) fn gram(values: &[f64], columns: usize) -> DMatrix<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::watched::watched;
     use super::*;
-    use crate::dataset::{Dataset, Run};
     use crate::drive::Robot;
-    use crate::effect::{Model, TestKind};
-    use crate::path::{Direction, Path, SQUARE, SpeedProfile};
-    use crate::simulate::{Odometry, Phase, Simulator, Truth};
-
-    /// `runs` simulated squares each way, watched at 20 Hz.
-    fn watched(model: &Model, runs: u64) -> Dataset {
-        let path = Path::new(&SQUARE, &[2.0], SpeedProfile::default()).unwrap();
-        let robot = model.robot();
-        let mut simulator = Simulator::new(robot, &path, Odometry::EveryTick, Phase::Random).unwrap();
-        let mut truth = Truth::new(model);
-        let mut data = Dataset {
-            robot: Some(robot.clone()),
-            path: Some(path),
-            runs: vec![],
-            clocks: vec![],
-            topics: vec![],
-            warnings: vec![],
-        };
-        for (direction, number) in Direction::BOTH.into_iter().flat_map(|d| (0..runs).map(move |n| (d, n))) {
-            simulator.open(&mut truth, 11, 2 * number + direction as u64);
-            let recording = simulator.record(&mut truth, direction, TestKind::Systematic, [100.0, 20.0]).unwrap();
-            data.runs.push(Run {
-                name: format!("{}_{number}", direction.name()),
-                number: number as u32,
-                direction: Some(direction),
-                test: TestKind::Systematic,
-                log: Some(recording.log),
-                returned: Some(recording.returned),
-            });
-        }
-        data
-    }
+    use crate::effect::Model;
 
     /// Seed 11, 6 + 6 runs: sizes within a quarter of the truth, parameters within four standard errors.
     #[test]
@@ -227,7 +196,7 @@ mod tests {
         model.set("wheel_noise", "k_sqrt_m", k).unwrap();
         model.set("reference_noise", "position_sd_m", 8e-4).unwrap();
         model.set("reference_noise", "heading_sd_rad", 1e-3).unwrap();
-        let observed = Observed::new(&watched(&model, 6), &robot).unwrap();
+        let observed = Observed::new(&watched(&model, 6, 11), &robot).unwrap();
         let mut asked = Model::new(&robot);
         for (effect, ..) in truth {
             asked.add(effect).unwrap().free = true;

@@ -55,7 +55,7 @@ mod tests {
         };
         let left: Vec<f64> = time.iter().map(|t| position(*t)).collect();
         let right = left.iter().map(|l| -l).collect();
-        let log = TickLog { time, left, right, reference: vec![] };
+        let log = TickLog { time, left, right, ..TickLog::default() };
         let speeds = wheel_speeds(&log, &WheelTravel { left: 1e-3, right: 1e-3 });
         for (sample, expected) in [(50, 0.5), (200, 1.0), (350, 0.0)] {
             assert!((speeds[sample][0] - expected).abs() < 1e-9 && (speeds[sample][1] + expected).abs() < 1e-9);

@@ -63,12 +63,5 @@ pub fn record_test(
             }
         }
     }
-    Ok(Dataset {
-        robot: Some(robot),
-        path: Some(path.clone()),
-        runs: recorded,
-        clocks: Vec::new(),
-        topics: Vec::new(),
-        warnings: Vec::new(),
-    })
+    Ok(Dataset { robot: Some(robot), path: Some(path.clone()), runs: recorded, ..Dataset::default() })
 }

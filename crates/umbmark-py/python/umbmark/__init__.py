@@ -23,6 +23,7 @@ from umbmark._diagnosis import (
     Diagnosis,
     Fitted,
     Learnt,
+    TrackComparison,
     compare,
     diagnose,
     fit,
@@ -44,6 +45,7 @@ from umbmark._umbmark import (
     Study,
     __version__,
     load_dataset,
+    presets,
 )
 
 __all__ = [
@@ -64,6 +66,7 @@ __all__ = [
     "Run",
     "Score",
     "Study",
+    "TrackComparison",
     "__version__",
     "calibrate",
     "compare",
@@ -75,6 +78,7 @@ __all__ = [
     "learn",
     "load_dataset",
     "monte_carlo",
+    "presets",
     "score",
     "simulate",
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import msgspec
 
@@ -115,6 +115,140 @@ class Comparison(Result, frozen=True):
         from umbmark import _plots
 
         return _plots.comparison(self, ax)
+
+
+class RootMeanSquare(Record, frozen=True):
+    """Root mean square errors of positions in m and of headings in rad."""
+
+    rmse_m: float | None
+    heading_rmse_rad: float | None
+
+
+HalfOpen: TypeAlias = tuple[float | None, float | None]
+
+
+class Mean(Record, frozen=True):
+    """A mean over runs with its interval, and the scatter of the runs."""
+
+    mean: float | None
+    interval: HalfOpen | None
+    runs: int
+    sd: float | None
+
+
+class PartShare(Record, frozen=True):
+    """Share of a part of the way in the squared error along it, and at its end."""
+
+    position: float | None
+    heading: float | None
+    end: float | None
+
+
+class Part(Record, frozen=True):
+    """Error that a part of the way adds: ahead, to the left, and in heading."""
+
+    forward_m: Mean
+    sideways_m: Mean
+    heading_rad: Mean
+    name: str
+    direction: str | None
+    count: int
+    share: PartShare
+
+
+class Overall(Record, frozen=True):
+    """Mean rate of an error over all of the way, and p of none at all."""
+
+    mean: float | None
+    interval: HalfOpen | None
+    runs: int
+    p: float | None
+
+
+class Bin(Record, frozen=True):
+    """Mean rate of an error where a quantity lies between two values, in a sense or in both."""
+
+    mean: float | None
+    interval: HalfOpen | None
+    runs: int
+    low: float
+    high: float | None
+    sense: float
+    amount: float
+
+
+class Against(Record, frozen=True):
+    """Rate of an error against a quantity of the way."""
+
+    rate: str
+    covariate: str
+    unit: str
+    p: float | None
+    bins: tuple[Bin, ...]
+
+
+class JudgedAlong(Record, frozen=True):
+    """How one model does along the way, and at its end."""
+
+    name: str
+    explains: bool
+    p: float | None
+    tests: int
+    along: RootMeanSquare
+    end: RootMeanSquare
+    parts: dict[str, tuple[Part, ...]]
+    overall: dict[str, Overall]
+    against: tuple[Against, ...]
+    sentences: tuple[str, ...]
+
+
+class TrackComparison(Result, frozen=True):
+    """Models beside tracks: where on the way their error is made, and what it depends on.
+
+    Attributes
+    ----------
+    observed : str
+        "tracks".
+    n_cw, n_ccw, n_other : int
+        Numbers of runs.
+    poses : int
+        Number of observations.
+    models : tuple of JudgedAlong
+        In the order in which they were given.
+    remarks : tuple of str
+        What else should be said.
+    """
+
+    observed: str
+    n_cw: int
+    n_ccw: int
+    n_other: int
+    poses: int
+    models: tuple[JudgedAlong, ...]
+    remarks: tuple[str, ...]
+    size: float
+    version: str
+
+    def table(self) -> list[Row]:
+        """Give the errors of each model, one dict a row."""
+        return [
+            {
+                "model": model.name,
+                "explains": model.explains,
+                "p": model.p,
+                "rmse_m": model.along.rmse_m,
+                "heading_rmse_rad": model.along.heading_rmse_rad,
+                "end_rmse_m": model.end.rmse_m,
+                "end_heading_rmse_rad": model.end.heading_rmse_rad,
+            }
+            for model in self.models
+        ]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the errors of each model along the way and at its end, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.track_comparison(self, ax)
 
 
 class GoodnessOfFit(Record, frozen=True):
@@ -347,8 +481,9 @@ def compare(
     size: float = 0.05,
     draws: int = 999,
     seed: int = 1,
+    return_poses: bool = False,
     threads: int = 0,
-) -> Comparison:
+) -> Comparison | TrackComparison:
     """Hold models, with the values that they have, against measured runs.
 
     Parameters
@@ -356,16 +491,23 @@ def compare(
     data : Dataset or path-like
         The measurements.
     models : mapping of str to Model, sequence of Model, or Model, optional
-        What to hold against it; the nominal robot, and E_d and E_b fitted to this data, where
-        nothing is given.
+        What to hold against it; the nominal robot, and E_d and E_b (on tracks E_s too) fitted to
+        this data, where nothing is given.
     size : float, default 0.05
         Probability with which a right model is accused all the same.
     draws : int, default 999
         Simulated tests for the p-values.
     seed : int, default 1
         Seed of those.
+    return_poses : bool, default False
+        Whether to use return poses alone, even where the runs were observed on the way.
     threads : int, default 0
         Threads to use; 0 for all processors. No number depends on it.
+
+    Returns
+    -------
+    Comparison or TrackComparison
+        Of return poses, or of tracks where every run has one.
 
     Raises
     ------
@@ -379,7 +521,10 @@ def compare(
     elif not isinstance(models, Mapping):
         models = {f"model {place}": model for place, model in enumerate(models, 1)}
     options = (size, draws, seed)
-    return Comparison._of(_umbmark.compare(data_of(data), [*models.items()], options, threads))
+    document = _umbmark.compare(data_of(data), [*models.items()], options, return_poses, threads)
+    if msgspec.json.decode(document)["observed"] == "tracks":
+        return TrackComparison._of(document)
+    return Comparison._of(document)
 
 
 def diagnose(

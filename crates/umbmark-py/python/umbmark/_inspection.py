@@ -107,6 +107,16 @@ class ReferenceFacts(Record, frozen=True):
     heading_noise_rad: float | None
 
 
+class Mended(Record, frozen=True):
+    """What was mended in a log while it was read, counted."""
+
+    roll_overs: int
+    resets: int
+    rows_out_of_order: int
+    rows_repeated: int
+    stale_poses: int
+
+
 class LogFacts(Record, frozen=True):
     """A log: its rows, times in s, and what its ticks and poses say."""
 
@@ -118,6 +128,7 @@ class LogFacts(Record, frozen=True):
     jitter: float
     longest_gap_s: float
     gaps: int
+    mended: Mended
     length_m: float | None
     heading_rad: float | None
     heading_off_rad: float | None

@@ -52,6 +52,14 @@ class PathSizes(Record, frozen=True):
     sizes: dict[str, float]
 
 
+class Published(Record, frozen=True):
+    """What was published of a robot: its row of Table I, in m."""
+
+    row: str
+    e_max_sys_m: float
+    sigma_m: float
+
+
 class MonteCarlo(Result, frozen=True):
     """What a study found.
 
@@ -85,7 +93,9 @@ class MonteCarlo(Result, frozen=True):
     robot: str
     path: PathSizes
     effects: tuple[dict[str, str | float | dict[str, float]], ...]
+    sources: tuple[str, ...]
     assumed: tuple[str, ...]
+    published: Published | None
     version: str
     ensemble: Ensemble
     trials: Mapping[str, NDArray[np.float64]] | None

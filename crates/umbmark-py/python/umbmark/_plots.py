@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from umbmark._calibration import Calibration
-    from umbmark._diagnosis import Comparison, Diagnosis, Fitted, Learnt
+    from umbmark._diagnosis import Comparison, Diagnosis, Fitted, Learnt, TrackComparison
     from umbmark._inspection import Inspection
     from umbmark._monte_carlo import MonteCarlo
     from umbmark._scores import Score
@@ -113,6 +113,19 @@ def comparison(result: Comparison, ax: Axes | None) -> Axes:
     rows = result.table()
     names = [f"{row['direction']} {row['quantity']}, {row['model']}" for row in rows]
     _small_p(ax, names, [row["p"] for row in rows], result.size)
+    return ax
+
+
+def track_comparison(result: TrackComparison, ax: Axes | None) -> Axes:
+    """Draw errors along the way and at its end, in mm."""
+    ax = _axes(ax)
+    rows = result.table()
+    for place, (key, label) in enumerate((("rmse_m", "along"), ("end_rmse_m", "at the end"))):
+        at = np.arange(len(rows)) + 0.4 * place
+        ax.bar(at, [MM * (row[key] or np.nan) for row in rows], 0.4, label=label)
+    ax.set_xticks(np.arange(len(rows)) + 0.2, [row["model"] for row in rows])
+    ax.set_ylabel("root mean square error [mm]")
+    ax.legend()
     return ax
 
 

@@ -24,6 +24,7 @@ __all__ = [
     "inspect",
     "learn",
     "load_dataset",
+    "presets",
     "score_arrays",
     "score_dataset",
     "simulate",
@@ -224,6 +225,7 @@ def load_dataset(
 ) -> Dataset: ...
 def inspect(data: Dataset, place: str) -> str: ...
 def effects() -> str: ...
+def presets() -> dict[str, tuple[Model, Path]]: ...
 def score_arrays(
     cw: Floats,
     ccw: Floats,
@@ -247,6 +249,7 @@ def compare(
     data: Dataset,
     models: Sequence[tuple[str, Model]],
     options: tuple[float, int, int],
+    return_poses: bool,
     threads: int,
 ) -> str: ...
 def diagnose(

@@ -3,7 +3,7 @@
 use super::super::dead_reckoning::{computed_poses, mean_pose, standing_at_end, standing_at_start};
 use super::super::reference_track::count_turns;
 use super::super::synchronise::{Alignment, synchronise};
-use super::super::{ReferencePose, ReferenceTrack, Run, TickLog};
+use super::super::{Mended, ReferencePose, ReferenceTrack, Run, TickLog};
 use super::heading_off;
 use super::moves::MovesFound;
 use super::wheels::{WheelsFound, find_wheels};
@@ -30,6 +30,8 @@ pub struct LogFacts {
     pub longest_gap: f64,
     /// Times between samples that are more than five usual ones.
     pub gaps: usize,
+    /// What was mended while it was read.
+    pub mended: Mended,
     /// Length of the path of the axle's centre by the ticks \[m\], where the robot is known.
     pub length: Option<f64>,
     /// Heading at the end by the ticks, full turns counted \[rad\], where the robot is known.
@@ -109,6 +111,7 @@ impl LogFacts {
             jitter: departures[(departures.len() - 1) * 99 / 100],
             longest_gap: *steps.last()?,
             gaps: steps.iter().filter(|step| **step > 5.0 * period).count(),
+            mended: log.mended,
             length,
             heading: poses.last().map(|pose| pose.heading),
             heading_off: path.and_then(|path| Some(heading_off(path, run.direction, poses.last()?))),

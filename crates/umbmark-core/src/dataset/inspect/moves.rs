@@ -21,13 +21,26 @@ const CORNER: f64 = 0.4;
 /// Places and speeds kept for a picture.
 const SKETCH: usize = 400;
 
-/// A move, as the ticks have it.
+/// What the robot did, as the ticks have it \[m, rad\].
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Done {
+pub(crate) enum Done {
     Stop,
     Leg { length: f64 },
     Turn { angle: f64 },
     Arc { length: f64, angle: f64 },
+}
+
+/// A move, and the samples between which it was made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MoveDone {
+    pub done: Done,
+    pub from: usize,
+    pub to: usize,
+}
+
+/// The moves of a log in order; what is too short to be meant stands between them.
+pub(crate) fn moves_of(log: &TickLog, robot: &Robot) -> Vec<MoveDone> {
+    moves(&log.time, &computed_poses(log, robot), 0.5 * robot.drive.wheelbase())
 }
 
 /// What a log shows of the path.
@@ -56,7 +69,7 @@ pub struct MovesFound {
 impl MovesFound {
     pub(super) fn of(log: &TickLog, robot: &Robot) -> MovesFound {
         let poses = computed_poses(log, robot);
-        let moves = moves(&log.time, &poses, 0.5 * robot.drive.wheelbase());
+        let moves: Vec<Done> = moves(&log.time, &poses, 0.5 * robot.drive.wheelbase()).iter().map(|m| m.done).collect();
         let count = |is: fn(&Done) -> bool| moves.iter().filter(|done| is(done)).count();
         let inner = moves.len().saturating_sub(1);
         let (shape, described) = shape(&moves);
@@ -93,42 +106,52 @@ fn speeds(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<f64> {
 
 /// The moves in order. A leg that bends a little, as a robot does that steers back to its line, is a leg; what is too short to
 /// be meant is a transition.
-fn moves(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<Done> {
+fn moves(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<MoveDone> {
     let kinds = kinds(time, poses, arm);
-    let mut pieces: Vec<Done> = Vec::new();
+    let mut pieces: Vec<MoveDone> = Vec::new();
     let mut start = 0;
     for same in kinds.chunk_by(|a, b| a == b) {
         let end = (start + same.len()).min(poses.len() - 1);
         let length: f64 = poses[start..=end].windows(2).map(|p| libm::hypot(p[1].x - p[0].x, p[1].y - p[0].y)).sum();
         let angle = poses[end].heading - poses[start].heading;
-        pieces.extend(match same[0] {
+        let done = match same[0] {
             Kind::Standing => (time[end] - time[start] > LEAST_STOP).then_some(Done::Stop),
             Kind::Turning => (angle.abs() > LEAST_TURN).then_some(Done::Turn { angle }),
             Kind::Going if angle.abs() < CORNER => Some(Done::Leg { length }),
             Kind::Going => Some(Done::Arc { length, angle }),
-        });
+        };
+        pieces.extend(done.map(|done| MoveDone { done, from: start, to: end }));
         start = end;
     }
     let mut moves = joined(pieces);
-    moves.retain(|done| !matches!(done, Done::Leg { length } if *length < LEAST_LEG));
+    moves.retain(|m| !matches!(m.done, Done::Leg { length } if length < LEAST_LEG));
     joined(moves)
 }
 
 /// Neighbours of one kind as one move.
-fn joined(pieces: Vec<Done>) -> Vec<Done> {
-    let mut moves: Vec<Done> = Vec::new();
+fn joined(pieces: Vec<MoveDone>) -> Vec<MoveDone> {
+    let mut moves: Vec<MoveDone> = Vec::new();
     for piece in pieces {
-        match (moves.last_mut(), piece) {
-            (Some(Done::Stop), Done::Stop) => {}
-            (Some(Done::Leg { length }), Done::Leg { length: more }) => *length += more,
-            (Some(Done::Turn { angle }), Done::Turn { angle: more }) => *angle += more,
-            (Some(Done::Arc { length, angle }), Done::Arc { length: l, angle: a }) if *angle * a > 0.0 => {
-                (*length, *angle) = (*length + l, *angle + a);
-            }
-            _ => moves.push(piece),
+        let last = moves.last_mut();
+        match last.and_then(|last| Some((together(last.done, piece.done)?, last))) {
+            Some((done, last)) => (last.done, last.to) = (done, piece.to),
+            None => moves.push(piece),
         }
     }
     moves
+}
+
+/// Two neighbours as one move, where they are of one kind.
+fn together(before: Done, after: Done) -> Option<Done> {
+    match (before, after) {
+        (Done::Stop, Done::Stop) => Some(Done::Stop),
+        (Done::Leg { length: a }, Done::Leg { length: b }) => Some(Done::Leg { length: a + b }),
+        (Done::Turn { angle: a }, Done::Turn { angle: b }) => Some(Done::Turn { angle: a + b }),
+        (Done::Arc { length: a, angle: turned }, Done::Arc { length: b, angle: more }) if turned * more > 0.0 => {
+            Some(Done::Arc { length: a + b, angle: turned + more })
+        }
+        _ => None,
+    }
 }
 
 #[derive(Clone, Copy, PartialEq)]

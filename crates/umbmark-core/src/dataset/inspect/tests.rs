@@ -1,5 +1,6 @@
 use super::*;
 use crate::dataset::{ReferencePose, TickLog};
+use crate::drive::Encoder;
 use crate::path::SpeedProfile;
 
 /// Drives a square of 2 m at 50 Hz, tracked every `every` samples; `wheels` changes the counts written down.
@@ -42,14 +43,7 @@ fn drive(direction: Direction, every: usize, wheels: impl Fn(f64, f64) -> (f64, 
 
 fn dataset(runs: Vec<Run>) -> Dataset {
     let path = Path::new(&crate::path::SQUARE, &[2.0], SpeedProfile::default()).unwrap();
-    Dataset {
-        robot: Some(Robot::labmate()),
-        path: Some(path),
-        runs,
-        clocks: Vec::new(),
-        topics: Vec::new(),
-        warnings: Vec::new(),
-    }
+    Dataset { robot: Some(Robot::labmate()), path: Some(path), runs, ..Dataset::default() }
 }
 
 fn same(left: f64, right: f64) -> (f64, f64) {
@@ -108,6 +102,21 @@ fn without_a_track_a_wheel_that_runs_backward_is_told_by_the_path() {
     let wheels = found.logs[0].wheels.as_ref().unwrap();
     assert_eq!(wheels.wheels, Wheels::Otherwise { exchanged: false, left_backward: false, right_backward: true });
     assert_eq!(wheels.misfit, None);
+}
+
+#[test]
+fn what_was_mended_in_a_log_is_counted_and_only_a_roll_over_is_harmless() {
+    let mut mended = drive(Direction::Ccw, 5, same);
+    mended.log.as_mut().unwrap().mended = Mended { roll_overs: 3, resets: 1, late: 2, repeated: 0, stale: 4 };
+    let mut data = dataset(vec![mended, drive(Direction::Cw, 5, same)]);
+    let encoder = data.robot.as_ref().unwrap().encoder;
+    let encoder = Encoder::new(encoder.ticks_per_revolution(), encoder.rate(), Some(16)).unwrap();
+    data.robot.as_mut().unwrap().encoder = encoder;
+    let found = data.inspect();
+    let said = |name| (check(&found, name).found.as_str(), check(&found, name).ok);
+    assert_eq!(said("counter roll-overs"), ("3 of counters of 16 bits, undone", true));
+    assert_eq!(said("counter resets"), ("1, counted on from zero", false));
+    assert_eq!(said("rows and poses mended"), ("2 out of order, 0 repeated, 4 stale poses", false));
 }
 
 #[test]

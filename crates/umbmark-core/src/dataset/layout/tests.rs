@@ -21,6 +21,7 @@ fn dataset(every: usize) -> Dataset {
             left: (0..120).map(|i| ticks(i, -sign)).collect(),
             right: (0..120).map(|i| ticks(i, sign)).collect(),
             reference: (0..120).step_by(every).map(pose).collect(),
+            ..TickLog::default()
         };
         let name = format!("{}_{number:02}", direction.name());
         let returned = Some(ReturnError { x: 0.1, y: -0.2 / 3.0, heading: Some(0.01) });
@@ -33,9 +34,7 @@ fn dataset(every: usize) -> Dataset {
         robot: Some(robot),
         path: Some(DrivenPath::umbmark()),
         runs: runs.into_iter().map(|(direction, number)| run(direction, number)).collect(),
-        clocks: Vec::new(),
-        topics: Vec::new(),
-        warnings: Vec::new(),
+        ..Dataset::default()
     }
 }
 

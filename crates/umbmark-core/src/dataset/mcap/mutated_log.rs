@@ -33,6 +33,7 @@ fn log() -> TickLog {
         left: (0..40).map(|i| f64::from(3 * i)).collect(),
         right: (0..40).map(|i| f64::from(2 * i)).collect(),
         reference: (0..40).step_by(4).map(pose).collect(),
+        ..TickLog::default()
     }
 }
 

@@ -4,6 +4,7 @@
 //! was set back, and nobody can say when the rows were measured. A time stamp that repeats with the same counts is a row that
 //! was sent twice; with other counts, the clock's digits are coarser than the rate, and the last row stands for both.
 
+use super::super::Mended;
 use super::super::error::DatasetError;
 use super::{Recording, time_error};
 
@@ -14,7 +15,11 @@ const TOO_MANY: &str = "too many rows are out of order for late arrivals; put th
 const CLASH: &str = "the counts of the two rows are too far apart for one moment; keep one of the rows";
 
 /// Sorts rows by time and leaves repeated ones out, where the counts allow it; says how many.
-pub(super) fn put_in_order(recording: &mut Recording, warnings: &mut Vec<String>) -> Result<(), DatasetError> {
+pub(super) fn put_in_order(
+    recording: &mut Recording,
+    mended: &mut Mended,
+    warnings: &mut Vec<String>,
+) -> Result<(), DatasetError> {
     if recording.time.windows(2).all(|pair| pair[0] < pair[1]) {
         return Ok(());
     }
@@ -26,8 +31,9 @@ pub(super) fn put_in_order(recording: &mut Recording, warnings: &mut Vec<String>
             warnings.push(format!("{}: {n} {what}", recording.file));
         }
     };
-    note(late.len(), "rows out of order were put where their time stamps say");
-    note(recording.time.len() - order.len(), "rows that repeat a time stamp were left out");
+    (mended.late, mended.repeated) = (late.len(), recording.time.len() - order.len());
+    note(mended.late, "rows out of order were put where their time stamps say");
+    note(mended.repeated, "rows that repeat a time stamp were left out");
     rearrange(recording, &order);
     Ok(())
 }

@@ -1,0 +1,29 @@
+//! The arguments of every verb that tests models against measurements.
+
+use umbmark_core::diagnose::Options;
+
+use crate::Session;
+
+/// How to test.
+#[derive(Debug, clap::Args)]
+pub struct TestArguments {
+    /// Use return poses alone, even where the runs were observed on the way
+    #[arg(long)]
+    return_poses: bool,
+
+    /// Simulated tests for p-values that have no closed form
+    #[arg(long, default_value_t = 999, value_name = "N", value_parser = clap::value_parser!(u32).range(99..=99_999))]
+    draws: u32,
+
+    /// Probability with which a complete model is accused all the same
+    #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = crate::verb::size)]
+    size: f64,
+}
+
+impl TestArguments {
+    /// The same for the core.
+    pub fn options(&self, session: &Session) -> Options {
+        let (size, draws, seed) = (self.size, self.draws as usize, session.seed());
+        Options { size, draws, seed, ends_only: self.return_poses }
+    }
+}

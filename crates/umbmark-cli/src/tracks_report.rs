@@ -1,0 +1,145 @@
+//! A comparison of models on tracks, for people and for machines.
+
+use umbmark_core::compare::tracks::{Against, By, COVARIATES, Mean, Part, Rate, TrackComparison, TracksJudged};
+use umbmark_core::diagnose::Options;
+use umbmark_core::stats::Interval;
+
+use crate::model_report::p_text;
+use crate::prose::hanging;
+use crate::residual_strips::{marks, strips};
+use crate::table::table;
+
+/// Runs are listed up to this many; --json has all.
+const RUNS: usize = 20;
+
+/// The whole comparison as text.
+pub fn text(comparison: &TrackComparison, options: &Options, terminal: bool) -> String {
+    let [cw, ccw, neither] = comparison.runs;
+    let others = if neither > 0 { format!(" + {neither} other") } else { String::new() };
+    let (poses, models) = (comparison.poses, comparison.models.len());
+    let mut text = format!("{cw} cw + {ccw} ccw{others} tracks, {poses} poses, against {models} model(s)\n\n");
+    let row = |m: &TracksJudged| {
+        let explains = if m.explains(options.size) { "yes" } else { "no" };
+        let [along, end] = [&m.along, &m.end].map(|rms| [mm(rms.position), rms.heading.map_or("-".into(), deg)]);
+        let p = m.p.map_or("-".into(), p_text);
+        [vec![m.name.clone()], along.to_vec(), end.to_vec(), vec![p, explains.into()]].concat()
+    };
+    text += &table(
+        &["model", "along [mm]", "[deg]", "end [mm]", "[deg]", "p", "explains"],
+        comparison.models.iter().map(row),
+    );
+    text += "\n\n";
+    let legend = "along, end: root mean square error of all measured poses, and of the last of each run. p: the smallest of all \
+                  tests below, times their number.";
+    text += &hanging("", 0, legend);
+    for judged in &comparison.models {
+        text += &format!("\n{}\n\n", judged.name);
+        for sentence in &judged.sentences {
+            text += &hanging("", 2, &format!("  {sentence}"));
+        }
+        text += &parts_text(judged);
+        text += &rates_text(judged, terminal);
+        text += &strips(&judged.residuals, terminal);
+    }
+    for remark in &comparison.remarks {
+        text += &hanging("note", 10, remark);
+    }
+    text
+}
+
+fn mm(metres: f64) -> String {
+    format!("{:.1}", 1e3 * metres)
+}
+
+fn deg(radians: f64) -> String {
+    format!("{:.2}", radians.to_degrees())
+}
+
+fn half_width(mean: &Mean) -> Option<f64> {
+    mean.interval.map(|Interval { low, high }| 0.5 * (high - low))
+}
+
+/// Where the error is made, a line for each part of the way.
+fn parts_text(judged: &TracksJudged) -> String {
+    let mut text = format!(
+        "\nwhere it is made: mean ± {}, sd of single ones, share of the squared error\n\n{:<18} {:>17} {:>17} {:>18} {:>4}\n",
+        "interval", "", "forward [mm]", "to the left [mm]", "turned left [deg]", "%"
+    );
+    for by in By::ALL {
+        let parts: Vec<&Part> = judged.parts.iter().filter(|part| part.by == by).collect();
+        let shown = if by == By::Run { RUNS.min(parts.len()) } else { parts.len() };
+        for part in &parts[..shown] {
+            text += &part_line(part);
+        }
+        if let rest @ 1.. = parts.len() - shown {
+            text += &format!("and {rest} more runs (--json)\n");
+        }
+        if !parts.is_empty() {
+            text += "\n";
+        }
+    }
+    text
+}
+
+fn part_line(part: &Part) -> String {
+    let direction = part.direction.filter(|_| part.by != By::Run).map_or(String::new(), |d| format!("{} ", d.name()));
+    let name: String = format!("{direction}{}", part.name).chars().take(18).collect();
+    let scales = [1e3, 1e3, 1f64.to_degrees()];
+    let cell = |k: usize| {
+        let decimals = if k == 2 { 2 } else { 1 };
+        let mean = scales[k] * part.mean[k].value;
+        let interval =
+            half_width(&part.mean[k]).map_or(String::new(), |half| format!(" ±{:.decimals$}", scales[k] * half));
+        let spread = part.spread.map_or(String::new(), |spread| format!("{:.decimals$}", scales[k] * spread[k]));
+        format!("{:>11} {spread:>5}", format!("{mean:.decimals$}{interval}"))
+    };
+    let line = format!("{name:<18} {} {} {:>18} {:>4.0}", cell(0), cell(1), cell(2), 100.0 * part.share.position);
+    format!("{}\n", line.trim_end())
+}
+
+/// Errors in proportion to what was driven, and what they depend on.
+fn rates_text(judged: &TracksJudged, terminal: bool) -> String {
+    if judged.overall.is_empty() {
+        return String::new();
+    }
+    let row = |o: &umbmark_core::compare::tracks::Overall| {
+        let (scale, unit) = o.rate.display();
+        let half = half_width(&o.mean).map_or("-".into(), |half| format!("{:.3}", scale * half));
+        let value = format!("{:.3}", scale * o.mean.value);
+        vec![o.rate.name().to_owned(), value, half, unit.to_owned(), o.p.map_or("-".into(), p_text)]
+    };
+    let mut text = table(&["on the whole", "error", "±", "", "p"], judged.overall.iter().map(row));
+    text += "\n\nwhat it depends on: bins of each, and p of no dependence\n\n";
+    text += format!("{:<17}", "").as_str();
+    for rate in Rate::DEPENDING {
+        text += &format!(" {:<14}", if rate == Rate::Turn { "in turns" } else { rate.name() });
+    }
+    text = format!("{}\n", text.trim_end());
+    for covariate in &COVARIATES {
+        let of = |rate: Rate| judged.against.iter().find(|a| a.rate == rate && a.covariate.name == covariate.name);
+        let cells: String =
+            Rate::DEPENDING.into_iter().map(|rate| format!(" {:<14}", cell(of(rate), terminal))).collect();
+        if !cells.trim().is_empty() {
+            text += format!("{:<17}{cells}", covariate.name).trim_end();
+            text += "\n";
+        }
+    }
+    let legend = if terminal {
+        "▄ no error within the interval of 95 %; ▅▆▇ farther or to the left by once, twice, four times its half-width, ▃▂▁ the \
+         opposite."
+    } else {
+        ". no error within the interval of 95 %; + farther or to the left, ^ by four times its half-width; - and v the opposite."
+    };
+    text + "\n" + &hanging("", 0, legend)
+}
+
+fn cell(against: Option<&Against>, terminal: bool) -> String {
+    let Some(against) = against.filter(|a| a.p.is_some()) else { return String::new() };
+    let half_widths = |bin: &umbmark_core::compare::tracks::Bin| {
+        let mean = bin.mean?;
+        Some(mean.value / half_width(&mean).filter(|half| *half > 0.0)?)
+    };
+    let values: Vec<Option<f64>> = against.bins.iter().map(half_widths).collect();
+    let p = against.p.map_or(String::new(), |p| if p < 0.001 { "<.001".into() } else { format!("{p:.3}") });
+    format!("{:<8} {p}", marks(&values, terminal))
+}

@@ -1,0 +1,218 @@
+//! Models against tracks: where along the way the error is made, and what it depends on.
+//!
+//! The error of each step between two measurements is taken as the robot sees it: the measured motion as seen from where the
+//! predicted one ends. So an error that was made earlier does not count again. Steps are summed by move, direction, speed and
+//! run, and in bins of everything that an error may depend on. All intervals and tests rest on the scatter from run to run and
+//! trust no noise model.
+
+mod covariate;
+mod followed;
+mod mean;
+mod parts;
+mod rates;
+mod sentences;
+#[cfg(test)]
+mod tests;
+
+use crate::dataset::{Dataset, moves_of};
+use crate::diagnose::{DiagnoseError, Options, tracks_of};
+use crate::effect::Model;
+use crate::geometry::Pose2;
+use crate::likelihood::Observed;
+use crate::path::Direction;
+use followed::Followed;
+
+pub use covariate::{COVARIATES, Covariate, Rate, Span};
+pub use mean::Mean;
+pub use parts::{By, Part, Share};
+pub use rates::{Against, Bin, Overall};
+
+/// Root mean square errors.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rms {
+    /// Distance of measured from predicted positions \[m\].
+    pub position: f64,
+    /// Measured less predicted headings \[rad\]; `None` where none were measured.
+    pub heading: Option<f64>,
+}
+
+/// The error of one run along its way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackResiduals {
+    /// The run's name.
+    pub run: String,
+    /// Its sense.
+    pub direction: Option<Direction>,
+    /// How far the wheels have rolled on average, whatever way, at each measurement \[m\].
+    pub rolled: Vec<f64>,
+    /// Predicted poses, in the frame of START.
+    pub predicted: Vec<Pose2>,
+    /// Measured poses, moved so that the first agrees with the prediction where it was taken at START.
+    pub measured: Vec<Pose2>,
+    /// Where the robot is, seen from where it is predicted: forward, to the left \[m\], turned to the left \[rad\].
+    pub errors: Vec<[f64; 3]>,
+}
+
+/// How one model does on tracks.
+#[derive(Clone, Debug)]
+pub struct TracksJudged {
+    /// What it was called.
+    pub name: String,
+    /// Errors along the way: measurements within 3 cm and 3 degrees count as one.
+    pub along: Rms,
+    /// Errors at the ends of the runs.
+    pub end: Rms,
+    /// How large errors are in proportion to what was driven.
+    pub overall: Vec<Overall>,
+    /// What they depend on.
+    pub against: Vec<Against>,
+    /// Number of p-values among these.
+    pub tests: usize,
+    /// p of the whole model: the smallest of them times their number (Bonferroni); `None` where the runs are too few for any.
+    pub p: Option<f64>,
+    /// Where the error is made.
+    pub parts: Vec<Part>,
+    /// The errors themselves.
+    pub residuals: Vec<TrackResiduals>,
+    /// What is explained and what not, a sentence each.
+    pub sentences: Vec<String>,
+}
+
+/// Models side by side, on tracks.
+#[derive(Clone, Debug)]
+pub struct TrackComparison {
+    /// Number of runs clockwise, counter-clockwise, and of neither sense.
+    pub runs: [usize; 3],
+    /// Number of measured poses.
+    pub poses: usize,
+    /// In the order in which they were given.
+    pub models: Vec<TracksJudged>,
+    /// What else should be said, a sentence each.
+    pub remarks: Vec<String>,
+}
+
+impl TracksJudged {
+    /// Whether nothing speaks against the model at this size of all tests together.
+    pub fn explains(&self, size: f64) -> bool {
+        self.p.is_none_or(|p| p >= size)
+    }
+}
+
+/// Holds models, with the values that they have, against tracks.
+///
+/// ```no_run
+/// use umbmark_core::{compare::compare_tracks, dataset::Dataset, diagnose::Options, effect::Model};
+/// let data = Dataset::load("my_robot")?;
+/// let nominal = Model::new(data.nominal_robot()?);
+/// let comparison = compare_tracks(&data, &[("nominal".into(), nominal)], &Options::default())?;
+/// for part in &comparison.models[0].parts {
+///     println!("{}: {:.1} mm forward, {:.0} %", part.name, 1e3 * part.mean[0].value, 100.0 * part.share.position);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn compare_tracks(
+    data: &Dataset,
+    models: &[(String, Model)],
+    options: &Options,
+) -> Result<TrackComparison, DiagnoseError> {
+    let observed = tracks_of(data)?;
+    for (_, model) in models {
+        model.check_along(observed.tracks().flat_map(|track| track.contexts()))?;
+    }
+    let judge = |(name, model): &(String, Model)| judge(name, data, &observed.along(model), model, options);
+    let of = |direction| observed.runs.iter().filter(|run| run.direction == direction).count();
+    Ok(TrackComparison {
+        runs: [of(Some(Direction::Cw)), of(Some(Direction::Ccw)), of(None)],
+        poses: observed.runs.iter().map(|run| run.seen.len()).sum(),
+        models: models.iter().map(judge).collect(),
+        remarks: remarks(&observed),
+    })
+}
+
+fn judge(name: &str, data: &Dataset, observed: &Observed, model: &Model, options: &Options) -> TracksJudged {
+    let chain = model.chain();
+    let runs: Vec<Followed> = observed.runs.iter().map(|run| Followed::new(run, &chain)).collect();
+    let confidence = 1.0 - options.size;
+    let overall = rates::overall(&runs, confidence);
+    let against = rates::against(&runs, &overall, confidence);
+    let tests: Vec<f64> = overall.iter().map(|o| o.p).chain(against.iter().map(|a| a.p)).flatten().collect();
+    let smallest = tests.iter().copied().reduce(f64::min);
+    let mut judged = TracksJudged {
+        name: name.to_owned(),
+        along: rms(&runs, |_| 1),
+        end: rms(&runs, |run| run.places.len() - 1),
+        tests: tests.len(),
+        p: smallest.map(|p| (p * tests.len() as f64).min(1.0)),
+        overall,
+        against,
+        parts: parts(data, observed, &runs, confidence),
+        residuals: runs.iter().map(residuals).collect(),
+        sentences: Vec::new(),
+    };
+    judged.sentences = sentences::of(&judged, options.size);
+    judged
+}
+
+/// The logs of a dataset whose runs are observed, in the order of these.
+fn parts(data: &Dataset, observed: &Observed, runs: &[Followed], confidence: f64) -> Vec<Part> {
+    let mut logs = data.runs.iter().filter_map(|run| Some((&run.name, run.log.as_ref()?)));
+    let made: Vec<parts::Made> = runs
+        .iter()
+        .enumerate()
+        .filter_map(|(index, run)| {
+            let (_, log) = logs.find(|(name, _)| **name == run.observed.name)?;
+            Some(parts::made(index, run, &moves_of(log, &observed.robot), &log.time))
+        })
+        .flatten()
+        .collect();
+    parts::gathered(runs, &made, confidence)
+}
+
+/// Of all places from the `first` of each run on.
+fn rms(runs: &[Followed], first: impl Fn(&Followed) -> usize) -> Rms {
+    let (mut squares, mut count) = ([0.0; 2], 0);
+    for place in runs.iter().flat_map(|run| &run.places[first(run)..]) {
+        let [dx, dy] = [place.measured.x - place.predicted.x, place.measured.y - place.predicted.y];
+        squares[0] += dx * dx + dy * dy;
+        squares[1] += (place.measured.heading - place.predicted.heading).powi(2);
+        count += 1;
+    }
+    let root = |square: f64| (square / count.max(1) as f64).sqrt();
+    let with_heading = runs.iter().all(|run| run.with_heading);
+    Rms { position: root(squares[0]), heading: with_heading.then(|| root(squares[1])) }
+}
+
+fn residuals(run: &Followed) -> TrackResiduals {
+    let seen = |place: &followed::Place| {
+        let error = place.predicted.between(&place.measured);
+        [error.x, error.y, error.heading]
+    };
+    TrackResiduals {
+        run: run.observed.name.clone(),
+        direction: run.direction,
+        rolled: run.places.iter().map(|place| place.rolled).collect(),
+        predicted: run.places.iter().map(|place| place.predicted).collect(),
+        measured: run.places.iter().map(|place| place.measured).collect(),
+        errors: run.places.iter().map(seen).collect(),
+    }
+}
+
+fn remarks(observed: &Observed) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let runs = observed.runs.len();
+    if runs < 5 {
+        remarks
+            .push(format!("Few runs, {runs} in all: intervals and p-values rest on how runs differ and say little."));
+    }
+    if observed.runs.iter().any(|run| !run.start_seen) {
+        remarks.push("START was not measured in every run: it is trusted there.".into());
+    }
+    if observed.runs.iter().any(|run| run.blocks.iter().all(|block| block.headings == 0)) {
+        remarks.push(
+            "Headings were not measured in every run: errors to the side hold what earlier errors of the heading do, and are \
+             not tested."
+                .into(),
+        );
+    }
+    remarks
+}

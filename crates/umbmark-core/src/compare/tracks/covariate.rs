@@ -1,0 +1,325 @@
+//! What errors may depend on, and how it is cut into bins.
+
+use super::followed::{Conditions, Step};
+use std::f64::consts::TAU;
+
+/// An error, in proportion to what was driven.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rate {
+    /// Farther than predicted, per way driven straight or in arcs \[m/m\].
+    Forward,
+    /// To the left, per way driven straight or in arcs \[m/m\].
+    Sideways,
+    /// Rotation to the left, per way driven straight or in arcs \[rad/m\].
+    Yaw,
+    /// Rotation beyond the predicted, per rotation in turns on the spot \[rad/rad\].
+    Turn,
+    /// Forward displacement of the axle's centre, per rotation in turns on the spot \[m/rad\].
+    TurnForward,
+    /// Displacement to the left, per rotation in turns on the spot \[m/rad\].
+    TurnSideways,
+}
+
+impl Rate {
+    /// All.
+    pub const ALL: [Rate; 6] =
+        [Rate::Forward, Rate::Sideways, Rate::Yaw, Rate::Turn, Rate::TurnForward, Rate::TurnSideways];
+
+    /// Those that are asked what they depend on.
+    pub const DEPENDING: [Rate; 4] = [Rate::Forward, Rate::Sideways, Rate::Yaw, Rate::Turn];
+
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Rate::Forward => "forward",
+            Rate::Sideways => "sideways",
+            Rate::Yaw => "yaw",
+            Rate::Turn => "rotation in turns",
+            Rate::TurnForward => "forward in turns",
+            Rate::TurnSideways => "sideways in turns",
+        }
+    }
+
+    /// As a key, with its unit.
+    pub fn key(self) -> &'static str {
+        match self {
+            Rate::Forward => "forward_m_per_m",
+            Rate::Sideways => "sideways_m_per_m",
+            Rate::Yaw => "yaw_rad_per_m",
+            Rate::Turn => "turn_rad_per_rad",
+            Rate::TurnForward => "turn_forward_m_per_rad",
+            Rate::TurnSideways => "turn_sideways_m_per_rad",
+        }
+    }
+
+    /// Factor and unit for people.
+    pub fn display(self) -> (f64, &'static str) {
+        match self {
+            Rate::Forward | Rate::Sideways => (1e3, "mm/m"),
+            Rate::Yaw => (1f64.to_degrees(), "deg/m"),
+            Rate::Turn => (100.0, "%"),
+            Rate::TurnForward | Rate::TurnSideways => (1e3, "mm/rad"),
+        }
+    }
+
+    /// Whether it is one of turns on the spot.
+    pub fn of_turns(self) -> bool {
+        matches!(self, Rate::Turn | Rate::TurnForward | Rate::TurnSideways)
+    }
+
+    /// Error and amount of driving of a step, where it counts.
+    pub(super) fn of(self, step: &Step) -> Option<[f64; 2]> {
+        let ([forward, sideways, yaw], [way, rotation]) = (step.own, step.motion);
+        let amount = if self.of_turns() { rotation } else { way };
+        let error = match self {
+            Rate::Forward => forward * way.signum(),
+            Rate::Sideways | Rate::TurnSideways => sideways,
+            Rate::Yaw => yaw,
+            Rate::Turn => yaw * rotation.signum(),
+            Rate::TurnForward => forward,
+        };
+        (step.turning == self.of_turns() && amount != 0.0).then_some([error, amount.abs()])
+    }
+}
+
+/// How the range of a covariate is cut.
+#[derive(Clone, Copy, Debug)]
+enum Cut {
+    /// Into so many equal parts, from 0 to the greatest size.
+    FromZero(usize),
+    /// Into so many equal parts, from the greatest negative to the greatest positive.
+    Around(usize),
+    /// A full turn in so many parts, the first about 0.
+    Cyclic(usize),
+    /// At these, the last open.
+    At(&'static [f64]),
+    /// Into at most so many parts of whole numbers.
+    Whole(usize),
+}
+
+type Value = fn(&Conditions) -> f64;
+
+/// Something that an error may depend on.
+#[derive(Clone, Copy, Debug)]
+pub struct Covariate {
+    /// Its name, as formulas of the user's own have it where they know it.
+    pub name: &'static str,
+    /// In words.
+    pub title: &'static str,
+    /// Unit of its values: for straights and arcs, and for turns.
+    pub units: [&'static str; 2],
+    /// For straights and arcs.
+    going: Option<Value>,
+    /// For turns on the spot.
+    turning: Option<Value>,
+    cut: Cut,
+    /// A sense by which the bins are kept apart: those of sense -1 first.
+    split: Option<Value>,
+    /// Whether runs may differ in it.
+    pub between_runs: bool,
+}
+
+const PLAIN: Covariate = Covariate {
+    name: "",
+    title: "",
+    units: ["", ""],
+    going: None,
+    turning: None,
+    cut: Cut::Around(2),
+    split: None,
+    between_runs: false,
+};
+
+/// All that is asked about.
+pub static COVARIATES: [Covariate; 11] = [
+    Covariate {
+        name: "speed",
+        title: "the speed",
+        units: ["m/s", ""],
+        going: Some(|at| at.speed.abs()),
+        cut: Cut::FromZero(6),
+        between_runs: true,
+        ..PLAIN
+    },
+    Covariate {
+        name: "turn_rate",
+        title: "the turn rate",
+        units: ["rad/s", "rad/s"],
+        going: Some(|at| at.turn_rate),
+        turning: Some(|at| at.turn_rate.abs()),
+        cut: Cut::Around(7),
+        between_runs: true,
+        ..PLAIN
+    },
+    Covariate {
+        name: "acceleration",
+        title: "the acceleration",
+        units: ["m/s^2", "rad/s^2"],
+        going: Some(|at| at.acceleration),
+        turning: Some(|at| at.turn_acceleration),
+        cut: Cut::Around(5),
+        ..PLAIN
+    },
+    Covariate {
+        name: "wheel_angle_left",
+        title: "the angle of the left wheel",
+        units: ["rad", "rad"],
+        going: Some(|at| at.wheel_angle[0]),
+        turning: Some(|at| at.wheel_angle[0]),
+        cut: Cut::Cyclic(8),
+        ..PLAIN
+    },
+    Covariate {
+        name: "wheel_angle_right",
+        title: "the angle of the right wheel",
+        units: ["rad", "rad"],
+        going: Some(|at| at.wheel_angle[1]),
+        turning: Some(|at| at.wheel_angle[1]),
+        cut: Cut::Cyclic(8),
+        ..PLAIN
+    },
+    Covariate {
+        name: "heading",
+        title: "the heading in the room",
+        units: ["rad", "rad"],
+        going: Some(|at| at.heading),
+        turning: Some(|at| at.heading),
+        cut: Cut::Cyclic(8),
+        ..PLAIN
+    },
+    Covariate {
+        name: "distance",
+        title: "the place in the run and its sense",
+        units: ["", ""],
+        going: Some(|at| at.place),
+        turning: Some(|at| at.place),
+        cut: Cut::At(&[0.0, 0.25, 0.5, 0.75]),
+        split: Some(|at| at.direction),
+        ..PLAIN
+    },
+    Covariate {
+        name: "time",
+        title: "the time in the run",
+        units: ["s", "s"],
+        going: Some(|at| at.time),
+        turning: Some(|at| at.time),
+        cut: Cut::FromZero(6),
+        ..PLAIN
+    },
+    Covariate {
+        name: "run",
+        title: "the place of the run in the session",
+        units: ["", ""],
+        going: Some(|at| at.run),
+        turning: Some(|at| at.run),
+        cut: Cut::Whole(8),
+        between_runs: true,
+        ..PLAIN
+    },
+    Covariate {
+        name: "since_turn",
+        title: "the way since the last turn and its sense",
+        units: ["m", ""],
+        going: Some(|at| at.since_turn),
+        cut: Cut::At(&[0.0, 0.05, 0.15, 0.5]),
+        split: Some(|at| at.last_turn),
+        ..PLAIN
+    },
+    Covariate {
+        name: "last_turn",
+        title: "the sense of the last turn",
+        units: ["", ""],
+        going: Some(|at| at.last_turn),
+        turning: Some(|at| at.turn_rate.signum()),
+        cut: Cut::At(&[-1.0, 0.0, 1.0]),
+        between_runs: true,
+        ..PLAIN
+    },
+];
+
+/// A bin of a covariate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// From here,
+    pub low: f64,
+    /// to here; infinite where it is open.
+    pub high: f64,
+    /// Of steps in this sense (+1 left or ccw, -1 right or cw); 0 for both.
+    pub sense: f64,
+}
+
+/// The bins of a covariate on some data.
+pub(super) struct Bins {
+    edges: Vec<f64>,
+    cyclic: bool,
+    split: Option<Value>,
+    value: Value,
+}
+
+impl Covariate {
+    /// Whether its values come back after a full turn.
+    pub fn cyclic(&self) -> bool {
+        matches!(self.cut, Cut::Cyclic(_))
+    }
+
+    /// Its value for steps that count for a rate.
+    pub(super) fn value(&self, rate: Rate) -> Option<Value> {
+        if rate.of_turns() { self.turning } else { self.going }
+    }
+
+    /// Cuts the range that it has in some steps.
+    pub(super) fn bins<'a>(&self, rate: Rate, steps: impl Iterator<Item = &'a Step>) -> Option<Bins> {
+        let value = self.value(rate)?;
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for v in steps.map(|step| value(&step.at)) {
+            (least, most) = (least.min(v), most.max(v));
+        }
+        let range = (most > least).then_some(())?;
+        let even = |low: f64, high: f64, n: usize| {
+            (0..=n).map(|i| low + (high - low) * i as f64 / n as f64).collect::<Vec<f64>>()
+        };
+        let edges = match (range, self.cut) {
+            (_, Cut::FromZero(n)) => even(0.0, most, n),
+            (_, Cut::Around(n)) if least >= 0.0 => even(0.0, most, n - 1),
+            (_, Cut::Around(n)) => even(-most.abs().max(least.abs()), most.abs().max(least.abs()), n),
+            (_, Cut::Cyclic(n)) => even(-0.5 * TAU / n as f64, TAU * (1.0 - 0.5 / n as f64), n),
+            (_, Cut::At(edges)) => edges.iter().copied().chain([f64::INFINITY]).collect(),
+            (_, Cut::Whole(n)) => {
+                let each = ((most + 1.0) / n as f64).ceil();
+                even(-0.5, each * ((most + 1.0) / each).ceil() - 0.5, ((most + 1.0) / each).ceil() as usize)
+            }
+        };
+        Some(Bins { edges, cyclic: self.cyclic(), split: self.split, value })
+    }
+}
+
+impl Bins {
+    fn parts(&self) -> usize {
+        self.edges.len() - 1
+    }
+
+    /// All of them.
+    pub fn spans(&self) -> Vec<Span> {
+        let senses = if self.split.is_some() { &[-1.0, 1.0][..] } else { &[0.0][..] };
+        let of = |sense: &f64| {
+            let sense = *sense;
+            self.edges.windows(2).map(move |pair| Span { low: pair[0], high: pair[1], sense })
+        };
+        senses.iter().flat_map(of).collect()
+    }
+
+    /// Which of them a step lies in; `None` where it has no sense to be put in one by.
+    pub fn index(&self, step: &Step) -> Option<usize> {
+        let mut value = (self.value)(&step.at);
+        if self.cyclic {
+            value = self.edges[0] + libm::fmod(libm::fmod(value - self.edges[0], TAU) + TAU, TAU);
+        }
+        let part = self.edges.partition_point(|edge| *edge <= value).saturating_sub(1).min(self.parts() - 1);
+        match self.split.map(|split| split(&step.at)) {
+            None => Some(part),
+            Some(sense) if sense < 0.0 => Some(part),
+            Some(sense) if sense > 0.0 => Some(part + self.parts()),
+            Some(_) => None,
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! A run beside what a model predicts of it: where both are, and the error that each step between two measurements adds.
+
+use crate::effect::{Chain, Context};
+use crate::geometry::Pose2;
+use crate::likelihood::ObservedRun;
+use crate::path::Direction;
+use crate::replay::Track;
+use std::ops::Range;
+
+/// Steps longer than this \[m\], or that turn by more \[rad\], say nothing of how the robot drove within them.
+const LONGEST: (f64, f64) = (0.2, 0.35);
+
+/// A way whose wheels differ by less than this share is straight: less is what single ticks of the counters make of it.
+const STRAIGHT: f64 = 0.05;
+
+/// A run followed from measurement to measurement.
+pub(super) struct Followed<'a> {
+    pub observed: &'a ObservedRun,
+    pub direction: Option<Direction>,
+    /// Poses predicted and measured, first those at START: both in the frame in which the robot stands there.
+    pub places: Vec<Place>,
+    /// From each place to the next that is near enough.
+    pub steps: Vec<Step>,
+    pub with_heading: bool,
+}
+
+/// A block of measurements, where the model has it and where it was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    pub predicted: Pose2,
+    pub measured: Pose2,
+    /// How many pieces of the track are made, and how far the wheels have rolled on average by then \[m\].
+    pub made: usize,
+    pub rolled: f64,
+}
+
+/// What lies between two neighbouring places.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Step {
+    /// Error that it adds, seen by the robot: forward, to the left \[m\], rotation \[rad\].
+    pub own: [f64; 3],
+    /// Predicted motion: forward \[m\], rotation \[rad\].
+    pub motion: [f64; 2],
+    /// Whether the robot turns about a point within a wheelbase of its axle's centre.
+    pub turning: bool,
+    pub at: Conditions,
+}
+
+/// How the robot drives in a step: rates as means over its time, the rest as in its middle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Conditions {
+    /// \[m/s, rad/s\]
+    pub speed: f64,
+    pub turn_rate: f64,
+    /// How fast the speed, and the turn rate, rise in size \[m/s², rad/s²\].
+    pub acceleration: f64,
+    pub turn_acceleration: f64,
+    /// \[rad\]
+    pub wheel_angle: [f64; 2],
+    pub heading: f64,
+    /// Share of the run's way, time \[s\], way since the last turn \[m\].
+    pub place: f64,
+    pub time: f64,
+    pub since_turn: f64,
+    /// +1 left, -1 right, 0 none yet; +1 ccw, -1 cw, 0 neither; from 0.
+    pub last_turn: f64,
+    pub direction: f64,
+    pub run: f64,
+}
+
+impl<'a> Followed<'a> {
+    /// `observed` must lie along the model of `chain`.
+    pub fn new(observed: &'a ObservedRun, chain: &Chain<f64>) -> Followed<'a> {
+        let places = places(observed, chain);
+        let short = |step: &Step| step.motion[0].abs() <= LONGEST.0 && step.motion[1].abs() <= LONGEST.1;
+        let steps = places.windows(2).filter_map(|pair| step(&observed.track, pair)).filter(short).collect();
+        let with_heading = observed.blocks.iter().any(|block| block.headings > 0);
+        Followed { observed, direction: observed.direction, places, steps, with_heading }
+    }
+}
+
+/// Measured poses are moved so that they agree with the model at START, where one was taken there; else START is trusted. A
+/// heading that was not measured errs as the last one did.
+fn places(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Place> {
+    let rolled = rolled(&run.track);
+    let mut turned = 0.0;
+    let of_block = run.blocks.iter().zip(run.residuals(chain)).map(|(block, [dx, dy, turn])| {
+        if block.headings > 0 {
+            turned = turn;
+        }
+        let made = run.track.seen_after()[block.first + (block.count - 1) / 2];
+        let predicted = block.place;
+        let measured = Pose2::new(predicted.x + dx, predicted.y + dy, predicted.heading + turned);
+        Place { predicted, measured, made, rolled: rolled[made] }
+    });
+    let mut places: Vec<Place> = of_block.collect();
+    if run.start_seen {
+        let world_from_measured = places[0].predicted.compose(&places[0].measured.inverse());
+        for place in &mut places {
+            place.measured = world_from_measured.compose(&place.measured);
+        }
+    } else {
+        let start = chain.start();
+        places.insert(0, Place { predicted: start, measured: start, made: 0, rolled: 0.0 });
+    }
+    places
+}
+
+/// How far the wheels have rolled on average after each piece, whatever way \[m\].
+pub(super) fn rolled(track: &Track) -> Vec<f64> {
+    let mut sum = 0.0;
+    let after = track.travel().iter().map(|travel| {
+        sum += 0.5 * (travel.left.abs() + travel.right.abs());
+        sum
+    });
+    std::iter::once(0.0).chain(after).collect()
+}
+
+fn step(track: &Track, pair: &[Place]) -> Option<Step> {
+    let (a, b) = (&pair[0], &pair[1]);
+    let predicted = a.predicted.between(&b.predicted);
+    let own = predicted.between(&a.measured.between(&b.measured));
+    let forward = predicted.log().forward;
+    let (at, turning) = conditions(track, a.made..b.made, 0.5 * (a.predicted.heading + b.predicted.heading))?;
+    Some(Step { own: [own.x, own.y, own.heading], motion: [forward, predicted.heading], turning, at })
+}
+
+/// Conditions of some pieces, and whether most of their rolling is turning; `None` where nothing moves.
+fn conditions(track: &Track, pieces: Range<usize>, heading: f64) -> Option<(Conditions, bool)> {
+    let own = &track.contexts()[pieces.clone()];
+    let middle = own.get(own.len() / 2)?;
+    let seconds: f64 = own.iter().map(|at| at.duration).sum();
+    let mean = |of: &dyn Fn(&Context) -> f64| {
+        let sum: f64 = own.iter().map(|at| of(at) * at.duration).sum();
+        if seconds > 0.0 { sum / seconds } else { of(middle) }
+    };
+    let rise = |of: &dyn Fn(&Context) -> f64| {
+        let sum: f64 = own.iter().map(of).sum();
+        if seconds > 0.0 { sum / seconds } else { 0.0 }
+    };
+    let travel = &track.travel()[pieces];
+    let (left, right) = travel.iter().fold((0.0, 0.0), |(l, r), t| (l + t.left, r + t.right));
+    let (apart, way) = (f64::abs(right - left), 0.5 * f64::abs(left + right));
+    let speed = mean(&|at| at.speed);
+    let turn_rate = if apart < STRAIGHT * way { 0.0 } else { mean(&|at| at.turn_rate) };
+    let change = |at: &Context| [at.speed_change[0] + at.speed_change[1], at.speed_change[1] - at.speed_change[0]];
+    let wheels = |at: &Context| at.wheel_speed[1] - at.wheel_speed[0];
+    let wheelbase = own.iter().find(|at| at.turn_rate != 0.0).map_or(1.0, |at| wheels(at) / at.turn_rate);
+    let at = Conditions {
+        speed,
+        turn_rate,
+        acceleration: speed.signum() * rise(&|at| 0.5 * change(at)[0]),
+        turn_acceleration: turn_rate.signum() * rise(&|at| change(at)[1] / wheelbase),
+        wheel_angle: middle.wheel_angle,
+        heading,
+        place: middle.distance / track.length().max(f64::MIN_POSITIVE),
+        time: middle.time,
+        since_turn: middle.since_turn,
+        last_turn: middle.last_turn,
+        direction: middle.direction,
+        run: middle.run,
+    };
+    Some((at, apart > way))
+}

@@ -1,0 +1,92 @@
+//! Means with intervals that rest on the scatter from run to run, and their tests.
+
+use crate::stats::{Interval, student_t_quantile, t_two_sided};
+
+/// A mean over runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mean {
+    /// Its value.
+    pub value: f64,
+    /// Its interval by Student's t, each run one value; `None` below two runs.
+    pub interval: Option<Interval>,
+    /// How many runs it rests on.
+    pub runs: usize,
+}
+
+impl Mean {
+    /// Σ sum / Σ weight over runs, each with its sum and its weight: a rate over what was driven.
+    ///
+    /// Interval: ± t · sd(sum - value · weight) / (√n · mean weight).
+    pub(super) fn rate(runs: &[[f64; 2]], confidence: f64) -> Option<Mean> {
+        let n = runs.len();
+        let (sum, weight) = runs.iter().fold((0.0, 0.0), |(s, w), [sum, weight]| (s + sum, w + weight));
+        if weight <= 0.0 {
+            return None;
+        }
+        let value = sum / weight;
+        let squares: f64 = runs.iter().map(|[sum, weight]| (sum - value * weight).powi(2)).sum();
+        let interval = (n > 1).then(|| {
+            let error = (squares / ((n - 1) * n) as f64).sqrt() / (weight / n as f64);
+            Interval::around(value, student_t_quantile(0.5 + 0.5 * confidence, (n - 1) as f64) * error)
+        });
+        Some(Mean { value, interval, runs: n })
+    }
+
+    /// The mean of one value a run.
+    pub(super) fn of(runs: &[f64], confidence: f64) -> Option<Mean> {
+        Mean::rate(&runs.iter().map(|value| [*value, 1.0]).collect::<Vec<_>>(), confidence)
+    }
+}
+
+/// Fewer runs say too little of their own scatter for a test.
+const FEWEST: usize = 3;
+
+/// p of a mean of zero, by Student's t; `None` below three values.
+pub(super) fn p_of_zero(values: &[f64]) -> Option<f64> {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    p_of(mean, variance / n, n - 1.0).filter(|_| values.len() >= FEWEST)
+}
+
+/// p of a slope of zero of values against positions, by Student's t; `None` below four values, or where all positions are one.
+pub(super) fn p_of_slope(points: &[[f64; 2]]) -> Option<f64> {
+    let n = points.len() as f64;
+    let mean = |k: usize| points.iter().map(|p| p[k]).sum::<f64>() / n;
+    let (x, y) = (mean(0), mean(1));
+    let product = |i: usize, j: usize| points.iter().map(|p| (p[i] - [x, y][i]) * (p[j] - [x, y][j])).sum::<f64>();
+    let across = product(0, 0);
+    let slope = product(0, 1) / across;
+    let rest = (product(1, 1) - slope * product(0, 1)).max(0.0);
+    p_of(slope, rest / (n - 2.0) / across, n - 2.0).filter(|_| points.len() > FEWEST && across > 0.0)
+}
+
+fn p_of(value: f64, variance: f64, freedom: f64) -> Option<f64> {
+    let p = if variance > 0.0 { t_two_sided(value / variance.sqrt(), freedom) } else { f64::from(value == 0.0) };
+    p.is_finite().then_some(p)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: the density of t, integrated by Simpson's rule in Python.
+    #[test]
+    fn tests_are_students() {
+        let p = p_of_zero(&[0.3, -0.1, 0.4, 0.2, 0.5]).unwrap();
+        assert!((p - 0.064_985_9).abs() < 1e-6, "{p}");
+        let p = p_of_slope(&[[0.0, 1.0], [1.0, 1.5], [2.0, 1.2], [3.0, 2.1], [4.0, 2.0]]).unwrap();
+        assert!((p - 0.067_038_0).abs() < 1e-6, "{p}");
+        assert!(p_of_zero(&[1.0, 2.0]).is_none() && p_of_slope(&[[1.0, 2.0]; 5]).is_none());
+    }
+
+    #[test]
+    fn a_rate_weighs_runs_by_what_they_drove_and_one_run_has_no_interval() {
+        let mean = Mean::rate(&[[1.0, 1.0], [6.0, 3.0]], 0.95).unwrap();
+        assert_eq!((mean.value, mean.runs), (1.75, 2));
+        // Residuals -0.75 and 0.75, t of one degree of freedom 12.7062, mean weight 2.
+        let half = 12.706_204_7 * 0.75 / 2.0;
+        assert!((mean.interval.unwrap().high - 1.75 - half).abs() < 1e-6);
+        assert!(Mean::of(&[1.0], 0.95).unwrap().interval.is_none() && Mean::of(&[], 0.95).is_none());
+    }
+}

@@ -1,0 +1,332 @@
+//! Where errors are made: in which leg, turn, direction, at which speed, in which run.
+
+use super::followed::{Followed, rolled};
+use super::mean::Mean;
+use crate::dataset::{Done, MoveDone};
+use crate::geometry::Pose2;
+use crate::path::Direction;
+
+/// The end of a move is seen where a measurement lies within this way of the wheels \[m\], or this share of the move.
+const NEAR: (f64, f64) = (0.05, 0.1);
+/// Speeds are apart where they differ by more than this share.
+const APART: f64 = 0.15;
+
+/// By what parts of the way are gathered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum By {
+    /// One move of the path, in the runs of one direction.
+    Move,
+    /// All moves of a kind, in the runs of one direction.
+    Kind,
+    /// Turns to the left and to the right.
+    Sense,
+    /// Moves of a kind at about one speed; only where there are several.
+    Speed,
+    /// Whole runs of one direction.
+    Direction,
+    /// One run.
+    Run,
+}
+
+impl By {
+    /// All, in the order of tables.
+    pub const ALL: [By; 6] = [By::Move, By::Kind, By::Sense, By::Speed, By::Direction, By::Run];
+
+    /// As a key.
+    pub fn key(self) -> &'static str {
+        match self {
+            By::Move => "moves",
+            By::Kind => "kinds",
+            By::Sense => "senses",
+            By::Speed => "speeds",
+            By::Direction => "directions",
+            By::Run => "runs",
+        }
+    }
+}
+
+/// A part of the way, and the error that is made there.
+///
+/// The error of one move, or of one run, is that of its end as the robot sees it from where it was predicted, had it begun
+/// without any: P⁻¹ M with P the predicted and M the measured motion from its beginning to its end, a stop that follows included.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// By what it is gathered.
+    pub by: By,
+    /// What it is called: "leg 1", "turns to the left", or a run's name.
+    pub name: String,
+    /// Of the runs, where it is of one direction.
+    pub direction: Option<Direction>,
+    /// How many moves (or runs) it has.
+    pub count: usize,
+    /// Mean error: forward, sideways \[m\], rotation \[rad\], with an interval that rests on the scatter from run to run. A rotation
+    /// that was not measured is 0.
+    pub mean: [Mean; 3],
+    /// Standard deviation of single errors \[m, m, rad\], n - 1; `None` for one.
+    pub spread: Option<[f64; 3]>,
+    /// Its share in the mean squared error of all measured positions and, where they were measured, headings.
+    ///
+    /// An error that is made stays: it moves and turns all that follows. With c the part of an error r that was made here,
+    /// the share is Σ c·r / Σ r·r over all measurements of all runs. Shares of all moves, of all kinds, of both directions, or of all
+    /// runs add up to 1. One below 0 made up for errors of others.
+    pub share: Share,
+}
+
+/// Shares in sums of squares.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Share {
+    /// In that of all positions.
+    pub position: f64,
+    /// In that of all headings.
+    pub heading: f64,
+    /// In that of the end positions.
+    pub end: f64,
+}
+
+impl Share {
+    fn plus(self, other: Share) -> Share {
+        Share {
+            position: self.position + other.position,
+            heading: self.heading + other.heading,
+            end: self.end + other.end,
+        }
+    }
+}
+
+/// What is done in a move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Leg,
+    Turn,
+    Arc,
+    /// Several, between which nothing was measured.
+    Several,
+}
+
+impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Kind::Leg => "leg",
+            Kind::Turn => "turn",
+            Kind::Arc => "arc",
+            Kind::Several => "moves",
+        }
+    }
+}
+
+/// One move of one run.
+pub(super) struct Made {
+    run: usize,
+    direction: Option<Direction>,
+    kind: Kind,
+    name: String,
+    /// \[m/s\], of turns \[rad/s\]
+    speed: f64,
+    /// +1 to the left, -1 to the right, 0 for legs.
+    sense: f64,
+    own: [f64; 3],
+    share: Share,
+}
+
+/// The moves of a run, each up to where the next begins. Those between which nothing was measured are one.
+pub(super) fn made(index: usize, run: &Followed, moves: &[MoveDone], time: &[f64]) -> Vec<Made> {
+    let rolled = rolled(&run.observed.track);
+    let made_at = |sample: usize| {
+        let since_start = time[sample] - time[0];
+        run.observed.track.contexts().partition_point(|at| at.time < since_start - 1e-9)
+    };
+    let driven: Vec<&MoveDone> = moves.iter().filter(|m| m.done != Done::Stop).collect();
+    let mut counts = [0; 3];
+    let (mut parts, mut first, mut waiting) = (Vec::new(), 0, Vec::new());
+    for (number, m) in driven.iter().enumerate() {
+        let last = number + 1 == driven.len();
+        let kind = kind(&m.done);
+        counts[kind as usize] += 1;
+        waiting.push((number + 1, *m, format!("{} {}", kind.name(), counts[kind as usize])));
+        let end = driven.get(number + 1).map_or(rolled.len() - 1, |next| made_at(next.from));
+        let until = run.places.partition_point(|place| place.made <= end).saturating_sub(1);
+        let place = if last { run.places.len() - 1 } else { until };
+        let boundary = if last { run.places[place].rolled } else { rolled[end] };
+        let rolls = boundary - run.places[first].rolled;
+        if place == first || (boundary - run.places[place].rolled > NEAR.0.max(NEAR.1 * rolls) && !last) {
+            continue;
+        }
+        parts.push((first, place, std::mem::take(&mut waiting)));
+        first = place;
+    }
+    let shares = shares(run, &parts.iter().map(|(a, b, _)| [*a, *b]).collect::<Vec<_>>());
+    let build = |((a, b, moves), share): ((usize, usize, Vec<(usize, &MoveDone, String)>), Share)| {
+        let own = seen_from(run, a, b);
+        let (kind, name, sense, speed) = told(&moves, time);
+        Made { run: index, direction: run.direction, kind, name, speed, sense, own, share }
+    };
+    parts.into_iter().zip(shares).map(build).collect()
+}
+
+fn kind(done: &Done) -> Kind {
+    match done {
+        Done::Turn { .. } => Kind::Turn,
+        Done::Arc { .. } => Kind::Arc,
+        Done::Leg { .. } | Done::Stop => Kind::Leg,
+    }
+}
+
+/// Kind, name, sense and mean speed of what was driven between two places.
+fn told(moves: &[(usize, &MoveDone, String)], time: &[f64]) -> (Kind, String, f64, f64) {
+    let [(_, m, name)] = moves else {
+        let (first, last) = (moves.first().map_or(0, |m| m.0), moves.last().map_or(0, |m| m.0));
+        return (Kind::Several, format!("moves {first} to {last}"), 0.0, 0.0);
+    };
+    let seconds = (time[m.to] - time[m.from]).max(f64::MIN_POSITIVE);
+    let (size, sense) = match m.done {
+        Done::Turn { angle } => (angle.abs(), angle.signum()),
+        Done::Arc { length, angle } => (length, angle.signum()),
+        Done::Leg { length } => (length, 0.0),
+        Done::Stop => (0.0, 0.0),
+    };
+    (kind(&m.done), name.clone(), sense, size / seconds)
+}
+
+/// P⁻¹ M from one place to another.
+fn seen_from(run: &Followed, from: usize, to: usize) -> [f64; 3] {
+    let (a, b) = (&run.places[from], &run.places[to]);
+    let own = a.predicted.between(&b.predicted).between(&a.measured.between(&b.measured));
+    [own.x, own.y, own.heading]
+}
+
+/// Σ c·r of each part, over all places of a run.
+///
+/// Had the robot been as measured up to place i and as predicted from there on, it would be at M_i P_i⁻¹ P_k: the error that
+/// a part from i to j made at a later place k is what that changes from i to j.
+fn shares(run: &Followed, parts: &[[usize; 2]]) -> Vec<Share> {
+    let as_measured_until = |i: usize, k: usize| -> Pose2 {
+        let until = &run.places[i];
+        until.measured.compose(&until.predicted.between(&run.places[k].predicted))
+    };
+    let last = run.places.len() - 1;
+    let of_part = |[from, to]: &[usize; 2]| {
+        let mut share = Share::default();
+        for k in *from + 1..=last {
+            let place = &run.places[k];
+            let after = if k <= *to { place.measured } else { as_measured_until(*to, k) };
+            let before = as_measured_until(*from, k);
+            let [dx, dy] = [place.measured.x - place.predicted.x, place.measured.y - place.predicted.y];
+            let product = (after.x - before.x) * dx + (after.y - before.y) * dy;
+            share.position += product;
+            share.heading += (after.heading - before.heading) * (place.measured.heading - place.predicted.heading);
+            share.end += if k == last { product } else { 0.0 };
+        }
+        share
+    };
+    parts.iter().map(of_part).collect()
+}
+
+/// All parts, gathered in every way.
+pub(super) fn gathered(runs: &[Followed], made: &[Made], confidence: f64) -> Vec<Part> {
+    let whole = made.iter().fold(Share::default(), |sum, m| sum.plus(m.share));
+    let mut parts = Vec::new();
+    for by in [By::Move, By::Kind, By::Sense, By::Speed] {
+        let keys = if by == By::Speed { speeds(made) } else { made.iter().map(|m| key(by, m)).collect() };
+        let mut named: Vec<(String, Option<Direction>)> = keys.iter().flatten().cloned().collect();
+        let mut seen = Vec::new();
+        named.retain(|name| {
+            !seen.contains(name) && {
+                seen.push(name.clone());
+                true
+            }
+        });
+        named.sort_by_key(|(_, direction)| direction.map(|d| d as usize));
+        for (name, direction) in named {
+            let own = made.iter().zip(&keys).filter(|(_, k)| k.as_ref() == Some(&(name.clone(), direction)));
+            let own: Vec<(usize, [f64; 3], Share)> = own.map(|(m, _)| (m.run, m.own, m.share)).collect();
+            parts.extend(part(by, name, direction, &own, &whole, confidence));
+        }
+    }
+    let ends: Vec<(usize, [f64; 3], Share)> = runs
+        .iter()
+        .enumerate()
+        .map(|(index, run)| {
+            let own = made.iter().filter(|m| m.run == index).fold(Share::default(), |sum, m| sum.plus(m.share));
+            (index, seen_from(run, 0, run.places.len() - 1), own)
+        })
+        .collect();
+    for direction in [Some(Direction::Cw), Some(Direction::Ccw), None] {
+        let own: Vec<_> = ends.iter().filter(|(run, ..)| runs[*run].direction == direction).copied().collect();
+        let name = if direction.is_some() { "whole runs" } else { "runs without a sense" };
+        parts.extend(part(By::Direction, name.to_owned(), direction, &own, &whole, confidence));
+    }
+    for (end, run) in ends.iter().zip(runs) {
+        let name = run.observed.name.clone();
+        parts.extend(part(By::Run, name, run.direction, &[*end], &whole, confidence));
+    }
+    parts
+}
+
+fn key(by: By, m: &Made) -> Option<(String, Option<Direction>)> {
+    match (by, m.kind) {
+        (By::Move, _) => Some((m.name.clone(), m.direction)),
+        (By::Kind, Kind::Several) => Some(("several moves".to_owned(), m.direction)),
+        (By::Kind, kind) => Some((format!("all {}s", kind.name()), m.direction)),
+        (By::Sense, Kind::Turn | Kind::Arc) => {
+            Some((format!("{}s to the {}", m.kind.name(), if m.sense > 0.0 { "left" } else { "right" }), None))
+        }
+        _ => None,
+    }
+}
+
+/// Names by kind and speed, where a kind is driven at several.
+fn speeds(made: &[Made]) -> Vec<Option<(String, Option<Direction>)>> {
+    let groups = |kind: Kind| {
+        let mut speeds: Vec<f64> = made.iter().filter(|m| m.kind == kind).map(|m| m.speed).collect();
+        speeds.sort_by(f64::total_cmp);
+        let groups: Vec<Vec<f64>> = speeds.chunk_by(|a, b| *b <= *a * (1.0 + APART)).map(<[f64]>::to_vec).collect();
+        groups
+    };
+    let all = [Kind::Leg, Kind::Turn, Kind::Arc].map(|kind| (kind, groups(kind)));
+    let name = |m: &Made| {
+        let (kind, groups) = all.iter().find(|(kind, groups)| *kind == m.kind && groups.len() > 1)?;
+        let own = groups.iter().find(|g| g.contains(&m.speed))?;
+        let unit = if *kind == Kind::Turn { "rad/s" } else { "m/s" };
+        let mean = own.iter().sum::<f64>() / own.len() as f64;
+        Some((format!("{}s at {mean:.2} {unit}", kind.name()), None))
+    };
+    made.iter().map(name).collect()
+}
+
+/// A part from its moves: run, error, and share before it is divided by the whole.
+fn part(
+    by: By,
+    name: String,
+    direction: Option<Direction>,
+    own: &[(usize, [f64; 3], Share)],
+    whole: &Share,
+    confidence: f64,
+) -> Option<Part> {
+    let mean = |k: usize| {
+        let by_run: Vec<f64> = own
+            .chunk_by(|a, b| a.0 == b.0)
+            .map(|of_run| of_run.iter().map(|(_, e, _)| e[k]).sum::<f64>() / of_run.len() as f64)
+            .collect();
+        Mean::of(&by_run, confidence)
+    };
+    let n = own.len() as f64;
+    let spread = [0, 1, 2].map(|k| {
+        let centre = own.iter().map(|(_, e, _)| e[k]).sum::<f64>() / n;
+        (own.iter().map(|(_, e, _)| (e[k] - centre).powi(2)).sum::<f64>() / (n - 1.0)).sqrt()
+    });
+    let sum = own.iter().fold(Share::default(), |sum, (_, _, share)| sum.plus(*share));
+    let of = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+    Some(Part {
+        by,
+        name,
+        direction,
+        count: own.len(),
+        mean: [mean(0)?, mean(1)?, mean(2)?],
+        spread: (own.len() > 1).then_some(spread),
+        share: Share {
+            position: of(sum.position, whole.position),
+            heading: of(sum.heading, whole.heading),
+            end: of(sum.end, whole.end),
+        },
+    })
+}

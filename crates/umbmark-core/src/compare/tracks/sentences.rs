@@ -1,0 +1,83 @@
+//! What a model explains of tracks and what not, in plain sentences.
+
+use super::{Against, By, Mean, Part, TracksJudged};
+
+/// A part is named where it has this share of the error.
+const MUCH: f64 = 0.2;
+/// So many parts, and so many dependences of one rate, are named.
+const NAMED: usize = 3;
+
+pub(super) fn of(judged: &TracksJudged, size: f64) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if judged.tests == 0 {
+        sentences.push("Too few runs, or poses too far apart, to test what the errors depend on.".to_owned());
+    }
+    let least = size / judged.tests.max(1) as f64;
+    sentences.extend(levels(judged, least));
+    sentences.extend(dependences(judged, least));
+    if judged.tests > 0 && sentences.is_empty() {
+        sentences.push(format!("Explained: none of {} tests shows an error that repeats.", judged.tests));
+    }
+    sentences.extend(seen_to(judged));
+    sentences.extend(where_made(&judged.parts));
+    sentences
+}
+
+fn levels(judged: &TracksJudged, least: f64) -> Vec<String> {
+    let accused = judged.overall.iter().filter(|o| o.p.is_some_and(|p| p < least));
+    let told = accused.map(|o| {
+        let (scale, unit) = o.rate.display();
+        let value = with_interval(&o.mean, scale);
+        format!("Not explained: {} is off by {value} {unit} on the whole.", o.rate.name())
+    });
+    told.collect()
+}
+
+fn dependences(judged: &TracksJudged, least: f64) -> Vec<String> {
+    let mut sentences = Vec::new();
+    for rate in super::Rate::DEPENDING {
+        let accused = judged.against.iter().filter(|a| a.rate == rate && a.p.is_some_and(|p| p < least));
+        let mut accused: Vec<(f64, &Against)> = accused.map(|a| (a.p.unwrap_or(1.0), a)).collect();
+        accused.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if accused.is_empty() {
+            continue;
+        }
+        let names: Vec<&str> = accused.iter().take(NAMED).map(|(_, a)| a.covariate.title).collect();
+        let further = match accused.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            more => format!(" (and {more} more)"),
+        };
+        sentences.push(format!("Not explained: {} depends on {}{further}.", rate.name(), names.join("; on ")));
+    }
+    sentences
+}
+
+/// How small an error on the whole would have shown.
+fn seen_to(judged: &TracksJudged) -> Option<String> {
+    let half = |o: &super::Overall| {
+        let (scale, unit) = o.rate.display();
+        let interval = o.mean.interval?;
+        Some(format!("{} to ± {:.2} {unit}", o.rate.name(), scale * 0.5 * (interval.high - interval.low)))
+    };
+    let seen: Vec<String> = judged.overall.iter().filter_map(half).collect();
+    (!seen.is_empty()).then(|| format!("Seen on the whole: {}.", seen.join(", ")))
+}
+
+fn where_made(parts: &[Part]) -> Option<String> {
+    let mut moves: Vec<&Part> =
+        parts.iter().filter(|part| part.by == By::Move && part.share.position >= MUCH).collect();
+    moves.sort_by(|a, b| b.share.position.total_cmp(&a.share.position));
+    let told = |part: &&Part| {
+        let direction = part.direction.map_or(String::new(), |d| format!(" of {} runs", d.name()));
+        format!("{}{direction} ({:.0} %)", part.name, 100.0 * part.share.position)
+    };
+    let told: Vec<String> = moves.iter().take(NAMED).map(told).collect();
+    (!told.is_empty()).then(|| format!("Most of the error of the position is made in {}.", told.join(", ")))
+}
+
+fn with_interval(mean: &Mean, scale: f64) -> String {
+    match mean.interval {
+        Some(interval) => format!("{:.2} ± {:.2}", scale * mean.value, scale * 0.5 * (interval.high - interval.low)),
+        None => format!("{:.2}", scale * mean.value),
+    }
+}

@@ -1,0 +1,231 @@
+//! Simulated tracks whose cause is known.
+
+use super::*;
+use crate::dataset::ReferencePose;
+use crate::diagnose::first_model;
+use crate::diagnose::tests::{margin, trials};
+use crate::drive::Robot;
+use crate::likelihood::watched::{watched, watched_on};
+use crate::path::{CIRCLE, Path, SQUARE, SpeedProfile};
+use rayon::prelude::*;
+use std::io::Write;
+
+/// A robot with usual errors of its wheels and of the reference, and further effects.
+fn robot_with(effects: &[(&str, &str, f64)]) -> Model {
+    let mut model = Model::new(&Robot::labmate());
+    let usual = [
+        ("wheel_diameter_ratio", "e_d", 1.0012),
+        ("wheelbase", "e_b", 0.993),
+        ("scale", "e_s", 1.002),
+        ("wheel_noise", "k_sqrt_m", 4e-4),
+        ("reference_noise", "position_sd_m", 8e-4),
+        ("reference_noise", "heading_sd_rad", 8e-4),
+    ];
+    for (effect, parameter, value) in usual.iter().chain(effects) {
+        model.set(effect, parameter, *value).unwrap();
+    }
+    model
+}
+
+fn judged(data: &Dataset, model: &Model) -> TracksJudged {
+    compare_tracks(data, &[("asked".into(), model.clone())], &Options::default()).unwrap().models.remove(0)
+}
+
+/// The rates against a covariate.
+fn asked<'a>(judged: &'a TracksJudged, rate: Rate, covariate: &str) -> &'a Against {
+    judged.against.iter().find(|a| a.rate == rate && a.covariate.name == covariate).unwrap()
+}
+
+fn p_adjusted(judged: &TracksJudged, rate: Rate, covariate: &str) -> f64 {
+    asked(judged, rate, covariate).p.unwrap() * judged.tests as f64
+}
+
+/// Seed 5, 5 + 5 runs of a robot with one effect more than its model has.
+fn missing(effect: &str, parameter: &str, value: f64) -> TracksJudged {
+    judged(&watched(&robot_with(&[(effect, parameter, value)]), 5, 5), &robot_with(&[]))
+}
+
+#[test]
+fn a_kick_of_casters_shows_in_the_first_centimetres_after_turns_with_its_size_and_in_legs() {
+    let kick = 0.02;
+    let judged = missing("caster_kick", "kick_rad", kick);
+    assert!(p_adjusted(&judged, Rate::Yaw, "since_turn") < 0.01, "{:?}", judged.sentences);
+    assert!(!judged.explains(0.05));
+    let against = asked(&judged, Rate::Yaw, "since_turn");
+    for bin in against.bins.iter().filter(|bin| bin.span.low < 0.15) {
+        let left = |way: f64| libm::exp(-way / 0.05);
+        let expected = kick * (left(bin.span.low) - left(bin.span.high)) / (bin.span.high - bin.span.low);
+        let mean = bin.mean.unwrap();
+        assert_eq!(mean.runs, 5);
+        assert!((mean.value * bin.span.sense / expected - 1.0).abs() < 0.25, "{bin:?} {expected}");
+    }
+    // Leg 1 has none, legs 2 to 4 have it in the sense of the turns.
+    let legs = judged.parts.iter().filter(|p| p.by == By::Move && p.name.starts_with("leg"));
+    for leg in legs {
+        let expected = if leg.name == "leg 1" { 0.0 } else { kick * leg.direction.unwrap().sign() };
+        let heading = leg.mean[2];
+        assert!((heading.value - expected).abs() < 5e-3, "{leg:?} {expected}");
+    }
+}
+
+#[test]
+fn a_floor_slope_shows_against_the_heading_where_it_points() {
+    let drift = 6e-3;
+    let judged = missing("floor_slope", "drift_x", drift);
+    assert!(p_adjusted(&judged, Rate::Forward, "heading") < 0.01, "{:?}", judged.sentences);
+    assert!(p_adjusted(&judged, Rate::Sideways, "heading") < 0.01);
+    let forward = asked(&judged, Rate::Forward, "heading");
+    for (bin, expected) in [(0, drift), (4, -drift)] {
+        let mean = forward.bins[bin].mean.unwrap();
+        assert!((mean.value - expected).abs() < 1e-3, "{bin}: {mean:?}");
+        let interval = mean.interval.unwrap();
+        assert!(interval.high - interval.low < 0.5e-3, "{interval:?}");
+    }
+}
+
+#[test]
+fn a_slip_that_grows_with_speed_shows_against_the_speed() {
+    // At two speeds: within a run only the ramps tell.
+    let truth = robot_with(&[("speed_slip", "s_per_m", 0.02)]);
+    let path = |speed: f64| {
+        let [_, acceleration, pause] = SpeedProfile::default().values();
+        Path::new(&SQUARE, &[2.0], SpeedProfile::new(speed, acceleration, pause).unwrap()).unwrap()
+    };
+    let mut data = watched_on(&path(0.2), &truth, 3, 5);
+    let faster = watched_on(&path(0.5), &truth, 3, 6);
+    data.runs
+        .extend(faster.runs.into_iter().map(|run| crate::dataset::Run { name: format!("fast_{}", run.name), ..run }));
+    let judged = judged(&data, &robot_with(&[]));
+    assert!(p_adjusted(&judged, Rate::Forward, "speed") < 0.01, "{:?}", judged.sentences);
+    let legs: Vec<&Part> = judged.parts.iter().filter(|p| p.by == By::Speed && p.name.starts_with("legs")).collect();
+    assert_eq!(legs.len(), 2);
+    assert!(legs.iter().all(|leg| leg.count == 24 && leg.mean[0].runs == 6));
+}
+
+#[test]
+fn a_kick_at_the_start_of_legs_shows_in_every_leg_the_same_way() {
+    let kick = 0.02;
+    let judged = missing("leg_kick", "kick_rad", kick);
+    for leg in judged.parts.iter().filter(|p| p.by == By::Kind && p.name == "all legs") {
+        assert!((leg.mean[2].value - kick).abs() < 3e-3, "{leg:?}");
+        assert!(leg.mean[2].interval.unwrap().contains(kick));
+        assert_eq!(leg.count, 20);
+    }
+    let turns = judged.parts.iter().find(|p| p.by == By::Kind && p.name == "all turns").unwrap();
+    assert!(turns.mean[2].value.abs() < 3e-3, "{turns:?}");
+    assert!(judged.sentences.iter().any(|s| s.starts_with("Not explained: yaw is off by")), "{:?}", judged.sentences);
+}
+
+#[test]
+fn a_wheelbase_that_depends_on_the_sense_of_the_turn_shows_in_turns() {
+    let judged = missing("direction_dependent_wheelbase", "difference", 0.02);
+    assert!(p_adjusted(&judged, Rate::Turn, "last_turn") < 0.01, "{:?}", judged.sentences);
+    let [right, _, left] = asked(&judged, Rate::Turn, "last_turn").bins[..] else { panic!() };
+    let apart = right.mean.unwrap().value - left.mean.unwrap().value;
+    assert!((apart.abs() - 0.02).abs() < 2e-3, "{apart}");
+}
+
+#[test]
+fn shares_add_up_to_one_however_parts_are_gathered_and_those_of_one_cause_lie_where_it_is() {
+    let judged = missing("caster_kick", "kick_rad", 0.02);
+    for by in [By::Move, By::Kind, By::Direction, By::Run] {
+        let of =
+            |value: fn(&Share) -> f64| judged.parts.iter().filter(|p| p.by == by).map(|p| value(&p.share)).sum::<f64>();
+        for sum in [of(|s| s.position), of(|s| s.heading), of(|s| s.end)] {
+            assert!((sum - 1.0).abs() < 1e-9, "{by:?}: {sum}");
+        }
+    }
+    let of = |name: &str| {
+        let parts = judged.parts.iter().filter(|p| p.by == By::Kind && p.name == name);
+        parts.map(|p| p.share.position).sum::<f64>()
+    };
+    assert!(of("all legs") > 0.9 && of("all turns").abs() < 0.1, "{} {}", of("all legs"), of("all turns"));
+}
+
+#[test]
+fn whole_runs_end_with_the_error_of_their_last_place() {
+    let judged = missing("floor_slope", "drift_x", 6e-3);
+    let runs: Vec<&Part> = judged.parts.iter().filter(|p| p.by == By::Run).collect();
+    let mut squares = 0.0;
+    for (part, residuals) in runs.iter().zip(&judged.residuals) {
+        let last = residuals.errors.last().unwrap();
+        for k in 0..3 {
+            assert!((part.mean[k].value - last[k]).abs() < 1e-12, "{part:?} {last:?}");
+        }
+        squares += last[0] * last[0] + last[1] * last[1];
+    }
+    assert!((judged.end.position - (squares / 10.0).sqrt()).abs() < 1e-12);
+}
+
+/// Poses at stops alone: each move is seen from end to end, and no rate is.
+#[test]
+fn poses_at_stops_tell_of_moves_and_not_of_rates() {
+    let mut data = watched(&robot_with(&[("leg_kick", "kick_rad", 0.02)]), 4, 5);
+    let robot = data.robot.clone().unwrap();
+    for log in data.runs.iter_mut().filter_map(|run| run.log.as_mut()) {
+        let stops = moves_of(log, &robot);
+        let stops = stops.iter().filter(|m| m.done == crate::dataset::Done::Stop).map(|m| (m.from + m.to) / 2);
+        let nearest = |sample: usize| *log.reference.iter().min_by_key(|r| r.sample.abs_diff(sample)).unwrap();
+        let kept: Vec<ReferencePose> = stops.map(nearest).collect();
+        log.reference = kept;
+        assert!((8..=9).contains(&log.reference.len()), "{}", log.reference.len());
+    }
+    let judged = judged(&data, &robot_with(&[]));
+    assert!(judged.overall.is_empty() && judged.against.is_empty() && judged.p.is_none());
+    let legs: Vec<&Part> = judged.parts.iter().filter(|p| p.by == By::Move && p.name.starts_with("leg")).collect();
+    assert_eq!(legs.len(), 8);
+    assert!(legs.iter().all(|leg| (leg.mean[2].value - 0.02).abs() < 5e-3), "{legs:?}");
+    assert!(judged.sentences[0].starts_with("Too few runs, or poses too far apart"));
+}
+
+#[test]
+fn without_headings_the_way_is_still_told_and_yaw_is_not() {
+    let mut data = watched(&robot_with(&[("floor_slope", "drift_x", 6e-3)]), 5, 5);
+    for log in data.runs.iter_mut().filter_map(|run| run.log.as_mut()) {
+        log.reference.iter_mut().for_each(|pose| pose.heading = None);
+    }
+    let comparison = compare_tracks(&data, &[("asked".into(), robot_with(&[]))], &Options::default()).unwrap();
+    let judged = &comparison.models[0];
+    assert!(judged.along.heading.is_none() && judged.overall.iter().all(|o| o.rate == Rate::Forward));
+    assert!(p_adjusted(judged, Rate::Forward, "heading") < 0.01);
+    assert!(comparison.remarks.iter().any(|remark| remark.starts_with("Headings were not measured")));
+}
+
+/// Seeds 100 on. p of each test and of all together, for the true model and for one fitted to the same runs; on squares and on
+/// circles.
+#[test]
+fn a_right_model_is_accused_no_more_often_than_is_asked() {
+    let trials = trials(24);
+    let truth = robot_with(&[]);
+    let circle = Path::new(&CIRCLE, &[1.0, 1.0], SpeedProfile::default()).unwrap();
+    for (case, fitted) in [("squares", false), ("circles", false), ("squares, fitted", true)] {
+        let outcomes: Vec<(bool, usize, usize)> = (0..trials)
+            .into_par_iter()
+            .map(|trial| {
+                let data = if case == "circles" {
+                    watched_on(&circle, &truth, 5, 100 + trial)
+                } else {
+                    watched(&truth, 5, 100 + trial)
+                };
+                let model = if fitted {
+                    crate::learn::fit(&data, &first_model(&data).unwrap()).unwrap().0
+                } else {
+                    truth.clone()
+                };
+                let judged = judged(&data, &model);
+                let p = judged.overall.iter().map(|o| o.p).chain(judged.against.iter().map(|a| a.p)).flatten();
+                (!judged.explains(0.05), p.filter(|p| *p < 0.05).count(), judged.tests)
+            })
+            .collect();
+        let share = outcomes.iter().filter(|o| o.0).count() as f64 / trials as f64;
+        let (small, tests) = outcomes.iter().fold((0, 0), |(s, t), o| (s + o.1, t + o.2));
+        let single = small as f64 / tests as f64;
+        let _ = writeln!(
+            std::io::stderr(),
+            "{case}: accused {share:.3}, single tests {single:.4} of {tests}, n = {trials}"
+        );
+        assert!(share < 0.05 + margin(0.05, trials), "{case}: {share}");
+        // Single tests of one data set are correlated; their number counts as that of the sets.
+        assert!(single < 0.05 + margin(0.05, trials), "{case}: {single}");
+    }
+}
