@@ -14,6 +14,7 @@ mod learnt;
 mod model;
 mod nominal;
 mod score;
+mod sensitivity;
 mod square;
 mod study;
 mod track_comparison;
@@ -29,7 +30,8 @@ pub use learnt::learnt;
 pub use model::model;
 pub use nominal::{path, robot};
 pub use score::score;
-pub use study::{Theory, Told, ensemble, run, study};
+pub use sensitivity::{Asked, Found, sensitivity};
+pub use study::{Theory, Told, distribution, ensemble, run, study};
 pub use track_comparison::track_comparison;
 
 use crate::stats::Interval;

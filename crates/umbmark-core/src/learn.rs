@@ -6,7 +6,10 @@
 //! decide nothing: with many effects on offer they accept a false one in half of all tests.
 
 mod ends;
+mod gears;
 mod tracks;
+
+pub use gears::{GearCalibration, GearError, calibrate_gears};
 
 use crate::dataset::Dataset;
 use crate::diagnose::{self, DiagnoseError, Diagnosis, Estimate, Level, Suspect, Verdict};
@@ -16,9 +19,6 @@ use std::sync::Arc;
 
 /// No model is given more effects than this.
 const MOST: usize = 6;
-
-/// The paper's two errors, which are fitted before anything is asked.
-const BASE: [&str; 2] = ["wheel_diameter_ratio", "wheelbase"];
 
 /// Root mean square errors of predicted poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -167,7 +167,8 @@ pub fn fit_to_returns(data: &Dataset, model: &Model) -> Result<(Model, Vec<Estim
 pub(crate) fn from_evidence<E: Evidence>(evidence: &E, options: &diagnose::Options) -> Result<Learnt, DiagnoseError> {
     let mut story = Story::new(evidence, evidence.nominal())?;
     if evidence.both_ways() {
-        for effect in BASE {
+        let kind = story.model.robot().drive.kind();
+        for effect in &kind.first_effects()[..2] {
             story.add(effect, vec![effect], None)?;
         }
     }

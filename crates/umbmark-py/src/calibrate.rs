@@ -6,6 +6,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_core::calibrate::{self as core, Correction, Options, RadiusWheelbase, export as texts};
 use umbmark_core::document;
+use umbmark_core::drive::Kind;
 
 use crate::dataset::Dataset;
 use crate::path::Path;
@@ -31,6 +32,13 @@ pub fn calibrate(
         radius_wheelbase: choice("radius_wheelbase", radius_wheelbase, &WHEELBASES)?,
     };
     let robot = data.0.nominal_robot().map_err(refused)?;
+    if robot.drive.kind() != Kind::Differential {
+        let kind = robot.drive.kind().name();
+        let words = format!(
+            "this calibrates differential drives, got drive = \"{kind}\"; `umbmark calibrate` knows the others"
+        );
+        return Err(PyValueError::new_err(words));
+    }
     let shared = Arc::clone(&data.0);
     let mut calibration = watched(py, 1, None, move |_| core::calibrate(&shared, &options))?.map_err(refused)?;
     if calibration.estimates.is_empty() {

@@ -7,5 +7,5 @@ use umbmark_core::effect::CATALOGUE;
 /// The catalogue, as a document.
 #[pyfunction]
 pub fn effects() -> String {
-    serde_json::Value::Array(CATALOGUE.iter().map(|entry| document::about(&entry.about)).collect()).to_string()
+    serde_json::Value::Array(CATALOGUE.iter().map(document::about).collect()).to_string()
 }

@@ -19,6 +19,12 @@ pub fn table(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Table> {
     Ok(table)
 }
 
+/// The keys and values of the text of a table, as they are written in a call.
+pub fn written(text: &str) -> String {
+    let lines = text.lines().filter_map(|line| line.split(" # ").next()?.trim().split_once(" = "));
+    lines.map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(", ")
+}
+
 /// A value of a key.
 fn value(key: &str, given: &Bound<'_, PyAny>) -> PyResult<Value> {
     if let Ok(text) = given.cast::<PyString>() {

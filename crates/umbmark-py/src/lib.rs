@@ -18,6 +18,7 @@ mod preset;
 mod robot;
 mod run;
 mod score;
+mod sensitivity;
 mod simulate;
 mod work;
 
@@ -51,6 +52,8 @@ mod _umbmark {
     use super::run::Run;
     #[pymodule_export]
     use super::score::{score_arrays, score_dataset};
+    #[pymodule_export]
+    use super::sensitivity::sensitivity;
     #[pymodule_export]
     use super::simulate::simulate;
 

@@ -232,6 +232,13 @@ impl Study {
     }
 }
 
+impl Study {
+    /// The study itself.
+    pub fn core(&self) -> &core::Study {
+        &self.study
+    }
+}
+
 /// A number of runs for both directions, or one for each.
 fn runs_of(given: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
     match given.extract::<usize>() {

@@ -87,7 +87,8 @@ impl Path {
     }
 
     fn __repr__(&self) -> String {
-        format!("Path({})", self.keywords().replace('\n', ", "))
+        let file = robot_text(&drive::Robot::labmate(), Some(&self.0));
+        format!("Path({})", keys::written(file.split_once("[path]\n").map_or("", |(_, path)| path)))
     }
 
     fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<(Py<PyAny>, (String,))> {
@@ -98,15 +99,5 @@ impl Path {
     fn _from_toml(text: &str) -> PyResult<Path> {
         let (_, path) = parse_robot("robot.toml", text).map_err(crate::refused)?;
         Ok(Path(path.unwrap_or_else(path::Path::umbmark)))
-    }
-}
-
-impl Path {
-    /// Its keys and values, a line each.
-    fn keywords(&self) -> String {
-        let text = robot_text(&drive::Robot::labmate(), Some(&self.0));
-        let path = text.split_once("[path]\n").map_or("", |(_, path)| path);
-        let lines = path.lines().filter_map(|line| line.split('#').next()?.trim().split_once(" = "));
-        lines.map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join("\n")
     }
 }

@@ -111,18 +111,7 @@ impl Robot {
     }
 
     fn __repr__(&self) -> String {
-        let drive = &self.0.drive;
-        let (left, right) = (drive.wheel_diameter_left(), drive.wheel_diameter_right());
-        let wheels = if left == right {
-            format!("wheel_diameter_m={left:?}")
-        } else {
-            format!("wheel_diameter_left_m={left:?}, wheel_diameter_right_m={right:?}")
-        };
-        let encoder = &self.0.encoder;
-        let rate = encoder.rate().map(|rate| format!(", encoder_rate_hz={rate:?}")).unwrap_or_default();
-        let bits = encoder.counter_bits().map(|bits| format!(", counter_bits={bits}")).unwrap_or_default();
-        let (name, base, ticks) = (&self.0.name, drive.wheelbase(), encoder.ticks_per_revolution());
-        format!("Robot(name={name:?}, wheelbase_m={base:?}, {wheels}, ticks_per_revolution={ticks:?}{rate}{bits})")
+        format!("Robot({})", keys::written(&self.to_toml()))
     }
 
     fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<(Py<PyAny>, (String,))> {

@@ -25,7 +25,7 @@ def test_a_robot_has_the_keys_of_its_file_and_reads_back() -> None:
     assert (robot.name, robot.wheelbase_m, robot.encoder_rate_hz) == ("R", 0.34, 50.0)
     assert robot == umbmark.Robot.from_toml(robot.to_toml()) == again(robot)
     assert robot != umbmark.Robot.labmate()
-    assert repr(robot).startswith('Robot(name="R", wheelbase_m=0.34, wheel_diameter_m=0.15,')
+    assert repr(robot).startswith('Robot(name="R", drive="differential", wheelbase_m=0.34, ')
     assert robot.to_dict()["counter_bits"] == 16
     with pytest.raises(AttributeError):
         robot.wheelbase_m = 0.3  # type: ignore[misc]

@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use serde_json::{Value, json};
 use umbmark_core::document;
-use umbmark_core::drive::Robot;
-use umbmark_core::effect::{About, ActsOn, CATALOGUE, find};
+use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::effect::{ActsOn, CATALOGUE, Entry, find};
 use umbmark_core::parameter::{DefaultValue, Parameter};
 
 use crate::Session;
@@ -28,12 +28,12 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         Some(name) => {
             let entry = find(name)?;
             let signature = Signature::of(entry)?;
-            let mut document = document::about(&entry.about);
+            let mut document = document::about(entry);
             document["picture"] = signature.as_ref().map_or(Value::Null, Signature::json);
-            (document, explanation(&entry.about, signature.as_ref()))
+            (document, explanation(entry, signature.as_ref()))
         }
         None => {
-            let entries: Vec<Value> = CATALOGUE.iter().map(|entry| document::about(&entry.about)).collect();
+            let entries: Vec<Value> = CATALOGUE.iter().map(document::about).collect();
             (json!({ "effects": entries, "version": umbmark_core::VERSION }), list())
         }
     };
@@ -83,11 +83,13 @@ fn own() -> String {
     text
 }
 
-fn explanation(about: &About, signature: Option<&Signature>) -> String {
+fn explanation(entry: &Entry, signature: Option<&Signature>) -> String {
+    let (about, drives) = (&entry.about, entry.drives.to_string());
     let mut text = format!("{}: {}\n\n", about.name, about.title);
     let confused = if about.confused_with.is_empty() { "nothing".to_owned() } else { about.confused_with.join(", ") };
     for (head, body) in [
         ("acts on", about.acts_on.name()),
+        ("drives", &drives),
         ("equation", about.equation),
         ("physics", about.physics),
         ("signature", about.signature),

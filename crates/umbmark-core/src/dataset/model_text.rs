@@ -47,6 +47,12 @@ fn numbers(part: &Part, draws: &[Draw]) -> String {
             (Some(word), _) => format!("\"{word}\""),
             (None, Some(Distribution::Normal { mean, sd })) => format!("{{ mean = {mean:?}, sd = {sd:?} }}"),
             (None, Some(Distribution::Uniform { min, max })) => format!("{{ min = {min:?}, max = {max:?} }}"),
+            (None, Some(Distribution::Triangular { min, mode, max })) => {
+                format!("{{ min = {min:?}, mode = {mode:?}, max = {max:?} }}")
+            }
+            (None, Some(Distribution::LogUniform { min, max })) => {
+                format!("{{ min = {min:?}, max = {max:?}, scale = \"log\" }}")
+            }
             (None, None) => format!("{value:?}"),
         };
         format!("{} = {written}\n", parameter.name)

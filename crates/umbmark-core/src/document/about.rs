@@ -1,17 +1,20 @@
 //! The catalogue of effects.
 
 use super::finite;
-use crate::effect::About;
+use crate::drive::Kind;
+use crate::effect::Entry;
 use crate::parameter::{DefaultValue, Parameter};
 use serde_json::{Value, json};
 
 /// What people should know of an effect.
-pub fn about(about: &About) -> Value {
+pub fn about(entry: &Entry) -> Value {
+    let about = &entry.about;
     let parameters: Vec<Value> = about.parameters.iter().map(parameter_json).collect();
     json!({
         "name": about.name,
         "title": about.title,
         "acts_on": about.acts_on.name(),
+        "drives": entry.drives.each().map(Kind::name).collect::<Vec<_>>(),
         "equation": about.equation,
         "physics": about.physics,
         "signature": about.signature,

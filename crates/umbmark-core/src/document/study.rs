@@ -80,7 +80,10 @@ fn effects(study: &Study) -> Value {
         let mut entry = Map::from_iter([("name".to_owned(), json!(name))]);
         for (parameter, value) in part.effect.parameters().iter().zip(&part.values) {
             let draw = drawn(name, parameter.name);
-            entry.insert(parameter.name.to_owned(), draw.map_or(json!(value), distribution));
+            entry.insert(
+                parameter.name.to_owned(),
+                draw.map_or(json!(value), |draw| distribution(&draw.distribution())),
+            );
         }
         Value::Object(entry)
     });
@@ -91,10 +94,13 @@ fn published(p: Published) -> Value {
     json!({ "row": p.row, "e_max_sys_m": p.e_max_sys, "sigma_m": p.sigma })
 }
 
-fn distribution(draw: &Draw) -> Value {
-    match draw.distribution() {
+/// A distribution, as in `model.toml`.
+pub fn distribution(distribution: &Distribution) -> Value {
+    match distribution {
         Distribution::Normal { mean, sd } => json!({ "mean": mean, "sd": sd }),
         Distribution::Uniform { min, max } => json!({ "min": min, "max": max }),
+        Distribution::Triangular { min, mode, max } => json!({ "min": min, "mode": mode, "max": max }),
+        Distribution::LogUniform { min, max } => json!({ "min": min, "max": max, "scale": "log" }),
     }
 }
 

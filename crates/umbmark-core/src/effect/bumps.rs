@@ -1,7 +1,7 @@
 //! Bumps met by chance, and the geometry of one.
 
 use super::{About, ActsOn, Bump, Effect, Stretch};
-use crate::drive::Wheel;
+use crate::drive::{Kind, Kinds, Wheel};
 use crate::parameter::{DefaultValue, Parameter};
 use crate::random::Stream;
 
@@ -38,6 +38,8 @@ impl Effect for Bumps {
         source: "geometry of a rolling circle; the 0.6 degree of Borenstein & Feng (1995), section 3.3, for 10 mm follows \
                  for wheel radii of 66 to 75 mm",
     };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro);
 
     fn bumps(p: &[f64], stretch: &Stretch, stream: &mut Stream, met: &mut Vec<Bump>) {
         if p[0] == 0.0 {

@@ -1,6 +1,7 @@
 //! Crab: wheels that stand askew, both to the same side.
 
 use super::{About, ActsOn, Context, Effect};
+use crate::drive::Kinds;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -29,6 +30,8 @@ impl Effect for Crab {
         separated_by: "from encoder skew, a second speed; from marker yaw, nothing but how the marker is mounted",
         source: "geometry; first-order theory of side-periodic errors on closed paths; size assumed",
     };
+
+    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         turn_course(motion, p[0]);

@@ -1,6 +1,7 @@
 //! A sloping floor that lets the robot drift downhill.
 
 use super::{About, ActsOn, Context, Effect, at_work};
+use crate::drive::Kinds;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -54,6 +55,8 @@ impl Effect for FloorSlope {
         source: "linear tyre model, its stiffness assumed, and 3 mm per metre as a usual size; Coulomb friction, which points \
                  against the slip whatever its size, 1 mm per radian assumed",
     };
+
+    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

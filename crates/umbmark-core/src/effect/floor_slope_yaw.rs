@@ -1,6 +1,7 @@
 //! A sloping floor that turns the robot as it drives across.
 
 use super::{About, ActsOn, Context, Effect, at_work};
+use crate::drive::Kinds;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -35,10 +36,12 @@ impl Effect for FloorSlopeYaw {
                   the robot turns, the more the steeper it is across its way.",
         signature: "Opposite sides bend opposite ways: the heading comes right again and the position does not, off to one \
                     side in ccw and to the other in cw. Bumps on one leg leave nearly the same.",
-        confused_with: &["placed_bumps"],
+        confused_with: &["placed_bumps", "base_yaw"],
         separated_by: "starting the square turned by 90 or 180 degrees; a heading at each corner",
         source: "load transfer on a slope; 1 mrad per metre is assumed",
     };
+
+    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

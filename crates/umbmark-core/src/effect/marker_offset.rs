@@ -1,6 +1,7 @@
 //! A marker that is not over the axle's centre.
 
 use super::{About, ActsOn, Effect, Sight};
+use crate::drive::Kinds;
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -39,6 +40,8 @@ impl Effect for MarkerOffset {
         separated_by: "one spin: the marker's path is the circle",
         source: "rigid-body geometry; 5 mm is assumed",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn seen<T: Real>(p: &[T], _at: &Sight, pose: &mut Pose2<T>) {
         let (sine, cosine) = pose.heading.sine_cosine();

@@ -1,6 +1,7 @@
 //! A marker that is mounted askew.
 
 use super::{About, ActsOn, Effect, Sight};
+use crate::drive::Kinds;
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -29,6 +30,8 @@ impl Effect for MarkerYaw {
         separated_by: "from encoder skew, a second speed; from crab, nothing but how the marker is mounted",
         source: "a gauge freedom of the reference frame; 0.38 degree of it, or of crab, is in the public OptiOdom runs",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn seen<T: Real>(p: &[T], _at: &Sight, pose: &mut Pose2<T>) {
         pose.heading += p[0];

@@ -2,7 +2,7 @@
 
 use super::bumps::{HEIGHT, PROFILE, WHEEL_RADIUS, lost_travel};
 use super::{About, ActsOn, Bump, Context, Effect, Stretch, TestKind};
-use crate::drive::{Wheel, WheelTravel};
+use crate::drive::{Kind, Kinds, Wheel, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
 use crate::path::Direction;
@@ -51,6 +51,8 @@ impl Effect for PlacedBumps {
         separated_by: "subtracting the regular test, as Eq. (5) does",
         source: "Borenstein & Feng (1995), section 3.3 and Table II",
     };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro).and(Kind::Clapper);
 
     fn varies(p: &[f64]) -> bool {
         p[4] != 0.0

@@ -2,6 +2,7 @@
 
 use super::reference_delay::go_back;
 use super::{About, ActsOn, Effect, Sight};
+use crate::drive::Kinds;
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -30,6 +31,8 @@ impl Effect for ReferenceClockRate {
         separated_by: "the delay of the first leg against that of the last; stamping both with one clock",
         source: "two free-running clocks; 200 parts in a million are assumed",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn seen<T: Real>(p: &[T], at: &Sight, pose: &mut Pose2<T>) {
         go_back(p[0] * at.time, at, pose);

@@ -1,6 +1,7 @@
 //! A reference whose clock is behind.
 
 use super::{About, ActsOn, Effect, Sight};
+use crate::drive::Kinds;
 use crate::geometry::{Displacement2, Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -28,6 +29,8 @@ impl Effect for ReferenceDelay {
         separated_by: "a dense track, always, before any physics is judged",
         source: "delays that makers and users of motion capture state",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn seen<T: Real>(p: &[T], at: &Sight, pose: &mut Pose2<T>) {
         go_back(p[0], at, pose);

@@ -1,6 +1,7 @@
 //! Noise of the absolute measurement.
 
 use super::{About, ActsOn, Effect};
+use crate::drive::Kinds;
 use crate::geometry::Pose2;
 use crate::parameter::Parameter;
 use crate::random::Stream;
@@ -40,6 +41,8 @@ impl Effect for ReferenceNoise {
         separated_by: "measuring the same pose twice without driving",
         source: "usual sizes of tape and motion capture",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn measured(p: &[f64], stream: &mut Stream, pose: &mut Pose2) {
         if p[0] > 0.0 {

@@ -1,7 +1,7 @@
 //! E_s: the scale.
 
 use super::{About, ActsOn, Context, Effect};
-use crate::drive::WheelTravel;
+use crate::drive::{Kind, Kinds, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -32,6 +32,8 @@ impl Effect for Scale {
         separated_by: "the length of one straight leg by tape, or the pose at a stop",
         source: "Borenstein & Feng (1995), section 2",
     };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Ackermann).and(Kind::Clapper);
 
     fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= p[0];

@@ -1,6 +1,7 @@
 //! Misplacement at START.
 
 use super::{About, ActsOn, Effect};
+use crate::drive::Kinds;
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 use crate::random::Stream;
@@ -52,6 +53,8 @@ impl Effect for StartPose {
         separated_by: "measuring START in every run",
         source: "Borenstein & Feng (1995), section 3.4, step 1",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn start<T: Real>(p: &[T]) -> Pose2<T> {
         Pose2::new(p[0], p[1], p[2])

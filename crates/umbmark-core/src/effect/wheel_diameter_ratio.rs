@@ -1,7 +1,7 @@
 //! E_d: unequal wheel diameters.
 
 use super::{About, ActsOn, Context, Effect};
-use crate::drive::WheelTravel;
+use crate::drive::{Kind, Kinds, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -39,6 +39,8 @@ impl Effect for WheelDiameterRatio {
         source: "Borenstein & Feng (1995), section 2; split: Borenstein & Feng (1996), IEEE Trans. Robotics and \
                  Automation 12(6)",
     };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Clapper);
 
     fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
         let left = (p[0] + 1.0).recip() * 2.0;

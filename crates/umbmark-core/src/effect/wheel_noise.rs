@@ -1,7 +1,7 @@
 //! Random slip and unevenness, wheel by wheel.
 
 use super::{About, ActsOn, Effect, WheelVariance};
-use crate::drive::WheelTravel;
+use crate::drive::{Kinds, WheelTravel};
 use crate::parameter::{DefaultValue, Parameter};
 
 /// White noise on each wheel's travel over ground.
@@ -31,6 +31,8 @@ impl Effect for WheelNoise {
         separated_by: "the shape of the heading increments; a smoother floor",
         source: "Chong & Kleeman (1997), ICRA, accurate odometry and error modelling",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn diffusion(p: &[f64], travel: &WheelTravel) -> WheelVariance {
         let per_metre = p[0] * p[0];

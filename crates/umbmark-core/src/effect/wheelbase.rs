@@ -1,6 +1,7 @@
 //! E_b: the effective wheelbase.
 
 use super::{About, ActsOn, Context, Effect};
+use crate::drive::{Kind, Kinds};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -31,6 +32,8 @@ impl Effect for Wheelbase {
         separated_by: "spins together with one measured straight leg",
         source: "Borenstein & Feng (1995), section 2",
     };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Clapper);
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation /= p[0];

@@ -6,8 +6,6 @@ use crate::diagnose::{DiagnoseError, Estimate, Options, Suspect, Verdict};
 use crate::effect::Model;
 use crate::likelihood::{Fitted, Noise, Observed};
 
-/// E_d, E_b and E_s, which are fitted before anything is asked.
-const BASE: [&str; 3] = ["wheel_diameter_ratio", "wheelbase", "scale"];
 /// A shape (a length, a threshold) is fitted where its size stands out by so many standard errors.
 const SHOWN: f64 = 8.0;
 
@@ -15,7 +13,8 @@ const SHOWN: f64 = 8.0;
 pub(super) fn learn(observed: &Observed, options: &Options) -> Result<Learnt, DiagnoseError> {
     let mut model = Model::new(&observed.robot);
     let mut steps = vec![step(&plainly(observed, &model)?, None)];
-    for effect in BASE {
+    let first = observed.robot.drive.kind().first_effects();
+    for effect in first {
         model.add(effect)?.free = true;
         let exam = plainly(observed, &model)?;
         model = exam.fitted.model.clone();
@@ -25,7 +24,7 @@ pub(super) fn learn(observed: &Observed, options: &Options) -> Result<Learnt, Di
     loop {
         let exam = Examination::new(fitted)?;
         let found = missing(&exam, options, 1);
-        let next = found.effects.first().filter(|_| steps.len() < MOST + BASE.len());
+        let next = found.effects.first().filter(|_| steps.len() < MOST + first.len());
         let Some((finding, suspect)) = next else { return finish(exam, found, steps, options) };
         let grown = exam.fitted.model.clone();
         fitted = refit(&exam, with(grown, suspect)?, suspect.best)?;

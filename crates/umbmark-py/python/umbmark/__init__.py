@@ -12,6 +12,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``compare``, ``diagnose``          what models explain, and what they are missing
 ``fit``, ``learn``                 fit a model; add what is missing until nothing is
 ``simulate``, ``monte_carlo``      one test, recorded; thousands of tests
+``sensitivity``                    which parameter drives which metric
 ``Robot``, ``Path``, ``Model``     what all of it is about; ``effects`` lists what there is
 ``umbmark.distributed``            Monte Carlo past one machine, on Dask
 =================================  ===========================================================
@@ -34,6 +35,7 @@ from umbmark._formula import formula_of
 from umbmark._inspection import Inspection, inspect
 from umbmark._monte_carlo import MonteCarlo, monte_carlo
 from umbmark._scores import Score, score
+from umbmark._sensitivity import Sensitivity, sensitivity
 from umbmark._simulation import simulate
 from umbmark._umbmark import (
     Dataset,
@@ -65,6 +67,7 @@ __all__ = [
     "Robot",
     "Run",
     "Score",
+    "Sensitivity",
     "Study",
     "TrackComparison",
     "__version__",
@@ -80,5 +83,6 @@ __all__ = [
     "monte_carlo",
     "presets",
     "score",
+    "sensitivity",
     "simulate",
 ]

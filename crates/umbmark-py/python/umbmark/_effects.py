@@ -27,6 +27,7 @@ class Effect(Record, frozen=True):
     name: str
     title: str
     acts_on: str
+    drives: tuple[str, ...]
     equation: str
     physics: str
     signature: str

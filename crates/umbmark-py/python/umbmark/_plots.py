@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from umbmark._inspection import Inspection
     from umbmark._monte_carlo import MonteCarlo
     from umbmark._scores import Score
+    from umbmark._sensitivity import Sensitivity
     from umbmark._umbmark import Dataset
 
 COLOURS = {"cw": "tab:blue", "ccw": "tab:orange"}
@@ -181,6 +182,26 @@ def inspection(result: Inspection, ax: Axes | None) -> Axes:
         at = np.arange(len(names)) + 0.2 * place
         ax.bar(at, [getattr(group, key) for group in result.groups], 0.2, label=key)
     ax.set_xticks(np.arange(len(names)) + 0.3, names)
+    ax.legend()
+    return ax
+
+
+def sensitivity(result: Sensitivity, ax: Axes | None, metric: str) -> Axes:
+    """Draw each index of each parameter, with its interval."""
+    ax = _axes(ax)
+    rows = [row for row in result.table() if row["metric"] == metric]
+    names = list(dict.fromkeys(row["parameter"] for row in rows))
+    indices = list(dict.fromkeys(row["index"] for row in rows))
+    for place, index in enumerate(indices):
+        own = [row for row in rows if row["index"] == index]
+        value = np.array([row["value"] for row in own], float)
+        ends = np.array([[row["low"], row["high"]] for row in own], float).T
+        at = np.arange(len(own)) + 0.8 * place / len(indices)
+        error = np.abs(ends - value)
+        ax.barh(at, value, 0.8 / len(indices), xerr=error, label=index.replace("_", " "))
+    ax.set_yticks(np.arange(len(names)) + 0.4 * (1 - 1 / max(1, len(indices))), names)
+    ax.invert_yaxis()
+    ax.set_title(metric)
     ax.legend()
     return ax
 

@@ -35,7 +35,8 @@ class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     def to_dict(self) -> dict[str, Any]:
         """Give it as dicts, lists and numbers, under the keys of the command's ``--json``."""
-        document = {key: value for key, value in _fields(self) if key not in self._beside}
+        given = [(key, value) for key, value in _fields(self) if value is not msgspec.UNSET]
+        document = {key: value for key, value in given if key not in self._beside}
         encoded = msgspec.json.encode(document, enc_hook=lambda thing: thing.to_dict())
         decoded: dict[str, Any] = msgspec.json.decode(encoded)
         return decoded
@@ -57,7 +58,11 @@ class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return pl.DataFrame(self.table())
 
     def __repr__(self) -> str:
-        shown = [(key, _shown(value)) for key, value in _fields(self) if value not in (None, ())]
+        shown = [
+            (key, _shown(value))
+            for key, value in _fields(self)
+            if value not in (None, (), msgspec.UNSET)
+        ]
         lines = "".join(f"    {key}={text},\n" for key, text in shown)
         return f"{type(self).__name__}(\n{lines})"
 

@@ -27,6 +27,7 @@ __all__ = [
     "presets",
     "score_arrays",
     "score_dataset",
+    "sensitivity",
     "simulate",
 ]
 
@@ -235,6 +236,15 @@ def score_arrays(
     convention: str,
 ) -> str: ...
 def score_dataset(data: Dataset, level: float, convention: str) -> str: ...
+def sensitivity(
+    study: Study,
+    method: str,
+    effort: int,
+    second_order: bool,
+    noise_free: bool,
+    threads: int,
+    progress: Callable[[int], object] | None,
+) -> str: ...
 def calibrate(
     data: Dataset, level: float, heading_arm_m: float | None, radius_wheelbase: str
 ) -> str: ...
