@@ -29,6 +29,7 @@ mod table;
 mod terminal;
 mod test_arguments;
 mod tracks_report;
+mod unlisted;
 mod vary;
 mod verb;
 

@@ -5,10 +5,13 @@ use std::path::Path;
 use anyhow::Context;
 use umbmark_core::dataset::{Dataset, model_text, read_model};
 use umbmark_core::diagnose::{Contrast, Estimate, OnCircle, first_model};
+use umbmark_core::document::meanings;
 use umbmark_core::effect::{Model, find};
+use umbmark_core::likelihood::Outlier;
 use umbmark_core::stats::Interval;
 
 use crate::files::Pending;
+use crate::prose::hanging;
 use crate::table::{table, with_precision_of};
 
 /// The model of a file, or the one that is asked first.
@@ -41,6 +44,31 @@ pub fn estimates_table(estimates: &[Estimate], level: f64) -> String {
         vec![format!("{} of {}", e.parameter, e.effect), format!("{value}{}", unit_of(e.effect, e.parameter)), half]
     };
     table(&["fitted", "value", &format!("± ({} %)", 100.0 * level)], estimates.iter().map(row))
+}
+
+/// What the fitted effects mean for the robot, a paragraph each.
+pub fn meaning_text(estimates: &[Estimate], model: &Model) -> String {
+    let paragraphs: String = meanings(estimates, model).iter().map(|(_, said)| hanging("", 2, said)).collect();
+    if paragraphs.is_empty() { paragraphs } else { format!("\nthat is\n{paragraphs}") }
+}
+
+/// Disturbed places that are told one by one; --json has all.
+const OUTLIERS: usize = 5;
+
+/// Where runs were disturbed, a paragraph each.
+pub fn outliers_text(outliers: &[Outlier]) -> String {
+    let one = |o: &Outlier| {
+        let turned = o.turned.map(|t| format!(" and {:.2} deg", t.abs().to_degrees())).unwrap_or_default();
+        let jump =
+            format!("a jump of {:.1} mm{turned}, {:.0} standard deviations of the noise", 1e3 * o.moved, o.deviations);
+        let said = format!("{} after {:.2} s: {jump}, is left out; the run starts anew there.", o.run, o.time);
+        hanging("outlier", 10, &said)
+    };
+    let mut text: String = outliers.iter().take(OUTLIERS).map(one).collect();
+    if let rest @ 1.. = outliers.len().saturating_sub(OUTLIERS) {
+        text += &hanging("", 10, &format!("and {rest} more (--json)"));
+    }
+    text
 }
 
 /// Closure contrasts, in mm and degrees.

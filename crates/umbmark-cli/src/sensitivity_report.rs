@@ -3,8 +3,7 @@
 use serde_json::Value;
 use umbmark_core::document::{self, Asked, Found};
 use umbmark_core::monte_carlo::{Metric, Study};
-use umbmark_core::sensitivity::{Derivative, Estimate, Indices, OutputIndices, Screened, Screening};
-use umbmark_core::stats::Interval;
+use umbmark_core::sensitivity::{Derivative, Estimate, OutputIndices, Screened};
 
 use crate::distribution_text::distribution_words;
 use crate::ensemble_report::{title, unit};
@@ -114,7 +113,7 @@ impl SensitivityReport<'_> {
         let names = self.names();
         let rows = by_size(&output.total).into_iter().map(|i| {
             let (first, total) = (&output.first[i], &output.total[i]);
-            vec![names[i].to_owned(), with_half_width(first, 1.0), with_half_width(total, 1.0), self.bars(total.value)]
+            vec![names[i].to_owned(), share(first), share(total), self.bars(total.value)]
         });
         text += &table(&["share of the variance", "alone, S", "with others, T", ""], rows);
         text.push('\n');
@@ -127,11 +126,7 @@ impl SensitivityReport<'_> {
             let mut pairs: Vec<_> = output.second.iter().collect();
             pairs.sort_by(|a, b| b.1.value.total_cmp(&a.1.value));
             let rows = pairs.iter().take(PAIRS).map(|([i, j], estimate)| {
-                vec![
-                    format!("{} x {}", names[*i], names[*j]),
-                    with_half_width(estimate, 1.0),
-                    self.bars(estimate.value),
-                ]
+                vec![format!("{} x {}", names[*i], names[*j]), share(estimate), self.bars(estimate.value)]
             });
             text += &format!("\n{}\n", table(&["pairs beyond each alone", "S_ij", ""], rows));
         }
@@ -213,6 +208,16 @@ fn by_size(estimates: &[Estimate]) -> Vec<usize> {
 fn absolute(estimate: &Estimate) -> Estimate {
     Estimate { value: estimate.value.abs(), ..*estimate }
 }
+
+/// A share of the variance, to four digits at most.
+fn share(estimate: &Estimate) -> String {
+    let half = 0.5 * (estimate.interval.high - estimate.interval.low);
+    let value = with_precision_of(estimate.value, half.max(FINEST));
+    if value == "-" { value } else { format!("{value} ± {}", with_precision_of(half, half.max(FINEST))) }
+}
+
+/// Smaller parts of the variance are of no interest.
+const FINEST: f64 = 1e-3;
 
 /// `0.412 ± 0.006`, to the digits that the interval leaves.
 fn with_half_width(estimate: &Estimate, factor: f64) -> String {

@@ -126,7 +126,8 @@ fn watched(runs: &str) -> tempfile::TempDir {
     let place = folder.path().to_str().unwrap();
     let path = ["--side", "1", "--runs", runs, "--seed", "4", "--force"];
     let robot = ["--eb", "1.01", "--slope-x", "0.01", "--wheel-noise", "4e-4", "--json"];
-    said(folder.path(), &[&["simulate", "-o", place], &path[..], &robot[..]].concat(), 0);
+    // It says on stderr which lengths of the robot it assumed.
+    assert!(umbmark(folder.path(), &[&["simulate", "-o", place], &path[..], &robot[..]].concat()).status.success());
     folder
 }
 
@@ -143,8 +144,8 @@ fn on_tracks_it_is_told_where_the_error_is_made_and_what_it_depends_on() {
     );
     let fitted = &compared["models"][1];
     assert_eq!(fitted["explains"], false);
-    let heading = fitted["against"].as_array().unwrap().iter();
-    let heading = heading.filter(|a| a["rate"] == "forward_m_per_m" && a["covariate"] == "heading").next().unwrap();
+    let mut against = fitted["against"].as_array().unwrap().iter();
+    let heading = against.find(|a| a["rate"] == "forward_m_per_m" && a["covariate"] == "heading").unwrap();
     let downhill = &heading["bins"][0];
     assert!((downhill["mean"].as_f64().unwrap() - 0.01).abs() < 2e-3, "{downhill}");
     assert!(downhill["interval"].is_array() && downhill["runs"] == 10);

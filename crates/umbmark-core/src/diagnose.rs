@@ -16,7 +16,7 @@ use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, Run};
 use crate::drive::Robot;
 use crate::effect::{Model, ModelError, TestKind};
-use crate::likelihood::Observed;
+use crate::likelihood::{Observed, Outlier};
 use crate::replay::ReplayError;
 use crate::stats::{Interval, student_t_quantile};
 
@@ -24,6 +24,7 @@ pub use candidates::{Candidate, Size, candidates, columns};
 pub use ends::{Contrast, OnCircle};
 pub use identifiability::{Identifiability, Share, identifiability};
 pub use likeness::Likeness;
+pub use tracks::Suggestion;
 
 /// What was observed of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,6 +170,18 @@ pub struct Suspect {
     pub expected_drop: f64,
 }
 
+impl Suspect {
+    /// What the best effect would mean for the robot at its estimated size, in a sentence; `None` where it says nothing or
+    /// cannot have that size.
+    pub fn meaning(&self, robot: &Robot) -> Option<String> {
+        let mut model = Model::new(robot);
+        for e in &self.estimate {
+            model.set(e.effect, e.parameter, e.value).ok()?;
+        }
+        model.meaning(self.best)
+    }
+}
+
 /// An effect that this data says nothing of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unseen {
@@ -246,6 +259,8 @@ pub struct Diagnosis {
     pub identifiability: Identifiability,
     /// What an effect outside the catalogue acts on and depends on; from tracks only.
     pub dependence: Option<Dependence>,
+    /// Where runs were disturbed, and what happened there left out; from tracks only.
+    pub outliers: Vec<Outlier>,
     /// What else should be said, a sentence each.
     pub remarks: Vec<String>,
 }
@@ -263,6 +278,34 @@ pub struct Dependence {
     pub p_adjusted: f64,
     /// By how much the misfit would fall, in units of the noise variance.
     pub drop: f64,
+    /// What it adds, over all that the runs show of what it depends on.
+    pub curve: Curve,
+    /// A formula that does the same, where one of a small family does.
+    pub suggestion: Option<Suggestion>,
+    /// The effect of the catalogue that comes nearest, and the share of the drop that it explains.
+    pub nearest: Option<(&'static str, f64)>,
+}
+
+/// A smooth dependence, in numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Unit of what it depends on; empty for a pure number.
+    pub at_unit: &'static str,
+    /// Unit of what it adds.
+    pub unit: String,
+    /// In increasing order.
+    pub points: Vec<CurvePoint>,
+}
+
+/// A place on a [`Curve`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// What it depends on.
+    pub at: f64,
+    /// What it adds.
+    pub value: f64,
+    /// Half the width of its 95 % interval, taken by itself.
+    pub half_width: f64,
 }
 
 impl Diagnosis {

@@ -24,7 +24,7 @@ pub use calibration::calibration;
 pub use clock::clock;
 pub use comparison::comparison;
 pub use diagnosis::diagnosis;
-pub use fitted::{fitted, not_shown};
+pub use fitted::{estimates, fitted, meanings, not_shown};
 pub use inspection::inspection;
 pub use learnt::learnt;
 pub use model::model;

@@ -61,8 +61,9 @@ mod wheel_eccentricity_left;
 mod wheel_eccentricity_right;
 mod wheel_noise;
 mod wheelbase;
+mod words;
 
-use crate::drive::{Kind, Kinds, Wheel, WheelTravel};
+use crate::drive::{Kind, Kinds, Robot, Wheel, WheelTravel};
 use crate::geometry::{Displacement2, Dual, Pose2, Real};
 use crate::parameter::{Parameter, nearest};
 use crate::path::Direction;
@@ -266,6 +267,11 @@ pub trait Effect {
     /// The drives that may have it.
     const DRIVES: Kinds = Kinds::of(Kind::Differential);
 
+    /// What these values mean for the robot: a sentence. Empty where there is nothing to say.
+    fn means(_p: &[f64], _robot: &Robot) -> String {
+        String::new()
+    }
+
     /// Whether with these values its change of motion depends on the [`Context`], so that driving has to be cut into small
     /// pieces for it.
     fn varies(_p: &[f64]) -> bool {
@@ -382,6 +388,8 @@ pub struct Entry {
     pub about: About,
     /// See [`Effect::DRIVES`].
     pub drives: Kinds,
+    /// See [`Effect::means`].
+    pub means: fn(&[f64], &Robot) -> String,
     /// See [`Effect::varies`].
     pub varies: fn(&[f64]) -> bool,
     pub(crate) values: Mean<f64>,
@@ -396,6 +404,7 @@ impl Entry {
         Entry {
             about: E::ABOUT,
             drives: E::DRIVES,
+            means: E::means,
             varies: E::varies,
             values: Mean {
                 start: E::start::<f64>,

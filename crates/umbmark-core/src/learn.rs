@@ -11,9 +11,11 @@ mod tracks;
 
 pub use gears::{GearCalibration, GearError, calibrate_gears};
 
+use crate::calibrate::CalibrateError;
 use crate::dataset::Dataset;
 use crate::diagnose::{self, DiagnoseError, Diagnosis, Estimate, Level, Suspect, Verdict};
-use crate::effect::Model;
+use crate::effect::{Model, Part};
+use crate::likelihood::Outlier;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -140,20 +142,41 @@ pub(crate) trait Evidence: Sized + Sync {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn learn(data: &Dataset, options: &diagnose::Options) -> Result<Learnt, DiagnoseError> {
+    let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
+    learn_from(data, &Model::new(robot), options)
+}
+
+/// [`learn`], with the effects of a `start` model in the story from the beginning: a formula to try, say. They are fitted
+/// where they are free, after E_d, E_b and (from tracks) E_s.
+pub fn learn_from(data: &Dataset, start: &Model, options: &diagnose::Options) -> Result<Learnt, DiagnoseError> {
     match options.evidence(data) {
-        Level::Ends => from_evidence(&diagnose::ends::Ends::new(data)?, options),
-        Level::Tracks => tracks::learn(&diagnose::tracks_of(data)?, options),
+        Level::Ends => from_evidence(&diagnose::ends::Ends::new(data)?, start, options),
+        Level::Tracks => tracks::learn(&diagnose::tracks_of(data)?, start, options),
     }
 }
 
-/// Fits a model's free parameters to a dataset; gives the model and what was fitted.
-pub fn fit(data: &Dataset, model: &Model) -> Result<(Model, Vec<Estimate>), DiagnoseError> {
+/// A model with its free parameters fitted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// The model.
+    pub model: Model,
+    /// What was fitted.
+    pub estimates: Vec<Estimate>,
+    /// Where runs were disturbed, and what happened there left out; from tracks only.
+    pub outliers: Vec<Outlier>,
+}
+
+/// Fits a model's free parameters to a dataset.
+pub fn fit(data: &Dataset, model: &Model) -> Result<Fit, DiagnoseError> {
     match diagnose::level(data) {
-        Level::Ends => fit_to_returns(data, model),
+        Level::Ends => {
+            let (model, estimates) = fit_to_returns(data, model)?;
+            Ok(Fit { model, estimates, outliers: Vec::new() })
+        }
         Level::Tracks => {
             let fitted = diagnose::tracks::fit(&diagnose::tracks_of(data)?, model)?;
             let estimates = diagnose::tracks::estimates(&fitted);
-            Ok((fitted.model, estimates))
+            Ok(Fit { model: fitted.model, estimates, outliers: fitted.outliers })
         }
     }
 }
@@ -164,13 +187,20 @@ pub fn fit_to_returns(data: &Dataset, model: &Model) -> Result<(Model, Vec<Estim
 }
 
 /// The loop, whatever was observed.
-pub(crate) fn from_evidence<E: Evidence>(evidence: &E, options: &diagnose::Options) -> Result<Learnt, DiagnoseError> {
+pub(crate) fn from_evidence<E: Evidence>(
+    evidence: &E,
+    start: &Model,
+    options: &diagnose::Options,
+) -> Result<Learnt, DiagnoseError> {
     let mut story = Story::new(evidence, evidence.nominal())?;
     if evidence.both_ways() {
         let kind = story.model.robot().drive.kind();
         for effect in &kind.first_effects()[..2] {
-            story.add(effect, vec![effect], None)?;
+            story.add(&free_part(evidence, effect)?)?;
         }
+    }
+    for part in start.parts().iter().filter(|part| !story.has(part)).cloned().collect::<Vec<_>>() {
+        story.add(&part)?;
     }
     let mut remarks = Vec::new();
     let mut diagnosis = evidence.diagnose(&story.model, options)?;
@@ -218,12 +248,18 @@ impl<'a, E: Evidence> Story<'a, E> {
         &self.steps[self.steps.len() - 1]
     }
 
-    /// Adds an effect everywhere.
-    fn add(&mut self, effect: &'static str, class: Vec<&'static str>, p: Option<f64>) -> Result<(), DiagnoseError> {
+    /// Whether the model has an effect of this name.
+    fn has(&self, part: &Part) -> bool {
+        self.model.parts().iter().any(|own| own.effect.name() == part.effect.name())
+    }
+
+    /// Adds an effect everywhere, without asking.
+    fn add(&mut self, part: &Part) -> Result<(), DiagnoseError> {
         let folds = self.folds.par_iter().zip(&self.fold_models);
-        self.fold_models = folds.map(|(fold, model)| grown(fold, model, effect)).collect::<Result<_, _>>()?;
-        self.model = grown(self.evidence, &self.model, effect)?;
-        self.tell(Some(effect), class, p);
+        self.fold_models = folds.map(|(fold, model)| grown(fold, model, part)).collect::<Result<_, _>>()?;
+        self.model = grown(self.evidence, &self.model, part)?;
+        let effect = part.effect.name();
+        self.tell(Some(effect), vec![effect], None);
         Ok(())
     }
 
@@ -250,7 +286,7 @@ impl<'a, E: Evidence> Story<'a, E> {
     ) -> Result<Story<'a, E>, DiagnoseError> {
         let folds = self.folds.par_iter().zip(&self.fold_models);
         let choose = |(fold, model): (&E, &Model)| match fold.likeliest(model)? {
-            Some(own) => match grown(fold, model, own) {
+            Some(own) => match grown(fold, model, &free_part(fold, own)?) {
                 // Without this run, that effect cannot be fitted.
                 Err(DiagnoseError::NotConverged { .. } | DiagnoseError::OutOfBounds { .. }) => Ok(model.clone()),
                 fitted => fitted,
@@ -260,7 +296,7 @@ impl<'a, E: Evidence> Story<'a, E> {
         let mut further = Story {
             evidence: self.evidence,
             folds: self.folds.clone(),
-            model: grown(self.evidence, &self.model, effect)?,
+            model: grown(self.evidence, &self.model, &free_part(self.evidence, effect)?)?,
             fold_models: folds.map(choose).collect::<Result<_, _>>()?,
             steps: self.steps.clone(),
         };
@@ -285,10 +321,18 @@ impl<'a, E: Evidence> Story<'a, E> {
     }
 }
 
-/// A model with a free effect more, fitted.
-fn grown<E: Evidence>(evidence: &E, model: &Model, effect: &str) -> Result<Model, DiagnoseError> {
+/// An effect of the catalogue, free, at the values where it does nothing.
+fn free_part<E: Evidence>(evidence: &E, effect: &str) -> Result<Part, DiagnoseError> {
+    let mut model = evidence.nominal();
+    let part = model.add(effect).map_err(DiagnoseError::Model)?;
+    part.free = true;
+    Ok(part.clone())
+}
+
+/// A model with an effect more, fitted.
+fn grown<E: Evidence>(evidence: &E, model: &Model, part: &Part) -> Result<Model, DiagnoseError> {
     let mut grown = model.clone();
-    grown.add(effect).map_err(DiagnoseError::Model)?.free = true;
+    grown.adopt(part);
     Ok(evidence.fit(&grown)?.0)
 }
 

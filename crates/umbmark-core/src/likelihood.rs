@@ -11,14 +11,17 @@
 mod fitting;
 mod noise;
 mod observed;
+mod outliers;
 mod simplex;
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 pub(crate) mod watched;
 mod whiten;
 
+pub(crate) use fitting::seeded;
 pub use fitting::{Column, Fitted};
 pub use noise::Noise;
 pub(crate) use noise::gram;
 pub use observed::{Block, Growth, Observed, ObservedRun};
+pub use outliers::Outlier;
 pub use whiten::Whitened;

@@ -9,7 +9,7 @@ use umbmark_core::diagnose::{Options, diagnose};
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::{Formula, Model, Target, TestKind};
 use umbmark_core::engine::Update;
-use umbmark_core::learn::fit;
+use umbmark_core::learn::{Fit, fit};
 use umbmark_core::monte_carlo::{Metric, Study};
 use umbmark_core::path::{Direction, Path};
 use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth};
@@ -50,7 +50,7 @@ fn a_fit_finds_size_and_shape_of_a_formula_from_nothing_on_tracks_and_on_return_
     let truth = model(NAP, &[("k", 4e-3), ("h0", 0.7)]);
     for (tracked, most) in [(true, [2e-4, 0.03]), (false, [4e-4, 0.06])] {
         let data = driven(truth.clone(), tracked);
-        let (fitted, estimates) = fit(&data, &model(NAP, &[("k", 0.0), ("h0", 0.5)])).unwrap();
+        let Fit { model: fitted, estimates, .. } = fit(&data, &model(NAP, &[("k", 0.0), ("h0", 0.5)])).unwrap();
         let found = ["k", "h0"].map(|name| fitted.get("nap", name).unwrap());
         assert!((found[0] - 4e-3).abs() < most[0] && (found[1] - 0.7).abs() < most[1], "{found:?}");
         for (estimate, true_value) in estimates.iter().zip([4e-3, 0.7]) {
@@ -61,7 +61,7 @@ fn a_fit_finds_size_and_shape_of_a_formula_from_nothing_on_tracks_and_on_return_
         // What was written is what was fitted, and fits as well.
         let (read, _) = parse_model("model.toml", &model_text(&fitted), &Robot::labmate()).unwrap();
         assert_eq!(read, fitted);
-        let again = fit(&data, &read).unwrap().0;
+        let again = fit(&data, &read).unwrap().model;
         assert!((again.get("nap", "k").unwrap() - found[0]).abs() < 1e-3 * found[0].abs());
     }
 }
@@ -72,7 +72,7 @@ fn a_formula_that_explains_the_runs_is_told_so_and_nothing_is_missing() {
     let start = model(NAP, &[("k", 1e-3), ("h0", 0.5)]);
     let diagnosis = diagnose(&data, &start, &Options::default()).unwrap();
     assert_eq!(diagnosis.certified().len(), 0, "{:?}", diagnosis.certified());
-    let fitted = fit(&data, &start).unwrap().0;
+    let fitted = fit(&data, &start).unwrap().model;
     let models = [("nominal".into(), Model::new(&Robot::labmate())), ("nap".into(), fitted)];
     let judged = compare(&data, &models, &Options::default()).unwrap().models;
     assert!(!judged[0].explains(0.05) && judged[1].rmse < 0.3 * judged[0].rmse, "{judged:?}");

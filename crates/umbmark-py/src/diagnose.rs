@@ -40,7 +40,7 @@ pub fn compare(
                 vec![nominal(&robot), ("E_d and E_b, fitted to these runs".into(), fitted)]
             }
             (true, Level::Tracks) => {
-                let (fitted, _) = learning::fit(&shared, &first_model(&shared)?)?;
+                let fitted = learning::fit(&shared, &first_model(&shared)?)?.model;
                 vec![nominal(&robot), ("E_d, E_b and E_s, fitted to these runs".into(), fitted)]
             }
         };
@@ -95,8 +95,8 @@ pub fn fit(
         ));
     }
     let shared = Arc::clone(&data.0);
-    let (model, numbers) = watched(py, 1, None, move |_| learning::fit(&shared, &model))?.map_err(refused)?;
-    Ok((document::fitted(&model, &numbers, level).to_string(), model.into()))
+    let fitted = watched(py, 1, None, move |_| learning::fit(&shared, &model))?.map_err(refused)?;
+    Ok((document::fitted(&fitted, level).to_string(), fitted.model.into()))
 }
 
 /// The whole loop, and the model that was learnt.

@@ -88,9 +88,9 @@ fn on_tracks(arguments: &Arguments, data: &Dataset, options: &Options, session: 
 fn models(arguments: &Arguments, data: &Dataset, level: Level) -> anyhow::Result<Vec<(String, Model)>> {
     let robot = data.nominal_robot()?;
     if arguments.model.is_empty() {
-        let (name, (fitted, _)) = match level {
-            Level::Ends => ("E_d and E_b, fitted to these runs", fit_to_returns(data, &base_model(robot)?)?),
-            Level::Tracks => ("E_d, E_b, E_s fitted", fit(data, &first_model(data)?)?),
+        let (name, fitted) = match level {
+            Level::Ends => ("E_d and E_b, fitted to these runs", fit_to_returns(data, &base_model(robot)?)?.0),
+            Level::Tracks => ("E_d, E_b, E_s fitted", fit(data, &first_model(data)?)?.model),
         };
         return Ok(vec![("nominal robot".into(), Model::new(robot)), (name.into(), fitted)]);
     }

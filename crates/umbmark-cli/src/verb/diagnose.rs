@@ -10,10 +10,13 @@ use umbmark_core::document;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
-use crate::model_report::{circle_table, contrasts_table, estimates_table, model_of, p_text, unit_of};
+use crate::model_report::{
+    circle_table, contrasts_table, estimates_table, meaning_text, model_of, outliers_text, p_text, unit_of,
+};
 use crate::prose::hanging;
 use crate::table::{table, with_precision_of};
 use crate::test_arguments::TestArguments;
+use crate::unlisted::unlisted_text;
 
 /// So many experiments are printed; --json has all.
 const EXPERIMENTS: usize = 6;
@@ -47,7 +50,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if session.json() {
         session.print_json(&document::diagnosis(&diagnosis, &options))?;
     } else {
-        write!(session.out(), "{}", text(&data, &diagnosis, &options))?;
+        let text = text(&data, &diagnosis, &options, session.on_terminal());
+        write!(session.out(), "{text}")?;
     }
     let missing = !matches!(diagnosis.verdict, Verdict::Explained | Verdict::NotEnoughData);
     Ok(if arguments.check && missing { ExitCode::from(3) } else { ExitCode::SUCCESS })
@@ -64,7 +68,7 @@ pub(super) fn in_words(verdict: Verdict) -> &'static str {
     }
 }
 
-fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options) -> String {
+fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, terminal: bool) -> String {
     let robot = data.robot.as_ref().map_or("", |robot| robot.name.as_str());
     let from = match diagnosis.level {
         Level::Ends => "return poses",
@@ -74,12 +78,17 @@ fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options) -> String {
     text += &hanging("verdict", 10, in_words(diagnosis.verdict));
     for suspect in diagnosis.certified() {
         text += &hanging("missing", 10, &suspect.class.join(" or "));
+        let said = suspect.meaning(diagnosis.model.robot());
+        text += &said.map_or_else(String::new, |said| hanging("", 10, &said));
     }
+    text += &outliers_text(&diagnosis.outliers);
     for remark in &diagnosis.remarks {
         text += &hanging("note", 10, remark);
     }
+    text += &unlisted_text(diagnosis.dependence.as_ref(), terminal);
     if !diagnosis.fitted.is_empty() {
         text += &format!("\n{}\n", estimates_table(&diagnosis.fitted, 1.0 - options.size));
+        text += &meaning_text(&diagnosis.fitted, &diagnosis.model);
     }
     text += &identifiability_text(&diagnosis.identifiability);
     for gof in &diagnosis.goodness_of_fit {
@@ -190,11 +199,16 @@ fn experiments_text(experiments: &[Experiment]) -> String {
     }
     let mut text = String::from("\nwhat to measure next, the most telling per minute first\n");
     for e in experiments.iter().take(EXPERIMENTS) {
-        let what = format!("tells {} from {}: {:.1} sd in {:.0} min", e.separates[0], e.separates[1], e.sd, e.minutes);
-        text += &hanging("", 2, &format!("{}; {what}", e.experiment));
+        text += &hanging("", 2, &experiment_text(e));
     }
     if let rest @ 1.. = experiments.len().saturating_sub(EXPERIMENTS) {
         text += &hanging("", 2, &format!("and {rest} more (--json)"));
     }
     text
+}
+
+/// An experiment with what it tells, in a line.
+pub(super) fn experiment_text(e: &Experiment) -> String {
+    let what = format!("tells {} from {}: {:.1} sd in {:.0} min", e.separates[0], e.separates[1], e.sd, e.minutes);
+    format!("{}; {what}", e.experiment)
 }

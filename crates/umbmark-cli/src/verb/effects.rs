@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use serde_json::{Value, json};
 use umbmark_core::document;
-use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::drive::Robot;
 use umbmark_core::effect::{ActsOn, CATALOGUE, Entry, find};
 use umbmark_core::parameter::{DefaultValue, Parameter};
 

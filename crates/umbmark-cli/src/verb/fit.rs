@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use umbmark_core::document;
-use umbmark_core::learn::fit;
+use umbmark_core::learn::{Fit, fit};
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
-use crate::model_report::{estimates_table, model_of, write_model};
+use crate::model_report::{estimates_table, meaning_text, model_of, outliers_text, write_model};
 
 /// Arguments of `fit`.
 #[derive(Debug, clap::Args)]
@@ -47,22 +47,24 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if model.parts().iter().all(|part| !part.free) {
         anyhow::bail!("no effect of the model is free: say free = true in its file, or --add EFFECT");
     }
-    let (model, estimates) = fit(&data, &model)?;
+    let fitted = session.on_threads(|| fit(&data, &model))??;
+    let Fit { model, estimates, outliers } = &fitted;
     if let Some(file) = &arguments.output {
-        write_model(&model, file, arguments.force)?;
+        write_model(model, file, arguments.force)?;
     }
     if session.json() {
-        session.print_json(&document::fitted(&model, &estimates, arguments.level))?;
+        session.print_json(&document::fitted(&fitted, arguments.level))?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &data.warnings {
         session.message("warning", warning);
     }
-    for effect in document::not_shown(&model, &estimates) {
+    for effect in document::not_shown(model, estimates) {
         let why = "this data does not show it apart from the rest of the model; it keeps its values";
         session.message("warning", &format!("{effect} was not fitted: {why}"));
     }
-    writeln!(session.out(), "{}", estimates_table(&estimates, arguments.level))?;
+    writeln!(session.out(), "{}", estimates_table(estimates, arguments.level))?;
+    write!(session.out(), "{}{}", meaning_text(estimates, model), outliers_text(outliers))?;
     if let Some(file) = &arguments.output {
         writeln!(session.out(), "\nwrote {}", file.display())?;
     }

@@ -5,23 +5,28 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use umbmark_core::dataset::Dataset;
-use umbmark_core::diagnose::{Level, Options};
+use umbmark_core::diagnose::{Experiment, Level, Options};
 use umbmark_core::document;
-use umbmark_core::learn::{Learnt, Step, learn};
+use umbmark_core::learn::{Learnt, Step, learn, learn_from};
 
-use super::diagnose::in_words;
+use super::diagnose::{experiment_text, in_words};
 use crate::Session;
 use crate::data_arguments::DataArguments;
-use crate::model_report::{estimates_table, p_text, write_model};
+use crate::model_report::{estimates_table, meaning_text, model_of, outliers_text, p_text, write_model};
 use crate::prose::hanging;
 use crate::table::table;
 use crate::test_arguments::TestArguments;
+use crate::unlisted::unlisted_text;
 
 /// Arguments of `learn`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     #[command(flatten)]
     data: DataArguments,
+
+    /// Begin with the effects of this model, beside E_d and E_b (on tracks E_s too): a formula to try, say
+    #[arg(long, value_name = "FILE")]
+    model: Option<PathBuf>,
 
     /// Write the model that was learnt
     #[arg(short, long, value_name = "FILE")]
@@ -38,7 +43,11 @@ pub struct Arguments {
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
     let options = arguments.test.options(session);
-    let learnt = session.on_threads(|| learn(&data, &options))??;
+    let start = arguments.model.as_deref().map(|file| model_of(Some(file), &data)).transpose()?;
+    let learnt = session.on_threads(|| match &start {
+        Some(start) => learn_from(&data, start, &options),
+        None => learn(&data, &options),
+    })??;
     if let Some(file) = &arguments.output {
         write_model(&learnt.model, file, arguments.force)?;
     }
@@ -49,14 +58,15 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     for warning in &data.warnings {
         session.message("warning", warning);
     }
-    write!(session.out(), "{}", text(&data, &learnt, &options))?;
+    let text = text(&data, &learnt, &options, session.on_terminal());
+    write!(session.out(), "{text}")?;
     if let Some(file) = &arguments.output {
         writeln!(session.out(), "\nwrote {}", file.display())?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-fn text(data: &Dataset, learnt: &Learnt, options: &Options) -> String {
+fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> String {
     let robot = data.robot.as_ref().map_or("", |robot| robot.name.as_str());
     let mut text = format!("What {robot} taught\n\n");
     let header = ["added", "p", "error [mm]", "left out [mm]", "[deg]", "AICc"];
@@ -74,14 +84,21 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options) -> String {
     text += "\n";
     text += &hanging("verdict", 10, in_words(learnt.verdict));
     for step in learnt.steps.iter().filter(|s| s.class.len() > 1) {
-        let told = format!("{} cannot be told apart here; `umbmark diagnose` says what would", step.class.join(", "));
-        text += &hanging("class", 10, &told);
+        text += &hanging("class", 10, &format!("{} cannot be told apart here", step.class.join(", ")));
     }
+    let unsure = learnt.steps.iter().rev().find(|s| s.class.len() > 1);
+    let tells = |e: &&Experiment| unsure.is_some_and(|s| e.separates.iter().all(|name| s.class.contains(name)));
+    if let Some(experiment) = learnt.diagnosis.next_experiments.iter().find(tells) {
+        text += &hanging("next", 10, &experiment_text(experiment));
+    }
+    text += &outliers_text(&learnt.diagnosis.outliers);
     for remark in &learnt.remarks {
         text += &hanging("note", 10, remark);
     }
+    text += &unlisted_text(learnt.diagnosis.dependence.as_ref(), terminal);
     if !learnt.diagnosis.fitted.is_empty() {
         text += &format!("\n{}\n", estimates_table(&learnt.diagnosis.fitted, 1.0 - options.size));
+        text += &meaning_text(&learnt.diagnosis.fitted, &learnt.model);
     }
     text
 }

@@ -89,7 +89,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         let document = report.json(session.seed(), arguments.with_noise);
         session.print_json(&document)?;
     } else {
-        let text = report.text(arguments.with_noise)
+        let text = report.text(arguments.with_noise, session.on_terminal())
             + &format!("\nseed {}, umbmark {}\n", session.seed(), umbmark_core::VERSION);
         write!(session.out(), "{text}")?;
     }
@@ -147,7 +147,7 @@ impl Report<'_> {
         })
     }
 
-    fn text(&self, with_noise: bool) -> String {
+    fn text(&self, with_noise: bool, unicode: bool) -> String {
         let (unit, factor) = unit(self.metric);
         let now = &self.findings.now;
         let kind =
@@ -155,7 +155,7 @@ impl Report<'_> {
         let mut text = format!("{} of {} robots, {kind}\n", self.metric.name(), now.robots.sizes().len());
         self.assumed.iter().for_each(|assumption| text += &format!("  assumed: {assumption}\n"));
         let sizes = now.robots.sizes();
-        text += &format!("\n{}\n", histogram(&classes(sizes, factor), unit, 40));
+        text += &format!("\n{}\n", histogram(&classes(sizes, factor), unit, 40, unicode));
         let goal =
             format!("{:.0} % within {} {unit}", 100.0 * self.target.share, trimmed(self.target.at_most * factor));
         text += &format!("target: {goal}\n\n");

@@ -4,7 +4,7 @@
 //! can predict, old and new data together: Δ_jk(d) = min over p, s of ‖W (a_j t_j - A p - a_k s)‖, in standard deviations. The worth
 //! of a design is Δ² a minute: T-optimality (Atkinson & Fedorov 1975).
 
-mod design;
+pub(super) mod design;
 
 use super::ends::{Asked, Ends, Fitted};
 use super::{DiagnoseError, Experiment, Suspect};
@@ -121,12 +121,12 @@ pub(crate) fn wheel_noise(ends: &Ends, fitted: &Fitted) -> Option<f64> {
     Noise::of(ends, fitted).map(|noise| noise.variance.sqrt())
 }
 
-fn worth(experiment: &Experiment) -> f64 {
+pub(super) fn worth(experiment: &Experiment) -> f64 {
     experiment.sd * experiment.sd / experiment.minutes
 }
 
 /// Of those that tell with 90 % power at 5 %, the one worth most a minute; else the one that tells most, if any does.
-fn best(told: Vec<Experiment>) -> Option<Experiment> {
+pub(super) fn best(told: Vec<Experiment>) -> Option<Experiment> {
     let surely = normal_quantile(0.975) + normal_quantile(0.9);
     let sure = told.iter().filter(|e| e.sd >= surely).max_by(|a, b| worth(a).total_cmp(&worth(b))).cloned();
     sure.or_else(|| told.into_iter().filter(|e| e.sd >= LEAST).max_by(|a, b| a.sd.total_cmp(&b.sd)))

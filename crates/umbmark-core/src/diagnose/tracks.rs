@@ -8,26 +8,32 @@
 //! Smooth functions of how the robot drives stand beside the catalogue: where one explains clearly more than the best
 //! effect does, something is missing that the catalogue does not list.
 
+mod curve;
 mod errors;
 mod examination;
+mod experiments;
 mod flips;
+pub(crate) mod growth;
 mod look;
 mod smooth;
+mod suggestion;
 mod system;
 
 use super::{
-    Dependence, Detectable, DiagnoseError, Diagnosis, Estimate, GoodnessOfFit, Identifiability, Level, Likeness,
-    Options, Suspect, Unseen, Verdict, Why,
+    Dependence, Detectable, DiagnoseError, Diagnosis, Estimate, Experiment, GoodnessOfFit, Identifiability, Level,
+    Likeness, Options, Suspect, Unseen, Verdict, Why, experiments::worth,
 };
 use crate::diagnose::likeness::correlations;
 use crate::likelihood::{Fitted, Observed};
 use crate::stats::{chi_squared_upper_tail, normal_quantile};
 use examination::Question;
+use smooth::Motion;
 use system::Projected;
 
 pub use errors::Misses;
 pub(crate) use examination::Examination;
 pub(crate) use look::Finding;
+pub use suggestion::Suggestion;
 
 /// Share by which errors in runs left out must fall for an effect to count: less is not worth a parameter.
 pub const LEAST_GAIN: f64 = 0.02;
@@ -37,52 +43,51 @@ const EXPLAINED: f64 = 0.85;
 const TELLING: f64 = 0.1;
 /// So many certified effects are tried for their gain.
 const TRIES: usize = 4;
+/// p by F below which a suspect is spoken of though no flips certify it.
+const LOUD: f64 = 1e-20;
+/// A diagnosis names at most so many classes.
+const MOST: usize = 3;
 /// Fewer runs give no certificate.
 const FEWEST: usize = 2;
 
-/// What a fitted model is missing, in the order in which it would be added.
+/// What a fitted model is missing.
 pub(crate) struct Missing {
-    /// Certified effects, each asked beside those before it.
-    pub effects: Vec<(Finding, Suspect)>,
-    /// All other effects, the likeliest first.
-    pub others: Vec<Suspect>,
-    /// A certified smooth that the effects do not explain.
-    pub smooth: Option<(Finding, Dependence)>,
+    /// The certified effect that would be added.
+    pub effect: Option<(Finding, Suspect)>,
+    /// A certified smooth that this effect, or none, explains.
+    pub smooth: Option<Finding>,
+    /// All effects that were asked, the likeliest first.
+    pub asked: Vec<Suspect>,
 }
 
-/// Looks for what is missing, at most `most` effects.
-pub(crate) fn missing(exam: &Examination, options: &Options, most: usize) -> Missing {
-    let mut found: Vec<usize> = Vec::new();
-    let mut effects = Vec::new();
-    loop {
-        let findings = look::look(exam, &found, false, options);
-        let smooth = look::look(exam, &found, true, options).into_iter().next().filter(|s| s.certified(options));
-        let enough = effects.len() < most && exam.fitted.observed.runs.len() >= FEWEST;
-        let best = if enough { first_with_gain(exam, &findings, &found, options) } else { None };
-        let explains = best.map_or(0.0, |finding| finding.answer.drop);
-        let unlisted = smooth.filter(|s| explains < EXPLAINED * s.answer.drop && smooth_gains(exam, s, &found));
-        let next = best.filter(|_| unlisted.is_none());
-        if let Some((finding, suspect)) = next.and_then(|f| look::suspect(exam, f, &found).map(|s| (f, s))) {
-            found.extend(&finding.answer.columns);
-            effects.push((finding.clone(), suspect));
-            continue;
-        }
-        let others = findings.iter().filter_map(|finding| look::suspect(exam, finding, &found)).collect();
-        let smooth = unlisted.and_then(|finding| dependence(exam, &finding).map(|told| (finding, told)));
-        return Missing { effects, others, smooth };
+/// Looks for what is missing.
+fn missing(exam: &Examination, options: &Options) -> Missing {
+    let findings = look::look(exam, false, options);
+    let smooth = look::look(exam, true, options).into_iter().find(|s| s.certified(options));
+    let enough = exam.fitted.observed.runs.len() >= FEWEST;
+    let best = if enough { first_with_gain(exam, &findings, options) } else { None };
+    let unexplained = smooth.filter(|smooth| !explains(exam, best, smooth) && smooth_gains(exam, smooth));
+    Missing {
+        effect: best.and_then(|finding| look::suspect(exam, finding).map(|suspect| (finding.clone(), suspect))),
+        smooth: unexplained,
+        asked: findings.iter().filter_map(|finding| look::suspect(exam, finding)).collect(),
     }
+}
+
+/// Whether an effect explains as much as a smooth does, both asked beside the same.
+fn explains(exam: &Examination, effect: Option<&Finding>, smooth: &Finding) -> bool {
+    let Some(effect) = effect else { return false };
+    let whole = &exam.system.whole;
+    let beside = Projected::new(whole, effect.base());
+    let drop = exam.answer(&beside, whole, smooth.answer.asked).map_or(0.0, |answer| answer.drop);
+    effect.answer.drop >= EXPLAINED * drop
 }
 
 /// The first certified effect with which runs left out are predicted better, the choice being made anew without each.
 ///
 /// Physics comes before the reference: an effect is asked beside all effects of the reference and stands for itself, where a
 /// delay, asked without itself, takes a share of what physics explains better.
-fn first_with_gain<'a>(
-    exam: &Examination,
-    findings: &'a [Finding],
-    found: &[usize],
-    options: &Options,
-) -> Option<&'a Finding> {
+fn first_with_gain<'a>(exam: &Examination, findings: &'a [Finding], options: &Options) -> Option<&'a Finding> {
     let nuisance = |finding: &Finding| exam.asked[finding.answer.asked].nuisance;
     for of_reference in [false, true] {
         let mut passed: Vec<&str> = Vec::new();
@@ -94,10 +99,9 @@ fn first_with_gain<'a>(
                 asked.nuisance == of_reference && !passed.contains(&name)
             };
             // Effects of the reference are in both predictions, so that the gain is the effect's own.
-            let others = exam.base(Some(finding.answer.asked)).into_iter().filter(|c| !exam.free.contains(c));
-            let beside: Vec<usize> = found.iter().copied().chain(others).collect();
+            let beside: Vec<usize> = finding.base().iter().copied().filter(|c| !exam.free.contains(c)).collect();
             let before = exam.left_out(&beside);
-            let after = exam.left_out_with(&beside, |products| exam.likeliest(products, found, wanted));
+            let after = exam.left_out_with(&beside, |products| exam.likeliest(products, wanted));
             if after.gain(&before) >= LEAST_GAIN {
                 return Some(finding);
             }
@@ -108,71 +112,175 @@ fn first_with_gain<'a>(
 }
 
 /// Whether runs left out are predicted better with a smooth.
-fn smooth_gains(exam: &Examination, finding: &Finding, found: &[usize]) -> bool {
+fn smooth_gains(exam: &Examination, finding: &Finding) -> bool {
     let own = &finding.answer.columns;
-    let errors = exam.errors_with(&[found, own].concat());
+    let errors = exam.errors_with(own);
     let of = |columns: Vec<usize>| {
         errors.misses(|run| {
-            let products = exam.system.sum(|unit| unit.run != run);
-            let values = Projected::fit(&products, &columns);
+            let values = Projected::fit(&exam.system.without(run), &columns);
             (columns.clone(), values)
         })
     };
-    let base = [&exam.base(None)[..], found].concat();
-    of([&base[..], own].concat()).gain_along(&of(base.clone())) >= TELLING
+    let base = exam.base(None);
+    of([&base[..], own].concat()).gain(&of(base.clone())) >= TELLING
+}
+
+/// What was found missing, one effect after the other, each fitted before the next was asked about.
+pub(crate) struct Search {
+    /// The model as it was, and after each effect.
+    pub exams: Vec<Examination>,
+    /// The effects.
+    pub added: Vec<(Finding, Suspect)>,
+    /// What the last model is missing and was not added.
+    pub left: Missing,
+}
+
+/// Adds what is certified as missing, at most `most` effects, each fitted without approximation before the next is asked.
+pub(crate) fn search(fitted: Fitted, options: &Options, most: usize) -> Result<Search, DiagnoseError> {
+    let exam = Examination::new(fitted)?;
+    let left = missing(&exam, options);
+    let mut search = Search { exams: vec![exam], added: Vec::new(), left };
+    while let Some((finding, suspect)) = search.left.effect.clone().filter(|_| search.added.len() < most) {
+        let exam = Examination::new(growth::grown(search.last(), &suspect)?)?;
+        if search.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&exam, smooth, options)) {
+            break;
+        }
+        search.left = missing(&exam, options);
+        search.exams.push(exam);
+        search.added.push((finding, suspect));
+    }
+    Ok(search)
+}
+
+impl Search {
+    /// The last examination.
+    pub fn last(&self) -> &Examination {
+        &self.exams[self.exams.len() - 1]
+    }
+}
+
+/// Whether a smooth that an effect seemed not to explain is there after that effect was fitted. What one linear step
+/// leaves of a large effect is gone then; what is not in the catalogue is not.
+fn speaks_on(exam: &Examination, smooth: &Finding, options: &Options) -> bool {
+    let mut now = look::look(exam, true, options).into_iter().filter(|finding| finding.certified(options));
+    now.any(|finding| finding.answer.drop > (1.0 - EXPLAINED) * smooth.answer.drop)
 }
 
 /// A smooth, for people.
-fn dependence(exam: &Examination, finding: &Finding) -> Option<Dependence> {
+pub(crate) fn dependence(exam: &Examination, finding: &Finding, asked: &[Suspect]) -> Option<Dependence> {
     let Question::Smooth(covariate, motion) = &exam.asked[finding.answer.asked].question else { return None };
+    let share = |suspect: &&Suspect| suspect.expected_drop / finding.answer.drop;
+    let nearest = asked.iter().max_by(|a, b| a.expected_drop.total_cmp(&b.expected_drop));
     Some(Dependence {
         acts_on: motion.name(),
         depends_on: covariate.name,
         title: covariate.title,
         p_adjusted: finding.p_adjusted(),
         drop: finding.answer.drop,
+        curve: curve::curve(exam, finding, covariate, *motion),
+        suggestion: suggestion::suggestion(exam, finding, covariate, *motion),
+        nearest: nearest.map(|suspect| (suspect.best, share(&suspect).min(1.0))),
     })
 }
 
 /// Fits a model's free parameters to tracks and asks every other effect, and every smooth, whether it is missing.
 pub(crate) fn diagnose(fitted: Fitted, options: &Options) -> Result<Diagnosis, DiagnoseError> {
-    let exam = Examination::new(fitted)?;
-    let found = missing(&exam, options, 3);
-    Ok(conclude(exam, found, options))
+    let search = search(fitted, options, MOST)?;
+    let verdict = verdict(&search);
+    let Search { mut exams, added, left } = search;
+    let last = exams.len() - 1;
+    let told = left.smooth.as_ref().and_then(|finding| dependence(&exams[last], finding, &left.asked));
+    let mut certified: Vec<Suspect> = Vec::new();
+    let mut experiments = Vec::new();
+    let mut hints = Vec::new();
+    for (exam, (finding, suspect)) in exams.iter().zip(&added) {
+        let (told, hint) = next_experiments(exam, finding, suspect)?;
+        experiments.extend(told);
+        hints.extend(hint);
+        certified.push(suspect.clone());
+    }
+    hints.extend(uncertified(&left.asked, options));
+    let asked = left.asked.into_iter().filter(|other| certified.iter().all(|known| known.best != other.best));
+    let ranking = certified.iter().cloned().chain(asked.collect::<Vec<_>>()).collect();
+    let mut diagnosis = conclude(exams.swap_remove(0), told, options)?;
+    diagnosis.remarks.extend(hints);
+    let mut next_experiments = [experiments, diagnosis.next_experiments].concat();
+    next_experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+    Ok(Diagnosis { verdict, ranking, certified: certified.len(), next_experiments, ..diagnosis })
 }
 
-/// The diagnosis of a model from what was found missing.
-pub(crate) fn conclude(exam: Examination, missing: Missing, options: &Options) -> Diagnosis {
-    let verdict = match (&missing.smooth, missing.effects.len()) {
-        _ if exam.fitted.observed.runs.len() < FEWEST => Verdict::NotEnoughData,
+/// Drives that would tell apart the members of a certified class, and for those that none does, what their own pages say.
+pub(crate) fn next_experiments(
+    exam: &Examination,
+    finding: &Finding,
+    suspect: &Suspect,
+) -> Result<(Vec<Experiment>, Vec<String>), DiagnoseError> {
+    let told = experiments::next(exam, &[finding], &[])?;
+    let mut hints = Vec::new();
+    for other in suspect.class.iter().filter(|name| **name != suspect.best) {
+        if told.iter().all(|experiment| !experiment.separates.contains(other)) {
+            let how =
+                [suspect.best, other].map(|name| crate::effect::find(name).map(|effect| effect.about.separated_by));
+            let [own, others] = [how[0].clone()?, how[1].clone()?];
+            let best = suspect.best;
+            hints.push(format!(
+                "No drive that was tried on paper tells {best} from {other}. {best}: {own}. {other}: {others}."
+            ));
+        }
+    }
+    Ok((told, hints))
+}
+
+/// What stands far out by F and is not certified by the flips: these runs are too few, or too unlike, to vouch for it.
+pub(crate) fn uncertified(asked: &[Suspect], options: &Options) -> Option<String> {
+    let loud = asked.first().filter(|s| s.p < LOUD && s.p_adjusted > options.size)?;
+    Some(format!(
+        "{} stands out by F (p = {:.0e}), but with the signs of whole runs flipped as much comes about by chance (p = {:.2}): \
+         more runs would tell.",
+        loud.class.join(" or "),
+        loud.p,
+        loud.p_adjusted
+    ))
+}
+
+/// The answer to a search in one word.
+pub(crate) fn verdict(search: &Search) -> Verdict {
+    match (&search.left.smooth, search.added.len()) {
+        _ if search.last().fitted.observed.runs.len() < FEWEST => Verdict::NotEnoughData,
         (Some(_), 0) => Verdict::UnlistedEffect,
         (None, 0) => Verdict::Explained,
         (None, 1) => Verdict::MissingEffect,
         _ => Verdict::SeveralMissing,
-    };
-    let certified = missing.effects.len();
-    let mut ranking: Vec<Suspect> = missing.effects.into_iter().map(|(_, suspect)| suspect).collect();
-    ranking.extend(missing.others);
+    }
+}
+
+/// The diagnosis of a model that nothing is added to: what it cannot see, and what else is to be said of it.
+pub(crate) fn conclude(
+    exam: Examination,
+    dependence: Option<Dependence>,
+    options: &Options,
+) -> Result<Diagnosis, DiagnoseError> {
     let (invisible, minimum_detectable) = visibility(&exam);
-    Diagnosis {
+    Ok(Diagnosis {
         level: Level::Tracks,
-        verdict,
+        verdict: Verdict::Explained,
         fitted: estimates(&exam.fitted),
         correlations: correlations(exam.fitted.covariance.as_ref()),
         likeness: likeness(&exam),
         goodness_of_fit: whole_model(&exam, options),
-        ranking,
-        certified,
+        ranking: Vec::new(),
+        certified: 0,
+        next_experiments: experiments::next(&exam, &[], &invisible)?,
         invisible,
         minimum_detectable,
-        next_experiments: Vec::new(),
         contrasts: Vec::new(),
         circle: Vec::new(),
         identifiability: Identifiability { shares: Vec::new(), rank: exam.free.len(), hidden: Vec::new() },
-        remarks: remarks(&exam, missing.smooth.as_ref().map(|(_, told)| told)),
-        dependence: missing.smooth.map(|(_, told)| told),
+        remarks: remarks(&exam, dependence.as_ref()),
+        outliers: exam.fitted.outliers.clone(),
+        dependence,
         model: exam.fitted.model,
-    }
+    })
 }
 
 /// The fitted parameters with their standard errors.
@@ -195,17 +303,21 @@ pub(crate) fn estimates(fitted: &Fitted) -> Vec<Estimate> {
 
 /// What the data cannot see, and the least that it would see.
 fn visibility(exam: &Examination) -> (Vec<Unseen>, Vec<Detectable>) {
-    let products = exam.system.sum(|_| true);
+    let products = &exam.system.whole;
     let surely = normal_quantile(0.975) + normal_quantile(0.8);
     let (mut unseen, mut detectable) = (Vec::new(), Vec::new());
     for (index, asked) in exam.asked.iter().enumerate() {
         let Question::Effect(effect, parameters) = &asked.question else { continue };
-        let projected = Projected::new(&products, &exam.base(Some(index)));
+        // Where shapes were tried, the usual one comes first and speaks for all.
+        if index > 0 && exam.asked[index - 1].effect() == Some(*effect) {
+            continue;
+        }
+        let projected = Projected::new(products, &exam.base(Some(index)));
         let mut why = None;
         let mut seen = false;
         for (column, parameter) in asked.columns.iter().zip(parameters) {
-            if projected.absorbed(&products, *column) {
-                why = why.or_else(|| Some(Why::Absorbed(absorbing(exam, &products, &projected.base, *column))));
+            if projected.absorbed(products, *column) {
+                why = why.or_else(|| Some(Why::Absorbed(absorbing(exam, products, &projected.base, *column))));
                 continue;
             }
             let strength = projected.products[(*column, *column)].sqrt();
@@ -226,12 +338,12 @@ fn visibility(exam: &Examination) -> (Vec<Unseen>, Vec<Detectable>) {
 
 /// How alike the effects look beside the model, each size at its usual value.
 fn likeness(exam: &Examination) -> Likeness {
-    let products = exam.system.sum(|_| true);
-    let projected = Projected::new(&products, &exam.free);
+    let products = &exam.system.whole;
+    let projected = Projected::new(products, &exam.free);
     let mut sizes: Vec<(&'static str, usize, f64)> = Vec::new();
     for asked in &exam.asked {
         let Question::Effect(effect, parameters) = &asked.question else { continue };
-        let seen = asked.columns.iter().zip(parameters).filter(|(c, _)| !projected.absorbed(&products, **c));
+        let seen = asked.columns.iter().zip(parameters).filter(|(c, _)| !projected.absorbed(products, **c));
         sizes.extend(seen.map(|(column, parameter)| (effect.about.name, *column, parameter.typical)));
     }
     let names: Vec<&'static str> = sizes.iter().map(|(name, _, _)| *name).collect();
@@ -256,14 +368,16 @@ fn absorbing(
 
 /// Tests of the model as a whole: errors that repeat themselves along the way, and innovations that remember.
 fn whole_model(exam: &Examination, options: &Options) -> Vec<GoodnessOfFit> {
-    let mut tests: Vec<GoodnessOfFit> = look::look(exam, &[], true, options)
+    let mut tests: Vec<GoodnessOfFit> = look::look(exam, true, options)
         .into_iter()
         .filter_map(|finding| {
-            let told = dependence(exam, &finding).filter(|told| told.depends_on == smooth::ALONG_THE_WAY)?;
-            let name = match told.acts_on {
-                "forward" => "forward errors repeat along the way",
-                "sideways" => "sideways errors repeat along the way",
-                _ => "yaw errors repeat along the way",
+            let name = match &exam.asked[finding.answer.asked].question {
+                Question::Smooth(covariate, motion) if covariate.name == smooth::ALONG_THE_WAY => match motion {
+                    Motion::Forward => "forward errors repeat along the way",
+                    Motion::Sideways => "sideways errors repeat along the way",
+                    Motion::Yaw => "yaw errors repeat along the way",
+                },
+                _ => return None,
             };
             let freedom = Some(finding.degrees_of_freedom);
             Some(GoodnessOfFit { name, statistic: finding.f, degrees_of_freedom: freedom, p: finding.p_flips })
@@ -289,6 +403,12 @@ fn remarks(exam: &Examination, unlisted: Option<&Dependence>) -> Vec<String> {
             "Something that the catalogue does not list acts on the {} motion; it depends on {} (p = {:.2e}).",
             told.acts_on, told.title, told.p_adjusted
         ));
+        if let Some((effect, share)) = told.nearest {
+            remarks.push(format!(
+                "The nearest effect of the catalogue is {effect}: it explains {:.0} % of that.",
+                100.0 * share
+            ));
+        }
     }
     if exam.fitted.observed.runs.iter().any(|run| !run.start_seen) {
         remarks.push(format!(

@@ -1,8 +1,14 @@
 //! `diagnose`.
 
+use super::fitted::{estimates, meaning, outliers};
 use super::square::square;
-use super::{finite, fitted::estimates, model::model};
-use crate::diagnose::{Detectable, Diagnosis, Estimate, Identifiability, Level, Options, Suspect, Unseen, Why};
+use super::{finite, model::model};
+use crate::dataset::model_text;
+use crate::diagnose::{
+    CurvePoint, Dependence, Detectable, Diagnosis, Estimate, Experiment, Identifiability, Level, Options, Suspect,
+    Unseen, Why,
+};
+use crate::drive::Robot;
 use serde_json::{Map, Value, json};
 
 /// A diagnosis.
@@ -19,7 +25,7 @@ pub fn diagnosis(diagnosis: &Diagnosis, options: &Options) -> Value {
         "observed": level,
         "fitted": estimates(&diagnosis.fitted, 1.0 - options.size),
         "goodness_of_fit": gof.collect::<Vec<_>>(),
-        "ranking": diagnosis.ranking.iter().map(suspect_json).collect::<Vec<_>>(),
+        "ranking": diagnosis.ranking.iter().map(|s| suspect_json(s, diagnosis.model.robot())).collect::<Vec<_>>(),
         "certified": diagnosis.certified,
         "invisible": diagnosis.invisible.iter().map(|u| u.effect).collect::<Vec<_>>(),
         "absorbed": absorbed_json(&diagnosis.invisible),
@@ -27,12 +33,12 @@ pub fn diagnosis(diagnosis: &Diagnosis, options: &Options) -> Value {
         "minimum_detectable_sizes": diagnosis.minimum_detectable.iter().map(|d| {
             json!({ "effect": d.effect, "parameter": d.parameter, "size": finite(d.size) })
         }).collect::<Vec<_>>(),
-        "next_experiments": diagnosis.next_experiments.iter().map(|e| {
-            json!({ "separates": e.separates, "experiment": e.experiment, "minutes": e.minutes, "sd": e.sd })
-        }).collect::<Vec<_>>(),
+        "next_experiments": experiments(&diagnosis.next_experiments),
         "identifiability": identifiability_json(&diagnosis.identifiability),
-        "unlisted": unlisted(diagnosis),
+        "unlisted": unlisted(diagnosis.dependence.as_ref()),
         "model": model(&diagnosis.model),
+        "meaning": meaning(&diagnosis.fitted, &diagnosis.model),
+        "outliers": outliers(&diagnosis.outliers),
         "remarks": diagnosis.remarks,
         "size": options.size,
         "draws": options.draws,
@@ -46,14 +52,35 @@ pub fn diagnosis(diagnosis: &Diagnosis, options: &Options) -> Value {
 }
 
 /// What is missing and not in the catalogue; null where nothing is.
-pub(super) fn unlisted(diagnosis: &Diagnosis) -> Value {
-    let told = diagnosis.dependence.as_ref();
-    json!(told.map(|told| {
-        json!({ "acts_on": told.acts_on, "depends_on": told.depends_on, "p_adjusted": told.p_adjusted })
+pub(super) fn unlisted(unlisted: Option<&Dependence>) -> Value {
+    let point = |p: &CurvePoint| json!({ "at": p.at, "value": p.value, "low": p.value - p.half_width, "high": p.value + p.half_width });
+    json!(unlisted.map(|told| {
+        json!({
+            "acts_on": told.acts_on,
+            "depends_on": told.depends_on,
+            "p_adjusted": told.p_adjusted,
+            "curve": {
+                "at_unit": told.curve.at_unit,
+                "unit": told.curve.unit,
+                "points": told.curve.points.iter().map(point).collect::<Vec<_>>(),
+            },
+            "nearest": told.nearest.map(|(effect, share)| json!({ "effect": effect, "share": share })),
+            "suggestion": told.suggestion.as_ref().map(|suggestion| {
+                let mut model = model(&suggestion.model);
+                model["share"] = json!(suggestion.share);
+                model["toml"] = json!(model_text(&suggestion.model));
+                model
+            }),
+        })
     }))
 }
 
-fn suspect_json(suspect: &Suspect) -> Value {
+pub(super) fn experiments(experiments: &[Experiment]) -> Value {
+    let one = |e: &Experiment| json!({ "separates": e.separates, "experiment": e.experiment, "minutes": e.minutes, "sd": e.sd });
+    json!(experiments.iter().map(one).collect::<Vec<_>>())
+}
+
+fn suspect_json(suspect: &Suspect, robot: &Robot) -> Value {
     let of = |value: &dyn Fn(&Estimate) -> f64| {
         let pairs = suspect.estimate.iter().map(|e| (e.parameter.to_owned(), finite(value(e))));
         Value::Object(Map::from_iter(pairs))
@@ -69,6 +96,7 @@ fn suspect_json(suspect: &Suspect) -> Value {
         "estimate": of(&|e| e.value),
         "standard_error": of(&|e| e.standard_error),
         "expected_drop": suspect.expected_drop,
+        "meaning": suspect.meaning(robot),
     })
 }
 

@@ -1,6 +1,8 @@
 //! `learn`.
 
-use super::{diagnosis::unlisted, finite, fitted::estimates, model::model};
+use super::diagnosis::{experiments, unlisted};
+use super::fitted::{estimates, meaning, outliers};
+use super::{finite, model::model};
 use crate::diagnose::Options;
 use crate::learn::{Learnt, Step};
 use serde_json::{Value, json};
@@ -23,9 +25,12 @@ pub fn learnt(learnt: &Learnt, options: &Options) -> Value {
     json!({
         "steps": learnt.steps.iter().map(step).collect::<Vec<_>>(),
         "verdict": learnt.verdict.name(),
-        "unlisted": unlisted(&learnt.diagnosis),
+        "unlisted": unlisted(learnt.diagnosis.dependence.as_ref()),
+        "next_experiments": experiments(&learnt.diagnosis.next_experiments),
         "model": model(&learnt.model),
         "fitted": estimates(&learnt.diagnosis.fitted, 1.0 - options.size),
+        "meaning": meaning(&learnt.diagnosis.fitted, &learnt.model),
+        "outliers": outliers(&learnt.diagnosis.outliers),
         "remarks": learnt.remarks,
         "size": options.size,
         "draws": options.draws,

@@ -1,7 +1,8 @@
 //! Slip under drive and brake.
 
+use super::words::{either, percent};
 use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::WheelTravel;
+use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -29,6 +30,14 @@ impl Effect for AccelerationSlip {
         separated_by: "a second acceleration at the same speed: a delay does not care",
         source: "linear creep of a rolling tyre; 2 % per m/s² is assumed",
     };
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!(
+            "While it gains 0.5 m/s in a second a wheel gets {} {} than it counts, and as much the other way while it brakes.",
+            percent(0.5 * p[0]),
+            either(p[0], "less far", "farther")
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

@@ -1,7 +1,8 @@
 //! Play between motor and wheel.
 
+use super::words::{deg, mm};
 use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::WheelTravel;
+use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -29,6 +30,14 @@ impl Effect for Backlash {
         separated_by: "turning each wheel by hand with its motor held; a track",
         source: "geometry; hobby drives with about 1 degree of body heading are reported, 0.5 mm is assumed",
     };
+
+    fn means(p: &[f64], robot: &Robot) -> String {
+        format!(
+            "There are {} of play at the rim: where a turn begins the heading jumps by {}, and back where the next leg does.",
+            mm(p[0]),
+            deg(p[0] / robot.drive.wheelbase())
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

@@ -1,7 +1,8 @@
 //! Bumps met by chance, and the geometry of one.
 
+use super::words::{deg, size};
 use super::{About, ActsOn, Bump, Effect, Stretch};
-use crate::drive::{Kind, Kinds, Wheel};
+use crate::drive::{Kind, Kinds, Robot, Wheel};
 use crate::parameter::{DefaultValue, Parameter};
 use crate::random::Stream;
 
@@ -40,6 +41,15 @@ impl Effect for Bumps {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro);
+
+    fn means(p: &[f64], robot: &Robot) -> String {
+        let lost = lost_travel(p[1], p[2], p[3]);
+        format!(
+            "Each wheel meets {} bumps in 10 m, and each turns the robot by {}.",
+            size(10.0 * p[0]),
+            deg(lost / robot.drive.wheelbase())
+        )
+    }
 
     fn bumps(p: &[f64], stretch: &Stretch, stream: &mut Stream, met: &mut Vec<Bump>) {
         if p[0] == 0.0 {

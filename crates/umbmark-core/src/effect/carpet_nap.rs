@@ -1,8 +1,8 @@
 //! A carpet whose pile leans one way.
 
-use super::floor_slope::{DRIFT, DRIFT_X, DRIFT_Y, drift};
+use super::floor_slope::{DRIFT, DRIFT_X, DRIFT_Y, carried, drift};
 use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::Kinds;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -37,6 +37,10 @@ impl Effect for CarpetNap {
     };
 
     const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!("{}.", carried(p))
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

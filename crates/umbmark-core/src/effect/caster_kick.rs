@@ -1,6 +1,8 @@
 //! The kick of casters that swing round after a turn.
 
+use super::words::{deg, either, mm};
 use super::{About, ActsOn, Context, Effect};
+use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -36,6 +38,15 @@ impl Effect for CasterKick {
         separated_by: "a track; 0.3 m of driving straight before each turn, on and off; ball casters",
         source: "users' reports of drift after a change of direction; 0.2 degree and 5 cm are assumed",
     };
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!(
+            "After each turn the casters push the robot {} {}, most of it within {}.",
+            deg(p[0]),
+            either(p[0], "further round", "back"),
+            mm(p[1])
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         p[0] != 0.0

@@ -1,7 +1,8 @@
 //! The outer tyre gives way in arcs.
 
+use super::words::{either, percent};
 use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::WheelTravel;
+use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -29,6 +30,14 @@ impl Effect for CentripetalLoad {
         separated_by: "circles driven slowly and fast, both ways",
         source: "load transfer on a linear tyre; 0.1 % per m/s² is assumed",
     };
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!(
+            "In an arc at 1 m/s and 1 rad/s the outer wheel rolls {} {} than it counts, and the inner one as much the other way.",
+            percent(0.5 * p[0]),
+            either(p[0], "less", "more")
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

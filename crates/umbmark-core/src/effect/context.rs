@@ -21,6 +21,8 @@ pub struct Context<T = f64> {
     pub wheel_speed: [f64; 2],
     /// How much faster the left and the right wheel are at the end of the piece than at its beginning \[m/s\].
     pub speed_change: [f64; 2],
+    /// How much greater the turn rate is at the end of the piece than at its beginning \[rad/s\].
+    pub turn_rate_change: f64,
     /// Angles of the left and the right wheel since START \[rad\].
     pub wheel_angle: [f64; 2],
     /// How far each wheel turns on in the piece \[rad\].
@@ -63,6 +65,7 @@ impl Context {
             turn_rate: self.turn_rate,
             wheel_speed: self.wheel_speed,
             speed_change: self.speed_change,
+            turn_rate_change: self.turn_rate_change,
             wheel_angle: self.wheel_angle,
             wheel_rotation: self.wheel_rotation,
             reversed: self.reversed,
@@ -91,6 +94,11 @@ impl<T> Context<T> {
     /// Mean acceleration of the axle's centre \[m/s²\].
     pub fn acceleration(&self) -> f64 {
         if self.duration > 0.0 { 0.5 * (self.speed_change[0] + self.speed_change[1]) / self.duration } else { 0.0 }
+    }
+
+    /// Mean change of the turn rate \[rad/s²\], counter-clockwise positive.
+    pub fn turn_acceleration(&self) -> f64 {
+        if self.duration > 0.0 { self.turn_rate_change / self.duration } else { 0.0 }
     }
 }
 
@@ -176,6 +184,7 @@ impl Progress {
         now.turn_rate = (mean[1] - mean[0]) / self.wheelbase;
         now.wheel_speed = mean;
         now.speed_change = [to[0] - from[0], to[1] - from[1]];
+        now.turn_rate_change = (now.speed_change[1] - now.speed_change[0]) / self.wheelbase;
         now.wheel_rotation = [0, 1].map(|w| wheels[w] / self.radius[w]);
         // Counters that tremble about zero, as in a turn on the spot, make no way.
         now.length = if now.speed == 0.0 { forward.abs() } else { forward * now.speed.signum() };
@@ -295,5 +304,8 @@ mod tests {
         let piece = drive(&[(0.005, 0.005)])[0];
         assert!((piece.speed - 0.05).abs() < 1e-15 && (piece.acceleration() - 1.0).abs() < 1e-12);
         assert_eq!(Context::<f64>::default().acceleration(), 0.0);
+        let mut progress = Progress::new(&Robot::labmate(), Place::default(), true);
+        let turn = progress.piece(&WheelTravel::default(), 0.5, [0.0; 2], [-0.034, 0.034]);
+        assert!((turn.turn_acceleration() - 0.4).abs() < 1e-12, "{}", turn.turn_acceleration());
     }
 }

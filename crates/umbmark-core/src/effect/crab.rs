@@ -1,7 +1,8 @@
 //! Crab: wheels that stand askew, both to the same side.
 
+use super::words::{deg, mm, side};
 use super::{About, ActsOn, Context, Effect};
-use crate::drive::Kinds;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -32,6 +33,15 @@ impl Effect for Crab {
     };
 
     const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!(
+            "The robot moves {} to the {} of where it faces: {} aside on each metre.",
+            deg(p[0]),
+            side(p[0]),
+            mm(libm::tan(p[0]))
+        )
+    }
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         turn_course(motion, p[0]);

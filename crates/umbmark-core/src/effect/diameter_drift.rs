@@ -1,7 +1,8 @@
 //! Wheel diameters that change as the robot drives.
 
+use super::words::{either, mm};
 use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::WheelTravel;
+use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -39,6 +40,17 @@ impl Effect for DiameterDrift {
         separated_by: "the heading along the track; cw and ccw runs in random order",
         source: "0.12 % over a run is assumed",
     };
+
+    fn means(p: &[f64], robot: &Robot) -> String {
+        let mean = 0.5 * (robot.drive.wheel_diameter_left() + robot.drive.wheel_diameter_right());
+        let grown =
+            |per_metre: f64| format!("{} {}", mm(10.0 * per_metre * mean), either(per_metre, "larger", "smaller"));
+        format!(
+            "Against the left wheel the right one gets {} in diameter over 10 m of a run, and {} over 10 m of the session.",
+            grown(p[0]),
+            grown(p[1])
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

@@ -1,6 +1,8 @@
 //! A wheelbase that is not the same for left and right turns.
 
+use super::words::mm;
 use super::{About, ActsOn, Context, Effect, at_work};
+use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -29,6 +31,15 @@ impl Effect for DirectionDependentWheelbase {
         separated_by: "spins both ways, or a heading at each corner before and after the turn",
         source: "first-order theory of side-periodic errors; 0.4 % is assumed",
     };
+
+    fn means(p: &[f64], robot: &Robot) -> String {
+        let b = robot.drive.wheelbase();
+        format!(
+            "The robot turns left as if its wheels stood {} apart, and right as if they stood {} apart.",
+            mm(b * (1.0 + 0.5 * p[0])),
+            mm(b * (1.0 - 0.5 * p[0]))
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

@@ -1,6 +1,8 @@
 //! What lies between two counts.
 
+use super::words::mm;
 use super::{About, ActsOn, Effect};
+use crate::drive::Robot;
 use crate::geometry::{Pose2, Real};
 use crate::parameter::{DefaultValue, Parameter};
 use crate::random::Stream;
@@ -41,6 +43,10 @@ impl Effect for EncoderResolution {
         separated_by: "the scatter of standing poses against that of driven ones; counting finer",
         source: "variance q²/12 of rounding; a count of the assumed LabMate is 0.236 mm",
     };
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!("A count of {} leaves the travel of each wheel uncertain by half of that, either way.", mm(p[0]))
+    }
 
     fn measured(p: &[f64], stream: &mut Stream, pose: &mut Pose2) {
         if p[0] == 0.0 {

@@ -1,7 +1,9 @@
 //! Odometry that lays each step along the heading at its beginning.
 
 use super::crab::turn_course;
+use super::words::{deg, size};
 use super::{About, ActsOn, Context, Effect};
+use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -31,6 +33,14 @@ impl Effect for EncoderSampling {
         separated_by: "replaying the recorded ticks: it must vanish",
         source: "Euler's rule against the mid-point rule; 50 ms is assumed",
     };
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!(
+            "Steps of {} ms lay each chord of an arc too far outside: at 1 rad/s the course is {} off.",
+            size(1e3 * p[0]),
+            deg(0.5 * p[0])
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         p[0] != 0.0

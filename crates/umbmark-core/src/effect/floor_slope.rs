@@ -1,7 +1,8 @@
 //! A sloping floor that lets the robot drift downhill.
 
+use super::words::mm;
 use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::Kinds;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -58,6 +59,11 @@ impl Effect for FloorSlope {
 
     const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
 
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        let slide = libm::hypot(p[2], p[3]);
+        format!("{}, and {} on each radian of a turn.", carried(p), mm(slide))
+    }
+
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
@@ -73,6 +79,15 @@ impl Effect for FloorSlope {
 
 pub(super) const DRIFT: &str =
     "(forward, sideways) ← (forward, sideways) + R(-h) (g_x, g_y) · length,  h the mean heading";
+
+/// What drift in the room means for the robot.
+pub(super) fn carried(p: &[f64]) -> String {
+    format!(
+        "The floor carries the robot by {} on each metre, towards {} degrees from its heading at START",
+        mm(libm::hypot(p[0], p[1])),
+        libm::round(libm::atan2(p[1], p[0]).to_degrees())
+    )
+}
 
 pub(super) const DRIFT_X: Parameter = Parameter::size("drift_x", "", "m/m", 3e-3, (-1.0, 1.0), "");
 

@@ -1,7 +1,8 @@
 //! A sloping floor that turns the robot as it drives across.
 
+use super::words::deg;
 use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::Kinds;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -42,6 +43,14 @@ impl Effect for FloorSlopeYaw {
     };
 
     const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!(
+            "The floor turns the robot by up to {} on each metre: most to the left where it heads {} degrees from its heading at START.",
+            deg(libm::hypot(p[0], p[1])),
+            libm::round(libm::atan2(p[1], p[0]).to_degrees())
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

@@ -4,6 +4,7 @@
 //! heading_per_metre    Δθ ← Δθ + f · length                f [rad/m]
 //! sideways_per_metre   sideways ← sideways + f · length    f [m/m], to the left
 //! forward_scale        forward ← (1 + f) · forward         f [-]
+//! turn_scale           Δθ ← (1 + f) · Δθ                   f [-]
 //! left_wheel_scale     s_L ← (1 + f) · s_L                 f [-]
 //! right_wheel_scale    s_R ← (1 + f) · s_R                 f [-]
 //! ```
@@ -36,6 +37,8 @@ pub enum Target {
     HeadingPerMetre,
     /// Share by which motion ahead grows.
     ForwardScale,
+    /// Share by which rotation grows.
+    TurnScale,
     /// Sideways motion per path length, to the left positive.
     SidewaysPerMetre,
     /// Share by which the left wheel's travel grows.
@@ -46,9 +49,10 @@ pub enum Target {
 
 impl Target {
     /// All of them.
-    pub const ALL: [Target; 5] = [
+    pub const ALL: [Target; 6] = [
         Target::HeadingPerMetre,
         Target::ForwardScale,
+        Target::TurnScale,
         Target::SidewaysPerMetre,
         Target::LeftWheelScale,
         Target::RightWheelScale,
@@ -59,6 +63,7 @@ impl Target {
         match self {
             Target::HeadingPerMetre => "heading_per_metre",
             Target::ForwardScale => "forward_scale",
+            Target::TurnScale => "turn_scale",
             Target::SidewaysPerMetre => "sideways_per_metre",
             Target::LeftWheelScale => "left_wheel_scale",
             Target::RightWheelScale => "right_wheel_scale",
@@ -81,8 +86,8 @@ impl Target {
 ///
 /// It is made of `+ - * /`, `^` with a whole number, parentheses, numbers, `pi`, the functions `sin`, `cos`, `tan`, `exp`, `log`
 /// (natural), `sqrt`, `abs`, `sign`, `min`, `max` and `tanh`, its parameters, and what the robot's own odometry knows in the
-/// middle of a piece: `speed` \[m/s\], `turn_rate` \[rad/s\], `acceleration` \[m/s²\], `heading` \[rad\] in the room from the
-/// heading at START, `wheel_angle_left`, `wheel_angle_right` \[rad\] since START, `distance`, `session_distance`, `since_turn`
+/// middle of a piece: `speed` \[m/s\], `turn_rate` \[rad/s\], `acceleration` \[m/s²\], `turn_acceleration` \[rad/s²\], `heading`
+/// \[rad\] in the room from the heading at START, `wheel_angle_left`, `wheel_angle_right` \[rad\] since START, `distance`, `session_distance`, `since_turn`
 /// \[m\], `time` \[s\] since START, `last_turn` and `direction` (+1 to the left, -1 to the right, 0 for neither).
 ///
 /// Units must agree: an angle is a plain number, and parameters and written numbers have whatever unit makes it so.
@@ -192,6 +197,7 @@ impl Formula {
         match self.target {
             Target::HeadingPerMetre => motion.rotation += f * at.length,
             Target::SidewaysPerMetre => motion.sideways += f * at.length,
+            Target::TurnScale => motion.rotation *= f + 1.0,
             _ => motion.forward *= f + 1.0,
         }
     }

@@ -1,7 +1,9 @@
 //! A kick at the start of every leg.
 
 use super::caster_kick::{TRAIL, faded};
+use super::words::{deg, mm, side};
 use super::{About, ActsOn, Context, Effect};
+use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -37,6 +39,15 @@ impl Effect for LegKick {
         separated_by: "a heading in the middle of a leg and at its end; sides of another length",
         source: "first-order theory of side-periodic errors; 0.2 degree and 5 cm are assumed",
     };
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!(
+            "Whenever it drives off the robot turns {} to the {}, most of it within {}.",
+            deg(p[0]),
+            side(p[0]),
+            mm(p[1])
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         p[0] != 0.0

@@ -1,7 +1,8 @@
 //! A marker that is not over the axle's centre.
 
+use super::words::{either, mm, side};
 use super::{About, ActsOn, Effect, Sight};
-use crate::drive::Kinds;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -42,6 +43,16 @@ impl Effect for MarkerOffset {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!(
+            "The marker sits {} {} and {} to the {} of the middle of the axle.",
+            mm(p[0]),
+            either(p[0], "ahead", "behind"),
+            mm(p[1]),
+            side(p[1])
+        )
+    }
 
     fn seen<T: Real>(p: &[T], _at: &Sight, pose: &mut Pose2<T>) {
         let (sine, cosine) = pose.heading.sine_cosine();

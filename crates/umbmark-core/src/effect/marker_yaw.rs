@@ -1,7 +1,8 @@
 //! A marker that is mounted askew.
 
+use super::words::{deg, side};
 use super::{About, ActsOn, Effect, Sight};
-use crate::drive::Kinds;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -32,6 +33,10 @@ impl Effect for MarkerYaw {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!("The marker faces {} to the {} of where the robot does.", deg(p[0]), side(p[0]))
+    }
 
     fn seen<T: Real>(p: &[T], _at: &Sight, pose: &mut Pose2<T>) {
         pose.heading += p[0];

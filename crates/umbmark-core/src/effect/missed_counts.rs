@@ -1,7 +1,8 @@
 //! Encoders that are too slow for the wheel.
 
+use super::words::{either, percent, size};
 use super::{About, ActsOn, Context, Effect};
-use crate::drive::WheelTravel;
+use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -50,6 +51,16 @@ impl Effect for MissedCounts {
         separated_by: "ten turns of each wheel by hand or motor, off the floor, counted",
         source: "reports of users of small controllers; sizes are assumed",
     };
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        let more = |k: f64| format!("{} {}", percent(0.1 * k), either(k, "more", "less"));
+        format!(
+            "0.1 m/s above {} m/s the left wheel rolls {} than is counted, the right wheel {}.",
+            size(p[2]),
+            more(p[0]),
+            more(p[1])
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         p[0] != 0.0 || p[1] != 0.0

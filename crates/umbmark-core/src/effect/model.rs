@@ -182,6 +182,13 @@ impl Model {
         Ok(part)
     }
 
+    /// Takes over a part of another model, with its values.
+    pub fn adopt(&mut self, part: &Part) {
+        let own = self.place(part.effect.clone());
+        own.values.clone_from(&part.values);
+        own.free = part.free;
+    }
+
     /// The law that a name stands for in this model: that of a part, or one of the catalogue.
     fn law(&self, name: &str) -> Result<Law, ModelError> {
         let own = self.parts.iter().find(|part| part.effect.name() == name);
@@ -227,6 +234,14 @@ impl Model {
             part.values = part.effect.parameters().iter().map(|p| p.default.resolve(&self.robot)).collect();
         }
         rest
+    }
+
+    /// What an effect of the model means for the robot, in a sentence of its own; `None` where it is not in the model or says
+    /// nothing, as formulas do.
+    pub fn meaning(&self, effect: &str) -> Option<String> {
+        let part = self.parts.iter().find(|part| part.effect.name() == effect)?;
+        let said = (part.effect.entry()?.means)(&part.values, &self.robot);
+        (!said.is_empty()).then_some(said)
     }
 
     /// Whether some effect is a formula.

@@ -1,8 +1,9 @@
 //! The bumps of the extended UMBmark test.
 
 use super::bumps::{HEIGHT, PROFILE, WHEEL_RADIUS, lost_travel};
+use super::words::{deg, mm, size};
 use super::{About, ActsOn, Bump, Context, Effect, Stretch, TestKind};
-use crate::drive::{Kind, Kinds, Wheel, WheelTravel};
+use crate::drive::{Kind, Kinds, Robot, Wheel, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
 use crate::path::Direction;
@@ -53,6 +54,24 @@ impl Effect for PlacedBumps {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro).and(Kind::Clapper);
+
+    fn means(p: &[f64], robot: &Robot) -> String {
+        let (single, share) = (lost_travel(p[1], p[2], p[3]), p[4]);
+        let turned = |lost: f64| deg(lost / robot.drive.wheelbase());
+        if share > 0.0 {
+            return format!(
+                "On the first leg the inside wheel loses {} on each metre, which turns the robot by {}.",
+                mm(share),
+                turned(share)
+            );
+        }
+        format!(
+            "Each of {} bumps costs the inside wheel {}, which turns the robot by {}.",
+            size(p[0]),
+            mm(single),
+            turned(single)
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         p[4] != 0.0

@@ -1,8 +1,9 @@
 //! A reference whose clock runs slow.
 
 use super::reference_delay::go_back;
+use super::words::{either, size};
 use super::{About, ActsOn, Effect, Sight};
-use crate::drive::Kinds;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -33,6 +34,10 @@ impl Effect for ReferenceClockRate {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!("The clock of the reference {} {} ms in a minute.", either(p[0], "loses", "gains"), size(6e4 * p[0]))
+    }
 
     fn seen<T: Real>(p: &[T], at: &Sight, pose: &mut Pose2<T>) {
         go_back(p[0] * at.time, at, pose);

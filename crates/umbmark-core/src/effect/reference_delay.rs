@@ -1,7 +1,8 @@
 //! A reference whose clock is behind.
 
+use super::words::{either, mm, size};
 use super::{About, ActsOn, Effect, Sight};
-use crate::drive::Kinds;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -31,6 +32,16 @@ impl Effect for ReferenceDelay {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!(
+            "The reference shows where the robot {} {} ms {}: at 0.5 m/s that is {}.",
+            either(p[0], "was", "will be"),
+            size(1e3 * p[0]),
+            either(p[0], "before", "later"),
+            mm(0.5 * p[0])
+        )
+    }
 
     fn seen<T: Real>(p: &[T], at: &Sight, pose: &mut Pose2<T>) {
         go_back(p[0], at, pose);

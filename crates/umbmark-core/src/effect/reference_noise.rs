@@ -1,7 +1,8 @@
 //! Noise of the absolute measurement.
 
+use super::words::{deg, mm};
 use super::{About, ActsOn, Effect};
-use crate::drive::Kinds;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::Pose2;
 use crate::parameter::Parameter;
 use crate::random::Stream;
@@ -43,6 +44,10 @@ impl Effect for ReferenceNoise {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!("A measured position scatters by {} along each axis, a heading by {}.", mm(p[0]), deg(p[1]))
+    }
 
     fn measured(p: &[f64], stream: &mut Stream, pose: &mut Pose2) {
         if p[0] > 0.0 {

@@ -1,7 +1,8 @@
 //! E_s: the scale.
 
+use super::words::{either, mm};
 use super::{About, ActsOn, Context, Effect};
-use crate::drive::{Kind, Kinds, WheelTravel};
+use crate::drive::{Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -34,6 +35,11 @@ impl Effect for Scale {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Ackermann).and(Kind::Clapper);
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        let (off, word) = (p[0] - 1.0, either(p[0] - 1.0, "long", "short"));
+        format!("A metre by odometry is {} too {word} on the floor.", mm(off))
+    }
 
     fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= p[0];

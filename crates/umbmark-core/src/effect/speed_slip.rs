@@ -1,7 +1,8 @@
 //! Slip of both wheels that grows with their speed.
 
+use super::words::{either, percent};
 use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::WheelTravel;
+use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -26,6 +27,10 @@ impl Effect for SpeedSlip {
         source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
     };
 
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        creeps(p[0], "both wheels get")
+    }
+
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
@@ -38,6 +43,11 @@ impl Effect for SpeedSlip {
 
 pub(super) const CREEP: &str = "Rolling resistance grows with speed, and a tyre passes on force only by creeping: the wheel turns \
      a little more than it gets ahead.";
+
+/// What creep in proportion to speed means for the robot.
+pub(super) fn creeps(k: f64, who: &str) -> String {
+    format!("At 0.5 m/s {who} {} {} than counted.", percent(0.5 * k), either(k, "less far", "farther"))
+}
 
 pub(super) const PER_SPEED: Parameter = Parameter::size("s_per_m", "", "s/m", 0.015, (-1.0, 1.0), "");
 

@@ -1,8 +1,8 @@
 //! Slip of the right wheel that grows with its speed.
 
-use super::speed_slip::{CREEP, PER_SPEED, kept};
+use super::speed_slip::{CREEP, PER_SPEED, creeps, kept};
 use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::WheelTravel;
+use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -26,6 +26,10 @@ impl Effect for SpeedSlipRight {
         separated_by: "a long straight at two speeds: the curvature of E_d stays",
         source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
     };
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        creeps(p[0], "the right wheel gets")
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

@@ -1,7 +1,8 @@
 //! Misplacement at START.
 
+use super::words::{deg, either, mm, side};
 use super::{About, ActsOn, Effect};
-use crate::drive::Kinds;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 use crate::random::Stream;
@@ -55,6 +56,18 @@ impl Effect for StartPose {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!(
+            "The robot stands {} {} and {} to the {} of where its odometry begins, turned {} to the {}.",
+            mm(p[0]),
+            either(p[0], "ahead", "behind"),
+            mm(p[1]),
+            side(p[1]),
+            deg(p[2]),
+            side(p[2])
+        )
+    }
 
     fn start<T: Real>(p: &[T]) -> Pose2<T> {
         Pose2::new(p[0], p[1], p[2])

@@ -236,6 +236,7 @@ fn an_effect_says_whether_it_depends_on_where_and_how_the_robot_drives() {
         turn_rate: 0.9,
         wheel_speed: [0.05, 0.35],
         speed_change: [0.01, 0.02],
+        turn_rate_change: 0.1,
         wheel_angle: [2.0, 3.0],
         wheel_rotation: [0.1, 0.2],
         reversed: [1.0, -1.0],
@@ -277,4 +278,30 @@ fn an_effect_varies_from_the_first_of_its_sizes_that_is_not_zero_and_not_before(
             assert!(one.varies(), "{} {}", entry.about.name, p.name);
         }
     }
+}
+
+#[test]
+fn an_effect_says_what_its_numbers_mean_in_a_sentence_that_changes_with_their_size() {
+    let robot = Robot::labmate();
+    for entry in CATALOGUE {
+        let said = |model: Model| model.meaning(entry.about.name).unwrap();
+        let usual = said(alone(entry, Parameter::usual));
+        assert!(usual.ends_with('.') && usual.contains(|c: char| c.is_ascii_digit()), "{}: {usual}", entry.about.name);
+        assert!(!usual.contains("NaN") && !usual.contains("inf") && !usual.contains("  "), "{usual}");
+        let sized = |p: &Parameter, robot: &Robot| {
+            let rest = p.default.resolve(robot);
+            if p.choices.is_empty() { rest + 2.0 * (p.usual(robot) - rest) + 1e-3 } else { rest }
+        };
+        assert_ne!(said(alone(entry, sized)), usual);
+    }
+    let mut model = Model::new(&robot);
+    model.set("wheel_eccentricity_left", "sine_m", -9e-4).unwrap();
+    model.set("caster_kick", "kick_rad", 0.007).unwrap();
+    model.set("wheel_diameter_ratio", "e_d", 1.00121).unwrap();
+    let said = |effect: &str| model.meaning(effect).unwrap();
+    assert!(said("wheel_eccentricity_left").starts_with("The left wheel runs out by 0.900 mm"));
+    assert!(said("caster_kick").starts_with("After each turn the casters push the robot 0.401 deg further round"));
+    // 2 · 0.00121/2.00121 over 0.34 m.
+    assert!(said("wheel_diameter_ratio").ends_with("each metre ahead turns the robot by 0.204 deg to the left."));
+    assert_eq!(model.meaning("scale"), None);
 }

@@ -1,6 +1,8 @@
 //! Scrub in turns on the spot.
 
+use super::words::{deg, either};
 use super::{About, ActsOn, Context, Effect, at_work};
+use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -29,6 +31,14 @@ impl Effect for TurnSlip {
         separated_by: "another surface or load; wide arcs beside spins",
         source: "Borenstein & Feng (1995), section 2 (up to 1 %); factors 1.5 to 1.9 that users set for skid-steer robots",
     };
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!(
+            "90 degrees on the spot by odometry come out {} too {}.",
+            deg(std::f64::consts::FRAC_PI_2 * p[0]),
+            either(p[0], "small", "large")
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

@@ -1,6 +1,8 @@
 //! Slip that grows with the rate of turn.
 
+use super::words::{deg, either};
 use super::{About, ActsOn, Context, Effect, at_work};
+use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -27,6 +29,14 @@ impl Effect for TurnSlipRate {
         separated_by: "spins at two rates of turn",
         source: "linear creep of a rolling tyre; 0.8 % per rad/s is assumed",
     };
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!(
+            "At 1 rad/s a turn of 90 degrees by odometry comes out {} too {}, and in proportion at other rates.",
+            deg(std::f64::consts::FRAC_PI_2 * p[0]),
+            either(p[0], "small", "large")
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

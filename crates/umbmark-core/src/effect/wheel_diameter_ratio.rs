@@ -1,7 +1,8 @@
 //! E_d: unequal wheel diameters.
 
+use super::words::{deg, either, mm, side};
 use super::{About, ActsOn, Context, Effect};
-use crate::drive::{Kind, Kinds, WheelTravel};
+use crate::drive::{Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -41,6 +42,18 @@ impl Effect for WheelDiameterRatio {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Clapper);
+
+    fn means(p: &[f64], robot: &Robot) -> String {
+        let ratio = 2.0 * (p[0] - 1.0) / (p[0] + 1.0);
+        let mean = 0.5 * (robot.drive.wheel_diameter_left() + robot.drive.wheel_diameter_right());
+        let (larger, turned) = (either(ratio, "right", "left"), ratio / robot.drive.wheelbase());
+        format!(
+            "The {larger} wheel is {} larger in diameter than the other: each metre ahead turns the robot by {} to the {}.",
+            mm(ratio * mean),
+            deg(turned),
+            side(turned)
+        )
+    }
 
     fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
         let left = (p[0] + 1.0).recip() * 2.0;

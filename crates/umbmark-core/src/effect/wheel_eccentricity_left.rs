@@ -1,7 +1,8 @@
 //! Run-out of the left wheel.
 
+use super::words::{deg, mm};
 use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::WheelTravel;
+use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -35,6 +36,10 @@ impl Effect for WheelEccentricityLeft {
         source: "geometry of an off-centre wheel; 0.3 mm is assumed",
     };
 
+    fn means(p: &[f64], robot: &Robot) -> String {
+        run_out(p, robot, "left")
+    }
+
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
@@ -46,6 +51,16 @@ impl Effect for WheelEccentricityLeft {
 
 pub(super) const RUN_OUT: &str = "A wheel bored or mounted e off its centre has an effective radius that swings by e within each \
      revolution: it rolls ahead of its count on one half and falls behind on the other.";
+
+/// What run-out of a wheel means for the robot.
+pub(super) fn run_out(p: &[f64], robot: &Robot, wheel: &str) -> String {
+    let eccentricity = libm::hypot(p[0], p[1]);
+    format!(
+        "The {wheel} wheel runs out by {}: within each of its turns the heading swings by {} either way.",
+        mm(eccentricity),
+        deg(eccentricity / robot.drive.wheelbase())
+    )
+}
 
 pub(super) const COSINE: Parameter = Parameter::size("cosine_m", "", "m", 3e-4, (-0.1, 0.1), "");
 

@@ -1,7 +1,8 @@
 //! Random slip and unevenness, wheel by wheel.
 
+use super::words::{deg, mm};
 use super::{About, ActsOn, Effect, WheelVariance};
-use crate::drive::{Kinds, WheelTravel};
+use crate::drive::{Kinds, Robot, WheelTravel};
 use crate::parameter::{DefaultValue, Parameter};
 
 /// White noise on each wheel's travel over ground.
@@ -33,6 +34,15 @@ impl Effect for WheelNoise {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    fn means(p: &[f64], robot: &Robot) -> String {
+        let scattered = p[0] * libm::sqrt(10.0);
+        format!(
+            "After 10 m the travel of each wheel has scattered by {}, the heading by {} (one standard deviation).",
+            mm(scattered),
+            deg(scattered * std::f64::consts::SQRT_2 / robot.drive.wheelbase())
+        )
+    }
 
     fn diffusion(p: &[f64], travel: &WheelTravel) -> WheelVariance {
         let per_metre = p[0] * p[0];

@@ -1,7 +1,8 @@
 //! E_b: the effective wheelbase.
 
+use super::words::{deg, mm};
 use super::{About, ActsOn, Context, Effect};
-use crate::drive::{Kind, Kinds};
+use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -34,6 +35,16 @@ impl Effect for Wheelbase {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Clapper);
+
+    fn means(p: &[f64], robot: &Robot) -> String {
+        let b = robot.drive.wheelbase();
+        format!(
+            "The robot turns as if its wheels stood {} apart, not {}: 90 degrees by its odometry are {}.",
+            mm(p[0] * b),
+            mm(b),
+            deg(std::f64::consts::FRAC_PI_2 / p[0])
+        )
+    }
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation /= p[0];

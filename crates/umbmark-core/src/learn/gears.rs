@@ -1,6 +1,6 @@
 //! Calibration of any drive: its first effects fitted, and the robot that follows.
 
-use super::fit;
+use super::{Fit, fit};
 use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, ReturnError};
 use crate::diagnose::{DiagnoseError, Estimate, Identifiability, first_model, identifiability};
@@ -45,7 +45,7 @@ pub enum GearError {
 pub fn calibrate_gears(data: &Dataset) -> Result<GearCalibration, GearError> {
     let robot = data.robot.as_ref().ok_or(DiagnoseError::Evidence(CalibrateError::NoRobot))?;
     let asked = first_model(data)?;
-    let (model, estimates) = fit(data, &asked)?;
+    let Fit { model, estimates, .. } = fit(data, &asked)?;
     let shown = |effect: &str| estimates.iter().any(|e| e.effect == effect);
     let first = robot.drive.kind().first_effects();
     let mut all = model.clone();

@@ -38,7 +38,7 @@ fn held_out(data: &Dataset, effects: &[&'static str]) -> Error {
     let ends = Ends::new(data).unwrap();
     let mut story = Story::new(&ends, ends.nominal()).unwrap();
     for effect in ["wheel_diameter_ratio", "wheelbase"].iter().chain(effects) {
-        story.add(effect, vec![effect], None).unwrap();
+        story.add(&free_part(&ends, effect).unwrap()).unwrap();
     }
     story.last().held_out
 }
@@ -116,16 +116,17 @@ fn a_parameter_that_does_not_show_keeps_its_value() {
     let mut model = base_model(&Robot::labmate()).unwrap();
     model.set("scale", "e_s", 1.003).unwrap();
     model.add("scale").unwrap().free = true;
-    let (fitted, estimates) = fit(&data, &model).unwrap();
+    let Fit { model: fitted, estimates, .. } = fit(&data, &model).unwrap();
     assert_eq!(estimates.iter().map(|e| e.parameter).collect::<Vec<_>>(), ["e_d", "e_b"]);
     assert_eq!(fitted.get("scale", "e_s"), Some(1.003));
     // The same ratios as `calibrate` finds.
-    let (plain, _) = fit(&data, &base_model(&Robot::labmate()).unwrap()).unwrap();
+    let plain = fit(&data, &base_model(&Robot::labmate()).unwrap()).unwrap().model;
     let calibration = crate::calibrate::calibrate(&data, &crate::calibrate::Options::default()).unwrap();
     let exact = calibration.estimate(crate::calibrate::Method::Exact).unwrap();
     assert!((plain.get("wheelbase", "e_b").unwrap() - exact.correction.e_b).abs() < 1e-9);
     let error = exact.std_error(crate::calibrate::Ratio::Wheelbase).unwrap();
     assert!(
-        (fit(&data, &base_model(&Robot::labmate()).unwrap()).unwrap().1[1].standard_error / error - 1.0).abs() < 1e-6
+        (fit(&data, &base_model(&Robot::labmate()).unwrap()).unwrap().estimates[1].standard_error / error - 1.0).abs()
+            < 1e-6
     );
 }

@@ -1,8 +1,9 @@
 //! The free parameters of a model, fitted to whole tracks.
 
 use super::noise::Noise;
-use super::observed::Observed;
-use crate::effect::{Model, ModelError};
+use super::observed::{Observed, ObservedRun};
+use super::outliers::Outlier;
+use crate::effect::{Chain, Model, ModelError};
 use crate::fit::{Fit, Options, Problem, least_squares};
 use crate::geometry::{Dual, Pose2};
 use nalgebra::{DMatrix, DVector};
@@ -24,24 +25,32 @@ pub struct Fitted {
     pub free: Vec<usize>,
     /// Their covariance; `None` where the data leaves a combination of them open.
     pub covariance: Option<DMatrix<f64>>,
+    /// Where runs were disturbed; what happened there is left out.
+    pub outliers: Vec<Outlier>,
 }
 
+/// Outliers are looked for so many times.
+const ROUNDS: usize = 3;
 /// Stops where a step changes no parameter by more than a millionth.
 const STOP: Options = Options { iterations: 12, step_tolerance: 1e-7, decrease_tolerance: 1e-9 };
 
 impl Observed {
     /// Fits all free values of a model but those `held`, and the noise.
     pub fn fit(&self, model: &Model, from: &Noise, held: &[usize]) -> Result<Fitted, ModelError> {
-        let mut fitted = self.unfitted(model, from);
+        let mut fitted = self.whole().unfitted(model, from);
         fitted.free.retain(|value| !held.contains(value));
-        for _ in 0..2 {
-            fitted.refit()?;
-            let mut columns = self.columns(&fitted.model, &fitted.free);
-            let chain = fitted.model.chain();
-            for (run, columns) in self.runs.iter().zip(&mut columns) {
-                columns.push(run.residuals(&chain));
+        fitted.settle()?;
+        // An outlier may hide a smaller one, so it is looked for again.
+        for _ in 0..ROUNDS {
+            let found = fitted.beyond_noise();
+            if found.is_empty() {
+                break;
             }
-            fitted.noise = Noise::estimate(&fitted.observed, &chain, &columns, &fitted.noise);
+            for ((run, block), deviations) in found {
+                fitted.outliers.push(fitted.outlier((run, block), f64::from_bits(deviations)));
+                fitted.observed.runs[run].blocks[block].afresh = true;
+            }
+            fitted.settle()?;
         }
         fitted.covariance = fitted.refit()?.covariance();
         Ok(fitted)
@@ -50,7 +59,14 @@ impl Observed {
     /// A model as it is, ready to be fitted.
     pub fn unfitted(&self, model: &Model, noise: &Noise) -> Fitted {
         let free = self.free_values(model);
-        Fitted { observed: self.along(model), model: model.clone(), noise: *noise, free, covariance: None }
+        Fitted {
+            observed: self.along(model),
+            model: model.clone(),
+            noise: *noise,
+            free,
+            covariance: None,
+            outliers: Vec::new(),
+        }
     }
 
     /// Values of the free parts of a model that move some observed pose.
@@ -64,20 +80,39 @@ impl Observed {
 
     /// Derivatives of the predicted poses by some of the values of a model: run by run, one column a value.
     pub fn columns(&self, model: &Model, values: &[usize]) -> Vec<Vec<Column>> {
-        let chains: Vec<_> = values
-            .iter()
-            .map(|seed| {
-                let seeded = model.values().enumerate();
-                let duals: Vec<Dual> = seeded.map(|(i, v)| Dual::new(v, f64::from(u8::from(i == *seed)))).collect();
-                model.chain_with(&duals)
-            })
-            .collect();
-        let derivative = |pose: &Pose2<Dual>| Pose2::new(pose.x.eps, pose.y.eps, pose.heading.eps);
-        self.runs.par_iter().map(|run| chains.iter().map(|chain| run.column(chain, derivative)).collect()).collect()
+        let chains: Vec<_> = values.iter().map(|value| seeded(model, *value)).collect();
+        self.runs.par_iter().map(|run| chains.iter().map(|chain| run.derivatives(chain)).collect()).collect()
+    }
+}
+
+/// The chain of a model that carries derivatives by one of its values.
+pub(crate) fn seeded(model: &Model, value: usize) -> Chain<Dual> {
+    let seed = |(i, v)| Dual::new(v, f64::from(u8::from(i == value)));
+    model.chain_with(&model.values().enumerate().map(seed).collect::<Vec<_>>())
+}
+
+impl ObservedRun {
+    /// Derivatives of the predicted poses, block by block.
+    pub(crate) fn derivatives(&self, chain: &Chain<Dual>) -> Column {
+        self.column(chain, |pose| Pose2::new(pose.x.eps, pose.y.eps, pose.heading.eps))
     }
 }
 
 impl Fitted {
+    /// Fits values and noise in turn.
+    fn settle(&mut self) -> Result<(), ModelError> {
+        for _ in 0..2 {
+            self.refit()?;
+            let mut columns = self.observed.columns(&self.model, &self.free);
+            let chain = self.model.chain();
+            for (run, columns) in self.observed.runs.iter().zip(&mut columns) {
+                columns.push(run.residuals(&chain));
+            }
+            self.noise = Noise::estimate(&self.observed, &chain, &columns, &self.noise);
+        }
+        Ok(())
+    }
+
     /// Fits the free values under the noise as it is.
     pub fn refit(&mut self) -> Result<Fit, ModelError> {
         let start: Vec<f64> = self.model.values().collect();

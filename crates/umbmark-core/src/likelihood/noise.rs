@@ -51,6 +51,9 @@ impl Default for Noise {
 
 /// No size falls below this share of its usual value, or rises above its inverse.
 const RANGE: f64 = 1e-2;
+/// Edge of the first simplex, in logarithms of sizes: from usual sizes, and from sizes that were estimated before.
+const FIRST_EDGE: f64 = 0.7;
+const LATER_EDGE: f64 = 0.2;
 /// Evaluations of the likelihood.
 const EVALUATIONS: usize = 110;
 
@@ -99,7 +102,8 @@ impl Noise {
             let pull: f64 = x.iter().map(|v| 0.02 * v * v).sum();
             sizes(x).deviance(&observed.runs, columns) + pull
         };
-        sizes(&simplex::minimise(first, 0.7, EVALUATIONS, cost))
+        let edge = if *from == usual { FIRST_EDGE } else { LATER_EDGE };
+        sizes(&simplex::minimise(first, edge, EVALUATIONS, cost))
     }
 
     /// -2 log of the restricted likelihood, up to a constant. The last column of each run is its residuals.
@@ -162,10 +166,31 @@ impl Noise {
     }
 }
 
+/// Rows that are taken at once: the sums are read and written once for all of them.
+const TOGETHER: usize = 8;
+
 /// XᵀX of a matrix stored row by row.
 pub(crate) fn gram(values: &[f64], columns: usize) -> DMatrix<f64> {
     let mut sum = DMatrix::zeros(columns, columns);
-    for row in values.chunks_exact(columns.max(1)) {
+    let columns = columns.max(1);
+    let whole = values.chunks_exact(TOGETHER * columns);
+    let rest = whole.remainder();
+    for rows in whole {
+        let rows: [&[f64]; TOGETHER] = std::array::from_fn(|k| &rows[k * columns..(k + 1) * columns]);
+        for (j, mut own) in sum.column_iter_mut().enumerate() {
+            let own = &mut own.as_mut_slice()[..=j];
+            let weights = rows.map(|row| row[j]);
+            let rows = rows.map(|row| &row[..=j]);
+            for i in 0..=j {
+                let mut added = 0.0;
+                for k in 0..TOGETHER {
+                    added += weights[k] * rows[k][i];
+                }
+                own[i] += added;
+            }
+        }
+    }
+    for row in rest.chunks_exact(columns) {
         for j in 0..columns {
             for i in 0..=j {
                 sum[(i, j)] += row[i] * row[j];

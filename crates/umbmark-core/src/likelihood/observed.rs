@@ -4,7 +4,7 @@ use crate::dataset::{Dataset, Run};
 use crate::drive::Robot;
 use crate::effect::{Chain, Evaluate, Model, Place, TestKind};
 use crate::geometry::{Pose2, wrap};
-use crate::path::Direction;
+use crate::path::{Direction, Path};
 use crate::replay::{ReplayError, Track};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -46,6 +46,9 @@ pub struct Block {
     pub growth: Growth,
     /// Which quarter of the way it lies in, from 0.
     pub unit: usize,
+    /// Whether the robot is taken to start anew here, because what happened before it was no noise; see
+    /// [`Outlier`](super::Outlier).
+    pub afresh: bool,
 }
 
 /// A run, ready to be predicted.
@@ -72,6 +75,8 @@ pub struct Observed {
     pub robot: Robot,
     /// The runs, in the order of the dataset.
     pub runs: Vec<ObservedRun>,
+    /// The path that all of them were to follow, where it is known.
+    pub path: Option<Path>,
 }
 
 impl Observed {
@@ -86,12 +91,19 @@ impl Observed {
                 runs.push(observed);
             }
         }
-        Ok(Observed { robot: robot.clone(), runs })
+        Ok(Observed { robot: robot.clone(), runs, path: data.path.clone() })
     }
 
     /// Believed travel of the runs.
     pub fn tracks(&self) -> impl Iterator<Item = &Track> {
         self.runs.iter().map(|run| run.track.as_ref())
+    }
+
+    /// The same runs, none of which starts anew on the way.
+    pub(super) fn whole(&self) -> Observed {
+        let mut observed = self.clone();
+        observed.runs.iter_mut().flat_map(|run| &mut run.blocks).for_each(|block| block.afresh = false);
+        observed
     }
 
     /// The same runs, with the noise growing along the poses that `model` predicts.
@@ -118,6 +130,17 @@ impl ObservedRun {
         let mut observed = ObservedRun { name, direction, track, seen, blocks, start_seen };
         observed.lay_along(&chain);
         Ok((observed.blocks.len() >= 3).then_some(observed))
+    }
+
+    /// A run yet to be driven, as a model predicts it; `headings` says whether they will be measured.
+    pub fn planned(track: Track, direction: Direction, headings: bool, model: &Model) -> ObservedRun {
+        let seen: Arc<[_]> = track.sights().iter().map(|_| (0.0, 0.0, headings.then_some(0.0))).collect();
+        let chain = model.chain();
+        let blocks = blocks(&track, &seen, &chain);
+        let (name, direction, track) = (String::new(), Some(direction), Arc::new(track));
+        let mut planned = ObservedRun { name, direction, track, seen, blocks, start_seen: true };
+        planned.lay_along(&chain);
+        planned
     }
 
     /// Places the blocks, and the growth of the error between them, along the poses that a model predicts.
@@ -217,7 +240,15 @@ fn blocks(track: &Track, seen: &[(f64, f64, Option<f64>)], chain: &Chain<f64>) -
         let count = track.seen_after()[first..].iter().take_while(|made| together(made)).count().max(1);
         let unit = (UNITS * walk.way[begins] / whole.max(f64::MIN_POSITIVE)).min(UNITS - 1.0) as usize;
         let headings = seen[first..first + count].iter().filter(|s| s.2.is_some()).count();
-        blocks.push(Block { first, count, headings, place: Pose2::IDENTITY, growth: Growth::default(), unit });
+        blocks.push(Block {
+            first,
+            count,
+            headings,
+            place: Pose2::IDENTITY,
+            growth: Growth::default(),
+            unit,
+            afresh: false,
+        });
         first += count;
     }
     blocks

@@ -2,7 +2,7 @@
 
 use super::noise::Noise;
 use super::observed::{Block, ObservedRun};
-use nalgebra::{Matrix3, RowVector3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 /// Standard deviation of a START that is not taken on trust \[m, rad\]: beyond all misplacement, so that it costs one pose.
 const FREE_START: f64 = 1.0;
@@ -24,24 +24,6 @@ pub struct Whitened {
 }
 
 impl Whitened {
-    /// The rows of one block: L⁻¹ v of every column.
-    fn push(&mut self, lower: &Matrix3<f64>, innovations: &[Vector3<f64>], rows: usize, block: usize) {
-        let first = self.values.len();
-        self.values.resize(first + rows * self.columns, 0.0);
-        for (c, v) in innovations.iter().enumerate() {
-            let a = v[0] / lower[(0, 0)];
-            let b = (v[1] - lower[(1, 0)] * a) / lower[(1, 1)];
-            let white = [a, b, (v[2] - lower[(2, 0)] * a - lower[(2, 1)] * b) / lower[(2, 2)]];
-            for (r, value) in white.into_iter().take(rows).enumerate() {
-                self.values[first + r * self.columns + c] = value;
-            }
-        }
-        for r in 0..rows {
-            self.block.push(block);
-            self.log_scale += libm::log(lower[(r, r)]);
-        }
-    }
-
     /// The rows, one after the other.
     pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
         self.values.chunks_exact(self.columns.max(1))
@@ -51,7 +33,7 @@ impl Whitened {
 impl Noise {
     /// Whitens `columns`, each with one (x, y, heading) a block, by the innovations of the filter
     ///
-    /// P ← P + Q_b,  S = H P Hᵀ + R,  v = L⁻¹ (y - H s) with L Lᵀ = S,  s ← s + P Hᵀ S⁻¹ (y - H s),
+    /// P ← P + Q_b,  S = H P Hᵀ + R = L Lᵀ,  v = L⁻¹ (y - H s),  W = L⁻¹ H P,  s ← s + Wᵀ v,  P ← P - Wᵀ W,
     ///
     /// in the error coordinates of [`Growth`](super::Growth). The same gains serve all columns, so linear relations between
     /// columns are kept.
@@ -62,23 +44,26 @@ impl Noise {
             block: Vec::with_capacity(3 * run.blocks.len()),
             log_scale: 0.0,
         };
-        let mut states = vec![Vector3::zeros(); columns.len()];
-        let mut innovations = vec![Vector3::zeros(); columns.len()];
+        let mut states = vec![[0.0; 3]; columns.len()];
         let mut p = self.start(run.start_seen);
         for (index, block) in run.blocks.iter().enumerate() {
             p += self.growth(&block.growth);
-            let h = observation(block);
-            for (column, (state, innovation)) in columns.iter().zip(states.iter().zip(&mut innovations)) {
-                *innovation = Vector3::from(column[index]) - h * state;
+            if block.afresh {
+                p += self.start(true);
             }
-            let Some(factor) = (h * p * h.transpose() + self.measurement(block)).cholesky() else { continue };
-            let gain = factor.solve(&(h * p)).transpose();
-            out.push(&factor.l(), &innovations, if block.headings > 0 { 3 } else { 2 }, index);
-            for (state, innovation) in states.iter_mut().zip(&innovations) {
-                *state += gain * innovation;
+            let Some(stage) = Stage::new(block, &p, &self.measurement(block)) else { continue };
+            let rows = if block.headings > 0 { 3 } else { 2 };
+            let first = out.values.len();
+            out.values.resize(first + rows * columns.len(), 0.0);
+            for (c, (column, state)) in columns.iter().zip(&mut states).enumerate() {
+                let white = stage.whitened(&column[index], state);
+                for (r, value) in white.iter().take(rows).enumerate() {
+                    out.values[first + r * columns.len() + c] = *value;
+                }
             }
-            p -= gain * h * p;
-            p = 0.5 * (p + p.transpose());
+            out.block.extend(std::iter::repeat_n(index, rows));
+            out.log_scale += libm::log(stage.diagonal[..rows].iter().product());
+            p -= stage.taken();
         }
         out
     }
@@ -100,13 +85,62 @@ impl Noise {
     }
 }
 
-/// From error coordinates to the error of the pose at a block: δp = q + θ J p.
-fn observation(block: &Block) -> Matrix3<f64> {
-    Matrix3::from_rows(&[
-        RowVector3::new(1.0, 0.0, -block.place.y),
-        RowVector3::new(0.0, 1.0, block.place.x),
-        RowVector3::new(0.0, 0.0, 1.0),
-    ])
+/// One step of the filter, by hand: H is three ones and a place.
+struct Stage {
+    /// The block's place.
+    x: f64,
+    y: f64,
+    /// The diagonal of L, and what is below it.
+    diagonal: [f64; 3],
+    below: [f64; 3],
+    /// W, row by row.
+    w: [[f64; 3]; 3],
+}
+
+impl Stage {
+    /// `None` where S is no covariance.
+    fn new(block: &Block, p: &Matrix3<f64>, measurement: &Matrix3<f64>) -> Option<Stage> {
+        let (x, y) = (block.place.x, block.place.y);
+        let row = |k: usize| [p[(k, 0)], p[(k, 1)], p[(k, 2)]];
+        let with = |a: [f64; 3], t: f64, b: [f64; 3]| [a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]];
+        let hp = [with(row(0), -y, row(2)), with(row(1), x, row(2)), row(2)];
+        let s = |i: usize| [hp[i][0] - y * hp[i][2], hp[i][1] + x * hp[i][2], hp[i][2]];
+        let (first, second, third) = (s(0), s(1), s(2));
+        let root = |square: f64| (square > 0.0).then(|| square.sqrt());
+        let d0 = root(first[0] + measurement[(0, 0)])?;
+        let (l10, l20) = (second[0] / d0, third[0] / d0);
+        let d1 = root(second[1] + measurement[(1, 1)] - l10 * l10)?;
+        let l21 = (third[1] - l20 * l10) / d1;
+        let d2 = root(third[2] + measurement[(2, 2)] - l20 * l20 - l21 * l21)?;
+        let mut stage = Stage { x, y, diagonal: [d0, d1, d2], below: [l10, l20, l21], w: [[0.0; 3]; 3] };
+        for k in 0..3 {
+            let column = stage.solved([hp[0][k], hp[1][k], hp[2][k]]);
+            (0..3).for_each(|r| stage.w[r][k] = column[r]);
+        }
+        Some(stage)
+    }
+
+    /// L⁻¹ v.
+    fn solved(&self, v: [f64; 3]) -> [f64; 3] {
+        let a = v[0] / self.diagonal[0];
+        let b = (v[1] - self.below[0] * a) / self.diagonal[1];
+        [a, b, (v[2] - self.below[1] * a - self.below[2] * b) / self.diagonal[2]]
+    }
+
+    /// L⁻¹ (y - H s); the state takes in what is new.
+    fn whitened(&self, column: &[f64; 3], state: &mut [f64; 3]) -> [f64; 3] {
+        let [s0, s1, s2] = *state;
+        let white = self.solved([column[0] - s0 + self.y * s2, column[1] - s1 - self.x * s2, column[2] - s2]);
+        for (k, value) in state.iter_mut().enumerate() {
+            *value += self.w[0][k] * white[0] + self.w[1][k] * white[1] + self.w[2][k] * white[2];
+        }
+        white
+    }
+
+    /// Wᵀ W.
+    fn taken(&self) -> Matrix3<f64> {
+        Matrix3::from_fn(|i, j| self.w.iter().map(|row| row[i] * row[j]).sum())
+    }
 }
 
 #[cfg(test)]
@@ -136,7 +170,15 @@ mod tests {
                     *sum = [g[0] * g[0], g[1] * g[0], g[1] * g[1], g[0], g[1], 1.0].map(|v| i as f64 * v);
                 }
                 let headings = if i == 2 { 0 } else { 2 };
-                Block { first: 2 * i, count: 2, headings, place: Pose2::new(*x, *y, 0.0), growth, unit: 0 }
+                Block {
+                    first: 2 * i,
+                    count: 2,
+                    headings,
+                    place: Pose2::new(*x, *y, 0.0),
+                    growth,
+                    unit: 0,
+                    afresh: false,
+                }
             })
             .collect();
         ObservedRun { name: "a few".into(), direction: None, track: track.into(), seen: [].into(), blocks, start_seen }
@@ -144,6 +186,11 @@ mod tests {
 
     fn noise() -> Noise {
         Noise { heading_per_metre: 0.02, heading_per_radian: 0.01, forward_per_metre: 0.005, ..Noise::default() }
+    }
+
+    /// From error coordinates to the error of the pose at a block: δp = q + θ J p.
+    fn observation(block: &Block) -> Matrix3<f64> {
+        Matrix3::new(1.0, 0.0, -block.place.y, 0.0, 1.0, block.place.x, 0.0, 0.0, 1.0)
     }
 
     /// The covariance of all residuals by its definition.

@@ -102,7 +102,7 @@ mod tests {
         let found = Watch::nobody(|watch| local_derivatives(&tests, &inputs, 2, watch)).unwrap();
         let model = &tests.study().model;
         let track = Track::from_path(&Path::umbmark(), Direction::Cw, model.robot());
-        for input in 0..3 {
+        for (input, (quantity, _)) in varied.iter().enumerate() {
             let seed = |(i, value): (usize, f64)| Dual::new(value, f64::from(u8::from(i == input)));
             let duals: Vec<Dual> = model.values().enumerate().map(seed).collect();
             let end = track.end(&model.chain_with(&duals));
@@ -116,7 +116,11 @@ mod tests {
             for (metric, exact) in exact {
                 let output = tests.metrics().iter().position(|m| *m == metric).unwrap();
                 let slope = found[output][input].per_unit.value;
-                assert!((slope - exact).abs() < 2e-3 * exact.abs().max(1.0), "{metric:?} {input}: {slope} {exact}");
+                assert!(
+                    (slope - exact).abs() < 2e-3 * exact.abs().max(1.0),
+                    "{metric:?} {}: {slope} {exact}",
+                    quantity.key()
+                );
             }
         }
     }

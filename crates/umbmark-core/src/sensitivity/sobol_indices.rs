@@ -310,7 +310,7 @@ mod tests {
         assert_near(&output.total, &total, 4e-3);
         let second: Vec<Estimate> = output.second.iter().map(|(_, estimate)| *estimate).collect();
         assert_near(&second, &[0.0, pair, 0.0], 4e-3);
-        assert!((output.mean.value - 3.5).abs() < 1e-3 && (output.std_dev.value - 13.844_588_f64.sqrt()).abs() < 2e-3);
+        assert_near(&[output.mean, output.std_dev], &[3.5, 13.844_588_f64.sqrt()], 0.01);
     }
 
     #[test]

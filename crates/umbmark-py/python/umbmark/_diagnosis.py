@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import msgspec
 
@@ -273,6 +273,7 @@ class Suspect(Record, frozen=True):
     estimate: dict[str, float | None]
     standard_error: dict[str, float | None]
     expected_drop: float
+    meaning: str | None
 
 
 class DetectableSize(Record, frozen=True):
@@ -316,12 +317,57 @@ class Identifiability(Record, frozen=True):
     hidden: tuple[Hidden, ...]
 
 
+class CurvePoint(Record, frozen=True):
+    """What is added at a place, with its 95 % band."""
+
+    at: float
+    value: float
+    low: float
+    high: float
+
+
+class Curve(Record, frozen=True):
+    """What is added to the motion, by what it depends on."""
+
+    at_unit: str
+    unit: str
+    points: tuple[CurvePoint, ...]
+
+
+class Nearest(Record, frozen=True):
+    """The effect of the catalogue that explains the largest share of it."""
+
+    effect: str
+    share: float
+
+
+class Suggestion(Record, frozen=True):
+    """A formula to try, and the share that it explains."""
+
+    effect: tuple[dict[str, Any], ...]
+    share: float
+    toml: str
+
+
 class Unlisted(Record, frozen=True):
     """What is missing and not in the catalogue."""
 
     acts_on: str
     depends_on: str
     p_adjusted: float
+    curve: Curve
+    nearest: Nearest | None
+    suggestion: Suggestion | None
+
+
+class Outlier(Record, frozen=True):
+    """A jump of a track that is beyond noise."""
+
+    run: str
+    time_s: float
+    moved_m: float
+    turned_rad: float | None
+    standard_deviations: float | None
 
 
 class Diagnosis(Result, frozen=True):
@@ -359,6 +405,8 @@ class Diagnosis(Result, frozen=True):
     identifiability: Identifiability
     unlisted: Unlisted | None
     model: Model
+    meaning: dict[str, str]
+    outliers: tuple[Outlier, ...]
     remarks: tuple[str, ...]
     size: float
     draws: int
@@ -404,6 +452,8 @@ class Fitted(Result, frozen=True):
 
     fitted: tuple[Estimate, ...]
     not_shown: tuple[str, ...]
+    meaning: dict[str, str]
+    outliers: tuple[Outlier, ...]
     model: Model
     level: float
     version: str
@@ -451,8 +501,11 @@ class Learnt(Result, frozen=True):
     steps: tuple[Step, ...]
     verdict: str
     unlisted: Unlisted | None
+    next_experiments: tuple[Experiment, ...]
     model: Model
     fitted: tuple[Estimate, ...]
+    meaning: dict[str, str]
+    outliers: tuple[Outlier, ...]
     remarks: tuple[str, ...]
     size: float
     draws: int

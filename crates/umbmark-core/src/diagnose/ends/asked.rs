@@ -324,6 +324,7 @@ fn moves_means(entry: &'static Entry, model: &Model) -> bool {
         turn_rate: 0.4,
         wheel_speed: [0.2, 0.4],
         speed_change: [0.02, 0.03],
+        turn_rate_change: 0.02,
         wheel_angle: [1.0, 2.0],
         wheel_rotation: [0.3, 0.4],
         reversed: [1.0, -1.0],

@@ -37,6 +37,7 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
         circle: circle(ends, &fitted, 1.0 - options.size),
         identifiability: of_ends(ends, &fitted.model)?,
         dependence: None,
+        outliers: Vec::new(),
         remarks: Vec::new(),
     };
     diagnosis.remarks.extend(remarks_on_data(ends, &fitted));

@@ -1,6 +1,6 @@
 //! Errors as people see them: metres and degrees along the way, in the runs at hand and in runs left out.
 
-use super::system::{Projected, System, Unit};
+use super::system::{Projected, System};
 use crate::likelihood::{Column, Observed, ObservedRun, gram};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -17,15 +17,11 @@ pub struct Misses {
 }
 
 impl Misses {
-    /// By what share position or heading errors are smaller than `before`, whichever falls more.
-    pub fn gain_along(&self, before: &Misses) -> f64 {
-        let heading = self.heading.zip(before.heading).map_or(f64::NEG_INFINITY, |(now, then)| fall(now, then));
-        fall(self.position, before.position).max(heading)
-    }
-
-    /// The same, or that of what is new from pose to pose: what an effect does within centimetres hardly moves the whole.
+    /// By what share errors are smaller than `before`: of position, of heading, or of what is new from pose to pose, whichever
+    /// falls most. What an effect does within centimetres hardly moves the whole.
     pub fn gain(&self, before: &Misses) -> f64 {
-        self.gain_along(before).max(fall(self.white, before.white))
+        let heading = self.heading.zip(before.heading).map_or(f64::NEG_INFINITY, |(now, then)| fall(now, then));
+        fall(self.position, before.position).max(heading).max(fall(self.white, before.white))
     }
 }
 
@@ -55,9 +51,9 @@ impl Errors {
     /// The errors of all runs; `columns` holds all columns run by run, `which` says which may be used, the residual last.
     pub fn new(observed: &Observed, system: &System, columns: &[Vec<Column>], which: Vec<usize>) -> Errors {
         let of_run = |run: usize| {
-            let own = |unit: &Unit| unit.run == run;
-            let sum = system.sum(own);
-            (DMatrix::from_fn(which.len(), which.len(), |i, j| sum[(which[i], which[j])]), system.rows(own))
+            let sum = |i: usize, j: usize| system.of_run(run).map(|u| u.white[(which[i], which[j])]).sum();
+            let rows = system.of_run(run).map(|unit| unit.rows).sum();
+            (DMatrix::from_fn(which.len(), which.len(), sum), rows)
         };
         let white = (0..observed.runs.len()).map(of_run).collect();
         let runs = observed.runs.par_iter().zip(columns).map(|(run, columns)| Run::new(run, columns, &which)).collect();
@@ -111,11 +107,17 @@ impl Run {
     fn new(run: &ObservedRun, columns: &[Column], which: &[usize]) -> Run {
         let width = which.len();
         let (mut position, mut heading) = (Vec::new(), Vec::new());
-        let origin = run.blocks[0].place;
+        // Where the frame was measured: at START, and where the run starts anew.
+        let mut origin = run.start_seen.then_some(0);
         for (index, block) in run.blocks.iter().enumerate().skip(usize::from(run.start_seen)) {
-            let (x, y) = (block.place.x - origin.x, block.place.y - origin.y);
+            if block.afresh {
+                origin = Some(index);
+                continue;
+            }
+            let from = run.blocks[origin.unwrap_or(0)].place;
+            let (x, y) = (block.place.x - from.x, block.place.y - from.y);
             let aligned = |column: &Column, k: usize| {
-                let start = if run.start_seen { column[0] } else { [0.0; 3] };
+                let start = origin.map_or([0.0; 3], |origin| column[origin]);
                 column[index][k] - start[k] - start[2] * [-y, x, 0.0][k]
             };
             for k in 0..2 {

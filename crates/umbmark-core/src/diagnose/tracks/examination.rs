@@ -3,7 +3,7 @@
 use super::errors::Errors;
 use super::errors::Misses;
 use super::smooth::{self, Covariate, Motion, smooth_columns};
-use super::system::{Projected, System};
+use super::system::{ABSORBED, Projected, System};
 use crate::effect::{Entry, Model, ModelError, of_drive};
 use crate::likelihood::{Column, Fitted, Noise, Observed};
 use crate::parameter::Parameter;
@@ -144,7 +144,7 @@ impl Examination {
         let mut out = self.base(None);
         let mut added = 0;
         while added < CLEANED {
-            let projected = Projected::new(&self.system.sum(|_| true), &out);
+            let projected = Projected::new(&self.system.whole, &out);
             let best = self
                 .answers(&projected, |asked| !asked.nuisance)
                 .into_iter()
@@ -157,15 +157,17 @@ impl Examination {
         if added == 0 {
             return false;
         }
-        let few: Vec<Vec<Column>> = self
-            .columns
-            .iter()
-            .map(|run| out.iter().copied().chain([self.system.residual()]).map(|c| run[c].clone()).collect())
-            .collect();
+        out.push(self.system.residual());
+        let few = self.some_columns(&out);
         let chain = self.fitted.model.chain();
         self.fitted.noise = Noise::estimate(&self.fitted.observed, &chain, &few, &self.fitted.noise);
         self.system = System::new(&self.fitted.observed, &self.fitted.noise, &self.columns);
         true
+    }
+
+    /// Some columns, run by run.
+    pub fn some_columns(&self, which: &[usize]) -> Vec<Vec<Column>> {
+        self.columns.iter().map(|run| which.iter().map(|column| run[*column].clone()).collect()).collect()
     }
 
     /// Errors by the columns of the model and a smooth.
@@ -178,9 +180,8 @@ impl Examination {
     pub fn base(&self, asked: Option<usize>) -> Vec<usize> {
         let others = self.asked.iter().enumerate().filter(|(i, other)| other.nuisance && Some(*i) != asked);
         let mut base = self.free.clone();
-        let products = self.system.sum(|_| true);
         for column in others.flat_map(|(_, other)| other.columns.iter().copied()) {
-            if !Projected::new(&products, &base).absorbed(&products, column) {
+            if Projected::share_left(&self.system.whole, &base, column) > ABSORBED {
                 base.push(column);
             }
         }
@@ -201,6 +202,28 @@ impl Examination {
         own.or_else(|| asked.and_then(Asked::effect).map(|effect| effect.about.name))
     }
 
+    /// What a column is a derivative by: a model that holds it, its effect and its parameter.
+    pub fn number(&self, column: usize) -> Result<(Model, &'static str, &'static str), ModelError> {
+        let mut model = self.fitted.model.clone();
+        if let Some(value) = self.fitted.free.get(column) {
+            let (effect, parameter) = crate::diagnose::ends::names(&model)[*value];
+            return Ok((model, effect, parameter));
+        }
+        let of_effect = |asked: &&Asked| asked.effect().is_some() && asked.columns.contains(&column);
+        let Some(Asked { question: Question::Effect(effect, parameters), columns, shape, .. }) =
+            self.asked.iter().find(of_effect)
+        else {
+            return Err(ModelError::UnknownEffect { name: format!("column {column}"), nearest: None });
+        };
+        let name = effect.about.name;
+        model.add(name)?;
+        if let Some((parameter, value)) = shape {
+            model.set(name, parameter.name, *value)?;
+        }
+        let which = columns.iter().position(|own| *own == column).unwrap_or(0);
+        Ok((model, name, parameters[which].name))
+    }
+
     /// Errors of runs left out, with the model's own values and the columns `found` fitted to the others.
     pub fn left_out(&self, found: &[usize]) -> Misses {
         self.left_out_with(found, |_| None)
@@ -209,7 +232,7 @@ impl Examination {
     /// The same with one more group, picked anew from the products of the others.
     pub fn left_out_with(&self, found: &[usize], pick: impl Fn(&DMatrix<f64>) -> Option<Answer>) -> Misses {
         self.errors.misses(|run| {
-            let products = self.system.sum(|unit| unit.run != run);
+            let products = self.system.without(run);
             let mut columns = [&self.free[..], found].concat();
             columns.extend(pick(&products).map(|answer| answer.columns).unwrap_or_default());
             let values = Projected::fit(&products, &columns);
@@ -233,35 +256,19 @@ impl Examination {
         let residual = self.system.residual();
         let runs = self.fitted.observed.runs.iter().zip(&self.columns);
         let scales = runs.map(|(run, columns)| self.fitted.noise.whiten(run, &[&columns[residual]]).log_scale);
-        let squares = self.system.sum(|_| true)[(residual, residual)];
+        let squares = self.system.whole[(residual, residual)];
         let deviance = 2.0 * scales.sum::<f64>() + squares;
-        let (n, k) = (self.system.rows(|_| true) as f64, (self.free.len() + Noise::SIZES) as f64);
+        let (n, k) = (self.system.rows as f64, (self.free.len() + Noise::SIZES) as f64);
         let aicc = deviance + 2.0 * k * n / (n - k - 1.0).max(1.0);
         (aicc, deviance + k * libm::log(n), (squares / n).sqrt())
     }
 
-    /// Whether an effect is among those that the columns `found` belong to.
-    pub fn is_found(&self, asked: &Asked, found: &[usize]) -> bool {
-        let same = |other: &Asked| other.effect() == asked.effect() && other.columns.iter().any(|c| found.contains(c));
-        asked.effect().is_some() && self.asked.iter().any(same)
-    }
-
-    /// The effect that explains most of some products, of those `wanted`, beside the model and the columns `found`.
-    pub fn likeliest(
-        &self,
-        products: &DMatrix<f64>,
-        found: &[usize],
-        wanted: impl Fn(&Asked) -> bool,
-    ) -> Option<Answer> {
-        let with = |base: Vec<usize>| {
-            let new: Vec<usize> = found.iter().copied().filter(|c| !base.contains(c)).collect();
-            Projected::new(products, &[base, new].concat())
-        };
-        let plain = with(self.base(None));
-        let effects = self.asked.iter().enumerate();
-        let effects = effects.filter(|(_, a)| a.effect().is_some() && wanted(a) && !self.is_found(a, found));
+    /// The effect that explains most of some products, of those `wanted`, beside the model.
+    pub fn likeliest(&self, products: &DMatrix<f64>, wanted: impl Fn(&Asked) -> bool) -> Option<Answer> {
+        let plain = Projected::new(products, &self.base(None));
+        let effects = self.asked.iter().enumerate().filter(|(_, a)| a.effect().is_some() && wanted(a));
         let answers = effects.filter_map(|(index, asked)| {
-            let own = asked.nuisance.then(|| with(self.base(Some(index))));
+            let own = asked.nuisance.then(|| Projected::new(products, &self.base(Some(index))));
             self.answer(own.as_ref().unwrap_or(&plain), products, index)
         });
         answers.max_by(|a, b| worth(a).total_cmp(&worth(b)))
@@ -293,9 +300,8 @@ impl Examination {
 
     /// The answer of every group that `wanted` picks and the data shows, beside a base.
     pub fn answers(&self, projected: &Projected, wanted: impl Fn(&Asked) -> bool) -> Vec<Answer> {
-        let products = self.system.sum(|_| true);
         let asked = self.asked.iter().enumerate().filter(|(_, asked)| wanted(asked));
-        asked.filter_map(|(index, _)| self.answer(projected, &products, index)).collect()
+        asked.filter_map(|(index, _)| self.answer(projected, &self.system.whole, index)).collect()
     }
 
     /// The answer of one group, where the data shows it.
@@ -320,7 +326,12 @@ impl Examination {
 
 /// How much better a group makes the fit than as many columns of nothing would.
 pub fn worth(answer: &Answer) -> f64 {
-    answer.drop - 3.0 * answer.columns.len() as f64
+    worth_of(answer.drop, answer.columns.len())
+}
+
+/// What a drop by so many numbers is worth.
+pub fn worth_of(drop: f64, numbers: usize) -> f64 {
+    drop - 3.0 * numbers as f64
 }
 
 /// A shape is tried at its usual value and at these multiples of it.

@@ -5,6 +5,7 @@ use super::flips::{Scores, family_wise};
 use super::system::Projected;
 use crate::diagnose::{Estimate, Options, Suspect};
 use crate::stats::f_upper_tail;
+use std::sync::Arc;
 
 /// Runs that carry a certificate on their own; with fewer, quarters of runs do.
 const ENOUGH_RUNS: usize = 8;
@@ -16,7 +17,7 @@ pub struct Finding {
     pub answer: Answer,
     /// Family-wise p by F and Bonferroni, among effects (or among smooths).
     pub p_f: f64,
-    /// Family-wise p by sign flips.
+    /// Family-wise p by sign flips; 1 where F does not accuse, which no flips can change.
     pub p_flips: f64,
     /// Degrees of freedom of F.
     pub degrees_of_freedom: [f64; 2],
@@ -24,7 +25,7 @@ pub struct Finding {
     pub f: f64,
     /// p by F alone.
     pub p: f64,
-    projected: Projected,
+    projected: Arc<Projected>,
 }
 
 impl Finding {
@@ -33,27 +34,31 @@ impl Finding {
         self.p_f <= options.size && self.p_flips <= options.size
     }
 
+    /// The columns that were fitted out when it was asked.
+    pub fn base(&self) -> &[usize] {
+        &self.projected.base
+    }
+
     /// The larger of the two.
     pub fn p_adjusted(&self) -> f64 {
         self.p_f.max(self.p_flips).min(1.0)
     }
 }
 
-/// All groups of one kind, the worthiest first, beside the model and what was `found` before.
-pub fn look(exam: &Examination, found: &[usize], smooths: bool, options: &Options) -> Vec<Finding> {
-    let products = exam.system.sum(|_| true);
-    let rows = exam.system.rows(|_| true);
-    let plain = with(exam.base(None), found);
-    let plain_projected = Projected::new(&products, &plain);
+/// All groups of one kind, the worthiest first, beside the model.
+pub fn look(exam: &Examination, smooths: bool, options: &Options) -> Vec<Finding> {
+    let products = &exam.system.whole;
+    let rows = exam.system.rows;
+    let plain = Arc::new(Projected::new(products, &exam.base(None)));
     let residual = exam.system.residual();
     let mut findings = Vec::new();
     for (index, asked) in exam.asked.iter().enumerate() {
-        if matches!(asked.question, Question::Smooth(..)) != smooths || exam.is_found(asked, found) {
+        if matches!(asked.question, Question::Smooth(..)) != smooths {
             continue;
         }
-        let own = asked.nuisance.then(|| Projected::new(&products, &with(exam.base(Some(index)), found)));
-        let projected = own.unwrap_or_else(|| plain_projected.clone());
-        let Some(answer) = exam.answer(&projected, &products, index) else { continue };
+        let own = asked.nuisance.then(|| Arc::new(Projected::new(products, &exam.base(Some(index)))));
+        let projected = own.unwrap_or_else(|| Arc::clone(&plain));
+        let Some(answer) = exam.answer(&projected, products, index) else { continue };
         let q = answer.columns.len() as f64;
         let spare = rows as f64 - projected.base.len() as f64 - q;
         let rest = projected.products[(residual, residual)] - answer.drop;
@@ -62,10 +67,10 @@ pub fn look(exam: &Examination, found: &[usize], smooths: bool, options: &Option
         findings.push(Finding { answer, p_f: p, p_flips: 1.0, degrees_of_freedom: [q, spare], f, p, projected });
     }
     let asked = findings.len() as f64;
+    findings.iter_mut().for_each(|finding| finding.p_f = (asked * finding.p).min(1.0));
     let scores: Vec<Scores> = findings.iter().map(|finding| scores(exam, finding)).collect();
-    for (finding, p) in findings.iter_mut().zip(family_wise(&scores, options.seed)) {
-        finding.p_f = (asked * finding.p).min(1.0);
-        finding.p_flips = p;
+    for (finding, own) in findings.iter_mut().zip(&scores).filter(|(finding, _)| finding.p_f <= options.size) {
+        finding.p_flips = family_wise(own, &scores, options.seed);
     }
     findings.sort_by(|a, b| worth(&b.answer).total_cmp(&worth(&a.answer)));
     let mut named = Vec::new();
@@ -76,11 +81,6 @@ pub fn look(exam: &Examination, found: &[usize], smooths: bool, options: &Option
         !known
     });
     findings
-}
-
-fn with(mut base: Vec<usize>, found: &[usize]) -> Vec<usize> {
-    base.extend(found.iter().filter(|c| !base.contains(c)).copied().collect::<Vec<_>>());
-    base
 }
 
 /// Whether the sizes that an effect would have are ones that it can have: no bump gives travel back.
@@ -96,45 +96,49 @@ pub fn possible(exam: &Examination, finding: &Finding) -> bool {
 /// Scores of a group by run, or by quarter of a run where runs are few.
 fn scores(exam: &Examination, finding: &Finding) -> Scores {
     let by_quarter = exam.fitted.observed.runs.len() < ENOUGH_RUNS;
-    let mut units: Vec<nalgebra::DVector<f64>> = Vec::new();
-    let mut before = None;
+    let columns = &finding.answer.columns;
+    let (mut units, mut parts, mut before) = (Vec::new(), Vec::new(), None);
     for unit in &exam.system.units {
-        let score = finding.projected.score(&unit.white, &finding.answer.columns);
-        if by_quarter || before != Some(unit.run) {
-            units.push(score);
-        } else if let Some(last) = units.last_mut() {
-            *last += score;
+        let (score, held) = finding.projected.score(&unit.white, columns);
+        match (units.last_mut(), parts.last_mut()) {
+            (Some(last), Some(part)) if !by_quarter && before == Some(unit.run) => {
+                *last += score;
+                *part += held;
+            }
+            _ => {
+                units.push(score);
+                parts.push(held);
+            }
         }
         before = Some(unit.run);
     }
-    Scores { units, metric: finding.answer.covariance.clone() }
+    Scores { units, held: parts, information: finding.projected.information(columns) }
 }
 
-/// The effects whose response could be taken for that of a finding, itself first.
-pub fn class(exam: &Examination, finding: &Finding, found: &[usize]) -> Vec<&'static str> {
-    let products = exam.system.sum(|_| true);
-    let mut class = Vec::new();
-    let Some(own) = exam.asked[finding.answer.asked].effect() else { return class };
-    class.push(own.about.name);
+/// The effects whose response could be taken for that of a finding, itself not among them: the best shape of each.
+pub fn rivals(exam: &Examination, finding: &Finding) -> Vec<Answer> {
+    let own = exam.asked[finding.answer.asked].effect();
+    let mut alike: Vec<(&str, Answer)> = Vec::new();
     for (index, other) in exam.asked.iter().enumerate() {
-        let Some(effect) = other.effect().filter(|effect| effect.about.name != own.about.name) else { continue };
-        if exam.is_found(other, found) || class.contains(&effect.about.name) {
+        let Some(effect) = other.effect().filter(|effect| Some(*effect) != own) else { continue };
+        if alike.iter().any(|(name, _)| *name == effect.about.name) {
             continue;
         }
         // The rival's own place in the base, if it has one, is free while the two are compared.
         let base: Vec<usize> =
-            finding.projected.base.iter().copied().filter(|column| !other.columns.contains(column)).collect();
-        let projected = Projected::new(&products, &base);
-        let Some(answer) = exam.answer(&projected, &products, index) else { continue };
+            finding.base().iter().copied().filter(|column| !other.columns.contains(column)).collect();
+        let freed = (base.len() < finding.base().len()).then(|| Projected::new(&exam.system.whole, &base));
+        let projected = freed.as_ref().unwrap_or(&finding.projected);
+        let Some(answer) = exam.answer(projected, &exam.system.whole, index) else { continue };
         if projected.likeness(&finding.answer.columns, &finding.answer.step, &answer.columns) > ALIKE {
-            class.push(effect.about.name);
+            alike.push((effect.about.name, answer));
         }
     }
-    class
+    alike.into_iter().map(|(_, answer)| answer).collect()
 }
 
 /// A finding about an effect, for people.
-pub fn suspect(exam: &Examination, finding: &Finding, found: &[usize]) -> Option<Suspect> {
+pub fn suspect(exam: &Examination, finding: &Finding) -> Option<Suspect> {
     let Question::Effect(entry, parameters) = &exam.asked[finding.answer.asked].question else { return None };
     let columns = &exam.asked[finding.answer.asked].columns;
     let estimate = finding.answer.columns.iter().enumerate().filter_map(|(k, column)| {
@@ -155,8 +159,9 @@ pub fn suspect(exam: &Examination, finding: &Finding, found: &[usize]) -> Option
         standard_error: f64::NAN,
         degrees_of_freedom: finding.degrees_of_freedom[1],
     });
+    let others = rivals(exam, finding).into_iter().filter_map(|rival| exam.asked[rival.asked].effect());
     Some(Suspect {
-        class: class(exam, finding, found),
+        class: std::iter::once(*entry).chain(others).map(|effect| effect.about.name).collect(),
         best: entry.about.name,
         f: finding.f,
         degrees_of_freedom: finding.degrees_of_freedom,

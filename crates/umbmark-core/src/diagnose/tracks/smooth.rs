@@ -34,6 +34,48 @@ impl Motion {
     }
 }
 
+/// What a smooth is in proportion to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exposure {
+    /// Way driven.
+    Way,
+    /// Way driven, in the sense of the last turn.
+    WayInSense,
+    /// Way of the left or the right wheel.
+    WheelWay(usize),
+    /// Rotation, either way.
+    Rotation,
+    /// Time.
+    Time,
+    /// Time, in the sense of the turn.
+    TimeInSense,
+    /// Way driven and way of the wheels in turns.
+    AnyWay,
+}
+
+impl Exposure {
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Exposure::Rotation => "rad",
+            Exposure::Time | Exposure::TimeInSense => "s",
+            _ => "m",
+        }
+    }
+
+    fn of(self, p: &Piece) -> f64 {
+        match self {
+            Exposure::Way => p.at.length,
+            Exposure::WayInSense => p.at.length * p.at.last_turn,
+            Exposure::WheelWay(wheel) => p.wheel_way[wheel],
+            Exposure::Rotation => p.rotation.abs(),
+            Exposure::Time => p.at.duration,
+            Exposure::TimeInSense => p.at.duration * p.at.turn_rate.signum(),
+            Exposure::AnyWay => p.at.length + 0.5 * p.scales.wheelbase * p.rotation.abs(),
+        }
+    }
+}
+
 /// Something that an effect may depend on.
 #[derive(Clone, Copy, Debug)]
 pub struct Covariate {
@@ -41,197 +83,201 @@ pub struct Covariate {
     pub name: &'static str,
     /// In words.
     pub title: &'static str,
+    /// Its unit; empty for a pure number.
+    pub unit: &'static str,
+    /// What the smooth is in proportion to.
+    pub exposure: Exposure,
     /// Number of functions in the smooth.
     pub terms: usize,
-    /// The functions, times what they are in proportion to, over one piece.
-    value: fn(&Piece, &mut [f64]),
+    /// Its value over a piece.
+    pub value: fn(&Piece) -> f64,
+    /// The value that counts as one.
+    pub scale: fn(&Scales) -> f64,
+    /// The functions of the scaled value.
+    pub basis: fn(f64, &mut [f64]),
+}
+
+/// The greatest values in the data.
+#[derive(Clone, Copy, Debug)]
+pub struct Scales {
+    /// \[m/s\]
+    pub speed: f64,
+    /// \[rad/s\]
+    pub turn_rate: f64,
+    /// Duration of a run \[s\].
+    pub duration: f64,
+    /// Number of runs.
+    pub runs: f64,
+    /// Wheelbase \[m\].
+    pub wheelbase: f64,
+}
+
+impl Scales {
+    /// Of some runs.
+    pub fn new(observed: &Observed) -> Scales {
+        let contexts = || observed.tracks().flat_map(|track| track.contexts());
+        let most = |of: fn(&Context) -> f64| contexts().map(of).fold(f64::MIN_POSITIVE, f64::max);
+        Scales {
+            speed: most(|c| c.speed.abs()),
+            turn_rate: most(|c| c.turn_rate.abs()),
+            duration: most(|c| c.time + c.duration),
+            runs: observed.runs.len().max(1) as f64,
+            wheelbase: observed.robot.drive.wheelbase(),
+        }
+    }
 }
 
 /// A piece of a run with what covariates are scaled by.
-struct Piece<'a> {
+pub struct Piece<'a> {
     at: &'a Context,
     rotation: f64,
     wheel_way: [f64; 2],
-    duration: f64,
+    /// Length of the run \[m\].
     way: f64,
-    wheelbase: f64,
-    runs: f64,
-    fastest: f64,
-    fastest_turn: f64,
+    scales: &'a Scales,
+}
+
+impl Piece<'_> {
+    /// A piece as the odometry has it, in a run of length `way`.
+    pub fn believed<'a>(at: &'a Context, way: f64, scales: &'a Scales) -> Piece<'a> {
+        Piece { at, rotation: at.turn_rate * at.duration, wheel_way: at.wheel_rotation.map(f64::abs), way, scales }
+    }
+
+    /// Whether the smooths of a covariate add to it.
+    pub fn counts(&self, covariate: &Covariate) -> bool {
+        covariate.exposure.of(self) != 0.0
+    }
 }
 
 /// The covariate that stands for errors that repeat themselves, whatever their cause.
 pub const ALONG_THE_WAY: &str = "distance";
 
+const fn covariate(name: &'static str, title: &'static str, terms: usize, value: fn(&Piece) -> f64) -> Covariate {
+    Covariate { name, title, unit: "", exposure: Exposure::Way, terms, value, scale: |_| 1.0, basis: powers }
+}
+
 /// Everything that smooths are asked about.
 pub const COVARIATES: [Covariate; 14] = [
+    Covariate { unit: "m/s", scale: |s| s.speed, ..covariate("speed", "the speed", 2, |p| p.at.speed.abs()) },
     Covariate {
-        name: "speed",
-        title: "the speed",
-        terms: 2,
-        value: |p, out| {
-            powers(p.at.speed.abs() / p.fastest, p.at.length, out);
-        },
+        unit: "rad/s",
+        exposure: Exposure::Rotation,
+        scale: |s| s.turn_rate,
+        basis: |x, out| out.copy_from_slice(&[x, 1.0, x.abs()]),
+        ..covariate("turn_rate", "the turn rate", 3, |p| p.at.turn_rate.abs() * p.rotation.signum())
     },
     Covariate {
-        name: "turn_rate",
-        title: "the turn rate",
-        terms: 3,
-        value: |p, out| {
-            let rate = p.at.turn_rate.abs() / p.fastest_turn;
-            out.copy_from_slice(&[p.rotation * rate, p.rotation.abs(), p.rotation.abs() * rate]);
-        },
+        unit: "m/s²",
+        exposure: Exposure::Time,
+        basis: with_its_size,
+        ..covariate("acceleration", "the acceleration", 2, |p| p.at.acceleration())
     },
     Covariate {
-        name: "acceleration",
-        title: "the acceleration",
-        terms: 2,
-        value: |p, out| {
-            let change = 0.5 * (p.at.speed_change[0] + p.at.speed_change[1]);
-            out.copy_from_slice(&[change, change.abs()]);
-        },
+        unit: "rad/s²",
+        exposure: Exposure::TimeInSense,
+        basis: with_its_size,
+        ..covariate("turn_acceleration", "the change of the turn rate", 2, turn_acceleration)
     },
     Covariate {
-        name: "turn_acceleration",
-        title: "the change of the turn rate",
-        terms: 2,
-        value: |p, out| {
-            let change = p.at.speed_change[1] - p.at.speed_change[0];
-            out.copy_from_slice(&[change, change * p.at.turn_rate.signum() * change.signum()]);
-        },
+        unit: "rad",
+        exposure: Exposure::WheelWay(0),
+        basis: cyclic,
+        ..covariate("wheel_angle_left", "the angle of the left wheel", 6, |p| wheel_angle(p, 0))
     },
     Covariate {
-        name: "wheel_angle_left",
-        title: "the angle of the left wheel",
-        terms: 6,
-        value: |p, out| {
-            cyclic(p.at.wheel_angle[0] + 0.5 * p.at.wheel_rotation[0], p.wheel_way[0], out);
-        },
+        unit: "rad",
+        exposure: Exposure::WheelWay(1),
+        basis: cyclic,
+        ..covariate("wheel_angle_right", "the angle of the right wheel", 6, |p| wheel_angle(p, 1))
     },
     Covariate {
-        name: "wheel_angle_right",
-        title: "the angle of the right wheel",
-        terms: 6,
-        value: |p, out| {
-            cyclic(p.at.wheel_angle[1] + 0.5 * p.at.wheel_rotation[1], p.wheel_way[1], out);
-        },
+        unit: "rad",
+        basis: cyclic,
+        ..covariate("heading", "the heading in the room", 6, |p| p.at.heading + 0.5 * p.rotation)
     },
     Covariate {
-        name: "heading",
-        title: "the heading in the room",
-        terms: 6,
-        value: |p, out| {
-            cyclic(p.at.heading + 0.5 * p.rotation, p.at.length, out);
-        },
+        unit: "s",
+        scale: |s| s.duration,
+        ..covariate("time", "the time in the run", 3, |p| p.at.time + 0.5 * p.at.duration)
     },
     Covariate {
-        name: "time",
-        title: "the time in the run",
-        terms: 3,
-        value: |p, out| {
-            powers(p.at.time / p.duration, p.at.length, out);
-        },
+        scale: |s| s.runs,
+        ..covariate("session_distance", "the place of the run in the session", 2, |p| p.at.run)
     },
+    Covariate { unit: "m", basis: decays, ..covariate("since_turn", "the way since the last turn", 3, since_turn) },
     Covariate {
-        name: "session_distance",
-        title: "the place of the run in the session",
-        terms: 2,
-        value: |p, out| {
-            powers(p.at.run / p.runs, p.at.length, out);
-        },
+        unit: "m",
+        exposure: Exposure::WayInSense,
+        basis: decays,
+        ..covariate("since_turn * last_turn", "the way since the last turn and its sense", 3, since_turn)
     },
+    covariate("last_turn", "the sense of the last turn", 1, |p| p.at.last_turn),
+    covariate("direction", "the sense of the run", 1, |p| p.at.direction),
     Covariate {
-        name: "since_turn",
-        title: "the way since the last turn",
-        terms: 3,
-        value: |p, out| {
-            decays(p.at, 1.0, out);
-        },
-    },
-    Covariate {
-        name: "since_turn * last_turn",
-        title: "the way since the last turn and its sense",
-        terms: 3,
-        value: |p, out| decays(p.at, p.at.last_turn, out),
-    },
-    Covariate {
-        name: "last_turn",
-        title: "the sense of the last turn",
-        terms: 1,
-        value: |p, out| {
-            out[0] = p.at.last_turn * p.at.length;
-        },
-    },
-    Covariate {
-        name: "direction",
-        title: "the sense of the run",
-        terms: 1,
-        value: |p, out| {
-            out[0] = p.at.direction * p.at.length;
-        },
-    },
-    Covariate {
-        name: "distance",
-        title: "the place in the run and its sense",
-        terms: 12,
-        value: |p, out| {
+        exposure: Exposure::AnyWay,
+        basis: |x, out| {
             out.fill(0.0);
-            let own = if p.at.direction < 0.0 { &mut out[..6] } else { &mut out[6..] };
-            cyclic(
-                std::f64::consts::TAU * p.at.distance / p.way,
-                p.at.length + 0.5 * p.wheelbase * p.rotation.abs(),
-                own,
-            );
+            let own = if x.is_sign_negative() { &mut out[..6] } else { &mut out[6..] };
+            cyclic(std::f64::consts::TAU * x.abs(), own);
         },
+        ..covariate(ALONG_THE_WAY, "the place in the run and its sense", 12, |p| {
+            (p.at.distance / p.way).copysign(p.at.direction)
+        })
     },
 ];
 
-/// x, x², ... times `exposure`.
-fn powers(x: f64, exposure: f64, out: &mut [f64]) {
-    let mut power = exposure;
+fn wheel_angle(p: &Piece, wheel: usize) -> f64 {
+    p.at.wheel_angle[wheel] + 0.5 * p.at.wheel_rotation[wheel]
+}
+
+fn since_turn(p: &Piece) -> f64 {
+    p.at.since_turn + 0.5 * p.at.length
+}
+
+/// Positive where a turn, whatever its sense, gets faster.
+fn turn_acceleration(p: &Piece) -> f64 {
+    p.at.turn_acceleration() * p.at.turn_rate.signum()
+}
+
+/// x, x², ...
+fn powers(x: f64, out: &mut [f64]) {
+    let mut power = 1.0;
     for value in out {
         power *= x;
         *value = power;
     }
 }
 
-/// cos x, sin x, cos 2x ... times `exposure`.
-fn cyclic(x: f64, exposure: f64, out: &mut [f64]) {
+/// x and |x|.
+fn with_its_size(x: f64, out: &mut [f64]) {
+    out.copy_from_slice(&[x, x.abs()]);
+}
+
+/// cos x, sin x, cos 2x ...
+fn cyclic(x: f64, out: &mut [f64]) {
     for (k, pair) in out.chunks_exact_mut(2).enumerate() {
         let (sine, cosine) = libm::sincos((k + 1) as f64 * x);
-        (pair[0], pair[1]) = (exposure * cosine, exposure * sine);
+        (pair[0], pair[1]) = (cosine, sine);
     }
 }
 
-/// What exp(-d/λ) loses over the piece, for λ of 5, 15 and 50 cm.
-fn decays(at: &Context, sign: f64, out: &mut [f64]) {
+/// exp(-d/λ)/λ for λ of 5, 15 and 50 cm: each adds 1 in all.
+fn decays(d: f64, out: &mut [f64]) {
     for (value, length) in out.iter_mut().zip([0.05, 0.15, 0.5]) {
-        let left = |d: f64| libm::exp(-d / length);
-        *value = sign * (left(at.since_turn) - left(at.since_turn + at.length));
+        *value = libm::exp(-d / length) / length;
     }
 }
 
 /// The columns of every covariate for every motion: run by run, in the order of [`COVARIATES`] and [`Motion::ALL`], terms last.
 pub fn smooth_columns(observed: &Observed, model: &Model) -> Vec<Vec<Column>> {
-    let contexts = || observed.tracks().flat_map(|track| track.contexts());
-    let most = |of: fn(&Context) -> f64| contexts().map(of).fold(f64::MIN_POSITIVE, f64::max);
-    let scales = [most(|c| c.speed.abs()), most(|c| c.turn_rate.abs())];
-    let runs = observed.runs.len().max(1) as f64;
-    let (chain, wheelbase) = (model.chain(), observed.robot.drive.wheelbase());
-    observed.runs.par_iter().map(|run| of_run(run, &chain, wheelbase, scales, runs)).collect()
+    let (scales, chain) = (Scales::new(observed), model.chain());
+    observed.runs.par_iter().map(|run| of_run(run, &chain, &scales)).collect()
 }
 
-fn of_run(
-    run: &ObservedRun,
-    chain: &Chain<f64>,
-    wheelbase: f64,
-    [fastest, fastest_turn]: [f64; 2],
-    runs: f64,
-) -> Vec<Column> {
+fn of_run(run: &ObservedRun, chain: &Chain<f64>, scales: &Scales) -> Vec<Column> {
     let terms: usize = COVARIATES.iter().map(|c| c.terms).sum();
     let track = &run.track;
     let way = track.length().max(f64::MIN_POSITIVE);
-    let duration = track.contexts().last().map_or(1.0, |c| c.time + c.duration).max(f64::MIN_POSITIVE);
     let mut states = vec![[0.0; 3]; 3 * terms];
     let mut columns = vec![vec![[0.0; 3]; run.blocks.len()]; 3 * terms];
     let mut basis = vec![0.0; terms];
@@ -246,22 +292,14 @@ fn of_run(
                 rotation: 0.5 * motion.rotation,
             });
             let wheel_way = [travel.left.abs(), travel.right.abs()];
-            let piece = Piece {
-                at,
-                rotation: motion.rotation,
-                wheel_way,
-                duration,
-                way,
-                wheelbase,
-                runs,
-                fastest,
-                fastest_turn,
-            };
+            let piece = Piece { at, rotation: motion.rotation, wheel_way, way, scales };
             let mut rest = basis.as_mut_slice();
             for covariate in &COVARIATES {
                 let own;
                 (own, rest) = rest.split_at_mut(covariate.terms);
-                (covariate.value)(&piece, own);
+                let exposure = covariate.exposure.of(&piece);
+                (covariate.basis)((covariate.value)(&piece) / (covariate.scale)(scales), own);
+                own.iter_mut().for_each(|value| *value *= exposure);
             }
             let (sine, cosine) = libm::sincos(middle.heading);
             let added = [[cosine, sine, 0.0], [-sine, cosine, 0.0], [middle.y, -middle.x, 1.0]];

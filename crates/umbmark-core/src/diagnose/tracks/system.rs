@@ -23,6 +23,10 @@ pub struct System {
     pub units: Vec<Unit>,
     /// Number of columns, the residual included.
     pub width: usize,
+    /// Products of all columns over all units.
+    pub whole: DMatrix<f64>,
+    /// Number of rows of all units.
+    pub rows: usize,
 }
 
 impl System {
@@ -45,7 +49,10 @@ impl System {
                 white: gram(&values, width),
             })
         });
-        System { units: units.collect(), width }
+        let units: Vec<Unit> = units.collect();
+        let mut whole = DMatrix::zeros(width, width);
+        units.iter().for_each(|unit| whole += &unit.white);
+        System { rows: units.iter().map(|unit| unit.rows).sum(), units, width, whole }
     }
 
     /// The residual's column.
@@ -53,15 +60,15 @@ impl System {
         self.width - 1
     }
 
-    /// Number of rows of the units that are `kept`.
-    pub fn rows(&self, kept: impl Fn(&Unit) -> bool) -> usize {
-        self.units.iter().filter(|u| kept(u)).map(|u| u.rows).sum()
+    /// The units of one run.
+    pub fn of_run(&self, run: usize) -> impl Iterator<Item = &Unit> {
+        self.units.iter().filter(move |unit| unit.run == run)
     }
 
-    /// Products of all columns over the units that are `kept`.
-    pub fn sum(&self, kept: impl Fn(&Unit) -> bool) -> DMatrix<f64> {
-        let mut sum = DMatrix::zeros(self.width, self.width);
-        self.units.iter().filter(|unit| kept(unit)).for_each(|unit| sum += &unit.white);
+    /// Products of all columns over all runs but one.
+    pub fn without(&self, run: usize) -> DMatrix<f64> {
+        let mut sum = self.whole.clone();
+        self.of_run(run).for_each(|unit| sum -= &unit.white);
         sum
     }
 }
@@ -75,25 +82,22 @@ pub struct Projected {
     pub coefficients: DMatrix<f64>,
     /// The columns that were fitted out.
     pub base: Vec<usize>,
+    solver: Option<ScaledCholesky>,
 }
 
 /// A column with less than this share of its square left is absorbed by the base: a collinearity index above 20, the rule of
 /// Brun, Reichert & Künsch (2001, Water Resources Research 37).
-const ABSORBED: f64 = 1.0 / 400.0;
+pub const ABSORBED: f64 = 1.0 / 400.0;
 
 impl Projected {
     /// Fits the columns `base` out of all columns.
     pub fn new(products: &DMatrix<f64>, base: &[usize]) -> Projected {
-        let width = products.ncols();
-        let of_base = |matrix: &DMatrix<f64>| DMatrix::from_fn(base.len(), matrix.ncols(), |i, j| matrix[(base[i], j)]);
-        let cross = of_base(products);
-        let coefficients = match scaled_cholesky(&DMatrix::from_fn(base.len(), base.len(), |i, j| cross[(i, base[j])]))
-        {
-            Some(solver) if !base.is_empty() => solver.solve(&cross),
-            _ => DMatrix::zeros(base.len(), width),
-        };
-        let products = products - cross.transpose() * &coefficients;
-        Projected { products, coefficients, base: base.to_vec() }
+        let cross = DMatrix::from_fn(base.len(), products.ncols(), |i, j| products[(base[i], j)]);
+        let solver = solver(products, base);
+        let coefficients =
+            solver.as_ref().map_or_else(|| DMatrix::zeros(base.len(), products.ncols()), |s| s.solve(&cross));
+        let products = products - cross.tr_mul(&coefficients);
+        Projected { products, coefficients, base: base.to_vec(), solver }
     }
 
     /// Whether a column has something left beside what it was in `whole`.
@@ -104,7 +108,7 @@ impl Projected {
     /// What fitting a group of columns, none of them absorbed, would take off the sum of squares, and their values.
     pub fn drop(&self, group: &[usize]) -> Option<(f64, DVector<f64>, DMatrix<f64>)> {
         let residual = self.products.ncols() - 1;
-        let information = DMatrix::from_fn(group.len(), group.len(), |i, j| self.products[(group[i], group[j])]);
+        let information = self.information(group);
         let score = DVector::from_fn(group.len(), |i, _| self.products[(group[i], residual)]);
         let solver = scaled_cholesky(&information)?;
         let step = solver.solve(&DMatrix::from_column_slice(group.len(), 1, score.as_slice()));
@@ -115,16 +119,24 @@ impl Projected {
 
     /// Values of some columns fitted together.
     pub fn fit(products: &DMatrix<f64>, columns: &[usize]) -> DVector<f64> {
-        let residual = products.ncols() - 1;
-        let projected = Projected::new(products, columns);
-        DVector::from_fn(columns.len(), |i, _| projected.coefficients[(i, residual)])
+        let score = DMatrix::from_fn(columns.len(), 1, |i, _| products[(columns[i], products.ncols() - 1)]);
+        let values = solver(products, columns).map(|solver| solver.solve(&score));
+        values.map_or_else(|| DVector::zeros(columns.len()), |values| values.column(0).into_owned())
+    }
+
+    /// Square of what is left of one column beside others, as a share of its own.
+    pub fn share_left(products: &DMatrix<f64>, base: &[usize], column: usize) -> f64 {
+        let cross = DMatrix::from_fn(base.len(), 1, |i, _| products[(base[i], column)]);
+        let whole = products[(column, column)];
+        let explained = solver(products, base).map_or(0.0, |solver| cross.dot(&solver.solve(&cross)));
+        if whole > 0.0 { 1.0 - explained / whole } else { 0.0 }
     }
 
     /// Share of the response of `values` of the columns `from` that the columns `to` can make, as a cosine.
     pub fn likeness(&self, from: &[usize], values: &DVector<f64>, to: &[usize]) -> f64 {
         let response = |k: usize| from.iter().zip(values.iter()).map(|(j, v)| self.products[(k, *j)] * v).sum::<f64>();
         let whole: f64 = from.iter().zip(values.iter()).map(|(k, v)| response(*k) * v).sum();
-        let information = DMatrix::from_fn(to.len(), to.len(), |i, j| self.products[(to[i], to[j])]);
+        let information = self.information(to);
         let cross = DMatrix::from_fn(to.len(), 1, |i, _| response(to[i]));
         match scaled_cholesky(&information) {
             Some(solver) if whole > 0.0 => (cross.dot(&solver.solve(&cross)) / whole).clamp(0.0, 1.0).sqrt(),
@@ -132,24 +144,33 @@ impl Projected {
         }
     }
 
-    /// Scores of a group in one unit, with the base fitted out: what the unit says for and against the group.
-    pub fn score(&self, unit: &DMatrix<f64>, group: &[usize]) -> DVector<f64> {
+    /// What a unit says for and against a group, and how much of the base's columns, made orthonormal, the group's hold in it.
+    pub fn score(&self, unit: &DMatrix<f64>, group: &[usize]) -> (DVector<f64>, DMatrix<f64>) {
         let residual = self.products.ncols() - 1;
-        let rest = |a: usize, b: usize| {
-            let mut value = unit[(a, b)];
-            for (i, z) in self.base.iter().enumerate() {
-                value -= self.coefficients[(i, a)] * unit[(*z, b)] + self.coefficients[(i, b)] * unit[(a, *z)];
-                for (j, y) in self.base.iter().enumerate() {
-                    value += self.coefficients[(i, a)] * self.coefficients[(j, b)] * unit[(*z, *y)];
-                }
-            }
-            value
-        };
-        DVector::from_fn(group.len(), |i, _| rest(group[i], residual))
+        let between =
+            |from: &[usize], to: &[usize]| DMatrix::from_fn(from.len(), to.len(), |i, j| unit[(from[i], to[j])]);
+        let taken = DMatrix::from_fn(self.base.len(), group.len(), |i, k| self.coefficients[(i, group[k])]);
+        let held = between(&self.base, group) - between(&self.base, &self.base) * &taken;
+        let observed = between(group, &[residual]) - taken.tr_mul(&between(&self.base, &[residual]));
+        let scores = observed.column(0) - held.tr_mul(&self.coefficients.column(residual));
+        let half = self.solver.as_ref().map_or_else(|| DMatrix::zeros(0, group.len()), |solver| solver.half(&held));
+        (scores, half)
+    }
+
+    /// Products of a group's columns, the base fitted out.
+    pub fn information(&self, group: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(group.len(), group.len(), |i, j| self.products[(group[i], group[j])])
     }
 }
 
+/// What solves for the values of some columns.
+fn solver(products: &DMatrix<f64>, columns: &[usize]) -> Option<ScaledCholesky> {
+    let of = |i: usize, j: usize| products[(columns[i], columns[j])];
+    scaled_cholesky(&DMatrix::from_fn(columns.len(), columns.len(), of)).filter(|_| !columns.is_empty())
+}
+
 /// A positive definite matrix with its rows and columns scaled to a unit diagonal, factored.
+#[derive(Clone, Debug)]
 pub(super) struct ScaledCholesky {
     factor: Cholesky<f64, Dyn>,
     lengths: Vec<f64>,
@@ -160,6 +181,13 @@ impl ScaledCholesky {
         let scaled = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| right[(i, j)] / self.lengths[i]);
         let solved = self.factor.solve(&scaled);
         DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| solved[(i, j)] / self.lengths[i])
+    }
+
+    /// L⁻¹ of some columns, with L Lᵀ the matrix.
+    fn half(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut scaled = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| right[(i, j)] / self.lengths[i]);
+        self.factor.l_dirty().solve_lower_triangular_mut(&mut scaled);
+        scaled
     }
 }
 

@@ -10,6 +10,7 @@ pub(super) enum Variable {
     Speed,
     TurnRate,
     Acceleration,
+    TurnAcceleration,
     Heading,
     WheelAngleLeft,
     WheelAngleRight,
@@ -25,10 +26,11 @@ const METRE: Unit = Unit { metres: 1.0, seconds: 0.0 };
 
 impl Variable {
     /// All of them, with their names and units.
-    pub const ALL: [(&'static str, Variable, Unit); 12] = [
+    pub const ALL: [(&'static str, Variable, Unit); 13] = [
         ("speed", Variable::Speed, Unit { metres: 1.0, seconds: -1.0 }),
         ("turn_rate", Variable::TurnRate, Unit { metres: 0.0, seconds: -1.0 }),
         ("acceleration", Variable::Acceleration, Unit { metres: 1.0, seconds: -2.0 }),
+        ("turn_acceleration", Variable::TurnAcceleration, Unit { metres: 0.0, seconds: -2.0 }),
         ("heading", Variable::Heading, Unit::PLAIN),
         ("wheel_angle_left", Variable::WheelAngleLeft, Unit::PLAIN),
         ("wheel_angle_right", Variable::WheelAngleRight, Unit::PLAIN),
@@ -55,6 +57,7 @@ impl Variable {
             Variable::Speed => at.speed,
             Variable::TurnRate => at.turn_rate,
             Variable::Acceleration => at.acceleration(),
+            Variable::TurnAcceleration => at.turn_acceleration(),
             Variable::WheelAngleLeft => at.wheel_angle[0] + 0.5 * at.wheel_rotation[0],
             Variable::WheelAngleRight => at.wheel_angle[1] + 0.5 * at.wheel_rotation[1],
             Variable::Distance => at.distance + half,

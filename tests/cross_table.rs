@@ -1,6 +1,6 @@
 //! Learnt on squares, driven on circles and straights: OptiOdom's robot (Sousa et al. 2022) against its authors' calibrations.
 //!
-//! `UMBMARK_OPTIODOM=all cargo test -p umbmark-tests --test optiodom -- --nocapture` prints the tables of docs/optiodom.md.
+//! `UMBMARK_OPTIODOM=all cargo test -p umbmark-tests --test cross_table -- --nocapture` prints the table of docs/optiodom.md.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
@@ -8,11 +8,11 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use umbmark_core::calibrate::Correction;
 use umbmark_core::dataset::Dataset;
-use umbmark_core::diagnose::{Options, base_model, first_model};
+use umbmark_core::diagnose::{Options, first_model};
 use umbmark_core::drive::{DifferentialDrive, Robot};
 use umbmark_core::effect::Model;
 use umbmark_core::geometry::wrap;
-use umbmark_core::learn::{fit, fit_to_returns, learn};
+use umbmark_core::learn::{fit, learn};
 use umbmark_core::replay::Track;
 
 /// Squares to learn from, and the sets of other paths that were driven within the same days.
@@ -107,16 +107,13 @@ impl Ends {
 /// A name, and the model that it makes of squares: of the folder, a set's name, and its data.
 type Way = (&'static str, fn(&Path, &str, &Dataset) -> Model);
 
-const WAYS: [Way; 7] = [
+const WAYS: [Way; 6] = [
     ("nominal", |_, _, data| Model::new(data.robot.as_ref().unwrap())),
     ("authors: UMBmark", |folder, set, data| published(folder, "UMBmark", set, data.robot.as_ref().unwrap())),
     ("authors: Jung & Chung", |folder, set, data| {
         published(folder, "Jung-and-Chung", set, data.robot.as_ref().unwrap())
     }),
     ("authors: OptiOdom", |folder, set, data| published(folder, "Sousa", set, data.robot.as_ref().unwrap())),
-    ("E_d, E_b from end poses", |_, _, data| {
-        fit_to_returns(data, &base_model(data.robot.as_ref().unwrap()).unwrap()).unwrap().0
-    }),
     ("E_d, E_b, E_s from tracks", |_, _, data| fit(data, &first_model(data).unwrap()).unwrap().0),
     ("learn", |_, _, data| learn(data, &Options::default()).unwrap().model),
 ];
@@ -148,39 +145,36 @@ fn tested(folder: &Path, days: &Days, way: &Way, sets: &[Vec<&str>]) -> [Ends; 3
     errors
 }
 
+/// A row of the table.
+fn tell(days: &str, way: &str, errors: &[Ends; 3]) {
+    let cell = |ends: &Ends| {
+        let [mm, deg] = ends.rms();
+        if ends.1 > 0 { format!("{mm:.1} mm, {deg:.2} deg") } else { "-".to_owned() }
+    };
+    let [squares, circles, straights] = errors.each_ref().map(cell);
+    let _ = writeln!(std::io::stderr(), "| {days} | {way} | {squares} | {circles} | {straights} |");
+}
+
 #[test]
 fn what_squares_teach_holds_on_circles_and_straights() {
     let Some(folder) = optiodom() else { return };
     let all = std::env::var("UMBMARK_OPTIODOM").is_ok_and(|which| which == "all");
     let mut rows = Vec::new();
-    for days in if all { &DAYS[..] } else { &DAYS[..1] } {
-        let single = days.squares.map(|set| vec![set]);
-        for way in &WAYS {
-            if !all && way.0 == "learn" {
-                continue;
-            }
-            rows.push((days.name, way.0.to_owned(), tested(&folder, days, way, &single)));
+    let _ = writeln!(std::io::stderr(), "| days | calibration | other squares | circles | straights and spins |");
+    for way in WAYS.iter().filter(|way| all || way.0 != "learn") {
+        for days in if all { &DAYS[..] } else { &DAYS[..1] } {
+            let each = days.squares.map(|set| vec![set]);
+            let errors = tested(&folder, days, way, &each);
+            tell(days.name, way.0, &errors);
+            rows.push((days.name, way.0, errors));
             if all && !way.0.starts_with("authors") && way.0 != "nominal" {
-                rows.push((
-                    days.name,
-                    format!("{}, all squares at once", way.0),
-                    tested(&folder, days, way, &[days.squares.to_vec()]),
-                ));
+                let name = format!("{}, all squares at once", way.0);
+                tell(days.name, &name, &tested(&folder, days, way, &[days.squares.to_vec()]));
             }
         }
     }
-    let mut table =
-        "\n| days | calibration | other squares | circles | straights and spins |\n|---|---|---|---|---|\n".to_owned();
-    for (days, way, errors) in &rows {
-        let cell = |ends: &Ends| {
-            let [mm, deg] = ends.rms();
-            if ends.1 > 0 { format!("{mm:.1} mm, {deg:.2} deg") } else { "-".to_owned() }
-        };
-        table += &format!("| {days} | {way} | {} | {} | {} |\n", cell(&errors[0]), cell(&errors[1]), cell(&errors[2]));
-    }
-    let _ = writeln!(std::io::stderr(), "{table}");
     let of =
-        |name: &str| rows.iter().find(|(days, way, _)| *days == "June" && way == name).unwrap().2.map(|e| e.rms()[0]);
+        |name: &str| rows.iter().find(|(days, way, _)| *days == "June" && *way == name).unwrap().2.map(|e| e.rms()[0]);
     let (nominal, tracks) = (of("nominal"), of("E_d, E_b, E_s from tracks"));
     assert!(tracks[0] < 0.7 * nominal[0] && tracks[1] < 0.8 * nominal[1], "{nominal:?} {tracks:?}");
 }

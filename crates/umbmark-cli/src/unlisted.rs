@@ -1,0 +1,88 @@
+//! What is missing and not in the catalogue: as a curve, and as a formula to try.
+
+use umbmark_core::dataset::model_text;
+use umbmark_core::diagnose::{Curve, CurvePoint, Dependence};
+
+use crate::prose::hanging;
+use crate::table::with_precision_of;
+
+/// Characters from the lower to the upper edge of a figure.
+const WIDTH: usize = 41;
+
+/// For people: the curve with its band, and the formula; nothing where nothing is unlisted.
+pub fn unlisted_text(unlisted: Option<&Dependence>, terminal: bool) -> String {
+    let Some(told) = unlisted else { return String::new() };
+    let mut text = format!("\nwhat is added to the {} motion, by {}\n\n", told.acts_on, told.title);
+    text += &figure(&told.curve, told.depends_on, terminal);
+    text += &match &told.suggestion {
+        Some(suggestion) => {
+            let share = 100.0 * suggestion.share.min(1.0);
+            let what = format!(
+                "a formula that explains {share:.0} % of it; save it as FILE and try `umbmark learn DATA --model FILE`"
+            );
+            format!("\n{}\n{}", hanging("", 0, &what), model_text(&suggestion.model))
+        }
+        None => format!("\n{}", hanging("", 0, "No formula of one variable that was tried explains half of it.")),
+    };
+    text
+}
+
+/// A line for each place: the value with half its 95 % interval, and where it lies between the edges.
+fn figure(curve: &Curve, depends_on: &str, terminal: bool) -> String {
+    let most = curve.points.iter().map(|p| p.value.abs() + p.half_width).fold(f64::MIN_POSITIVE, f64::max);
+    let (scale, prefix) = scaled(most);
+    let step = curve.points.windows(2).map(|pair| pair[1].at - pair[0].at).fold(f64::INFINITY, f64::min);
+    let unit = |unit: &str| if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+    let mut text = format!(
+        "{:>22}  {}\n",
+        format!("{}{}", depends_on.split(' ').next().unwrap_or(depends_on), unit(curve.at_unit)),
+        unit(&format!("{prefix}{}", curve.unit)).trim_start()
+    );
+    for point in &curve.points {
+        let (value, half) = (scale * point.value, scale * point.half_width);
+        let at = with_precision_of(point.at, if step.is_finite() { step } else { 1.0 });
+        let number = format!("{} ± {}", with_precision_of(value, half), with_precision_of(half, half));
+        text += &format!("{at:>10} {number:>18}  {}\n", band(point, most, terminal).trim_end());
+    }
+    text
+}
+
+/// Powers of ten that make a number readable, with their prefix.
+fn scaled(most: f64) -> (f64, &'static str) {
+    match most {
+        m if m < 1e-4 => (1e6, "1e-6 "),
+        m if m < 0.1 => (1e3, "1e-3 "),
+        _ => (1.0, ""),
+    }
+}
+
+/// The interval of one place between ±`most`, with a line at zero.
+fn band(point: &CurvePoint, most: f64, terminal: bool) -> String {
+    let [zero, low, line, high, middle] =
+        if terminal { ['│', '├', '─', '┤', '●'] } else { ['|', '(', '-', ')', 'o'] };
+    let place = |value: f64| ((0.5 + 0.5 * value / most).clamp(0.0, 1.0) * (WIDTH - 1) as f64).round() as usize;
+    let mut marks = vec![' '; WIDTH];
+    marks[WIDTH / 2] = zero;
+    let (from, to) = (place(point.value - point.half_width), place(point.value + point.half_width));
+    marks[from..=to].fill(line);
+    marks[from] = low;
+    marks[to] = high;
+    marks[place(point.value)] = middle;
+    marks.into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_is_drawn_with_its_interval_about_a_line_at_zero() {
+        let point = |value: f64, half_width: f64| CurvePoint { at: 0.0, value, half_width };
+        assert_eq!(band(&point(0.5, 0.25), 1.0, false), "                    |    (----o----)     ");
+        assert_eq!(band(&point(-1.0, 0.0), 1.0, true), "●                   │                    ");
+        let curve = Curve { at_unit: "m", unit: "rad/m".into(), points: vec![point(2e-3, 1e-3), point(-1e-3, 2e-4)] };
+        let text = figure(&curve, "since_turn * last_turn", false);
+        assert!(text.starts_with("        since_turn [m]  [1e-3 rad/m]\n"), "{text}");
+        assert!(text.contains("2.0 ± 1.0") && text.contains("-1.00 ± 0.20"), "{text}");
+    }
+}

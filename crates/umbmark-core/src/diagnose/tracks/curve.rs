@@ -1,0 +1,66 @@
+//! A smooth as people see it: a curve over what it depends on, with its interval.
+
+use super::examination::Examination;
+use super::look::Finding;
+use super::smooth::{ALONG_THE_WAY, Covariate, Exposure, Motion, Piece, Scales};
+use crate::diagnose::{Curve, CurvePoint};
+use crate::stats::normal_quantile;
+use nalgebra::DVector;
+use std::f64::consts::{PI, TAU};
+
+/// Points of a curve.
+const POINTS: usize = 17;
+/// What happens so far after a turn is not drawn \[m\].
+const FAR_FROM_TURN: f64 = 0.6;
+
+/// The curve of a smooth that was found: f(x) = Σ c_k f_k(x), with var f = fᵀ C f.
+pub fn curve(exam: &Examination, finding: &Finding, covariate: &Covariate, motion: Motion) -> Curve {
+    let scales = Scales::new(&exam.fitted.observed);
+    let own = &exam.asked[finding.answer.asked].columns;
+    let shown: Vec<usize> =
+        finding.answer.columns.iter().filter_map(|column| own.iter().position(|c| c == column)).collect();
+    let wide = normal_quantile(0.975);
+    let mut basis = vec![0.0; covariate.terms];
+    let point = |at: f64| {
+        (covariate.basis)(at / (covariate.scale)(&scales), &mut basis);
+        let basis = DVector::from_fn(shown.len(), |k, _| basis[shown[k]]);
+        let variance = (&finding.answer.covariance * &basis).dot(&basis);
+        CurvePoint { at, value: basis.dot(&finding.answer.step), half_width: wide * variance.max(0.0).sqrt() }
+    };
+    let added = if motion == Motion::Yaw { "rad" } else { "m" };
+    Curve {
+        at_unit: covariate.unit,
+        unit: format!("{added}/{}", covariate.exposure.unit()),
+        points: places(exam, covariate, &scales).into_iter().map(point).collect(),
+    }
+}
+
+/// Where a curve is told: all that the runs show of the covariate.
+fn places(exam: &Examination, covariate: &Covariate, scales: &Scales) -> Vec<f64> {
+    let (low, high) = match covariate.exposure {
+        Exposure::WheelWay(_) => (0.0, TAU),
+        _ if covariate.name == "heading" => (-PI, PI),
+        _ if covariate.name == ALONG_THE_WAY => (-1.0, 1.0),
+        _ => range(exam, covariate, scales),
+    };
+    let high = if covariate.name.starts_with("since_turn") { high.min(FAR_FROM_TURN) } else { high };
+    let points = if covariate.terms == 1 { 2 } else { POINTS };
+    let share = |k: usize| k as f64 / (points - 1) as f64;
+    (0..points).map(|k| low + (high - low) * share(k)).collect()
+}
+
+/// The least and the greatest value of a covariate along all runs.
+fn range(exam: &Examination, covariate: &Covariate, scales: &Scales) -> (f64, f64) {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for track in exam.fitted.observed.tracks() {
+        let way = track.length().max(f64::MIN_POSITIVE);
+        for at in track.contexts() {
+            let piece = Piece::believed(at, way, scales);
+            if piece.counts(covariate) {
+                let value = (covariate.value)(&piece);
+                (low, high) = (low.min(value), high.max(value));
+            }
+        }
+    }
+    if low < high { (low, high) } else { (0.0, (covariate.scale)(scales)) }
+}

@@ -1,0 +1,220 @@
+//! What to drive next: the run that would tell apart what these tracks could not, or show what they hide.
+//!
+//! The worth of a drive is judged as for return poses ([`next_experiments`](super::super::experiments)): how many standard
+//! deviations "the truth is j" would lie from all that the model with k in its place can predict, by old and new data together. Tracks
+//! that are yet to be driven are whitened with the noise of this robot as fitted, so their products simply add to today's.
+
+use super::examination::{Answer, Asked, Examination, Question};
+use super::look::{Finding, rivals};
+use super::system::Projected;
+use crate::diagnose::experiments::design::{MINUTES_A_RUN, minutes};
+use crate::diagnose::experiments::{best, worth};
+use crate::diagnose::{DiagnoseError, Experiment, Unseen, Why};
+use crate::effect::{Model, ModelError};
+use crate::likelihood::{Noise, ObservedRun, gram, seeded};
+use crate::path::{CIRCLE, Direction, FIGURE_EIGHT, Path, SPIN, SQUARE, STRAIGHT, Shape, SpeedProfile, WAYPOINTS};
+use crate::replay::Track;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use std::f64::consts::FRAC_PI_2;
+
+/// Runs of a new drive, each way.
+const RUNS: usize = 3;
+/// What a size below the noise is told from.
+const NOISE: &str = "noise";
+
+/// A drive on offer.
+struct Drive {
+    what: String,
+    path: Path,
+    /// Heading at START in the room \[rad\], seen from where it was in the data.
+    turned: f64,
+    directions: &'static [Direction],
+}
+
+/// Something that may be true, and what it must be told from.
+struct Doubt {
+    separates: [&'static str; 2],
+    truth: Vec<usize>,
+    values: DVector<f64>,
+    /// Columns of the model and of the rival.
+    against: Vec<usize>,
+}
+
+/// Drives that would tell apart the members of certified classes, and drives that would show what is hidden; the most telling per
+/// minute first.
+pub fn next(exam: &Examination, certified: &[&Finding], unseen: &[Unseen]) -> Result<Vec<Experiment>, DiagnoseError> {
+    let mut doubts: Vec<Doubt> = certified.iter().flat_map(|finding| of_class(exam, finding)).collect();
+    doubts.extend(unseen.iter().flat_map(|unseen| of_unseen(exam, unseen)));
+    let mut columns: Vec<usize> = doubts.iter().flat_map(|d| d.truth.iter().chain(&d.against)).copied().collect();
+    columns.sort_unstable();
+    columns.dedup();
+    let today = DMatrix::from_fn(columns.len(), columns.len(), |i, j| exam.system.whole[(columns[i], columns[j])]);
+    let drives = drives(exam);
+    let told: Vec<DMatrix<f64>> = drives
+        .par_iter()
+        .map(|drive| drive.products(exam, &columns).map(|new| &today + new))
+        .collect::<Result<_, _>>()?;
+    let place = |column: &usize| columns.binary_search(column).unwrap_or(0);
+    let mut experiments: Vec<Experiment> = Vec::new();
+    for separates in pairs(&doubts) {
+        let own: Vec<&Doubt> = doubts.iter().filter(|doubt| doubt.separates == separates).collect();
+        let offers = drives.iter().zip(&told).map(|(drive, products)| Experiment {
+            separates,
+            experiment: drive.what.clone(),
+            minutes: drive.minutes(exam),
+            sd: own.iter().map(|doubt| doubt.distance(products, place)).fold(f64::INFINITY, f64::min),
+        });
+        experiments.extend(best(offers.collect()));
+    }
+    experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+    Ok(experiments)
+}
+
+fn pairs(doubts: &[Doubt]) -> Vec<[&'static str; 2]> {
+    let mut pairs = Vec::new();
+    for doubt in doubts.iter().filter(|doubt| !doubt.truth.is_empty()) {
+        if !pairs.contains(&doubt.separates) {
+            pairs.push(doubt.separates);
+        }
+    }
+    pairs
+}
+
+/// A finding against each other member of its class, either being the truth.
+fn of_class(exam: &Examination, finding: &Finding) -> Vec<Doubt> {
+    let name = |answer: &Answer| exam.asked[answer.asked].effect().map_or("", |effect| effect.about.name);
+    let own = &finding.answer;
+    let either = |rival: &Answer| {
+        let separates = [name(own), name(rival)];
+        [(own, rival), (rival, own)].map(|(truth, other)| {
+            let base = finding.base().iter().filter(|c| !truth.columns.contains(c));
+            let against = base.chain(&other.columns).copied().collect();
+            Doubt { separates, truth: truth.columns.clone(), values: truth.step.clone(), against }
+        })
+    };
+    rivals(exam, finding).iter().flat_map(either).collect()
+}
+
+/// Each size of a hidden effect, at its usual size.
+fn of_unseen(exam: &Examination, unseen: &Unseen) -> Vec<Doubt> {
+    let from = match &unseen.why {
+        Why::Absorbed(by) => by.first().copied().unwrap_or(NOISE),
+        Why::BelowNoise => NOISE,
+    };
+    let named = |asked: &Asked| asked.effect().is_some_and(|effect| effect.about.name == unseen.effect);
+    let Some(index) = exam.asked.iter().position(named) else { return Vec::new() };
+    let Question::Effect(_, parameters) = &exam.asked[index].question else { return Vec::new() };
+    let against = exam.base(Some(index));
+    let sizes = exam.asked[index].columns.iter().zip(parameters);
+    sizes
+        .map(|(column, parameter)| Doubt {
+            separates: [unseen.effect, from],
+            truth: vec![*column],
+            values: DVector::from_element(1, parameter.typical),
+            against: against.clone(),
+        })
+        .collect()
+}
+
+impl Doubt {
+    /// How far the truth lies from all that the others can predict, in standard deviations.
+    fn distance(&self, products: &DMatrix<f64>, place: impl Fn(&usize) -> usize) -> f64 {
+        let against: Vec<usize> = self.against.iter().map(&place).filter(|c| products[(*c, *c)] > 0.0).collect();
+        let truth: Vec<usize> = self.truth.iter().map(&place).collect();
+        let left = Projected::new(products, &against).information(&truth);
+        (&left * &self.values).dot(&self.values).max(0.0).sqrt()
+    }
+}
+
+impl Drive {
+    fn minutes(&self, exam: &Examination) -> f64 {
+        let runs = (RUNS * self.directions.len()) as f64;
+        runs * (MINUTES_A_RUN + minutes(&self.path, &exam.fitted.observed.robot))
+    }
+
+    /// Products of some of the examination's columns over all runs of this drive.
+    fn products(&self, exam: &Examination, columns: &[usize]) -> Result<DMatrix<f64>, ModelError> {
+        let mut sum = DMatrix::zeros(columns.len(), columns.len());
+        for direction in self.directions {
+            let track = Track::watched(&self.path, *direction, &exam.fitted.observed.robot);
+            sum += self.of_run(exam, columns, track, *direction)? * RUNS as f64;
+        }
+        Ok(sum)
+    }
+
+    fn of_run(
+        &self,
+        exam: &Examination,
+        columns: &[usize],
+        track: Track,
+        direction: Direction,
+    ) -> Result<DMatrix<f64>, ModelError> {
+        let headings = exam.fitted.observed.runs.iter().any(|run| run.blocks.iter().any(|block| block.headings > 0));
+        let run = ObservedRun::planned(track, direction, headings, &self.at_start(&exam.fitted.model)?);
+        let noise: &Noise = &exam.fitted.noise;
+        let mut made = Vec::with_capacity(columns.len());
+        for column in columns {
+            let (model, effect, parameter) = exam.number(*column)?;
+            let model = self.at_start(&model)?;
+            let names = crate::diagnose::ends::names(&model);
+            let value = names.iter().position(|name| *name == (effect, parameter)).unwrap_or(0);
+            made.push(run.derivatives(&seeded(&model, value)));
+        }
+        let white = noise.whiten(&run, &made.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        Ok(gram(&white.values, white.columns))
+    }
+
+    /// The model of a robot that stands as this drive has it.
+    fn at_start(&self, model: &Model) -> Result<Model, ModelError> {
+        let mut model = model.clone();
+        if self.turned != 0.0 {
+            let heading = model.get("start_pose", "heading_rad").unwrap_or(0.0);
+            model.set("start_pose", "heading_rad", heading + self.turned)?;
+        }
+        Ok(model)
+    }
+}
+
+/// All drives on offer to this robot.
+fn drives(exam: &Examination) -> Vec<Drive> {
+    let path = exam.fitted.observed.path.as_ref();
+    let speed = path.map_or_else(SpeedProfile::default, |path| path.speed);
+    let [top, acceleration, pause] = speed.values();
+    let at = |factor: f64| SpeedProfile::new(factor * top, acceleration, pause).unwrap_or(speed);
+    let of = |what: &str, shape: &'static Shape, values: &[f64], speed: SpeedProfile, turned: f64| {
+        let path = Path::new(shape, values, speed).ok()?;
+        Some(Drive { what: format!("{what}, {RUNS} runs each way"), path, turned, directions: &Direction::BOTH })
+    };
+    let mut offered = vec![
+        of("a straight of 10 m", &STRAIGHT, &[10.0], speed, 0.0).map(one_way),
+        of("a straight of 10 m at double speed", &STRAIGHT, &[10.0], at(2.0), 0.0).map(one_way),
+        of("5 m out, a half turn, and 5 m back", &WAYPOINTS, &[5.0, 0.0, 0.0, 0.0], speed, 0.0),
+        of("5 turns on the spot", &SPIN, &[5.0], speed, 0.0),
+        of("5 turns on the spot at double rate", &SPIN, &[5.0], at(2.0), 0.0),
+        of("a circle of 1 m radius, twice round", &CIRCLE, &[1.0, 2.0], speed, 0.0),
+        of("the same circle at double speed", &CIRCLE, &[1.0, 2.0], at(2.0), 0.0),
+        of("a figure-eight of 1 m radius", &FIGURE_EIGHT, &[1.0], speed, 0.0),
+    ];
+    if let Some(path) = path {
+        let again = |what: &str, speed, turned| of(what, path.shape(), path.values(), speed, turned);
+        offered.push(again("the same path", speed, 0.0));
+        offered.push(again("the same path at half speed", at(0.5), 0.0));
+        offered.push(again("the same path at double speed", at(2.0), 0.0));
+        offered.push(again("the same path, START turned by 90 deg in the room", speed, FRAC_PI_2));
+        if std::ptr::eq(path.shape(), &SQUARE) {
+            let side = path.values()[0];
+            let half = 0.5 * side;
+            let points = [half, 0.0, side, 0.0, side, half, side, side, half, side, 0.0, side, 0.0, half, 0.0, 0.0];
+            offered.push(of("the same square with a stop halfway along each side", &WAYPOINTS, &points, speed, 0.0));
+            offered.push(of(&format!("a square of {half} m"), &SQUARE, &[half], speed, 0.0));
+        }
+    }
+    offered.into_iter().flatten().collect()
+}
+
+/// A straight is the same either way.
+fn one_way(drive: Drive) -> Drive {
+    let what = drive.what.replace(&format!("{RUNS} runs each way"), &format!("{RUNS} runs"));
+    Drive { what, directions: &[Direction::Ccw], ..drive }
+}

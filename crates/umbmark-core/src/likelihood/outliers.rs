@@ -1,0 +1,188 @@
+//! Collisions and glitches: places in a run where what is new cannot be noise.
+//!
+//! What the filter finds new in a block, by the noise of all runs and the usual size in its own run, is a few standard deviations
+//! at most. Where it is ten, the robot was pushed, or the reference jumped. From such a block the run starts anew, as if it had been
+//! put down there: neither the fit nor any test sees the jump. What happens at the same place in other runs too is no accident
+//! but an effect, and stays; so do jumps without number.
+
+use super::fitting::Fitted;
+use super::observed::ObservedRun;
+use std::collections::BTreeSet;
+
+/// So many standard deviations are no noise. Gaussian noise has it once in 1e21 blocks; `docs/diagnosis.md` tells the rate found
+/// with heavy tails.
+const BEYOND: f64 = 10.0;
+/// So many, within [`NEAR`], make a jump in another run one of the same kind.
+const ALIKE: f64 = 4.0;
+/// Way (of a wheel, in a turn) within which two runs are at the same place \[m\].
+const NEAR: f64 = 0.15;
+/// A jump that this share of the other runs has too is an effect.
+const SHARED: f64 = 0.2;
+/// More of all blocks than this are no accidents.
+const MOST: f64 = 0.01;
+/// Blocks at the beginning that are spent on START.
+const SPENT: usize = 2;
+
+/// A place where a run was disturbed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outlier {
+    /// The run.
+    pub run: String,
+    /// Time since START \[s\].
+    pub time: f64,
+    /// How far the robot seemed to jump \[m\].
+    pub moved: f64,
+    /// How far it seemed to turn \[rad\]; `None` where headings were not measured.
+    pub turned: Option<f64>,
+    /// In standard deviations.
+    pub deviations: f64,
+}
+
+/// A block that is beyond noise, by run and number.
+pub(super) type Place = (usize, usize);
+
+impl Fitted {
+    /// Blocks beyond noise that do not start anew yet.
+    pub(super) fn beyond_noise(&self) -> BTreeSet<(Place, u64)> {
+        let wheelbase = self.observed.robot.drive.wheelbase();
+        let runs: Vec<Vec<f64>> = self.observed.runs.iter().map(|run| self.deviations(run)).collect();
+        let ways: Vec<Vec<f64>> = self.observed.runs.iter().map(|run| ways(run, wheelbase)).collect();
+        let shared = |run: usize, way: f64| {
+            let there = |other: usize| {
+                let mut blocks = ways[other].iter().zip(&runs[other]);
+                blocks.any(|(w, d)| (w - way).abs() <= NEAR && *d > ALIKE)
+            };
+            let others = (0..runs.len()).filter(|other| *other != run);
+            others.clone().filter(|other| there(*other)).count() as f64 >= (SHARED * others.count() as f64).max(1.0)
+        };
+        let beyond = |run: usize| runs[run].iter().enumerate().filter(|(_, d)| **d > BEYOND).map(|(block, _)| block);
+        let places = (0..runs.len()).flat_map(|run| beyond(run).map(move |block| (run, block)));
+        let alone = places.filter(|(run, block)| !shared(*run, ways[*run][*block]));
+        let found: BTreeSet<_> = alone.map(|place| (place, runs[place.0][place.1].to_bits())).collect();
+        let all: usize = self.observed.runs.iter().map(|run| run.blocks.len()).sum();
+        let known = self.observed.runs.iter().flat_map(|run| &run.blocks).filter(|block| block.afresh).count();
+        if (found.len() + known) as f64 <= MOST * all as f64 { found } else { BTreeSet::new() }
+    }
+
+    /// How far what is new in each block is from nothing, in standard deviations of this run.
+    fn deviations(&self, run: &ObservedRun) -> Vec<f64> {
+        let white = self.noise.whiten(run, &[&run.residuals(&self.model.chain())]);
+        let (mut squares, mut rows) = (vec![0.0; run.blocks.len()], vec![0.0; run.blocks.len()]);
+        for (value, block) in white.values.iter().zip(&white.block) {
+            squares[*block] += value * value;
+            rows[*block] += 1.0;
+        }
+        let mean = |block: usize| if rows[block] > 0.0 { squares[block] / rows[block] } else { 0.0 };
+        let mut sorted: Vec<f64> = (SPENT.min(squares.len())..squares.len()).map(mean).collect();
+        sorted.sort_by(f64::total_cmp);
+        // The median of a chi-squared with three degrees of freedom is 2.37.
+        let usual = sorted.get(sorted.len() / 2).map_or(1.0, |median| median * 3.0 / 2.37).max(1.0);
+        (0..squares.len()).map(|block| if block < SPENT { 0.0 } else { (squares[block] / usual).sqrt() }).collect()
+    }
+
+    /// A disturbed place, for people.
+    pub(super) fn outlier(&self, (run, block): Place, deviations: f64) -> Outlier {
+        let run = &self.observed.runs[run];
+        let residuals = run.residuals(&self.model.chain());
+        let [dx, dy, turned] = [0, 1, 2].map(|k| residuals[block][k] - residuals[block - 1][k]);
+        let measured = run.blocks[block].headings > 0 && run.blocks[block - 1].headings > 0;
+        Outlier {
+            run: run.name.clone(),
+            time: run.track.sights()[run.blocks[block].first].time,
+            moved: dx.hypot(dy),
+            turned: measured.then_some(turned),
+            deviations,
+        }
+    }
+}
+
+/// How far each block is along its run: way driven, and way of the wheels in turns.
+fn ways(run: &ObservedRun, wheelbase: f64) -> Vec<f64> {
+    let along = |way: &mut f64, block: &super::Block| {
+        *way += block.growth.way + 0.5 * wheelbase * block.growth.heading_per_radian[5];
+        Some(*way)
+    };
+    run.blocks.iter().scan(0.0, along).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::Dataset;
+    use crate::diagnose::first_model;
+    use crate::drive::Robot;
+    use crate::effect::Model;
+    use crate::geometry::wrap;
+    use crate::likelihood::watched::watched;
+    use crate::likelihood::{Noise, Observed};
+
+    /// 3 + 3 squares of a robot with usual errors.
+    fn data(effects: &[(&str, &str, f64)]) -> Dataset {
+        let mut model = Model::new(&Robot::labmate());
+        let usual = [
+            ("wheelbase", "e_b", 0.993),
+            ("wheel_noise", "k_sqrt_m", 4e-4),
+            ("reference_noise", "position_sd_m", 8e-4),
+            ("reference_noise", "heading_sd_rad", 8e-4),
+        ];
+        for (effect, parameter, value) in usual.iter().chain(effects) {
+            model.set(effect, parameter, *value).unwrap();
+        }
+        watched(&model, 3, 5)
+    }
+
+    fn fitted(data: &Dataset) -> Fitted {
+        let observed = Observed::new(data, &Robot::labmate()).unwrap();
+        observed.fit(&first_model(data).unwrap(), &Noise::default(), &[]).unwrap()
+    }
+
+    /// The run turned by 3 degrees where it is after `at` of its poses: somebody kicked the robot.
+    fn kicked(mut data: Dataset, run: usize, at: usize) -> Dataset {
+        let poses = &mut data.runs[run].log.as_mut().unwrap().reference;
+        let (sine, cosine) = libm::sincos(0.052);
+        let pivot = poses[at];
+        for pose in &mut poses[at..] {
+            let (dx, dy) = (pose.x - pivot.x, pose.y - pivot.y);
+            (pose.x, pose.y) = (pivot.x + cosine * dx - sine * dy, pivot.y + sine * dx + cosine * dy);
+            pose.heading = pose.heading.map(|heading| wrap(heading + 0.052));
+        }
+        data
+    }
+
+    #[test]
+    fn a_kicked_robot_is_named_with_run_and_time_and_changes_no_estimate_by_much() {
+        let (plain, hurt) = (data(&[]), kicked(data(&[]), 1, 250));
+        let (before, after) = (fitted(&plain), fitted(&hurt));
+        assert_eq!(before.outliers, []);
+        assert!((1..=2).contains(&after.outliers.len()), "{:?}", after.outliers);
+        let log = hurt.runs[1].log.as_ref().unwrap();
+        let time = log.time[log.reference[250].sample] - log.time[0];
+        for outlier in &after.outliers {
+            assert_eq!(outlier.run, hurt.runs[1].name);
+            assert!((outlier.time - time).abs() < 0.3 && outlier.deviations > BEYOND, "{outlier:?} {time}");
+        }
+        let turned: f64 = after.outliers.iter().filter_map(|o| o.turned).sum();
+        assert!((turned - 0.052).abs() < 0.01, "{turned}");
+        let covariance = before.covariance.as_ref().unwrap();
+        for (k, (a, b)) in before.model.values().zip(after.model.values()).enumerate() {
+            assert!((a - b).abs() < covariance[(k, k)].sqrt(), "{k}: {a} {b}");
+        }
+    }
+
+    #[test]
+    fn a_glitch_of_the_reference_is_left_out() {
+        let mut data = data(&[]);
+        for pose in &mut data.runs[4].log.as_mut().unwrap().reference[300..302] {
+            pose.x += 0.05;
+        }
+        let outliers = fitted(&data).outliers;
+        assert!(!outliers.is_empty() && outliers.len() <= 3, "{outliers:?}");
+        assert!(outliers.iter().all(|o| o.run == data.runs[4].name), "{outliers:?}");
+        assert!(outliers.iter().any(|o| o.moved > 0.015), "{outliers:?}");
+    }
+
+    #[test]
+    fn what_happens_in_every_run_is_no_accident() {
+        assert_eq!(fitted(&data(&[("caster_kick", "kick_rad", 0.05)])).outliers, []);
+    }
+}
