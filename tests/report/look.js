@@ -35,6 +35,13 @@ const overlaps = () => {
   return pairs;
 };
 
+// Texts of figures that the edge of their figure cuts.
+const cut = () => [...document.querySelectorAll(".plot")].flatMap((plot) => {
+  const edge = plot.getBoundingClientRect();
+  const out = (box) => box.width > 0 && (box.left < edge.left - 1 || box.right > edge.right + 1);
+  return [...plot.querySelectorAll("text")].filter((e) => out(e.getBoundingClientRect())).map((e) => e.textContent);
+});
+
 // How many points, lines and bars with something in them a figure shows.
 const marks = (plot) => {
   const drawn = document.getElementById(plot).querySelectorAll(

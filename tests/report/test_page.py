@@ -65,13 +65,13 @@ def test_every_figure_is_drawn_with_data_and_the_console_is_silent(
 ) -> None:
     open_page(browser, pages / f"{name}.html")
     plots = [plot.get_attribute("id") for plot in browser.find_elements(By.CSS_SELECTOR, ".plot")]
-    assert len(plots) >= 8
+    assert len(plots) >= 7
     assert all(marks(browser, str(plot)) > 0 for plot in plots)
     assert complaints(browser) == []
 
 
 @pytest.mark.parametrize(("name", "width"), WIDTHS)
-def test_no_text_overlaps_and_nothing_leaves_the_page_at_any_width(
+def test_no_text_overlaps_or_is_cut_and_nothing_leaves_the_page_at_any_width(
     browser: webdriver.Chrome, pages: Path, name: str, width: int
 ) -> None:
     open_page(browser, pages / f"{name}.html", width)
@@ -82,6 +82,7 @@ def test_no_text_overlaps_and_nothing_leaves_the_page_at_any_width(
     wide = browser.execute_script("return document.documentElement.scrollWidth")
     assert wide <= width
     assert look(browser, "overlaps") == []
+    assert look(browser, "cut") == []
 
 
 def test_a_tooltip_names_the_run(browser: webdriver.Chrome, pages: Path) -> None:

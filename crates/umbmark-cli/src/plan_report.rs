@@ -98,12 +98,13 @@ fn or_dash(value: Option<f64>, text: impl Fn(f64) -> String) -> String {
     value.map_or("-".to_owned(), text)
 }
 
-/// A size to three digits.
+/// A size to two digits.
 fn brief(value: f64) -> String {
-    if value != 0.0 && !(1e-3..1e4).contains(&value.abs()) {
-        return format!("{value:.2e}");
+    let size = value.abs();
+    if size > 0.0 && !(1e-3..1e4).contains(&size) {
+        return format!("{value:.1e}");
     }
-    let decimals = (2 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 9) as usize;
+    let decimals = (1 - size.max(1e-9).log10().floor() as i32).clamp(0, 9) as usize;
     format!("{value:.decimals$}")
 }
 

@@ -2,7 +2,7 @@
 
 use anyhow::Context;
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
-use umbmark_core::drive::{DifferentialDrive, Drive, Encoder, Kind, Robot};
+use umbmark_core::drive::{Drive, Encoder, Kind, Robot};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{Path, SHAPES, SpeedProfile, WAYPOINTS};
 
@@ -133,13 +133,8 @@ impl RobotFlags {
                 kind.name()
             );
         }
-        if given.is_none() {
-            return Ok(drive);
-        }
-        let diameter = |nominal: f64| self.wheel_diameter.unwrap_or(nominal);
-        let wheelbase = self.wheelbase.unwrap_or(drive.wheelbase());
-        let (left, right) = (diameter(drive.wheel_diameter_left()), diameter(drive.wheel_diameter_right()));
-        Ok(DifferentialDrive::new(wheelbase, left, right)?.into())
+        let drive = self.wheelbase.map_or(Ok(drive), |value| drive.with("wheelbase_m", value))?;
+        Ok(self.wheel_diameter.map_or(Ok(drive), |value| drive.with("wheel_diameter_m", value))?)
     }
 
     /// `path` with what was said changed.

@@ -20,6 +20,7 @@ mod outcome;
 
 use crate::dataset::{Dataset, ReturnError};
 use crate::drive::{Kind, Robot};
+use crate::effect::ModelError;
 use crate::fit::Termination;
 use crate::path::{Path, SQUARE};
 use crate::replay::ReplayError;
@@ -48,15 +49,9 @@ pub enum CalibrateError {
         /// The kind of the drive.
         drive: &'static str,
     },
-    /// A drive whose returns no model of one axle predicts.
-    #[error(
-        "drive = \"{drive}\" is not supported here: its returns are corrected by its link as it drives, and are not predicted by a \
-         model of effects; `umbmark mc`, `score` and `paper` take it"
-    )]
-    NotPredicted {
-        /// The kind of the drive.
-        drive: &'static str,
-    },
+    /// A drive whose poses no model predicts.
+    #[error(transparent)]
+    Model(#[from] ModelError),
     /// No run with an observation that can be predicted.
     #[error(
         "none of {runs} runs can be predicted: each needs a return error and a path in robot.toml, \

@@ -67,6 +67,14 @@ pub enum DriveError {
         /// Its unit.
         unit: &'static str,
     },
+    /// A number that a drive does not have.
+    #[error("a robot with drive = \"{drive}\" has no {quantity}")]
+    NotOf {
+        /// What was meant.
+        quantity: &'static str,
+        /// Kind of the drive.
+        drive: &'static str,
+    },
     /// A counter of no or too many bits.
     #[error("counter_bits must be between 1 and {MAX_COUNTER_BITS}, got {0}")]
     CounterBits(u32),
@@ -131,6 +139,22 @@ impl Drive {
             Drive::Ackermann(drive) => drive.values(),
             Drive::Clapper(drive) => drive.values(),
         }
+    }
+
+    /// The drive with another value of one of its numbers, by its name in files; `wheel_diameter_m` is that of all wheels. What is
+    /// a number of the encoder or of another drive changes nothing, but for the wheelbase.
+    pub fn with(&self, name: &'static str, value: f64) -> Result<Drive, DriveError> {
+        let all_wheels = |own: &str| name == "wheel_diameter_m" && own.starts_with("wheel_diameter_");
+        let (kind, mut values) = (self.kind(), self.values());
+        if name == "wheelbase_m" && kind.parameters().iter().all(|p| p.name != name) {
+            return Err(DriveError::NotOf { quantity: name, drive: kind.name() });
+        }
+        for (parameter, own) in kind.parameters().iter().zip(&mut values) {
+            if parameter.name == name || all_wheels(parameter.name) {
+                *own = value;
+            }
+        }
+        Drive::from_values(kind, &values)
     }
 
     /// The drive as its odometry must believe it to be, where these are the true values of its [first

@@ -178,6 +178,9 @@ impl Study {
     /// The test without noise, bumps and quantisation, all drawn parameters in their middle: its return errors \[cw, ccw\]
     /// by exact kinematics.
     pub fn noise_free(&self) -> Result<[ReturnError; 2], StudyError> {
+        if self.robot().drive.kind() == Kind::Clapper {
+            return Err(ModelError::NotPredicted { drive: Kind::Clapper.name() }.into());
+        }
         let model = trial::centred(&self.model, &self.draws)?;
         Ok(NoiseFree::new(&model, &self.path, model.varies()).returned())
     }

@@ -84,9 +84,13 @@ impl From<Table> for Rows {
 pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usize)) -> Result<String, Error> {
     let mut figures = serde_json::Map::new();
     let mut sections: Vec<Section> = Vec::new();
+    let mut absent = Vec::new();
     for (index, kind) in KINDS.iter().enumerate() {
         seen(index);
-        sections.push(figure_section(studies, kind, &mut figures));
+        match figure_section(studies, kind, &mut figures) {
+            section if section.parts.iter().any(|part| part.figure.is_some()) => sections.push(section),
+            section => absent.push(section),
+        }
         match kind.name {
             "confusability" => {
                 sections.push(list_section(studies, "unseen", "What these runs cannot show", unseen::unseen));
@@ -114,6 +118,7 @@ pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usi
         verdicts => studies.iter().map(|s| (s.name.clone(), verdict(s))).collect::<Vec<_>>(),
         many => studies.len() > 1,
         sections => Value::from(Serde(&sections)),
+        absent => Value::from(Serde(&absent)),
         filters => Value::from(Serde(&filters)),
         tones => Tone::ALL.map(|t| (t.name(), t.on_white(), t.on_black())),
         provenance => Value::from(Serde(provenance)),
@@ -207,13 +212,11 @@ fn align(mut figures: Vec<&mut Figure>) {
         return;
     }
     for index in 0..panels {
-        let ends: Vec<_> = figures.iter().map(|figure| scale::ends(&figure.panels[index])).collect();
-        let all = |of: fn(&([f64; 2], [f64; 2])) -> [f64; 2]| {
-            ends.iter()
-                .map(of)
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)])
+        let (x, y): (Vec<_>, Vec<_>) = figures.iter().map(|figure| scale::ends(&figure.panels[index])).unzip();
+        let widest = |ends: Vec<[f64; 2]>| {
+            ends.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)])
         };
-        let (x, y) = (all(|e| e.0), all(|e| e.1));
+        let (x, y) = (widest(x), widest(y));
         for figure in &mut figures {
             let panel = &mut figure.panels[index];
             for (axis, ends) in [(&mut panel.x, x), (&mut panel.y, y)] {

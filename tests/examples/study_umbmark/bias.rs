@@ -18,11 +18,11 @@ pub fn study(study: &Study) {
     println!("| robot | true [mm] | n | mean reads [mm] | bias [mm] | std dev [mm] | 5 % [mm] | 95 % [mm] |");
     println!("|---|---|---|---|---|---|---|---|");
     let mut figure = Figure::new(
-        "What E_max,sys reads too much on average (band: 5 to 95 % of tests of the 26 mm robot)",
+        "What E_max,sys reads too much on average (band: 5 to 95 % of the 26 mm robot's tests)",
         "runs in each direction",
         "read - true [mm]",
         [1.0, 30.0],
-        [-40.0, 120.0],
+        [-20.0, 120.0],
     );
     for ((name, e_d, e_b), colour) in ROBOTS.into_iter().zip(COLOURS) {
         let (mut line, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new());

@@ -112,11 +112,11 @@ pub fn study(study: &Study) {
         }
     }
     let mut figure = Figure::new(
-        "Fig. 6: ten bumps within 0.4 m of the first leg; the return heading is 5.73 deg wherever they lie",
+        "Ten bumps within 0.4 m of the first leg; the heading is 5.73 deg off wherever they lie",
         "middle of the bumps on the first leg [m]",
         "return position off [mm]",
         [0.0, 4.0],
-        [0.0, 420.0],
+        [0.0, 500.0],
     );
     figure.curve(&position, COLOURS[0], "simulated");
     let theory: Vec<(f64, f64)> =

@@ -41,7 +41,7 @@ pub fn study(study: &Study) {
         "turn by one bump of 10 mm [deg]",
         "sigma [mm]",
         [0.2, 1.1],
-        [0.0, 140.0],
+        [0.0, 100.0],
     );
     for (index, (name, rate, height)) in FLOORS.into_iter().enumerate() {
         let equal_slip = index == 3;
@@ -56,7 +56,7 @@ pub fn study(study: &Study) {
         println!("| {name} | {} | {} |", told(&sigma), told(&extended));
         if index == 1 || index == 3 {
             let dots: Vec<(f64, f64)> =
-                truth.iter().zip(&sigma).map(|(t, s)| (t.to_degrees(), (1e3 * s).min(140.0))).collect();
+                truth.iter().zip(&sigma).map(|(t, s)| (t.to_degrees(), (1e3 * s).min(100.0))).collect();
             figure.dots(&dots, COLOURS[usize::from(index == 3)], name);
         }
     }

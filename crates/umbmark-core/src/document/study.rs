@@ -2,6 +2,7 @@
 
 use crate::calibrate::{Angles, Correction};
 use crate::dataset::Run;
+use crate::drive::Kind;
 use crate::monte_carlo::{Distribution, Draw, Ensemble, Metric, Statistics, Study, StudyError};
 use crate::path::{Direction, SQUARE};
 use crate::preset::Published;
@@ -23,6 +24,9 @@ pub struct Theory {
 impl Theory {
     /// That of a study, all drawn parameters in their middle.
     pub fn of(study: &Study) -> Result<Theory, StudyError> {
+        if study.robot().drive.kind() == Kind::Clapper {
+            return Ok(Theory { exact: None, first_order: None });
+        }
         let [cw, ccw] = study.noise_free()?;
         let middle = |effect: &str, parameter: &str| {
             let drawn = study.draws.iter().find(|d| d.effect() == effect && d.parameter().name == parameter);
@@ -31,7 +35,8 @@ impl Theory {
         let e_d = middle("wheel_diameter_ratio", "e_d");
         // A square sees the ratio of the two only.
         let e_b = middle("wheelbase", "e_b") / middle("scale", "e_s");
-        let side = study.path.values().first().filter(|_| std::ptr::eq(study.path.shape(), &SQUARE));
+        let of_paper = std::ptr::eq(study.path.shape(), &SQUARE) && study.robot().drive.kind() == Kind::Differential;
+        let side = study.path.values().first().filter(|_| of_paper);
         let first_order = side.and_then(|side| {
             let angles = Angles::of(&Correction { e_d, e_b, e_s: 1.0 }, *side, &study.robot().drive);
             let [cw, ccw] = Direction::BOTH.map(|direction| angles.first_order_return(direction, *side));

@@ -46,6 +46,15 @@ pub enum ModelError {
         /// The robot's.
         drive: &'static str,
     },
+    /// A drive whose poses no model of one axle predicts.
+    #[error(
+        "drive = \"{drive}\" is not supported here: its returns are corrected by its link as it drives, and are not predicted by a \
+         model of effects; `umbmark mc`, `score` and `paper` take it"
+    )]
+    NotPredicted {
+        /// The kind of the drive.
+        drive: &'static str,
+    },
     /// A second effect of the same name.
     #[error("there is another effect \"{name}\"; give one of them another name")]
     Taken {

@@ -113,10 +113,8 @@ impl Stage {
         let l21 = (third[1] - l20 * l10) / d1;
         let d2 = root(third[2] + measurement[(2, 2)] - l20 * l20 - l21 * l21)?;
         let mut stage = Stage { x, y, diagonal: [d0, d1, d2], below: [l10, l20, l21], w: [[0.0; 3]; 3] };
-        for k in 0..3 {
-            let column = stage.solved([hp[0][k], hp[1][k], hp[2][k]]);
-            (0..3).for_each(|r| stage.w[r][k] = column[r]);
-        }
+        let columns: [[f64; 3]; 3] = std::array::from_fn(|k| stage.solved(hp.map(|row| row[k])));
+        stage.w = std::array::from_fn(|row| columns.map(|column| column[row]));
         Some(stage)
     }
 

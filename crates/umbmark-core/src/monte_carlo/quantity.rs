@@ -1,7 +1,7 @@
 //! The numbers of a study that can be varied, by the names of their flags.
 
 use super::{Study, StudyError};
-use crate::drive::{Drive, DriveError, Encoder, Robot};
+use crate::drive::{DriveError, Encoder, Robot};
 use crate::effect::CATALOGUE;
 use crate::engine::Update;
 use crate::parameter::{DefaultValue, Parameter, ParameterError, nearest};
@@ -63,14 +63,6 @@ pub enum QuantityError {
         /// The shape of the path.
         shape: &'static str,
     },
-    /// A number that the robot's drive does not have.
-    #[error("{name} is not a number of a {drive} drive")]
-    Kind {
-        /// The parameter.
-        name: &'static str,
-        /// The kind of drive.
-        drive: &'static str,
-    },
     /// A value out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
@@ -93,14 +85,6 @@ const ROBOT: [Parameter; 4] = [
     number("ticks_per_revolution", "ticks-per-revolution", "", "encoder ticks per wheel revolution"),
     number("encoder_rate_hz", "encoder-rate", "Hz", "how often the counters are read"),
 ];
-
-/// Places of a number among those of a drive; the diameter of both wheels has two.
-fn drive_places(drive: &Drive, name: &str) -> impl Iterator<Item = usize> {
-    let of_both = name == "wheel_diameter_m";
-    let is_meant = move |own: &Parameter| own.name == name || (of_both && own.name.starts_with("wheel_diameter_"));
-    let parameters = drive.kind().parameters().iter().enumerate();
-    parameters.filter(move |(_, own)| is_meant(own)).map(|(place, _)| place)
-}
 
 /// Runs in each direction of a test; sigma needs two.
 const RUNS: Parameter =
@@ -175,9 +159,10 @@ impl Quantity {
         match self.owner {
             Owner::Effect(effect) => study.model.get(effect, name),
             Owner::Robot => match name {
+                "wheelbase_m" => Some(robot.drive.wheelbase()),
+                "wheel_diameter_m" => Some(robot.drive.wheel_diameter_left()),
                 "ticks_per_revolution" => Some(robot.encoder.ticks_per_revolution()),
-                "encoder_rate_hz" => robot.encoder.rate(),
-                _ => drive_places(&robot.drive, name).next().map(|place| robot.drive.values()[place]),
+                _ => robot.encoder.rate(),
             },
             Owner::Path => {
                 let place = study.path.shape().parameters.iter().position(|p| p.name == name)?;
@@ -219,14 +204,7 @@ impl Quantity {
     fn set_robot(&self, study: &mut Study, value: f64) -> Result<(), QuantityError> {
         let Robot { name, drive, encoder } = study.robot().clone();
         let given = |parameter: &str, present: f64| if self.parameter.name == parameter { value } else { present };
-        let of_encoder = ["ticks_per_revolution", "encoder_rate_hz"].contains(&self.parameter.name);
-        let mut values = drive.values();
-        let mut places = drive_places(&drive, self.parameter.name).peekable();
-        if !of_encoder && places.peek().is_none() {
-            return Err(QuantityError::Kind { name: self.parameter.name, drive: drive.kind().name() });
-        }
-        places.for_each(|place| values[place] = value);
-        let drive = Drive::from_values(drive.kind(), &values)?;
+        let drive = drive.with(self.parameter.name, value)?;
         let ticks = given("ticks_per_revolution", encoder.ticks_per_revolution());
         let sampled = self.parameter.name == "encoder_rate_hz";
         let rate = if sampled { Some(value) } else { encoder.rate() };

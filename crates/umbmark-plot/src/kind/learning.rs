@@ -32,7 +32,7 @@ pub(super) fn figure(study: &Study) -> Result<Figure, Absent> {
     let most = learnt.steps.iter().flat_map(|s| [s.error.position, s.held_out.position]).fold(0.0, f64::max);
     let panel = Panel {
         title: String::new(),
-        x: Axis::of("error, root mean square [mm]").from_to(0.0, 1.08 * MM * most.max(1e-6)),
+        x: Axis::of("rms error [mm]").from_to(0.0, 1.08 * MM * most.max(1e-6)),
         y: Axis::named(names).falling(),
         equal: false,
         layers,

@@ -25,7 +25,7 @@ pub(super) fn figure(study: &Study) -> Result<Figure, Absent> {
     ];
     let panel = Panel {
         title: String::new(),
-        x: Axis::of("departure from the nominal robot, in usual sizes"),
+        x: Axis::of("departure, in usual sizes"),
         y: Axis::named(numbers.iter().map(|n| n.name.clone()).collect()).falling(),
         equal: false,
         layers,

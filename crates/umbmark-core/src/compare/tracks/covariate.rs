@@ -286,17 +286,19 @@ impl Covariate {
         for v in steps.map(|step| value(&step.at)) {
             (least, most) = (least.min(v), most.max(v));
         }
-        let range = (most > least).then_some(())?;
+        if most <= least {
+            return None;
+        }
         let even = |low: f64, high: f64, n: usize| {
             (0..=n).map(|i| low + (high - low) * i as f64 / n as f64).collect::<Vec<f64>>()
         };
-        let edges = match (range, self.cut) {
-            (_, Cut::FromZero(n)) => even(0.0, most, n),
-            (_, Cut::Around(n)) if least >= 0.0 => even(0.0, most, n - 1),
-            (_, Cut::Around(n)) => even(-most.abs().max(least.abs()), most.abs().max(least.abs()), n),
-            (_, Cut::Cyclic(n)) => even(-0.5 * TAU / n as f64, TAU * (1.0 - 0.5 / n as f64), n),
-            (_, Cut::At(edges)) => edges.iter().copied().chain([f64::INFINITY]).collect(),
-            (_, Cut::Whole(n)) => {
+        let edges = match self.cut {
+            Cut::FromZero(n) => even(0.0, most, n),
+            Cut::Around(n) if least >= 0.0 => even(0.0, most, n - 1),
+            Cut::Around(n) => even(-most.abs().max(least.abs()), most.abs().max(least.abs()), n),
+            Cut::Cyclic(n) => even(-0.5 * TAU / n as f64, TAU * (1.0 - 0.5 / n as f64), n),
+            Cut::At(edges) => edges.iter().copied().chain([f64::INFINITY]).collect(),
+            Cut::Whole(n) => {
                 let each = ((most + 1.0) / n as f64).ceil();
                 even(-0.5, each * ((most + 1.0) / each).ceil() - 0.5, ((most + 1.0) / each).ceil() as usize)
             }

@@ -155,13 +155,16 @@ pub(super) fn made(index: usize, run: &Followed, moves: &[MoveDone], time: &[f64
         first = place;
     }
     let shares = shares(run, &parts.iter().map(|(a, b, _)| [*a, *b]).collect::<Vec<_>>());
-    let build = |((a, b, moves), share): ((usize, usize, Vec<(usize, &MoveDone, String)>), Share)| {
+    let build = |((a, b, moves), share): ((usize, usize, Vec<Numbered>), Share)| {
         let own = seen_from(run, a, b);
         let (kind, name, sense, speed) = told(&moves, time);
         Made { run: index, direction: run.direction, kind, name, speed, sense, own, share }
     };
     parts.into_iter().zip(shares).map(build).collect()
 }
+
+/// A move with its number among all moves of its run, and its name.
+type Numbered<'a> = (usize, &'a MoveDone, String);
 
 fn kind(done: &Done) -> Kind {
     match done {
@@ -172,7 +175,7 @@ fn kind(done: &Done) -> Kind {
 }
 
 /// Kind, name, sense and mean speed of what was driven between two places.
-fn told(moves: &[(usize, &MoveDone, String)], time: &[f64]) -> (Kind, String, f64, f64) {
+fn told(moves: &[Numbered], time: &[f64]) -> (Kind, String, f64, f64) {
     let [(_, m, name)] = moves else {
         let (first, last) = (moves.first().map_or(0, |m| m.0), moves.last().map_or(0, |m| m.0));
         return (Kind::Several, format!("moves {first} to {last}"), 0.0, 0.0);
