@@ -108,8 +108,8 @@ begin 'Python: module'
 "$python" -m maturin develop --manifest-path "$package/Cargo.toml"
 
 begin 'Python: formatting and lints'
-"$python" -m ruff format --check --config "$package/pyproject.toml" "$package" tests/reference tests/report .ci
-"$python" -m ruff check --config "$package/pyproject.toml" "$package" tests/reference tests/report .ci
+"$python" -m ruff format --check --config "$package/pyproject.toml" "$package" tests/reference tests/report notebooks .ci
+"$python" -m ruff check --config "$package/pyproject.toml" "$package" tests/reference tests/report notebooks .ci
 
 begin 'Python: types'
 "$python" -m mypy --config-file "$package/pyproject.toml" "$package/python" "$package/tests" .ci
@@ -120,6 +120,16 @@ begin 'Python: types'
 begin 'Python: tests'
 "$python" -m pytest "$package"
 "$python" -m pytest --config-file "$package/pyproject.toml" tests/reference
+
+begin 'Python: notebooks'
+# Jupyter and matplotlib write into the home folder unless they are told otherwise.
+made=$(mktemp -d)
+export IPYTHONDIR=$made JUPYTER_CONFIG_DIR=$made JUPYTER_DATA_DIR=$made JUPYTER_RUNTIME_DIR=$made MPLCONFIGDIR=$made
+for notebook in notebooks/*.py; do
+    "$python" -m jupytext --quiet --to ipynb --output "$made/$(basename "$notebook" .py).ipynb" "$notebook"
+done
+"$python" -m pytest --nbmake --config-file "$package/pyproject.toml" "$made"
+rm -rf "$made"
 
 begin 'Report: in a browser'
 if ! command -v chromedriver > /dev/null && [ "$(id -u)" = 0 ] && command -v apt-get > /dev/null; then

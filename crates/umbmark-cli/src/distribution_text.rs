@@ -1,6 +1,5 @@
 //! Distributions on the command line, in words, and in documents.
 
-use serde_json::{Value, json};
 use umbmark_core::monte_carlo::Distribution;
 
 use crate::effect_flags::number;
@@ -41,16 +40,6 @@ pub fn distribution_words(distribution: &Distribution) -> String {
         Distribution::Uniform { min, max } => format!("{min} .. {max}"),
         Distribution::Triangular { min, mode, max } => format!("{min} .. {max}, mostly {mode}"),
         Distribution::LogUniform { min, max } => format!("{min} .. {max}, uniform in the logarithm"),
-    }
-}
-
-/// A distribution in a document, as it stands in files.
-pub fn distribution_json(distribution: &Distribution) -> Value {
-    match distribution {
-        Distribution::Normal { mean, sd } => json!({ "mean": mean, "sd": sd }),
-        Distribution::Uniform { min, max } => json!({ "min": min, "max": max }),
-        Distribution::Triangular { min, mode, max } => json!({ "min": min, "mode": mode, "max": max }),
-        Distribution::LogUniform { min, max } => json!({ "min": min, "max": max, "scale": "log" }),
     }
 }
 

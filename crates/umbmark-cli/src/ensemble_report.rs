@@ -1,15 +1,13 @@
 //! What is said of an ensemble: for people, and as a document.
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
+use umbmark_core::document;
 use umbmark_core::monte_carlo::{Ensemble, Metric, Statistics};
 use umbmark_plot::figure::Mark;
 
 use crate::table::{table, with_precision_of};
 use crate::terminal::histogram;
-
-/// The quantiles that a document tells.
-const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
 /// What a study is, in words and as part of a document; it goes into checkpoints, so that what is merged from them can be
 /// described.
@@ -48,25 +46,8 @@ impl Report<'_> {
 
     /// One document.
     pub fn json(&self) -> Value {
-        let metric = |(metric, s): (Metric, &Statistics)| {
-            let quantiles: Map<String, Value> =
-                QUANTILES.iter().map(|q| (q.to_string(), json!(s.quantile(*q)))).collect();
-            let value = json!({
-                "mean": s.mean(), "std_dev": s.std_dev(), "std_error": s.std_error(),
-                "min": s.min(), "max": s.max(), "quantiles": quantiles,
-            });
-            (metric.name().to_owned(), value)
-        };
-        let metrics: Map<String, Value> = self.ensemble.statistics().map(metric).collect();
-        let mut document = Map::from_iter([
-            ("n".to_owned(), json!(self.ensemble.trials())),
-            ("seed".to_owned(), json!(self.description.seed)),
-            ("partial".to_owned(), json!(self.partial)),
-            ("metrics".to_owned(), Value::Object(metrics)),
-            ("trials_per_s".to_owned(), json!(self.trials_per_s())),
-        ]);
-        document.extend(self.description.document.clone());
-        Value::Object(document)
+        let Description { seed, document, .. } = self.description;
+        document::ensemble(self.ensemble, *seed, self.partial, self.trials_per_s(), document)
     }
 
     /// A table and a histogram, in characters beyond ASCII where they are shown.

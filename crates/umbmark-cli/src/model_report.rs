@@ -3,13 +3,12 @@
 use std::path::Path;
 
 use anyhow::Context;
-use serde_json::{Map, Value, json};
 use umbmark_core::dataset::{Dataset, model_text, read_model};
 use umbmark_core::diagnose::{Contrast, Estimate, OnCircle, first_model};
+use umbmark_core::document::meanings;
 use umbmark_core::effect::{Model, find};
 use umbmark_core::likelihood::Outlier;
-use umbmark_core::parameter::Parameter;
-use umbmark_core::stats::{Interval, student_t_quantile};
+use umbmark_core::stats::Interval;
 
 use crate::files::Pending;
 use crate::prose::hanging;
@@ -29,53 +28,6 @@ pub fn write_model(model: &Model, file: &Path, force: bool) -> anyhow::Result<()
     Pending::write_whole(file, force, &model_text(model)).context("the model was not written")
 }
 
-/// As in `model.toml`.
-pub fn model_json(model: &Model) -> Value {
-    let part = |part: &umbmark_core::effect::Part| {
-        let mut effect = Map::from_iter([("name".to_owned(), json!(part.effect.name()))]);
-        let number = |(parameter, value): (&Parameter, &f64)| {
-            let word = parameter.choices.get(*value as usize);
-            (parameter.name.to_owned(), word.map_or(json!(value), |word| json!(word)))
-        };
-        let mut numbers: Map<String, Value> = part.effect.parameters().iter().zip(&part.values).map(number).collect();
-        match part.effect.formula() {
-            Some(formula) => {
-                effect.insert("acts_on".to_owned(), json!(formula.target().name()));
-                effect.insert("formula".to_owned(), json!(formula.text()));
-                effect.insert("parameters".to_owned(), Value::Object(numbers));
-            }
-            None => effect.append(&mut numbers),
-        }
-        effect.insert("free".to_owned(), json!(part.free));
-        Value::Object(effect)
-    };
-    json!({ "effect": model.parts().iter().map(part).collect::<Vec<_>>() })
-}
-
-/// What was fitted, with standard errors and intervals.
-pub fn estimates_json(estimates: &[Estimate], level: f64) -> Value {
-    let one = |e: &Estimate| {
-        json!({
-            "effect": e.effect,
-            "parameter": e.parameter,
-            "value": e.value,
-            "standard_error": finite(e.standard_error),
-            "interval": half_width(e, level).map(|half| [e.value - half, e.value + half]),
-        })
-    };
-    json!(estimates.iter().map(one).collect::<Vec<_>>())
-}
-
-/// A number, or null for what is none.
-pub fn finite(value: f64) -> Value {
-    if value.is_finite() { json!(value) } else { Value::Null }
-}
-
-fn half_width(estimate: &Estimate, level: f64) -> Option<f64> {
-    let half = student_t_quantile(0.5 + 0.5 * level, estimate.degrees_of_freedom) * estimate.standard_error;
-    half.is_finite().then_some(half)
-}
-
 /// The unit of a parameter, with a space before it.
 pub fn unit_of(effect: &str, parameter: &str) -> String {
     let unit = find(effect).ok().and_then(|e| e.about.parameters.iter().find(|p| p.name == parameter)).map(|p| p.unit);
@@ -85,7 +37,7 @@ pub fn unit_of(effect: &str, parameter: &str) -> String {
 /// What was fitted, a row each.
 pub fn estimates_table(estimates: &[Estimate], level: f64) -> String {
     let row = |e: &Estimate| {
-        let half = half_width(e, level);
+        let half = e.interval(level).map(|i| 0.5 * (i.high - i.low));
         let uncertainty = half.unwrap_or(1e-5 * e.value.abs().max(1.0));
         let value = with_precision_of(e.value, uncertainty);
         let half = half.map_or("-".to_owned(), |half| with_precision_of(half, half));
@@ -94,27 +46,10 @@ pub fn estimates_table(estimates: &[Estimate], level: f64) -> String {
     table(&["fitted", "value", &format!("± ({} %)", 100.0 * level)], estimates.iter().map(row))
 }
 
-/// Each fitted effect with what it means for the robot.
-fn meanings(estimates: &[Estimate], model: &Model) -> Vec<(&'static str, String)> {
-    let mut said: Vec<(&str, String)> = Vec::new();
-    for e in estimates {
-        if said.iter().all(|(name, _)| *name != e.effect) {
-            said.extend(model.meaning(e.effect).map(|sentence| (e.effect, sentence)));
-        }
-    }
-    said
-}
-
 /// What the fitted effects mean for the robot, a paragraph each.
 pub fn meaning_text(estimates: &[Estimate], model: &Model) -> String {
     let paragraphs: String = meanings(estimates, model).iter().map(|(_, said)| hanging("", 2, said)).collect();
     if paragraphs.is_empty() { paragraphs } else { format!("\nthat is\n{paragraphs}") }
-}
-
-/// The same for machines.
-pub fn meaning_json(estimates: &[Estimate], model: &Model) -> Value {
-    let pairs = meanings(estimates, model).into_iter().map(|(name, said)| (name.to_owned(), json!(said)));
-    Value::Object(Map::from_iter(pairs))
 }
 
 /// Disturbed places that are told one by one; --json has all.
@@ -134,20 +69,6 @@ pub fn outliers_text(outliers: &[Outlier]) -> String {
         text += &hanging("", 10, &format!("and {rest} more (--json)"));
     }
     text
-}
-
-/// The same for machines.
-pub fn outliers_json(outliers: &[Outlier]) -> Value {
-    let one = |o: &Outlier| {
-        json!({
-            "run": o.run,
-            "time_s": o.time,
-            "moved_m": o.moved,
-            "turned_rad": o.turned,
-            "standard_deviations": finite(o.deviations),
-        })
-    };
-    json!(outliers.iter().map(one).collect::<Vec<_>>())
 }
 
 /// Closure contrasts, in mm and degrees.
@@ -179,29 +100,6 @@ pub fn circle_table(circle: &[OnCircle]) -> String {
         ]
     };
     table(&["circle", "mean [mm]", "by heading [mm]", "off it [mm]", "angle - heading [deg]"], circle.iter().map(row))
-}
-
-/// The same for machines.
-pub fn square_json(contrasts: &[Contrast], circle: &[OnCircle]) -> [(String, Value); 2] {
-    let ends = |i: Interval| json!([i.low, i.high]);
-    let contrast = |c: &Contrast| json!({ "name": c.name, "unit": c.unit, "value": c.value, "interval": ends(c.interval), "meaning": c.meaning });
-    let on = |c: &OnCircle| {
-        json!({
-            "direction": c.direction.name(),
-            "off_m": c.off,
-            "mean_off_m": c.mean_off,
-            "mean_off_interval_m": ends(c.off_interval),
-            "distance_m": c.distance,
-            "distance_by_heading_m": c.implied,
-            "angle_less_heading_rad": c.turned_less_heading,
-            "angle_less_heading_interval_rad": c.turned_interval.map(ends),
-            "explained": c.explained(),
-        })
-    };
-    [
-        ("contrasts".into(), json!(contrasts.iter().map(contrast).collect::<Vec<_>>())),
-        ("circle".into(), json!(circle.iter().map(on).collect::<Vec<_>>())),
-    ]
 }
 
 /// "p = 0.031", with few digits where it is small.

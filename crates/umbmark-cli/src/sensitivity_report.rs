@@ -1,26 +1,15 @@
 //! What is said of sensitivities: for people, and as a document.
 
-use serde_json::{Map, Value, json};
+use serde_json::Value;
+use umbmark_core::document::{self, Asked, Found};
 use umbmark_core::monte_carlo::{Metric, Study};
-use umbmark_core::sensitivity::{Derivative, Estimate, Indices, OutputIndices, Screened, Screening};
-use umbmark_core::stats::Interval;
+use umbmark_core::sensitivity::{Derivative, Estimate, OutputIndices, Screened};
 
 use crate::distribution_text::distribution_words;
 use crate::ensemble_report::{title, unit};
 use crate::table::{table, with_precision_of};
 use crate::terminal::bar;
 use crate::vary::Varied;
-
-/// What was found, by method.
-#[derive(Debug)]
-pub enum Found {
-    /// Sobol indices.
-    Sobol(Indices),
-    /// Elementary effects.
-    Morris(Screening),
-    /// Derivatives, for each metric and parameter.
-    Local(Vec<Vec<Derivative>>),
-}
 
 /// What was asked and found.
 #[derive(Debug)]
@@ -43,19 +32,8 @@ pub struct SensitivityReport<'a> {
     pub unicode: bool,
 }
 
-fn estimate_json(estimate: &Estimate) -> Value {
-    let Interval { low, high } = estimate.interval;
-    json!({ "value": estimate.value, "interval": [low, high] })
-}
-
 impl SensitivityReport<'_> {
-    /// Names of the inputs in documents, the noise last where it is one.
-    fn keys(&self) -> Vec<String> {
-        let keys = self.varied.parameters.iter().map(|(quantity, _)| quantity.key());
-        keys.chain(self.noisy.then(|| "noise".to_owned())).collect()
-    }
-
-    /// The same for people.
+    /// Names of the inputs for people, the noise last where it is one.
     fn names(&self) -> Vec<&'static str> {
         let names = self.varied.parameters.iter().map(|(quantity, _)| quantity.parameter().flag);
         names.chain(self.noisy.then_some("noise")).collect()
@@ -63,66 +41,22 @@ impl SensitivityReport<'_> {
 
     /// Whether less was done than was asked for.
     pub fn is_partial(&self) -> bool {
-        match self.found {
-            Found::Sobol(indices) => indices.partial,
-            Found::Morris(screening) => screening.partial,
-            Found::Local(_) => false,
-        }
+        self.found.is_partial()
     }
 
     /// One document.
     pub fn json(&self) -> Value {
-        let keys = self.keys();
-        let by_key = |estimates: &mut dyn Iterator<Item = Value>| -> Value {
-            Value::Object(keys.iter().cloned().zip(estimates).collect())
-        };
-        let metric = |(output, metric): (usize, &Metric)| {
-            let value = match self.found {
-                Found::Sobol(indices) => {
-                    let output = &indices.outputs[output];
-                    let pair = |([i, j], estimate): &([usize; 2], Estimate)| {
-                        let mut pair = estimate_json(estimate);
-                        pair["of"] = json!([keys[*i], keys[*j]]);
-                        pair
-                    };
-                    json!({
-                        "mean": estimate_json(&output.mean), "std_dev": estimate_json(&output.std_dev),
-                        "first": by_key(&mut output.first.iter().map(estimate_json)),
-                        "total": by_key(&mut output.total.iter().map(estimate_json)),
-                        "second": output.second.iter().map(pair).collect::<Value>(),
-                    })
-                }
-                Found::Morris(screening) => {
-                    let of = |pick: fn(&Screened) -> &Estimate| {
-                        by_key(&mut screening.outputs[output].iter().map(|one| estimate_json(pick(one))))
-                    };
-                    json!({ "mu": of(|one| &one.mean), "mu_star": of(|one| &one.size), "sigma": of(|one| &one.spread) })
-                }
-                Found::Local(derivatives) => {
-                    let of = |pick: fn(&Derivative) -> &Estimate| {
-                        by_key(&mut derivatives[output].iter().map(|one| estimate_json(pick(one))))
-                    };
-                    json!({ "per_unit": of(|one| &one.per_unit), "per_spread": of(|one| &one.per_spread) })
-                }
-            };
-            (metric.name().to_owned(), value)
-        };
-        let metrics: Map<String, Value> = self.metrics.iter().enumerate().map(metric).collect();
-        let (method, effort) = match self.found {
-            Found::Sobol(i) => ("sobol", json!({ "base_points": i.base_points, "evaluations": i.evaluations })),
-            Found::Morris(s) => ("morris", json!({ "trajectories": s.trajectories, "evaluations": s.evaluations })),
-            Found::Local(_) => ("local", json!({ "trials": self.study.trials })),
-        };
-        let mut document = Map::from_iter([("method".to_owned(), json!(method))]);
-        document.extend(effort.as_object().cloned().unwrap_or_default());
-        let rest = json!({
-            "seed": self.study.seed, "partial": self.is_partial(),
-            "noise": if self.noisy { "simulated" } else { "absent" },
-            "parameters": self.varied.json(), "correlations": self.varied.correlations_json(),
-            "metrics": metrics, "assumed": self.assumed, "version": umbmark_core::VERSION,
-        });
-        document.extend(rest.as_object().cloned().unwrap_or_default());
-        Value::Object(document)
+        document::sensitivity(
+            self.found,
+            &Asked {
+                varied: &self.varied.parameters,
+                correlations: &self.varied.correlations,
+                metrics: self.metrics,
+                study: self.study,
+                noisy: self.noisy,
+                assumed: self.assumed,
+            },
+        )
     }
 
     /// Tables and bars.

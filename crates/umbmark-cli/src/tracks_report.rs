@@ -1,12 +1,10 @@
 //! A comparison of models on tracks, for people and for machines.
 
-use serde_json::{Map, Value, json};
-use umbmark_core::compare::tracks::{Against, By, COVARIATES, Mean, Part, Rate, Rms, TrackComparison, TracksJudged};
+use umbmark_core::compare::tracks::{Against, By, COVARIATES, Mean, Part, Rate, TrackComparison, TracksJudged};
 use umbmark_core::diagnose::Options;
-use umbmark_core::path::Direction;
 use umbmark_core::stats::Interval;
 
-use crate::model_report::{finite, p_text};
+use crate::model_report::p_text;
 use crate::prose::hanging;
 use crate::residual_strips::{marks, strips};
 use crate::table::table;
@@ -149,87 +147,4 @@ fn cell(against: Option<&Against>, terminal: bool) -> String {
     let values: Vec<Option<f64>> = against.bins.iter().map(half_widths).collect();
     let p = against.p.map_or(String::new(), |p| if p < 0.001 { "<.001".into() } else { format!("{p:.3}") });
     format!("{:<8} {p}", marks(&values, terminal))
-}
-
-/// The whole comparison as a document.
-pub fn document(comparison: &TrackComparison, options: &Options) -> Value {
-    let [cw, ccw, neither] = comparison.runs;
-    json!({
-        "observed": "tracks",
-        "n_cw": cw,
-        "n_ccw": ccw,
-        "n_other": neither,
-        "poses": comparison.poses,
-        "models": comparison.models.iter().map(|judged| model_json(judged, options)).collect::<Vec<_>>(),
-        "remarks": comparison.remarks,
-        "size": options.size,
-        "version": umbmark_core::VERSION,
-    })
-}
-
-fn model_json(judged: &TracksJudged, options: &Options) -> Value {
-    let rms = |rms: &Rms| json!({ "rmse_m": finite(rms.position), "heading_rmse_rad": rms.heading });
-    let parts = By::ALL.into_iter().map(|by| {
-        let own = judged.parts.iter().filter(|part| part.by == by).map(part_json);
-        (by.key().to_owned(), Value::Array(own.collect()))
-    });
-    let overall = judged.overall.iter().map(|o| {
-        let mut told = mean_json(&o.mean);
-        told["p"] = json!(o.p);
-        (o.rate.key().to_owned(), told)
-    });
-    json!({
-        "name": judged.name,
-        "explains": judged.explains(options.size),
-        "p": judged.p,
-        "tests": judged.tests,
-        "along": rms(&judged.along),
-        "end": rms(&judged.end),
-        "parts": Map::from_iter(parts),
-        "overall": Map::from_iter(overall),
-        "against": judged.against.iter().map(against_json).collect::<Vec<_>>(),
-        "sentences": judged.sentences,
-    })
-}
-
-fn ends(interval: Option<Interval>) -> Value {
-    interval.map_or(Value::Null, |i| json!([finite(i.low), finite(i.high)]))
-}
-
-fn mean_json(mean: &Mean) -> Value {
-    json!({ "mean": finite(mean.value), "interval": ends(mean.interval), "runs": mean.runs })
-}
-
-fn part_json(part: &Part) -> Value {
-    let keys = ["forward_m", "sideways_m", "heading_rad"];
-    let one = |k: usize| {
-        let mut told = mean_json(&part.mean[k]);
-        told["sd"] = part.spread.map_or(Value::Null, |spread| finite(spread[k]));
-        (keys[k].to_owned(), told)
-    };
-    let mut told = Map::from_iter((0..3).map(one));
-    told.insert("name".into(), json!(part.name));
-    told.insert("direction".into(), json!(part.direction.map(Direction::name)));
-    told.insert("count".into(), json!(part.count));
-    let share = part.share;
-    told.insert("share".into(), json!({ "position": share.position, "heading": share.heading, "end": share.end }));
-    Value::Object(told)
-}
-
-fn against_json(against: &Against) -> Value {
-    let bin = |bin: &umbmark_core::compare::tracks::Bin| {
-        let mut told = bin.mean.as_ref().map_or(json!({ "mean": null, "interval": null, "runs": 0 }), mean_json);
-        told["low"] = json!(bin.span.low);
-        told["high"] = finite(bin.span.high);
-        told["sense"] = json!(bin.span.sense);
-        told["amount"] = json!(bin.amount);
-        told
-    };
-    json!({
-        "rate": against.rate.key(),
-        "covariate": against.covariate.name,
-        "unit": against.covariate.units[usize::from(against.rate.of_turns())],
-        "p": against.p,
-        "bins": against.bins.iter().map(bin).collect::<Vec<_>>(),
-    })
 }

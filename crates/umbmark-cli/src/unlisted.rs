@@ -1,39 +1,13 @@
 //! What is missing and not in the catalogue: as a curve, and as a formula to try.
 
-use serde_json::{Value, json};
 use umbmark_core::dataset::model_text;
 use umbmark_core::diagnose::{Curve, CurvePoint, Dependence};
 
-use crate::model_report::model_json;
 use crate::prose::hanging;
 use crate::table::with_precision_of;
 
 /// Characters from the lower to the upper edge of a figure.
 const WIDTH: usize = 41;
-
-/// For machines; null where nothing is unlisted.
-pub fn unlisted_json(unlisted: Option<&Dependence>) -> Value {
-    let point = |p: &CurvePoint| json!({ "at": p.at, "value": p.value, "low": p.value - p.half_width, "high": p.value + p.half_width });
-    json!(unlisted.map(|told| {
-        json!({
-            "acts_on": told.acts_on,
-            "depends_on": told.depends_on,
-            "p_adjusted": told.p_adjusted,
-            "curve": {
-                "at_unit": told.curve.at_unit,
-                "unit": told.curve.unit,
-                "points": told.curve.points.iter().map(point).collect::<Vec<_>>(),
-            },
-            "nearest": told.nearest.map(|(effect, share)| json!({ "effect": effect, "share": share })),
-            "suggestion": told.suggestion.as_ref().map(|suggestion| {
-                let mut model = model_json(&suggestion.model);
-                model["share"] = json!(suggestion.share);
-                model["toml"] = json!(model_text(&suggestion.model));
-                model
-            }),
-        })
-    }))
-}
 
 /// For people: the curve with its band, and the formula; nothing where nothing is unlisted.
 pub fn unlisted_text(unlisted: Option<&Dependence>, terminal: bool) -> String {

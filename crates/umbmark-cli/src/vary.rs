@@ -3,12 +3,11 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use serde_json::{Value, json};
 use umbmark_core::dataset::read_parameters;
 use umbmark_core::monte_carlo::{Distribution, Quantity, Study};
 use umbmark_core::sensitivity::Correlation;
 
-use crate::distribution_text::{Named, distribution_json, named};
+use crate::distribution_text::{Named, named};
 use crate::effect_flags::number;
 
 /// The flags of what is varied.
@@ -95,20 +94,5 @@ impl Varied {
             None => self.parameters.push((quantity, distribution)),
         }
         place
-    }
-
-    /// The parameters for a document.
-    pub fn json(&self) -> Value {
-        let one = |(quantity, distribution): &(Quantity, Distribution)| {
-            let flag = quantity.parameter().flag;
-            json!({ "name": quantity.key(), "flag": flag, "distribution": distribution_json(distribution) })
-        };
-        self.parameters.iter().map(one).collect()
-    }
-
-    /// The correlations for a document.
-    pub fn correlations_json(&self) -> Value {
-        let name = |place: usize| self.parameters[place].0.key();
-        self.correlations.iter().map(|c| json!({ "of": c.of.map(name), "value": c.value })).collect()
     }
 }

@@ -14,6 +14,7 @@ mod correction;
 pub(crate) mod evidence;
 mod exact;
 pub mod export;
+mod lengths;
 pub(crate) mod noise_shape;
 mod outcome;
 
@@ -32,6 +33,7 @@ use outcome::Forecast;
 pub use closed_form::{Angles, ClosedForm, RadiusWheelbase};
 pub use correction::{Correction, Ratio};
 pub use evidence::Level;
+pub use lengths::Lengths;
 pub use outcome::{Replayed, drive_again};
 
 /// What leaves nothing to calibrate.

@@ -57,7 +57,7 @@ pub(crate) use inspect::{Done, MoveDone, moves_of};
 pub use layout::{LAYOUTS, Layout};
 pub use mcap::{McapProblem, Topics};
 pub use model_file::{parse_model, read_model};
-pub use model_text::model_text;
+pub use model_text::{model_text, model_text_with};
 pub use parameter_file::{Grade, ParameterFile, Varied, parse_parameters, read_parameters};
 pub use reference_track::ReferenceTrack;
 pub use returns::HEADER as RETURNS_COLUMNS;
@@ -70,9 +70,10 @@ pub use template::{template, write_template};
 use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::path::{Direction, Path};
+use serde::{Deserialize, Serialize};
 
 /// The error of one return to START: absolute minus computed end pose (Eq. 1 of the paper), in the frame of START.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ReturnError {
     /// ε_x \[m\], along the START heading.
     pub x: f64,
@@ -83,7 +84,7 @@ pub struct ReturnError {
 }
 
 /// An absolute pose of the robot, in the frame of START.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReferencePose {
     /// Index of the tick sample it belongs to.
     pub sample: usize,
@@ -96,7 +97,7 @@ pub struct ReferencePose {
 }
 
 /// The recorded wheel angles of one run, with the absolute poses measured on the way.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TickLog {
     /// Time of each sample \[s\], increasing.
     pub time: Vec<f64>,
@@ -111,7 +112,7 @@ pub struct TickLog {
 }
 
 /// What was mended in a log while it was read, counted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Mended {
     /// Roll-overs of either counter that were undone.
     pub roll_overs: usize,
@@ -126,7 +127,7 @@ pub struct Mended {
 }
 
 /// One drive round the path.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// What it is called: file stem or row.
     pub name: String,
@@ -143,7 +144,7 @@ pub struct Run {
 }
 
 /// How the clock of a track ran against that of a run's ticks.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunClock {
     /// The run's name.
     pub run: String,
@@ -154,7 +155,7 @@ pub struct RunClock {
 }
 
 /// Where the log of a run was found in an MCAP file.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RunTopics {
     /// The run's name.
     pub run: String,

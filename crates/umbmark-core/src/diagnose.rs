@@ -18,6 +18,7 @@ use crate::drive::{Kind, Robot};
 use crate::effect::{Model, ModelError, TestKind};
 use crate::likelihood::{Observed, Outlier};
 use crate::replay::ReplayError;
+use crate::stats::{Interval, student_t_quantile};
 
 pub use candidates::{Candidate, Size, candidates, columns};
 pub use ends::{Contrast, OnCircle};
@@ -122,6 +123,14 @@ pub struct Estimate {
     pub standard_error: f64,
     /// ν of Student's t for its interval.
     pub degrees_of_freedom: f64,
+}
+
+impl Estimate {
+    /// Its interval with probability `level`, Student's t; `None` where it is not finite.
+    pub fn interval(&self, level: f64) -> Option<Interval> {
+        let half = student_t_quantile(0.5 + 0.5 * level, self.degrees_of_freedom) * self.standard_error;
+        half.is_finite().then(|| Interval::around(self.value, half))
+    }
 }
 
 /// A test of the whole model against what it leaves unexplained.

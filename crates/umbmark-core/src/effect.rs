@@ -206,7 +206,7 @@ pub struct About {
 }
 
 /// Which test a run belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 pub enum TestKind {
     /// UMBmark on a smooth floor.
     Systematic,

@@ -15,6 +15,7 @@ pub mod calibrate;
 pub mod compare;
 pub mod dataset;
 pub mod diagnose;
+pub mod document;
 pub mod drive;
 pub mod effect;
 pub mod engine;

@@ -35,7 +35,7 @@ pub static SHAPES: &[&Shape] =
     &[&SQUARE, &RECTANGLE, &ROUNDED_RECTANGLE, &FIGURE_EIGHT, &CIRCLE, &STRAIGHT, &SPIN, &WAYPOINTS];
 
 /// The sense in which a path is driven round.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Direction {
     /// Clockwise: right turns.
     Cw,

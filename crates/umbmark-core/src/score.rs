@@ -140,14 +140,22 @@ pub struct Score {
 /// # Ok::<(), umbmark_core::score::ScoreError>(())
 /// ```
 pub fn score(runs: &[Run], level: f64) -> Result<Score, ScoreError> {
+    all_finite(runs)?;
+    let returns = Returns::of(runs);
+    if returns.cw.is_empty() && returns.ccw.is_empty() {
+        return Err(ScoreError::NothingReturned { runs: runs.len() });
+    }
+    score_returns(&returns, level)
+}
+
+/// The same for return errors that are sorted, and finite.
+pub fn score_returns(returns: &Returns, level: f64) -> Result<Score, ScoreError> {
     if !(level > 0.0 && level < 1.0) {
         return Err(ScoreError::Level { value: level });
     }
-    all_finite(runs)?;
-    let returns = Returns::of(runs);
     let summary = summarise(&returns.cw, &returns.ccw);
     if summary.cw.is_none() && summary.ccw.is_none() {
-        return Err(ScoreError::NothingReturned { runs: runs.len() });
+        return Err(ScoreError::NothingReturned { runs: returns.bumps_cw.len() + returns.bumps_ccw.len() });
     }
     let mut warnings = Vec::new();
     let (n_cw, n_ccw) = (returns.cw.len(), returns.ccw.len());
@@ -160,7 +168,7 @@ pub fn score(runs: &[Run], level: f64) -> Result<Score, ScoreError> {
         level,
         intervals: scatter.map(|s| Intervals::new(&summary, &s, level)),
         noise_band: chance.map(|sigma| noise_band(sigma, n_cw, n_ccw, level)),
-        extended: score_extended(&returns, level, &mut warnings),
+        extended: score_extended(returns, level, &mut warnings),
         warnings,
     })
 }

@@ -9,12 +9,13 @@ mod course;
 mod diffusion;
 mod pieces;
 mod record;
+mod recorded_test;
 mod sampling;
 mod truth;
 mod way;
 
 use crate::dataset::ReturnError;
-use crate::drive::{Kind, Robot, WheelTravel};
+use crate::drive::{DriveError, Kind, Robot, WheelTravel};
 use crate::effect::{Sight, Stretch, TestKind};
 use crate::engine::{
     EngineError, Instructions, Integrator, Method, Motion, Segment, TickGeometry, UNITS_PER_TICK, Update, WheelLine,
@@ -26,6 +27,7 @@ use rand::Rng;
 
 pub use course::{Course, Leg};
 pub use record::Recording;
+pub use recorded_test::{is_extended, record_test};
 pub use truth::Truth;
 
 use convoy::Convoy;
@@ -71,6 +73,9 @@ pub enum SimulateError {
     /// A robot or an update rule that the integrator refuses.
     #[error(transparent)]
     Engine(#[from] EngineError),
+    /// An encoder that is none.
+    #[error(transparent)]
+    Drive(#[from] DriveError),
     /// A recording without a sampling rate.
     #[error("{what} must be positive and finite, got {value} Hz")]
     Rate {

@@ -1,15 +1,28 @@
-//! Python bindings: the extension module `umbmark._umbmark`, which the package `umbmark` re-exports.
+//! Python bindings: the extension module `umbmark._umbmark`, which the package `umbmark` makes comfortable.
 //!
-//! One file for each room of `umbmark-core` that Python sees. Every call has three steps: arrays are checked and read
-//! under the interpreter lock (`arrays`), the work runs without it (`detached`), and its result is a frozen class whose
-//! attributes carry their unit, under the names of the command's JSON keys.
+//! One file for each room of `umbmark-core` that Python sees. Robots, paths, models and datasets are frozen classes here.
+//! Results cross as the documents that `--json` prints ([`umbmark_core::document`]); the package decodes them into typed
+//! classes. Every call has three steps: arguments are read under the interpreter lock, the work runs without it ([`work`]),
+//! and its result is handed over.
 
 mod arrays;
+mod calibrate;
+mod dataset;
+mod diagnose;
+mod effect;
+mod keys;
+mod model;
+mod monte_carlo;
+mod path;
+mod preset;
+mod robot;
+mod run;
 mod score;
+mod sensitivity;
+mod simulate;
+mod work;
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// The odometry error of wheeled robots: UMBmark.
@@ -18,7 +31,31 @@ mod _umbmark {
     use pyo3::prelude::*;
 
     #[pymodule_export]
-    use super::score::{Score, score};
+    use super::calibrate::{calibrate, export};
+    #[pymodule_export]
+    use super::dataset::{Dataset, inspect, load_dataset};
+    #[pymodule_export]
+    use super::diagnose::{compare, diagnose, fit, learn};
+    #[pymodule_export]
+    use super::effect::effects;
+    #[pymodule_export]
+    use super::model::Model;
+    #[pymodule_export]
+    use super::monte_carlo::{Ensemble, Study};
+    #[pymodule_export]
+    use super::path::Path;
+    #[pymodule_export]
+    use super::preset::presets;
+    #[pymodule_export]
+    use super::robot::Robot;
+    #[pymodule_export]
+    use super::run::Run;
+    #[pymodule_export]
+    use super::score::{score_arrays, score_dataset};
+    #[pymodule_export]
+    use super::sensitivity::sensitivity;
+    #[pymodule_export]
+    use super::simulate::simulate;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -26,13 +63,28 @@ mod _umbmark {
     }
 }
 
-/// Runs `work` without the interpreter lock. A panic in it is a fault of this library and reaches Python as `RuntimeError`.
-fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
-    py.detach(|| catch_unwind(AssertUnwindSafe(work)))
-        .map_err(|_| PyRuntimeError::new_err(format!("a fault in umbmark {}: please report it", umbmark_core::VERSION)))
-}
-
 /// What the core refuses, in its own words.
 fn refused(error: impl std::error::Error) -> PyErr {
     PyValueError::new_err(error.to_string())
+}
+
+/// A word of a few, by name.
+fn choice<T: Copy>(name: &str, word: &str, choices: &[(&str, T)]) -> PyResult<T> {
+    choices.iter().find(|(known, _)| *known == word).map(|(_, value)| *value).ok_or_else(|| {
+        let known: Vec<&str> = choices.iter().map(|(known, _)| *known).collect();
+        PyValueError::new_err(format!("{name} must be one of {}, got \"{word}\"", known.join(", ")))
+    })
+}
+
+/// Refuses what is no probability.
+fn probability(name: &str, value: f64) -> PyResult<()> {
+    if value > 0.0 && value < 1.0 {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!("{name} must be between 0 and 1, both excluded, got {value}")))
+}
+
+/// A document as Python's own dicts, lists and numbers.
+fn as_python<'py>(py: Python<'py>, document: &serde_json::Value) -> PyResult<Bound<'py, PyAny>> {
+    py.import("json")?.call_method1("loads", (document.to_string(),))
 }

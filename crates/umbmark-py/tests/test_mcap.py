@@ -34,15 +34,6 @@ EPOCH_NS = 1_760_000_000_000_000_000
 NO_RATES: dict[str, list[float]] = {"velocity": [], "effort": []}
 
 
-@pytest.fixture(scope="session")
-def umbmark() -> Path:
-    """Return the command, built."""
-    build = ["cargo", "build", "--package", "umbmark-cli", "--message-format", "json"]
-    lines = subprocess.run(build, cwd=ROOT, check=True, capture_output=True, text=True).stdout
-    messages = [json.loads(line) for line in lines.splitlines()]
-    return Path(next(m["executable"] for m in reversed(messages) if m.get("executable")))
-
-
 def answer(command: Path, *arguments: str | Path) -> Any:
     """Return the JSON document that the command prints."""
     run = [command, *arguments, "--json"]
@@ -50,7 +41,7 @@ def answer(command: Path, *arguments: str | Path) -> Any:
 
 
 @pytest.fixture(scope="session")
-def measured(umbmark: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def measured(command: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a dataset in CSV."""
     folder = tmp_path_factory.mktemp("measured") / "robot"
     flags = [
@@ -65,7 +56,7 @@ def measured(umbmark: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
         "--ticks-per-revolution",
         str(TICKS_PER_REVOLUTION),
     ]
-    subprocess.run([umbmark, "simulate", "-o", folder, *flags], check=True, capture_output=True)
+    subprocess.run([command, "simulate", "-o", folder, *flags], check=True, capture_output=True)
     return folder
 
 
@@ -240,7 +231,7 @@ def numbers(value: Any) -> Iterator[float]:
 
 @pytest.mark.parametrize("writer", WRITERS)
 def test_what_other_packages_write_calibrates_as_the_csv_does(
-    writer: str, umbmark: Path, measured: Path, tmp_path: Path
+    writer: str, command: Path, measured: Path, tmp_path: Path
 ) -> None:
     folder = tmp_path / "robot"
     (folder / "runs").mkdir(parents=True)
@@ -248,8 +239,8 @@ def test_what_other_packages_write_calibrates_as_the_csv_does(
         shutil.copy(measured / name, folder)
     for file in (measured / "runs").iterdir():
         WRITERS[writer](folder / "runs" / f"{file.stem}.mcap", list(rows(file)))
-    ours = answer(umbmark, "calibrate", measured)
-    theirs = answer(umbmark, "calibrate", folder)
+    ours = answer(command, "calibrate", measured)
+    theirs = answer(command, "calibrate", folder)
     assert theirs["warnings"] == ours["warnings"]
     expected = list(numbers(ours))
     assert len(expected) > 50
@@ -257,17 +248,17 @@ def test_what_other_packages_write_calibrates_as_the_csv_does(
 
 
 @pytest.fixture(scope="session")
-def written(umbmark: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+def written(command: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
     """Return a log that umbmark wrote, and what it said of it."""
     file = tmp_path_factory.mktemp("written") / "run.mcap"
     said = answer(
-        umbmark, "simulate", "-o", file, "--side", "1", "--eb", "1.01", "--direction", "cw"
+        command, "simulate", "-o", file, "--side", "1", "--eb", "1.01", "--direction", "cw"
     )
     return file, said
 
 
 def test_a_log_with_a_camera_takes_little_memory(
-    umbmark: Path, measured: Path, tmp_path: Path
+    command: Path, measured: Path, tmp_path: Path
 ) -> None:
     file = tmp_path / "run.mcap"
     with file.open("wb") as stream:
@@ -287,7 +278,7 @@ def test_a_log_with_a_camera_takes_little_memory(
         writer.finish()  # type: ignore[no-untyped-call]
     shutil.copy(measured / "robot.toml", tmp_path)
     with (tmp_path / "out.json").open("wb") as out:
-        process = subprocess.Popen([umbmark, "inspect", file, "--json"], stdout=out)
+        process = subprocess.Popen([command, "inspect", file, "--json"], stdout=out)
         _, process.returncode, usage = os.wait4(process.pid, 0)
     assert process.returncode == 0
     said = json.loads((tmp_path / "out.json").read_text())

@@ -7,11 +7,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use serde_json::{Map, Value, json};
 use umbmark_core::calibrate::{
-    Calibration, Estimate, Level, Method, Options, RadiusWheelbase, Ratio, Replayed, calibrate, export,
+    Calibration, Estimate, Level, Method, Options, RadiusWheelbase, Ratio, calibrate, export,
 };
 use umbmark_core::dataset::Dataset;
+use umbmark_core::document;
 use umbmark_core::drive::{Kind, Robot};
 
 use crate::Session;
@@ -112,7 +112,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     calibration.warnings.splice(0..0, data.warnings.iter().cloned());
     let written = export_files(&arguments, &data, robot, &calibration)?;
     if session.json() {
-        session.print_json(&document(robot, &calibration, arguments.level))?;
+        session.print_json(&document::calibration(robot, &calibration, arguments.level))?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &calibration.warnings {
@@ -155,77 +155,6 @@ fn export_files(
         }
     }
     Ok(written)
-}
-
-fn document(robot: &Robot, calibration: &Calibration, level: f64) -> Value {
-    let methods: Map<String, Value> = Method::ALL
-        .into_iter()
-        .map(|m| (m.name().to_owned(), json!(calibration.estimate(m).map(|e| estimate_json(robot, e, level)))))
-        .collect();
-    json!({
-        "methods": methods,
-        "observed": level_name(calibration.level),
-        "heading_arm_m": calibration.heading_arm,
-        "level": level,
-        "warnings": calibration.warnings,
-        "version": umbmark_core::VERSION,
-    })
-}
-
-fn level_name(level: Level) -> &'static str {
-    match level {
-        Level::Ends => "end_poses",
-        Level::Tracks => "tracks",
-    }
-}
-
-fn estimate_json(robot: &Robot, estimate: &Estimate, level: f64) -> Value {
-    let shown: Vec<Ratio> = Ratio::ALL.into_iter().filter(|r| estimate.ratio(*r).is_some()).collect();
-    let covariance = estimate.covariance.map(|c| {
-        let row = |i: &Ratio| shown.iter().map(|j| c[(*i as usize, *j as usize)]).collect::<Vec<f64>>();
-        shown.iter().map(row).collect::<Vec<_>>()
-    });
-    let interval = |ratio: Ratio| estimate.interval(ratio, level).map(|i| [i.low, i.high]);
-    let lengths = Lengths::new(robot, estimate);
-    let replayed = |r: Option<Replayed>| r.map(|r| json!({ "e_max_sys_m": r.e_max_sys, "largest_m": r.largest }));
-    json!({
-        "e_d": estimate.ratio(Ratio::Diameters),
-        "e_b": estimate.ratio(Ratio::Wheelbase),
-        "e_s": estimate.ratio(Ratio::Scale),
-        "wheelbase_m": lengths.wheelbase,
-        "wheel_diameter_left_m": lengths.left,
-        "wheel_diameter_right_m": lengths.right,
-        "covariance": covariance,
-        "covariance_of": shown.iter().map(|r| r.name()).collect::<Vec<_>>(),
-        "degrees_of_freedom": estimate.covariance.map(|_| estimate.degrees_of_freedom),
-        "e_d_interval": interval(Ratio::Diameters),
-        "e_b_interval": interval(Ratio::Wheelbase),
-        "e_s_interval": interval(Ratio::Scale),
-        "e_max_sys_before_m": estimate.e_max_sys_before,
-        "e_max_sys_after_m": estimate.e_max_sys_after,
-        "replayed_before": replayed(estimate.replayed_before),
-        "replayed_after": replayed(estimate.replayed_after),
-        "termination": estimate.termination.map(|t| t.name()),
-    })
-}
-
-/// The true lengths \[m\], as far as the ratios are known.
-struct Lengths {
-    wheelbase: Option<f64>,
-    left: Option<f64>,
-    right: Option<f64>,
-}
-
-impl Lengths {
-    fn new(robot: &Robot, estimate: &Estimate) -> Lengths {
-        let (left, right) = estimate.correction.wheel_factors();
-        let wheels = estimate.shown[0] || estimate.shown[2];
-        Lengths {
-            wheelbase: estimate.shown[1].then(|| robot.drive.wheelbase() * estimate.correction.e_b),
-            left: wheels.then(|| robot.drive.wheel_diameter_left() * left),
-            right: wheels.then(|| robot.drive.wheel_diameter_right() * right),
-        }
-    }
 }
 
 /// What people call a method.
@@ -280,7 +209,7 @@ fn ratio_row(estimate: &Estimate, level: f64) -> Vec<String> {
 }
 
 fn length_row(robot: &Robot, estimate: &Estimate) -> Vec<String> {
-    let lengths = Lengths::new(robot, estimate);
+    let lengths = estimate.lengths(robot);
     let mm = |value: Option<f64>, decimals: usize| value.map_or("-".to_owned(), |v| format!("{:.decimals$}", 1e3 * v));
     vec![
         title(estimate.method).to_owned(),

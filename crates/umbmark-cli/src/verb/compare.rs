@@ -4,17 +4,17 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use serde_json::{Map, Value, json};
 use umbmark_core::compare::tracks::TrackComparison;
 use umbmark_core::compare::{Comparison, Judged, NoiseSource, Statistic, compare, compare_tracks};
 use umbmark_core::dataset::{Dataset, read_model};
 use umbmark_core::diagnose::{Level, Options, base_model, first_model};
+use umbmark_core::document;
 use umbmark_core::effect::Model;
 use umbmark_core::learn::{fit, fit_to_returns};
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
-use crate::model_report::{circle_table, contrasts_table, p_text, square_json};
+use crate::model_report::{circle_table, contrasts_table, p_text};
 use crate::prose::hanging;
 use crate::table::table;
 use crate::test_arguments::TestArguments;
@@ -63,7 +63,7 @@ fn on_return_poses(
         Ok(compare(data, &models(arguments, data, Level::Ends)?, options)?)
     })??;
     if session.json() {
-        session.print_json(&document(&comparison, options))?;
+        session.print_json(&document::comparison(&comparison, options))?;
     } else {
         write!(session.out(), "{}", text(&comparison, options))?;
     }
@@ -76,7 +76,7 @@ fn on_tracks(arguments: &Arguments, data: &Dataset, options: &Options, session: 
         Ok(compare_tracks(data, &models(arguments, data, Level::Tracks)?, options)?)
     })??;
     if session.json() {
-        session.print_json(&tracks_report::document(&comparison, options))?;
+        session.print_json(&document::track_comparison(&comparison, options))?;
     } else {
         let terminal = session.on_terminal();
         write!(session.out(), "{}", tracks_report::text(&comparison, options, terminal))?;
@@ -96,45 +96,6 @@ fn models(arguments: &Arguments, data: &Dataset, level: Level) -> anyhow::Result
     }
     let read = |file: &PathBuf| Ok((file.display().to_string(), read_model(file, robot)?.0));
     arguments.model.iter().map(read).collect()
-}
-
-fn document(comparison: &Comparison, options: &Options) -> Value {
-    let mut document = json!({
-        "observed": "end_poses",
-        "n_cw": comparison.runs[0],
-        "n_ccw": comparison.runs[1],
-        "models": comparison.models.iter().map(|m| model_json(m, options)).collect::<Vec<_>>(),
-        "remarks": comparison.remarks,
-        "size": options.size,
-        "draws": options.draws,
-        "seed": options.seed,
-        "version": umbmark_core::VERSION,
-    });
-    if let Some(map) = document.as_object_mut() {
-        map.extend(square_json(&comparison.contrasts, &comparison.circle));
-    }
-    document
-}
-
-fn model_json(judged: &Judged, options: &Options) -> Value {
-    let mut statistics: Map<String, Value> = Map::new();
-    for s in &judged.statistics {
-        let of_direction = statistics.entry(s.direction.name()).or_insert_with(|| json!({}));
-        if let Some(map) = of_direction.as_object_mut() {
-            let told = json!({ "measured": s.measured, "predicted": s.predicted, "p": s.p });
-            map.insert(s.quantity.key().to_owned(), told);
-        }
-    }
-    json!({
-        "name": judged.name,
-        "explains": judged.explains(options.size),
-        "p": judged.p,
-        "noise": match judged.noise { NoiseSource::Model => "model", NoiseSource::Pooled => "pooled" },
-        "rmse_m": judged.rmse,
-        "heading_rmse_rad": judged.heading_rmse,
-        "statistics": statistics,
-        "sentences": judged.sentences,
-    })
 }
 
 fn text(comparison: &Comparison, options: &Options) -> String {

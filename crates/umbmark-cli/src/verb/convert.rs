@@ -4,7 +4,8 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use serde_json::{Value, json};
-use umbmark_core::dataset::{Alignment, Dataset, Measured, RunClock};
+use umbmark_core::dataset::{Dataset, Measured, RunClock};
+use umbmark_core::document::clock;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
@@ -93,32 +94,9 @@ fn document(arguments: &OutputArguments, data: &Dataset, lost: &[String]) -> Val
         "output": arguments.output.display().to_string(),
         "layout": arguments.layout().name,
         "runs": data.runs.len(),
-        "clocks": data.clocks.iter().map(clock_json).collect::<Vec<Value>>(),
+        "clocks": data.clocks.iter().map(clock).collect::<Vec<Value>>(),
         "lost": lost,
         "warnings": data.warnings,
         "version": umbmark_core::VERSION,
-    })
-}
-
-/// A clock that was set, with its run and its track.
-pub(super) fn clock_json(clock: &RunClock) -> Value {
-    let mut document = alignment_json(&clock.alignment);
-    document["run"] = json!(clock.run);
-    document["track"] = json!(clock.track);
-    document
-}
-
-/// An alignment: each quantity with standard error and 95 % interval.
-pub(super) fn alignment_json(alignment: &Alignment) -> Value {
-    let measured = |m: &Measured| json!({ "value": m.value, "std_error": m.std_error, "interval": [m.interval.low, m.interval.high] });
-    json!({
-        "offset_s": measured(&alignment.offset),
-        "rate": measured(&alignment.rate),
-        "lever_ahead_m": alignment.lever_ahead.as_ref().map(measured),
-        "lever_left_m": alignment.lever_left.as_ref().map(measured),
-        "yaw_rad": alignment.yaw.as_ref().map(measured),
-        "misfit_m": alignment.misfit,
-        "windows": alignment.windows,
-        "left_out": alignment.left_out,
     })
 }

@@ -4,23 +4,19 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use serde_json::{Map, Value, json};
 use umbmark_core::dataset::Dataset;
-use umbmark_core::diagnose::{
-    Detectable, Diagnosis, Experiment, Identifiability, Level, Options, Suspect, Unseen, Verdict, Why, diagnose,
-};
-use umbmark_core::drive::Robot;
+use umbmark_core::diagnose::{Diagnosis, Experiment, Identifiability, Level, Options, Suspect, Verdict, Why, diagnose};
+use umbmark_core::document;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::model_report::{
-    circle_table, contrasts_table, estimates_json, estimates_table, finite, meaning_json, meaning_text, model_json,
-    model_of, outliers_json, outliers_text, p_text, square_json, unit_of,
+    circle_table, contrasts_table, estimates_table, meaning_text, model_of, outliers_text, p_text, unit_of,
 };
 use crate::prose::hanging;
 use crate::table::{table, with_precision_of};
 use crate::test_arguments::TestArguments;
-use crate::unlisted::{unlisted_json, unlisted_text};
+use crate::unlisted::unlisted_text;
 
 /// So many experiments are printed; --json has all.
 const EXPERIMENTS: usize = 6;
@@ -52,7 +48,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         session.message("warning", warning);
     }
     if session.json() {
-        session.print_json(&document(&diagnosis, &options))?;
+        session.print_json(&document::diagnosis(&diagnosis, &options))?;
     } else {
         let text = text(&data, &diagnosis, &options, session.on_terminal());
         write!(session.out(), "{text}")?;
@@ -70,108 +66,6 @@ pub(super) fn in_words(verdict: Verdict) -> &'static str {
         Verdict::UnlistedEffect => "something is missing that no single effect of the catalogue explains",
         Verdict::NotEnoughData => "not enough data to tell",
     }
-}
-
-pub(super) fn document(diagnosis: &Diagnosis, options: &Options) -> Value {
-    let level = match diagnosis.level {
-        Level::Ends => "end_poses",
-        Level::Tracks => "tracks",
-    };
-    let gof = diagnosis.goodness_of_fit.iter().map(
-        |g| json!({ "name": g.name, "statistic": g.statistic, "degrees_of_freedom": g.degrees_of_freedom, "p": g.p }),
-    );
-    let mut document = json!({
-        "verdict": diagnosis.verdict.name(),
-        "observed": level,
-        "fitted": estimates_json(&diagnosis.fitted, 1.0 - options.size),
-        "goodness_of_fit": gof.collect::<Vec<_>>(),
-        "ranking": diagnosis.ranking.iter().map(|s| suspect_json(s, diagnosis.model.robot())).collect::<Vec<_>>(),
-        "certified": diagnosis.certified,
-        "invisible": diagnosis.invisible.iter().map(|u| u.effect).collect::<Vec<_>>(),
-        "absorbed": absorbed_json(&diagnosis.invisible),
-        "minimum_detectable": detectable_json(&diagnosis.minimum_detectable),
-        "minimum_detectable_sizes": diagnosis.minimum_detectable.iter().map(|d| {
-            json!({ "effect": d.effect, "parameter": d.parameter, "size": finite(d.size) })
-        }).collect::<Vec<_>>(),
-        "next_experiments": experiments_json(&diagnosis.next_experiments),
-        "identifiability": identifiability_json(&diagnosis.identifiability),
-        "unlisted": unlisted_json(diagnosis.dependence.as_ref()),
-        "model": model_json(&diagnosis.model),
-        "meaning": meaning_json(&diagnosis.fitted, &diagnosis.model),
-        "outliers": outliers_json(&diagnosis.outliers),
-        "remarks": diagnosis.remarks,
-        "size": options.size,
-        "draws": options.draws,
-        "seed": options.seed,
-        "version": umbmark_core::VERSION,
-    });
-    if let Some(map) = document.as_object_mut() {
-        map.extend(square_json(&diagnosis.contrasts, &diagnosis.circle));
-    }
-    document
-}
-
-pub(super) fn experiments_json(experiments: &[Experiment]) -> Value {
-    let one = |e: &Experiment| json!({ "separates": e.separates, "experiment": e.experiment, "minutes": e.minutes, "sd": e.sd });
-    json!(experiments.iter().map(one).collect::<Vec<_>>())
-}
-
-fn suspect_json(suspect: &Suspect, robot: &Robot) -> Value {
-    let of = |value: &dyn Fn(&umbmark_core::diagnose::Estimate) -> f64| {
-        let pairs = suspect.estimate.iter().map(|e| (e.parameter.to_owned(), finite(value(e))));
-        Value::Object(Map::from_iter(pairs))
-    };
-    json!({
-        "class": suspect.class,
-        "best": suspect.best,
-        "f": suspect.f,
-        "degrees_of_freedom": suspect.degrees_of_freedom,
-        "p": suspect.p,
-        "p_adjusted": suspect.p_adjusted,
-        "p_flips": suspect.p_flips,
-        "estimate": of(&|e| e.value),
-        "standard_error": of(&|e| e.standard_error),
-        "expected_drop": suspect.expected_drop,
-        "meaning": suspect.meaning(robot),
-    })
-}
-
-fn absorbed_json(unseen: &[Unseen]) -> Value {
-    let pairs = unseen.iter().filter_map(|u| match &u.why {
-        Why::Absorbed(by) => Some((u.effect.to_owned(), json!(by))),
-        Why::BelowNoise => None,
-    });
-    Value::Object(Map::from_iter(pairs))
-}
-
-/// For each effect, the largest of its sizes' least.
-fn detectable_json(detectable: &[Detectable]) -> Value {
-    let mut sizes: Map<String, Value> = Map::new();
-    for d in detectable {
-        let before = sizes.get(d.effect).and_then(Value::as_f64).unwrap_or(0.0);
-        sizes.insert(d.effect.to_owned(), finite(d.size.max(before)));
-    }
-    Value::Object(sizes)
-}
-
-fn identifiability_json(identifiability: &Identifiability) -> Value {
-    let parameters = identifiability.shares.iter().map(|s| {
-        json!({
-            "effect": s.effect,
-            "parameter": s.parameter,
-            "position_m_per_unit": s.position,
-            "heading_rad_per_unit": s.heading,
-        })
-    });
-    let hidden = identifiability.hidden.iter().map(|h| {
-        let weights = h.weights.iter().map(|(name, w)| ((*name).to_owned(), json!(w)));
-        json!({ "weights": Map::from_iter(weights), "ratio": h.ratio })
-    });
-    json!({
-        "parameters": parameters.collect::<Vec<_>>(),
-        "rank": identifiability.rank,
-        "hidden": hidden.collect::<Vec<_>>(),
-    })
 }
 
 fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, terminal: bool) -> String {

@@ -4,7 +4,8 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use serde_json::{Value, json};
-use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::document;
+use umbmark_core::drive::Robot;
 use umbmark_core::effect::{ActsOn, CATALOGUE, Entry, find};
 use umbmark_core::parameter::{DefaultValue, Parameter};
 
@@ -27,12 +28,12 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         Some(name) => {
             let entry = find(name)?;
             let signature = Signature::of(entry)?;
-            let mut document = about_json(entry);
+            let mut document = document::about(entry);
             document["picture"] = signature.as_ref().map_or(Value::Null, Signature::json);
             (document, explanation(entry, signature.as_ref()))
         }
         None => {
-            let entries: Vec<Value> = CATALOGUE.iter().map(about_json).collect();
+            let entries: Vec<Value> = CATALOGUE.iter().map(document::about).collect();
             (json!({ "effects": entries, "version": umbmark_core::VERSION }), list())
         }
     };
@@ -130,43 +131,4 @@ fn range(parameter: &Parameter) -> String {
     let usual =
         if parameter.choices.is_empty() { format!("; usual {}{unit}", parameter.typical) } else { String::new() };
     format!("{}; {default}{usual}; --{}", parameter.allowed(), parameter.flag)
-}
-
-fn about_json(entry: &Entry) -> Value {
-    let about = &entry.about;
-    let parameters: Vec<Value> = about.parameters.iter().map(parameter_json).collect();
-    json!({
-        "name": about.name,
-        "title": about.title,
-        "acts_on": about.acts_on.name(),
-        "drives": entry.drives.each().map(Kind::name).collect::<Vec<_>>(),
-        "equation": about.equation,
-        "physics": about.physics,
-        "signature": about.signature,
-        "confused_with": about.confused_with,
-        "separated_by": about.separated_by,
-        "source": about.source,
-        "parameters": parameters,
-    })
-}
-
-fn parameter_json(parameter: &Parameter) -> Value {
-    let finite = |bound: f64| if bound.is_finite() { json!(bound) } else { Value::Null };
-    let default = match parameter.default {
-        DefaultValue::Value(value) => match parameter.choices.get(value as usize) {
-            Some(word) => json!(word),
-            None => json!(value),
-        },
-        DefaultValue::OfRobot(_) => json!("of the robot"),
-    };
-    json!({
-        "name": parameter.name,
-        "flag": format!("--{}", parameter.flag),
-        "unit": parameter.unit,
-        "default": default,
-        "typical": parameter.typical,
-        "bounds": [finite(parameter.bounds.0), finite(parameter.bounds.1)],
-        "choices": parameter.choices,
-        "meaning": parameter.meaning,
-    })
 }

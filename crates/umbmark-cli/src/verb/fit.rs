@@ -4,15 +4,12 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use serde_json::json;
+use umbmark_core::document;
 use umbmark_core::learn::{Fit, fit};
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
-use crate::model_report::{
-    estimates_json, estimates_table, meaning_json, meaning_text, model_json, model_of, outliers_json, outliers_text,
-    write_model,
-};
+use crate::model_report::{estimates_table, meaning_text, model_of, outliers_text, write_model};
 
 /// Arguments of `fit`.
 #[derive(Debug, clap::Args)]
@@ -50,33 +47,24 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if model.parts().iter().all(|part| !part.free) {
         anyhow::bail!("no effect of the model is free: say free = true in its file, or --add EFFECT");
     }
-    let Fit { model, estimates, outliers } = session.on_threads(|| fit(&data, &model))??;
-    let free = model.parts().iter().filter(|part| part.free).map(|part| part.effect.name());
-    let unfitted: Vec<&str> = free.filter(|name| estimates.iter().all(|e| e.effect != *name)).collect();
+    let fitted = session.on_threads(|| fit(&data, &model))??;
+    let Fit { model, estimates, outliers } = &fitted;
     if let Some(file) = &arguments.output {
-        write_model(&model, file, arguments.force)?;
+        write_model(model, file, arguments.force)?;
     }
     if session.json() {
-        session.print_json(&json!({
-            "fitted": estimates_json(&estimates, arguments.level),
-            "not_shown": unfitted,
-            "meaning": meaning_json(&estimates, &model),
-            "outliers": outliers_json(&outliers),
-            "model": model_json(&model),
-            "level": arguments.level,
-            "version": umbmark_core::VERSION,
-        }))?;
+        session.print_json(&document::fitted(&fitted, arguments.level))?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &data.warnings {
         session.message("warning", warning);
     }
-    for effect in &unfitted {
+    for effect in document::not_shown(model, estimates) {
         let why = "this data does not show it apart from the rest of the model; it keeps its values";
         session.message("warning", &format!("{effect} was not fitted: {why}"));
     }
-    writeln!(session.out(), "{}", estimates_table(&estimates, arguments.level))?;
-    write!(session.out(), "{}{}", meaning_text(&estimates, &model), outliers_text(&outliers))?;
+    writeln!(session.out(), "{}", estimates_table(estimates, arguments.level))?;
+    write!(session.out(), "{}{}", meaning_text(estimates, model), outliers_text(outliers))?;
     if let Some(file) = &arguments.output {
         writeln!(session.out(), "\nwrote {}", file.display())?;
     }

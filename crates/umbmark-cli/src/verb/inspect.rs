@@ -1,13 +1,10 @@
 //! `umbmark inspect`: what a dataset holds, whether it is any good, and what it can determine.
 
 use std::io::Write;
-use std::path::Path;
 use std::process::ExitCode;
 
-use serde_json::{Map, Value, json};
-use umbmark_core::dataset::{
-    Dataset, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, RunTopics, Wheels, WheelsFound,
-};
+use umbmark_core::dataset::{Dataset, Group, Inspection, LogFacts, MovesFound, RunTopics};
+use umbmark_core::document;
 use umbmark_core::drive::Robot;
 use umbmark_core::path::Direction;
 
@@ -16,7 +13,7 @@ use crate::data_arguments::DataArguments;
 use crate::prose::hanging;
 use crate::table::table;
 use crate::terminal::{plan, sparkline};
-use crate::verb::convert::{alignment_json, clock_json, clocks_table};
+use crate::verb::convert::clocks_table;
 
 /// Arguments of `inspect`.
 #[derive(Debug, clap::Args)]
@@ -29,7 +26,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let data = arguments.data.load()?;
     let inspection = data.inspect();
     if session.json() {
-        session.print_json(&document(&arguments.data.data, &data, &inspection))?;
+        session.print_json(&document::inspection(&arguments.data.data.display().to_string(), &data, &inspection))?;
     } else {
         let text = text(&data, &inspection, session.on_terminal());
         write!(session.out(), "{text}")?;
@@ -160,133 +157,4 @@ fn topics_table(topics: &[RunTopics]) -> String {
         vec![topics.run.clone(), topics.wheels.clone(), reference]
     });
     table(&["topics", "wheels", "reference"], rows)
-}
-
-fn topics_json(topics: &RunTopics) -> Value {
-    json!({ "run": topics.run, "wheels": topics.wheels, "reference": topics.reference })
-}
-
-fn document(place: &Path, data: &Dataset, inspection: &Inspection) -> Value {
-    let groups: Vec<Value> = inspection.groups.iter().map(group_json).collect();
-    let logs: Vec<Value> = inspection.logs.iter().map(log_json).collect();
-    let checks = inspection
-        .checks
-        .iter()
-        .map(|check| json!({ "name": check.name, "found": check.found, "good": check.good, "ok": check.ok }));
-    let determined = inspection
-        .determined
-        .iter()
-        .map(|answer| json!({ "quantity": answer.quantity, "yes": answer.yes, "because": answer.because }));
-    json!({
-        "data": place.display().to_string(),
-        "robot": data.robot.as_ref().map(robot_json),
-        "path": data.path.as_ref().map(path_json),
-        "groups": groups,
-        "logs": logs,
-        "clocks": data.clocks.iter().map(clock_json).collect::<Vec<Value>>(),
-        "topics": data.topics.iter().map(topics_json).collect::<Vec<Value>>(),
-        "checks": checks.collect::<Vec<Value>>(),
-        "determined": determined.collect::<Vec<Value>>(),
-        "rank": inspection.rank,
-        "warnings": inspection.warnings,
-        "version": umbmark_core::VERSION,
-    })
-}
-
-fn robot_json(robot: &Robot) -> Value {
-    json!({
-        "name": robot.name,
-        "wheelbase_m": robot.drive.wheelbase(),
-        "wheel_diameter_left_m": robot.drive.wheel_diameter_left(),
-        "wheel_diameter_right_m": robot.drive.wheel_diameter_right(),
-        "ticks_per_revolution": robot.encoder.ticks_per_revolution(),
-        "encoder_rate_hz": robot.encoder.rate(),
-        "counter_bits": robot.encoder.counter_bits(),
-    })
-}
-
-fn path_json(path: &umbmark_core::path::Path) -> Value {
-    let shape = path.shape();
-    let mut sizes: Map<String, Value> =
-        shape.parameters.iter().zip(path.values()).map(|(p, value)| (p.name.to_owned(), json!(value))).collect();
-    if shape.parameters.is_empty() {
-        sizes.insert("points_m".into(), json!(path.values().chunks(2).collect::<Vec<_>>()));
-    }
-    json!({ "shape": shape.name, "sizes": sizes, "length_m": path.length() })
-}
-
-fn group_json(group: &Group) -> Value {
-    json!({
-        "test": group.test.name(),
-        "direction": group.direction.map(Direction::name),
-        "runs": group.runs,
-        "returns": group.returns,
-        "headings": group.headings,
-        "logs": group.logs,
-    })
-}
-
-fn log_json(log: &LogFacts) -> Value {
-    json!({
-        "name": log.name,
-        "direction": log.direction.map(Direction::name),
-        "rows": log.rows,
-        "duration_s": log.duration,
-        "rate_hz": log.rate,
-        "jitter": log.jitter,
-        "longest_gap_s": log.longest_gap,
-        "gaps": log.gaps,
-        "mended": {
-            "roll_overs": log.mended.roll_overs,
-            "resets": log.mended.resets,
-            "rows_out_of_order": log.mended.late,
-            "rows_repeated": log.mended.repeated,
-            "stale_poses": log.mended.stale,
-        },
-        "length_m": log.length,
-        "heading_rad": log.heading,
-        "heading_off_rad": log.heading_off,
-        "wheels": log.wheels.as_ref().map(wheels_json),
-        "moves": log.moves.as_ref().map(moves_json),
-        "alignment": log.alignment.as_ref().map(alignment_json),
-        "reference": log.reference.as_ref().map(reference_json),
-    })
-}
-
-fn moves_json(moves: &MovesFound) -> Value {
-    json!({
-        "shape": moves.shape,
-        "described": moves.described,
-        "legs": moves.legs,
-        "turns": moves.turns,
-        "arcs": moves.arcs,
-        "stops": moves.stops,
-    })
-}
-
-fn wheels_json(found: &WheelsFound) -> Value {
-    let (exchanged, left, right) = match found.wheels {
-        Wheels::AsGiven => (false, false, false),
-        Wheels::Otherwise { exchanged, left_backward, right_backward } => (exchanged, left_backward, right_backward),
-    };
-    json!({
-        "as_named": found.wheels == Wheels::AsGiven,
-        "exchanged": exchanged,
-        "left_backward": left,
-        "right_backward": right,
-        "misfit_m": found.misfit.map(|(given, _)| given),
-        "best_misfit_m": found.misfit.map(|(_, best)| best),
-    })
-}
-
-fn reference_json(reference: &ReferenceFacts) -> Value {
-    json!({
-        "poses": reference.poses,
-        "headings": reference.headings,
-        "rate_hz": reference.rate,
-        "coverage": reference.coverage.to_string(),
-        "longest_gap_s": reference.longest_gap,
-        "noise_m": reference.noise,
-        "heading_noise_rad": reference.heading_noise,
-    })
 }

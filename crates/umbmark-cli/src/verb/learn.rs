@@ -4,22 +4,19 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use serde_json::{Value, json};
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Experiment, Level, Options};
+use umbmark_core::document;
 use umbmark_core::learn::{Learnt, Step, learn, learn_from};
 
-use super::diagnose::{experiment_text, experiments_json, in_words};
+use super::diagnose::{experiment_text, in_words};
 use crate::Session;
 use crate::data_arguments::DataArguments;
-use crate::model_report::{
-    estimates_json, estimates_table, finite, meaning_json, meaning_text, model_json, model_of, outliers_json,
-    outliers_text, p_text, write_model,
-};
+use crate::model_report::{estimates_table, meaning_text, model_of, outliers_text, p_text, write_model};
 use crate::prose::hanging;
 use crate::table::table;
 use crate::test_arguments::TestArguments;
-use crate::unlisted::{unlisted_json, unlisted_text};
+use crate::unlisted::unlisted_text;
 
 /// Arguments of `learn`.
 #[derive(Debug, clap::Args)]
@@ -55,7 +52,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         write_model(&learnt.model, file, arguments.force)?;
     }
     if session.json() {
-        session.print_json(&document(&learnt, &options))?;
+        session.print_json(&document::learnt(&learnt, &options))?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &data.warnings {
@@ -67,37 +64,6 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         writeln!(session.out(), "\nwrote {}", file.display())?;
     }
     Ok(ExitCode::SUCCESS)
-}
-
-fn document(learnt: &Learnt, options: &Options) -> Value {
-    let step = |s: &Step| {
-        json!({
-            "added": s.added,
-            "class": s.class,
-            "p_adjusted": s.p_adjusted,
-            "rmse_m": finite(s.error.position),
-            "heading_rmse_rad": s.error.heading,
-            "heldout_rmse_m": finite(s.held_out.position),
-            "heldout_heading_rmse_rad": s.held_out.heading,
-            "aicc": s.aicc,
-            "bic": s.bic,
-        })
-    };
-    json!({
-        "steps": learnt.steps.iter().map(step).collect::<Vec<_>>(),
-        "verdict": learnt.verdict.name(),
-        "unlisted": unlisted_json(learnt.diagnosis.dependence.as_ref()),
-        "next_experiments": experiments_json(&learnt.diagnosis.next_experiments),
-        "model": model_json(&learnt.model),
-        "fitted": estimates_json(&learnt.diagnosis.fitted, 1.0 - options.size),
-        "meaning": meaning_json(&learnt.diagnosis.fitted, &learnt.model),
-        "outliers": outliers_json(&learnt.diagnosis.outliers),
-        "remarks": learnt.remarks,
-        "size": options.size,
-        "draws": options.draws,
-        "seed": options.seed,
-        "version": umbmark_core::VERSION,
-    })
 }
 
 fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> String {

@@ -7,16 +7,12 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Context;
-use serde_json::{Map, Value, json};
-use umbmark_core::calibrate::{Angles, Correction};
-use umbmark_core::drive::Kind;
+use umbmark_core::document::{self, Theory};
 use umbmark_core::monte_carlo::{Draw, Ensemble, Metric, Row, Shard, Statistics, Study};
 use umbmark_core::parameter::Parameter;
-use umbmark_core::path::{Direction, SQUARE};
-use umbmark_core::score::summarise;
 
 use crate::checkpoint::Checkpoint;
-use crate::distribution_text::{distribution_json, distribution_words};
+use crate::distribution_text::distribution_words;
 use crate::effect_flags::number;
 use crate::ensemble_report::{Description, Report};
 use crate::study_flags::{Known, StudyFlags};
@@ -217,8 +213,8 @@ impl TrialsFile {
 fn describe(study: &Study, known: &Known) -> anyhow::Result<Description> {
     let theory = Theory::of(study)?;
     let path = &study.path;
-    let sizes = || path.shape().parameters.iter().zip(path.values());
-    let written: Vec<String> = sizes().map(|(p, v)| format!("{} {v}", p.name)).collect();
+    let sizes = path.shape().parameters.iter().zip(path.values());
+    let written: Vec<String> = sizes.map(|(p, v)| format!("{} {v}", p.name)).collect();
     let drawn = |effect: &str, parameter: &Parameter| {
         study.draws.iter().find(|d| d.effect() == effect && d.parameter().name == parameter.name)
     };
@@ -230,39 +226,34 @@ fn describe(study: &Study, known: &Known) -> anyhow::Result<Description> {
         },
         format!("{}, {} ({})", study.robot().name, path.shape().name.replace('_', "-"), written.join(", ")),
     ];
-    let mut effects = Vec::new();
     for part in study.model.parts() {
         let name = part.effect.name();
-        let mut entry = Map::from_iter([("name".to_owned(), json!(name))]);
         let mut words = Vec::new();
         for (parameter, value) in part.effect.parameters().iter().zip(&part.values) {
             let draw = drawn(name, parameter);
-            entry.insert(
-                parameter.name.to_owned(),
-                draw.map_or(json!(value), |draw| distribution_json(&draw.distribution())),
-            );
             words.push(format!("{} {}", parameter.name, value_text(parameter, *value, draw)));
         }
-        effects.push(Value::Object(entry));
         heading.push(format!("  {name}: {}", words.join(", ")));
     }
     heading.extend(known.sources.iter().map(|source| format!("  from the paper: {source}")));
     heading.extend(known.assumed.iter().map(|assumption| format!("  assumed: {assumption}")));
-    let sizes: Map<String, Value> = sizes().map(|(p, v)| (p.name.to_owned(), json!(v))).collect();
-    let document = json!({
-        "noise_free": { "e_max_sys_m": theory.exact, "first_order_e_max_sys_m": theory.first_order },
-        "runs": { "cw": study.runs[0], "ccw": study.runs[1] },
-        "robot": study.robot().name,
-        "path": { "shape": path.shape().name, "sizes": sizes },
-        "effects": effects,
-        "sources": known.sources,
-        "assumed": known.assumed,
-        "published": known.published.map(|p| json!({ "row": p.row, "e_max_sys_m": p.e_max_sys, "sigma_m": p.sigma })),
-        "version": umbmark_core::VERSION,
-    });
-    let document = document.as_object().cloned().unwrap_or_default();
+    let told = document::Told { sources: &known.sources, assumed: &known.assumed, published: known.published };
+    let document = document::study(study, &theory, &told);
     let published = known.published.map(|p| (p.row.to_owned(), p.e_max_sys, p.sigma));
-    Ok(Description { heading, theory: theory.text(study.runs), seed: study.seed, document, published })
+    Ok(Description { heading, theory: in_words(&theory, study.runs), seed: study.seed, document, published })
+}
+
+/// What the test gives without noise.
+fn in_words(theory: &Theory, runs: [usize; 2]) -> String {
+    let subject = if runs.contains(&0) { "Driven both ways, E_max,sys" } else { "E_max,sys" };
+    let mm = |value: Option<f64>| value.map(|v| format!("{:.1} mm", v * 1e3));
+    match (mm(theory.exact), mm(theory.first_order)) {
+        (Some(exact), Some(first)) => {
+            format!("{subject} without noise: {exact} by exact kinematics, {first} to first order\n\n")
+        }
+        (Some(exact), None) => format!("{subject} without noise: {exact} by exact kinematics\n\n"),
+        _ => String::new(),
+    }
 }
 
 fn value_text(parameter: &Parameter, value: f64, draw: Option<&Draw>) -> String {
@@ -270,48 +261,5 @@ fn value_text(parameter: &Parameter, value: f64, draw: Option<&Draw>) -> String 
         (Some(word), _) => (*word).to_owned(),
         (None, Some(distribution)) => distribution_words(&distribution),
         (None, None) => value.to_string(),
-    }
-}
-
-/// E_max,sys \[m\] of the same test without noise.
-struct Theory {
-    exact: Option<f64>,
-    /// By the formulas of the paper's companion, for a square.
-    first_order: Option<f64>,
-}
-
-impl Theory {
-    fn of(study: &Study) -> anyhow::Result<Theory> {
-        if study.robot().drive.kind() == Kind::Clapper {
-            return Ok(Theory { exact: None, first_order: None });
-        }
-        let [cw, ccw] = study.noise_free()?;
-        let middle = |effect: &str, parameter: &str| {
-            let drawn = study.draws.iter().find(|d| d.effect() == effect && d.parameter().name == parameter);
-            drawn.map(Draw::centre).or(study.model.get(effect, parameter)).unwrap_or(1.0)
-        };
-        let e_d = middle("wheel_diameter_ratio", "e_d");
-        // A square sees the ratio of the two only.
-        let e_b = middle("wheelbase", "e_b") / middle("scale", "e_s");
-        let of_paper = std::ptr::eq(study.path.shape(), &SQUARE) && study.robot().drive.kind() == Kind::Differential;
-        let side = study.path.values().first().filter(|_| of_paper);
-        let first_order = side.and_then(|side| {
-            let angles = Angles::of(&Correction { e_d, e_b, e_s: 1.0 }, *side, &study.robot().drive);
-            let [cw, ccw] = Direction::BOTH.map(|direction| angles.first_order_return(direction, *side));
-            summarise(&[cw], &[ccw]).e_max_sys()
-        });
-        Ok(Theory { exact: summarise(&[cw], &[ccw]).e_max_sys(), first_order })
-    }
-
-    fn text(&self, runs: [usize; 2]) -> String {
-        let subject = if runs.contains(&0) { "Driven both ways, E_max,sys" } else { "E_max,sys" };
-        let mm = |value: Option<f64>| value.map(|v| format!("{:.1} mm", v * 1e3));
-        match (mm(self.exact), mm(self.first_order)) {
-            (Some(exact), Some(first)) => {
-                format!("{subject} without noise: {exact} by exact kinematics, {first} to first order\n\n")
-            }
-            (Some(exact), None) => format!("{subject} without noise: {exact} by exact kinematics\n\n"),
-            _ => String::new(),
-        }
     }
 }

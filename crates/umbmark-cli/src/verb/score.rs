@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use serde_json::{Map, Value, json};
-use umbmark_core::score::{CentroidInterval, Cluster, Convention, Score, score};
+use umbmark_core::document;
+use umbmark_core::score::{Cluster, Convention, Score, score};
 use umbmark_core::stats::Interval;
 use umbmark_plot::kind::of_score;
 use umbmark_plot::render::terminal::plan;
@@ -50,7 +50,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         ConventionKind::Sum => Convention::Sum,
     };
     if session.json() {
-        session.print_json(&document(&score, convention))?;
+        session.print_json(&document::score(&score, convention))?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &score.warnings {
@@ -60,54 +60,6 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let drawn: String = figure.panels.iter().map(|panel| plan(panel, session.look(), WIDE, HIGH)).collect();
     write!(session.out(), "{}\n{drawn}", text(&score, convention))?;
     Ok(ExitCode::SUCCESS)
-}
-
-fn document(score: &Score, convention: Convention) -> Value {
-    let summary = &score.summary;
-    let intervals = score.intervals.as_ref();
-    let mut document = json!({
-        "e_max_sys_m": summary.e_max_sys(),
-        "e_max_sys_interval_m": intervals.and_then(|i| i.e_max_sys).map(ends),
-        "noise_band_m": score.noise_band,
-        "sigma_m": summary.sigma_axis(),
-        "sigma_interval_m": intervals.map(|i| ends(i.sigma_axis)),
-        "sigma_radial_m": summary.sigma_radial(),
-    });
-    let mut put = |key: String, value: Value| document.as_object_mut().map(|map| map.insert(key, value));
-    for (name, cluster, interval) in
-        [("cw", summary.cw, intervals.and_then(|i| i.cw)), ("ccw", summary.ccw, intervals.and_then(|i| i.ccw))]
-    {
-        put(format!("n_{name}"), json!(cluster.map_or(0, |c| c.n)));
-        put(format!("centroid_{name}_m"), json!(cluster.map(|c| [c.x, c.y])));
-        put(format!("centroid_{name}_interval_m"), json!(interval.map(|i| [ends(i.x), ends(i.y)])));
-        put(format!("centroid_{name}_ellipse"), json!(interval.map(|i| ellipse_json(&i))));
-        put(format!("return_heading_{name}_rad"), json!(cluster.and_then(|c| c.heading)));
-        put(format!("return_heading_{name}_interval_rad"), json!(interval.and_then(|i| i.heading).map(ends)));
-    }
-    if let Some(extended) = &score.extended {
-        put("nonsys_orientation_rad".into(), json!(extended.orientation(convention)));
-        put("nonsys_orientation_interval_rad".into(), json!(extended.interval(convention).map(ends)));
-        put("nonsys_convention".into(), json!(convention.name()));
-        put("n_bumps_cw".into(), json!(extended.n_cw));
-        put("n_bumps_ccw".into(), json!(extended.n_ccw));
-    }
-    put("level".into(), json!(score.level));
-    put("warnings".into(), json!(score.warnings));
-    put("version".into(), json!(umbmark_core::VERSION));
-    document
-}
-
-fn ends(interval: Interval) -> [f64; 2] {
-    [interval.low, interval.high]
-}
-
-fn ellipse_json(interval: &CentroidInterval) -> Map<String, Value> {
-    let e = interval.ellipse;
-    Map::from_iter([
-        ("semi_major_m".to_owned(), json!(e.semi_major)),
-        ("semi_minor_m".to_owned(), json!(e.semi_minor)),
-        ("angle_rad".to_owned(), json!(e.angle)),
-    ])
 }
 
 fn text(score: &Score, convention: Convention) -> String {

@@ -4,10 +4,11 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::sync::Mutex;
 
+use umbmark_core::document::Found;
 use umbmark_core::sensitivity::{Inputs, Noise, SobolOptions, Tests, Watch, local_derivatives, screen, sobol_indices};
 
 use crate::Session;
-use crate::sensitivity_report::{Found, SensitivityReport};
+use crate::sensitivity_report::SensitivityReport;
 use crate::study_flags::StudyFlags;
 use crate::sweep::metric_named;
 use crate::vary::VaryFlags;

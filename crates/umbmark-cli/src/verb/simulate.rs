@@ -4,13 +4,10 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use serde_json::{Value, json};
-use umbmark_core::dataset::{Dataset, Run};
-use umbmark_core::drive::{Encoder, Robot};
-use umbmark_core::effect::{Model, TestKind};
-use umbmark_core::engine::Update;
+use umbmark_core::document;
+use umbmark_core::effect::TestKind;
 use umbmark_core::monte_carlo::draw_parameters;
-use umbmark_core::path::{Direction, Path};
-use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth};
+use umbmark_core::simulate::{is_extended, record_test};
 
 use crate::Session;
 use crate::output_arguments::{OutputArguments, layouts};
@@ -56,14 +53,16 @@ impl Arguments {
     }
 }
 
-/// How often the counters are written down where the robot file does not say \[Hz\].
-const LOG_RATE: f64 = 100.0;
-
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let Setup { path, model, draws, assumed, .. } = arguments.setup.resolve()?;
     let model = draw_parameters(&model, &draws, session.seed(), 0)?;
-    let robot = with_rate(model.robot())?;
-    let dataset = record(&arguments, &robot, &path, &model, session.seed())?;
+    let tests = match (is_extended(&model), arguments.is_log()) {
+        (true, false) => &[TestKind::Systematic, TestKind::Bumps][..],
+        (true, true) => &[TestKind::Bumps],
+        (false, _) => &[TestKind::Systematic],
+    };
+    let dataset =
+        record_test(&model, &path, tests, arguments.numbers()?, arguments.reference_rate, [session.seed(), 0])?;
     let lost = arguments.output.write(&dataset)?;
     for text in &assumed {
         session.message("assumed", text);
@@ -72,7 +71,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         session.message("lost", text);
     }
     if session.json() {
-        let runs: Vec<Value> = dataset.runs.iter().map(run_json).collect();
+        let runs: Vec<Value> = dataset.runs.iter().map(document::run).collect();
         session.print_json(&json!({
             "output": arguments.output.output.display().to_string(),
             "layout": arguments.output.layout().name,
@@ -93,60 +92,6 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let place = arguments.output.output.display();
     writeln!(session.out(), "{text}\n")?;
     let seed = session.seed();
-    writeln!(session.out(), "{count} runs of {} in {place}, seed {seed}", robot.name)?;
+    writeln!(session.out(), "{count} runs of {} in {place}, seed {seed}", model.robot().name)?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// The robot with a sampling rate, which a log needs.
-fn with_rate(robot: &Robot) -> anyhow::Result<Robot> {
-    let encoder = &robot.encoder;
-    let rate = encoder.rate().unwrap_or(LOG_RATE);
-    let encoder = Encoder::new(encoder.ticks_per_revolution(), Some(rate), encoder.counter_bits())?;
-    Ok(Robot { encoder, ..robot.clone() })
-}
-
-fn record(arguments: &Arguments, robot: &Robot, path: &Path, model: &Model, seed: u64) -> anyhow::Result<Dataset> {
-    let rate = robot.encoder.rate().unwrap_or(LOG_RATE);
-    let odometry = Odometry::Sampled { rate, update: Update::Arc };
-    let mut simulator = Simulator::new(robot, path, odometry, Phase::Random)?;
-    let mut truth = Truth::new(model);
-    simulator.open(&mut truth, seed, 0);
-    let extended = model.get("placed_bumps", "count").is_some_and(|count| count > 0.0);
-    let tests = match (extended, arguments.is_log()) {
-        (true, false) => &[TestKind::Systematic, TestKind::Bumps][..],
-        (true, true) => &[TestKind::Bumps],
-        (false, _) => &[TestKind::Systematic],
-    };
-    let mut runs = Vec::new();
-    let numbers = arguments.numbers()?;
-    for &test in tests {
-        for (direction, count) in Direction::BOTH.into_iter().zip(numbers) {
-            for number in 1..=count as u32 {
-                let reference = if arguments.reference_rate > 0.0 { arguments.reference_rate } else { rate };
-                let mut recording = simulator.record(&mut truth, direction, test, [rate, reference])?;
-                if arguments.reference_rate <= 0.0 {
-                    let last = recording.log.reference.len() - 1;
-                    recording.log.reference.drain(..last);
-                }
-                let prefix = if test == TestKind::Bumps { "bumps_" } else { "" };
-                runs.push(Run {
-                    name: format!("{prefix}{}_{number:02}", direction.name()),
-                    number,
-                    direction: Some(direction),
-                    test,
-                    log: Some(recording.log),
-                    returned: Some(recording.returned),
-                });
-            }
-        }
-    }
-    Ok(Dataset { robot: Some(robot.clone()), path: Some(path.clone()), runs, ..Dataset::default() })
-}
-
-fn run_json(run: &Run) -> Value {
-    let error = run.returned.unwrap_or_default();
-    json!({
-        "run": run.name, "direction": run.direction.map(Direction::name), "test": run.test.name(),
-        "ex_m": error.x, "ey_m": error.y, "etheta_rad": error.heading,
-    })
 }

@@ -12,7 +12,7 @@ use umbmark_core::sensitivity::tolerance::{Choice, Findings, Target, Tolerances}
 use umbmark_core::sensitivity::{Correlation, Estimate, Noise, Tests, Watch};
 
 use crate::Session;
-use crate::distribution_text::{distribution_json, distribution_words};
+use crate::distribution_text::distribution_words;
 use crate::ensemble_report::unit;
 use crate::study_flags::StudyFlags;
 use crate::sweep::metric_named;
@@ -125,7 +125,7 @@ impl Report<'_> {
         let choice = |choice: &Choice| {
             let grade = |(one, grade): (&umbmark_core::dataset::Varied, &usize)| {
                 let chosen = &one.grades[*grade];
-                let value = json!({ "grade": grade + 1, "distribution": distribution_json(&chosen.distribution), "cost": chosen.cost });
+                let value = json!({ "grade": grade + 1, "distribution": umbmark_core::document::distribution(&chosen.distribution), "cost": chosen.cost });
                 (one.quantity.key(), value)
             };
             let grades: Map<String, Value> = self.file.parameters.iter().zip(&choice.grades).map(grade).collect();

@@ -1,6 +1,7 @@
 //! `model.toml` as text.
 
 use crate::effect::{Formula, Model, Part};
+use crate::monte_carlo::{Distribution, Draw};
 use crate::parameter::Parameter;
 use std::fmt::Write;
 
@@ -18,6 +19,11 @@ use std::fmt::Write;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn model_text(model: &Model) -> String {
+    model_text_with(model, &[])
+}
+
+/// The same with the distributions of the parameters that are drawn from trial to trial.
+pub fn model_text_with(model: &Model, draws: &[Draw]) -> String {
     let mut text = String::new();
     for part in model.parts() {
         if !text.is_empty() {
@@ -25,7 +31,7 @@ pub fn model_text(model: &Model) -> String {
         }
         // Writing to a string does not fail.
         let _ = writeln!(text, "[[effect]]\nname = \"{}\"", part.effect.name());
-        text += &part.effect.formula().map_or_else(|| numbers(part), |formula| own(formula, &part.values));
+        text += &part.effect.formula().map_or_else(|| numbers(part, draws), |formula| own(formula, &part.values));
         if part.free {
             text.push_str("free = true\n");
         }
@@ -34,10 +40,22 @@ pub fn model_text(model: &Model) -> String {
 }
 
 /// The numbers of an effect of the catalogue.
-fn numbers(part: &Part) -> String {
-    let line = |(parameter, value): (&Parameter, &f64)| match parameter.choices.get(*value as usize) {
-        Some(word) => format!("{} = \"{word}\"\n", parameter.name),
-        None => format!("{} = {value:?}\n", parameter.name),
+fn numbers(part: &Part, draws: &[Draw]) -> String {
+    let line = |(parameter, value): (&Parameter, &f64)| {
+        let drawn = draws.iter().find(|d| d.effect() == part.effect.name() && d.parameter().name == parameter.name);
+        let written = match (parameter.choices.get(*value as usize), drawn.map(Draw::distribution)) {
+            (Some(word), _) => format!("\"{word}\""),
+            (None, Some(Distribution::Normal { mean, sd })) => format!("{{ mean = {mean:?}, sd = {sd:?} }}"),
+            (None, Some(Distribution::Uniform { min, max })) => format!("{{ min = {min:?}, max = {max:?} }}"),
+            (None, Some(Distribution::Triangular { min, mode, max })) => {
+                format!("{{ min = {min:?}, mode = {mode:?}, max = {max:?} }}")
+            }
+            (None, Some(Distribution::LogUniform { min, max })) => {
+                format!("{{ min = {min:?}, max = {max:?}, scale = \"log\" }}")
+            }
+            (None, None) => format!("{value:?}"),
+        };
+        format!("{} = {written}\n", parameter.name)
     };
     part.effect.parameters().iter().zip(&part.values).map(line).collect()
 }
@@ -77,5 +95,12 @@ mod tests {
         let (read, draws) = parse_model("model.toml", &model_text(&model), &robot).unwrap();
         assert_eq!(read, model);
         assert!(draws.is_empty());
+    }
+    #[test]
+    fn what_is_drawn_reads_back_with_its_distribution() {
+        let text = "[[effect]]\nname = \"scale\"\ne_s = { mean = 1.002, sd = 0.0005 }\n\n\
+                    [[effect]]\nname = \"crab\"\nangle_rad = { min = 0.0, max = 0.01 }\n";
+        let (model, draws) = parse_model("model.toml", text, &Robot::labmate()).unwrap();
+        assert_eq!(model_text_with(&model, &draws), text);
     }
 }

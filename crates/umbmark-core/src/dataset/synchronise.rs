@@ -23,6 +23,7 @@ use crate::geometry::Pose2;
 use crate::stats::{Interval, student_t_quantile};
 use motion::Motion;
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 use windows::{OFFSET, RATE, Windows};
 
 /// Stretches of a run that are left out in turn.
@@ -36,7 +37,7 @@ const BELIEVED: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 const FAR_OFF: f64 = 12.0;
 
 /// A quantity with its standard error and its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// The estimate.
     pub value: f64,
@@ -56,7 +57,7 @@ impl Measured {
 }
 
 /// How a track lies against the wheel counts: τ = offset + rate · t, and from the axle to the tracked point.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Alignment {
     /// Clock of the track minus clock of the ticks, at the first sample of the ticks \[s\].
     pub offset: Measured,

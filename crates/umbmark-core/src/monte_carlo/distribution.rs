@@ -176,6 +176,13 @@ pub struct Draw {
     distribution: Distribution,
 }
 
+impl PartialEq for Draw {
+    fn eq(&self, other: &Draw) -> bool {
+        let named = |draw: &Draw| (draw.effect, draw.parameter.name);
+        named(self) == named(other) && self.distribution == other.distribution
+    }
+}
+
 impl Draw {
     /// A parameter by the names of its effect and its own.
     pub fn new(effect: &str, parameter: &str, distribution: Distribution) -> Result<Draw, StudyError> {

@@ -4,9 +4,85 @@ UMBmark is the benchmark test of Borenstein and Feng (1995): a robot drives a sq
 directions by its odometry alone, and the errors of its returns tell how wrong it is, and why.
 
 Units are SI throughout: m, rad and s, with headings counter-clockwise positive. Where a name
-carries a unit (``sigma_m``), that is its unit.
+carries a unit (``sigma_m``), that is its unit. What the command does, this package does:
+
+=================================  ===========================================================
+``load_dataset``, ``inspect``      read measurements, and look at them
+``score``, ``calibrate``           E_max,sys and the rest; E_d, E_b and E_s
+``compare``, ``diagnose``          what models explain, and what they are missing
+``fit``, ``learn``                 fit a model; add what is missing until nothing is
+``simulate``, ``monte_carlo``      one test, recorded; thousands of tests
+``sensitivity``                    which parameter drives which metric
+``Robot``, ``Path``, ``Model``     what all of it is about; ``effects`` lists what there is
+``umbmark.distributed``            Monte Carlo past one machine, on Dask
+=================================  ===========================================================
 """
 
-from umbmark._umbmark import Score, __version__, score
+from umbmark._calibration import Calibration, Correction, calibrate
+from umbmark._diagnosis import (
+    Comparison,
+    Diagnosis,
+    Fitted,
+    Learnt,
+    TrackComparison,
+    compare,
+    diagnose,
+    fit,
+    learn,
+)
+from umbmark._effects import Effect, effects
+from umbmark._formula import formula_of
+from umbmark._inspection import Inspection, inspect
+from umbmark._monte_carlo import MonteCarlo, monte_carlo
+from umbmark._scores import Score, score
+from umbmark._sensitivity import Sensitivity, sensitivity
+from umbmark._simulation import simulate
+from umbmark._umbmark import (
+    Dataset,
+    Ensemble,
+    Model,
+    Path,
+    Robot,
+    Run,
+    Study,
+    __version__,
+    load_dataset,
+    presets,
+)
 
-__all__ = ["Score", "__version__", "score"]
+__all__ = [
+    "Calibration",
+    "Comparison",
+    "Correction",
+    "Dataset",
+    "Diagnosis",
+    "Effect",
+    "Ensemble",
+    "Fitted",
+    "Inspection",
+    "Learnt",
+    "Model",
+    "MonteCarlo",
+    "Path",
+    "Robot",
+    "Run",
+    "Score",
+    "Sensitivity",
+    "Study",
+    "TrackComparison",
+    "__version__",
+    "calibrate",
+    "compare",
+    "diagnose",
+    "effects",
+    "fit",
+    "formula_of",
+    "inspect",
+    "learn",
+    "load_dataset",
+    "monte_carlo",
+    "presets",
+    "score",
+    "sensitivity",
+    "simulate",
+]

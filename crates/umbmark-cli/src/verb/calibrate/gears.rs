@@ -12,7 +12,7 @@ use umbmark_core::learn::{GearCalibration, calibrate_gears};
 use super::Arguments;
 use crate::Session;
 use crate::files::Pending;
-use crate::model_report::{estimates_json, estimates_table};
+use crate::model_report::estimates_table;
 use crate::table::table;
 
 pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) -> anyhow::Result<ExitCode> {
@@ -70,7 +70,7 @@ fn document(calibration: &GearCalibration, robot: &Robot, level: f64, warnings: 
     });
     json!({
         "drive": robot.drive.kind().name(),
-        "fitted": estimates_json(&calibration.estimates, level),
+        "fitted": umbmark_core::document::estimates(&calibration.estimates, level),
         "not_shown": calibration.not_shown,
         "corrected": corrected,
         "return_poses_determine": determined,

@@ -1,0 +1,173 @@
+"""Calibration: from measured runs to the true wheel diameters and wheelbase."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from umbmark._result import Interval, Record, Result, Row
+from umbmark._scores import Data, data_of
+from umbmark._umbmark import Path, Robot, export
+from umbmark._umbmark import calibrate as _calibrate
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Replayed(Record, frozen=True):
+    """Return errors of the recorded runs, their ticks computed again, in m."""
+
+    e_max_sys_m: float | None
+    largest_m: float
+
+
+class Correction(Record, frozen=True):
+    """The corrections that one method gives; None for what the data does not show.
+
+    ``e_d`` is the ratio of the wheel diameters, right to left; ``e_b`` and ``e_s`` are wheelbase
+    and mean diameter by their nominal values. Lengths are in m. ``covariance`` is of the ratios
+    named in ``covariance_of``.
+    """
+
+    e_d: float | None
+    e_b: float | None
+    e_s: float | None
+    wheelbase_m: float | None
+    wheel_diameter_left_m: float | None
+    wheel_diameter_right_m: float | None
+    covariance: tuple[tuple[float, ...], ...] | None
+    covariance_of: tuple[str, ...]
+    degrees_of_freedom: float | None
+    e_d_interval: Interval | None
+    e_b_interval: Interval | None
+    e_s_interval: Interval | None
+    e_max_sys_before_m: float | None
+    e_max_sys_after_m: float | None
+    replayed_before: Replayed | None
+    replayed_after: Replayed | None
+    termination: str | None
+
+
+class Calibration(Result, frozen=True):
+    """A calibration by every method that the data allows.
+
+    Attributes
+    ----------
+    methods : dict of str to Correction or None
+        "closed_form_x", "closed_form_y", "closed_form_mean", "heading" and "exact".
+    observed : str
+        "end_poses" or "tracks".
+    heading_arm_m : float or None
+        Metres that a radian of heading counted as, where whole tracks were fitted.
+    level : float
+        Probability with which the intervals hold.
+    warnings : tuple of str
+        What could not be determined, and why.
+    robot, path
+        The nominal robot, and the path where it is known.
+    """
+
+    _beside: ClassVar[tuple[str, ...]] = ("robot", "path")
+
+    methods: dict[str, Correction | None]
+    observed: str
+    heading_arm_m: float | None
+    level: float
+    warnings: tuple[str, ...]
+    version: str
+    robot: Robot
+    path: Path | None
+
+    @property
+    def exact(self) -> Correction:
+        """The corrections by the exact fit."""
+        return self._of_method("exact")
+
+    def export(
+        self, format: str, *, method: str = "exact", controller: str = "diff_drive_controller"
+    ) -> str:
+        """Give the corrected lengths as the text of a file of another program.
+
+        Parameters
+        ----------
+        format : str
+            "ros2_control" (parameters of diff_drive_controller), "robot_toml" or "c_header".
+        method : str, default "exact"
+            Whose corrections.
+        controller : str
+            Name of the controller in the parameters of ros2_control.
+
+        Raises
+        ------
+        ValueError
+            If the method does not give both ratios, or the format is unknown.
+        """
+        found = self._of_method(method)
+        if found.e_d is None or found.e_b is None:
+            raise ValueError(f"nothing to export: {method} does not give both E_d and E_b")
+        return export(self.robot, self.path, (found.e_d, found.e_b, found.e_s), format, controller)
+
+    def _of_method(self, method: str) -> Correction:
+        found = self.methods.get(method)
+        if found is None:
+            known = ", ".join(name for name, given in self.methods.items() if given)
+            raise ValueError(f'there is no correction by "{method}"; there is {known}')
+        return found
+
+    def table(self) -> list[Row]:
+        """Give the corrections of each method, one dict a row."""
+        lengths = ("wheelbase_m", "wheel_diameter_left_m", "wheel_diameter_right_m")
+        keys = ("e_d", "e_b", "e_s", *lengths, "e_max_sys_before_m", "e_max_sys_after_m")
+        given = ((name, found) for name, found in self.methods.items() if found)
+        return [
+            {"method": name, **{key: getattr(found, key) for key in keys}} for name, found in given
+        ]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw E_d and E_b of every method with their intervals, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.calibration(self, ax)
+
+
+def calibrate(
+    data: Data,
+    *,
+    level: float = 0.95,
+    heading_arm_m: float | None = None,
+    radius_wheelbase: str = "nominal",
+) -> Calibration:
+    """Calibrate a measured robot: E_d, E_b, and E_s where the data shows it.
+
+    The paper's closed forms (Eqs. 7 to 20), the heading form, and the exact fit.
+
+    Parameters
+    ----------
+    data : Dataset or path-like
+        The measurements.
+    level : float, default 0.95
+        Probability with which the intervals hold.
+    heading_arm_m : float, optional
+        Metres that a radian of heading error counts as when whole tracks are fitted; the root mean
+        square distance of the poses from START where none is given.
+    radius_wheelbase : str, default "nominal"
+        Wheelbase in the closed forms' formula for E_d: "nominal", as the paper's companion has it,
+        or "corrected".
+
+    Raises
+    ------
+    ValueError
+        If nothing can be calibrated from these runs; it says why.
+
+    Examples
+    --------
+    >>> import umbmark
+    >>> truth = umbmark.Model().add("wheel_diameter_ratio", e_d=1.00203)
+    >>> truth = truth.add("wheelbase", e_b=0.9915)
+    >>> data = umbmark.simulate(truth, reference_rate_hz=0)
+    >>> found = umbmark.calibrate(data).exact
+    >>> print(f"{found.e_d:.4f} {found.e_b:.3f}")
+    1.0020 0.992
+    """
+    data = data_of(data)
+    document = _calibrate(data, level, heading_arm_m, radius_wheelbase)
+    return Calibration._of(document, robot=data.robot, path=data.path)

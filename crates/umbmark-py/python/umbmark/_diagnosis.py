@@ -1,0 +1,684 @@
+"""What a model explains, what it is missing, and the loop that adds it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import msgspec
+
+from umbmark import _umbmark
+from umbmark._result import Interval, Record, Result, Row
+from umbmark._scores import Data, data_of
+from umbmark._umbmark import Model
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Estimate(Record, frozen=True):
+    """A parameter that was fitted, with standard error and interval."""
+
+    effect: str
+    parameter: str
+    value: float
+    standard_error: float | None
+    interval: Interval | None
+
+
+class Statistic(Record, frozen=True):
+    """A statistic as measured and as a model predicts it, in m, rad or 1."""
+
+    measured: float
+    predicted: float
+    p: float
+
+
+class Contrast(Record, frozen=True):
+    """A closure contrast of a square driven both ways: zero where the model is complete."""
+
+    name: str
+    unit: str
+    value: float
+    interval: Interval
+    meaning: str
+
+
+class OnCircle(Record, frozen=True):
+    """End points of a direction beside the circle through START, in m and rad."""
+
+    direction: str
+    off_m: tuple[float, ...]
+    mean_off_m: float
+    mean_off_interval_m: Interval
+    distance_m: float
+    distance_by_heading_m: float | None
+    angle_less_heading_rad: float | None
+    angle_less_heading_interval_rad: Interval | None
+    explained: bool
+
+
+class Judged(Record, frozen=True):
+    """How one model does: statistics by direction and quantity, and p of all together."""
+
+    name: str
+    explains: bool
+    p: float
+    noise: str
+    rmse_m: float
+    heading_rmse_rad: float | None
+    statistics: dict[str, dict[str, Statistic]]
+    sentences: tuple[str, ...]
+
+
+class Comparison(Result, frozen=True):
+    """Models beside measurements: which explain them, and where the others fail.
+
+    Attributes
+    ----------
+    observed : str
+        What was compared.
+    n_cw, n_ccw : int
+        Numbers of runs.
+    models : tuple of Judged
+        In the order in which they were given.
+    remarks : tuple of str
+        What else should be said.
+    contrasts, circle
+        What the closure of a square says.
+    """
+
+    observed: str
+    n_cw: int
+    n_ccw: int
+    models: tuple[Judged, ...]
+    remarks: tuple[str, ...]
+    size: float
+    draws: int
+    seed: int
+    version: str
+    contrasts: tuple[Contrast, ...]
+    circle: tuple[OnCircle, ...]
+
+    def table(self) -> list[Row]:
+        """Give every statistic of every model, one dict a row."""
+        return [
+            {"model": model.name, "direction": direction, "quantity": quantity}
+            | {key: getattr(told, key) for key in ("measured", "predicted", "p")}
+            for model in self.models
+            for direction, statistics in model.statistics.items()
+            for quantity, told in statistics.items()
+        ]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the p of every statistic of every model, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.comparison(self, ax)
+
+
+class RootMeanSquare(Record, frozen=True):
+    """Root mean square errors of positions in m and of headings in rad."""
+
+    rmse_m: float | None
+    heading_rmse_rad: float | None
+
+
+HalfOpen: TypeAlias = tuple[float | None, float | None]
+
+
+class Mean(Record, frozen=True):
+    """A mean over runs with its interval, and the scatter of the runs."""
+
+    mean: float | None
+    interval: HalfOpen | None
+    runs: int
+    sd: float | None
+
+
+class PartShare(Record, frozen=True):
+    """Share of a part of the way in the squared error along it, and at its end."""
+
+    position: float | None
+    heading: float | None
+    end: float | None
+
+
+class Part(Record, frozen=True):
+    """Error that a part of the way adds: ahead, to the left, and in heading."""
+
+    forward_m: Mean
+    sideways_m: Mean
+    heading_rad: Mean
+    name: str
+    direction: str | None
+    count: int
+    share: PartShare
+
+
+class Overall(Record, frozen=True):
+    """Mean rate of an error over all of the way, and p of none at all."""
+
+    mean: float | None
+    interval: HalfOpen | None
+    runs: int
+    p: float | None
+
+
+class Bin(Record, frozen=True):
+    """Mean rate of an error where a quantity lies between two values, in a sense or in both."""
+
+    mean: float | None
+    interval: HalfOpen | None
+    runs: int
+    low: float
+    high: float | None
+    sense: float
+    amount: float
+
+
+class Against(Record, frozen=True):
+    """Rate of an error against a quantity of the way."""
+
+    rate: str
+    covariate: str
+    unit: str
+    p: float | None
+    bins: tuple[Bin, ...]
+
+
+class JudgedAlong(Record, frozen=True):
+    """How one model does along the way, and at its end."""
+
+    name: str
+    explains: bool
+    p: float | None
+    tests: int
+    along: RootMeanSquare
+    end: RootMeanSquare
+    parts: dict[str, tuple[Part, ...]]
+    overall: dict[str, Overall]
+    against: tuple[Against, ...]
+    sentences: tuple[str, ...]
+
+
+class TrackComparison(Result, frozen=True):
+    """Models beside tracks: where on the way their error is made, and what it depends on.
+
+    Attributes
+    ----------
+    observed : str
+        "tracks".
+    n_cw, n_ccw, n_other : int
+        Numbers of runs.
+    poses : int
+        Number of observations.
+    models : tuple of JudgedAlong
+        In the order in which they were given.
+    remarks : tuple of str
+        What else should be said.
+    """
+
+    observed: str
+    n_cw: int
+    n_ccw: int
+    n_other: int
+    poses: int
+    models: tuple[JudgedAlong, ...]
+    remarks: tuple[str, ...]
+    size: float
+    version: str
+
+    def table(self) -> list[Row]:
+        """Give the errors of each model, one dict a row."""
+        return [
+            {
+                "model": model.name,
+                "explains": model.explains,
+                "p": model.p,
+                "rmse_m": model.along.rmse_m,
+                "heading_rmse_rad": model.along.heading_rmse_rad,
+                "end_rmse_m": model.end.rmse_m,
+                "end_heading_rmse_rad": model.end.heading_rmse_rad,
+            }
+            for model in self.models
+        ]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the errors of each model along the way and at its end, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.track_comparison(self, ax)
+
+
+class GoodnessOfFit(Record, frozen=True):
+    """A test of the whole model."""
+
+    name: str
+    statistic: float
+    degrees_of_freedom: Interval | None
+    p: float
+
+
+class Suspect(Record, frozen=True):
+    """A class of effects that may be missing, which this data cannot tell apart."""
+
+    class_: tuple[str, ...] = msgspec.field(name="class")
+    best: str
+    f: float
+    degrees_of_freedom: Interval
+    p: float
+    p_adjusted: float
+    p_flips: float | None
+    estimate: dict[str, float | None]
+    standard_error: dict[str, float | None]
+    expected_drop: float
+    meaning: str | None
+
+
+class DetectableSize(Record, frozen=True):
+    """The least size of an effect that this data would show in four cases of five."""
+
+    effect: str
+    parameter: str
+    size: float | None
+
+
+class Experiment(Record, frozen=True):
+    """A further experiment that tells two effects apart, by so many standard deviations."""
+
+    separates: tuple[str, str]
+    experiment: str
+    minutes: float
+    sd: float
+
+
+class Share(Record, frozen=True):
+    """How far a unit of a parameter moves an end pose, in m and rad."""
+
+    effect: str
+    parameter: str
+    position_m_per_unit: float
+    heading_rad_per_unit: float
+
+
+class Hidden(Record, frozen=True):
+    """A combination of parameters that the experiment does not show."""
+
+    weights: dict[str, float]
+    ratio: float | None
+
+
+class Identifiability(Record, frozen=True):
+    """What of the model this experiment determines."""
+
+    parameters: tuple[Share, ...]
+    rank: int
+    hidden: tuple[Hidden, ...]
+
+
+class CurvePoint(Record, frozen=True):
+    """What is added at a place, with its 95 % band."""
+
+    at: float
+    value: float
+    low: float
+    high: float
+
+
+class Curve(Record, frozen=True):
+    """What is added to the motion, by what it depends on."""
+
+    at_unit: str
+    unit: str
+    points: tuple[CurvePoint, ...]
+
+
+class Nearest(Record, frozen=True):
+    """The effect of the catalogue that explains the largest share of it."""
+
+    effect: str
+    share: float
+
+
+class Suggestion(Record, frozen=True):
+    """A formula to try, and the share that it explains."""
+
+    effect: tuple[dict[str, Any], ...]
+    share: float
+    toml: str
+
+
+class Unlisted(Record, frozen=True):
+    """What is missing and not in the catalogue."""
+
+    acts_on: str
+    depends_on: str
+    p_adjusted: float
+    curve: Curve
+    nearest: Nearest | None
+    suggestion: Suggestion | None
+
+
+class Outlier(Record, frozen=True):
+    """A jump of a track that is beyond noise."""
+
+    run: str
+    time_s: float
+    moved_m: float
+    turned_rad: float | None
+    standard_deviations: float | None
+
+
+class Diagnosis(Result, frozen=True):
+    """What a model is missing, how sure that is, and what this data cannot see.
+
+    Attributes
+    ----------
+    verdict : str
+        "explained", "missing_effect", "several_missing", "unlisted_effect" or "not_enough_data".
+    ranking : tuple of Suspect
+        Classes of effects that were asked, the first ``certified`` of them missing.
+    fitted : tuple of Estimate
+        The free parameters of the model.
+    model : Model
+        The model, its free parameters fitted.
+    invisible : tuple of str
+        Effects that this data says nothing of; ``absorbed`` says by what.
+    minimum_detectable : dict of str to float
+        The least size of each effect that would have been seen.
+    next_experiments : tuple of Experiment
+        What to measure next, the most telling per minute first.
+    """
+
+    verdict: str
+    observed: str
+    fitted: tuple[Estimate, ...]
+    goodness_of_fit: tuple[GoodnessOfFit, ...]
+    ranking: tuple[Suspect, ...]
+    certified: int
+    invisible: tuple[str, ...]
+    absorbed: dict[str, tuple[str, ...]]
+    minimum_detectable: dict[str, float | None]
+    minimum_detectable_sizes: tuple[DetectableSize, ...]
+    next_experiments: tuple[Experiment, ...]
+    identifiability: Identifiability
+    unlisted: Unlisted | None
+    model: Model
+    meaning: dict[str, str]
+    outliers: tuple[Outlier, ...]
+    remarks: tuple[str, ...]
+    size: float
+    draws: int
+    seed: int
+    version: str
+    contrasts: tuple[Contrast, ...]
+    circle: tuple[OnCircle, ...]
+
+    def table(self) -> list[Row]:
+        """Give the ranking, one dict a row."""
+        return [
+            {
+                "class": " or ".join(suspect.class_),
+                "p_adjusted": suspect.p_adjusted,
+                "f": suspect.f,
+                "expected_drop": suspect.expected_drop,
+                "certified": place < self.certified,
+            }
+            for place, suspect in enumerate(self.ranking)
+        ]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the p of the first classes of the ranking, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.diagnosis(self, ax)
+
+
+class Fitted(Result, frozen=True):
+    """A fit of a model: its numbers, and the model with them.
+
+    Attributes
+    ----------
+    fitted : tuple of Estimate
+        The free parameters.
+    not_shown : tuple of str
+        Free effects that this data does not show apart from the rest; they keep their values.
+    model : Model
+        The model with the fitted values.
+    level : float
+        Probability with which the intervals hold.
+    """
+
+    fitted: tuple[Estimate, ...]
+    not_shown: tuple[str, ...]
+    meaning: dict[str, str]
+    outliers: tuple[Outlier, ...]
+    model: Model
+    level: float
+    version: str
+
+    def table(self) -> list[Row]:
+        """Give the free parameters, one dict a row."""
+        return [msgspec.structs.asdict(estimate) for estimate in self.fitted]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the fitted values in units of their standard errors, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.fitted(self, ax)
+
+
+class Step(Record, frozen=True):
+    """One line of the story of a learnt model; errors in m and rad."""
+
+    added: str | None
+    class_: tuple[str, ...] = msgspec.field(name="class")
+    p_adjusted: float | None
+    rmse_m: float | None
+    heading_rmse_rad: float | None
+    heldout_rmse_m: float | None
+    heldout_heading_rmse_rad: float | None
+    aicc: float | None
+    bic: float | None
+
+
+class Learnt(Result, frozen=True):
+    """What was learnt, from the nominal robot to the model.
+
+    Attributes
+    ----------
+    steps : tuple of Step
+        The nominal robot, and each effect that was added.
+    verdict : str
+        What the last diagnosis says.
+    model : Model
+        The model that was learnt.
+    fitted : tuple of Estimate
+        Its free parameters.
+    """
+
+    steps: tuple[Step, ...]
+    verdict: str
+    unlisted: Unlisted | None
+    next_experiments: tuple[Experiment, ...]
+    model: Model
+    fitted: tuple[Estimate, ...]
+    meaning: dict[str, str]
+    outliers: tuple[Outlier, ...]
+    remarks: tuple[str, ...]
+    size: float
+    draws: int
+    seed: int
+    version: str
+
+    def table(self) -> list[Row]:
+        """Give the steps, one dict a row."""
+        keys = ("p_adjusted", "rmse_m", "heldout_rmse_m", "heldout_heading_rmse_rad", "aicc")
+        return [
+            {"added": step.added or "nominal robot"} | {key: getattr(step, key) for key in keys}
+            for step in self.steps
+        ]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the error falling from step to step, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.learnt(self, ax)
+
+
+def compare(
+    data: Data,
+    models: Mapping[str, Model] | Sequence[Model] | Model | None = None,
+    *,
+    size: float = 0.05,
+    draws: int = 999,
+    seed: int = 1,
+    return_poses: bool = False,
+    threads: int = 0,
+) -> Comparison | TrackComparison:
+    """Hold models, with the values that they have, against measured runs.
+
+    Parameters
+    ----------
+    data : Dataset or path-like
+        The measurements.
+    models : mapping of str to Model, sequence of Model, or Model, optional
+        What to hold against it; the nominal robot, and E_d and E_b (on tracks E_s too) fitted to
+        this data, where nothing is given.
+    size : float, default 0.05
+        Probability with which a right model is accused all the same.
+    draws : int, default 999
+        Simulated tests for the p-values.
+    seed : int, default 1
+        Seed of those.
+    return_poses : bool, default False
+        Whether to use return poses alone, even where the runs were observed on the way.
+    threads : int, default 0
+        Threads to use; 0 for all processors. No number depends on it.
+
+    Returns
+    -------
+    Comparison or TrackComparison
+        Of return poses, or of tracks where every run has one.
+
+    Raises
+    ------
+    ValueError
+        If there is nothing to predict, or a number is out of range.
+    """
+    if models is None:
+        models = {}
+    elif isinstance(models, Model):
+        models = {"model": models}
+    elif not isinstance(models, Mapping):
+        models = {f"model {place}": model for place, model in enumerate(models, 1)}
+    options = (size, draws, seed)
+    document = _umbmark.compare(data_of(data), [*models.items()], options, return_poses, threads)
+    if msgspec.json.decode(document)["observed"] == "tracks":
+        return TrackComparison._of(document)
+    return Comparison._of(document)
+
+
+def diagnose(
+    data: Data,
+    model: Model | None = None,
+    *,
+    size: float = 0.05,
+    draws: int = 999,
+    seed: int = 1,
+    return_poses: bool = False,
+    threads: int = 0,
+) -> Diagnosis:
+    """Find which class of effects a model is missing, and what to measure next.
+
+    Parameters
+    ----------
+    data : Dataset or path-like
+        The measurements.
+    model : Model, optional
+        The model to question, its free effects fitted; E_d and E_b, on tracks E_s too, where none
+        is given.
+    size : float, default 0.05
+        Probability with which a complete model is accused all the same.
+    draws : int, default 999
+        Simulated tests for p-values that have no closed form.
+    seed : int, default 1
+        Seed of those.
+    return_poses : bool, default False
+        Whether to use return poses alone, even where the runs were observed on the way.
+    threads : int, default 0
+        Threads to use; 0 for all processors. No number depends on it.
+
+    Raises
+    ------
+    ValueError
+        If there is nothing to diagnose, or a number is out of range.
+
+    Examples
+    --------
+    >>> import umbmark
+    >>> truth = umbmark.Model().add("wheel_noise", k_sqrt_m=0.0003)
+    >>> truth = truth.add("floor_slope", drift_x=0.01)
+    >>> umbmark.diagnose(umbmark.simulate(truth, reference_rate_hz=0)).verdict
+    'missing_effect'
+    """
+    options = (size, draws, seed)
+    document, fitted = _umbmark.diagnose(data_of(data), model, options, return_poses, threads)
+    return Diagnosis._of(document, model=fitted)
+
+
+def fit(
+    data: Data, model: Model | None = None, *, add: Sequence[str] = (), level: float = 0.95
+) -> Fitted:
+    """Fit the free effects of a model to measured runs.
+
+    Parameters
+    ----------
+    data : Dataset or path-like
+        The measurements.
+    model : Model, optional
+        The model whose free effects are fitted; E_d and E_b, on tracks E_s too, where none is
+        given.
+    add : sequence of str
+        Effects to add and fit too.
+    level : float, default 0.95
+        Probability with which the intervals hold.
+
+    Raises
+    ------
+    ValueError
+        If no effect is free, or the fit does not settle.
+    """
+    document, fitted = _umbmark.fit(data_of(data), model, [*add], level)
+    return Fitted._of(document, model=fitted)
+
+
+def learn(
+    data: Data,
+    *,
+    size: float = 0.05,
+    draws: int = 999,
+    seed: int = 1,
+    return_poses: bool = False,
+    threads: int = 0,
+) -> Learnt:
+    """Learn a model: fit, diagnose, add, until nothing is missing.
+
+    Parameters
+    ----------
+    data : Dataset or path-like
+        The measurements.
+    size : float, default 0.05
+        Probability with which an effect is added to a complete model.
+    draws, seed, return_poses, threads
+        As of ``diagnose``.
+
+    Raises
+    ------
+    ValueError
+        If there is nothing to learn from, or a number is out of range.
+    """
+    options = (size, draws, seed)
+    document, learnt = _umbmark.learn(data_of(data), options, return_poses, threads)
+    return Learnt._of(document, model=learnt)

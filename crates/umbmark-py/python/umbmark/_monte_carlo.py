@@ -1,0 +1,236 @@
+"""Monte Carlo of whole UMBmark tests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from umbmark._result import Record, Result, Row
+from umbmark._umbmark import Ensemble, Model, Path, Study
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# The most trials of a study that stops by precision.
+MOST_UNTIL = 1_000_000_000
+
+Progress: TypeAlias = bool | Callable[[int, int], object] | None
+
+
+class Metric(Record, frozen=True):
+    """Statistics of a metric over the trials, in its unit."""
+
+    mean: float | None
+    std_dev: float | None
+    std_error: float | None
+    min: float | None
+    max: float | None
+    quantiles: dict[str, float | None]
+
+
+class NoiseFree(Record, frozen=True):
+    """E_max,sys of the test without noise, in m: exact, and by the paper's formulas."""
+
+    e_max_sys_m: float | None
+    first_order_e_max_sys_m: float | None
+
+
+class Runs(Record, frozen=True):
+    """Numbers of runs in each direction."""
+
+    cw: int
+    ccw: int
+
+
+class PathSizes(Record, frozen=True):
+    """Shape and sizes of a path."""
+
+    shape: str
+    sizes: dict[str, float]
+
+
+class Published(Record, frozen=True):
+    """What was published of a robot: its row of Table I, in m."""
+
+    row: str
+    e_max_sys_m: float
+    sigma_m: float
+
+
+class MonteCarlo(Result, frozen=True):
+    """What a study found.
+
+    Attributes
+    ----------
+    n : int
+        Trials done.
+    metrics : dict of str to Metric
+        "e_max_sys_m", "sigma_m", "centroid_cw_x_m", ...: those that the test has.
+    partial : bool
+        Whether trials that were asked for are not done.
+    trials_per_s : float or None
+        Speed.
+    noise_free : NoiseFree
+        The same test without noise.
+    ensemble : Ensemble
+        The statistics themselves: any quantile, and what merges with others.
+    trials : mapping of str to ndarray of float64, shape (n,), or None
+        The metrics of every trial, where they were kept.
+    """
+
+    _beside: ClassVar[tuple[str, ...]] = ("ensemble", "trials")
+
+    n: int
+    seed: int
+    partial: bool
+    metrics: dict[str, Metric]
+    trials_per_s: float | None
+    noise_free: NoiseFree
+    runs: Runs
+    robot: str
+    path: PathSizes
+    effects: tuple[dict[str, str | float | dict[str, float]], ...]
+    sources: tuple[str, ...]
+    assumed: tuple[str, ...]
+    published: Published | None
+    version: str
+    ensemble: Ensemble
+    trials: Mapping[str, NDArray[np.float64]] | None
+
+    def table(self) -> list[Row]:
+        """Give the statistics of each metric, one dict a row."""
+        return [
+            {"metric": name, "mean": m.mean, "std_error": m.std_error, "std_dev": m.std_dev}
+            | {f"q{share}": value for share, value in m.quantiles.items()}
+            for name, m in self.metrics.items()
+        ]
+
+    def plot(self, ax: Axes | None = None, *, metric: str = "e_max_sys_m") -> Axes:
+        """Draw the distribution of a metric over the trials, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.monte_carlo(self, ax, metric)
+
+
+def monte_carlo(
+    model: Model,
+    path: Path | None = None,
+    *,
+    n: int | None = None,
+    runs: int | tuple[int, int] = 5,
+    seed: int = 1,
+    until_std_error_m: float | None = None,
+    odometry: str = "robot",
+    update: str = "arc",
+    phase: str = "random",
+    keep: bool = False,
+    threads: int = 0,
+    progress: Progress = None,
+) -> MonteCarlo:
+    """Simulate whole UMBmark tests by the thousand.
+
+    Parameters
+    ----------
+    model : Model
+        The robot and its effects; parameters with a distribution are drawn anew for each trial.
+    path : Path, optional
+        The path; the paper's 4 x 4 m square where none is given.
+    n : int, optional
+        Trials: whole tests, each with all its runs. 1000, or as many as it takes with
+        ``until_std_error_m``.
+    runs : int or tuple of int, default 5
+        Runs in each direction, or (cw, ccw).
+    seed : int, default 1
+        Seed of all random numbers: the same seed gives the same bits for any number of threads.
+    until_std_error_m : float, optional
+        Stop as soon as the standard error of the mean E_max,sys is this small, in m.
+    odometry, update, phase : str
+        As of ``Study``.
+    keep : bool, default False
+        Whether to keep the metrics of every trial.
+    threads : int, default 0
+        Threads to use; 0 for all processors.
+    progress : bool or callable, optional
+        True for a bar of tqdm; or a function of the trials done and of all.
+
+    Returns
+    -------
+    MonteCarlo
+
+    Raises
+    ------
+    ValueError
+        If the test cannot be driven, or a number is out of range.
+
+    Examples
+    --------
+    >>> import umbmark
+    >>> model = umbmark.Model().add("wheel_diameter_ratio", e_d=1.00121)
+    >>> model = model.add("wheelbase", e_b=337.2 / 340)
+    >>> found = umbmark.monte_carlo(model, n=200)
+    >>> print(f"{found.metrics['e_max_sys_m'].mean:.3f} m")
+    0.306 m
+    """
+    n = n or (1000 if until_std_error_m is None else MOST_UNTIL)
+    both = (runs, runs) if isinstance(runs, int) else runs
+    study = Study(
+        model, path, n=n, runs=both, seed=seed, odometry=odometry, update=update, phase=phase
+    )
+    with Bar(progress, n, "trials") as bar:
+        ensemble, trials, seconds = study.run(
+            threads=threads, until_std_error_m=until_std_error_m, keep=keep, progress=bar.at
+        )
+    precise = is_precise(ensemble, until_std_error_m)
+    partial = ensemble.trials < n and not precise
+    return result_of(study, ensemble, partial, ensemble.trials / max(seconds, 1e-9), trials)
+
+
+def is_precise(ensemble: Ensemble, until_std_error_m: float | None) -> bool:
+    """Whether the standard error of the mean E_max,sys is as small as was asked for."""
+    wanted = until_std_error_m
+    return wanted is not None and ensemble.std_error("e_max_sys_m") <= wanted
+
+
+def result_of(
+    study: Study,
+    ensemble: Ensemble,
+    partial: bool,
+    trials_per_s: float | None,
+    trials: Mapping[str, NDArray[np.float64]] | None = None,
+) -> MonteCarlo:
+    """Give an ensemble of a study as a result."""
+    document = study._document(ensemble, partial, trials_per_s)
+    return MonteCarlo._of(document, ensemble=ensemble, trials=trials)
+
+
+class Bar:
+    """Progress as tqdm shows it, or as a function is told it."""
+
+    def __init__(self, progress: Progress, total: int, unit: str) -> None:
+        """Begin with nothing done."""
+        self._total = total
+        self._told = progress if callable(progress) else None
+        self._bar = None
+        if progress is True:
+            from tqdm.auto import tqdm
+
+            self._bar = tqdm(total=total, unit=f" {unit}", delay=1)
+
+    def at(self, done: int) -> None:
+        """Tell how many steps are done."""
+        if self._bar is not None:
+            self._bar.update(done - self._bar.n)
+        if self._told is not None:
+            self._told(done, self._total)
+
+    def __enter__(self) -> Bar:
+        """Begin."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End, whatever happened."""
+        if self._bar is not None:
+            self._bar.close()

@@ -1,0 +1,223 @@
+"""Figures of results, with matplotlib: each on new axes, or on those that are given."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from umbmark._calibration import Calibration
+    from umbmark._diagnosis import Comparison, Diagnosis, Fitted, Learnt, TrackComparison
+    from umbmark._inspection import Inspection
+    from umbmark._monte_carlo import MonteCarlo
+    from umbmark._scores import Score
+    from umbmark._sensitivity import Sensitivity
+    from umbmark._umbmark import Dataset
+
+COLOURS = {"cw": "tab:blue", "ccw": "tab:orange"}
+MARKS = {"cw": "o", "ccw": "s"}
+MM = 1e3
+
+
+def _axes(ax: Axes | None) -> Axes:
+    if ax is not None:
+        return ax
+    from matplotlib import pyplot
+
+    return pyplot.subplots(layout="constrained")[1]
+
+
+def _seen_from_above(ax: Axes, unit: str) -> None:
+    ax.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]", aspect="equal")
+    ax.set_adjustable("datalim")
+    ax.plot(0, 0, "k+", markersize=10)
+    ax.legend()
+
+
+def dataset(data: Dataset, ax: Axes | None, tracks: bool) -> Axes:
+    """Draw return errors in mm, or tracks in m."""
+    ax = _axes(ax)
+    for direction, colour in COLOURS.items():
+        if tracks:
+            runs = [run for run in data.runs if run.direction == direction]
+            poses = [run.reference_pose for run in runs if run.reference_pose is not None]
+            for index, pose in enumerate(poses):
+                label = f"{direction}, measured" if index == 0 else None
+                ax.plot(pose[:, 0], pose[:, 1], color=colour, linewidth=0.8, label=label)
+        else:
+            errors = MM * data.returns(direction)
+            mark = MARKS[direction]
+            ax.plot(errors[:, 0], errors[:, 1], mark, color=colour, label=f"{direction} runs")
+    _seen_from_above(ax, "m" if tracks else "mm")
+    return ax
+
+
+def score(result: Score, ax: Axes | None) -> Axes:
+    """Draw centres of gravity with their ellipses, and the circle of E_max,sys, in mm."""
+    from matplotlib.patches import Circle, Ellipse
+
+    ax = _axes(ax)
+    centres = {"cw": result.centroid_cw_m, "ccw": result.centroid_ccw_m}
+    ellipses = {"cw": result.centroid_cw_ellipse, "ccw": result.centroid_ccw_ellipse}
+    for direction, centre in centres.items():
+        if centre is None:
+            continue
+        colour, (x, y) = COLOURS[direction], (MM * centre[0], MM * centre[1])
+        ax.plot(x, y, "*", color=colour, markersize=12, label=f"centre of gravity {direction}")
+        ellipse = ellipses[direction]
+        if ellipse is not None:
+            width, height = 2 * MM * ellipse.semi_major_m, 2 * MM * ellipse.semi_minor_m
+            turned = np.degrees(ellipse.angle_rad)
+            ax.add_patch(Ellipse((x, y), width, height, angle=turned, color=colour, alpha=0.25))
+    if result.e_max_sys_m is not None:
+        radius = MM * result.e_max_sys_m
+        ax.add_patch(Circle((0, 0), radius, fill=False, linestyle="--", edgecolor="grey"))
+        ax.set_title(f"E_max,sys {radius:.0f} mm")
+    _seen_from_above(ax, "mm")
+    ax.autoscale_view()
+    return ax
+
+
+def calibration(result: Calibration, ax: Axes | None) -> Axes:
+    """Draw E_b over E_d of each method."""
+    ax = _axes(ax)
+    for name, found in result.methods.items():
+        if found is None or found.e_d is None or found.e_b is None:
+            continue
+        low, high = found.e_d_interval or (found.e_d,) * 2
+        xerr = [[found.e_d - low], [high - found.e_d]]
+        low, high = found.e_b_interval or (found.e_b,) * 2
+        yerr = [[found.e_b - low], [high - found.e_b]]
+        ax.errorbar(found.e_d, found.e_b, xerr=xerr, yerr=yerr, fmt="o", capsize=3, label=name)
+    ax.set(xlabel="E_d", ylabel="E_b")
+    ax.ticklabel_format(useOffset=False)
+    ax.legend()
+    return ax
+
+
+def _small_p(ax: Axes, names: list[str], p: list[float], size: float) -> None:
+    """Bars of p on a logarithmic scale, the first name at the top, and the size of the test."""
+    least = 1e-6
+    ax.barh(names, [-np.log10(max(value, least)) for value in p])
+    ax.axvline(-np.log10(size), color="tab:red", linestyle="--", label=f"p = {size}")
+    ax.invert_yaxis()
+    ax.set_xlabel("-log10 p")
+    ax.legend()
+
+
+def comparison(result: Comparison, ax: Axes | None) -> Axes:
+    """Draw p of every statistic of every model."""
+    ax = _axes(ax)
+    rows = result.table()
+    names = [f"{row['direction']} {row['quantity']}, {row['model']}" for row in rows]
+    _small_p(ax, names, [row["p"] for row in rows], result.size)
+    return ax
+
+
+def track_comparison(result: TrackComparison, ax: Axes | None) -> Axes:
+    """Draw errors along the way and at its end, in mm."""
+    ax = _axes(ax)
+    rows = result.table()
+    for place, (key, label) in enumerate((("rmse_m", "along"), ("end_rmse_m", "at the end"))):
+        at = np.arange(len(rows)) + 0.4 * place
+        ax.bar(at, [MM * (row[key] or np.nan) for row in rows], 0.4, label=label)
+    ax.set_xticks(np.arange(len(rows)) + 0.2, [row["model"] for row in rows])
+    ax.set_ylabel("root mean square error [mm]")
+    ax.legend()
+    return ax
+
+
+def diagnosis(result: Diagnosis, ax: Axes | None) -> Axes:
+    """Draw p of the first classes of the ranking."""
+    ax = _axes(ax)
+    first = result.table()[:10]
+    names = [row["class"] if len(row["class"]) < 50 else row["class"][:47] + "..." for row in first]
+    _small_p(ax, names, [row["p_adjusted"] for row in first], result.size)
+    ax.set_title(result.verdict.replace("_", " "))
+    return ax
+
+
+def fitted(result: Fitted, ax: Axes | None) -> Axes:
+    """Draw how far each value lies from what does nothing, in standard errors."""
+    from umbmark._effects import effects
+
+    ax = _axes(ax)
+    catalogue = effects()
+    for place, estimate in enumerate(result.fitted):
+        known = catalogue.get(estimate.effect)
+        defaults = {p.name: p.default for p in known.parameters} if known else {}
+        nothing = defaults.get(estimate.parameter, 0.0)
+        if estimate.standard_error and not isinstance(nothing, str):
+            ax.errorbar(
+                (estimate.value - nothing) / estimate.standard_error, place, xerr=1, fmt="o"
+            )
+    names = [f"{estimate.parameter} of {estimate.effect}" for estimate in result.fitted]
+    ax.set_yticks(range(len(names)), names)
+    ax.axvline(0, color="grey", linewidth=0.8)
+    ax.set_xlabel("departure [standard errors]")
+    return ax
+
+
+def learnt(result: Learnt, ax: Axes | None) -> Axes:
+    """Draw the error in mm falling from step to step."""
+    ax = _axes(ax)
+    rows = result.table()
+    names = [str(row["added"]) for row in rows]
+    for key, label in (("rmse_m", "runs fitted to"), ("heldout_rmse_m", "runs left out")):
+        ax.plot(names, [MM * (row[key] or np.nan) for row in rows], "o-", label=label)
+    ax.set(ylabel="root mean square error [mm]", ylim=(0, None))
+    ax.tick_params(axis="x", rotation=30)
+    ax.legend()
+    return ax
+
+
+def inspection(result: Inspection, ax: Axes | None) -> Axes:
+    """Draw numbers of runs, and of what they have."""
+    ax = _axes(ax)
+    names = [f"{group.test} {group.direction or ''}".strip() for group in result.groups]
+    for place, key in enumerate(("runs", "returns", "headings", "logs")):
+        at = np.arange(len(names)) + 0.2 * place
+        ax.bar(at, [getattr(group, key) for group in result.groups], 0.2, label=key)
+    ax.set_xticks(np.arange(len(names)) + 0.3, names)
+    ax.legend()
+    return ax
+
+
+def sensitivity(result: Sensitivity, ax: Axes | None, metric: str) -> Axes:
+    """Draw each index of each parameter, with its interval."""
+    ax = _axes(ax)
+    rows = [row for row in result.table() if row["metric"] == metric]
+    names = list(dict.fromkeys(row["parameter"] for row in rows))
+    indices = list(dict.fromkeys(row["index"] for row in rows))
+    for place, index in enumerate(indices):
+        own = [row for row in rows if row["index"] == index]
+        value = np.array([row["value"] for row in own], float)
+        ends = np.array([[row["low"], row["high"]] for row in own], float).T
+        at = np.arange(len(own)) + 0.8 * place / len(indices)
+        error = np.abs(ends - value)
+        ax.barh(at, value, 0.8 / len(indices), xerr=error, label=index.replace("_", " "))
+    ax.set_yticks(np.arange(len(names)) + 0.4 * (1 - 1 / max(1, len(indices))), names)
+    ax.invert_yaxis()
+    ax.set_title(metric)
+    ax.legend()
+    return ax
+
+
+def monte_carlo(result: MonteCarlo, ax: Axes | None, metric: str) -> Axes:
+    """Draw the distribution of a metric, in mm or degrees."""
+    ax = _axes(ax)
+    low, high = result.ensemble.quantile(metric, np.array([0.001, 0.999]))
+    edges = np.linspace(low, high, 41) if high > low else np.array([low - 1e-6, low + 1e-6])
+    below = result.ensemble.share_below(metric, edges)
+    angle = metric.endswith("_rad")
+    scale, unit = (np.degrees(1.0), "deg") if angle else (MM, "mm")
+    ax.stairs(np.diff(below), scale * edges, fill=True, alpha=0.6)
+    mean = scale * result.ensemble.mean(metric)
+    ax.axvline(mean, color="tab:red", label=f"mean {mean:.4g} {unit}")
+    name = metric.removesuffix("_rad").removesuffix("_m").replace("_", " ")
+    ax.set(xlabel=f"{name} [{unit}]", ylabel="share of trials", title=f"{result.n} trials")
+    ax.legend()
+    return ax

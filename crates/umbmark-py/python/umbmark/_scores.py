@@ -1,0 +1,219 @@
+"""Scores of UMBmark tests."""
+
+from __future__ import annotations
+
+from os import PathLike, fspath
+from typing import TYPE_CHECKING, Any, TypeAlias, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from umbmark._result import Interval, Record, Result, Row
+from umbmark._umbmark import Dataset, load_dataset, score_arrays, score_dataset
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Data: TypeAlias = Dataset | str | PathLike[str]
+
+
+def data_of(data: Data) -> Dataset:
+    """Give the dataset, read where its place is given."""
+    return data if isinstance(data, Dataset) else load_dataset(fspath(data))
+
+
+class Ellipse(Record, frozen=True):
+    """The ellipse that holds a centre of gravity: semi-axes in m, angle of the major one in rad."""
+
+    semi_major_m: float
+    semi_minor_m: float
+    angle_rad: float
+
+
+class Score(Result, frozen=True):
+    """The scores of a UMBmark test, with intervals that hold with probability ``level``.
+
+    Lengths are in m, angles in rad, counter-clockwise positive; points are (x, y), intervals
+    (low, high). An attribute is None where the runs do not give it, and ``warnings`` says why.
+
+    Attributes
+    ----------
+    e_max_sys_m : float or None
+        E_max,sys: the larger distance of the two centroids from START (Eq. 4).
+    e_max_sys_interval_m : tuple of float or None
+        Its interval; None with fewer than three runs in a direction.
+    noise_band_m : float or None
+        E_max,sys that a robot without systematic error stays below, by the scatter of its runs.
+    sigma_m, sigma_interval_m, sigma_radial_m
+        Standard deviation of one coordinate about its direction's centroid, n - 1, pooled over
+        both coordinates and directions; its interval; and that of the distance.
+    n_cw, n_ccw : int
+        Number of runs of each direction.
+    centroid_cw_m, centroid_ccw_m, centroid_cw_interval_m, centroid_ccw_interval_m
+        Centres of gravity (Eq. 2), and the intervals of their coordinates.
+    centroid_cw_ellipse, centroid_ccw_ellipse : Ellipse or None
+        Ellipses that hold them.
+    return_heading_cw_rad, return_heading_ccw_rad (and ..._interval_rad)
+        Mean return headings (Eq. 6), over the runs whose heading was measured.
+    nonsys_orientation_rad, nonsys_orientation_interval_rad
+        Average absolute orientation error of the extended test (Eq. 5).
+    nonsys_convention : str or None
+        "mean" for half of Eq. 5, which Table II has, or "sum" for Eq. 5 as printed.
+    n_bumps_cw, n_bumps_ccw : int
+        Number of runs with bumps.
+    level : float
+        Probability with which each interval holds.
+    warnings : tuple of str
+        What could not be computed and why, and what looks wrong.
+    version : str
+        Version of umbmark.
+    """
+
+    e_max_sys_m: float | None
+    e_max_sys_interval_m: Interval | None
+    noise_band_m: float | None
+    sigma_m: float | None
+    sigma_interval_m: Interval | None
+    sigma_radial_m: float | None
+    n_cw: int
+    centroid_cw_m: Interval | None
+    centroid_cw_interval_m: tuple[Interval | None, Interval | None] | None
+    centroid_cw_ellipse: Ellipse | None
+    return_heading_cw_rad: float | None
+    return_heading_cw_interval_rad: Interval | None
+    n_ccw: int
+    centroid_ccw_m: Interval | None
+    centroid_ccw_interval_m: tuple[Interval | None, Interval | None] | None
+    centroid_ccw_ellipse: Ellipse | None
+    return_heading_ccw_rad: float | None
+    return_heading_ccw_interval_rad: Interval | None
+    nonsys_orientation_rad: float | None
+    nonsys_orientation_interval_rad: Interval | None
+    nonsys_convention: str | None
+    n_bumps_cw: int
+    n_bumps_ccw: int
+    level: float
+    warnings: tuple[str, ...]
+    version: str
+
+    def table(self) -> list[Row]:
+        """Give each score with the ends of its interval, one dict a row."""
+        rows = [
+            ("e_max_sys_m", self.e_max_sys_m, self.e_max_sys_interval_m),
+            ("sigma_m", self.sigma_m, self.sigma_interval_m),
+            (
+                "return_heading_cw_rad",
+                self.return_heading_cw_rad,
+                self.return_heading_cw_interval_rad,
+            ),
+            (
+                "return_heading_ccw_rad",
+                self.return_heading_ccw_rad,
+                self.return_heading_ccw_interval_rad,
+            ),
+            (
+                "nonsys_orientation_rad",
+                self.nonsys_orientation_rad,
+                self.nonsys_orientation_interval_rad,
+            ),
+        ]
+        for direction in ("cw", "ccw"):
+            centre = getattr(self, f"centroid_{direction}_m") or (None, None)
+            intervals = getattr(self, f"centroid_{direction}_interval_m") or (None, None)
+            for axis, value, interval in zip("xy", centre, intervals, strict=True):
+                rows.append((f"centroid_{direction}_{axis}_m", value, interval))
+        return [
+            {
+                "score": name,
+                "value": value,
+                "low": (ends or (None,))[0],
+                "high": (ends or (None,))[-1],
+            }
+            for name, value, ends in rows
+        ]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the centres of gravity with their ellipses, and E_max,sys, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.score(self, ax)
+
+
+@overload
+def score(data: Data, /, *, level: float = 0.95, convention: str = "mean") -> Score: ...
+
+
+@overload
+def score(
+    cw: NDArray[np.float64],
+    ccw: NDArray[np.float64],
+    *,
+    bumps_cw: NDArray[np.float64] | None = None,
+    bumps_ccw: NDArray[np.float64] | None = None,
+    level: float = 0.95,
+    convention: str = "mean",
+) -> Score: ...
+
+
+def score(
+    cw: Any,
+    ccw: Any = None,
+    *,
+    bumps_cw: NDArray[np.float64] | None = None,
+    bumps_ccw: NDArray[np.float64] | None = None,
+    level: float = 0.95,
+    convention: str = "mean",
+) -> Score:
+    """Score a UMBmark test: a dataset, or the return errors of its runs.
+
+    Equations 1 to 6 of Borenstein and Feng (1995), "UMBmark: A Benchmark Test for Measuring
+    Odometry Errors in Mobile Robots", for any number of runs, with intervals that hold for few of
+    them.
+
+    Parameters
+    ----------
+    cw : Dataset, path-like, or ndarray of float64, shape (n, 3) or (n, 2)
+        A dataset or its place. Or the return errors of the clockwise runs, one row per run: x in
+        m, y in m, heading in rad, each absolute minus computed (Eq. 1), in the frame of START,
+        headings counter-clockwise positive. A heading that is NaN, or a missing third column, was
+        not measured. Without any run of a direction, shape (0, 3), the other direction's centroid
+        is still given.
+    ccw : ndarray of float64, shape (n, 3) or (n, 2)
+        The same of the counter-clockwise runs, where ``cw`` is an array.
+    bumps_cw, bumps_ccw : ndarray of float64, shape (n, 3) or (n, 2), optional
+        The same of the extended test, driven over bumps.
+    level : float, default 0.95
+        Probability with which each interval holds the true value.
+    convention : str, default "mean"
+        How Eq. 5 joins both directions: "mean", half of it, as Table II has it, or "sum", as
+        printed.
+
+    Returns
+    -------
+    Score
+        Whatever could not be computed is None, and ``Score.warnings`` says why.
+
+    Raises
+    ------
+    TypeError
+        If an argument is no plain NumPy array of float64.
+    ValueError
+        If an array has another shape, a position is not finite, a heading is infinite, the level
+        does not lie between 0 and 1, there is no run at all, or a file cannot be read.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import umbmark
+    >>> cw = np.array([[-0.21, -0.19, -0.05], [-0.19, -0.21, -0.06], [-0.20, -0.23, -0.04]])
+    >>> ccw = np.array([[0.02, 0.01, 0.01], [0.01, -0.02, 0.02], [0.00, -0.02, 0.00]])
+    >>> result = umbmark.score(cw, ccw)
+    >>> low, high = result.e_max_sys_interval_m
+    >>> print(f"E_max,sys {result.e_max_sys_m:.3f} m, between {low:.3f} and {high:.3f} m")
+    E_max,sys 0.290 m, between 0.270 and 0.307 m
+    >>> print(f"by the runs' scatter alone it would stay below {result.noise_band_m:.3f} m")
+    by the runs' scatter alone it would stay below 0.023 m
+    """
+    if isinstance(cw, Dataset | str | PathLike):
+        return Score._of(score_dataset(data_of(cw), level, convention))
+    return Score._of(score_arrays(cw, ccw, bumps_cw, bumps_ccw, level, convention))

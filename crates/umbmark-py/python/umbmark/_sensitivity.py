@@ -1,0 +1,179 @@
+"""Which parameter drives which metric."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from msgspec import UNSET, UnsetType
+
+from umbmark import _umbmark
+from umbmark._monte_carlo import Bar, Progress
+from umbmark._result import Record, Result, Row
+from umbmark._umbmark import Model, Path, Study
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# What is spent where nothing is said: base points, trajectories, tests on each side.
+EFFORT = {"sobol": 4096, "morris": 100, "local": 1000}
+
+
+class Estimate(Record, frozen=True):
+    """A number with its interval."""
+
+    value: float | None
+    interval: tuple[float | None, float | None]
+
+
+class OfPair(Record, frozen=True):
+    """The share of two parameters together."""
+
+    value: float | None
+    interval: tuple[float | None, float | None]
+    of: tuple[str, str]
+
+
+class OfMetric(Record, frozen=True):
+    """Sensitivities of a metric, by parameter; those that the method gives.
+
+    ``first`` and ``total`` are Sobol indices, alone and with others, ``second`` those of pairs;
+    ``mu``, ``mu_star`` and ``sigma`` are of Morris; ``per_unit`` and ``per_spread`` derivatives.
+    """
+
+    mean: Estimate | UnsetType = UNSET
+    std_dev: Estimate | UnsetType = UNSET
+    first: dict[str, Estimate] | UnsetType = UNSET
+    total: dict[str, Estimate] | UnsetType = UNSET
+    second: tuple[OfPair, ...] | UnsetType = UNSET
+    mu: dict[str, Estimate] | UnsetType = UNSET
+    mu_star: dict[str, Estimate] | UnsetType = UNSET
+    sigma: dict[str, Estimate] | UnsetType = UNSET
+    per_unit: dict[str, Estimate] | UnsetType = UNSET
+    per_spread: dict[str, Estimate] | UnsetType = UNSET
+
+
+class Varied(Record, frozen=True):
+    """A parameter and the distribution that it was drawn from."""
+
+    name: str
+    flag: str
+    distribution: dict[str, float | str]
+
+
+class Correlation(Record, frozen=True):
+    """Correlation of the normal scores of two parameters."""
+
+    of: tuple[str, str]
+    value: float
+
+
+class Sensitivity(Result, frozen=True, kw_only=True):
+    """Which parameter drives which metric.
+
+    Attributes
+    ----------
+    method : str
+        "sobol", "morris" or "local".
+    metrics : dict of str to OfMetric
+        Sensitivities of each metric; "noise" stands for all that is random in a test.
+    parameters : tuple of Varied
+        What was varied.
+    noise : str
+        "simulated" or "absent".
+    """
+
+    method: str
+    base_points: int | UnsetType = UNSET
+    trajectories: int | UnsetType = UNSET
+    trials: int | UnsetType = UNSET
+    evaluations: int | UnsetType = UNSET
+    seed: int
+    partial: bool
+    noise: str
+    parameters: tuple[Varied, ...]
+    correlations: tuple[Correlation, ...]
+    metrics: dict[str, OfMetric]
+    assumed: tuple[str, ...]
+    version: str
+
+    def table(self) -> list[Row]:
+        """Give every sensitivity of every metric, one dict a row."""
+        rows: list[Row] = []
+        for metric, of in self.metrics.items():
+            for index in ("first", "total", "mu", "mu_star", "sigma", "per_unit", "per_spread"):
+                estimates: Any = getattr(of, index)
+                if isinstance(estimates, dict):
+                    rows += [_row(metric, index, name, e) for name, e in estimates.items()]
+        return rows
+
+    def plot(self, ax: Axes | None = None, *, metric: str = "e_max_sys_m") -> Axes:
+        """Draw the sensitivities of a metric, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.sensitivity(self, ax, metric)
+
+
+def _row(metric: str, index: str, parameter: str, estimate: Estimate) -> Row:
+    low, high = estimate.interval
+    named = {"metric": metric, "index": index, "parameter": parameter}
+    return named | {"value": estimate.value, "low": low, "high": high}
+
+
+def sensitivity(
+    model: Model,
+    path: Path | None = None,
+    *,
+    method: str = "sobol",
+    effort: int | None = None,
+    second_order: bool = False,
+    noise_free: bool = False,
+    runs: int | tuple[int, int] = 5,
+    seed: int = 1,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Sensitivity:
+    """Find which parameter drives which metric of whole UMBmark tests.
+
+    Parameters
+    ----------
+    model : Model
+        The robot; what varies are the parameters that have a distribution.
+    path : Path, optional
+        The path; the paper's 4 x 4 m square where none is given.
+    method : str, default "sobol"
+        "sobol" (shares of the variance), "morris" (a first screening) or "local" (derivatives).
+    effort : int, optional
+        Base points of Sobol indices, a power of two (4096); trajectories of Morris (100); tests on
+        each side for derivatives (1000).
+    second_order : bool, default False
+        Sobol indices of pairs too.
+    noise_free : bool, default False
+        Whether to ask the return of exact kinematics, and not whole tests.
+    runs : int or tuple of int, default 5
+        Runs in each direction, or (cw, ccw).
+    seed, threads, progress
+        As of ``monte_carlo``.
+
+    Raises
+    ------
+    ValueError
+        If nothing is varied, or a number is out of range.
+
+    Examples
+    --------
+    >>> import umbmark
+    >>> model = umbmark.Model().add("wheel_diameter_ratio", e_d={"mean": 1, "sd": 1e-4})
+    >>> model = model.add("wheelbase", e_b={"mean": 1, "sd": 5e-3})
+    >>> found = umbmark.sensitivity(model, noise_free=True, effort=256)
+    >>> found.metrics["return_heading_cw_rad"].first["wheelbase.e_b"].value > 0.9
+    True
+    """
+    both = (runs, runs) if isinstance(runs, int) else runs
+    if method in EFFORT:
+        effort = effort or EFFORT[method]
+    study = Study(model, path, n=effort or 1, runs=both, seed=seed)
+    with Bar(progress, 1000, "per mille") as bar:
+        document = _umbmark.sensitivity(
+            study, method, effort or 1, second_order, noise_free, threads, bar.at
+        )
+    return Sensitivity._of(document)

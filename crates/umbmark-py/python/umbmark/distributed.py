@@ -1,0 +1,281 @@
+"""Studies past one machine, on Dask: ``pip install umbmark[distributed]``.
+
+A study is cut into chunks by its number of trials alone, never by the workers. A chunk is the study
+(with its seed) and its place; whichever worker runs it, it gives the same bits, and results are
+taken in the order of the chunks. So the answer is that of one process, whatever the workers, their
+order, or how many of them die on the way.
+
+Give it a ``distributed.Client`` of any cluster: ``LocalCluster``, SSH, SLURM, Kubernetes
+(docs/distributed.md). Work holds one thread; start as many threads or processes as there are cores.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections import Counter
+from collections.abc import Callable, Generator
+from typing import TYPE_CHECKING, TypeVar
+
+from distributed import as_completed
+
+from umbmark._diagnosis import diagnose, learn
+from umbmark._monte_carlo import MOST_UNTIL, Bar, MonteCarlo, Progress, is_precise, result_of
+from umbmark._result import Interval, Record, Row
+from umbmark._umbmark import Ensemble, Model, Path, Study, __version__
+from umbmark._umbmark import simulate as _simulate
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+__all__ = ["Verdicts", "monte_carlo", "verdicts"]
+
+# Chunks that are under way or wait for one before them, for each thread of the cluster.
+AHEAD = 4
+# How often a chunk is tried again where its worker fails.
+RETRIES = 3
+
+Part = TypeVar("Part")
+
+
+def monte_carlo(
+    client: Client,
+    model: Model,
+    path: Path | None = None,
+    *,
+    n: int | None = None,
+    runs: int | tuple[int, int] = 5,
+    seed: int = 1,
+    until_std_error_m: float | None = None,
+    odometry: str = "robot",
+    update: str = "arc",
+    phase: str = "random",
+    chunk: int = 65536,
+    progress: Progress = None,
+) -> MonteCarlo:
+    """Simulate whole UMBmark tests on a cluster: the bits of ``umbmark.monte_carlo``.
+
+    Parameters
+    ----------
+    client : distributed.Client
+        The cluster.
+    model, path, n, runs, seed, odometry, update, phase, progress
+        As of ``umbmark.monte_carlo``.
+    until_std_error_m : float, optional
+        Stop at the first chunk after which the standard error of the mean E_max,sys is this small,
+        in m, with all chunks before it.
+    chunk : int, default 65536
+        Trials of a chunk, about; with ``until_std_error_m`` the number of trials depends on it.
+
+    Returns
+    -------
+    MonteCarlo
+        Without the metrics of single trials.
+
+    Raises
+    ------
+    ValueError
+        If the test cannot be driven, or a number is out of range.
+    distributed.KilledWorker
+        If a chunk's worker died more often than the scheduler allows.
+    """
+    n = n or (1000 if until_std_error_m is None else MOST_UNTIL)
+    both = (runs, runs) if isinstance(runs, int) else runs
+    study = Study(
+        model, path, n=n, runs=both, seed=seed, odometry=odometry, update=update, phase=phase
+    )
+    count = _chunks(n, chunk)
+    parts = _in_order(client, functools.partial(_shard, study, count), count)
+    merged: Ensemble | None = None
+    with Bar(progress, n, "trials") as bar:
+        for part in parts:
+            merged = part if merged is None else merged.merge(part)
+            bar.at(merged.trials)
+            if is_precise(merged, until_std_error_m):
+                parts.close()
+                break
+    assert merged is not None, "a study has at least one chunk"
+    partial = merged.trials < n and not is_precise(merged, until_std_error_m)
+    return result_of(study, merged, partial, None)
+
+
+def _shard(study: Study, count: int, index: int) -> Ensemble:
+    return study.run((index, count), threads=1)[0]
+
+
+class Verdicts(Record, frozen=True):
+    """What was said of simulated tests of one robot, of which the truth is known.
+
+    Attributes
+    ----------
+    n : int
+        Number of tests.
+    counts : dict of str to int
+        How often each verdict was given.
+    named : dict of str to int
+        How often each class of effects was the first that was certified, or added.
+    seed : int
+        Seed of all random numbers.
+    """
+
+    n: int
+    counts: dict[str, int]
+    named: dict[str, int]
+    seed: int
+    version: str = __version__
+
+    def share(self, verdict: str, level: float = 0.95) -> tuple[float, Interval]:
+        """Give the share of a verdict, and its interval with probability ``level`` (Wilson).
+
+        Source: Wilson (1927), J. American Statistical Association 22.
+        """
+        from statistics import NormalDist
+
+        z = NormalDist().inv_cdf(0.5 + 0.5 * level)
+        share = self.counts.get(verdict, 0) / self.n
+        middle = (share + z * z / (2 * self.n)) / (1 + z * z / self.n)
+        spread = (share * (1 - share) / self.n + z * z / (4 * self.n**2)) ** 0.5
+        half = z * spread / (1 + z * z / self.n)
+        return share, (max(0.0, middle - half), min(1.0, middle + half))
+
+    def table(self) -> list[Row]:
+        """Give the verdicts with their shares and intervals, one dict a row."""
+        rows = []
+        for verdict, count in sorted(self.counts.items()):
+            share, (low, high) = self.share(verdict)
+            row = {"verdict": verdict, "count": count, "share": share, "low": low, "high": high}
+            rows.append(row)
+        return rows
+
+
+def verdicts(
+    client: Client,
+    truth: Model,
+    path: Path | None = None,
+    *,
+    n: int,
+    ask: str = "diagnose",
+    runs: int | tuple[int, int] = 5,
+    reference_rate_hz: float = 0.0,
+    size: float = 0.05,
+    draws: int = 999,
+    seed: int = 1,
+    chunk: int = 16,
+    progress: Progress = None,
+) -> Verdicts:
+    """Ask many simulated tests of one robot what is missing: false alarms, or power.
+
+    Of a robot with E_d and E_b alone, every verdict but "explained" is a false alarm; of one with a
+    hidden effect, ``named`` says how often it was found.
+
+    Parameters
+    ----------
+    client : distributed.Client
+        The cluster.
+    truth : Model
+        The robot; parameters with a distribution are drawn anew for each test.
+    path : Path, optional
+        The path; the paper's 4 x 4 m square where none is given.
+    n : int
+        Number of tests.
+    ask : str, default "diagnose"
+        "diagnose", or "learn".
+    runs, reference_rate_hz
+        As of ``umbmark.simulate``; 0 Hz for return poses alone.
+    size, draws
+        As of ``umbmark.diagnose``.
+    seed : int, default 1
+        Seed of all random numbers.
+    chunk : int, default 16
+        Tests of a chunk; no number depends on it.
+    progress : bool or callable, optional
+        As of ``umbmark.monte_carlo``.
+
+    Raises
+    ------
+    ValueError
+        If a test cannot be driven, or a number is out of range.
+    """
+    if ask not in ("diagnose", "learn"):
+        raise ValueError(f'ask must be one of diagnose, learn, got "{ask}"')
+    if n < 1 or chunk < 1:
+        raise ValueError(f"n and chunk must be 1 or more, got {n} and {chunk}")
+    both = (runs, runs) if isinstance(runs, int) else runs
+
+    work = functools.partial(
+        _asked, ask, truth, path, both, reference_rate_hz, size, draws, seed, n, chunk
+    )
+    counts: Counter[str] = Counter()
+    named: Counter[str] = Counter()
+    with Bar(progress, n, "tests") as bar:
+        for said, first in _in_order(client, work, -(-n // chunk)):
+            counts.update(said)
+            named.update(first)
+            bar.at(counts.total())
+    return Verdicts(n, dict(sorted(counts.items())), dict(sorted(named.items())), seed)
+
+
+def _asked(
+    ask: str,
+    truth: Model,
+    path: Path | None,
+    runs: tuple[int, int],
+    reference_rate_hz: float,
+    size: float,
+    draws: int,
+    seed: int,
+    n: int,
+    chunk: int,
+    index: int,
+) -> tuple[Counter[str], Counter[str]]:
+    """Give verdicts, and the classes first named, of the tests of one chunk."""
+    counts: Counter[str] = Counter()
+    named: Counter[str] = Counter()
+    for trial in range(index * chunk, min(n, (index + 1) * chunk)):
+        data = _simulate(truth, path, runs, reference_rate_hz, seed, trial)
+        if ask == "diagnose":
+            told = diagnose(data, size=size, draws=draws, seed=trial, threads=1)
+            first = [" or ".join(suspect.class_) for suspect in told.ranking[: told.certified]]
+            verdict = told.verdict
+        else:
+            learnt = learn(data, size=size, draws=draws, seed=trial, threads=1)
+            first = [
+                " or ".join(step.class_) for step in learnt.steps if step.p_adjusted is not None
+            ]
+            verdict = learnt.verdict
+        counts[verdict] += 1
+        named.update(first[:1])
+    return counts, named
+
+
+def _chunks(n: int, chunk: int) -> int:
+    if chunk < 1:
+        raise ValueError(f"chunk must be 1 or more, got {chunk}")
+    # The most shards that a study may have.
+    return max(1, min(-(-n // chunk), 1_000_000))
+
+
+def _in_order(
+    client: Client, work: Callable[[int], Part], count: int
+) -> Generator[Part, None, None]:
+    """Give work(0), ..., work(count - 1) in this order, however they come."""
+    places: dict[object, int] = {}
+    come: dict[int, Part] = {}
+    under_way: dict[object, Future[Part]] = {}
+    coming = as_completed(with_results=True)
+    begun = given = 0
+    try:
+        while given < count:
+            ahead = AHEAD * max(1, sum(client.nthreads().values()))
+            while begun < min(count, given + ahead):
+                future = client.submit(work, begun, pure=False, retries=RETRIES)
+                places[future.key], under_way[future.key] = begun, future
+                coming.add(future)
+                begun += 1
+            future, part = next(coming)
+            come[places.pop(future.key)] = part
+            del under_way[future.key]
+            while given in come:
+                yield come.pop(given)
+                given += 1
+    finally:
+        client.cancel([*under_way.values()])

@@ -1,0 +1,68 @@
+//! `calibrate`, and a calibration put to use.
+
+use std::sync::Arc;
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use umbmark_core::calibrate::{self as core, Correction, Options, RadiusWheelbase, export as texts};
+use umbmark_core::document;
+use umbmark_core::drive::Kind;
+
+use crate::dataset::Dataset;
+use crate::path::Path;
+use crate::robot::Robot;
+use crate::work::watched;
+use crate::{choice, probability, refused};
+
+const WHEELBASES: [(&str, RadiusWheelbase); 2] =
+    [("nominal", RadiusWheelbase::Nominal), ("corrected", RadiusWheelbase::Corrected)];
+
+/// A calibration by every method that the data allows.
+#[pyfunction]
+pub fn calibrate(
+    py: Python<'_>,
+    data: &Dataset,
+    level: f64,
+    heading_arm_m: Option<f64>,
+    radius_wheelbase: &str,
+) -> PyResult<String> {
+    probability("level", level)?;
+    let options = Options {
+        heading_arm: heading_arm_m,
+        radius_wheelbase: choice("radius_wheelbase", radius_wheelbase, &WHEELBASES)?,
+    };
+    let robot = data.0.nominal_robot().map_err(refused)?;
+    if robot.drive.kind() != Kind::Differential {
+        let kind = robot.drive.kind().name();
+        let words = format!(
+            "this calibrates differential drives, got drive = \"{kind}\"; `umbmark calibrate` knows the others"
+        );
+        return Err(PyValueError::new_err(words));
+    }
+    let shared = Arc::clone(&data.0);
+    let mut calibration = watched(py, 1, None, move |_| core::calibrate(&shared, &options))?.map_err(refused)?;
+    if calibration.estimates.is_empty() {
+        let why = calibration.warnings.join("\n");
+        return Err(PyValueError::new_err(format!("nothing can be calibrated from these runs\n{why}")));
+    }
+    calibration.warnings.splice(0..0, data.0.warnings.iter().cloned());
+    Ok(document::calibration(robot, &calibration, level).to_string())
+}
+
+/// Corrected lengths as a file of another program: "ros2_control", "robot_toml" or "c_header".
+#[pyfunction]
+pub fn export(
+    robot: &Robot,
+    path: Option<&Path>,
+    ratios: (f64, f64, Option<f64>),
+    format: &str,
+    controller: &str,
+) -> PyResult<String> {
+    let (e_d, e_b, e_s) = ratios;
+    let correction = Correction { e_d, e_b, e_s: e_s.unwrap_or(1.0) };
+    match choice("format", format, &["ros2_control", "robot_toml", "c_header"].map(|name| (name, name)))? {
+        "ros2_control" => Ok(texts::ros2_control(&robot.0, &correction, controller)),
+        "robot_toml" => texts::robot_toml(&robot.0, path.map(|path| &path.0), &correction).map_err(refused),
+        _ => texts::c_header(&robot.0, &correction).map_err(refused),
+    }
+}

@@ -1,0 +1,248 @@
+//! Measured (or simulated) robots.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use numpy::{PyArray2, ndarray::Array2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple};
+use serde::{Deserialize, Serialize};
+use umbmark_core::dataset::{self as core, Existing, LAYOUTS, Layout, RunClock, RunTopics, Topics};
+use umbmark_core::document;
+
+use crate::path::{DIRECTIONS, Path};
+use crate::robot::Robot;
+use crate::run::{Run, TESTS};
+use crate::work::{detached, watched};
+use crate::{choice, refused};
+
+/// A robot and its runs, measured or simulated. Frozen; ``umbmark.load_dataset`` reads one.
+///
+/// Parameters
+/// ----------
+/// robot : Robot, optional
+///     The nominal robot; scores do without.
+/// path : Path, optional
+///     The path that it was told to drive.
+/// runs : sequence of Run
+///     Its runs.
+///
+/// Examples
+/// --------
+/// >>> import umbmark
+/// >>> runs = [umbmark.Run("cw", 1, returned=(-0.21, -0.19, -0.05))]
+/// >>> data = umbmark.Dataset(umbmark.Robot.labmate(), umbmark.Path.umbmark(), runs)
+/// >>> data.returns("cw")
+/// array([[-0.21, -0.19, -0.05]])
+#[pyclass(frozen, module = "umbmark")]
+pub struct Dataset(pub Arc<core::Dataset>);
+
+impl From<core::Dataset> for Dataset {
+    fn from(data: core::Dataset) -> Dataset {
+        Dataset(Arc::new(data))
+    }
+}
+
+/// What a pickled dataset holds beside robot and path.
+#[derive(Default, Serialize, Deserialize)]
+struct Rest {
+    runs: Vec<core::Run>,
+    clocks: Vec<RunClock>,
+    topics: Vec<RunTopics>,
+    warnings: Vec<String>,
+}
+
+#[pymethods]
+impl Dataset {
+    #[new]
+    #[pyo3(signature = (robot=None, path=None, runs=Vec::new()))]
+    fn new(robot: Option<&Robot>, path: Option<&Path>, runs: Vec<Py<Run>>) -> Dataset {
+        let runs = runs.iter().map(|run| run.get().core().clone()).collect();
+        Rest { runs, ..Rest::default() }.with(robot, path)
+    }
+
+    /// The nominal robot; None where a return sheet was given without one.
+    #[getter]
+    fn robot(&self) -> Option<Robot> {
+        self.0.robot.clone().map(Robot)
+    }
+
+    /// The path that it was told to drive, where that is known.
+    #[getter]
+    fn path(&self) -> Option<Path> {
+        self.0.path.clone().map(Path)
+    }
+
+    /// The runs.
+    #[getter]
+    fn runs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, (0..self.0.runs.len()).map(|index| Run::of(&self.0, index)))
+    }
+
+    /// What the reader noticed and mended, one sentence each.
+    #[getter]
+    fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.0.warnings)
+    }
+
+    /// Give the known return errors of a direction.
+    ///
+    /// Parameters
+    /// ----------
+    /// direction : str
+    ///     "cw" or "ccw".
+    /// test : str, default "systematic"
+    ///     "systematic", or "bumps" for the extended test.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of float64, shape (n, 3)
+    ///     x in m, y in m and heading in rad, absolute minus computed (Eq. 1), in the frame of START; NaN for a heading that
+    ///     was not measured.
+    #[pyo3(signature = (direction, test="systematic"))]
+    fn returns<'py>(&self, py: Python<'py>, direction: &str, test: &str) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (direction, test) = (choice("direction", direction, &DIRECTIONS)?, choice("test", test, &TESTS)?);
+        let rows: Vec<f64> =
+            self.0.returns(test, direction).flat_map(|e| [e.x, e.y, e.heading.unwrap_or(f64::NAN)]).collect();
+        let shape = (rows.len() / 3, 3);
+        let array = Array2::from_shape_vec(shape, rows).map_err(refused)?;
+        Ok(PyArray2::from_owned_array(py, array))
+    }
+
+    /// Write it in a layout.
+    ///
+    /// Parameters
+    /// ----------
+    /// place : path-like
+    ///     Folder to write, or NAME.mcap for one run as a log of ROS 2.
+    /// layout : str, optional
+    ///     "csv", "mcap", "optiodom", "tum" or "returns"; "csv" where nothing is said, and "mcap" for NAME.mcap.
+    /// replace : bool, default False
+    ///     Whether files that exist are replaced.
+    ///
+    /// Returns
+    /// -------
+    /// list of str
+    ///     What the layout cannot hold, a sentence each.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If files are there already, or nothing can be written.
+    #[pyo3(signature = (place, *, layout=None, replace=false))]
+    fn save(&self, py: Python<'_>, place: PathBuf, layout: Option<&str>, replace: bool) -> PyResult<Vec<String>> {
+        let named = |layout: &'static Layout| (layout.name, layout);
+        let layout = match layout {
+            Some(name) => choice("layout", name, &LAYOUTS.each_ref().map(named))?,
+            None => Layout::of_place(&place),
+        };
+        let existing = if replace { Existing::Replace } else { Existing::Keep };
+        detached(py, || self.0.convert(layout, &place, existing))?.map_err(refused)
+    }
+
+    /// Draw the return errors, cw and ccw, or the tracks.
+    ///
+    /// Parameters
+    /// ----------
+    /// ax : matplotlib axes, optional
+    ///     Where to draw; a new figure where none is given.
+    /// tracks : bool, default False
+    ///     Whether to draw the measured tracks instead of the return errors.
+    ///
+    /// Returns
+    /// -------
+    /// matplotlib axes
+    #[pyo3(signature = (ax=None, *, tracks=false))]
+    fn plot<'py>(slf: &Bound<'py, Self>, ax: Option<&Bound<'py, PyAny>>, tracks: bool) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("umbmark._plots")?.call_method1("dataset", (slf, ax, tracks))
+    }
+
+    fn __repr__(&self) -> String {
+        let robot = self.0.robot.as_ref().map_or("unknown robot", |robot| robot.name.as_str());
+        let path = self
+            .0
+            .path
+            .as_ref()
+            .map_or("unknown path".to_owned(), |p| format!("{} of {:.6} m", p.shape().name, p.length()));
+        let count = |direction| self.0.runs.iter().filter(|run| run.direction == Some(direction)).count();
+        let [(_, cw), (_, ccw)] = DIRECTIONS;
+        let logs = self.0.runs.iter().filter(|run| run.log.is_some()).count();
+        format!("Dataset({robot}, {path}: {} cw + {} ccw runs, {logs} with ticks)", count(cw), count(ccw))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Pickled<'py>)> {
+        let data = &slf.get().0;
+        let rest = Rest {
+            runs: data.runs.clone(),
+            clocks: data.clocks.clone(),
+            topics: data.topics.clone(),
+            warnings: data.warnings.clone(),
+        };
+        let rest = PyBytes::new(slf.py(), &serde_json::to_vec(&rest).map_err(refused)?);
+        Ok((slf.getattr("_from_parts")?, (slf.get().robot(), slf.get().path(), rest)))
+    }
+
+    #[staticmethod]
+    fn _from_parts(robot: Option<&Robot>, path: Option<&Path>, rest: &[u8]) -> PyResult<Dataset> {
+        let rest: Rest = serde_json::from_slice(rest).map_err(refused)?;
+        Ok(rest.with(robot, path))
+    }
+}
+
+/// Arguments that make a dataset again.
+type Pickled<'py> = (Option<Robot>, Option<Path>, Bound<'py, PyBytes>);
+
+impl Rest {
+    fn with(self, robot: Option<&Robot>, path: Option<&Path>) -> Dataset {
+        let Rest { runs, clocks, topics, warnings } = self;
+        let (robot, path) = (robot.map(|robot| robot.0.clone()), path.map(|path| path.0.clone()));
+        Dataset::from(core::Dataset { robot, path, runs, clocks, topics, warnings })
+    }
+}
+
+/// Read a dataset: a folder, an OptiOdom folder, or one file of either.
+///
+/// Parameters
+/// ----------
+/// place : path-like
+///     A folder with robot.toml and returns.csv, runs/*.csv or runs/*.mcap; a folder of OptiOdom; a return sheet; a CSV or
+///     MCAP log.
+/// ticks : str, optional
+///     Topic of the wheels in MCAP logs, where it is not found by type; ":LEFT,RIGHT" behind it names the joints,
+///     ":left,right" or ":right,left" the order in a list of counts.
+/// reference : str, optional
+///     Topic of the absolute poses in MCAP logs; ":FRAME" behind it picks one of several transforms, "none" reads no poses.
+///
+/// Returns
+/// -------
+/// Dataset
+///     Its ``warnings`` say what the reader noticed and mended.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If a file is missing or wrong: file, line, key, value, allowed range, and what to do.
+#[pyfunction]
+#[pyo3(signature = (place, *, ticks=None, reference=None))]
+pub fn load_dataset(
+    py: Python<'_>,
+    place: PathBuf,
+    ticks: Option<String>,
+    reference: Option<String>,
+) -> PyResult<Dataset> {
+    let topics = Topics { ticks, reference };
+    let read = watched(py, 0, None, move |_| core::Dataset::load_with(&place, &topics))?;
+    read.map(Dataset::from).map_err(refused)
+}
+
+/// What a dataset holds, whether it is any good, and what it can determine.
+#[pyfunction]
+pub fn inspect(py: Python<'_>, data: &Dataset, place: &str) -> PyResult<String> {
+    if data.0.runs.is_empty() {
+        return Err(PyValueError::new_err("there are no runs to inspect"));
+    }
+    let shared = Arc::clone(&data.0);
+    let found = watched(py, 1, None, move |_| shared.inspect())?;
+    Ok(document::inspection(place, &data.0, &found).to_string())
+}

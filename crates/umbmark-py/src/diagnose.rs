@@ -1,0 +1,133 @@
+//! `compare`, `diagnose`, `fit` and `learn`.
+
+use std::sync::Arc;
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use umbmark_core::compare as comparing;
+use umbmark_core::diagnose::{self as core, DiagnoseError, Level, Options, base_model, first_model};
+use umbmark_core::drive::Robot;
+use umbmark_core::{document, effect, learn as learning};
+
+use crate::dataset::Dataset;
+use crate::model::Model;
+use crate::work::watched;
+use crate::{probability, refused};
+
+/// Numbers of simulated tests that a p-value may come from.
+const DRAWS: std::ops::RangeInclusive<usize> = 99..=99_999;
+
+/// Models beside measurements; without any, the nominal robot, and the first model fitted to the data.
+#[pyfunction]
+pub fn compare(
+    py: Python<'_>,
+    data: &Dataset,
+    models: Vec<(String, Model)>,
+    options: (f64, usize, u64),
+    return_poses: bool,
+    threads: usize,
+) -> PyResult<String> {
+    let options = options_of(options, return_poses)?;
+    let shared = Arc::clone(&data.0);
+    let robot = shared.nominal_robot().map_err(refused)?.clone();
+    let given: Vec<_> = models.into_iter().map(|(name, model)| (name, model.model)).collect();
+    let document = watched(py, threads, None, move |_| -> Result<_, DiagnoseError> {
+        let level = options.evidence(&shared);
+        let models = match (given.is_empty(), level) {
+            (false, _) => given,
+            (true, Level::Ends) => {
+                let (fitted, _) = learning::fit_to_returns(&shared, &base_model(&robot)?)?;
+                vec![nominal(&robot), ("E_d and E_b, fitted to these runs".into(), fitted)]
+            }
+            (true, Level::Tracks) => {
+                let fitted = learning::fit(&shared, &first_model(&shared)?)?.model;
+                vec![nominal(&robot), ("E_d, E_b and E_s, fitted to these runs".into(), fitted)]
+            }
+        };
+        Ok(match level {
+            Level::Ends => document::comparison(&comparing::compare(&shared, &models, &options)?, &options),
+            Level::Tracks => {
+                document::track_comparison(&comparing::compare_tracks(&shared, &models, &options)?, &options)
+            }
+        })
+    })?;
+    Ok(document.map_err(refused)?.to_string())
+}
+
+fn nominal(robot: &Robot) -> (String, effect::Model) {
+    ("nominal robot".to_owned(), effect::Model::new(robot))
+}
+
+/// What a model is missing, and the model with its free parameters fitted.
+#[pyfunction]
+pub fn diagnose(
+    py: Python<'_>,
+    data: &Dataset,
+    model: Option<&Model>,
+    options: (f64, usize, u64),
+    return_poses: bool,
+    threads: usize,
+) -> PyResult<(String, Model)> {
+    let options = options_of(options, return_poses)?;
+    let model = asked(data, model)?;
+    let shared = Arc::clone(&data.0);
+    let diagnosis = watched(py, threads, None, move |_| core::diagnose(&shared, &model, &options))?.map_err(refused)?;
+    Ok((document::diagnosis(&diagnosis, &options).to_string(), diagnosis.model.into()))
+}
+
+/// A model with its free effects fitted, those of `add` too.
+#[pyfunction]
+pub fn fit(
+    py: Python<'_>,
+    data: &Dataset,
+    model: Option<&Model>,
+    add: Vec<String>,
+    level: f64,
+) -> PyResult<(String, Model)> {
+    probability("level", level)?;
+    let mut model = asked(data, model)?;
+    for effect in &add {
+        model.add(effect).map_err(refused)?.free = true;
+    }
+    if model.parts().iter().all(|part| !part.free) {
+        return Err(PyValueError::new_err(
+            "no effect of the model is free: say free=True in the model, or add an effect",
+        ));
+    }
+    let shared = Arc::clone(&data.0);
+    let fitted = watched(py, 1, None, move |_| learning::fit(&shared, &model))?.map_err(refused)?;
+    Ok((document::fitted(&fitted, level).to_string(), fitted.model.into()))
+}
+
+/// The whole loop, and the model that was learnt.
+#[pyfunction]
+pub fn learn(
+    py: Python<'_>,
+    data: &Dataset,
+    options: (f64, usize, u64),
+    return_poses: bool,
+    threads: usize,
+) -> PyResult<(String, Model)> {
+    let options = options_of(options, return_poses)?;
+    let shared = Arc::clone(&data.0);
+    let learnt = watched(py, threads, None, move |_| learning::learn(&shared, &options))?.map_err(refused)?;
+    Ok((document::learnt(&learnt, &options).to_string(), learnt.model.into()))
+}
+
+/// The model that is asked about, the usual first one where none is given.
+fn asked(data: &Dataset, model: Option<&Model>) -> PyResult<effect::Model> {
+    data.0.nominal_robot().map_err(refused)?;
+    match model {
+        Some(model) => Ok(model.model.clone()),
+        None => first_model(&data.0).map_err(refused),
+    }
+}
+
+fn options_of((size, draws, seed): (f64, usize, u64), ends_only: bool) -> PyResult<Options> {
+    probability("size", size)?;
+    if !DRAWS.contains(&draws) {
+        let (least, most) = (DRAWS.start(), DRAWS.end());
+        return Err(PyValueError::new_err(format!("draws must be between {least} and {most}, got {draws}")));
+    }
+    Ok(Options { size, draws, seed, ends_only })
+}

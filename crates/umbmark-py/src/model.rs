@@ -1,0 +1,190 @@
+//! `umbmark.Model`.
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use toml::{Table, Value};
+use umbmark_core::dataset::{model_text_with, parse_model, read_model};
+use umbmark_core::monte_carlo::Draw;
+use umbmark_core::{document, drive, effect};
+
+use crate::robot::Robot;
+use crate::{as_python, keys, refused};
+
+/// A nominal robot and the effects that make it err. Models are frozen: each change gives another one.
+///
+/// Parameters
+/// ----------
+/// robot : Robot, optional
+///     The nominal robot; the paper's LabMate where none is given.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> import umbmark
+/// >>> model = umbmark.Model().add("wheel_diameter_ratio", e_d=1.002)
+/// >>> model = model.add("wheelbase", e_b={"mean": 1.01, "sd": 0.002})  # drawn anew for each trial
+/// >>> model.get("wheelbase", "e_b")
+/// 1.01
+/// >>> own = model.add(
+/// ...     "carpet",
+/// ...     acts_on="heading_per_metre",
+/// ...     formula=lambda at, k, h0: k * np.sin(at.heading - h0),
+/// ...     parameters={"k": 0.001, "h0": 0.5},
+/// ... )
+/// >>> print(own.to_toml().split("\n\n")[-1], end="")
+/// [[effect]]
+/// name = "carpet"
+/// acts_on = "heading_per_metre"
+/// formula = "k * sin(heading - h0)"
+/// parameters = { k = 0.001, h0 = 0.5 }
+#[pyclass(frozen, eq, module = "umbmark", from_py_object)]
+#[derive(Clone, PartialEq)]
+pub struct Model {
+    /// The effects.
+    pub model: effect::Model,
+    /// Parameters that differ from trial to trial.
+    pub draws: Vec<Draw>,
+}
+
+#[pymethods]
+impl Model {
+    #[new]
+    #[pyo3(signature = (robot=None))]
+    fn new(robot: Option<&Robot>) -> Model {
+        effect::Model::new(&nominal(robot)).into()
+    }
+
+    /// Read the text of a model.toml, for a robot or the paper's LabMate.
+    #[staticmethod]
+    #[pyo3(signature = (text, robot=None))]
+    fn from_toml(text: &str, robot: Option<&Robot>) -> PyResult<Model> {
+        let (model, draws) = parse_model("model.toml", text, &nominal(robot)).map_err(refused)?;
+        Ok(Model { model, draws })
+    }
+
+    /// Read a model.toml, for a robot or the paper's LabMate.
+    #[staticmethod]
+    #[pyo3(signature = (file, robot=None))]
+    fn read(file: std::path::PathBuf, robot: Option<&Robot>) -> PyResult<Model> {
+        let (model, draws) = read_model(file, &nominal(robot)).map_err(refused)?;
+        Ok(Model { model, draws })
+    }
+
+    /// Add an effect of the catalogue, or one of your own, or change one that is there.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     Name of the effect; ``umbmark.effects()`` has the catalogue.
+    /// **keys
+    ///     The keys of ``[[effect]]`` in a model.toml: the effect's parameters (a number, a word where it takes words,
+    ///     ``{"mean": .., "sd": ..}`` or ``{"min": .., "max": ..}`` for one that is drawn), and ``free=True`` for
+    ///     effects to be fitted. An effect of your own has ``acts_on``, ``formula`` (text, or a function of the quantities
+    ///     and the parameters, written with NumPy) and ``parameters`` (a dict of start values).
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///     This one with the effect.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If the catalogue, a range or the language of formulas refuses it, in the words of the file's reader.
+    /// TypeError
+    ///     If a function cannot be written as a formula.
+    #[pyo3(signature = (name, **keys))]
+    fn add(&self, py: Python<'_>, name: &str, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Model> {
+        let keys = match keys {
+            Some(keys) => py.import("umbmark._formula")?.call_method1("as_text", (keys,))?.cast_into::<PyDict>()?,
+            None => PyDict::new(py),
+        };
+        let given = keys::table(Some(&keys))?;
+        let mut effects = self.tables()?;
+        let place = effects.iter().position(|table| table.get("name").and_then(Value::as_str) == Some(name));
+        let place = place.unwrap_or_else(|| {
+            effects.push(Table::from_iter([("name".to_owned(), Value::String(name.to_owned()))]));
+            effects.len() - 1
+        });
+        effects[place].extend(given);
+        self.with(effects)
+    }
+
+    /// Take an effect away.
+    fn remove(&self, name: &str) -> PyResult<Model> {
+        let mut effects = self.tables()?;
+        let before = effects.len();
+        effects.retain(|table| table.get("name").and_then(Value::as_str) != Some(name));
+        if effects.len() == before {
+            return Err(PyValueError::new_err(format!("there is no effect \"{name}\" in the model")));
+        }
+        self.with(effects)
+    }
+
+    /// Value of a parameter of an effect, the middle of its distribution where it is drawn; None without the effect.
+    fn get(&self, effect: &str, parameter: &str) -> Option<f64> {
+        self.model.get(effect, parameter)
+    }
+
+    /// The nominal robot.
+    #[getter]
+    fn robot(&self) -> Robot {
+        Robot(self.model.robot().clone())
+    }
+
+    /// Names of the effects, in the order in which they act.
+    #[getter]
+    fn effects(&self) -> Vec<String> {
+        self.model.parts().iter().map(|part| part.effect.name().to_owned()).collect()
+    }
+
+    /// Write it as the text of a model.toml, which reads back to the last bit.
+    fn to_toml(&self) -> String {
+        model_text_with(&self.model, &self.draws)
+    }
+
+    /// Give its effects, as documents of results have them.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        as_python(py, &document::model(&self.model))
+    }
+
+    fn __repr__(&self) -> String {
+        let effects = self.to_toml().replace("[[effect]]\nname = ", "").replace("\n\n", "\0");
+        let lines = effects.split('\0').map(|effect| effect.trim().replace('\n', ", ").replacen('"', "", 2));
+        let lines: String = lines.filter(|line| !line.is_empty()).map(|line| format!("\n    {line}")).collect();
+        format!("Model({}){lines}", self.model.robot().name)
+    }
+
+    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<(Py<PyAny>, (String, Robot))> {
+        Ok((slf.getattr("from_toml")?.unbind(), (slf.get().to_toml(), slf.get().robot())))
+    }
+}
+
+impl Model {
+    /// Its effects as in a file.
+    fn tables(&self) -> PyResult<Vec<Table>> {
+        let file: Table = self.to_toml().parse().map_err(|error: toml::de::Error| refused(error))?;
+        let effects = file.get("effect").and_then(Value::as_array);
+        Ok(effects.into_iter().flatten().filter_map(|effect| effect.as_table().cloned()).collect())
+    }
+
+    /// The same robot with these effects.
+    fn with(&self, effects: Vec<Table>) -> PyResult<Model> {
+        let effects = Value::Array(effects.into_iter().map(Value::Table).collect());
+        let text = Table::from_iter([("effect".to_owned(), effects)]).to_string();
+        let (model, draws) =
+            parse_model("Model", &text, self.model.robot()).map_err(|error| keys::refused(&error, "Model"))?;
+        Ok(Model { model, draws })
+    }
+}
+
+impl From<effect::Model> for Model {
+    fn from(model: effect::Model) -> Model {
+        Model { model, draws: Vec::new() }
+    }
+}
+
+fn nominal(robot: Option<&Robot>) -> drive::Robot {
+    robot.map_or_else(drive::Robot::labmate, |robot| robot.0.clone())
+}

@@ -1,0 +1,353 @@
+//! `mc`: studies and what is known of them.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use umbmark_core::document::{self, Theory, Told};
+use umbmark_core::engine::Update;
+use umbmark_core::monte_carlo::{self as core, Batch, Metric, Shard, Statistics};
+use umbmark_core::replay::check_on_path;
+use umbmark_core::simulate::{Odometry, Phase};
+
+use crate::model::Model;
+use crate::path::Path;
+use crate::work::{detached, watched};
+use crate::{choice, refused};
+
+const UPDATES: [(&str, Update); 3] = [("arc", Update::Arc), ("midpoint", Update::Midpoint), ("euler", Update::Euler)];
+const PHASES: [(&str, Phase); 2] = [("random", Phase::Random), ("edge", Phase::Edge)];
+
+/// A Monte Carlo study, described: whole UMBmark tests, each with its own random numbers. Frozen.
+///
+/// Parameters
+/// ----------
+/// model : Model
+///     The robot and its effects; parameters with a distribution are drawn anew for each trial.
+/// path : Path, optional
+///     The path; the paper's 4 x 4 m square where none is given.
+/// n : int, default 1000
+///     Number of trials, each a whole test.
+/// runs : int or tuple of int, default 5
+///     Runs in each direction, or (cw, ccw).
+/// seed : int, default 1
+///     Seed of all random numbers: the same seed gives the same bits for any number of threads, shards and machines.
+/// odometry : str, default "robot"
+///     How the robot computes its pose: "robot" (at the encoder rate where there is one, else at every tick), "ticks",
+///     "tick_by_tick" (slow, the reference) or "continuous" (without quantisation).
+/// update : str, default "arc"
+///     How sampled odometry follows the counts: "arc", "midpoint" or "euler".
+/// phase : str, default "random"
+///     Where within a tick the wheels come to rest: "random" or "edge".
+///
+/// Raises
+/// ------
+/// ValueError
+///     If the test cannot be driven, a number is out of range, or a word is unknown.
+#[pyclass(frozen, module = "umbmark")]
+pub struct Study {
+    study: core::Study,
+    theory: Theory,
+    odometry: String,
+    update: String,
+    phase: String,
+}
+
+#[pymethods]
+impl Study {
+    #[new]
+    #[pyo3(signature = (model, path=None, *, n=1000, runs=None, seed=1, odometry="robot", update="arc", phase="random"))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        model: &Model,
+        path: Option<&Path>,
+        n: u64,
+        runs: Option<&Bound<'_, PyAny>>,
+        seed: u64,
+        odometry: &str,
+        update: &str,
+        phase: &str,
+    ) -> PyResult<Study> {
+        let Model { model, draws } = model.clone();
+        let base = core::Study::new(model, n, seed);
+        let sampled = |update| match base.robot().encoder.rate() {
+            Some(rate) => Odometry::Sampled { rate, update },
+            None => Odometry::EveryTick,
+        };
+        let kinds = [
+            ("robot", sampled(choice("update", update, &UPDATES)?)),
+            ("ticks", Odometry::EveryTick),
+            ("tick_by_tick", Odometry::EveryTickOneByOne),
+            ("continuous", Odometry::Continuous),
+        ];
+        let study = core::Study {
+            odometry: choice("odometry", odometry, &kinds)?,
+            phase: choice("phase", phase, &PHASES)?,
+            runs: runs.map_or(Ok([5, 5]), runs_of)?,
+            path: path.map_or_else(|| base.path.clone(), |path| path.0.clone()),
+            draws,
+            ..base
+        };
+        check_on_path(&study.model, &study.path).map_err(refused)?;
+        let theory = Theory::of(&study).map_err(refused)?;
+        let [odometry, update, phase] = [odometry, update, phase].map(str::to_owned);
+        Ok(Study { study, theory, odometry, update, phase })
+    }
+
+    /// Number of trials.
+    #[getter]
+    fn n(&self) -> u64 {
+        self.study.trials
+    }
+
+    /// Seed of all random numbers.
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.study.seed
+    }
+
+    /// The robot and its effects.
+    #[getter]
+    fn model(&self) -> Model {
+        Model { model: self.study.model.clone(), draws: self.study.draws.clone() }
+    }
+
+    /// The path.
+    #[getter]
+    fn path(&self) -> Path {
+        Path(self.study.path.clone())
+    }
+
+    /// Names of the metrics of a trial.
+    #[getter]
+    fn metrics(&self) -> Vec<&'static str> {
+        self.study.metrics().into_iter().map(Metric::name).collect()
+    }
+
+    /// Run a shard of the study, or what is left of it.
+    ///
+    /// Parameters
+    /// ----------
+    /// shard : tuple of int, default (0, 1)
+    ///     (index, count): the index-th, from 0, of so many shards of whole chunks of 256 trials.
+    /// known : Ensemble, optional
+    ///     What is done already of the same study and shard.
+    /// threads : int, default 0
+    ///     Threads to use; 0 for all processors. No number depends on it.
+    /// until_std_error_m : float, optional
+    ///     Stop as soon as the standard error of the mean E_max,sys is this small, in m.
+    /// keep : bool, default False
+    ///     Whether to keep the metrics of every trial.
+    /// progress : callable, optional
+    ///     Called with the number of trials done.
+    ///
+    /// Returns
+    /// -------
+    /// ensemble : Ensemble
+    ///     The statistics.
+    /// trials : dict of str to ndarray of float64, shape (n,), or None
+    ///     The metrics of every trial, where they were to be kept.
+    /// seconds : float
+    ///     How long it took.
+    #[pyo3(signature = (shard=(0, 1), *, known=None, threads=0, until_std_error_m=None, keep=false, progress=None))]
+    #[allow(clippy::too_many_arguments)]
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        shard: (u64, u64),
+        known: Option<&Ensemble>,
+        threads: usize,
+        until_std_error_m: Option<f64>,
+        keep: bool,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<(Ensemble, Option<Bound<'py, PyDict>>, f64)> {
+        let shard = Shard::new(shard.0, shard.1).map_err(refused)?;
+        let mut ensemble = match known {
+            None => core::Ensemble::new(&self.study, shard),
+            Some(known) if known.0.is_of(&self.study, shard) => known.0.clone(),
+            Some(_) => return Err(PyValueError::new_err("what is known is of another study or shard")),
+        };
+        let study = self.study.clone();
+        let metrics = study.metrics();
+        let columns: Vec<usize> = (0..Metric::COUNT).filter(|i| metrics.contains(&Metric::ALL[*i])).collect();
+        let outcome = watched(py, threads, progress, move |watch| {
+            let began = Instant::now();
+            let mut kept: Vec<Vec<f64>> = vec![Vec::new(); if keep { columns.len() } else { 0 }];
+            let done = study.resume(&mut ensemble, &watch.stop, |batch: &Batch| {
+                for (values, column) in kept.iter_mut().zip(&columns) {
+                    values.extend(batch.rows.iter().map(|row| row[*column]));
+                }
+                watch.done.store(batch.ensemble.trials(), Ordering::Relaxed);
+                let reached = batch.ensemble.get(Metric::EMaxSys).map(Statistics::std_error);
+                let precise = until_std_error_m.zip(reached).is_some_and(|(wanted, reached)| reached <= wanted);
+                if precise { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+            done.map(|()| (ensemble, kept, began.elapsed().as_secs_f64()))
+        });
+        let (ensemble, kept, seconds) = outcome?.map_err(refused)?;
+        let trials = keep.then(|| PyDict::new(py));
+        if let Some(trials) = &trials {
+            for (metric, values) in metrics.iter().zip(kept) {
+                trials.set_item(metric.name(), PyArray1::from_vec(py, values))?;
+            }
+        }
+        Ok((Ensemble(ensemble), trials, seconds))
+    }
+
+    /// The document of an ensemble of this study.
+    fn _document(&self, ensemble: &Ensemble, partial: bool, trials_per_s: Option<f64>) -> String {
+        let noisy = self.study.model.get("wheel_noise", "k_sqrt_m").is_some();
+        let assumed: Vec<String> = (!noisy).then(|| "no wheel noise".to_owned()).into_iter().collect();
+        let told = Told { assumed: &assumed, ..Told::default() };
+        let described = document::study(&self.study, &self.theory, &told);
+        document::ensemble(&ensemble.0, self.study.seed, partial, trials_per_s, &described).to_string()
+    }
+
+    fn __repr__(&self) -> String {
+        let Study { study, .. } = self;
+        let ([cw, ccw], path) = (study.runs, &study.path);
+        let (robot, effects) = (&study.robot().name, study.model.parts().len());
+        format!(
+            "Study({} trials of {cw} cw + {ccw} ccw runs, {robot} with {effects} effects, {} of {:.6} m, seed {})",
+            study.trials,
+            path.shape().name,
+            path.length(),
+            study.seed
+        )
+    }
+
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((Model, Path), Bound<'py, PyDict>)> {
+        let keywords = PyDict::new(py);
+        keywords.set_item("n", self.study.trials)?;
+        keywords.set_item("runs", (self.study.runs[0], self.study.runs[1]))?;
+        keywords.set_item("seed", self.study.seed)?;
+        for (name, word) in [("odometry", &self.odometry), ("update", &self.update), ("phase", &self.phase)] {
+            keywords.set_item(name, word)?;
+        }
+        Ok(((self.model(), self.path()), keywords))
+    }
+}
+
+impl Study {
+    /// The study itself.
+    pub fn core(&self) -> &core::Study {
+        &self.study
+    }
+}
+
+/// A number of runs for both directions, or one for each.
+fn runs_of(given: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
+    match given.extract::<usize>() {
+        Ok(runs) => Ok([runs, runs]),
+        Err(_) => given.extract::<(usize, usize)>().map(|(cw, ccw)| [cw, ccw]),
+    }
+}
+
+/// The statistics of the trials that are done: of a study, of a shard, or of shards merged. Frozen.
+///
+/// Sums and bins are integers, so ensembles merge in any order to the same bits.
+#[pyclass(frozen, module = "umbmark")]
+pub struct Ensemble(core::Ensemble);
+
+#[pymethods]
+impl Ensemble {
+    /// Trials done.
+    #[getter]
+    fn trials(&self) -> u64 {
+        self.0.trials()
+    }
+
+    /// Ranges [first, end) of trials of the whole study that are not done.
+    #[getter]
+    fn missing(&self) -> Vec<(u64, u64)> {
+        self.0.missing().into_iter().map(|range| (range.start, range.end)).collect()
+    }
+
+    /// Names of its metrics.
+    #[getter]
+    fn metrics(&self) -> Vec<&'static str> {
+        self.0.statistics().map(|(metric, _)| metric.name()).collect()
+    }
+
+    /// Give this ensemble and others of the same study together.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If they belong to different studies, or have trials in common.
+    #[pyo3(signature = (*others))]
+    fn merge(&self, py: Python<'_>, others: Vec<Py<Ensemble>>) -> PyResult<Ensemble> {
+        let merged = detached(py, || {
+            let mut merged = self.0.clone();
+            others.iter().try_for_each(|other| merged.merge(&other.get().0)).map(|()| merged)
+        })?;
+        merged.map(Ensemble).map_err(refused)
+    }
+
+    /// Mean of a metric in its unit; NaN without trials.
+    fn mean(&self, metric: &str) -> PyResult<f64> {
+        self.get(metric).map(Statistics::mean)
+    }
+
+    /// Standard deviation of a metric, n - 1; NaN with fewer than two trials.
+    fn std_dev(&self, metric: &str) -> PyResult<f64> {
+        self.get(metric).map(Statistics::std_dev)
+    }
+
+    /// Standard error of the mean of a metric.
+    fn std_error(&self, metric: &str) -> PyResult<f64> {
+        self.get(metric).map(Statistics::std_error)
+    }
+
+    /// Quantiles of a metric, to 5e-5 of their size: shares in [0, 1] of shape (k,) to values of shape (k,).
+    fn quantile<'py>(
+        &self,
+        py: Python<'py>,
+        metric: &str,
+        shares: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let statistics = self.get(metric)?;
+        Ok(PyArray1::from_iter(py, shares.as_array().iter().map(|share| statistics.quantile(*share))))
+    }
+
+    /// Shares of the trials with a metric below values of shape (k,).
+    fn share_below<'py>(
+        &self,
+        py: Python<'py>,
+        metric: &str,
+        values: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let statistics = self.get(metric)?;
+        Ok(PyArray1::from_iter(py, values.as_array().iter().map(|value| statistics.share_below(*value))))
+    }
+
+    fn __repr__(&self) -> String {
+        let missing: u64 = self.0.missing().iter().map(|range| range.end - range.start).sum();
+        format!("Ensemble({} trials, {missing} missing)", self.0.trials())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyAny>,))> {
+        let text = serde_json::to_vec(&slf.get().0).map_err(refused)?;
+        let packed = slf.py().import("zlib")?.call_method1("compress", (PyBytes::new(slf.py(), &text), 1))?;
+        Ok((slf.getattr("_unpacked")?, (packed,)))
+    }
+
+    #[staticmethod]
+    fn _unpacked(py: Python<'_>, packed: &Bound<'_, PyBytes>) -> PyResult<Ensemble> {
+        let text = py.import("zlib")?.call_method1("decompress", (packed,))?;
+        serde_json::from_slice(text.extract()?).map(Ensemble).map_err(refused)
+    }
+}
+
+impl Ensemble {
+    fn get(&self, metric: &str) -> PyResult<&Statistics> {
+        let found = self.0.statistics().find(|(known, _)| known.name() == metric);
+        found.map(|(_, statistics)| statistics).ok_or_else(|| {
+            PyKeyError::new_err(format!("there is no metric \"{metric}\"; there are {}", self.metrics().join(", ")))
+        })
+    }
+}

@@ -1,0 +1,80 @@
+//! Long work without the interpreter lock: watched by Python, which may stop it.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::time::Duration;
+
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+/// Time between two looks at whether Ctrl-C was pressed, and two calls of a progress function.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// What the work tells and is told while it runs.
+#[derive(Clone, Default)]
+pub struct Watch {
+    /// Set when the work should stop.
+    pub stop: Arc<AtomicBool>,
+    /// Steps done.
+    pub done: Arc<AtomicU64>,
+}
+
+/// Runs short `work` without the interpreter lock. A panic in it is a fault of this library and reaches Python as
+/// `RuntimeError`.
+pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    py.detach(|| catch_unwind(AssertUnwindSafe(work))).map_err(|_| fault())
+}
+
+/// Runs long `work` on `threads` of its own (0: one for each processor), so that a forked process may call it too.
+///
+/// Ctrl-C raises `KeyboardInterrupt` at once; work that looks at [`Watch::stop`] ends within milliseconds, other work comes to
+/// its end unheard. `progress` is called with the steps done.
+pub fn watched<T: Send + 'static>(
+    py: Python<'_>,
+    threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&Watch) -> T + Send + 'static,
+) -> PyResult<T> {
+    let watch = Watch::default();
+    let (sender, mut receiver) = sync_channel(1);
+    let told = watch.clone();
+    std::thread::spawn(move || {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let result = pool.map(|pool| catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&told)))));
+        // Nobody listens where Python has given up.
+        let _ = sender.send(result);
+    });
+    loop {
+        let heard = &mut receiver;
+        let result = match py.detach(move || heard.recv_timeout(LOOK)) {
+            Err(RecvTimeoutError::Timeout) => {
+                watch.look(py, progress)?;
+                continue;
+            }
+            Err(RecvTimeoutError::Disconnected) => return Err(fault()),
+            Ok(result) => result,
+        };
+        if let Some(progress) = progress {
+            progress.call1((watch.done.load(Ordering::Relaxed),))?;
+        }
+        let result = result.map_err(|error| PyRuntimeError::new_err(format!("cannot start the threads: {error}")))?;
+        return result.map_err(|_| fault());
+    }
+}
+
+impl Watch {
+    /// Tells Python how far the work is and hears whether it should stop.
+    fn look(&self, py: Python<'_>, progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let heard = py.check_signals().and_then(|()| match progress {
+            Some(progress) => progress.call1((self.done.load(Ordering::Relaxed),)).map(|_| ()),
+            None => Ok(()),
+        });
+        heard.inspect_err(|_| self.stop.store(true, Ordering::Relaxed))
+    }
+}
+
+fn fault() -> PyErr {
+    PyRuntimeError::new_err(format!("a fault in umbmark {}: please report it", umbmark_core::VERSION))
+}

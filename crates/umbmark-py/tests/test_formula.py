@@ -1,0 +1,118 @@
+"""Functions as formulas."""
+
+import math
+import re
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+import umbmark
+from hypothesis import given
+from hypothesis import strategies as st
+
+PARAMETERS = {"k": 0.25, "q": 2.0}
+
+
+@pytest.mark.parametrize(
+    ("function", "formula"),
+    [
+        (lambda at, k, q: k * np.sin(at.heading - q), "k * sin(heading - q)"),
+        (lambda at, k, q: k - (at.heading - q), "k - (heading - q)"),
+        (lambda at, k, q: k / (q * at.heading), "k / (q * heading)"),
+        (lambda at, k, q: -((at.heading + k) ** 2) * q, "-(heading + k)^2 * q"),
+        (lambda at, k, q: (-at.heading) ** 2 + 2 * k + q, "(-heading)^2 + 2.0 * k + q"),
+        (lambda at, k, q: np.maximum(at.heading, 0) * k - q, "max(heading, 0.0) * k - q"),
+        (lambda at, k, q: np.float64(2) * at.heading * k + -3 * q, "2.0 * heading * k + -3.0 * q"),
+        (
+            lambda at, k, q: np.square(at.heading) * abs(k) - np.abs(q),
+            "heading^2 * abs(k) - abs(q)",
+        ),
+        (lambda at, k, q: 1 - k - np.negative(at.heading) * q, "1.0 - k - -heading * q"),
+        (lambda at, k, q: np.power(at.heading, 3) * k / q, "heading^3 * k / q"),
+    ],
+)
+def test_a_function_is_written_as_a_formula_that_means_the_same(
+    function: Callable[..., Any], formula: str
+) -> None:
+    assert umbmark.formula_of(function, PARAMETERS) == formula
+    for heading in (-2.0, 0.0, 0.7):
+        python = formula.replace("^", "**")
+        words = {"sin": math.sin, "max": max, "abs": abs, "heading": heading, **PARAMETERS}
+        at = SimpleNamespace(heading=heading)
+        if "/ (q * heading)" in formula and heading == 0:
+            continue
+        assert function(at, **PARAMETERS) == pytest.approx(eval(python, words))
+
+
+# Expressions as trees: a number of Python, a symbol, or an operator with two of them.
+TREES = st.recursive(
+    st.sampled_from(["at.heading", "k", "q", "1.5", "-2.0"]),
+    lambda inner: st.builds(
+        lambda a, sign, b: f"({a} {sign} {b})", inner, st.sampled_from("+-*"), inner
+    ),
+    max_leaves=12,
+)
+
+
+@given(tree=TREES)
+def test_any_expression_keeps_its_value_without_its_own_parentheses(tree: str) -> None:
+    def function(at: Any, k: Any, q: Any) -> Any:
+        return eval(tree, {"at": at, "k": k, "q": q})
+
+    heading, formula = 0.3, umbmark.formula_of(function, PARAMETERS)
+    at = SimpleNamespace(heading=heading)
+    value = eval(formula, {"heading": heading, **PARAMETERS})
+    assert value == pytest.approx(function(at, **PARAMETERS), rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("function", "words"),
+    [
+        (lambda at, k, q: k if at.heading > 0 else q, "cannot branch on a value"),
+        (lambda at, k, q: k * q if at.heading else 0.0, "cannot branch on a value"),
+        (lambda at, k, q: k * math.sin(at.heading) * q, "one of another module was called"),
+        (lambda at, k, q: k * np.arctan(at.heading) * q, "a formula has no np.arctan; it has"),
+        (lambda at, k, q: k * at.hedding * q, "there is no quantity 'hedding'; there are speed"),
+        (lambda at, k, q: k * at.heading**0.5 * q, "whole exponents only"),
+        (lambda at, k, q: k * at.heading**q, "whole exponents only"),
+    ],
+)
+def test_what_a_formula_cannot_do_is_a_type_error_that_says_so(
+    function: Callable[..., Any], words: str
+) -> None:
+    with pytest.raises(TypeError, match=re.escape(words)):
+        umbmark.Model().add(
+            "mine", acts_on="heading_per_metre", formula=function, parameters=PARAMETERS
+        )
+
+
+def test_a_function_and_its_formula_drive_to_the_same_bits_and_are_fitted_back() -> None:
+    def carpet(at: Any, k: Any) -> Any:
+        return k * np.sin(at.heading + 0.5)
+
+    own: dict[str, Any] = {"acts_on": "heading_per_metre", "parameters": {"k": 0.004}}
+    noisy = umbmark.Model().add("wheel_noise", k_sqrt_m=1e-4)
+    by_function = noisy.add("carpet", formula=carpet, **own)
+    by_text = noisy.add("carpet", formula="k * sin(heading + 0.5)", **own)
+    assert by_function == by_text
+    data = umbmark.simulate(by_function, umbmark.Path(side_m=2.0), runs=3, reference_rate_hz=2)
+    start = umbmark.Model().add(
+        "carpet", acts_on="heading_per_metre", formula=carpet, parameters={"k": 0.0}, free=True
+    )
+    (found,) = umbmark.fit(data, start).fitted
+    assert found.standard_error is not None
+    assert abs(found.value - 0.004) < 5 * found.standard_error < 0.002
+
+
+def test_parallel_trials_take_a_function() -> None:
+    model = umbmark.Model().add(
+        "push",
+        acts_on="sideways_per_metre",
+        formula=lambda at, k: k * np.tanh(at.heading),
+        parameters={"k": 0.01},
+    )
+    one, two = (umbmark.monte_carlo(model, n=8, runs=1, threads=n) for n in (1, 2))
+    assert one.metrics == two.metrics
+    assert (one.metrics["e_max_sys_m"].mean or 0) > 0.01

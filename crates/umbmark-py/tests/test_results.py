@@ -1,0 +1,182 @@
+"""Results: the documents of the command, typed; tables, frames, figures, pickles."""
+
+import json
+import pickle
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import umbmark
+from umbmark._result import Result
+
+SIDE = 1.0
+
+
+@pytest.fixture(scope="module")
+def data() -> umbmark.Dataset:
+    """Return a robot on a slope, by its return poses."""
+    model = umbmark.Model().add("wheel_diameter_ratio", e_d=1.002).add("wheelbase", e_b=1.01)
+    model = model.add("wheel_noise", k_sqrt_m=3e-4).add("floor_slope", drift_x=0.01)
+    return umbmark.simulate(model, umbmark.Path(side_m=SIDE), runs=6, reference_rate_hz=0, seed=3)
+
+
+@pytest.fixture(scope="module")
+def folder(data: umbmark.Dataset, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the same in files."""
+    place = tmp_path_factory.mktemp("data") / "robot"
+    data.save(place)
+    return place
+
+
+@pytest.fixture(scope="module")
+def tracks(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a robot that was watched, in files."""
+    model = umbmark.Model().add("wheel_noise", k_sqrt_m=3e-4).add("crab", angle_rad=0.01)
+    place = tmp_path_factory.mktemp("data") / "robot"
+    path = umbmark.Path(side_m=SIDE)
+    umbmark.simulate(model, path, runs=3, reference_rate_hz=5, seed=3).save(place)
+    return place
+
+
+CALLS: dict[str, tuple[Callable[[Path], Result], tuple[str, ...]]] = {
+    "score": (lambda place: umbmark.score(place), ("score",)),
+    "calibrate": (lambda place: umbmark.calibrate(place), ("calibrate",)),
+    "compare": (lambda place: umbmark.compare(place, draws=99), ("compare", "--draws", "99")),
+    "diagnose": (lambda place: umbmark.diagnose(place, draws=99), ("diagnose", "--draws", "99")),
+    "fit": (
+        lambda place: umbmark.fit(place, add=["floor_slope"]),
+        ("fit", "--add", "floor_slope"),
+    ),
+    "learn": (lambda place: umbmark.learn(place, draws=99), ("learn", "--draws", "99")),
+    "inspect": (lambda place: umbmark.inspect(place), ("inspect",)),
+}
+
+
+def told(command: Path, *arguments: str | Path) -> Any:
+    run = [command, *arguments, "--json"]
+    return json.loads(subprocess.run(run, check=True, capture_output=True, text=True).stdout)
+
+
+@pytest.mark.parametrize("verb", CALLS)
+@pytest.mark.parametrize("observed", ["folder", "tracks"])
+def test_a_result_is_the_document_of_the_command(
+    verb: str, observed: str, command: Path, request: pytest.FixtureRequest
+) -> None:
+    place: Path = request.getfixturevalue(observed)
+    call, words = CALLS[verb]
+    assert call(place).to_dict() == told(command, words[0], place, *words[1:])
+
+
+@pytest.mark.parametrize("verb", CALLS)
+def test_a_result_has_a_table_a_figure_and_a_pickle(verb: str, folder: Path) -> None:
+    from matplotlib import pyplot
+
+    result: Any = CALLS[verb][0](folder)
+    rows = result.table()
+    assert len(rows) > 0
+    assert list(result.to_pandas().columns) == list(rows[0]) == result.to_polars().columns
+    assert len(result.to_pandas()) == len(rows)
+    assert result._repr_html_().startswith(f"<table><caption>{type(result).__name__}")
+    assert repr(result).startswith(f"{type(result).__name__}(\n")
+    assert pickle.loads(pickle.dumps(result)) == result
+    axes = result.plot()
+    assert result.plot(axes) is axes
+    assert axes.lines or axes.patches or axes.collections
+    pyplot.close("all")
+
+
+def test_models_are_compared_along_tracks(tracks: Path) -> None:
+    from matplotlib import pyplot
+
+    found = umbmark.compare(tracks, {"nominal": umbmark.Model()}, draws=99)
+    assert isinstance(found, umbmark.TrackComparison)
+    (nominal,) = found.models
+    assert not nominal.explains
+    assert found.table()[0]["rmse_m"] == nominal.along.rmse_m
+    assert pickle.loads(pickle.dumps(found)) == found
+    assert len(found.plot().patches) == 2
+    assert isinstance(umbmark.compare(tracks, return_poses=True, draws=99), umbmark.Comparison)
+    pyplot.close("all")
+
+
+def test_a_dataset_is_drawn_by_returns_and_by_tracks(tracks: Path) -> None:
+    from matplotlib import pyplot
+
+    data = umbmark.load_dataset(tracks)
+    runs = [len(data.returns(direction)) for direction in ("cw", "ccw")]
+    axes = data.plot()
+    assert [np.size(line.get_xdata()) for line in axes.lines][:2] == runs
+    tracked = data.plot(tracks=True)
+    assert len(tracked.lines) == len(data.runs) + 1
+    pyplot.close("all")
+
+
+def test_the_catalogue_is_that_of_the_command(command: Path) -> None:
+    listed = told(command, "effects")["effects"]
+    assert [*umbmark.effects()] == [entry["name"] for entry in listed]
+    crab = umbmark.effects()["crab"]
+    assert (crab.title, crab.parameters[0].unit) == (
+        listed[[*umbmark.effects()].index("crab")]["title"],
+        "rad",
+    )
+
+
+def test_a_calibration_is_put_to_use(data: umbmark.Dataset, folder: Path, tmp_path: Path) -> None:
+    found = umbmark.calibrate(data)
+    assert found.exact.e_d == pytest.approx(1.002, abs=2e-3)
+    robot = umbmark.Robot.from_toml(found.export("robot_toml"))
+    assert robot.wheelbase_m == pytest.approx(found.exact.wheelbase_m)
+    assert "diff_drive_controller" in found.export("ros2_control")
+    assert "#define" in found.export("c_header", method="closed_form_mean")
+    with pytest.raises(ValueError, match=r'format must be one of ros2_control, .* got "xml"'):
+        found.export("xml")
+    with pytest.raises(ValueError, match='there is no correction by "best"'):
+        found.export("c_header", method="best")
+
+
+def test_a_model_that_was_learnt_explains_the_data(folder: Path) -> None:
+    learnt = umbmark.learn(folder, draws=199)
+    assert learnt.steps[0].added is None
+    errors = [step.heldout_rmse_m for step in learnt.steps]
+    assert errors[-1] is not None
+    assert errors[0] is not None
+    assert errors[-1] < errors[0] / 3
+    judged = umbmark.compare(
+        folder, {"nominal": umbmark.Model(), "learnt": learnt.model}, draws=199
+    )
+    assert [model.explains for model in judged.models] == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (
+            lambda data: umbmark.diagnose(data, size=0),
+            "size must be between 0 and 1, both excluded",
+        ),
+        (lambda data: umbmark.learn(data, draws=5), "draws must be between 99 and 99999, got 5"),
+        (lambda data: umbmark.fit(data, umbmark.Model()), "no effect of the model is free"),
+        (lambda data: umbmark.fit(data, add=["slop"]), 'there is no effect "slop"'),
+        (lambda data: umbmark.calibrate(data, level=95), "level must be between 0 and 1"),
+        (
+            lambda data: umbmark.diagnose(umbmark.Dataset(None, None, data.runs)),
+            "the nominal robot is not known",
+        ),
+        (lambda _: umbmark.inspect(umbmark.Dataset()), "there are no runs"),
+    ],
+)
+def test_what_cannot_be_answered_is_a_value_error(
+    call: Callable[[umbmark.Dataset], object], words: str, data: umbmark.Dataset
+) -> None:
+    with pytest.raises(ValueError, match=words):
+        call(data)
+
+
+def test_tables_have_the_numbers_of_their_result(data: umbmark.Dataset) -> None:
+    result = umbmark.score(data)
+    rows = {row["score"]: row["value"] for row in result.table()}
+    assert rows["e_max_sys_m"] == result.e_max_sys_m
+    assert np.isclose(rows["centroid_cw_x_m"], data.returns("cw")[:, 0].mean(), rtol=0, atol=1e-12)

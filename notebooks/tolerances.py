@@ -1,0 +1,109 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Monte Carlo and tolerances
+#
+# How well must a robot be built so that 95 of 100 of them pass a UMBmark test with E_max,sys below
+# 100 mm? Each trial is a whole test of ten runs by another robot of the series.
+
+# %%
+import time
+
+import numpy as np
+import umbmark
+from matplotlib import pyplot
+
+
+def series(diameter_sd: float, wheelbase_sd: float) -> umbmark.Model:
+    """Return a series of robots: scatter of the ratios from robot to robot, and a usual floor."""
+    model = umbmark.Model().add("wheel_diameter_ratio", e_d={"mean": 1.0, "sd": diameter_sd})
+    model = model.add("wheelbase", e_b={"mean": 1.0, "sd": wheelbase_sd})
+    return model.add("wheel_noise", k_sqrt_m=5e-4)
+
+
+# %%
+found = umbmark.monte_carlo(series(5e-4, 2e-3), n=20_000)
+found.plot()
+found
+
+# %% [markdown]
+# The share that passes, for a grid of tolerances:
+
+# %%
+diameters, wheelbases = np.array([1e-4, 2e-4, 5e-4, 1e-3]), np.array([1e-3, 2e-3, 5e-3])
+limit = np.array([0.100])
+passes = np.array(
+    [
+        [
+            umbmark.monte_carlo(series(d, b), n=2000).ensemble.share_below("e_max_sys_m", limit)[0]
+            for d in diameters
+        ]
+        for b in wheelbases
+    ]
+)
+figure, axes = pyplot.subplots(layout="constrained")
+image = axes.imshow(100 * passes, origin="lower", vmin=0, vmax=100)
+axes.set_xticks(range(len(diameters)), [f"{d:g}" for d in diameters])
+axes.set_yticks(range(len(wheelbases)), [f"{b:g}" for b in wheelbases])
+axes.set(xlabel="sd of E_d", ylabel="sd of E_b")
+for (row, column), share in np.ndenumerate(passes):
+    axes.text(column, row, f"{100 * share:.0f} %", ha="center", va="center")
+
+# %%
+assert (np.diff(passes, axis=1) <= 0.02).all(), "worse wheels, fewer that pass"
+assert (np.diff(passes, axis=0) <= 0.02).all(), "worse wheelbases, fewer that pass"
+
+# %% [markdown]
+# ## The same in NumPy
+#
+# All runs at once, without encoder ticks and with the noise of a leg drawn at its end only: less
+# physics. It is the code that one would write; the ratio of times is for as many tests.
+
+# %%
+N, SIDE, BASE, K = 20_000, 4.0, 0.340, 5e-4
+
+
+def in_numpy(rng: np.random.Generator) -> np.ndarray:
+    """Return E_max,sys in m of N tests."""
+    shape = (N, 5)
+    e_d = rng.normal(1.0, 5e-4, (N, 1))
+    base = BASE * rng.normal(1.0, 2e-3, (N, 1))
+    left, right = 2 / (1 + e_d), 2 * e_d / (1 + e_d)
+    distances = []
+    for sign in (-1, 1):
+        x, y, heading = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+        turn = sign * np.pi / 2 * BASE / 2
+        for believed in 4 * [(SIDE, SIDE), (-turn, turn)]:
+            rolled = [
+                factor * s + K * np.sqrt(abs(s)) * rng.normal(size=shape)
+                for factor, s in zip((left, right), believed, strict=True)
+            ]
+            forward, turned = (rolled[0] + rolled[1]) / 2, (rolled[1] - rolled[0]) / base
+            chord = forward * np.sinc(turned / 2 / np.pi)
+            x += chord * np.cos(heading + turned / 2)
+            y += chord * np.sin(heading + turned / 2)
+            heading += turned
+        distances.append(np.hypot(x.mean(axis=1), y.mean(axis=1)))
+    return np.maximum(*distances)
+
+
+began = time.perf_counter()
+plain = in_numpy(np.random.default_rng(1))
+numpy_seconds = time.perf_counter() - began
+ours = umbmark.monte_carlo(series(5e-4, 2e-3), n=N, threads=1, odometry="continuous")
+seconds = N / ours.trials_per_s
+print(f"NumPy {1e6 * numpy_seconds / N:.1f} us a test on one thread, ", end="")
+print(f"umbmark {1e6 * seconds / N:.1f} us")
+print(f"mean E_max,sys: NumPy {1e3 * plain.mean():.2f} mm, ", end="")
+print(f"umbmark {1e3 * ours.metrics['e_max_sys_m'].mean:.2f} mm")
+assert abs(plain.mean() - ours.metrics["e_max_sys_m"].mean) < 2e-3
