@@ -55,7 +55,7 @@ fn load(folder: &Path, kind: &str, sets: &[&str]) -> Dataset {
     for set in sets {
         let mut data = Dataset::load(folder.join("raw").join(kind).join(set)).unwrap();
         let robot = data.robot.take().unwrap();
-        data.robot = Some(Robot { drive: DifferentialDrive::new(0.200, 0.084, 0.084).unwrap(), ..robot });
+        data.robot = Some(Robot { drive: DifferentialDrive::new(0.200, 0.084, 0.084).unwrap().into(), ..robot });
         data.runs.iter_mut().for_each(|run| run.name = format!("{set} {}", run.name));
         match &mut all {
             Some(all) => all.runs.extend(data.runs),
@@ -114,7 +114,7 @@ const WAYS: [Way; 6] = [
         published(folder, "Jung-and-Chung", set, data.robot.as_ref().unwrap())
     }),
     ("authors: OptiOdom", |folder, set, data| published(folder, "Sousa", set, data.robot.as_ref().unwrap())),
-    ("E_d, E_b, E_s from tracks", |_, _, data| fit(data, &first_model(data).unwrap()).unwrap().0),
+    ("E_d, E_b, E_s from tracks", |_, _, data| fit(data, &first_model(data).unwrap()).unwrap().model),
     ("learn", |_, _, data| learn(data, &Options::default()).unwrap().model),
 ];
 

@@ -7,7 +7,7 @@
 //! prints every table and draws the figures into `docs/study`. A number after it is a factor on the numbers of simulated tests;
 //! a second one is another seed.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod bias;
 mod bump_places;

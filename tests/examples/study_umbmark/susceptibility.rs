@@ -70,7 +70,7 @@ fn score(seed: u64, number: u64, rate: f64, height: f64, equal_slip: bool) -> Sc
     let (wheelbase, radius) = (between(0.25, 0.60), between(0.05, 0.12));
     // Slip turns a robot by k/b: drawn as a turn, so that it has nothing to do with the wheelbase.
     let slip = wheelbase * if equal_slip { 1e-3 } else { between(0.6e-3, 4e-3) };
-    let drive = DifferentialDrive::new(wheelbase, 2.0 * radius, 2.0 * radius).unwrap();
+    let drive = DifferentialDrive::new(wheelbase, 2.0 * radius, 2.0 * radius).unwrap().into();
     let robot = Robot { name: "drawn".into(), drive, encoder: Encoder::new(2000.0, None, None).unwrap() };
     let mut model = Model::new(&robot);
     for (effect, parameter, value) in [
