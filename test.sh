@@ -69,6 +69,11 @@ make_environment() {
     stop 'Python 3.11 or newer is needed, and none was found as python3.13, python3.12, python3.11, python3 or python'
 }
 
+install_chromium() {
+    apt-get update > /dev/null 2>&1
+    DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends chromium chromium-driver > /dev/null 2>&1
+}
+
 command -v cargo > /dev/null || stop 'cargo was not found; install Rust from https://rustup.rs'
 
 begin 'Python: environment'
@@ -103,17 +108,25 @@ begin 'Python: module'
 "$python" -m maturin develop --manifest-path "$package/Cargo.toml"
 
 begin 'Python: formatting and lints'
-"$python" -m ruff format --check --config "$package/pyproject.toml" "$package" tests/reference .ci
-"$python" -m ruff check --config "$package/pyproject.toml" "$package" tests/reference .ci
+"$python" -m ruff format --check --config "$package/pyproject.toml" "$package" tests/reference tests/report .ci
+"$python" -m ruff check --config "$package/pyproject.toml" "$package" tests/reference tests/report .ci
 
 begin 'Python: types'
 "$python" -m mypy --config-file "$package/pyproject.toml" "$package/python" "$package/tests" .ci
 "$python" -m mypy --config-file "$package/pyproject.toml" tests/reference
+"$python" -m mypy --config-file "$package/pyproject.toml" tests/report
 "$python" -m mypy.stubtest --mypy-config-file "$package/pyproject.toml" umbmark
 
 begin 'Python: tests'
 "$python" -m pytest "$package"
 "$python" -m pytest --config-file "$package/pyproject.toml" tests/reference
+
+begin 'Report: in a browser'
+if ! command -v chromedriver > /dev/null && [ "$(id -u)" = 0 ] && command -v apt-get > /dev/null; then
+    install_chromium || true
+fi
+command -v chromedriver > /dev/null || echo 'skipped in part: chromium and chromium-driver are not installed'
+"$python" -m pytest --config-file "$package/pyproject.toml" tests/report
 
 end_section
 printf '\nall tests passed in %d s\n' "$SECONDS"

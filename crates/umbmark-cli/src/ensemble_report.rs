@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use umbmark_core::monte_carlo::{Ensemble, Metric, Statistics};
+use umbmark_plot::figure::Mark;
 
 use crate::table::{table, with_precision_of};
 use crate::terminal::histogram;
@@ -68,8 +69,8 @@ impl Report<'_> {
         Value::Object(document)
     }
 
-    /// A table and a histogram.
-    pub fn text(&self) -> String {
+    /// A table and a histogram, in characters beyond ASCII where they are shown.
+    pub fn text(&self, unicode: bool) -> String {
         let mut text = format!("Monte Carlo of UMBmark: {} trials of ", self.ensemble.trials());
         text += &self.description.heading.join("\n");
         text += "\n\n";
@@ -79,7 +80,7 @@ impl Report<'_> {
         text += &self.published();
         if let Some(e_max) = self.ensemble.get(Metric::EMaxSys) {
             text += "E_max,sys over the trials\n";
-            text += &distribution_of(e_max);
+            text += &distribution_of(e_max, unicode);
         }
         let speed = self.trials_per_s().map(|speed| format!(", {speed:.0} trials/s")).unwrap_or_default();
         let partial = if self.partial { ", PARTIAL: not all trials are done" } else { "" };
@@ -100,7 +101,7 @@ impl Report<'_> {
 
     fn table(&self) -> String {
         let rows = self.ensemble.statistics().map(|(metric, s)| {
-            let (unit, factor) = if metric.is_angle() { ("deg", 180.0 / std::f64::consts::PI) } else { ("mm", 1e3) };
+            let (unit, factor) = unit(metric);
             let cell = |value: f64| with_precision_of(value * factor, s.std_error() * factor);
             let mut row = vec![format!("{} [{unit}]", title(metric)), cell(s.mean()), cell(s.std_error())];
             row.push(cell(s.std_dev()));
@@ -111,8 +112,13 @@ impl Report<'_> {
     }
 }
 
+/// The unit that people read a metric in, and how many of it are one of SI.
+pub fn unit(metric: Metric) -> (&'static str, f64) {
+    if metric.is_angle() { ("deg", 180.0 / std::f64::consts::PI) } else { ("mm", 1e3) }
+}
+
 /// What people call a metric.
-fn title(metric: Metric) -> &'static str {
+pub fn title(metric: Metric) -> &'static str {
     match metric {
         Metric::EMaxSys => "E_max,sys",
         Metric::Sigma => "sigma (per axis)",
@@ -126,41 +132,15 @@ fn title(metric: Metric) -> &'static str {
     }
 }
 
-/// A histogram of lengths in mm, in classes of a round width between the extremes.
-fn distribution_of(s: &Statistics) -> String {
-    let (low, high) = (1e3 * s.quantile(0.001), 1e3 * s.quantile(0.999));
-    let width = round_width((high - low) / 16.0);
-    let first = (low / width).floor();
-    let classes = ((high / width).ceil() - first).max(1.0) as usize;
-    let mut below = 0.0;
-    let shares: Vec<(f64, f64)> = (0..classes)
-        .map(|i| {
-            let edge = (first + i as f64) * width;
-            let up_to = if i + 1 == classes { 1.0 } else { s.share_below((edge + width) * 1e-3) };
-            let share = (up_to - below).max(0.0);
-            below = up_to.max(below);
-            (edge, share)
-        })
+/// A histogram of lengths in mm.
+fn distribution_of(statistics: &Statistics, unicode: bool) -> String {
+    let panel = umbmark_plot::kind::histogram(statistics);
+    let bars = panel.layers.iter().filter_map(|layer| match layer.mark {
+        Mark::Bars(width) => Some((layer, width)),
+        _ => None,
+    });
+    let classes: Vec<(f64, f64)> = bars
+        .flat_map(|(layer, width)| layer.x.iter().zip(&layer.y).map(move |(x, y)| (x - 0.5 * width, 0.01 * y)))
         .collect();
-    histogram(&shares, "mm", 40)
-}
-
-/// The next 1, 2 or 5 times a power of ten.
-fn round_width(width: f64) -> f64 {
-    if !(width > 1e-6) {
-        return 1e-3;
-    }
-    let power = 10f64.powf(width.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|w| *w >= width * 0.999).unwrap_or(width)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn class_widths_are_round() {
-        assert_eq!([0.7, 1.0, 1.2, 3.0, 60.0].map(round_width), [1.0, 1.0, 2.0, 5.0, 100.0]);
-        assert_eq!(round_width(0.0), 1e-3);
-    }
+    histogram(&classes, "mm", 40, unicode)
 }

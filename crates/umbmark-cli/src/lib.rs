@@ -5,23 +5,32 @@
 
 mod checkpoint;
 mod data_arguments;
+mod distribution_text;
 mod effect_flags;
 mod ensemble_report;
 mod files;
+mod heat_map;
 mod model_report;
 mod output_arguments;
+mod plan_report;
 mod prose;
+mod protocol_sheet;
 mod residual_strips;
 mod robot_flags;
+mod sensitivity_report;
 mod session;
 mod setup;
 mod signature;
 mod strip;
+mod study_arguments;
+mod study_flags;
+mod sweep;
 mod table;
 mod terminal;
 mod test_arguments;
 mod tracks_report;
 mod unlisted;
+mod vary;
 mod verb;
 
 use std::ffi::OsString;

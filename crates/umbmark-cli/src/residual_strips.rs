@@ -3,6 +3,7 @@
 use umbmark_core::compare::tracks::TrackResiduals;
 use umbmark_core::path::Direction;
 
+use crate::signature::three_digits;
 use crate::strip::strip;
 
 /// Characters across and, on a terminal, down.
@@ -40,20 +41,18 @@ pub fn strips(residuals: &[TrackResiduals], terminal: bool) -> String {
     let heads: Vec<String> = groups.iter().map(|(name, _)| format!("{name:<WIDTH$}")).collect();
     let mut text = format!("\nmean error along the way\n{:INDENT$}{}\n", "", heads.join("  ").trim_end());
     for (k, (name, scale, unit)) in
-        [("forward", 1e3, "mm"), ("to the left", 1e3, "mm"), ("heading", 1f64.to_degrees(), "deg")]
-            .into_iter()
-            .enumerate()
+        [("forward", 1e3, "mm"), ("left", 1e3, "mm"), ("heading", 1f64.to_degrees(), "deg")].into_iter().enumerate()
     {
         let lines: Vec<Vec<f64>> = groups.iter().map(|(_, runs)| mean_line(runs, k)).collect();
         let limit = lines.iter().flatten().fold(0.0, |most: f64, v| most.max(v.abs()));
-        let label = format!("±{:.2} {unit}", scale * limit);
         if limit == 0.0 {
             continue;
         }
+        let label = format!("±{} {unit}", three_digits(scale * limit));
         let pictures: Vec<Vec<String>> = lines.iter().map(|line| picture(line, limit, terminal)).collect();
         for row in 0..pictures[0].len() {
             let head = match (row, pictures[0].len()) {
-                (0, 1) => format!("  {name:<5.5} {label}"),
+                (0, 1) => format!("{name} {label}"),
                 (0, _) => format!("  {name}"),
                 (1, _) => format!("  {label}"),
                 _ => String::new(),
@@ -83,12 +82,11 @@ fn picture(line: &[f64], limit: f64, terminal: bool) -> Vec<String> {
         let points: Vec<(f64, f64)> = line.iter().enumerate().map(|(i, v)| (i as f64, *v)).collect();
         return strip(&points, (line.len() - 1) as f64, limit, WIDTH, HEIGHT);
     }
-    // A third of the greatest is one step, so that marks mean -3 to 3 thirds.
-    let thirds = |pair: &[f64]| {
+    let fifths = |pair: &[f64]| {
         let share = 0.5 * (pair[0] + pair[1]) / limit;
         ['v', '-', '.', '+', '^'][((share * 2.5 + 2.5).floor() as usize).min(4)]
     };
-    let marks: String = line.chunks(2).map(thirds).collect();
+    let marks: String = line.chunks(2).map(fifths).collect();
     vec![marks]
 }
 

@@ -2,7 +2,7 @@
 
 use anyhow::Context;
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
-use umbmark_core::drive::{DifferentialDrive, Encoder, Robot};
+use umbmark_core::drive::{DifferentialDrive, Drive, Encoder, Kind, Robot};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{Path, SHAPES, SpeedProfile, WAYPOINTS};
 
@@ -113,20 +113,33 @@ impl RobotFlags {
     /// `robot` with what was said changed.
     pub fn robot(&self, robot: Robot) -> anyhow::Result<Robot> {
         let Robot { name, drive, encoder } = robot;
-        let diameter = |nominal: f64| self.wheel_diameter.unwrap_or(nominal);
         Ok(Robot {
             name,
-            drive: DifferentialDrive::new(
-                self.wheelbase.unwrap_or(drive.wheelbase()),
-                diameter(drive.wheel_diameter_left()),
-                diameter(drive.wheel_diameter_right()),
-            )?,
+            drive: self.drive(drive)?,
             encoder: Encoder::new(
                 self.ticks_per_revolution.unwrap_or(encoder.ticks_per_revolution()),
                 self.encoder_rate.unwrap_or(encoder.rate()),
                 encoder.counter_bits(),
             )?,
         })
+    }
+
+    fn drive(&self, drive: Drive) -> anyhow::Result<Drive> {
+        let said = [(self.wheelbase, "--wheelbase"), (self.wheel_diameter, "--wheel-diameter")];
+        let (kind, given) = (drive.kind(), said.iter().find(|(value, _)| value.is_some()));
+        if let Some((_, flag)) = given.filter(|_| kind != Kind::Differential) {
+            anyhow::bail!(
+                "{flag} is for robots with drive = \"differential\"; say the {} robot's numbers in a robot.toml",
+                kind.name()
+            );
+        }
+        if given.is_none() {
+            return Ok(drive);
+        }
+        let diameter = |nominal: f64| self.wheel_diameter.unwrap_or(nominal);
+        let wheelbase = self.wheelbase.unwrap_or(drive.wheelbase());
+        let (left, right) = (diameter(drive.wheel_diameter_left()), diameter(drive.wheel_diameter_right()));
+        Ok(DifferentialDrive::new(wheelbase, left, right)?.into())
     }
 
     /// `path` with what was said changed.

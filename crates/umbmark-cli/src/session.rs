@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use umbmark_plot::render::terminal::Look;
 
 /// The options of every verb.
 #[derive(Clone, Debug, clap::Args)]
@@ -54,6 +55,14 @@ impl Session {
     /// Whether people look at standard output, rather than a file or a program.
     pub fn on_terminal(&self) -> bool {
         io::stdout().is_terminal()
+    }
+
+    /// What standard output can show: characters beyond ASCII on a terminal, and colours unless `NO_COLOR` is set.
+    pub fn look(&self) -> Look {
+        let unicode = self.on_terminal();
+        let refused = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        let dumb = std::env::var_os("TERM").is_some_and(|value| value == "dumb");
+        Look { unicode, colour: unicode && !refused && !dumb }
     }
 
     /// Standard output, buffered.

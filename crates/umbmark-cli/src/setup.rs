@@ -96,6 +96,21 @@ enum Origin {
 }
 
 impl SetupFlags {
+    /// The same over a path and a model that are known from measurements; the robot is theirs.
+    pub fn over(&self, path: Path, mut model: Model) -> anyhow::Result<Setup> {
+        anyhow::ensure!(
+            self.robot.is_none()
+                && self.model.is_none()
+                && self.robot_flags.robot(model.robot().clone())? == *model.robot(),
+            "the robot is that of the data; leave --robot, --model and the flags of the robot out"
+        );
+        let path = self.robot_flags.path(path)?;
+        let mut draws = Vec::new();
+        self.effects.apply(&mut model, &mut draws)?;
+        check_on_path(&model, &path)?;
+        Ok(Setup { path, model, draws, sources: Vec::new(), assumed: Vec::new(), published: None })
+    }
+
     /// Reads the files and lets the flags override them.
     pub fn resolve(&self) -> anyhow::Result<Setup> {
         let (robot, path, origin) = self.robot()?;
@@ -124,6 +139,7 @@ impl SetupFlags {
             Origin::File => {}
         }
         self.effects.apply(&mut model, &mut draws)?;
+        model.check_drive()?;
         check_on_path(&model, &path)?;
         if model.get("wheel_noise", "k_sqrt_m").is_none() {
             assumed.push("no wheel noise (--wheel-noise 0.001 gives about the paper's scatter)".to_owned());

@@ -124,7 +124,8 @@ const QUANTITIES: [Quantity; 3] = [
     ("heading", |m| m.heading, |radians| format!("±{} deg", three_digits(radians.to_degrees()))),
 ];
 
-fn three_digits(value: f64) -> String {
+/// A positive number with three digits.
+pub fn three_digits(value: f64) -> String {
     let decimals = (2.0 - value.log10().floor()).clamp(0.0, 9.0) as usize;
     format!("{value:.decimals$}")
 }

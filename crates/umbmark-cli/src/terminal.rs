@@ -1,8 +1,11 @@
 //! Small pictures made of characters.
 
-/// A horizontal bar of `width` characters' full length, in eighths of a character.
-fn bar(share: f64, width: usize) -> String {
+/// A horizontal bar of `width` characters' full length: in eighths of a character, or of `#`.
+pub fn bar(share: f64, width: usize, unicode: bool) -> String {
     const EIGHTHS: [char; 8] = [' ', '▏', '▎', '▍', '▌', '▋', '▊', '▉'];
+    if !unicode {
+        return "#".repeat((share * width as f64).round() as usize);
+    }
     let eighths = (share * width as f64 * 8.0).round() as usize;
     let mut bar = "█".repeat(eighths / 8);
     if let rest @ 1.. = eighths % 8 {
@@ -14,18 +17,18 @@ fn bar(share: f64, width: usize) -> String {
 /// A histogram: one line a class, with its lower edge, a bar and its share of the whole.
 ///
 /// `classes` are (lower edge, share); the edges are printed in the `unit`.
-pub fn histogram(classes: &[(f64, f64)], unit: &str, width: usize) -> String {
+pub fn histogram(classes: &[(f64, f64)], unit: &str, width: usize, unicode: bool) -> String {
     let most = classes.iter().map(|(_, share)| *share).fold(f64::MIN_POSITIVE, f64::max);
     let step = classes.windows(2).map(|w| w[1].0 - w[0].0).fold(f64::INFINITY, f64::min);
     let decimals = if step.is_finite() && step > 0.0 { (-step.log10().floor()).clamp(0.0, 9.0) as usize } else { 1 };
     let label = |edge: f64| format!("{edge:.decimals$} {unit}");
     let wide = classes.iter().map(|(edge, _)| label(*edge).len()).max().unwrap_or(0);
-    classes
-        .iter()
-        .map(|(edge, share)| {
-            format!("{:>wide$} │{:<width$} {:>5.1} %\n", label(*edge), bar(share / most, width), 100.0 * share)
-        })
-        .collect()
+    let rule = if unicode { '│' } else { '|' };
+    let line = |(edge, share): &(f64, f64)| {
+        let bar = bar(share / most, width, unicode);
+        format!("{:>wide$} {rule}{bar:<width$} {:>5.1} %\n", label(*edge), 100.0 * share)
+    };
+    classes.iter().map(line).collect()
 }
 
 /// Values as one line of `width` marks, from nothing to the greatest: blocks on a terminal, ASCII elsewhere.
@@ -90,7 +93,10 @@ mod tests {
 
     #[test]
     fn bars_are_as_long_as_their_share_of_the_greatest() {
-        let text = histogram(&[(0.0, 0.25), (10.0, 0.5), (20.0, 0.0)], "mm", 8);
+        let classes = [(0.0, 0.25), (10.0, 0.5), (20.0, 0.0)];
+        let text = histogram(&classes, "mm", 8, false);
+        assert_eq!(text, " 0 mm |####      25.0 %\n10 mm |########  50.0 %\n20 mm |           0.0 %\n");
+        let text = histogram(&classes, "mm", 8, true);
         assert_eq!(text, " 0 mm │████      25.0 %\n10 mm │████████  50.0 %\n20 mm │           0.0 %\n");
     }
 }

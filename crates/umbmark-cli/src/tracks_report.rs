@@ -21,7 +21,7 @@ pub fn text(comparison: &TrackComparison, options: &Options, terminal: bool) -> 
     let (poses, models) = (comparison.poses, comparison.models.len());
     let mut text = format!("{cw} cw + {ccw} ccw{others} tracks, {poses} poses, against {models} model(s)\n\n");
     let row = |m: &TracksJudged| {
-        let explains = if m.explains(options.size) { "yes" } else { "no" };
+        let explains = m.explains(options.size).map_or("-", |explains| if explains { "yes" } else { "no" });
         let [along, end] = [&m.along, &m.end].map(|rms| [mm(rms.position), rms.heading.map_or("-".into(), deg)]);
         let p = m.p.map_or("-".into(), p_text);
         [vec![m.name.clone()], along.to_vec(), end.to_vec(), vec![p, explains.into()]].concat()
@@ -39,8 +39,8 @@ pub fn text(comparison: &TrackComparison, options: &Options, terminal: bool) -> 
         for sentence in &judged.sentences {
             text += &hanging("", 2, &format!("  {sentence}"));
         }
-        text += &parts_text(judged);
-        text += &rates_text(judged, terminal);
+        text += &parts_text(judged, options.size);
+        text += &rates_text(judged, terminal, options.size);
         text += &strips(&judged.residuals, terminal);
     }
     for remark in &comparison.remarks {
@@ -62,10 +62,15 @@ fn half_width(mean: &Mean) -> Option<f64> {
 }
 
 /// Where the error is made, a line for each part of the way.
-fn parts_text(judged: &TracksJudged) -> String {
+fn parts_text(judged: &TracksJudged, size: f64) -> String {
     let mut text = format!(
-        "\nwhere it is made: mean ± {}, sd of single ones, share of the squared error\n\n{:<18} {:>17} {:>17} {:>18} {:>4}\n",
-        "interval", "", "forward [mm]", "to the left [mm]", "turned left [deg]", "%"
+        "\nwhere it is made: mean ± ({} %), sd of single ones, share of the squared error\n\n{:<18} {:>17} {:>17} {:>18} {:>4}\n",
+        100.0 * (1.0 - size),
+        "",
+        "forward [mm]",
+        "to the left [mm]",
+        "turned left [deg]",
+        "%"
     );
     for by in By::ALL {
         let parts: Vec<&Part> = judged.parts.iter().filter(|part| part.by == by).collect();
@@ -95,12 +100,13 @@ fn part_line(part: &Part) -> String {
         let spread = part.spread.map_or(String::new(), |spread| format!("{:.decimals$}", scales[k] * spread[k]));
         format!("{:>11} {spread:>5}", format!("{mean:.decimals$}{interval}"))
     };
-    let line = format!("{name:<18} {} {} {:>18} {:>4.0}", cell(0), cell(1), cell(2), 100.0 * part.share.position);
+    let share = (100.0 * part.share.position).round() + 0.0;
+    let line = format!("{name:<18} {} {} {:>18} {share:>4.0}", cell(0), cell(1), cell(2));
     format!("{}\n", line.trim_end())
 }
 
 /// Errors in proportion to what was driven, and what they depend on.
-fn rates_text(judged: &TracksJudged, terminal: bool) -> String {
+fn rates_text(judged: &TracksJudged, terminal: bool, size: f64) -> String {
     if judged.overall.is_empty() {
         return String::new();
     }
@@ -126,13 +132,12 @@ fn rates_text(judged: &TracksJudged, terminal: bool) -> String {
             text += "\n";
         }
     }
-    let legend = if terminal {
-        "▄ no error within the interval of 95 %; ▅▆▇ farther or to the left by once, twice, four times its half-width, ▃▂▁ the \
-         opposite."
+    let marks = if terminal {
+        "▄ no error within the interval; ▅▆▇ farther or to the left by once, twice, four times its half-width, ▃▂▁ the opposite"
     } else {
-        ". no error within the interval of 95 %; + farther or to the left, ^ by four times its half-width; - and v the opposite."
+        ". no error within the interval; + farther or to the left, ^ by four times its half-width; - and v the opposite"
     };
-    text + "\n" + &hanging("", 0, legend)
+    text + "\n" + &hanging("", 0, &format!("{marks} ({} %).", 100.0 * (1.0 - size)))
 }
 
 fn cell(against: Option<&Against>, terminal: bool) -> String {

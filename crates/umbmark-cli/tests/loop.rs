@@ -120,6 +120,57 @@ fn models_are_compared_side_by_side_and_code_3_says_that_none_explains() {
     assert!(compared["contrasts"][0]["interval"].is_array());
 }
 
+/// A simulated robot on a small square, watched at 20 Hz, with a floor slope.
+fn watched(runs: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().to_str().unwrap();
+    let path = ["--side", "1", "--runs", runs, "--seed", "4", "--force"];
+    let robot = ["--eb", "1.01", "--slope-x", "0.01", "--wheel-noise", "4e-4", "--json"];
+    said(folder.path(), &[&["simulate", "-o", place], &path[..], &robot[..]].concat(), 0);
+    folder
+}
+
+#[test]
+fn on_tracks_it_is_told_where_the_error_is_made_and_what_it_depends_on() {
+    let folder = watched("5");
+    let text = said(folder.path(), &["compare", "."], 0);
+    fits_the_terminal(&text);
+    assert_data_eq!(text, file!["golden/compare_tracks.txt"]);
+    let compared = document(folder.path(), &["compare", "."]);
+    assert_eq!(
+        (&compared["observed"], &compared["n_cw"], &compared["n_ccw"]),
+        (&"tracks".into(), &5.into(), &5.into())
+    );
+    let fitted = &compared["models"][1];
+    assert_eq!(fitted["explains"], false);
+    let heading = fitted["against"].as_array().unwrap().iter();
+    let heading = heading.filter(|a| a["rate"] == "forward_m_per_m" && a["covariate"] == "heading").next().unwrap();
+    let downhill = &heading["bins"][0];
+    assert!((downhill["mean"].as_f64().unwrap() - 0.01).abs() < 2e-3, "{downhill}");
+    assert!(downhill["interval"].is_array() && downhill["runs"] == 10);
+    let share: f64 =
+        fitted["parts"]["moves"].as_array().unwrap().iter().map(|p| p["share"]["position"].as_f64().unwrap()).sum();
+    assert!((share - 1.0).abs() < 1e-9);
+    // The model with the slope explains; beside one without, --check is content.
+    said(folder.path(), &["fit", ".", "--add", "floor_slope", "-o", "slope.toml"], 0);
+    std::fs::write(folder.path().join("nominal.toml"), "").unwrap();
+    said(folder.path(), &["compare", ".", "--model", "slope.toml", "--check"], 0);
+    said(folder.path(), &["compare", ".", "--model", "nominal.toml", "--model", "slope.toml", "--check"], 0);
+    said(folder.path(), &["compare", ".", "--model", "nominal.toml", "--check"], 3);
+    let returns = document(folder.path(), &["compare", ".", "--return-poses"]);
+    assert_eq!(returns["observed"], "end_poses");
+}
+
+#[test]
+fn two_runs_show_where_the_error_is_made_and_accuse_nothing() {
+    let compared = document(&data(), &["compare", "tracked", "--check"]);
+    let nominal = &compared["models"][0];
+    assert!(nominal["p"].is_null() && nominal["explains"].is_null());
+    assert_eq!(nominal["parts"]["moves"].as_array().unwrap().len(), 16);
+    assert!(nominal["parts"]["moves"][0]["forward_m"]["interval"].is_null());
+    assert!(said(&data(), &["compare", "tracked"], 0).contains("note      Few runs, 2 in all"));
+}
+
 #[test]
 fn one_direction_is_refused_and_told_why() {
     let folder = folder_of("labmate", |line| line.starts_with("ccw") && line.contains("systematic"));

@@ -170,7 +170,7 @@ fn unusable_arguments_get_one_clear_error_and_exit_one() {
         (&["--side", "0"], "error: side_m must be between 0.001 and 10000 m, got 0\n"),
         (
             &["--side", "9999", "--ticks-per-revolution", "1e8"],
-            "error: the left wheel makes 2.122e12 ticks in move 1 of the path; at most 2^30 - 2 are possible\n",
+            "error: the left counter makes 2.122e12 ticks in move 1 of the path; at most 2^30 - 2 are possible\n",
         ),
         (&["--robot", "no.toml"], "error: no.toml: [..]\n"),
     ] {

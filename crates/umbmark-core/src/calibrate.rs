@@ -18,7 +18,7 @@ pub(crate) mod noise_shape;
 mod outcome;
 
 use crate::dataset::{Dataset, ReturnError};
-use crate::drive::Robot;
+use crate::drive::{Kind, Robot};
 use crate::fit::Termination;
 use crate::path::{Path, SQUARE};
 use crate::replay::ReplayError;
@@ -40,6 +40,21 @@ pub enum CalibrateError {
     /// No nominal robot.
     #[error("the nominal robot is not known: put a robot.toml beside the data (`umbmark init` writes one)")]
     NoRobot,
+    /// A drive whose errors are others.
+    #[error("E_d, E_b and E_s are of differential drives, and the robot has drive = \"{drive}\"")]
+    OtherDrive {
+        /// The kind of the drive.
+        drive: &'static str,
+    },
+    /// A drive whose returns no model of one axle predicts.
+    #[error(
+        "drive = \"{drive}\" is not supported here: its returns are corrected by its link as it drives, and are not predicted by a \
+         model of effects; `umbmark mc`, `score` and `paper` take it"
+    )]
+    NotPredicted {
+        /// The kind of the drive.
+        drive: &'static str,
+    },
     /// No run with an observation that can be predicted.
     #[error(
         "none of {runs} runs can be predicted: each needs a return error and a path in robot.toml, \
@@ -199,6 +214,9 @@ pub fn calibrate(data: &Dataset, options: &Options) -> Result<Calibration, Calib
         return Err(CalibrateError::HeadingArm { value });
     }
     let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
+    if robot.drive.kind() != Kind::Differential {
+        return Err(CalibrateError::OtherDrive { drive: robot.drive.kind().name() });
+    }
     let evidence = Evidence::new(data, robot, options.heading_arm)?;
     let (cw, ccw) = outcome::summary_of(data);
     let mut warnings = Vec::new();

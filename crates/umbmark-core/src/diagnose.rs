@@ -7,8 +7,9 @@
 mod candidates;
 pub mod classes;
 pub(crate) mod ends;
-mod experiments;
+pub(crate) mod experiments;
 mod identifiability;
+mod likeness;
 pub(crate) mod tracks;
 
 use crate::calibrate::CalibrateError;
@@ -21,6 +22,7 @@ use crate::replay::ReplayError;
 pub use candidates::{Candidate, Size, candidates, columns};
 pub use ends::{Contrast, OnCircle};
 pub use identifiability::{Identifiability, Share, identifiability};
+pub use likeness::Likeness;
 pub use tracks::Suggestion;
 
 /// What was observed of the runs.
@@ -224,6 +226,8 @@ pub struct Diagnosis {
     pub model: Model,
     /// Those parameters.
     pub fitted: Vec<Estimate>,
+    /// Their correlations, a row each; empty where they are not known.
+    pub correlations: Vec<Vec<f64>>,
     /// Tests of the model as a whole.
     pub goodness_of_fit: Vec<GoodnessOfFit>,
     /// All classes that were asked: those that may be certified first, and of these the likeliest first.
@@ -232,6 +236,8 @@ pub struct Diagnosis {
     pub certified: usize,
     /// What this data cannot see.
     pub invisible: Vec<Unseen>,
+    /// How alike the effects that it can see look.
+    pub likeness: Likeness,
     /// What it would have seen.
     pub minimum_detectable: Vec<Detectable>,
     /// What to measure next, the most telling per minute first.
@@ -305,15 +311,15 @@ pub fn first_model(data: &Dataset) -> Result<Model, DiagnoseError> {
     let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
     let mut model = base_model(robot)?;
     if level(data) == Level::Tracks {
-        model.add("scale")?.free = true;
+        model.add(robot.drive.kind().first_effects()[2])?.free = true;
     }
     Ok(model)
 }
 
-/// The model of the paper: E_d and E_b, both free.
+/// The model of the paper: E_d and E_b, both free; for other drives, the two that do alike on a square.
 pub fn base_model(robot: &Robot) -> Result<Model, ModelError> {
     let mut model = Model::new(robot);
-    for effect in ["wheel_diameter_ratio", "wheelbase"] {
+    for effect in &robot.drive.kind().first_effects()[..2] {
         model.add(effect)?.free = true;
     }
     Ok(model)
@@ -387,6 +393,14 @@ impl Options {
     pub fn evidence(&self, data: &Dataset) -> Level {
         if self.ends_only { Level::Ends } else { level(data) }
     }
+}
+
+/// Every experiment on offer for telling two effects apart, together with this data; the most telling per minute first.
+///
+/// What the model has is fitted to the return poses; each effect is taken at its usual size, the hardest of its sizes. None
+/// where the runs have no scatter to judge by.
+pub fn separating(data: &Dataset, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
+    experiments::separating(&ends::Ends::new(data)?, model, pair)
 }
 
 /// The tracks of a dataset.

@@ -1,12 +1,24 @@
 //! The nominal robot: what its odometry believes about itself.
 //!
-//! One file per kinematics; [`Encoder`] is what counts its wheel angles.
+//! Every drive has an axle, real or virtual: two wheels beside each other that would roll as the robot moves. Believed travel
+//! is that of the axle's wheels, whatever the drive, so what predicts, simulates, fits and tests is written once. A drive's own
+//! file says how its two counters become travel of the axle, and back; [`Encoder`] is what they count with.
 
+mod ackermann;
+mod clapper;
 mod differential;
 mod encoder;
+mod kind;
+mod synchro;
 
+pub use ackermann::AckermannDrive;
+pub use clapper::ClapperDrive;
 pub use differential::{DifferentialDrive, WheelTravel};
 pub use encoder::{Encoder, MAX_COUNTER_BITS, roll_over};
+pub use kind::{Kind, Kinds};
+pub use synchro::SynchroDrive;
+
+use std::ops::Deref;
 
 /// One of the two drive wheels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +57,16 @@ pub enum DriveError {
         /// Its unit.
         unit: &'static str,
     },
+    /// A number that must be finite, and small, is not.
+    #[error("{quantity} must be finite and small, got {value} {unit}")]
+    NotFinite {
+        /// What was meant.
+        quantity: &'static str,
+        /// What was given.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
     /// A counter of no or too many bits.
     #[error("counter_bits must be between 1 and {MAX_COUNTER_BITS}, got {0}")]
     CounterBits(u32),
@@ -52,6 +74,121 @@ pub enum DriveError {
 
 fn positive(quantity: &'static str, value: f64, unit: &'static str) -> Result<f64, DriveError> {
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err(DriveError::NotPositive { quantity, value, unit }) }
+}
+
+/// A drive: its axle, and what its counters count.
+///
+/// It [derefs](Deref) to the axle, real or virtual.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drive {
+    /// Two driven wheels on one axle.
+    Differential(DifferentialDrive),
+    /// Wheels that are driven together and steered together.
+    Synchro(SynchroDrive),
+    /// A driven axle, and a steered wheel before it.
+    Ackermann(AckermannDrive),
+    /// Two trucks and their link; its axle is that of a truck.
+    Clapper(ClapperDrive),
+}
+
+impl From<DifferentialDrive> for Drive {
+    fn from(drive: DifferentialDrive) -> Drive {
+        Drive::Differential(drive)
+    }
+}
+
+impl Deref for Drive {
+    type Target = DifferentialDrive;
+
+    fn deref(&self) -> &DifferentialDrive {
+        match self {
+            Drive::Differential(axle) => axle,
+            Drive::Synchro(synchro) => &synchro.axle,
+            Drive::Ackermann(ackermann) => &ackermann.axle,
+            Drive::Clapper(clapper) => clapper.truck(),
+        }
+    }
+}
+
+impl Drive {
+    /// A drive from the numbers that its kind [lists](Kind::parameters), in that order.
+    pub fn from_values(kind: Kind, values: &[f64]) -> Result<Drive, DriveError> {
+        match kind {
+            Kind::Differential => DifferentialDrive::new(values[0], values[1], values[2]).map(Drive::Differential),
+            Kind::Synchro => SynchroDrive::from_values(values).map(Drive::Synchro),
+            Kind::Ackermann => AckermannDrive::from_values(values).map(Drive::Ackermann),
+            Kind::Clapper => ClapperDrive::from_values(values).map(Drive::Clapper),
+        }
+    }
+
+    /// The numbers that its kind [lists](Kind::parameters), in that order.
+    pub fn values(&self) -> Vec<f64> {
+        match self {
+            Drive::Differential(axle) => {
+                vec![axle.wheelbase(), axle.wheel_diameter_left(), axle.wheel_diameter_right()]
+            }
+            Drive::Synchro(drive) => drive.values(),
+            Drive::Ackermann(drive) => drive.values(),
+            Drive::Clapper(drive) => drive.values(),
+        }
+    }
+
+    /// The drive as its odometry must believe it to be, where these are the true values of its [first
+    /// effects](Kind::first_effects).
+    pub fn corrected(&self, first: [f64; 3]) -> Result<Drive, DriveError> {
+        match self {
+            Drive::Differential(axle) => {
+                let [e_d, e_b, e_s] = first;
+                let left = 2.0 * e_s / (1.0 + e_d);
+                let (left, right) = (axle.wheel_diameter_left() * left, axle.wheel_diameter_right() * left * e_d);
+                DifferentialDrive::new(axle.wheelbase() * e_b, left, right).map(Drive::Differential)
+            }
+            Drive::Synchro(drive) => drive.corrected(first).map(Drive::Synchro),
+            Drive::Ackermann(drive) => drive.corrected(first).map(Drive::Ackermann),
+            // What its own trucks have is corrected by the link; nothing of it is known from returns.
+            Drive::Clapper(drive) => Ok(Drive::Clapper(*drive)),
+        }
+    }
+
+    /// Its kind.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Drive::Differential(_) => Kind::Differential,
+            Drive::Synchro(_) => Kind::Synchro,
+            Drive::Ackermann(_) => Kind::Ackermann,
+            Drive::Clapper(_) => Kind::Clapper,
+        }
+    }
+
+    /// Distance of the steered wheel from the axle \[m\]; for a drive without one, that of a wheel which would steer it as far
+    /// before the axle as its wheels are apart.
+    pub fn axle_distance(&self) -> f64 {
+        match self {
+            Drive::Ackermann(drive) => drive.axle_distance(),
+            _ => self.wheelbase(),
+        }
+    }
+
+    /// What the axle's wheels make of a bump under a wheel on one side, which costs that wheel so much way \[m\].
+    #[inline]
+    pub fn bumped(&self, wheel: Wheel, lost: f64) -> WheelTravel {
+        match (self, wheel) {
+            (Drive::Synchro(drive), _) => drive.lost(wheel, lost),
+            (_, Wheel::Left) => WheelTravel { left: -lost, right: 0.0 },
+            (_, Wheel::Right) => WheelTravel { left: 0.0, right: -lost },
+        }
+    }
+}
+
+/// What a drive's two counters do in a move, and what their counts mean there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Counting {
+    /// Travel of the axle's wheels a count of each counter \[m\].
+    pub per_count: [WheelTravel; 2],
+    /// Counts that each gains over the move, fractions included.
+    pub gain: [f64; 2],
+    /// What an absolute counter shows all along the move; 0 where both count on.
+    pub held: i64,
 }
 
 /// A nominal robot: its drive and its encoders.
@@ -67,8 +204,8 @@ pub struct Robot {
     /// What people call it.
     pub name: String,
     /// Nominal kinematics.
-    pub drive: DifferentialDrive,
-    /// Encoders, the same kind on both wheels.
+    pub drive: Drive,
+    /// Encoders, the same kind on all wheels.
     pub encoder: Encoder,
 }
 
@@ -78,12 +215,89 @@ impl Robot {
     pub fn labmate() -> Robot {
         Robot {
             name: "TRC LabMate".into(),
-            drive: DifferentialDrive::new(0.340, 0.150, 0.150).expect("constants are positive"),
+            drive: DifferentialDrive::new(0.340, 0.150, 0.150).expect("constants are positive").into(),
             encoder: Encoder::new(2000.0, None, None).expect("constants are positive"),
         }
     }
 
-    /// Travel of each wheel per encoder tick \[m\]: π D / (ticks per revolution).
+    /// What the counters do while the axle's centre advances `forward` \[m\] and the robot turns by `rotation` \[rad\], at a
+    /// constant ratio of the two; `None` for a turn that the drive cannot make.
+    pub fn counting(&self, forward: f64, rotation: f64) -> Option<Counting> {
+        match &self.drive {
+            Drive::Differential(_) | Drive::Clapper(_) => {
+                let (per_tick, travel) = (self.metres_per_tick(), self.drive.wheel_travel(forward, rotation));
+                let left = WheelTravel { left: per_tick.left, right: 0.0 };
+                let right = WheelTravel { left: 0.0, right: per_tick.right };
+                let gain = [travel.left / per_tick.left, travel.right / per_tick.right];
+                Some(Counting { per_count: [left, right], gain, held: 0 })
+            }
+            Drive::Synchro(drive) => Some(drive.counting(&self.encoder, forward, rotation)),
+            Drive::Ackermann(drive) => drive.counting(&self.encoder, forward, rotation),
+        }
+    }
+
+    /// Ticks of the axle's wheels since START, as logs hold them, for readings of the drive's own counters.
+    pub fn axle_ticks(&self, counters: &[Vec<f64>; 2]) -> [Vec<f64>; 2] {
+        let travel = |before, after| match &self.drive {
+            Drive::Differential(_) | Drive::Clapper(_) => WheelTravel::default(),
+            Drive::Synchro(drive) => drive.travel(&self.encoder, before, after),
+            Drive::Ackermann(drive) => drive.travel(&self.encoder, before, after),
+        };
+        if self.drive.kind().counters() == Kind::Differential.counters() {
+            return counters.clone();
+        }
+        let per_tick = self.metres_per_tick();
+        let mut ticks = [Vec::new(), Vec::new()];
+        let (mut left, mut right, mut before) = (0.0, 0.0, None);
+        for (first, second) in counters[0].iter().zip(&counters[1]) {
+            let now = [*first, *second];
+            let rolled = travel(before.unwrap_or(now), now);
+            (left, right, before) =
+                (left + rolled.left / per_tick.left, right + rolled.right / per_tick.right, Some(now));
+            ticks[0].push(left);
+            ticks[1].push(right);
+        }
+        ticks
+    }
+
+    /// Whole readings of the drive's own counters from which [`Robot::axle_ticks`] makes these ticks of the axle's wheels.
+    pub fn counters(&self, ticks: [&[f64]; 2]) -> [Vec<f64>; 2] {
+        if self.drive.kind().counters() == Kind::Differential.counters() || ticks[0].is_empty() {
+            return ticks.map(<[f64]>::to_vec);
+        }
+        let per_tick = self.metres_per_tick();
+        let travels: Vec<WheelTravel> = (1..ticks[0].len())
+            .map(|i| WheelTravel {
+                left: (ticks[0][i] - ticks[0][i - 1]) * per_tick.left,
+                right: (ticks[1][i] - ticks[1][i - 1]) * per_tick.right,
+            })
+            .collect();
+        let mut now = [0.0, self.first_steering(&travels)];
+        let mut counters = [vec![now[0]], vec![now[1]]];
+        for (i, travel) in travels.iter().enumerate() {
+            now = match &self.drive {
+                Drive::Differential(_) | Drive::Clapper(_) => now,
+                Drive::Synchro(drive) => drive.reading(&self.encoder, now, travel),
+                // It steers while it stands, ahead of the next move.
+                Drive::Ackermann(_) if *travel == WheelTravel::default() => {
+                    [now[0], self.first_steering(&travels[i + 1..])]
+                }
+                Drive::Ackermann(drive) => drive.reading(&self.encoder, now, travel),
+            }
+            .map(f64::round);
+            counters[0].push(now[0]);
+            counters[1].push(now[1]);
+        }
+        counters
+    }
+
+    /// Where an absolute steering counter stands before these travels.
+    fn first_steering(&self, travels: &[WheelTravel]) -> f64 {
+        let Drive::Ackermann(drive) = &self.drive else { return 0.0 };
+        travels.iter().find_map(|travel| drive.halfway(&self.encoder, travel)).map_or(0.0, f64::round)
+    }
+
+    /// Travel of each wheel of the axle per encoder tick \[m\]: π D / (ticks per revolution).
     pub fn metres_per_tick(&self) -> WheelTravel {
         let per_diameter = std::f64::consts::PI / self.encoder.ticks_per_revolution();
         WheelTravel {

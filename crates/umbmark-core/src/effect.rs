@@ -14,15 +14,19 @@
 //! the engine fills for each piece of the way.
 
 mod acceleration_slip;
+mod axle_distance;
 mod backlash;
+mod base_yaw;
 mod bumps;
 mod carpet_nap;
 mod caster_kick;
 mod centripetal_load;
+mod contact_trail;
 mod context;
 mod crab;
 mod diameter_drift;
 mod direction_dependent_wheelbase;
+mod drive_scale;
 mod encoder_resolution;
 mod encoder_sampling;
 mod encoder_skew;
@@ -45,8 +49,13 @@ mod speed_slip;
 mod speed_slip_left;
 mod speed_slip_right;
 mod start_pose;
+mod steer_coupling;
+mod steer_scale;
+mod steering_gain;
+mod steering_zero;
 mod turn_slip;
 mod turn_slip_rate;
+mod understeer;
 mod wheel_diameter_ratio;
 mod wheel_eccentricity_left;
 mod wheel_eccentricity_right;
@@ -54,7 +63,7 @@ mod wheel_noise;
 mod wheelbase;
 mod words;
 
-use crate::drive::{Robot, Wheel, WheelTravel};
+use crate::drive::{Kind, Kinds, Robot, Wheel, WheelTravel};
 use crate::geometry::{Displacement2, Dual, Pose2, Real};
 use crate::parameter::{Parameter, nearest};
 use crate::path::Direction;
@@ -68,6 +77,11 @@ pub use model::{Chain, Model, ModelError, Part};
 
 /// The largest number of parameters of one effect.
 pub const MAX_PARAMETERS: usize = 6;
+
+/// The effects that a robot with this drive may have.
+pub fn of_drive(kind: Kind) -> impl Iterator<Item = &'static Entry> + Clone {
+    CATALOGUE.iter().filter(move |entry| entry.drives.contains(kind))
+}
 
 /// Every effect there is, in the order in which they act.
 ///
@@ -90,6 +104,16 @@ pub static CATALOGUE: &[Entry] = &[
     Entry::of::<diameter_drift::DiameterDrift>(),
     Entry::of::<centripetal_load::CentripetalLoad>(),
     Entry::of::<backlash::Backlash>(),
+    // The gears of other drives.
+    Entry::of::<drive_scale::DriveScale>(),
+    Entry::of::<steer_scale::SteerScale>(),
+    Entry::of::<steer_coupling::SteerCoupling>(),
+    Entry::of::<contact_trail::ContactTrail>(),
+    Entry::of::<base_yaw::BaseYaw>(),
+    Entry::of::<axle_distance::AxleDistance>(),
+    Entry::of::<steering_zero::SteeringZero>(),
+    Entry::of::<steering_gain::SteeringGain>(),
+    Entry::of::<understeer::Understeer>(),
     // The contact with the floor, smooth.
     Entry::of::<crab::Crab>(),
     Entry::of::<speed_slip::SpeedSlip>(),
@@ -240,6 +264,9 @@ pub trait Effect {
     /// What people should know of it.
     const ABOUT: About;
 
+    /// The drives that may have it.
+    const DRIVES: Kinds = Kinds::of(Kind::Differential);
+
     /// What these values mean for the robot: a sentence. Empty where there is nothing to say.
     fn means(_p: &[f64], _robot: &Robot) -> String {
         String::new()
@@ -359,6 +386,8 @@ pub struct Scatter {
 pub struct Entry {
     /// What people should know of it.
     pub about: About,
+    /// See [`Effect::DRIVES`].
+    pub drives: Kinds,
     /// See [`Effect::means`].
     pub means: fn(&[f64], &Robot) -> String,
     /// See [`Effect::varies`].
@@ -374,6 +403,7 @@ impl Entry {
         assert!(E::ABOUT.parameters.len() <= MAX_PARAMETERS);
         Entry {
             about: E::ABOUT,
+            drives: E::DRIVES,
             means: E::means,
             varies: E::varies,
             values: Mean {

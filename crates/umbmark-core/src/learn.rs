@@ -6,9 +6,12 @@
 //! decide nothing: with many effects on offer they accept a false one in half of all tests.
 
 mod ends;
+mod gears;
 mod tracks;
 
 use crate::calibrate::CalibrateError;
+pub use gears::{GearCalibration, GearError, calibrate_gears};
+
 use crate::dataset::Dataset;
 use crate::diagnose::{self, DiagnoseError, Diagnosis, Estimate, Level, Suspect, Verdict};
 use crate::effect::{Model, Part};
@@ -18,9 +21,6 @@ use std::sync::Arc;
 
 /// No model is given more effects than this.
 const MOST: usize = 6;
-
-/// The paper's two errors, which are fitted before anything is asked.
-const BASE: [&str; 2] = ["wheel_diameter_ratio", "wheelbase"];
 
 /// Root mean square errors of predicted poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -194,7 +194,8 @@ pub(crate) fn from_evidence<E: Evidence>(
 ) -> Result<Learnt, DiagnoseError> {
     let mut story = Story::new(evidence, evidence.nominal())?;
     if evidence.both_ways() {
-        for effect in BASE {
+        let kind = story.model.robot().drive.kind();
+        for effect in &kind.first_effects()[..2] {
             story.add(&free_part(evidence, effect)?)?;
         }
     }

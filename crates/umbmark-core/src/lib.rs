@@ -3,7 +3,8 @@
 //! A *model* is a nominal robot plus a chain of effects ([`effect`]). One chain serves both ways: forward, it turns a
 //! [`path`] into wheel motion, encoder ticks and the true pose ([`simulate`], [`monte_carlo`]); backward, it turns
 //! recorded ticks into the predicted pose ([`replay`]), from which robots are scored and calibrated ([`score`],
-//! [`calibrate`]), and what a model is missing is found ([`compare`], [`diagnose`], [`learn`]).
+//! [`calibrate`]), and what a model is missing is found ([`compare`], [`diagnose`], [`learn`]). [`sensitivity`] says which
+//! number drives which result; what a test would show before it is driven says [`plan`].
 //!
 //! Inside, everything is SI: metres, radians, seconds, ticks. Headings and rotations are counter-clockwise positive.
 //! A text boundary (file column, TOML key, JSON key, flag) carries the unit in its name.
@@ -24,10 +25,12 @@ pub mod likelihood;
 pub mod monte_carlo;
 pub mod parameter;
 pub mod path;
+pub mod plan;
 pub mod preset;
 pub mod random;
 pub mod replay;
 pub mod score;
+pub mod sensitivity;
 pub mod simulate;
 pub mod stats;
 

@@ -8,8 +8,11 @@
 mod distribution;
 mod ensemble;
 mod metric;
+mod noise_free;
+mod quantity;
 mod shard;
 mod statistics;
+mod sweep;
 mod trial;
 
 use std::ops::{ControlFlow, Range};
@@ -18,23 +21,25 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 
 use crate::dataset::ReturnError;
-use crate::drive::Robot;
+use crate::drive::{Kind, Robot};
 use crate::effect::{Model, ModelError};
 use crate::engine::Instructions;
 use crate::parameter::ParameterError;
-use crate::path::{Direction, Path};
-use crate::replay::{Track, check_on_path};
-use crate::simulate::{self, Odometry, Phase, SimulateError};
+use crate::path::Path;
+use crate::replay::check_on_path;
+use crate::simulate::{Odometry, Phase, SimulateError};
 
 pub use distribution::{Distribution, DistributionError, Draw};
 pub use ensemble::{Ensemble, MergeError};
 pub use metric::Metric;
+pub use quantity::{Quantity, QuantityError};
 pub use shard::{Shard, ShardError};
 pub use statistics::Statistics;
-
+pub use sweep::{Axis, MetricSummary, Sweep, SweepError, SweepPoint};
 pub use trial::draw_parameters;
 
-use trial::Bench;
+pub(crate) use noise_free::NoiseFree;
+pub(crate) use trial::{Bench, row};
 
 /// Trials that one thread runs at a time. Shards begin and end at multiples of it.
 pub const CHUNK: u64 = 256;
@@ -67,6 +72,9 @@ pub enum StudyError {
         /// The parameter, its value and its range.
         problem: ParameterError,
     },
+    /// A quantity that cannot be set.
+    #[error(transparent)]
+    Quantity(#[from] QuantityError),
     /// No trials, or a test without runs.
     #[error("{what} must be between {} and {}, got {value}", range.start, range.end - 1)]
     Count {
@@ -171,11 +179,7 @@ impl Study {
     /// by exact kinematics.
     pub fn noise_free(&self) -> Result<[ReturnError; 2], StudyError> {
         let model = trial::centred(&self.model, &self.draws)?;
-        let (chain, track) = (model.chain(), if model.varies() { Track::in_pieces } else { Track::from_path });
-        Ok(Direction::BOTH.map(|direction| {
-            let end = track(&self.path, direction, self.robot()).end(&chain);
-            simulate::return_error(&end, &self.path.end(direction))
-        }))
+        Ok(NoiseFree::new(&model, &self.path, model.varies()).returned())
     }
 
     /// Runs the study on the present rayon pool.
@@ -258,6 +262,11 @@ impl Study {
             count(what, runs as u64, 0..MAX_RUNS + 1)?;
         }
         count("number of runs", (self.runs[0] + self.runs[1]) as u64, 1..2 * MAX_RUNS + 1)?;
+        self.model.check_drive()?;
+        if self.robot().drive.kind() == Kind::Clapper && self.model.varies() {
+            let (drive, what) = (Kind::Clapper.name(), "effects that change along the way");
+            return Err(SimulateError::Unsupported { drive, what }.into());
+        }
         check_on_path(&self.model, &self.path)?;
         self.draws.iter().try_for_each(Draw::check)
     }

@@ -8,13 +8,14 @@ mod circle;
 mod figure_eight;
 mod pieces;
 mod rectangle;
+mod rounded_rectangle;
 mod speed;
 mod spin;
 mod square;
 mod straight;
 mod waypoints;
 
-use crate::drive::{DifferentialDrive, WheelTravel};
+use crate::drive::{DifferentialDrive, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
 use crate::parameter::{Parameter, ParameterError};
 
@@ -22,6 +23,7 @@ pub use circle::CIRCLE;
 pub use figure_eight::FIGURE_EIGHT;
 pub use pieces::{Piece, Pieces};
 pub use rectangle::RECTANGLE;
+pub use rounded_rectangle::ROUNDED_RECTANGLE;
 pub use speed::{SpeedProfile, Trapezoid};
 pub use spin::SPIN;
 pub use square::SQUARE;
@@ -29,7 +31,8 @@ pub use straight::STRAIGHT;
 pub use waypoints::WAYPOINTS;
 
 /// Every shape there is.
-pub static SHAPES: &[&Shape] = &[&SQUARE, &RECTANGLE, &FIGURE_EIGHT, &CIRCLE, &STRAIGHT, &SPIN, &WAYPOINTS];
+pub static SHAPES: &[&Shape] =
+    &[&SQUARE, &RECTANGLE, &ROUNDED_RECTANGLE, &FIGURE_EIGHT, &CIRCLE, &STRAIGHT, &SPIN, &WAYPOINTS];
 
 /// The sense in which a path is driven round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -182,6 +185,9 @@ impl Path {
         for (parameter, value) in shape.parameters.iter().zip(values) {
             parameter.check(*value)?;
         }
+        if std::ptr::eq(shape, &ROUNDED_RECTANGLE) {
+            rounded_rectangle::check(values)?;
+        }
         Ok(Path { shape, values: values.to_vec(), moves: (shape.moves)(values), speed })
     }
 
@@ -208,6 +214,11 @@ impl Path {
         }
     }
 
+    /// Whether a robot can make all of its moves: one that cannot turn on the spot needs arcs.
+    pub fn suits(&self, robot: &Robot) -> bool {
+        self.moves.iter().map(Move::displacement).all(|d| robot.counting(d.forward, d.rotation).is_some())
+    }
+
     /// Length travelled by the axle's centre \[m\].
     pub fn length(&self) -> f64 {
         self.moves.iter().map(|m| m.displacement().forward.abs()).sum()
@@ -232,6 +243,7 @@ mod tests {
         for p in [
             path(&SQUARE, &[4.0]),
             path(&RECTANGLE, &[7.0, 4.0]),
+            path(&ROUNDED_RECTANGLE, &[7.0, 4.0, 1.5]),
             path(&FIGURE_EIGHT, &[2.0]),
             path(&CIRCLE, &[1.5, 2.0]),
             path(&SPIN, &[5.0]),
@@ -265,6 +277,8 @@ mod tests {
         assert_eq!(refuse(&SQUARE, &[-4.0]), "side_m must be between 0.001 and 10000 m, got -4");
         assert_eq!(refuse(&SQUARE, &[]), "square takes 1 numbers, got 0");
         assert!(refuse(&WAYPOINTS, &[1.0, 0.0, 1.0, 0.0]).contains("point 2"));
+        let tight = refuse(&ROUNDED_RECTANGLE, &[4.0, 3.0, 1.6]);
+        assert_eq!(tight, "corner_radius_m must be between 0.001 and 1.5 m (half of the shorter side), got 1.6");
         assert!(refuse(&WAYPOINTS, &[f64::NAN, 0.0]).contains("point 1"));
     }
 }

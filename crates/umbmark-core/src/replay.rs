@@ -295,7 +295,7 @@ mod tests {
     /// 1 m wheel circumference, 1000 ticks a turn: a millimetre a tick; wheelbase 0.5 m.
     fn robot() -> Robot {
         use crate::drive::{DifferentialDrive, Encoder};
-        let drive = DifferentialDrive::new(0.5, 1.0 / PI, 1.0 / PI).unwrap();
+        let drive = DifferentialDrive::new(0.5, 1.0 / PI, 1.0 / PI).unwrap().into();
         Robot { name: "round numbers".into(), drive, encoder: Encoder::new(1000.0, None, None).unwrap() }
     }
 

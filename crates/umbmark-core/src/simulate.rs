@@ -3,6 +3,8 @@
 //! The robot drives by its own odometry, as in the paper: it stops when its counters say so. What it believes is then the
 //! path itself, up to quantisation, and what it does is what the effects of the model make of it.
 
+mod convoy;
+mod counters;
 mod course;
 mod diffusion;
 mod pieces;
@@ -12,7 +14,7 @@ mod truth;
 mod way;
 
 use crate::dataset::ReturnError;
-use crate::drive::{Robot, WheelTravel};
+use crate::drive::{Kind, Robot, WheelTravel};
 use crate::effect::{Sight, Stretch, TestKind};
 use crate::engine::{
     EngineError, Instructions, Integrator, Method, Motion, Segment, TickGeometry, UNITS_PER_TICK, Update, WheelLine,
@@ -26,6 +28,7 @@ pub use course::{Course, Leg};
 pub use record::Recording;
 pub use truth::Truth;
 
+use convoy::Convoy;
 use course::Rest;
 use sampling::SampledMoves;
 
@@ -37,14 +40,33 @@ const ENCODER_PHASE: u64 = 1;
 #[non_exhaustive]
 pub enum SimulateError {
     /// A move so long, or ticks so fine, that the counters overflow.
-    #[error("the {wheel} wheel makes {ticks:.3e} ticks in move {index} of the path; at most 2^30 - 2 are possible")]
+    #[error("the {counter} counter makes {ticks:.3e} ticks in move {index} of the path; at most 2^30 - 2 are possible")]
     TooManyTicks {
-        /// "left" or "right".
-        wheel: &'static str,
+        /// Its name, as "left".
+        counter: &'static str,
         /// The move, from 1.
         index: usize,
         /// Its ticks.
         ticks: f64,
+    },
+    /// A turn that the drive cannot make.
+    #[error(
+        "a robot with drive = \"{drive}\" cannot turn as tightly as in move {index} of the path; give a path of arcs, as \
+         shape = \"rounded_rectangle\""
+    )]
+    TooTight {
+        /// Kind of the drive.
+        drive: &'static str,
+        /// The move, from 1.
+        index: usize,
+    },
+    /// Something that is not simulated of a drive.
+    #[error("drive = \"{drive}\" does not support {what}")]
+    Unsupported {
+        /// Kind of the drive.
+        drive: &'static str,
+        /// What.
+        what: &'static str,
     },
     /// A robot or an update rule that the integrator refuses.
     #[error(transparent)]
@@ -100,6 +122,8 @@ impl Odometry {
 enum Computer {
     Ticks(Box<Integrator>),
     Sampled(Box<SampledMoves>),
+    /// A move at once, by what the counters of a drive without wheels of its own gain.
+    Counters,
     Continuous,
 }
 
@@ -124,6 +148,8 @@ pub struct Simulator {
     per_tick: PerTick,
     courses: [Course; 2],
     computer: Computer,
+    /// The plan of a drive of two trucks, which nothing of the rest applies to.
+    convoy: Option<Convoy>,
     phase: Phase,
     phases: Stream,
     segments: Vec<Segment>,
@@ -136,8 +162,10 @@ impl Simulator {
         let per_tick = robot.metres_per_tick();
         let geometry = TickGeometry::new(per_tick.left, per_tick.right, robot.drive.wheelbase())?;
         let [cw, ccw] = [Course::new(robot, path, Direction::Cw)?, Course::new(robot, path, Direction::Ccw)?];
+        let differential = robot.drive.kind() == Kind::Differential;
         let computer = match odometry {
             Odometry::Continuous => Computer::Continuous,
+            Odometry::EveryTick | Odometry::EveryTickOneByOne if !differential => Computer::Counters,
             Odometry::EveryTick => Computer::Ticks(Box::new(Integrator::new(geometry, Method::EveryTick))),
             Odometry::EveryTickOneByOne => {
                 Computer::Ticks(Box::new(Integrator::new(geometry, Method::EveryTickOneByOne)))
@@ -146,7 +174,11 @@ impl Simulator {
                 if !(rate > 0.0 && rate.is_finite()) {
                     return Err(SimulateError::Rate { what: "encoder rate", value: rate });
                 }
-                Computer::Sampled(Box::new(SampledMoves::new(geometry, update, rate, [&cw.legs, &ccw.legs])))
+                if differential {
+                    Computer::Sampled(Box::new(SampledMoves::new(geometry, update, rate, [&cw.legs, &ccw.legs])))
+                } else {
+                    Computer::Counters
+                }
             }
         };
         Ok(Simulator {
@@ -154,6 +186,7 @@ impl Simulator {
             per_tick: PerTick(per_tick),
             courses: [cw, ccw],
             computer,
+            convoy: Convoy::new(robot, path)?,
             phase,
             phases: Stream::new(0, 0, 0),
             segments: Vec::new(),
@@ -166,7 +199,7 @@ impl Simulator {
         let computer = match self.computer {
             Computer::Ticks(integrator) => Computer::Ticks(Box::new(integrator.limited_to(instructions))),
             Computer::Sampled(moves) => Computer::Sampled(Box::new(moves.limited_to(instructions))),
-            Computer::Continuous => Computer::Continuous,
+            other => other,
         };
         Simulator { computer, ..self }
     }
@@ -201,6 +234,13 @@ impl Simulator {
     ///
     /// The same as one run after the other, to the last bit; the odometry of all moves is computed at once.
     pub fn test(&mut self, truth: &mut Truth, test: TestKind, returned: [&mut [ReturnError]; 2]) {
+        if let Some(convoy) = &self.convoy {
+            for (direction, returned) in Direction::BOTH.into_iter().zip(returned) {
+                let legs = &self.courses[direction as usize].legs;
+                returned.iter_mut().for_each(|returned| *returned = convoy.run(truth, legs, direction, test));
+            }
+            return;
+        }
         let runs = returned.each_ref().map(|returned| returned.len());
         self.command(runs);
         self.compute(runs);
@@ -212,6 +252,7 @@ impl Simulator {
                 for (index, leg) in course.legs.iter().enumerate() {
                     let travel = match self.computer {
                         Computer::Continuous => leg.travel,
+                        Computer::Counters => leg.rolled(&self.segments[self.place(runs, direction, run, index)].line),
                         _ => self.per_tick.of(&self.segments[self.place(runs, direction, run, index)].line),
                     };
                     truth.begin(Stretch { index, direction, test, travel }, leg);
@@ -270,6 +311,10 @@ impl Simulator {
                     let place = self.place(runs, direction, run, index);
                     self.motions[place] = match &mut self.computer {
                         Computer::Sampled(moves) => moves.motion(direction as usize, index, &self.segments[place].line),
+                        Computer::Counters => {
+                            let travel = self.courses[direction as usize].counted(index);
+                            Motion::exp(&self.robot.drive.displacement(&travel))
+                        }
                         _ => {
                             let travel = &self.courses[direction as usize].legs[index].travel;
                             Motion::exp(&self.robot.drive.displacement(travel))
@@ -278,6 +323,11 @@ impl Simulator {
                 }
             }
         }
+    }
+
+    /// Travel of the axle's wheels along a line of the counters, as the odometry believes.
+    fn believed(&self, leg: &Leg, line: &WheelLine) -> WheelTravel {
+        if self.robot.drive.kind() == Kind::Differential { self.per_tick.of(line) } else { leg.rolled(line) }
     }
 
     fn draw_phase(&mut self) -> [u32; 2] {
@@ -461,6 +511,6 @@ mod tests {
         let mut robot = Robot::labmate();
         robot.encoder = crate::drive::Encoder::new(1e8, None, None).unwrap();
         let error = Simulator::new(&robot, &path, Odometry::EveryTick, Phase::Edge).unwrap_err().to_string();
-        assert!(error.starts_with("the left wheel makes 2.122e12 ticks in move 1 of the path"), "{error}");
+        assert!(error.starts_with("the left counter makes 2.122e12 ticks in move 1 of the path"), "{error}");
     }
 }

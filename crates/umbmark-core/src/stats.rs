@@ -1,6 +1,7 @@
 //! Intervals, and quantiles of the usual distributions (thin over `statrs`).
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
+use statrs::function::{beta::beta_reg, gamma::ln_gamma};
 
 /// A closed interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +53,11 @@ pub fn normal_quantile(probability: f64) -> f64 {
     quantile(Normal::new(0.0, 1.0), probability)
 }
 
+/// The probability that a standard normal draw stays below `value`.
+pub fn standard_normal_share(value: f64) -> f64 {
+    0.5 * libm::erfc(-value * std::f64::consts::FRAC_1_SQRT_2)
+}
+
 /// The probability that F with these degrees of freedom exceeds `f`.
 ///
 /// NaN for degrees of freedom that are not positive, or an F that is no number.
@@ -66,6 +72,35 @@ pub fn f_upper_tail(f: f64, degrees_of_freedom: [f64; 2]) -> f64 {
         Ok(distribution) if !f.is_nan() => distribution.sf(f),
         _ => f64::NAN,
     }
+}
+
+/// The probability that F with these degrees of freedom \[a, b\] and this non-centrality λ exceeds `f`: the power of a test.
+///
+/// A mixture over Poisson numbers j with mean λ/2 of the probabilities that Beta(a/2 + j, b/2) exceeds a f/(a f + b). NaN for degrees of freedom that are not positive, or a negative
+/// λ or f.
+///
+/// ```
+/// # use umbmark_core::stats::noncentral_f_upper_tail;
+/// // scipy.stats.ncf.sf(5.317655, 1, 8, 10.507)
+/// assert!((noncentral_f_upper_tail(5.317_655, [1.0, 8.0], 10.507) - 0.809_635_4).abs() < 1e-6);
+/// ```
+pub fn noncentral_f_upper_tail(f: f64, [a, b]: [f64; 2], noncentrality: f64) -> f64 {
+    let finite = [a, b, noncentrality].iter().all(|x| x.is_finite());
+    if !(finite && a > 0.0 && b > 0.0 && noncentrality >= 0.0 && f >= 0.0) {
+        return f64::NAN;
+    }
+    if noncentrality == 0.0 {
+        return f_upper_tail(f, [a, b]);
+    }
+    let (mean, below) = (0.5 * noncentrality, b / (a * f + b));
+    let term = |j: f64| {
+        let weight = libm::exp(j * libm::log(mean) - ln_gamma(j + 1.0) - mean);
+        weight * beta_reg(0.5 * b, 0.5 * a + j, below)
+    };
+    // Poisson probabilities beyond so many standard deviations add nothing.
+    let reach = 10.0 + 10.0 * (mean + 1.0).sqrt();
+    let numbers = (mean - reach).max(0.0) as u64..=(mean + reach) as u64;
+    numbers.map(|j| term(j as f64)).sum::<f64>().min(1.0)
 }
 
 /// The probability that Student's t with `degrees_of_freedom` is farther from 0 than `t`.
@@ -117,6 +152,31 @@ mod tests {
         for (p, df, x) in [(0.025, 16.0, 6.907664), (0.975, 16.0, 28.845351), (0.5, 8.0, 7.344121)] {
             assert!((chi_squared_quantile(p, df) - x).abs() < 1e-5 * x, "{p} {df}: {}", chi_squared_quantile(p, df));
         }
+    }
+
+    /// f, degrees of freedom, non-centrality, probability.
+    const NCF: [(f64, [f64; 2], f64, f64); 8] = [
+        (5.317655, [1.0, 8.0], 10.507, 0.809635443585),
+        (5.317655, [1.0, 8.0], 0.3, 0.077364898644),
+        (3.1, [4.0, 14.0], 7.5, 0.430856711169),
+        (40.0, [1.0, 4.0], 250.0, 0.999874069788),
+        (4.2, [1.0, 58.0], 3.7, 0.454317743984),
+        (12.0, [1.0, 8.0], 30.0, 0.944595522560),
+        (5000.0, [1.0, 8.0], 9000.0, 0.927808023009),
+        (0.5, [2.0, 6.0], 1.0, 0.743156963484),
+    ];
+
+    /// Oracle: scipy.stats.ncf.sf.
+    #[test]
+    fn the_power_of_an_f_test_is_that_of_scipy() {
+        for (f, freedom, noncentrality, power) in NCF {
+            let got = noncentral_f_upper_tail(f, freedom, noncentrality);
+            assert!((got - power).abs() < 1e-9, "{f} {freedom:?} {noncentrality}: {got} {power}");
+        }
+        let central = noncentral_f_upper_tail(5.3, [1.0, 8.0], 0.0);
+        assert!((central - f_upper_tail(5.3, [1.0, 8.0])).abs() < 1e-15);
+        assert!(noncentral_f_upper_tail(5.3, [1.0, 8.0], -1.0).is_nan());
+        assert!(noncentral_f_upper_tail(5.3, [1.0, 0.0], 1.0).is_nan());
     }
 
     #[test]

@@ -18,7 +18,7 @@ fn awkward(seed: u64) -> Dataset {
     let bits = [None, Some(16)][seed as usize % 2];
     let robot = Robot {
         name: "a \"robot\" \\ of\nJörg".into(),
-        drive,
+        drive: drive.into(),
         encoder: Encoder::new(64.0 * 43.7, Some(100.0 / 3.0), bits).unwrap(),
     };
     let speed = SpeedProfile::new(0.1 + stream.uniform(), 0.3, 0.0).unwrap();

@@ -1,5 +1,7 @@
 //! `umbmark calibrate`: from measured runs to the true wheel diameters and wheelbase.
 
+mod gears;
+
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,7 +12,7 @@ use umbmark_core::calibrate::{
     Calibration, Estimate, Level, Method, Options, RadiusWheelbase, Ratio, Replayed, calibrate, export,
 };
 use umbmark_core::dataset::Dataset;
-use umbmark_core::drive::Robot;
+use umbmark_core::drive::{Kind, Robot};
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
@@ -99,6 +101,9 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         anyhow::bail!("--level must be between 0 and 1, both excluded, got {}", arguments.level);
     }
     let data = arguments.data.load()?;
+    if data.nominal_robot()?.drive.kind() != Kind::Differential {
+        return gears::run(&arguments, &data, session);
+    }
     let mut calibration = calibrate(&data, &arguments.options())?;
     let robot = data.nominal_robot()?;
     if calibration.estimates.is_empty() {

@@ -81,7 +81,7 @@ fn on_tracks(arguments: &Arguments, data: &Dataset, options: &Options, session: 
         let terminal = session.on_terminal();
         write!(session.out(), "{}", tracks_report::text(&comparison, options, terminal))?;
     }
-    Ok(comparison.models.iter().any(|model| model.explains(options.size)))
+    Ok(comparison.models.iter().any(|model| model.explains(options.size) != Some(false)))
 }
 
 /// The models that were given; else the nominal robot, and that with its first errors fitted.
@@ -90,7 +90,7 @@ fn models(arguments: &Arguments, data: &Dataset, level: Level) -> anyhow::Result
     if arguments.model.is_empty() {
         let (name, fitted) = match level {
             Level::Ends => ("E_d and E_b, fitted to these runs", fit_to_returns(data, &base_model(robot)?)?.0),
-            Level::Tracks => ("E_d, E_b and E_s, fitted to these runs", fit(data, &first_model(data)?)?.model),
+            Level::Tracks => ("E_d, E_b, E_s fitted", fit(data, &first_model(data)?)?.model),
         };
         return Ok(vec![("nominal robot".into(), Model::new(robot)), (name.into(), fitted)]);
     }

@@ -4,8 +4,8 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use serde_json::{Value, json};
-use umbmark_core::drive::Robot;
-use umbmark_core::effect::{About, ActsOn, CATALOGUE, find};
+use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::effect::{ActsOn, CATALOGUE, Entry, find};
 use umbmark_core::parameter::{DefaultValue, Parameter};
 
 use crate::Session;
@@ -27,12 +27,12 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         Some(name) => {
             let entry = find(name)?;
             let signature = Signature::of(entry)?;
-            let mut document = about_json(&entry.about);
+            let mut document = about_json(entry);
             document["picture"] = signature.as_ref().map_or(Value::Null, Signature::json);
-            (document, explanation(&entry.about, signature.as_ref()))
+            (document, explanation(entry, signature.as_ref()))
         }
         None => {
-            let entries: Vec<Value> = CATALOGUE.iter().map(|entry| about_json(&entry.about)).collect();
+            let entries: Vec<Value> = CATALOGUE.iter().map(about_json).collect();
             (json!({ "effects": entries, "version": umbmark_core::VERSION }), list())
         }
     };
@@ -82,11 +82,13 @@ fn own() -> String {
     text
 }
 
-fn explanation(about: &About, signature: Option<&Signature>) -> String {
+fn explanation(entry: &Entry, signature: Option<&Signature>) -> String {
+    let (about, drives) = (&entry.about, entry.drives.to_string());
     let mut text = format!("{}: {}\n\n", about.name, about.title);
     let confused = if about.confused_with.is_empty() { "nothing".to_owned() } else { about.confused_with.join(", ") };
     for (head, body) in [
         ("acts on", about.acts_on.name()),
+        ("drives", &drives),
         ("equation", about.equation),
         ("physics", about.physics),
         ("signature", about.signature),
@@ -130,12 +132,14 @@ fn range(parameter: &Parameter) -> String {
     format!("{}; {default}{usual}; --{}", parameter.allowed(), parameter.flag)
 }
 
-fn about_json(about: &About) -> Value {
+fn about_json(entry: &Entry) -> Value {
+    let about = &entry.about;
     let parameters: Vec<Value> = about.parameters.iter().map(parameter_json).collect();
     json!({
         "name": about.name,
         "title": about.title,
         "acts_on": about.acts_on.name(),
+        "drives": entry.drives.each().map(Kind::name).collect::<Vec<_>>(),
         "equation": about.equation,
         "physics": about.physics,
         "signature": about.signature,

@@ -9,52 +9,18 @@ use std::time::Instant;
 use anyhow::Context;
 use serde_json::{Map, Value, json};
 use umbmark_core::calibrate::{Angles, Correction};
-use umbmark_core::engine::Update;
-use umbmark_core::monte_carlo::{Distribution, Draw, Ensemble, Metric, Row, Shard, Statistics, Study};
+use umbmark_core::monte_carlo::{Draw, Ensemble, Metric, Row, Shard, Statistics, Study};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{Direction, SQUARE};
-use umbmark_core::preset::Published;
 use umbmark_core::score::summarise;
-use umbmark_core::simulate::{Odometry, Phase};
 
 use crate::checkpoint::Checkpoint;
+use crate::distribution_text::{distribution_json, distribution_words};
 use crate::effect_flags::number;
 use crate::ensemble_report::{Description, Report};
-use crate::setup::{Setup, SetupFlags};
+use crate::study_flags::{Known, StudyFlags};
+use crate::sweep::{self, SweepFlags};
 use crate::{Session, files};
-
-/// How the robot computes its pose.
-#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
-enum OdometryKind {
-    /// At the encoder rate where there is one, else at every tick
-    Robot,
-    /// At every tick
-    Ticks,
-    /// At every tick, one by one: the slow reference
-    TickByTick,
-    /// From the wheel angles themselves, without quantisation
-    Continuous,
-}
-
-/// The update of sampled odometry.
-#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
-enum UpdateKind {
-    /// Exact circular arc
-    Arc,
-    /// Straight step at the mean heading
-    Midpoint,
-    /// Straight step at the old heading
-    Euler,
-}
-
-/// Where the wheels rest within a tick.
-#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
-enum PhaseKind {
-    /// Anywhere
-    Random,
-    /// On the edge of a tick
-    Edge,
-}
 
 /// Arguments of `mc`.
 #[derive(Debug, clap::Args)]
@@ -66,22 +32,6 @@ pub struct Arguments {
     /// Stop as soon as the standard error of the mean E_max,sys is this small, as in 0.1mm
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     until_std_error: Option<f64>,
-
-    /// Runs in each direction
-    #[arg(long, default_value_t = 5, value_name = "N")]
-    runs: usize,
-
-    /// How the robot computes its pose
-    #[arg(long, value_enum, default_value_t = OdometryKind::Robot, value_name = "KIND")]
-    odometry: OdometryKind,
-
-    /// How sampled odometry follows the counts
-    #[arg(long, value_enum, default_value_t = UpdateKind::Arc, value_name = "RULE")]
-    update: UpdateKind,
-
-    /// Where within a tick the wheels come to rest
-    #[arg(long, value_enum, default_value_t = PhaseKind::Random, value_name = "WHERE")]
-    phase: PhaseKind,
 
     /// Write the metrics of every trial to a CSV file
     #[arg(long, value_name = "trials.csv")]
@@ -110,33 +60,13 @@ pub struct Arguments {
     shard: Shard,
 
     #[command(flatten)]
-    setup: SetupFlags,
+    sweep: SweepFlags,
+
+    #[command(flatten)]
+    study: StudyFlags,
 }
 
 impl Arguments {
-    fn study(&self, seed: u64) -> anyhow::Result<(Study, Known)> {
-        let Setup { path, model, draws, sources, assumed, published } = self.setup.resolve()?;
-        let robot = model.robot();
-        let update = match self.update {
-            UpdateKind::Arc => Update::Arc,
-            UpdateKind::Midpoint => Update::Midpoint,
-            UpdateKind::Euler => Update::Euler,
-        };
-        let odometry = match (self.odometry, robot.encoder.rate()) {
-            (OdometryKind::Robot, Some(rate)) => Odometry::Sampled { rate, update },
-            (OdometryKind::Robot, None) | (OdometryKind::Ticks, _) => Odometry::EveryTick,
-            (OdometryKind::TickByTick, _) => Odometry::EveryTickOneByOne,
-            (OdometryKind::Continuous, _) => Odometry::Continuous,
-        };
-        let phase = match self.phase {
-            PhaseKind::Random => Phase::Random,
-            PhaseKind::Edge => Phase::Edge,
-        };
-        let runs = self.setup.direction.runs(self.runs);
-        let study = Study { draws, odometry, path, phase, runs, ..Study::new(model, self.trials(), seed) };
-        Ok((study, Known { sources, assumed, published }))
-    }
-
     fn trials(&self) -> u64 {
         self.trials.unwrap_or(if self.until_std_error.is_some() { MOST_UNTIL } else { 1000 })
     }
@@ -176,7 +106,7 @@ impl Arguments {
 const MOST_UNTIL: u64 = 1_000_000_000;
 
 /// A length with its unit: m, mm or um.
-fn length(text: &str) -> Result<f64, String> {
+pub(super) fn length(text: &str) -> Result<f64, String> {
     let wrong = || "write a length with its unit, as in 0.1mm, 100um or 1e-4m".to_owned();
     let units = [("mm", 1e-3), ("um", 1e-6), ("m", 1.0)];
     let (number, factor) =
@@ -186,7 +116,16 @@ fn length(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let (study, known) = arguments.study(session.seed())?;
+    let (study, known) = arguments.study.resolve(arguments.trials(), session.seed())?;
+    if arguments.sweep.is_asked_for() {
+        let files = sweep::Files {
+            checkpoint: arguments.checkpoint.as_deref(),
+            every: arguments.checkpoint_every,
+            resume: arguments.resume,
+            force: arguments.force,
+        };
+        return sweep::run(&arguments.sweep, &study, &known.assumed, &files, session);
+    }
     let description = describe(&study, &known)?;
     let mut checkpoint = arguments.checkpoint(&study, &description)?;
     let metrics = study.metrics();
@@ -234,7 +173,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if session.json() {
         session.print_json(&report.json())?;
     } else {
-        write!(session.out(), "{}", report.text())?;
+        let text = report.text(session.on_terminal());
+        write!(session.out(), "{text}")?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -272,20 +212,6 @@ impl TrialsFile {
     }
 }
 
-fn distribution_json(draw: &Draw) -> Value {
-    match draw.distribution() {
-        Distribution::Normal { mean, sd } => json!({ "mean": mean, "sd": sd }),
-        Distribution::Uniform { min, max } => json!({ "min": min, "max": max }),
-    }
-}
-
-/// What is to be said of a study beside its numbers.
-struct Known {
-    sources: Vec<String>,
-    assumed: Vec<String>,
-    published: Option<Published>,
-}
-
 /// The study in words and numbers.
 fn describe(study: &Study, known: &Known) -> anyhow::Result<Description> {
     let theory = Theory::of(study)?;
@@ -310,7 +236,10 @@ fn describe(study: &Study, known: &Known) -> anyhow::Result<Description> {
         let mut words = Vec::new();
         for (parameter, value) in part.effect.parameters().iter().zip(&part.values) {
             let draw = drawn(name, parameter);
-            entry.insert(parameter.name.to_owned(), draw.map_or(json!(value), distribution_json));
+            entry.insert(
+                parameter.name.to_owned(),
+                draw.map_or(json!(value), |draw| distribution_json(&draw.distribution())),
+            );
             words.push(format!("{} {}", parameter.name, value_text(parameter, *value, draw)));
         }
         effects.push(Value::Object(entry));
@@ -338,8 +267,7 @@ fn describe(study: &Study, known: &Known) -> anyhow::Result<Description> {
 fn value_text(parameter: &Parameter, value: f64, draw: Option<&Draw>) -> String {
     match (parameter.choices.get(value as usize), draw.map(Draw::distribution)) {
         (Some(word), _) => (*word).to_owned(),
-        (None, Some(Distribution::Normal { mean, sd })) => format!("{mean} ± {sd}"),
-        (None, Some(Distribution::Uniform { min, max })) => format!("{min} .. {max}"),
+        (None, Some(distribution)) => distribution_words(&distribution),
         (None, None) => value.to_string(),
     }
 }

@@ -47,7 +47,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if session.json() {
         session.print_json(&report.json())?;
     } else {
-        write!(session.out(), "{}", report.text())?;
+        let text = report.text(session.on_terminal());
+        write!(session.out(), "{text}")?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -6,10 +6,16 @@ use std::process::ExitCode;
 use serde_json::{Map, Value, json};
 use umbmark_core::score::{CentroidInterval, Cluster, Convention, Score, score};
 use umbmark_core::stats::Interval;
+use umbmark_plot::kind::of_score;
+use umbmark_plot::render::terminal::plan;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::table::table;
+
+/// Characters of the figure, across and down.
+const WIDE: usize = 64;
+const HIGH: usize = 24;
 
 /// How Eq. 5 joins both directions.
 #[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
@@ -50,7 +56,9 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     for warning in &score.warnings {
         session.message("warning", warning);
     }
-    write!(session.out(), "{}", text(&score, convention))?;
+    let figure = of_score(&data, &score, [None, None]);
+    let drawn: String = figure.panels.iter().map(|panel| plan(panel, session.look(), WIDE, HIGH)).collect();
+    write!(session.out(), "{}\n{drawn}", text(&score, convention))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,6 +1,6 @@
 //! The three ratios that a calibration finds, and what they make of a robot.
 
-use crate::drive::{DifferentialDrive, DriveError, Robot};
+use crate::drive::{DriveError, Robot};
 use crate::effect::{Model, ModelError};
 
 /// One of the ratios.
@@ -82,13 +82,7 @@ impl Correction {
     /// # Ok::<(), umbmark_core::drive::DriveError>(())
     /// ```
     pub fn apply(&self, robot: &Robot) -> Result<Robot, DriveError> {
-        let (left, right) = self.wheel_factors();
-        let drive = DifferentialDrive::new(
-            robot.drive.wheelbase() * self.e_b,
-            robot.drive.wheel_diameter_left() * left,
-            robot.drive.wheel_diameter_right() * right,
-        )?;
-        Ok(Robot { drive, ..robot.clone() })
+        Ok(Robot { drive: robot.drive.corrected(self.values())?, ..robot.clone() })
     }
 
     /// The model in which the robot truly differs from nominal by this correction.
@@ -111,6 +105,7 @@ impl Correction {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drive::DifferentialDrive;
 
     #[test]
     fn what_is_left_after_a_correction_completes_it() {

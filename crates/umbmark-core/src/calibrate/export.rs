@@ -117,7 +117,7 @@ mod tests {
     fn the_robot_file_reads_back_as_the_corrected_robot_with_its_path() {
         let robot = Robot {
             name: "a \"quoted\" \\ robot".into(),
-            drive: DifferentialDrive::new(0.34, 0.151, 0.149).unwrap(),
+            drive: DifferentialDrive::new(0.34, 0.151, 0.149).unwrap().into(),
             encoder: Encoder::new(2796.8, Some(50.0), Some(16)).unwrap(),
         };
         let speed = SpeedProfile::new(0.3, 0.4, 0.0).unwrap();
@@ -153,7 +153,7 @@ mod tests {
         assert!((value("left_wheel_radius_multiplier") - 2.0 / 2.00121).abs() < 1e-9);
         assert!((value("right_wheel_radius_multiplier") - 2.0 / (1.0 / 1.00121 + 1.0)).abs() < 1e-9);
         assert!((value("wheel_separation_multiplier") - 337.2 / 340.0).abs() < 1e-9);
-        let unequal = Robot { drive: DifferentialDrive::new(1.0, 0.2, 0.1).unwrap(), ..Robot::labmate() };
+        let unequal = Robot { drive: DifferentialDrive::new(1.0, 0.2, 0.1).unwrap().into(), ..Robot::labmate() };
         let yaml = ros2_control(&unequal, &Correction::NONE, "base");
         assert!(
             yaml.contains("left_wheel_radius_multiplier: 1.333333333\n") && yaml.contains("wheel_separation: 1.0\n")

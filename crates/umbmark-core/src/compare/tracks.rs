@@ -2,8 +2,8 @@
 //!
 //! The error of each step between two measurements is taken as the robot sees it: the measured motion as seen from where the
 //! predicted one ends. So an error that was made earlier does not count again. Steps are summed by move, direction, speed and
-//! run, and in bins of everything that an error may depend on. All intervals and tests rest on the scatter from run to run and
-//! trust no noise model.
+//! run, and in bins of everything that an error may depend on. All intervals and tests rest on the scatter from run to run, and on
+//! what whole ticks of the counters leave open; they trust no noise model.
 
 mod covariate;
 mod followed;
@@ -92,9 +92,9 @@ pub struct TrackComparison {
 }
 
 impl TracksJudged {
-    /// Whether nothing speaks against the model at this size of all tests together.
-    pub fn explains(&self, size: f64) -> bool {
-        self.p.is_none_or(|p| p >= size)
+    /// Whether nothing speaks against the model at this size of all tests together; `None` where nothing could.
+    pub fn explains(&self, size: f64) -> Option<bool> {
+        self.p.map(|p| p >= size)
     }
 }
 
@@ -133,8 +133,8 @@ fn judge(name: &str, data: &Dataset, observed: &Observed, model: &Model, options
     let chain = model.chain();
     let runs: Vec<Followed> = observed.runs.iter().map(|run| Followed::new(run, &chain)).collect();
     let confidence = 1.0 - options.size;
-    let overall = rates::overall(&runs, confidence);
-    let against = rates::against(&runs, &overall, confidence);
+    let overall = rates::overall(&runs, &observed.robot, confidence);
+    let against = rates::against(&runs, &overall, &observed.robot, confidence);
     let tests: Vec<f64> = overall.iter().map(|o| o.p).chain(against.iter().map(|a| a.p)).flatten().collect();
     let smallest = tests.iter().copied().reduce(f64::min);
     let mut judged = TracksJudged {

@@ -10,7 +10,7 @@ use super::stale::drop_stale;
 use super::start_frame::move_to_start;
 use super::synchronise::attach;
 use super::{Dataset, Run, RunClock, RunTopics, TickLog};
-use crate::drive::Robot;
+use crate::drive::{Kind, Robot};
 use crate::effect::TestKind;
 use crate::path::{Direction, Path};
 use std::collections::BTreeMap;
@@ -61,6 +61,11 @@ impl Assembly {
             self.push(Run { name, number, direction, test, log: None, returned }, file, row.line)?;
         }
         Ok(())
+    }
+
+    /// The robot's drive; differential where there is no robot.
+    pub fn kind(&self) -> Kind {
+        self.robot.as_ref().map_or(Kind::Differential, |robot| robot.drive.kind())
     }
 
     /// Adds a log whose file is called `stem`, with the poses that a tracking system saw of it, where there are some.

@@ -225,17 +225,6 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// The error of a value that is for a later version.
-    pub fn not_yet(&self, remedy: String) -> DatasetError {
-        DatasetError::NotYet {
-            file: self.source.file.to_owned(),
-            line: self.line(),
-            key: self.key.to_owned(),
-            value: self.shown(),
-            remedy,
-        }
-    }
-
     /// The value as it stands in the file, shortened.
     fn shown(&self) -> String {
         let raw = self.source.text.get(self.value.span()).unwrap_or("").trim();

@@ -120,7 +120,7 @@ fn tracks_beside(runs: &Path) -> Result<BTreeMap<String, PathBuf>, DatasetError>
 
 fn add_log(assembly: &mut Assembly, file: &Path, track: Option<PathBuf>) -> Result<(), DatasetError> {
     let name = file.display().to_string();
-    let recording = parse_tick_log(&name, &read_text(file)?, &mut assembly.warnings)?;
+    let recording = parse_tick_log(&name, &read_text(file)?, assembly.kind(), &mut assembly.warnings)?;
     let tracked = track.map(|track| read_track(&track, &mut assembly.warnings)).transpose()?;
     let stem = stem(file);
     assembly.add_log(recording, tracked, &stem, label::parse(&stem), EndPose::Standing)

@@ -22,6 +22,7 @@ mod odometer;
 mod problem;
 mod protobuf;
 mod save;
+mod scene;
 mod schema;
 mod survey;
 mod topics;

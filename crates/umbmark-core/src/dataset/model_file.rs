@@ -1,5 +1,6 @@
 //! `model.toml`: effects with their values, fixed or drawn.
 
+use super::distribution_table::{DISTRIBUTIONS, read_distribution};
 use super::document::{Entry, Source, Table};
 use super::error::{DatasetError, did_you_mean};
 use super::text::read_text;
@@ -10,7 +11,6 @@ use crate::parameter::Parameter;
 
 /// Keys of an effect of the user's own, those first that no other has.
 const OWN: [&str; 5] = ["acts_on", "formula", "parameters", "name", "free"];
-const FORMS: &str = "a number, { mean = .., sd = .. } or { min = .., max = .. }";
 
 /// The effects of a `model.toml` on a robot, and those of their parameters that are drawn from a distribution.
 ///
@@ -78,7 +78,7 @@ fn add(model: &mut Model, draws: &mut Vec<Draw>, effect: &Effect, table: &Table)
         values.push((parameter.name, value));
         if let Some(distribution) = distribution {
             let draw = Draw::new(about.name, parameter.name, distribution);
-            draws.push(draw.map_err(|error| entry.wrong(FORMS, &error.to_string()))?);
+            draws.push(draw.map_err(|error| entry.wrong(DISTRIBUTIONS, &error.to_string()))?);
         }
     }
     let free = table.get("free").map_or(Ok(false), |entry| entry.flag())?;
@@ -141,30 +141,11 @@ fn read_value(entry: &Entry, parameter: &Parameter) -> Result<(f64, Option<Distr
     if !entry.is_table() {
         return Ok((entry.number(parameter)?, None));
     }
-    let table = entry.table(entry.key.to_owned())?;
-    let bounded = |key: &str| -> Result<f64, DatasetError> {
-        let value = table.need(key, FORMS)?;
-        let wrong = || value.wrong_value(format!("{key} of {}", parameter.name), &parameter.allowed(), "");
-        let number = value.any_number().ok_or_else(wrong)?;
-        parameter.check(number).map_err(|_| wrong())
-    };
     if !parameter.choices.is_empty() {
         return Err(entry.wrong(&parameter.allowed(), "it cannot be drawn"));
     }
-    if table.get("mean").is_some() || table.get("sd").is_some() {
-        table.only(&["mean", "sd"])?;
-        let (mean, sd) = (bounded("mean")?, table.need("sd", FORMS)?);
-        let size = sd.any_number().filter(|sd| *sd >= 0.0 && sd.is_finite());
-        let name = format!("sd of {}", parameter.name);
-        let size = size.ok_or_else(|| sd.wrong_value(name, "finite and 0 or more", ""))?;
-        return Ok((mean, Some(Distribution::Normal { mean, sd: size })));
-    }
-    table.only(&["min", "max"])?;
-    let (min, max) = (bounded("min")?, bounded("max")?);
-    if min > max {
-        return Err(entry.wrong("a range with min below max", "exchange them"));
-    }
-    Ok((0.5 * (min + max), Some(Distribution::Uniform { min, max })))
+    let distribution = read_distribution(&entry.table(entry.key.to_owned())?, parameter, &[])?;
+    Ok((distribution.centre(), Some(distribution)))
 }
 
 #[cfg(test)]
@@ -295,7 +276,7 @@ mod tests {
             ("name = \"wheelbase\"\nfree = 1", "3: free must be true or false, got 1"),
             (
                 "name = \"wheelbase\"\ne_b = { mean = 1.0 }",
-                "3: e_b has no sd; add a number, { mean = .., sd = .. } or { min = .., max = .. }",
+                "3: e_b has no sd; add mean and sd, min and max, min, mode and max, or min, max and scale = \"log\"",
             ),
             (
                 "name = \"wheelbase\"\ne_b = { mean = 1.0, sd = -1 }",
@@ -304,7 +285,7 @@ mod tests {
             ("name = \"wheelbase\"\ne_b = { mean = 9.0, sd = 1 }", "3: mean of e_b must be between 0.2 and 5, got 9.0"),
             (
                 "name = \"wheelbase\"\ne_b = { min = 1.1, max = 1.0 }",
-                "3: e_b must be a range with min below max, got { min = 1.1, max = 1.0 }; exchange them",
+                "3: max of e_b must be min (1.1) or more, got 1.0; exchange them",
             ),
             (
                 "name = \"placed_bumps\"\nprofile = \"cabel\"",

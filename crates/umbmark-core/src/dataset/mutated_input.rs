@@ -110,7 +110,8 @@ fn damaged_tick_logs() {
     for (purpose, bits) in [(2, Some(16)), (3, None)] {
         let good = if bits.is_some() { good.to_owned() } else { good.replace("655", "") };
         survive(&good, purpose, |text| {
-            tick_log::parse_tick_log("file", text, &mut Vec::new()).is_ok_and(|recording| finished(recording, bits))
+            tick_log::parse_tick_log("file", text, crate::drive::Kind::Differential, &mut Vec::new())
+                .is_ok_and(|recording| finished(recording, bits))
         });
     }
 }
@@ -188,7 +189,8 @@ fn damaged_counters_with_time_stamps_out_of_order() {
     let reset = "t_s,ticks_left,ticks_right\n0,1000,1000\n0.01,1003,1003\n0.03,3,2\n0.02,0,0\n0.04,6,6\n0.04,7,6\n";
     for (purpose, bits) in [(12, Some(16)), (13, None)] {
         survive(reset, purpose, |text| {
-            tick_log::parse_tick_log("file", text, &mut Vec::new()).is_ok_and(|recording| finished(recording, bits))
+            tick_log::parse_tick_log("file", text, crate::drive::Kind::Differential, &mut Vec::new())
+                .is_ok_and(|recording| finished(recording, bits))
         });
     }
 }

@@ -77,7 +77,7 @@ pub(super) fn parse_metadata(file: &str, set: &str, text: &str) -> Result<(Robot
         }
         _ => None,
     };
-    Ok((Robot { name: format!("OptiOdom {set}"), drive, encoder }, path))
+    Ok((Robot { name: format!("OptiOdom {set}"), drive: drive.into(), encoder }, path))
 }
 
 struct Metadata<'a> {

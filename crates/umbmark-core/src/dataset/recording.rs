@@ -4,7 +4,7 @@ mod order;
 
 use super::error::DatasetError;
 use super::{Mended, ReferencePose, TickLog};
-use crate::drive::{Robot, roll_over};
+use crate::drive::{Kind, Robot, roll_over};
 
 /// No wheel of a robot rolls faster \[m/s\].
 const FASTEST: f64 = 100.0;
@@ -59,6 +59,7 @@ impl Recording {
                 self.file, self.lines[first], mended.resets
             ));
         }
+        let [left, right] = robot.map_or([left.clone(), right.clone()], |robot| robot.axle_ticks(&[left, right]));
         Ok(TickLog { time: self.time, left, right, reference: self.reference, mended })
     }
 
@@ -82,10 +83,17 @@ impl Recording {
         reset_rows: &mut Vec<usize>,
     ) -> Result<Vec<f64>, DatasetError> {
         let readings = &self.counts[wheel];
+        if wheel == 1 && robot.is_some_and(|robot| robot.drive.kind() == Kind::Ackermann) {
+            // An angle, and no sum of steps.
+            let signed = |reading: &f64| bits.map_or(*reading, |bits| roll_over(0, *reading as i64, bits) as f64);
+            return Ok(readings.iter().map(signed).collect());
+        }
         if let Some(at) = bits.and(readings.iter().position(|reading| reading.fract() != 0.0)) {
             return Err(self.fractional(wheel, at));
         }
         let usual = self.usual_rate(wheel);
+        // A steering counter has no speed over ground.
+        let robot = robot.filter(|robot| wheel == 0 || robot.drive.kind() == Kind::Differential);
         let fastest = robot.map_or(f64::INFINITY, |robot| FASTEST / metres_per_tick(robot, wheel));
         let (mut total, mut before_reset, mut origin) = (0.0, 0.0, readings.first().copied().unwrap_or(0.0));
         let mut ticks = vec![0.0; readings.len()];

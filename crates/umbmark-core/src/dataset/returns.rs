@@ -10,8 +10,8 @@ use crate::geometry::{Pose2, wrap};
 use crate::path::Direction;
 use Quantity::{Angle, Bare, Length};
 
-/// The header of messages and of the file that `init` writes.
-pub(super) const HEADER: &str = "direction,run,x_abs_m,y_abs_m,theta_abs_rad,x_calc_m,y_calc_m,theta_calc_rad";
+/// The columns of `returns.csv` as `init` writes it, and as messages quote it.
+pub const HEADER: &str = "direction,run,x_abs_m,y_abs_m,theta_abs_rad,x_calc_m,y_calc_m,theta_calc_rad";
 
 /// A row of the file.
 #[derive(Clone, Copy, Debug)]

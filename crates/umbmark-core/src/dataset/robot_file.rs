@@ -3,7 +3,7 @@
 use super::document::{Entry, Source, Table};
 use super::error::{DatasetError, did_you_mean};
 use super::text::read_text;
-use crate::drive::{DifferentialDrive, Encoder, MAX_COUNTER_BITS, Robot};
+use crate::drive::{DifferentialDrive, Drive, DriveError, Encoder, Kind, MAX_COUNTER_BITS, Robot};
 use crate::parameter::{DefaultValue, Parameter};
 use crate::path::{Path, PathError, SHAPES, Shape, SpeedProfile, WAYPOINTS};
 
@@ -51,35 +51,51 @@ pub fn parse_robot(file: &str, text: &str) -> Result<(Robot, Option<Path>), Data
 }
 
 fn read_robot_table(table: &Table) -> Result<Robot, DatasetError> {
+    let kind = table.get("drive").map_or(Ok(Kind::Differential), |drive| read_kind(&drive))?;
     let mut keys = vec!["name", "drive"];
-    keys.extend(WHEELBASE_NAMES);
-    keys.extend([DIAMETER, DIAMETER_LEFT, DIAMETER_RIGHT, RADIUS, TICKS, RATE, BITS].map(|p| p.name));
-    table.only(&keys)?;
-    if let Some(drive) = table.get("drive") {
-        check_drive(&drive)?;
+    if kind == Kind::Differential {
+        keys.extend(WHEELBASE_NAMES);
+        keys.extend([DIAMETER, DIAMETER_LEFT, DIAMETER_RIGHT, RADIUS].map(|p| p.name));
+    } else {
+        keys.extend(kind.parameters().iter().map(|p| p.name));
     }
+    keys.extend([TICKS, RATE, BITS].map(|p| p.name));
+    table.only(&keys)?;
     let name = table.get("name").map(|entry| entry.word("text")).transpose()?.unwrap_or("robot");
-    let wheelbase =
-        table.one_of(&WHEELBASE_NAMES)?.ok_or_else(|| table.missing(WHEELBASE.name, "e.g. wheelbase_m = 0.340"))?;
-    let wheelbase = wheelbase.number(&WHEELBASE)?;
-    let (left, right) = read_wheels(table)?;
-    let ticks = table.number(&TICKS)?;
-    let encoder = Encoder::new(ticks, read_rate(table)?, read_bits(table)?);
-    let drive = DifferentialDrive::new(wheelbase, left, right);
+    let drive = match kind {
+        Kind::Differential => read_differential(table)?,
+        _ => Drive::from_values(kind, &read_numbers(table, kind.parameters())?),
+    };
+    let encoder = Encoder::new(table.number(&TICKS)?, read_rate(table)?, read_bits(table)?);
     match (drive, encoder) {
         (Ok(drive), Ok(encoder)) => Ok(Robot { name: name.to_owned(), drive, encoder }),
         (Err(error), _) | (_, Err(error)) => Err(table.missing("possible values", &error.to_string())),
     }
 }
 
-fn check_drive(drive: &Entry) -> Result<(), DatasetError> {
-    const DRIVES: [&str; 4] = ["differential", "synchro", "clapper", "ackermann"];
-    let allowed = format!("one of {}", DRIVES.join(", "));
-    match drive.word(&allowed)? {
-        "differential" => Ok(()),
-        word if DRIVES.contains(&word) => Err(drive.not_yet("drive = \"differential\" is".into())),
-        word => Err(drive.wrong(&allowed, &did_you_mean(word, DRIVES))),
-    }
+fn read_differential(table: &Table) -> Result<Result<Drive, DriveError>, DatasetError> {
+    let wheelbase =
+        table.one_of(&WHEELBASE_NAMES)?.ok_or_else(|| table.missing(WHEELBASE.name, "e.g. wheelbase_m = 0.340"))?;
+    let wheelbase = wheelbase.number(&WHEELBASE)?;
+    let (left, right) = read_wheels(table)?;
+    Ok(DifferentialDrive::new(wheelbase, left, right).map(Drive::from))
+}
+
+fn read_kind(drive: &Entry) -> Result<Kind, DatasetError> {
+    let names = Kind::ALL.map(Kind::name);
+    let allowed = format!("one of {}", names.join(", "));
+    let word = drive.word(&allowed)?;
+    let kind = Kind::ALL.into_iter().find(|kind| kind.name() == word);
+    kind.ok_or_else(|| drive.wrong(&allowed, &did_you_mean(word, names)))
+}
+
+/// The numbers of a drive; those that do nothing at 0 may be left out.
+fn read_numbers(table: &Table, parameters: &[Parameter]) -> Result<Vec<f64>, DatasetError> {
+    let read = |p: &Parameter| match (table.get(p.name), p.default) {
+        (None, DefaultValue::Value(0.0)) => Ok(0.0),
+        _ => table.number(p),
+    };
+    parameters.iter().map(read).collect()
 }
 
 /// Left and right diameter \[m\].

@@ -1,7 +1,7 @@
 //! `robot.toml` as text.
 
 use super::robot_file::is_waypoints;
-use crate::drive::Robot;
+use crate::drive::{Kind, Robot};
 use crate::path::{Path, SpeedProfile};
 use std::fmt::Write;
 
@@ -17,15 +17,8 @@ pub fn robot_text(robot: &Robot, path: Option<&Path>) -> String {
     let mut text = String::from("[robot]\n");
     let name = toml::Value::from(robot.name.as_str()).to_string();
     line(&mut text, "name", &name, "");
-    line(&mut text, "drive", "\"differential\"", "");
-    line(&mut text, "wheelbase_m", &number(robot.drive.wheelbase()), "b: distance of the wheels' contact points");
-    let (left, right) = (robot.drive.wheel_diameter_left(), robot.drive.wheel_diameter_right());
-    if left == right {
-        line(&mut text, "wheel_diameter_m", &number(left), "both wheels");
-    } else {
-        line(&mut text, "wheel_diameter_left_m", &number(left), "");
-        line(&mut text, "wheel_diameter_right_m", &number(right), "");
-    }
+    line(&mut text, "drive", &format!("\"{}\"", robot.drive.kind().name()), "");
+    push_lengths(&mut text, robot);
     let encoder = &robot.encoder;
     let ticks = number(encoder.ticks_per_revolution());
     line(&mut text, "ticks_per_revolution", &ticks, "of the wheel, after gearing and quadrature");
@@ -39,6 +32,24 @@ pub fn robot_text(robot: &Robot, path: Option<&Path>) -> String {
         push_path(&mut text, path);
     }
     text
+}
+
+fn push_lengths(text: &mut String, robot: &Robot) {
+    if robot.drive.kind() != Kind::Differential {
+        for (parameter, value) in robot.drive.kind().parameters().iter().zip(robot.drive.values()) {
+            let word = parameter.choices.get(value as usize).map(|word| format!("\"{word}\""));
+            line(text, parameter.name, &word.unwrap_or_else(|| number(value)), parameter.meaning);
+        }
+        return;
+    }
+    line(text, "wheelbase_m", &number(robot.drive.wheelbase()), "b: distance of the wheels' contact points");
+    let (left, right) = (robot.drive.wheel_diameter_left(), robot.drive.wheel_diameter_right());
+    if left == right {
+        line(text, "wheel_diameter_m", &number(left), "both wheels");
+    } else {
+        line(text, "wheel_diameter_left_m", &number(left), "");
+        line(text, "wheel_diameter_right_m", &number(right), "");
+    }
 }
 
 fn push_path(text: &mut String, path: &Path) {
@@ -67,6 +78,6 @@ fn line(text: &mut String, key: &str, value: &str, comment: &str) {
     // Writing to a string does not fail.
     let _ = match comment {
         "" => writeln!(text, "{entry}"),
-        _ => writeln!(text, "{entry:<34}# {comment}"),
+        _ => writeln!(text, "{entry:<33} # {comment}"),
     };
 }

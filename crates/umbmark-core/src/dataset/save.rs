@@ -32,7 +32,7 @@ pub(super) struct LogFormat {
 const CSV: LogFormat = LogFormat { ending: "csv", bytes: csv, same: TickLog::eq };
 
 fn csv(data: &Dataset, _: &Run, log: &TickLog) -> Result<Vec<u8>, DatasetError> {
-    Ok(tick_log_text(log, &data.nominal_robot()?.encoder).into_bytes())
+    Ok(tick_log_text(log, data.nominal_robot()?).into_bytes())
 }
 
 impl Dataset {

@@ -1,11 +1,13 @@
 //! Returns and tick logs as text, in the shortest form that reads back to the last bit.
 
-use super::tick_log::HEADER;
 use super::{Run, TickLog};
-use crate::drive::Encoder;
+use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::path::Direction;
 use std::fmt::Write;
+
+/// The columns of the absolute poses.
+const REFERENCE: &str = ",x_ref_m,y_ref_m,theta_ref_rad";
 
 /// `returns.csv` of the runs whose return error is known; nothing where there is none.
 pub(super) fn returns_text(runs: &[Run]) -> Option<String> {
@@ -35,15 +37,17 @@ pub(super) fn returns_text(runs: &[Run]) -> Option<String> {
 
 /// `runs/*.csv` of a log whose references belong to different samples, in their order; counts as the encoder's counter
 /// shows them, rolled over where it does.
-pub(super) fn tick_log_text(log: &TickLog, encoder: &Encoder) -> String {
+pub(super) fn tick_log_text(log: &TickLog, robot: &Robot) -> String {
+    let (encoder, kind) = (&robot.encoder, robot.drive.kind());
+    let [first, second] = robot.counters([&log.left, &log.right]);
     let shown = |ticks: f64| encoder.reading(ticks.floor() as i64) as f64 + (ticks - ticks.floor());
     let mut text = String::with_capacity(40 * log.time.len());
     let referenced = !log.reference.is_empty();
-    text.push_str(if referenced { HEADER } else { "t_s,ticks_left,ticks_right" });
-    text.push('\n');
+    let [a, b] = kind.counters();
+    let _ = writeln!(text, "t_s,ticks_{a},ticks_{b}{}", if referenced { REFERENCE } else { "" });
     let mut references = log.reference.iter().peekable();
     for (sample, time) in log.time.iter().enumerate() {
-        let _ = write!(text, "{time:?},{},{}", shown(log.left[sample]), shown(log.right[sample]));
+        let _ = write!(text, "{time:?},{},{}", shown(first[sample]), shown(second[sample]));
         match references.next_if(|pose| pose.sample == sample) {
             Some(pose) => {
                 let _ = write!(text, ",{:?},{:?},{}", pose.x, pose.y, cell(pose.heading));

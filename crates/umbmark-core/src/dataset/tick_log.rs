@@ -5,6 +5,7 @@ use super::columns::{Column, Columns, Quantity};
 use super::error::DatasetError;
 use super::recording::Recording;
 use super::sheet::{Row, Sheet};
+use crate::drive::Kind;
 use Quantity::{Angle, Bare, Length, Time};
 
 /// The header of messages and of files that are written.
@@ -17,12 +18,26 @@ pub(super) struct ReferenceColumns {
 }
 
 /// The rows of a log.
-pub(super) fn parse_tick_log(file: &str, text: &str, warnings: &mut Vec<String>) -> Result<Recording, DatasetError> {
+pub(super) fn parse_tick_log(
+    file: &str,
+    text: &str,
+    kind: Kind,
+    warnings: &mut Vec<String>,
+) -> Result<Recording, DatasetError> {
+    if kind == Kind::Clapper {
+        let (file, value) = (file.to_owned(), format!("\"{}\"", kind.name()));
+        let remedy = "logs of its two trucks are not read; give its returns in returns.csv".into();
+        return Err(DatasetError::NotYet { file, line: 1, key: "drive".into(), value, remedy });
+    }
     let sheet = Sheet::open(file, text, HEADER)?;
     let mut columns = Columns::of(&sheet);
-    let needs = "a tick log needs t_s, ticks_left and ticks_right";
-    let time = columns.need("t", Time, needs)?;
-    let counts = [columns.need("ticks_left", Bare, needs)?, columns.need("ticks_right", Bare, needs)?];
+    let [first, second] = kind.counters().map(|counter| format!("ticks_{counter}"));
+    let needs = match kind {
+        Kind::Differential => "a tick log needs t_s, ticks_left and ticks_right".to_owned(),
+        _ => format!("a tick log of a robot with drive = \"{}\" needs t_s, {first} and {second}", kind.name()),
+    };
+    let time = columns.need("t", Time, &needs)?;
+    let counts = [columns.need(&first, Bare, &needs)?, columns.need(&second, Bare, &needs)?];
     let reference = ReferenceColumns::find(&mut columns)?;
     columns.finish(warnings)?;
     let mut recording = Recording {

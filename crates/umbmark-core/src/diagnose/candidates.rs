@@ -1,6 +1,6 @@
 //! The effects that a model may be missing, and what each would do to the poses that it predicts.
 
-use crate::effect::{CATALOGUE, Entry, Model, ModelError};
+use crate::effect::{Entry, Model, ModelError, of_drive};
 use crate::geometry::{Dual, Pose2};
 use crate::parameter::Parameter;
 use crate::replay::Track;
@@ -34,8 +34,9 @@ pub(crate) fn of_tracks<'a>(
     model: &Model,
     tracks: impl Fn(bool) -> Vec<&'a Track> + Sync,
 ) -> Result<Vec<Candidate>, ModelError> {
-    let missing: Vec<&'static Entry> =
-        CATALOGUE.iter().filter(|entry| model.parts().iter().all(|part| part.effect != *entry)).collect();
+    let missing: Vec<&'static Entry> = of_drive(model.robot().drive.kind())
+        .filter(|entry| model.parts().iter().all(|part| part.effect != *entry))
+        .collect();
     let found: Vec<Candidate> =
         missing.into_par_iter().map(|effect| of_effect(effect, model, &tracks)).collect::<Result<_, _>>()?;
     Ok(found.into_iter().filter(|candidate| !candidate.sizes.is_empty()).collect())

@@ -23,11 +23,10 @@ use crate::replay::Track;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
-pub(crate) use asked::Asked;
+pub(crate) use asked::{Asked, Unit};
 pub use contrasts::{Contrast, OnCircle};
 pub(crate) use contrasts::{circle, contrasts};
-#[cfg(test)]
-pub(crate) use family::Family;
+pub(crate) use family::{Family, statistics};
 pub(crate) use fitted::{Fitted, names};
 pub(crate) use moments::Moments;
 pub(crate) use verdict::{contradiction, diagnose, likeliest};

@@ -8,10 +8,11 @@ pub(super) mod design;
 
 use super::ends::{Asked, Ends, Fitted};
 use super::{DiagnoseError, Experiment, Suspect};
-use crate::effect::Entry;
+use crate::effect::{Entry, Model, find};
 use crate::parameter::Parameter;
 use crate::stats::normal_quantile;
 use design::{Design, Noise, designs, todays};
+pub(crate) use design::{MINUTES_A_RUN, minutes};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -21,8 +22,8 @@ const LEAST: f64 = 1.0;
 /// Two effects that the data does not tell apart.
 struct Rivals {
     names: [&'static str; 2],
-    /// What each may be, as an index into the columns of a design; the second is `None` where the model has it already.
-    columns: (usize, Option<usize>),
+    /// The sizes of each, as indices into the columns of a design; none where the model has the effect already.
+    sizes: [Vec<usize>; 2],
 }
 
 /// Experiments for every class of more than one effect, and for every absorbed one; the most telling per minute first.
@@ -33,24 +34,91 @@ pub(super) fn next_experiments(
     ranking: &[Suspect],
 ) -> Result<Vec<Experiment>, DiagnoseError> {
     let (sizes, rivals) = rivals(asked, ranking);
-    let Some(noise) = Noise::of(ends, fitted).filter(|_| !rivals.is_empty()) else { return Ok(Vec::new()) };
-    let today = Columns::of(&todays(ends), fitted, &sizes, &noise)?;
-    let designs = designs(ends);
-    let columns: Vec<Columns> =
-        designs.par_iter().map(|design| Columns::of(design, fitted, &sizes, &noise)).collect::<Result<_, _>>()?;
-    let both: Vec<Columns> = columns.iter().map(|new| today.with(new)).collect();
-    let mut experiments: Vec<Experiment> = Vec::new();
-    for pair in &rivals {
-        let told = designs.iter().zip(&both).map(|(design, columns)| Experiment {
+    if rivals.is_empty() {
+        return Ok(Vec::new());
+    }
+    let Some(offer) = Offer::new(ends, fitted, sizes)? else { return Ok(Vec::new()) };
+    let mut experiments: Vec<Experiment> = rivals.iter().filter_map(|pair| best(offer.told(pair))).collect();
+    experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+    Ok(experiments)
+}
+
+/// Every experiment on offer for telling two effects apart, the most telling per minute first; none where the runs have no
+/// scatter to judge by.
+///
+/// Each effect is taken at its usual size, the hardest of those of its sizes that show at all; what the model has is fitted.
+pub(crate) fn separating(ends: &Ends, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
+    let [first, second] = [find(pair[0])?, find(pair[1])?];
+    let has = |model: &Model, entry: &Entry| model.parts().iter().any(|part| part.effect.name() == entry.about.name);
+    // Of two that are fitted, the first stays.
+    let model = if has(model, first) && has(model, second) { without(model, second)? } else { model.clone() };
+    let fitted = Fitted::new(ends, &model)?;
+    let mut sizes: Vec<SizeOf> = Vec::new();
+    let of_both = [first, second].map(|entry| {
+        let numbers = entry.about.parameters.iter().filter(|p| p.choices.is_empty() && !has(&model, entry));
+        numbers
+            .map(|parameter| {
+                sizes.push((entry, parameter));
+                sizes.len() - 1
+            })
+            .collect::<Vec<usize>>()
+    });
+    let Some(offer) = Offer::new(ends, &fitted, sizes)? else { return Ok(Vec::new()) };
+    // Thresholds and scatters move nothing, and some sizes show nowhere: the effect is known by its others.
+    let shows = |size: &usize| {
+        let alone = |columns: &Columns| columns.beside(*size, &[]) * offer.sizes[*size].1.typical;
+        offer.columns.iter().any(|columns| alone(columns) >= LEAST)
+    };
+    let pair = Rivals {
+        names: [first.about.name, second.about.name],
+        sizes: of_both.map(|numbers| numbers.into_iter().filter(shows).collect()),
+    };
+    let mut experiments = offer.told(&pair);
+    experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+    Ok(experiments)
+}
+
+/// The model without an effect of the catalogue.
+fn without(model: &Model, entry: &Entry) -> Result<Model, DiagnoseError> {
+    let mut rest = Model::new(model.robot());
+    for part in model.parts().iter().filter(|part| part.effect.name() != entry.about.name) {
+        *rest.add(part.effect.name())? = part.clone();
+    }
+    Ok(rest)
+}
+
+/// What every design on offer would show, together with the data.
+struct Offer {
+    designs: Vec<Design>,
+    columns: Vec<Columns>,
+    sizes: Vec<SizeOf>,
+}
+
+impl Offer {
+    fn new(ends: &Ends, fitted: &Fitted, sizes: Vec<SizeOf>) -> Result<Option<Offer>, DiagnoseError> {
+        let Some(noise) = Noise::of(ends, fitted) else { return Ok(None) };
+        let today = Columns::of(&todays(ends), fitted, &sizes, &noise)?;
+        let designs = designs(ends);
+        let together = |design: &Design| Ok(today.with(&Columns::of(design, fitted, &sizes, &noise)?));
+        let columns = designs.par_iter().map(together).collect::<Result<_, DiagnoseError>>()?;
+        Ok(Some(Offer { designs, columns, sizes }))
+    }
+
+    /// Every design, for one pair.
+    fn told(&self, pair: &Rivals) -> Vec<Experiment> {
+        let experiment = |(design, columns): (&Design, &Columns)| Experiment {
             separates: pair.names,
             experiment: design.what.clone(),
             minutes: design.minutes(),
-            sd: columns.distance(pair, &sizes),
-        });
-        experiments.extend(best(told.collect()));
+            sd: columns.distance(pair, &self.sizes),
+        };
+        self.designs.iter().zip(&self.columns).map(experiment).collect()
     }
-    experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
-    Ok(experiments)
+}
+
+/// k \[m^0.5\] of the wheel noise that scatters as the runs do.
+pub(crate) fn wheel_noise(ends: &Ends, fitted: &Fitted) -> Option<f64> {
+    Noise::of(ends, fitted).map(|noise| noise.variance.sqrt())
 }
 
 pub(super) fn worth(experiment: &Experiment) -> f64 {
@@ -88,11 +156,11 @@ fn rivals(asked: &Asked, ranking: &[Suspect]) -> (Vec<SizeOf>, Vec<Rivals>) {
         for other in class.iter().map(|i| &asked.units[*i]).filter(|u| u.effect != best.effect) {
             let second = number(other.effect, other.parameter);
             let names = [best.effect.about.name, other.effect.about.name];
-            pairs.push(Rivals { names, columns: (first, Some(second)) });
+            pairs.push(Rivals { names, sizes: [vec![first], vec![second]] });
         }
     }
     for (effect, parameter, by) in asked.absorbed.iter().copied() {
-        pairs.push(Rivals { names: [by, effect.about.name], columns: (number(effect, parameter), None) });
+        pairs.push(Rivals { names: [by, effect.about.name], sizes: [vec![], vec![number(effect, parameter)]] });
     }
     (sizes, pairs)
 }
@@ -129,16 +197,18 @@ impl Columns {
         Columns { base: joined(&self.base, &other.base), sizes: joined(&self.sizes, &other.sizes) }
     }
 
-    /// Standard deviations between two rivals: the smaller of both ways.
+    /// Standard deviations between two rivals: the least of both ways.
     fn distance(&self, pair: &Rivals, sizes: &[SizeOf]) -> f64 {
-        let apart = |truth: usize, rival: Option<usize>| {
-            let others: Vec<&DVector<f64>> = self.base.iter().chain(rival.map(|k| &self.sizes[k])).collect();
-            residual(&self.sizes[truth], &others) * sizes[truth].1.typical
-        };
-        match pair.columns {
-            (j, None) => apart(j, None),
-            (j, Some(k)) => apart(j, Some(k)).min(apart(k, Some(j))),
-        }
+        let apart = |truth: usize, rivals: &[usize]| self.beside(truth, rivals) * sizes[truth].1.typical;
+        let [a, b] = &pair.sizes;
+        let ways = a.iter().map(|j| apart(*j, b)).chain(b.iter().map(|k| apart(*k, a)));
+        ways.reduce(f64::min).unwrap_or(0.0)
+    }
+
+    /// What a unit of a size leaves beside the model and these sizes.
+    fn beside(&self, size: usize, rivals: &[usize]) -> f64 {
+        let others: Vec<&DVector<f64>> = self.base.iter().chain(rivals.iter().map(|k| &self.sizes[*k])).collect();
+        residual(&self.sizes[size], &others)
     }
 }
 

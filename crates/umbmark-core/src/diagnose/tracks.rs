@@ -21,8 +21,9 @@ mod system;
 
 use super::{
     Dependence, Detectable, DiagnoseError, Diagnosis, Estimate, Experiment, GoodnessOfFit, Identifiability, Level,
-    Options, Suspect, Unseen, Verdict, Why, experiments::worth,
+    Likeness, Options, Suspect, Unseen, Verdict, Why, experiments::worth,
 };
+use crate::diagnose::likeness::correlations;
 use crate::likelihood::{Fitted, Observed};
 use crate::stats::{chi_squared_upper_tail, normal_quantile};
 use examination::Question;
@@ -264,6 +265,8 @@ pub(crate) fn conclude(
         level: Level::Tracks,
         verdict: Verdict::Explained,
         fitted: estimates(&exam.fitted),
+        correlations: correlations(exam.fitted.covariance.as_ref()),
+        likeness: likeness(&exam),
         goodness_of_fit: whole_model(&exam, options),
         ranking: Vec::new(),
         certified: 0,
@@ -331,6 +334,21 @@ fn visibility(exam: &Examination) -> (Vec<Unseen>, Vec<Detectable>) {
         }
     }
     (unseen, detectable)
+}
+
+/// How alike the effects look beside the model, each size at its usual value.
+fn likeness(exam: &Examination) -> Likeness {
+    let products = &exam.system.whole;
+    let projected = Projected::new(products, &exam.free);
+    let mut sizes: Vec<(&'static str, usize, f64)> = Vec::new();
+    for asked in &exam.asked {
+        let Question::Effect(effect, parameters) = &asked.question else { continue };
+        let seen = asked.columns.iter().zip(parameters).filter(|(c, _)| !projected.absorbed(products, **c));
+        sizes.extend(seen.map(|(column, parameter)| (effect.about.name, *column, parameter.typical)));
+    }
+    let names: Vec<&'static str> = sizes.iter().map(|(name, _, _)| *name).collect();
+    let of = |i: usize, j: usize| sizes[i].2 * sizes[j].2 * projected.products[(sizes[i].1, sizes[j].1)];
+    Likeness::new(&names, &nalgebra::DMatrix::from_fn(sizes.len(), sizes.len(), of))
 }
 
 /// The effects of the base that a column is most like.

@@ -2,6 +2,19 @@
 
 use super::{DriveError, positive};
 use crate::geometry::{Displacement2, Real};
+use crate::parameter::{DefaultValue, Parameter};
+
+/// The numbers of a differential drive, in the order of [`DifferentialDrive::new`].
+pub(super) const PARAMETERS: [Parameter; 3] = [
+    length("wheelbase_m", 0.340, (1e-3, 100.0), "distance of the two wheels' contact points"),
+    length("wheel_diameter_left_m", 0.150, (1e-3, 10.0), "diameter of the left wheel"),
+    length("wheel_diameter_right_m", 0.150, (1e-3, 10.0), "diameter of the right wheel"),
+];
+
+const fn length(name: &'static str, typical: f64, bounds: (f64, f64), meaning: &'static str) -> Parameter {
+    let default = DefaultValue::Value(typical);
+    Parameter { name, flag: "", unit: "m", default, typical, bounds, meaning, choices: &[] }
+}
 
 /// Distance rolled by each wheel \[m\], forward positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::words::{deg, size};
 use super::{About, ActsOn, Bump, Effect, Stretch};
-use crate::drive::{Robot, Wheel};
+use crate::drive::{Kind, Kinds, Robot, Wheel};
 use crate::parameter::{DefaultValue, Parameter};
 use crate::random::Stream;
 
@@ -39,6 +39,8 @@ impl Effect for Bumps {
         source: "geometry of a rolling circle; the 0.6 degree of Borenstein & Feng (1995), section 3.3, for 10 mm follows \
                  for wheel radii of 66 to 75 mm",
     };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let lost = lost_travel(p[1], p[2], p[3]);

@@ -2,7 +2,7 @@
 
 use super::floor_slope::{DRIFT, DRIFT_X, DRIFT_Y, carried, drift};
 use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::Robot;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -35,6 +35,8 @@ impl Effect for CarpetNap {
         separated_by: "turning the carpet by 90 degrees: nap turns with it, slope stays. Nothing else does",
         source: "the carpet-drift vector of vacuum robots (patents of iRobot, US 9,223,312 and family); size assumed",
     };
+
+    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("{}.", carried(p))

@@ -41,6 +41,11 @@ pub struct Context<T = f64> {
     pub length: f64,
     /// Sense of the last turn: +1 to the left, -1 to the right, 0 before the first.
     pub last_turn: f64,
+    /// Heading that the odometry believes at the beginning of the piece \[rad\], 0 at START; of a synchro drive, how far its wheels
+    /// are steered from there.
+    pub believed_heading: f64,
+    /// Distance of the steered wheel from the axle \[m\]; see [`Drive::axle_distance`](crate::drive::Drive::axle_distance).
+    pub axle_distance: f64,
     /// Number of the run in the session, from 0.
     pub run: f64,
     /// Sense of the run: +1 counter-clockwise, -1 clockwise, 0 where it has none.
@@ -70,6 +75,8 @@ impl Context {
             since_turn: self.since_turn,
             length: self.length,
             last_turn: self.last_turn,
+            believed_heading: self.believed_heading,
+            axle_distance: self.axle_distance,
             run: self.run,
             direction: self.direction,
             recorded: self.recorded,
@@ -148,6 +155,7 @@ impl Progress {
             run: place.run as f64,
             direction: place.direction.map_or(0.0, Direction::sign),
             recorded,
+            axle_distance: robot.drive.axle_distance(),
             ..Context::default()
         };
         Progress {
@@ -182,6 +190,7 @@ impl Progress {
         now.length = if now.speed == 0.0 { forward.abs() } else { forward * now.speed.signum() };
         now.reversed =
             [0, 1].map(|w| reversal(&mut self.sense[w], &mut self.behind[w], wheels[w], self.least_reversal[w]));
+        now.believed_heading = now.heading;
         let piece = *now;
         now.heading += rotation;
         now.wheel_angle = [0, 1].map(|w| now.wheel_angle[w] + now.wheel_rotation[w]);

@@ -2,7 +2,7 @@
 
 use super::words::{deg, mm, side};
 use super::{About, ActsOn, Context, Effect};
-use crate::drive::Robot;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -31,6 +31,8 @@ impl Effect for Crab {
         separated_by: "from encoder skew, a second speed; from marker yaw, nothing but how the marker is mounted",
         source: "geometry; first-order theory of side-periodic errors on closed paths; size assumed",
     };
+
+    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

@@ -2,7 +2,7 @@
 
 use super::words::mm;
 use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::Robot;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -56,6 +56,8 @@ impl Effect for FloorSlope {
         source: "linear tyre model, its stiffness assumed, and 3 mm per metre as a usual size; Coulomb friction, which points \
                  against the slip whatever its size, 1 mm per radian assumed",
     };
+
+    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let slide = libm::hypot(p[2], p[3]);

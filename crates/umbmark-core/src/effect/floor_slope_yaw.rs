@@ -2,7 +2,7 @@
 
 use super::words::deg;
 use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::Robot;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -37,10 +37,12 @@ impl Effect for FloorSlopeYaw {
                   the robot turns, the more the steeper it is across its way.",
         signature: "Opposite sides bend opposite ways: the heading comes right again and the position does not, off to one \
                     side in ccw and to the other in cw. Bumps on one leg leave nearly the same.",
-        confused_with: &["placed_bumps"],
+        confused_with: &["placed_bumps", "base_yaw"],
         separated_by: "starting the square turned by 90 or 180 degrees; a heading at each corner",
         source: "load transfer on a slope; 1 mrad per metre is assumed",
     };
+
+    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

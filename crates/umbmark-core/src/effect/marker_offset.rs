@@ -2,7 +2,7 @@
 
 use super::words::{either, mm, side};
 use super::{About, ActsOn, Effect, Sight};
-use crate::drive::Robot;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -41,6 +41,8 @@ impl Effect for MarkerOffset {
         separated_by: "one spin: the marker's path is the circle",
         source: "rigid-body geometry; 5 mm is assumed",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

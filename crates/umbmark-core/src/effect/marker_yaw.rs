@@ -2,7 +2,7 @@
 
 use super::words::{deg, side};
 use super::{About, ActsOn, Effect, Sight};
-use crate::drive::Robot;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -31,6 +31,8 @@ impl Effect for MarkerYaw {
         separated_by: "from encoder skew, a second speed; from crab, nothing but how the marker is mounted",
         source: "a gauge freedom of the reference frame; 0.38 degree of it, or of crab, is in the public OptiOdom runs",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("The marker faces {} to the {} of where the robot does.", deg(p[0]), side(p[0]))

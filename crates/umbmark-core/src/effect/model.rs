@@ -1,7 +1,7 @@
 //! A model: a choice of effects with values.
 
 use super::{Context, Entry, Evaluate, Formula, Law, MAX_PARAMETERS, Mean, Sight, find};
-use crate::drive::{DifferentialDrive, Robot, WheelTravel};
+use crate::drive::{DifferentialDrive, Kinds, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
 use crate::parameter::{DefaultValue, Parameter, ParameterError, nearest};
 use std::sync::Arc;
@@ -35,6 +35,16 @@ pub enum ModelError {
         effect: &'static str,
         /// The parameter, its value and its range.
         problem: ParameterError,
+    },
+    /// An effect that the robot's drive cannot have.
+    #[error("{effect} is an effect of other drives ({drives}), and the robot has drive = \"{drive}\"; leave it out")]
+    OtherDrive {
+        /// The effect.
+        effect: &'static str,
+        /// The drives that may have it.
+        drives: Kinds,
+        /// The robot's.
+        drive: &'static str,
     },
     /// A second effect of the same name.
     #[error("there is another effect \"{name}\"; give one of them another name")]
@@ -122,6 +132,21 @@ impl Model {
     /// The effects of the model, in the order in which they act.
     pub fn parts(&self) -> &[Part] {
         &self.parts
+    }
+
+    /// Refuses effects that the robot's drive cannot have.
+    pub fn check_drive(&self) -> Result<(), ModelError> {
+        let kind = self.robot.drive.kind();
+        let entries = self.parts.iter().filter_map(|part| match &part.effect {
+            Law::Entry(entry) => Some(*entry),
+            Law::Formula(_) => None,
+        });
+        match entries.into_iter().find(|entry| !entry.drives.contains(kind)) {
+            Some(entry) => {
+                Err(ModelError::OtherDrive { effect: entry.about.name, drives: entry.drives, drive: kind.name() })
+            }
+            None => Ok(()),
+        }
     }
 
     /// Adds an effect of the catalogue with its default values, or finds an effect where it is there already.
@@ -264,6 +289,14 @@ impl Model {
         self.parts.iter().flat_map(|part| part.values.iter().copied())
     }
 
+    /// The place of a parameter among the [values](Model::values), if its effect is in the model.
+    pub fn place_of(&self, effect: &str, parameter: &str) -> Option<usize> {
+        let part = self.parts.iter().position(|part| part.effect.name() == effect)?;
+        let before: usize = self.parts[..part].iter().map(|part| part.values.len()).sum();
+        let own = self.parts[part].effect.parameters().iter().position(|p| p.name == parameter)?;
+        Some(before + own)
+    }
+
     /// Which of the [values](Model::values) are shapes: numbers (a length, a threshold) that change nothing where their effect
     /// is at zero.
     pub fn shapes(&self) -> Vec<usize> {
@@ -309,7 +342,7 @@ impl Model {
             count: part.values.len(),
             values: [T::from(0.0); MAX_PARAMETERS],
         });
-        let mut chain = Chain { drive: self.robot.drive, links: links.collect() };
+        let mut chain = Chain { drive: *self.robot.drive, links: links.collect() };
         chain.set_values(values);
         chain
     }

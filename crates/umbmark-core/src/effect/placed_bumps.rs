@@ -3,7 +3,7 @@
 use super::bumps::{HEIGHT, PROFILE, WHEEL_RADIUS, lost_travel};
 use super::words::{deg, mm, size};
 use super::{About, ActsOn, Bump, Context, Effect, Stretch, TestKind};
-use crate::drive::{Robot, Wheel, WheelTravel};
+use crate::drive::{Kind, Kinds, Robot, Wheel, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
 use crate::path::Direction;
@@ -52,6 +52,8 @@ impl Effect for PlacedBumps {
         separated_by: "subtracting the regular test, as Eq. (5) does",
         source: "Borenstein & Feng (1995), section 3.3 and Table II",
     };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro).and(Kind::Clapper);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let (single, share) = (lost_travel(p[1], p[2], p[3]), p[4]);

@@ -3,7 +3,7 @@
 use super::reference_delay::go_back;
 use super::words::{either, size};
 use super::{About, ActsOn, Effect, Sight};
-use crate::drive::Robot;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -32,6 +32,8 @@ impl Effect for ReferenceClockRate {
         separated_by: "the delay of the first leg against that of the last; stamping both with one clock",
         source: "two free-running clocks; 200 parts in a million are assumed",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("The clock of the reference {} {} ms in a minute.", either(p[0], "loses", "gains"), size(6e4 * p[0]))

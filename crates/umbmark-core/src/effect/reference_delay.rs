@@ -2,7 +2,7 @@
 
 use super::words::{either, mm, size};
 use super::{About, ActsOn, Effect, Sight};
-use crate::drive::Robot;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -30,6 +30,8 @@ impl Effect for ReferenceDelay {
         separated_by: "a dense track, always, before any physics is judged",
         source: "delays that makers and users of motion capture state",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

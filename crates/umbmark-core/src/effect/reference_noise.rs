@@ -2,7 +2,7 @@
 
 use super::words::{deg, mm};
 use super::{About, ActsOn, Effect};
-use crate::drive::Robot;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::Pose2;
 use crate::parameter::Parameter;
 use crate::random::Stream;
@@ -42,6 +42,8 @@ impl Effect for ReferenceNoise {
         separated_by: "measuring the same pose twice without driving",
         source: "usual sizes of tape and motion capture",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("A measured position scatters by {} along each axis, a heading by {}.", mm(p[0]), deg(p[1]))

@@ -2,7 +2,7 @@
 
 use super::words::{either, mm};
 use super::{About, ActsOn, Context, Effect};
-use crate::drive::{Robot, WheelTravel};
+use crate::drive::{Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -33,6 +33,8 @@ impl Effect for Scale {
         separated_by: "the length of one straight leg by tape, or the pose at a stop",
         source: "Borenstein & Feng (1995), section 2",
     };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Ackermann).and(Kind::Clapper);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let (off, word) = (p[0] - 1.0, either(p[0] - 1.0, "long", "short"));

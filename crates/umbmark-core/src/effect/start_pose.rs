@@ -2,7 +2,7 @@
 
 use super::words::{deg, either, mm, side};
 use super::{About, ActsOn, Effect};
-use crate::drive::Robot;
+use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 use crate::random::Stream;
@@ -54,6 +54,8 @@ impl Effect for StartPose {
         separated_by: "measuring START in every run",
         source: "Borenstein & Feng (1995), section 3.4, step 1",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

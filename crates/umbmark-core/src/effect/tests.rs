@@ -139,7 +139,8 @@ fn every_effect_that_files_may_name_is_there() {
                  direction_dependent_wheelbase caster_kick leg_kick backlash floor_slope floor_slope_yaw carpet_nap \
                  diameter_drift centripetal_load missed_counts bumps placed_bumps wheel_noise encoder_skew \
                  encoder_resolution encoder_sampling reference_delay reference_clock_rate reference_noise \
-                 marker_offset marker_yaw start_pose";
+                 marker_offset marker_yaw start_pose drive_scale steer_scale steer_coupling contact_trail base_yaw axle_distance \
+                 steering_zero steering_gain understeer";
     for name in names.split_whitespace() {
         find(name).unwrap();
     }
@@ -245,6 +246,8 @@ fn an_effect_says_whether_it_depends_on_where_and_how_the_robot_drives() {
         since_turn: 0.02,
         length: 0.02,
         last_turn: -1.0,
+        believed_heading: 0.9,
+        axle_distance: 0.5,
         run: 2.0,
         direction: 1.0,
         recorded: false,
@@ -280,7 +283,7 @@ fn an_effect_varies_from_the_first_of_its_sizes_that_is_not_zero_and_not_before(
 #[test]
 fn an_effect_says_what_its_numbers_mean_in_a_sentence_that_changes_with_their_size() {
     let robot = Robot::labmate();
-    for entry in CATALOGUE {
+    for entry in of_drive(Kind::Differential) {
         let said = |model: Model| model.meaning(entry.about.name).unwrap();
         let usual = said(alone(entry, Parameter::usual));
         assert!(usual.ends_with('.') && usual.contains(|c: char| c.is_ascii_digit()), "{}: {usual}", entry.about.name);

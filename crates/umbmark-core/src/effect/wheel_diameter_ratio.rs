@@ -2,7 +2,7 @@
 
 use super::words::{deg, either, mm, side};
 use super::{About, ActsOn, Context, Effect};
-use crate::drive::{Robot, WheelTravel};
+use crate::drive::{Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -40,6 +40,8 @@ impl Effect for WheelDiameterRatio {
         source: "Borenstein & Feng (1995), section 2; split: Borenstein & Feng (1996), IEEE Trans. Robotics and \
                  Automation 12(6)",
     };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Clapper);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let ratio = 2.0 * (p[0] - 1.0) / (p[0] + 1.0);

@@ -2,7 +2,7 @@
 
 use super::words::{deg, mm};
 use super::{About, ActsOn, Effect, WheelVariance};
-use crate::drive::{Robot, WheelTravel};
+use crate::drive::{Kinds, Robot, WheelTravel};
 use crate::parameter::{DefaultValue, Parameter};
 
 /// White noise on each wheel's travel over ground.
@@ -32,6 +32,8 @@ impl Effect for WheelNoise {
         separated_by: "the shape of the heading increments; a smoother floor",
         source: "Chong & Kleeman (1997), ICRA, accurate odometry and error modelling",
     };
+
+    const DRIVES: Kinds = Kinds::ALL;
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let scattered = p[0] * libm::sqrt(10.0);

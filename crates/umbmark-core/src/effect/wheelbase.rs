@@ -2,7 +2,7 @@
 
 use super::words::{deg, mm};
 use super::{About, ActsOn, Context, Effect};
-use crate::drive::Robot;
+use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -33,6 +33,8 @@ impl Effect for Wheelbase {
         separated_by: "spins together with one measured straight leg",
         source: "Borenstein & Feng (1995), section 2",
     };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Clapper);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let b = robot.drive.wheelbase();

@@ -6,9 +6,6 @@ use crate::diagnose::{DiagnoseError, Diagnosis, Options, Verdict};
 use crate::effect::Model;
 use crate::likelihood::{Noise, Observed};
 
-/// E_d, E_b and E_s, which are fitted before anything is asked.
-const BASE: [&str; 3] = ["wheel_diameter_ratio", "wheelbase", "scale"];
-
 /// Learns which effects the robot of some tracks has, beside those of a `start`.
 pub(super) fn learn(observed: &Observed, start: &Model, options: &Options) -> Result<Learnt, DiagnoseError> {
     let mut model = Model::new(&observed.robot);
@@ -17,12 +14,13 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options) -> Re
         *model = exam.fitted.model.clone();
         steps.push(step(&exam, Some((effect, vec![effect], None))));
     };
-    for effect in BASE {
+    let first = observed.robot.drive.kind().first_effects();
+    for effect in first {
         model.add(effect)?.free = true;
         let exam = plainly(observed, &model)?;
         add(&mut model, effect, exam);
     }
-    for part in start.parts().iter().filter(|part| !BASE.contains(&part.effect.name())) {
+    for part in start.parts().iter().filter(|part| !first.contains(&part.effect.name())) {
         model.adopt(part);
         let exam = Examination::bare(tracks::fit(observed, &model)?);
         add(&mut model, part.effect.name(), exam);

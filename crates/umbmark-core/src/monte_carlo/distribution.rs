@@ -2,8 +2,9 @@
 
 use super::StudyError;
 use crate::effect::{ModelError, find};
-use crate::parameter::Parameter;
+use crate::parameter::{Parameter, ParameterError};
 use crate::random::Stream;
+use crate::stats::{normal_quantile, standard_normal_share};
 
 /// The distribution of a parameter over robots.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +23,102 @@ pub enum Distribution {
         /// Largest value.
         max: f64,
     },
+    /// Triangular: from nothing at one value up to a peak and down to nothing.
+    Triangular {
+        /// Smallest value.
+        min: f64,
+        /// Where the peak is.
+        mode: f64,
+        /// Largest value.
+        max: f64,
+    },
+    /// Uniform in the logarithm between two positive values.
+    LogUniform {
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
+}
+
+impl Distribution {
+    /// Refuses what is no distribution of the numbers that `parameter` allows.
+    pub fn check(&self, parameter: &Parameter) -> Result<(), DistributionError> {
+        let name = parameter.name;
+        match *self {
+            Distribution::Normal { sd, .. } if !(sd >= 0.0 && sd.is_finite()) => {
+                return Err(DistributionError::Deviation { name, value: sd });
+            }
+            Distribution::Uniform { min, max } | Distribution::LogUniform { min, max } if min > max => {
+                return Err(DistributionError::Range { name, min, max });
+            }
+            Distribution::Triangular { min, mode, max } if !(min <= mode && mode <= max) => {
+                return Err(DistributionError::Peak { name, min, mode, max });
+            }
+            Distribution::LogUniform { min, .. } if !(min > 0.0) => {
+                return Err(DistributionError::Logarithm { name, min });
+            }
+            _ => {}
+        }
+        let outside = self.ends().into_iter().find_map(|value| parameter.check(value).err());
+        outside.map_or(Ok(()), |problem| Err(DistributionError::Bounds(problem)))
+    }
+
+    /// The values that must lie within the bounds of a parameter.
+    fn ends(&self) -> [f64; 2] {
+        match *self {
+            Distribution::Normal { mean, .. } => [mean; 2],
+            Distribution::Uniform { min, max }
+            | Distribution::Triangular { min, max, .. }
+            | Distribution::LogUniform { min, max } => [min, max],
+        }
+    }
+
+    /// A middle value: the mean, or the geometric one of a distribution in the logarithm.
+    pub fn centre(&self) -> f64 {
+        match *self {
+            Distribution::Normal { mean, .. } => mean,
+            Distribution::Uniform { min, max } => 0.5 * (min + max),
+            Distribution::Triangular { min, mode, max } => (min + mode + max) / 3.0,
+            Distribution::LogUniform { min, max } => (min * max).sqrt(),
+        }
+    }
+
+    /// The value below which a share `u` in (0, 1) of the draws lies, a normal one cut off at `bounds`.
+    ///
+    /// ```
+    /// # use umbmark_core::monte_carlo::Distribution;
+    /// let normal = Distribution::Normal { mean: 1.0, sd: 0.001 };
+    /// assert!((normal.quantile(0.975, (0.5, 2.0)) - 1.001_959_964).abs() < 1e-9);
+    /// assert_eq!(Distribution::LogUniform { min: 100.0, max: 10_000.0 }.quantile(0.5, (0.0, 1e6)), 1000.0);
+    /// ```
+    pub fn quantile(&self, u: f64, bounds: (f64, f64)) -> f64 {
+        let (value, ends) = match *self {
+            Distribution::Normal { sd: 0.0, mean } => (mean, (mean, mean)),
+            Distribution::Normal { mean, sd } => {
+                let [low, high] = [bounds.0, bounds.1].map(|end| standard_normal_share((end - mean) / sd));
+                // Shares of 0 and 1 have no finite quantile.
+                let share = (low + u * (high - low)).clamp(f64::MIN_POSITIVE, 1.0 - 0.5 * f64::EPSILON);
+                (mean + sd * normal_quantile(share), bounds)
+            }
+            Distribution::Uniform { min, max } => (min + (max - min) * u, (min, max)),
+            Distribution::Triangular { min, mode, max } => (triangular([min, mode, max], u), (min, max)),
+            Distribution::LogUniform { min, max } => (min * libm::exp(u * libm::log(max / min)), (min, max)),
+        };
+        value.max(ends.0).min(ends.1)
+    }
+}
+
+/// Quantile of the triangular distribution.
+fn triangular([min, mode, max]: [f64; 3], u: f64) -> f64 {
+    let (all, rising) = (max - min, mode - min);
+    if all <= 0.0 {
+        mode
+    } else if u * all < rising {
+        min + (u * all * rising).sqrt()
+    } else {
+        max - ((1.0 - u) * all * (max - mode)).sqrt()
+    }
 }
 
 /// What makes a distribution impossible.
@@ -46,6 +143,29 @@ pub enum DistributionError {
         /// What was given.
         max: f64,
     },
+    /// A peak beside its range.
+    #[error("{name}: the peak must lie between min and max, got min {min}, mode {mode} and max {max}")]
+    Peak {
+        /// The parameter.
+        name: &'static str,
+        /// What was given.
+        min: f64,
+        /// What was given.
+        mode: f64,
+        /// What was given.
+        max: f64,
+    },
+    /// A logarithm of nothing.
+    #[error("{name}: a distribution in the logarithm must begin above 0, got min {min}")]
+    Logarithm {
+        /// The parameter.
+        name: &'static str,
+        /// What was given.
+        min: f64,
+    },
+    /// Values that the parameter cannot have.
+    #[error(transparent)]
+    Bounds(ParameterError),
 }
 
 /// A parameter of an effect and the distribution that it is drawn from.
@@ -63,16 +183,13 @@ impl Draw {
         let found = about.parameters.iter().find(|p| p.name == parameter).ok_or_else(|| {
             ModelError::UnknownParameter { effect: about.name, name: parameter.to_owned(), nearest: None }
         })?;
-        match distribution {
-            Distribution::Normal { sd, .. } if !(sd >= 0.0 && sd.is_finite()) => {
-                return Err(DistributionError::Deviation { name: found.name, value: sd }.into());
+        match distribution.check(found) {
+            // Where it lies is asked before a study runs, with the name of the effect.
+            Ok(()) | Err(DistributionError::Bounds(_)) => {
+                Ok(Draw { effect: about.name, parameter: found, distribution })
             }
-            Distribution::Uniform { min, max } if min > max => {
-                return Err(DistributionError::Range { name: found.name, min, max }.into());
-            }
-            _ => {}
+            Err(impossible) => Err(impossible.into()),
         }
-        Ok(Draw { effect: about.name, parameter: found, distribution })
     }
 
     /// The effect's name.
@@ -92,29 +209,19 @@ impl Draw {
 
     /// A middle value, to describe the study by.
     pub fn centre(&self) -> f64 {
-        match self.distribution {
-            Distribution::Normal { mean, .. } => mean,
-            Distribution::Uniform { min, max } => 0.5 * (min + max),
-        }
+        self.distribution.centre()
     }
 
     pub(super) fn check(&self) -> Result<(), StudyError> {
-        let ends = match self.distribution {
-            Distribution::Normal { mean, .. } => [mean; 2],
-            Distribution::Uniform { min, max } => [min, max],
-        };
-        ends.iter().try_for_each(|value| {
-            self.parameter
-                .check(*value)
-                .map(|_| ())
-                .map_err(|problem| StudyError::Bounds { effect: self.effect, problem })
+        self.distribution.check(self.parameter).map_err(|problem| match problem {
+            DistributionError::Bounds(problem) => StudyError::Bounds { effect: self.effect, problem },
+            impossible => impossible.into(),
         })
     }
 
     /// A value for one trial.
     pub(super) fn draw(&self, stream: &mut Stream) -> f64 {
         match self.distribution {
-            Distribution::Uniform { min, max } => min + (max - min) * stream.uniform(),
             Distribution::Normal { mean, sd } => {
                 // The mean lies within the bounds, so half of the draws or more do: this ends.
                 loop {
@@ -124,6 +231,7 @@ impl Draw {
                     }
                 }
             }
+            other => other.quantile(stream.uniform(), self.parameter.bounds),
         }
     }
 }
@@ -143,11 +251,35 @@ mod tests {
         }
     }
 
+    /// Each quantile function against the share of draws below it: the triangle's areas and the logarithm's ratio in closed
+    /// form, and a normal distribution cut at both sides.
+    #[test]
+    fn quantiles_leave_their_share_below() {
+        let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
+        let triangle = Distribution::Triangular { min: 1.0, mode: 2.0, max: 5.0 };
+        for (u, value) in [(0.25, 2.0), (1.0 / 16.0, 1.5), (1.0 - 1.0 / 12.0, 4.0)] {
+            assert!((triangle.quantile(u, everywhere) - value).abs() < 1e-12, "{u}");
+        }
+        assert_eq!(Distribution::Triangular { min: 2.0, mode: 2.0, max: 2.0 }.quantile(0.3, everywhere), 2.0);
+        let logarithm = Distribution::LogUniform { min: 1.0, max: 16.0 };
+        assert!((logarithm.quantile(0.75, everywhere) - 8.0).abs() < 1e-12);
+        let cut = Distribution::Normal { mean: 0.0, sd: 2.0 };
+        let bounds = (-2.0, 4.0);
+        // Φ(-1) = 0.158655, Φ(2) = 0.977250, Φ(0) = 0.5.
+        let share = (0.5 - 0.158_655_253_9) / (0.977_249_868_1 - 0.158_655_253_9);
+        assert!(cut.quantile(share, bounds).abs() < 1e-8, "{}", cut.quantile(share, bounds));
+        for u in [1e-12, 0.01, 0.99, 1.0 - 1e-12] {
+            assert!((-2.0..=4.0).contains(&cut.quantile(u, bounds)));
+        }
+    }
+
     #[test]
     fn impossible_distributions_are_refused() {
         let refuse = |d| Draw::new("scale", "e_s", d).unwrap_err().to_string();
         assert!(refuse(Distribution::Normal { mean: 1.0, sd: -1.0 }).contains("got -1"));
         assert!(refuse(Distribution::Uniform { min: 2.0, max: 1.0 }).contains("min 2 and max 1"));
+        assert!(refuse(Distribution::Triangular { min: 0.9, mode: 1.2, max: 1.1 }).contains("mode 1.2"));
+        assert!(refuse(Distribution::LogUniform { min: 0.0, max: 1.0 }).contains("above 0, got min 0"));
         assert!(Draw::new("scale", "x", Distribution::Normal { mean: 1.0, sd: 1.0 }).is_err());
     }
 }

@@ -4,7 +4,7 @@ use super::{Draw, Metric, Row, Study, StudyError};
 use crate::dataset::ReturnError;
 use crate::effect::{Model, ModelError, Part, TestKind};
 use crate::random::Stream;
-use crate::score::{self, Cluster, Convention, nonsystematic_orientation};
+use crate::score::{self, Cluster, Convention, Summary, nonsystematic_orientation};
 use crate::simulate::{Simulator, Truth};
 
 /// Purpose of the stream that parameters are drawn from.
@@ -40,7 +40,7 @@ fn draws_of<'a>(part: &'a Part, draws: &'a [Draw]) -> impl Iterator<Item = Optio
 }
 
 /// What a thread needs to run trials, allocated once.
-pub(super) struct Bench {
+pub(crate) struct Bench {
     simulator: Simulator,
     truth: Truth,
     /// Values of all parameters of the model; the drawn ones are overwritten in each trial.
@@ -52,7 +52,7 @@ pub(super) struct Bench {
 }
 
 impl Bench {
-    pub(super) fn new(study: &Study) -> Result<Bench, StudyError> {
+    pub(crate) fn new(study: &Study) -> Result<Bench, StudyError> {
         let model = centred(&study.model, &study.draws)?;
         let all = model.parts().iter().flat_map(|part| draws_of(part, &study.draws));
         let draws = all.enumerate().filter_map(|(index, draw)| Some((index, draw?.clone()))).collect();
@@ -69,6 +69,11 @@ impl Bench {
         })
     }
 
+    /// The same, with or without the extended test.
+    pub(crate) fn with_extended_test(self, extended: bool) -> Bench {
+        Bench { extended, ..self }
+    }
+
     /// The metrics of trial number `trial`.
     pub(super) fn trial(&mut self, seed: u64, trial: u64) -> Row {
         if !self.draws.is_empty() {
@@ -78,25 +83,24 @@ impl Bench {
             }
             self.truth.set_values(&self.values);
         }
+        self.test(seed, trial)
+    }
+
+    /// The metrics of a test of a robot with these values of all parameters, with the noise of trial number `trial`.
+    pub(crate) fn test_with(&mut self, values: &[f64], seed: u64, trial: u64) -> Row {
+        self.truth.set_values(values);
+        self.test(seed, trial)
+    }
+
+    fn test(&mut self, seed: u64, trial: u64) -> Row {
         self.simulator.open(&mut self.truth, seed, trial);
         let places = self.returned.each_mut().map(Vec::as_mut_slice);
         self.simulator.test(&mut self.truth, TestKind::Systematic, places);
         let [cw, ccw] = &self.returned;
         let summary = score::summarise(cw, ccw);
-        let (heading_cw, heading_ccw) = (heading(summary.cw), heading(summary.ccw));
-        let nonsystematic = if self.extended { self.extended_test(heading_cw, heading_ccw) } else { f64::NAN };
-        let centroid = |cluster: Option<Cluster>| cluster.map_or([f64::NAN; 2], |c| [c.x, c.y]);
-        Metric::ALL.map(|metric| match metric {
-            Metric::EMaxSys => summary.e_max_sys().unwrap_or(f64::NAN),
-            Metric::Sigma => summary.sigma_axis().unwrap_or(f64::NAN),
-            Metric::CentroidCwX => centroid(summary.cw)[0],
-            Metric::CentroidCwY => centroid(summary.cw)[1],
-            Metric::CentroidCcwX => centroid(summary.ccw)[0],
-            Metric::CentroidCcwY => centroid(summary.ccw)[1],
-            Metric::ReturnHeadingCw => heading_cw,
-            Metric::ReturnHeadingCcw => heading_ccw,
-            Metric::NonsysOrientation => nonsystematic,
-        })
+        let nonsystematic =
+            if self.extended { self.extended_test(heading(summary.cw), heading(summary.ccw)) } else { f64::NAN };
+        row(&summary, nonsystematic)
     }
 
     /// The runs with bumps, and Eq. (5) over them.
@@ -106,6 +110,22 @@ impl Bench {
         let [cw, ccw] = &self.bumped;
         nonsystematic_orientation(cw, ccw, heading_cw, heading_ccw, Convention::Mean).unwrap_or(f64::NAN)
     }
+}
+
+/// The metrics of a test, from its regular runs and the orientation error of its bumped ones.
+pub(crate) fn row(summary: &Summary, nonsystematic: f64) -> Row {
+    let centroid = |cluster: Option<Cluster>| cluster.map_or([f64::NAN; 2], |c| [c.x, c.y]);
+    Metric::ALL.map(|metric| match metric {
+        Metric::EMaxSys => summary.e_max_sys().unwrap_or(f64::NAN),
+        Metric::Sigma => summary.sigma_axis().unwrap_or(f64::NAN),
+        Metric::CentroidCwX => centroid(summary.cw)[0],
+        Metric::CentroidCwY => centroid(summary.cw)[1],
+        Metric::CentroidCcwX => centroid(summary.ccw)[0],
+        Metric::CentroidCcwY => centroid(summary.ccw)[1],
+        Metric::ReturnHeadingCw => heading(summary.cw),
+        Metric::ReturnHeadingCcw => heading(summary.ccw),
+        Metric::NonsysOrientation => nonsystematic,
+    })
 }
 
 /// Mean return heading error of a cluster; every simulated run has one.

@@ -27,7 +27,9 @@ fn models() -> Vec<(&'static str, Model)> {
     for entry in CATALOGUE {
         let mut alone = nothing.clone();
         put(&mut alone, entry, false);
-        put(&mut together, entry, false);
+        if entry.drives.contains(Kind::Differential) {
+            put(&mut together, entry, false);
+        }
         models.push((entry.about.name, alone));
     }
     models.push(("all together", together));

@@ -1,6 +1,6 @@
 //! The commands of one direction of driving, as the robot's own counters will see them.
 
-use crate::drive::{Robot, WheelTravel};
+use crate::drive::{Counting, Robot, WheelTravel};
 use crate::engine::{MAX_TICKS, WheelLine};
 use crate::path::{Direction, Path, Trapezoid};
 
@@ -11,8 +11,10 @@ use super::SimulateError;
 pub struct Leg {
     /// Believed wheel travel without quantisation \[m\].
     pub travel: WheelTravel,
-    /// Counts at which the left and right wheel stop, cumulative from START.
+    /// Counts at which both counters stop, cumulative from START.
     pub stop: [i64; 2],
+    /// What the counters do.
+    pub counting: Counting,
     /// When it begins \[s\] after START.
     pub begins: f64,
     /// How its travel is spread over time.
@@ -35,23 +37,24 @@ pub struct Course {
 impl Course {
     /// The commands that `robot` gives itself to drive `path`.
     pub fn new(robot: &Robot, path: &Path, direction: Direction) -> Result<Course, SimulateError> {
-        let per_tick = robot.metres_per_tick();
-        let (mut left, mut right, mut clock) = (0.0, 0.0, 0.0);
+        let (mut ideal, mut clock) = ([0.0, 0.0], 0.0);
         let mut legs = Vec::new();
         for (index, one) in path.moves(direction).iter().enumerate() {
             let travel = one.wheel_travel(&robot.drive);
-            for (wheel, metres, tick) in [("left", travel.left, per_tick.left), ("right", travel.right, per_tick.right)]
-            {
-                let ticks = (metres / tick).abs();
+            let d = one.displacement();
+            let Some(counting) = robot.counting(d.forward, d.rotation) else {
+                return Err(SimulateError::TooTight { drive: robot.drive.kind().name(), index: index + 1 });
+            };
+            for (counter, gain) in robot.drive.kind().counters().into_iter().zip(counting.gain) {
+                let ticks = gain.abs();
                 // A tick of margin for the rounding of the stops and for where within a tick the wheels come to rest.
                 if !(ticks < MAX_TICKS as f64 - 2.0) {
-                    return Err(SimulateError::TooManyTicks { wheel, index: index + 1, ticks });
+                    return Err(SimulateError::TooManyTicks { counter, index: index + 1, ticks });
                 }
             }
-            left += travel.left / per_tick.left;
-            right += travel.right / per_tick.right;
+            ideal = [ideal[0] + counting.gain[0], ideal[1] + counting.gain[1]];
             let profile = path.speed.over(travel.left.abs().max(travel.right.abs()));
-            legs.push(Leg { travel, stop: [left.round() as i64, right.round() as i64], begins: clock, profile });
+            legs.push(Leg { travel, stop: ideal.map(|count| count.round() as i64), counting, begins: clock, profile });
             clock += profile.duration() + path.speed.pause();
         }
         // The turn of a move tells legs from turns, and both from arcs.

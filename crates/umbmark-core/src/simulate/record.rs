@@ -2,6 +2,7 @@
 
 use super::{Leg, Rest, SimulateError, Simulator, Truth, return_error};
 use crate::dataset::{ReferencePose, ReturnError, TickLog};
+use crate::drive::{Kind, Robot, WheelTravel};
 use crate::effect::{Sight, Stretch, TestKind};
 use crate::engine::{SampledOdometry, TickGeometry, UNITS_PER_TICK, Update};
 use crate::geometry::Pose2;
@@ -18,6 +19,21 @@ pub struct Recording {
     pub computed: Vec<Pose2>,
     /// Measured minus computed end pose.
     pub returned: ReturnError,
+}
+
+impl Recording {
+    /// Turns readings of a drive's own counters into those of its axle's wheels, and computes the poses from these.
+    fn reckon(&mut self, robot: &Robot) {
+        let log = &mut self.log;
+        [log.left, log.right] = robot.axle_ticks(&[std::mem::take(&mut log.left), std::mem::take(&mut log.right)]);
+        let (per_tick, mut before, mut pose) = (robot.metres_per_tick(), [0.0; 2], Pose2::IDENTITY);
+        for (computed, (left, right)) in self.computed.iter_mut().zip(log.left.iter().zip(&log.right)) {
+            let [l, r] = before;
+            let travel = WheelTravel { left: (left - l) * per_tick.left, right: (right - r) * per_tick.right };
+            pose = pose.moved(&robot.drive.displacement(&travel));
+            (*computed, before) = (pose, [*left, *right]);
+        }
+    }
 }
 
 /// The robot stands still for so long before the first and after the last move \[s\].
@@ -41,6 +57,12 @@ impl Simulator {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(SimulateError::Rate { what, value });
             }
+        }
+        if self.convoy.is_some() {
+            return Err(SimulateError::Unsupported {
+                drive: Kind::Clapper.name(),
+                what: "tick logs; `umbmark mc` simulates it",
+            });
         }
         truth.start(direction);
         truth.rest(STANDING);
@@ -67,26 +89,29 @@ impl Simulator {
             while begun > 0 && begun < legs.len() && driving >= legs[begun].begins || begun == 0 && driving >= 0.0 {
                 truth.advance(1.0);
                 let line = rests[begun].line_to(&rests[begun + 1]);
-                let stretch = Stretch { index: begun, direction, test, travel: self.per_tick.of(&line) };
+                let stretch = Stretch { index: begun, direction, test, travel: self.believed(&legs[begun], &line) };
                 truth.begin(stretch, &legs[begun]);
                 begun += 1;
             }
-            let counts = match begun.checked_sub(1) {
-                None => [0; 2],
+            let (counts, at) = match begun.checked_sub(1) {
+                None => ([0; 2], 0),
                 Some(index) => {
                     let share = legs[index].profile.fraction(driving - legs[index].begins);
                     truth.advance(share);
                     let line = rests[index].line_to(&rests[index + 1]);
-                    std::array::from_fn(|wheel| {
+                    let counts: [i64; 2] = std::array::from_fn(|wheel| {
                         let angle = line.start()[wheel] + (line.travel()[wheel] as f64 * share) as i64;
                         rests[index].count[wheel] + angle.div_euclid(UNITS_PER_TICK)
-                    })
+                    });
+                    // Once it stands, it steers for the next move.
+                    let stands = share >= 1.0 && recording.log.left.last() == Some(&(counts[0] as f64));
+                    (counts, if stands { (index + 1).min(legs.len() - 1) } else { index })
                 }
             };
             track.read(counts);
             recording.log.time.push(time);
             recording.log.left.push(counts[0] as f64);
-            recording.log.right.push(counts[1] as f64);
+            recording.log.right.push((counts[1] + legs[at].counting.held) as f64);
             recording.truth.push(truth.pose());
             recording.computed.push(track.pose());
             if time + 1e-9 >= next_reference || sample == samples {
@@ -101,8 +126,11 @@ impl Simulator {
                 next_reference += 1.0 / reference_rate;
             }
         }
+        if self.robot().drive.kind() != Kind::Differential {
+            recording.reckon(self.robot());
+        }
         let measured = truth.measure(&Sight { time: samples as f64 / rate, ..Sight::default() });
-        recording.returned = return_error(&measured, &track.pose());
+        recording.returned = return_error(&measured, &recording.computed.last().copied().unwrap_or_default());
         Ok(recording)
     }
 

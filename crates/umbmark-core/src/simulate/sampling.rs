@@ -107,13 +107,14 @@ impl SampledMoves {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drive::WheelTravel;
+    use crate::drive::{Robot, WheelTravel};
     use crate::path::SpeedProfile;
 
     fn leg(travel: f64, begins: f64) -> Leg {
         Leg {
             travel: WheelTravel { left: travel, right: travel },
             stop: [0; 2],
+            counting: Robot::labmate().counting(travel, 0.0).unwrap(),
             begins,
             profile: SpeedProfile::default().over(travel),
         }

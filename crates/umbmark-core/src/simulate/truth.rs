@@ -4,7 +4,7 @@ use super::Leg;
 use super::diffusion::Diffusion;
 use super::pieces::{Piece, Pieces};
 use super::way::Way;
-use crate::drive::{Wheel, WheelTravel};
+use crate::drive::{Drive, WheelTravel};
 use crate::effect::{Bump, Chain, Context, Law, Model, Sight, Stretch, WheelVariance};
 use crate::engine::Instructions;
 use crate::geometry::{Displacement2, Pose2, Real};
@@ -21,6 +21,7 @@ const WHEEL_NOISE: u64 = 2;
 /// it turns the robot by is in the heading that later stretches see.
 #[derive(Debug)]
 pub struct Truth {
+    drive: Drive,
     chain: Chain<f64>,
     random: Vec<RandomPart>,
     rotation_per_metre: f64,
@@ -60,6 +61,7 @@ impl Truth {
             })
             .collect();
         let mut truth = Truth {
+            drive: model.robot().drive,
             chain: model.chain(),
             random,
             rotation_per_metre: 0.0,
@@ -134,11 +136,39 @@ impl Truth {
         self.pieces.clear();
     }
 
+    /// Where the robot stands at START in one more run.
+    pub(super) fn draw_start(&mut self) -> Pose2 {
+        self.random.iter_mut().fold(self.chain.start(), |pose, part| {
+            pose.compose(&(part.effect.scatter().start_scatter)(&part.values, &mut part.stream))
+        })
+    }
+
+    /// The bumps of the stretch that was begun, taken away from its own way.
+    pub(super) fn take_bumps(&mut self) -> Vec<Bump> {
+        std::mem::take(&mut self.ahead)
+    }
+
+    /// True motion for a small believed travel, of which one wheel or both lose some at bumps; wheel noise included.
+    pub(super) fn rolled(&mut self, believed: &WheelTravel, lost: &WheelTravel) -> Displacement2 {
+        let mut travel = self.chain.wheel_travel(&Context::default(), believed);
+        if self.noisy {
+            let variance = self.variance(&travel);
+            travel.left += variance.left.sqrt() * self.noise.normal();
+            travel.right += variance.right.sqrt() * self.noise.normal();
+        }
+        travel.left += lost.left;
+        travel.right += lost.right;
+        self.chain.body(&Context::default(), &travel)
+    }
+
+    /// A true pose at rest as an absolute measurement shows it.
+    pub(super) fn measured_at_rest(&mut self, pose: &Pose2) -> Pose2 {
+        measured(&self.chain, &mut self.random, &Sight::default(), pose)
+    }
+
     /// Begins one more run at START; where those before it end can still be asked for.
     pub(super) fn start_another(&mut self, direction: Direction, recorded: bool) {
-        let start = self.random.iter_mut().fold(self.chain.start(), |pose, part| {
-            pose.compose(&(part.effect.scatter().start_scatter)(&part.values, &mut part.stream))
-        });
+        let start = self.draw_start();
         if self.varies {
             // Room for the pieces of one run, not of all.
             self.pieces.settle();
@@ -247,10 +277,7 @@ impl Truth {
     }
 
     fn meet(&mut self, bump: &Bump) {
-        let travel = match bump.wheel {
-            Wheel::Left => WheelTravel { left: -bump.lost, right: 0.0 },
-            Wheel::Right => WheelTravel { left: 0.0, right: -bump.lost },
-        };
+        let travel = self.drive.bumped(bump.wheel, bump.lost);
         let at = if self.varies { self.way.moment() } else { Context::default() };
         let motion = self.chain.body(&at, &travel);
         self.way.turn(motion.rotation);

@@ -1,6 +1,7 @@
 //! What errors may depend on, and how it is cut into bins.
 
 use super::followed::{Conditions, Step};
+use crate::drive::Robot;
 use std::f64::consts::TAU;
 
 /// An error, in proportion to what was driven.
@@ -67,6 +68,17 @@ impl Rate {
         matches!(self, Rate::Turn | Rate::TurnForward | Rate::TurnSideways)
     }
 
+    /// Standard deviation of what counters of whole ticks leave open at one end of a move \[m, rad\]: the reading of each wheel is
+    /// uniform within a tick q, which makes q/√24 of way and q/√6 over the wheelbase of rotation.
+    pub(super) fn resolution(self, robot: &Robot) -> f64 {
+        let tick = robot.metres_per_tick();
+        let q = tick.left.abs().max(tick.right.abs());
+        match self {
+            Rate::Yaw | Rate::Turn => q / 6f64.sqrt() / robot.drive.wheelbase(),
+            _ => q / 24f64.sqrt(),
+        }
+    }
+
     /// Error and amount of driving of a step, where it counts.
     pub(super) fn of(self, step: &Step) -> Option<[f64; 2]> {
         let ([forward, sideways, yaw], [way, rotation]) = (step.own, step.motion);
@@ -97,7 +109,7 @@ enum Cut {
     Whole(usize),
 }
 
-type Value = fn(&Conditions) -> f64;
+pub(super) type Value = fn(&Conditions) -> f64;
 
 /// Something that an error may depend on.
 #[derive(Clone, Copy, Debug)]

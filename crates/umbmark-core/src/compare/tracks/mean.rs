@@ -13,20 +13,32 @@ pub struct Mean {
     pub runs: usize,
 }
 
+/// What one run says of a rate.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Sum {
+    /// Sum of the errors, and how much was driven.
+    pub error: f64,
+    pub amount: f64,
+    /// How many ends of it are ends of a move, where the robot stands or changes from driving to turning.
+    pub ends: usize,
+}
+
 impl Mean {
-    /// Σ sum / Σ weight over runs, each with its sum and its weight: a rate over what was driven.
+    /// Σ error / Σ amount over runs.
     ///
-    /// Interval: ± t · sd(sum - value · weight) / (√n · mean weight).
-    pub(super) fn rate(runs: &[[f64; 2]], confidence: f64) -> Option<Mean> {
+    /// Interval: ± t · √(sd²(error - value · amount)/n + r² · ends) / mean amount, with r the `resolution` of the counters at one end.
+    /// Robots that stop at the same counts make the same error of less than a tick in every run; their scatter does not show it.
+    pub(super) fn rate(runs: &[Sum], resolution: f64, confidence: f64) -> Option<Mean> {
         let n = runs.len();
-        let (sum, weight) = runs.iter().fold((0.0, 0.0), |(s, w), [sum, weight]| (s + sum, w + weight));
-        if weight <= 0.0 {
+        let (error, amount) = runs.iter().fold((0.0, 0.0), |(e, a), run| (e + run.error, a + run.amount));
+        if amount <= 0.0 {
             return None;
         }
-        let value = sum / weight;
-        let squares: f64 = runs.iter().map(|[sum, weight]| (sum - value * weight).powi(2)).sum();
+        let value = error / amount;
+        let squares: f64 = runs.iter().map(|run| (run.error - value * run.amount).powi(2)).sum();
         let interval = (n > 1).then(|| {
-            let error = (squares / ((n - 1) * n) as f64).sqrt() / (weight / n as f64);
+            let variance = squares / ((n - 1) * n) as f64 + shared(runs.iter(), resolution);
+            let error = variance.sqrt() / (amount / n as f64);
             Interval::around(value, student_t_quantile(0.5 + 0.5 * confidence, (n - 1) as f64) * error)
         });
         Some(Mean { value, interval, runs: n })
@@ -34,23 +46,32 @@ impl Mean {
 
     /// The mean of one value a run.
     pub(super) fn of(runs: &[f64], confidence: f64) -> Option<Mean> {
-        Mean::rate(&runs.iter().map(|value| [*value, 1.0]).collect::<Vec<_>>(), confidence)
+        let sums: Vec<Sum> = runs.iter().map(|value| Sum { error: *value, amount: 1.0, ends: 0 }).collect();
+        Mean::rate(&sums, 0.0, confidence)
     }
+}
+
+/// Variance of a run's sum of errors that all runs may share, for the `resolution` of the counters.
+pub(super) fn shared<'a>(runs: impl ExactSizeIterator<Item = &'a Sum>, resolution: f64) -> f64 {
+    let n = runs.len().max(1) as f64;
+    resolution * resolution * runs.map(|run| run.ends as f64).sum::<f64>() / n
 }
 
 /// Fewer runs say too little of their own scatter for a test.
 const FEWEST: usize = 3;
 
-/// p of a mean of zero, by Student's t; `None` below three values.
-pub(super) fn p_of_zero(values: &[f64]) -> Option<f64> {
+/// p of a mean of zero, by Student's t, where values share an error of variance `shared`; `None` below three values.
+pub(super) fn p_of_zero(values: &[f64], shared: f64) -> Option<f64> {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
-    p_of(mean, variance / n, n - 1.0).filter(|_| values.len() >= FEWEST)
+    p_of(mean, variance / n + shared, n - 1.0).filter(|_| values.len() >= FEWEST)
 }
 
 /// p of a slope of zero of values against positions, by Student's t; `None` below four values, or where all positions are one.
-pub(super) fn p_of_slope(points: &[[f64; 2]]) -> Option<f64> {
+///
+/// Values at each of two ends may share an error of variance `shared`.
+pub(super) fn p_of_slope(points: &[[f64; 2]], shared: f64) -> Option<f64> {
     let n = points.len() as f64;
     let mean = |k: usize| points.iter().map(|p| p[k]).sum::<f64>() / n;
     let (x, y) = (mean(0), mean(1));
@@ -58,7 +79,8 @@ pub(super) fn p_of_slope(points: &[[f64; 2]]) -> Option<f64> {
     let across = product(0, 0);
     let slope = product(0, 1) / across;
     let rest = (product(1, 1) - slope * product(0, 1)).max(0.0);
-    p_of(slope, rest / (n - 2.0) / across, n - 2.0).filter(|_| points.len() > FEWEST && across > 0.0)
+    p_of(slope, (rest / (n - 2.0) + 0.5 * n * shared) / across, n - 2.0)
+        .filter(|_| points.len() > FEWEST && across > 0.0)
 }
 
 fn p_of(value: f64, variance: f64, freedom: f64) -> Option<f64> {
@@ -73,20 +95,24 @@ mod tests {
     /// Oracle: the density of t, integrated by Simpson's rule in Python.
     #[test]
     fn tests_are_students() {
-        let p = p_of_zero(&[0.3, -0.1, 0.4, 0.2, 0.5]).unwrap();
+        let p = p_of_zero(&[0.3, -0.1, 0.4, 0.2, 0.5], 0.0).unwrap();
         assert!((p - 0.064_985_9).abs() < 1e-6, "{p}");
-        let p = p_of_slope(&[[0.0, 1.0], [1.0, 1.5], [2.0, 1.2], [3.0, 2.1], [4.0, 2.0]]).unwrap();
+        let p = p_of_slope(&[[0.0, 1.0], [1.0, 1.5], [2.0, 1.2], [3.0, 2.1], [4.0, 2.0]], 0.0).unwrap();
         assert!((p - 0.067_038_0).abs() < 1e-6, "{p}");
-        assert!(p_of_zero(&[1.0, 2.0]).is_none() && p_of_slope(&[[1.0, 2.0]; 5]).is_none());
+        assert!(p_of_zero(&[1.0, 2.0], 0.0).is_none() && p_of_slope(&[[1.0, 2.0]; 5], 0.0).is_none());
     }
 
     #[test]
     fn a_rate_weighs_runs_by_what_they_drove_and_one_run_has_no_interval() {
-        let mean = Mean::rate(&[[1.0, 1.0], [6.0, 3.0]], 0.95).unwrap();
+        let run = |error, amount| Sum { error, amount, ends: 4 };
+        let mean = Mean::rate(&[run(1.0, 1.0), run(6.0, 3.0)], 0.0, 0.95).unwrap();
         assert_eq!((mean.value, mean.runs), (1.75, 2));
         // Residuals -0.75 and 0.75, t of one degree of freedom 12.7062, mean weight 2.
         let half = 12.706_204_7 * 0.75 / 2.0;
         assert!((mean.interval.unwrap().high - 1.75 - half).abs() < 1e-6);
+        // Equal runs that share an error of 0.5 at each of four ends: 1 in all.
+        let mean = Mean::rate(&[run(2.0, 1.0), run(2.0, 1.0)], 0.5, 0.95).unwrap();
+        assert!((mean.interval.unwrap().high - 2.0 - 12.706_204_7).abs() < 1e-6);
         assert!(Mean::of(&[1.0], 0.95).unwrap().interval.is_none() && Mean::of(&[], 0.95).is_none());
     }
 }

@@ -1,8 +1,9 @@
 //! Errors in proportion to what was driven: whether there are any, and what they depend on.
 
-use super::covariate::{COVARIATES, Covariate, Rate, Span};
+use super::covariate::{COVARIATES, Covariate, Rate, Span, Value};
 use super::followed::{Followed, Step};
-use super::mean::{Mean, p_of_slope, p_of_zero};
+use super::mean::{Mean, Sum, p_of_slope, p_of_zero, shared};
+use crate::drive::Robot;
 
 /// Runs differ in a covariate where their means scatter by more than this share of its range.
 const DIFFER: f64 = 0.02;
@@ -43,80 +44,112 @@ pub struct Bin {
 }
 
 /// Every rate that the steps show.
-pub(super) fn overall(runs: &[Followed], confidence: f64) -> Vec<Overall> {
+pub(super) fn overall(runs: &[Followed], robot: &Robot, confidence: f64) -> Vec<Overall> {
     let of = |rate: Rate| {
-        let sums: Vec<[f64; 2]> = runs.iter().filter_map(|run| total(rate, &run.steps)).collect();
+        let total = |run: &Followed| sums(&run.steps, rate, 1, |_| Some(0)).remove(0);
+        let sums: Vec<Sum> = runs.iter().map(total).filter(|sum| sum.amount > 0.0).collect();
         let shown = rate == Rate::Forward || runs.iter().all(|run| run.with_heading);
-        let mean = Mean::rate(&sums, confidence).filter(|_| shown)?;
-        let rates: Vec<f64> = sums.iter().map(|[error, amount]| error / amount).collect();
-        Some(Overall { rate, mean, p: p_of_zero(&rates) })
+        let resolution = rate.resolution(robot);
+        let mean = Mean::rate(&sums, resolution, confidence).filter(|_| shown)?;
+        let rates: Vec<f64> = sums.iter().map(|sum| sum.error / sum.amount).collect();
+        Some(Overall { rate, mean, p: p_of_zero(&rates, shared_rate(&sums, resolution)) })
     };
     Rate::ALL.into_iter().filter_map(of).collect()
 }
 
-fn total(rate: Rate, steps: &[Step]) -> Option<[f64; 2]> {
-    let sum = steps.iter().filter_map(|s| rate.of(s)).fold([0.0; 2], |sum, [e, a]| [sum[0] + e, sum[1] + a]);
-    (sum[1] > 0.0).then_some(sum)
+/// The errors of a run in each of `bins`.
+fn sums(steps: &[Step], rate: Rate, bins: usize, bin: impl Fn(&Step) -> Option<usize>) -> Vec<Sum> {
+    let mut sums = vec![Sum::default(); bins];
+    let mut before: Option<usize> = None;
+    for step in steps {
+        let counted = rate.of(step).zip(bin(step));
+        if let Some(([error, amount], bin)) = counted {
+            let sum = &mut sums[bin];
+            sum.error += error;
+            sum.amount += amount;
+            sum.ends += usize::from(before.is_none());
+        }
+        if let (Some(last), None) = (before, counted) {
+            sums[last].ends += 1;
+        }
+        before = counted.map(|(_, bin)| bin);
+    }
+    if let Some(last) = before {
+        sums[last].ends += 1;
+    }
+    sums
+}
+
+/// Variance of a rate that all runs may share.
+fn shared_rate(sums: &[Sum], resolution: f64) -> f64 {
+    let amount = sums.iter().map(|sum| sum.amount).sum::<f64>() / sums.len().max(1) as f64;
+    shared(sums.iter(), resolution) / (amount * amount).max(f64::MIN_POSITIVE)
 }
 
 /// Every rate that is shown, against everything that it may depend on.
-pub(super) fn against(runs: &[Followed], overall: &[Overall], confidence: f64) -> Vec<Against> {
+pub(super) fn against(runs: &[Followed], overall: &[Overall], robot: &Robot, confidence: f64) -> Vec<Against> {
     let shown = Rate::DEPENDING.into_iter().filter(|rate| overall.iter().any(|o| o.rate == *rate));
     let pairs = shown.flat_map(|rate| COVARIATES.iter().map(move |covariate| (rate, covariate)));
-    pairs.filter_map(|(rate, covariate)| ask(runs, rate, covariate, confidence)).collect()
+    pairs.filter_map(|(rate, covariate)| ask(runs, rate, covariate, robot, confidence)).collect()
 }
 
-fn ask(runs: &[Followed], rate: Rate, covariate: &'static Covariate, confidence: f64) -> Option<Against> {
+fn ask(
+    runs: &[Followed],
+    rate: Rate,
+    covariate: &'static Covariate,
+    robot: &Robot,
+    confidence: f64,
+) -> Option<Against> {
     let counted = || runs.iter().flat_map(|run| &run.steps).filter(|step| rate.of(step).is_some());
     let bins = covariate.bins(rate, counted())?;
-    let value = covariate.value(rate)?;
     let spans = bins.spans();
-    let mut sums = vec![vec![[0.0; 2]; spans.len()]; runs.len()];
-    let mut means = Vec::new();
-    for (run, sums) in runs.iter().zip(&mut sums) {
-        let (mut at, mut amount) = (0.0, 0.0);
-        for step in &run.steps {
-            let (Some([error, driven]), Some(bin)) = (rate.of(step), bins.index(step)) else { continue };
-            sums[bin] = [sums[bin][0] + error, sums[bin][1] + driven];
-            (at, amount) = (at + driven * value(&step.at), amount + driven);
-        }
-        if amount > 0.0 {
-            means.push([at / amount, sums.iter().map(|s| s[0]).sum::<f64>() / amount]);
-        }
-    }
+    let resolution = rate.resolution(robot);
+    let by_run: Vec<Vec<Sum>> =
+        runs.iter().map(|run| sums(&run.steps, rate, spans.len(), |step| bins.index(step))).collect();
     let of_bin = |(index, span): (usize, Span)| {
-        let own: Vec<[f64; 2]> = sums.iter().map(|run| run[index]).filter(|[_, amount]| *amount > 0.0).collect();
-        Bin { span, amount: own.iter().map(|[_, amount]| amount).sum(), mean: Mean::rate(&own, confidence) }
+        let own: Vec<Sum> = by_run.iter().map(|run| run[index]).filter(|sum| sum.amount > 0.0).collect();
+        let amount = own.iter().map(|sum| sum.amount).sum();
+        Bin { span, amount, mean: Mean::rate(&own, resolution, confidence) }
     };
-    let bins: Vec<Bin> = spans.into_iter().enumerate().map(of_bin).collect();
-    let range = bins.iter().filter(|bin| bin.mean.is_some()).count() > 1;
-    let between = covariate.between_runs.then(|| between(&means, &bins)).flatten();
-    let tests: Vec<f64> = [within(&sums), between].into_iter().flatten().collect();
+    let told: Vec<Bin> = spans.into_iter().enumerate().map(of_bin).collect();
+    let range = told.iter().filter(|bin| bin.mean.is_some()).count() > 1;
+    let value = covariate.value(rate)?;
+    let between = covariate.between_runs.then(|| between(runs, rate, value, &told, resolution)).flatten();
+    let tests: Vec<f64> = [within(&by_run, resolution), between].into_iter().flatten().collect();
     let smallest = tests.iter().copied().reduce(f64::min);
     let p = smallest.filter(|_| range).map(|p| (p * tests.len() as f64).min(1.0));
-    Some(Against { rate, covariate, bins, p })
+    Some(Against { rate, covariate, bins: told, p })
 }
 
 /// p of the bin whose rate differs most from that of the whole run, run by run: Student's t, Bonferroni over the bins.
 ///
 /// Each run is compared with itself, so neither the level nor what differs from run to run matters.
-fn within(sums: &[Vec<[f64; 2]>]) -> Option<f64> {
-    let rest = |run: &Vec<[f64; 2]>, bin: usize| {
-        let [error, amount] = run.iter().fold([0.0; 2], |sum, [e, a]| [sum[0] + e, sum[1] + a]);
-        let [own, there] = run[bin];
-        (there > 0.0 && there < amount).then(|| own - there * error / amount)
+fn within(by_run: &[Vec<Sum>], resolution: f64) -> Option<f64> {
+    let rest = |run: &Vec<Sum>, bin: usize| {
+        let (error, amount) = run.iter().fold((0.0, 0.0), |(e, a), sum| (e + sum.error, a + sum.amount));
+        let own = run[bin];
+        (own.amount > 0.0 && own.amount < amount).then(|| (own.error - own.amount * error / amount, own))
     };
-    let of_bin = |bin: usize| p_of_zero(&sums.iter().filter_map(|run| rest(run, bin)).collect::<Vec<_>>());
-    let p: Vec<f64> = (0..sums.first()?.len()).filter_map(of_bin).collect();
+    let of_bin = |bin: usize| {
+        let (rests, sums): (Vec<f64>, Vec<Sum>) = by_run.iter().filter_map(|run| rest(run, bin)).unzip();
+        p_of_zero(&rests, shared(sums.iter(), resolution))
+    };
+    let p: Vec<f64> = (0..by_run.first()?.len()).filter_map(of_bin).collect();
     p.iter().copied().reduce(f64::min).map(|least| (least * p.len() as f64).min(1.0))
 }
 
 /// p of the slope of the runs' rates against their mean of the covariate, where runs differ in it.
-fn between(means: &[[f64; 2]], bins: &[Bin]) -> Option<f64> {
+fn between(runs: &[Followed], rate: Rate, value: Value, bins: &[Bin], resolution: f64) -> Option<f64> {
+    let of_run = |run: &Followed| {
+        let sum = sums(&run.steps, rate, 1, |_| Some(0)).remove(0);
+        let at = run.steps.iter().filter_map(|step| Some(rate.of(step)?[1] * value(&step.at))).sum::<f64>();
+        (sum.amount > 0.0).then(|| ([at / sum.amount, sum.error / sum.amount], sum))
+    };
+    let (means, sums): (Vec<[f64; 2]>, Vec<Sum>) = runs.iter().filter_map(of_run).unzip();
     let ends = bins.iter().flat_map(|bin| [bin.span.low, bin.span.high]).filter(|end| end.is_finite());
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), end| (l.min(end), h.max(end)));
     let n = means.len() as f64;
     let centre = means.iter().map(|m| m[0]).sum::<f64>() / n;
     let scatter = (means.iter().map(|m| (m[0] - centre).powi(2)).sum::<f64>() / n).sqrt();
-    p_of_slope(means).filter(|_| scatter > DIFFER * (high - low))
+    p_of_slope(&means, shared_rate(&sums, resolution)).filter(|_| scatter > DIFFER * (high - low))
 }

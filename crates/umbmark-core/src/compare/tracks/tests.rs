@@ -50,7 +50,7 @@ fn a_kick_of_casters_shows_in_the_first_centimetres_after_turns_with_its_size_an
     let kick = 0.02;
     let judged = missing("caster_kick", "kick_rad", kick);
     assert!(p_adjusted(&judged, Rate::Yaw, "since_turn") < 0.01, "{:?}", judged.sentences);
-    assert!(!judged.explains(0.05));
+    assert_eq!(judged.explains(0.05), Some(false));
     let against = asked(&judged, Rate::Yaw, "since_turn");
     for bin in against.bins.iter().filter(|bin| bin.span.low < 0.15) {
         let left = |way: f64| libm::exp(-way / 0.05);
@@ -214,7 +214,7 @@ fn a_right_model_is_accused_no_more_often_than_is_asked() {
                 };
                 let judged = judged(&data, &model);
                 let p = judged.overall.iter().map(|o| o.p).chain(judged.against.iter().map(|a| a.p)).flatten();
-                (!judged.explains(0.05), p.filter(|p| *p < 0.05).count(), judged.tests)
+                (judged.explains(0.05) == Some(false), p.filter(|p| *p < 0.05).count(), judged.tests)
             })
             .collect();
         let share = outcomes.iter().filter(|o| o.0).count() as f64 / trials as f64;

@@ -139,7 +139,7 @@ fn gaps_jitter_and_a_wrong_wheelbase_are_seen() {
     }
     let mut data = dataset(vec![run]);
     let robot = data.robot.as_mut().unwrap();
-    robot.drive = crate::drive::DifferentialDrive::new(0.36, 0.16, 0.16).unwrap();
+    robot.drive = crate::drive::DifferentialDrive::new(0.36, 0.16, 0.16).unwrap().into();
     let found = data.inspect();
     for name in ["jitter", "longest gap", "length by ticks"] {
         assert!(!check(&found, name).ok, "{name}: {}", check(&found, name).found);
@@ -151,7 +151,7 @@ fn gaps_jitter_and_a_wrong_wheelbase_are_seen() {
 fn robot_heading(data: &Dataset) {
     let mut data = data.clone();
     let robot = data.robot.as_mut().unwrap();
-    robot.drive = crate::drive::DifferentialDrive::new(0.36, 0.15, 0.15).unwrap();
+    robot.drive = crate::drive::DifferentialDrive::new(0.36, 0.15, 0.15).unwrap().into();
     let found = data.inspect();
     assert_eq!(check(&found, "heading by ticks").found, "20.0 deg off the path");
 }

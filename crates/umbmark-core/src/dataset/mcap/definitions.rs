@@ -43,7 +43,7 @@ pub(super) const ODOMETRY: Definition = Definition {
 
 pub(super) const POSE_STAMPED: Definition = Definition {
     name: "geometry_msgs/msg/PoseStamped",
-    own: "std_msgs/Header header\ngeometry_msgs/Pose pose\n",
+    own: STAMPED_POSE.1,
     needs: &[HEADER, TIME, POSE, POINT, QUATERNION],
 };
 
@@ -60,6 +60,41 @@ pub(super) const TF: Definition = Definition {
         ("geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"),
         VECTOR,
         QUATERNION,
+    ],
+};
+
+const STAMPED_POSE: (&str, &str) = ("geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n");
+const COLOR: (&str, &str) = ("std_msgs/ColorRGBA", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n");
+
+pub(super) const PATH: Definition = Definition {
+    name: "nav_msgs/msg/Path",
+    own: "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n",
+    needs: &[HEADER, TIME, STAMPED_POSE, POSE, POINT, QUATERNION],
+};
+
+pub(super) const MARKER_ARRAY: Definition = Definition {
+    name: "visualization_msgs/msg/MarkerArray",
+    own: "visualization_msgs/Marker[] markers\n",
+    needs: &[
+        (
+            "visualization_msgs/Marker",
+            "std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\ngeometry_msgs/Pose pose\n\
+             geometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA color\nbuiltin_interfaces/Duration lifetime\n\
+             bool frame_locked\ngeometry_msgs/Point[] points\nstd_msgs/ColorRGBA[] colors\nstring texture_resource\n\
+             sensor_msgs/CompressedImage texture\nvisualization_msgs/UVCoordinate[] uv_coordinates\nstring text\n\
+             string mesh_resource\nvisualization_msgs/MeshFile mesh_file\nbool mesh_use_embedded_materials\n",
+        ),
+        HEADER,
+        TIME,
+        POSE,
+        POINT,
+        QUATERNION,
+        VECTOR,
+        COLOR,
+        ("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"),
+        ("sensor_msgs/CompressedImage", "std_msgs/Header header\nstring format\nuint8[] data\n"),
+        ("visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n"),
+        ("visualization_msgs/MeshFile", "string filename\nuint8[] data\n"),
     ],
 };
 

@@ -5,6 +5,7 @@ use super::super::save::{Existing, LogFormat, unwritable};
 use super::super::{Dataset, Run, TickLog};
 use super::clock::is_calendar;
 use super::write::{nanoseconds, write};
+use crate::drive::Kind;
 use crate::geometry::wrap;
 use std::io::{Cursor, Write};
 use std::path::Path;
@@ -27,6 +28,12 @@ impl Dataset {
     /// 4e-15 rad. That is checked before anything gets its name.
     pub fn save_mcap(&self, place: impl AsRef<Path>, existing: Existing) -> Result<Vec<String>, DatasetError> {
         let place = place.as_ref();
+        let kind = self.nominal_robot()?.drive.kind();
+        if kind != Kind::Differential {
+            let reason =
+                format!("MCAP logs hold wheels, and a robot with drive = \"{}\" counts others; write CSV", kind.name());
+            return Err(DatasetError::Unwritable { file: place.display().to_string(), reason });
+        }
         if !place.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap")) {
             let read = self.save_with(place, existing, &MCAP)?;
             let read_log = |run: &Run| {

@@ -1,4 +1,4 @@
-//! A log written as ROS 2 records it: `/joint_states`, `/odom`, `/tf` and `/ground_truth`.
+//! A log written as ROS 2 records it: `/joint_states`, `/odom`, `/tf` and `/ground_truth`, and the [scene](super::scene).
 //!
 //! Joint positions are the counts in radians; `/odom` and `/tf` (odom to base_link, REP 105) are what the nominal robot
 //! computes from them; `/ground_truth` holds the measured poses. A measured pose without heading has an orientation of
@@ -8,7 +8,8 @@
 use super::super::dead_reckoning::computed_poses;
 use super::super::robot_text::robot_text;
 use super::super::{ReferencePose, TickLog};
-use super::definitions::{Definition, JOINT_STATE, ODOMETRY, POSE_STAMPED, TF};
+use super::definitions::{Definition, JOINT_STATE, MARKER_ARRAY, ODOMETRY, PATH, POSE_STAMPED, TF};
+use super::scene;
 use super::survey::{METADATA, ROBOT};
 use crate::drive::Robot;
 use crate::geometry::Pose2;
@@ -51,6 +52,7 @@ pub(super) fn write(
     };
     let per_radian = TAU / robot.encoder.ticks_per_revolution();
     let poses = computed_poses(log, robot);
+    write_scene(&mut writer, log, &poses, begin)?;
     let mut references = log.reference.iter().peekable();
     for (sample, pose) in poses.iter().enumerate() {
         let time = nanoseconds(log.time[sample] - begin);
@@ -67,6 +69,21 @@ pub(super) fn write(
     writer.finish().map(|_| ())
 }
 
+/// Both paths and the errors between them, at the time of the first sample.
+fn write_scene<W: Write + Seek>(writer: &mut Writer<W>, log: &TickLog, poses: &[Pose2], begin: f64) -> McapResult<()> {
+    let Some(first) = log.time.first() else { return Ok(()) };
+    let time = nanoseconds(first - begin);
+    let mut computed = Topic::add(writer, "/scene/computed_path", &PATH)?;
+    computed.write(writer, time, |cdr| scene::computed_path(cdr, time, poses))?;
+    if !log.reference.is_empty() {
+        let mut measured = Topic::add(writer, "/scene/true_path", &PATH)?;
+        measured.write(writer, time, |cdr| scene::true_path(cdr, time, &log.reference))?;
+        let mut errors = Topic::add(writer, "/scene/errors", &MARKER_ARRAY)?;
+        errors.write(writer, time, |cdr| scene::errors(cdr, time, log, poses))?;
+    }
+    Ok(())
+}
+
 /// A time as ROS writes it \[ns\]. A double does not hold the nanoseconds of a calendar's time, so these are apart.
 pub(super) fn nanoseconds(seconds: f64) -> u64 {
     let whole = seconds.floor();
@@ -79,7 +96,7 @@ struct Topic {
     message: Vec<u8>,
 }
 
-type Cdr<'a> = CdrWriter<'a, LittleEndian>;
+pub(super) type Cdr<'a> = CdrWriter<'a, LittleEndian>;
 
 impl Topic {
     fn add<W: Write + Seek>(writer: &mut Writer<W>, topic: &str, definition: &Definition) -> McapResult<Topic> {
@@ -107,20 +124,20 @@ impl Topic {
     }
 }
 
-fn header(cdr: &mut Cdr, time: u64, frame: &str) {
+pub(super) fn header(cdr: &mut Cdr, time: u64, frame: &str) {
     cdr.write_i32((time / 1_000_000_000) as i32);
     cdr.write_u32((time % 1_000_000_000) as u32);
     cdr.write_string(frame);
 }
 
-fn numbers<const N: usize>(cdr: &mut Cdr, numbers: [f64; N]) {
+pub(super) fn numbers<const N: usize>(cdr: &mut Cdr, numbers: [f64; N]) {
     for number in numbers {
         cdr.write_f64(number);
     }
 }
 
 /// Rotation by a heading as a quaternion.
-fn orientation(heading: f64) -> [f64; 4] {
+pub(super) fn orientation(heading: f64) -> [f64; 4] {
     [0.0, 0.0, libm::sin(0.5 * heading), libm::cos(0.5 * heading)]
 }
 

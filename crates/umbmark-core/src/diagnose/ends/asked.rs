@@ -4,9 +4,9 @@ use super::exact::{Pattern, wilks};
 use super::fitted::names;
 use super::moments::{Moments, Whitened};
 use super::{Ends, Fitted, mirrored};
-use crate::diagnose::{DiagnoseError, Size, Unseen, Why, candidates, classes};
+use crate::diagnose::{DiagnoseError, Likeness, Size, Unseen, Why, candidates, classes};
 use crate::drive::WheelTravel;
-use crate::effect::{CATALOGUE, Context, Entry, Model, Sight};
+use crate::effect::{Context, Entry, Model, Sight, of_drive};
 use crate::fit::RANK_TOLERANCE;
 use crate::geometry::Pose2;
 use crate::parameter::Parameter;
@@ -135,7 +135,7 @@ impl Asked {
             }
             self.units.append(&mut visible);
         }
-        let still = CATALOGUE.iter().filter(|entry| {
+        let still = of_drive(ends.robot.drive.kind()).filter(|entry| {
             moved.iter().all(|c| c.effect != *entry)
                 && fitted.model.parts().iter().all(|part| part.effect != *entry)
                 && moves_means(entry, &fitted.model)
@@ -186,6 +186,13 @@ impl Asked {
             along * along / column.norm_squared()
         };
         self.units.iter().map(drop).collect()
+    }
+
+    /// How alike the effects look, each size at its usual value.
+    pub fn likeness(&self) -> Likeness {
+        let names: Vec<&'static str> = self.units.iter().map(|unit| unit.effect.about.name).collect();
+        let shift = |i: usize| &self.units[i].shift * self.units[i].parameter.typical;
+        Likeness::new(&names, &DMatrix::from_fn(names.len(), names.len(), |i, j| shift(i).dot(&shift(j))))
     }
 
     /// Units that these means cannot tell apart, as indices.
@@ -327,6 +334,8 @@ fn moves_means(entry: &'static Entry, model: &Model) -> bool {
         since_turn: 0.05,
         length: 0.03,
         last_turn: 1.0,
+        believed_heading: 0.6,
+        axle_distance: model.robot().drive.axle_distance(),
         run: 2.0,
         direction: 1.0,
         recorded: true,

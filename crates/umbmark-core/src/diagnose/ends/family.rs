@@ -9,7 +9,7 @@ use super::exact::wilks;
 use super::moments::{Moments, Whitened};
 use crate::diagnose::Options;
 use crate::random::Stream;
-use crate::stats::f_upper_tail;
+use crate::stats::{f_upper_tail, student_t_quantile};
 use rayon::prelude::*;
 
 /// The test of the whole model has to be so many times as striking as one of a single effect: most causes are on the list, and
@@ -36,6 +36,9 @@ pub(crate) struct Family {
     pub exact_whole: Option<[f64; 2]>,
     pub p_whole: f64,
     pub p_whole_adjusted: f64,
+    judges: Vec<Judge>,
+    /// The smallest p of each simulated null test, rising.
+    smallest: Vec<f64>,
 }
 
 /// F of every unit, without any p.
@@ -79,9 +82,10 @@ impl Family {
             None if has_rest => Judge::simulated(&draws, &observed, |s| s.whole),
             None => Judge::Silent,
         };
-        let smallest: Vec<f64> = draws.par_iter().map(|draw| smallest(draw, &judges, &whole)).collect();
+        let mut smallest: Vec<f64> = draws.par_iter().map(|draw| smallest(draw, &judges, &whole)).collect();
+        smallest.sort_by(f64::total_cmp);
         let adjusted = |p: f64| {
-            let as_small = smallest.iter().filter(|s| **s <= p).count();
+            let as_small = smallest.partition_point(|s| *s <= p);
             (1 + as_small) as f64 / (1 + smallest.len()) as f64
         };
         let p: Vec<f64> = judges.iter().zip(&observed.units).map(|(judge, f)| judge.p(*f)).collect();
@@ -93,7 +97,20 @@ impl Family {
             p_whole,
             exact_whole,
             observed,
+            judges,
+            smallest,
         })
+    }
+
+    /// The F above which a unit is certified at a family-wise size; infinite where there are too few draws for that size.
+    pub fn critical(&self, unit: usize, size: f64) -> f64 {
+        // (1 + as_small)/(1 + draws) < size has so many numbers `as_small`.
+        let allowed = (size * (1 + self.smallest.len()) as f64 - 1.0).ceil();
+        if allowed < 1.0 {
+            return f64::INFINITY;
+        }
+        let p = self.smallest.get(allowed as usize - 1).copied().unwrap_or(1.0);
+        self.judges[unit].critical(p)
     }
 }
 
@@ -111,6 +128,7 @@ fn smallest(draw: &Statistics, judges: &[Judge], whole: &Judge) -> f64 {
 }
 
 /// Where the p of a statistic comes from.
+#[derive(Clone, Debug)]
 enum Judge {
     Exact([f64; 2]),
     /// Statistics of the null tests and of the observed one, rising: all are judged alike.
@@ -134,6 +152,21 @@ impl Judge {
                 as_large as f64 / sorted.len() as f64
             }
             Judge::Silent => 1.0,
+        }
+    }
+
+    /// The statistic above which p is less than this; exact ones are squares of Student's t.
+    fn critical(&self, p: f64) -> f64 {
+        match self {
+            Judge::Exact([_, freedom]) => {
+                let t = student_t_quantile(1.0 - 0.5 * p, *freedom);
+                t * t
+            }
+            Judge::Simulated(sorted) => {
+                let as_large = (p * sorted.len() as f64).ceil() as usize;
+                if as_large == 0 { f64::INFINITY } else { sorted[sorted.len().saturating_sub(as_large)] }
+            }
+            Judge::Silent => f64::INFINITY,
         }
     }
 }

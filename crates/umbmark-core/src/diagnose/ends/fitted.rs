@@ -17,9 +17,6 @@ const INVOLVED: f64 = 0.01;
 /// When a fit has settled: predictions over thousands of small pieces are good to some 1e-13.
 const SETTLED: fit::Options = fit::Options { iterations: 100, step_tolerance: 1e-10, decrease_tolerance: 1e-12 };
 
-/// Parameters that are settled first: what others share with them counts as theirs.
-const FIRST: [&str; 2] = ["wheel_diameter_ratio", "wheelbase"];
-
 /// A model fitted to return poses.
 #[derive(Clone, Debug)]
 pub(crate) struct Fitted {
@@ -34,6 +31,8 @@ pub(crate) struct Fitted {
     pub jacobian: Vec<DMatrix<f64>>,
     /// What was fitted, with its uncertainty; standard errors are NaN for too few runs.
     pub estimates: Vec<Estimate>,
+    /// Their covariance; `None` for too few runs.
+    pub covariance: Option<DMatrix<f64>>,
 }
 
 impl Fitted {
@@ -55,8 +54,9 @@ impl Fitted {
         let residuals = ends.residuals(&fitted);
         let residuals = ends.runs.iter().zip(&residuals).map(|(run, r)| mirrored(run.direction, r)).collect();
         let jacobian = slopes(ends, &fitted, &free);
-        let mut result = Fitted { model: fitted, free, open, residuals, jacobian, estimates: Vec::new() };
-        result.estimates = result.estimate(ends, fit.covariance());
+        let mut result =
+            Fitted { model: fitted, free, open, residuals, jacobian, estimates: Vec::new(), covariance: None };
+        result.estimate(ends, fit.covariance());
         Ok(result)
     }
 
@@ -88,12 +88,11 @@ impl Fitted {
         slopes(&ends.as_meant(), &self.model.at_rest(), &self.free)
     }
 
-    fn estimate(&self, ends: &Ends, information: Option<DMatrix<f64>>) -> Vec<Estimate> {
+    fn estimate(&mut self, ends: &Ends, information: Option<DMatrix<f64>>) {
         let (scatter, freedom) = self.scatter(ends);
         let d = ends.coordinates();
-        let mut covariance = DMatrix::from_element(self.free.len(), self.free.len(), f64::NAN);
         if let Some(inverse) = information.filter(|_| freedom > 0) {
-            covariance.fill(0.0);
+            let mut covariance = DMatrix::zeros(self.free.len(), self.free.len());
             for (run, slope) in ends.runs.iter().zip(&self.jacobian) {
                 // The weights are lower triangular in the run's own frame; mirroring twice is no change.
                 let mirror = Matrix3::from_diagonal(&Vector3::new(1.0, run.direction.sign(), run.direction.sign()));
@@ -101,6 +100,7 @@ impl Fitted {
                 let influence = &inverse * slope.rows(0, d).transpose() * weight.transpose() * weight;
                 covariance += &influence * scatter.view((0, 0), (d, d)) * influence.transpose();
             }
+            self.covariance = Some(covariance);
         }
         let names: Vec<_> = names(&self.model);
         let values: Vec<f64> = self.model.values().collect();
@@ -108,10 +108,10 @@ impl Fitted {
             effect: names[*i].0,
             parameter: names[*i].1,
             value: values[*i],
-            standard_error: covariance[(j, j)].max(0.0).sqrt(),
+            standard_error: self.covariance.as_ref().map_or(f64::NAN, |c| c[(j, j)].max(0.0).sqrt()),
             degrees_of_freedom: freedom as f64,
         };
-        self.free.iter().enumerate().map(estimate).collect()
+        self.estimates = self.free.iter().enumerate().map(estimate).collect();
     }
 }
 
@@ -160,7 +160,9 @@ fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     let nominal = model.at_rest();
     let mut asked: Vec<usize> =
         flags.enumerate().filter(|(i, free)| *free && is_size(ends, &nominal, *i)).map(|(i, _)| i).collect();
-    asked.sort_by_key(|i| !FIRST.contains(&names[*i].0));
+    // What others share with these counts as theirs.
+    let first = &model.robot().drive.kind().first_effects()[..2];
+    asked.sort_by_key(|i| !first.contains(&names[*i].0));
     let start: Vec<f64> = nominal.values().collect();
     let column = |index: usize| {
         let problem = Returns { ends, model: &nominal, start: &start, free: &[index] };
@@ -182,7 +184,7 @@ fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
             continue;
         }
         kept.pop();
-        if FIRST.contains(&names[asked[k]].0) {
+        if first.contains(&names[asked[k]].0) {
             // Neither of two that act alike is known.
             let involved = |at: usize| null.iter().any(|direction| direction[at].abs() > INVOLVED);
             kept = kept.iter().enumerate().filter(|(at, _)| !involved(*at)).map(|(_, k)| *k).collect();

@@ -40,19 +40,22 @@ impl Moments {
     /// are the same for every covariance; others would accuse too often were the estimate taken for the truth.
     pub fn draw(counts: [usize; 2], size: usize, stream: &mut Stream) -> Moments {
         let freedom = counts[0] + counts[1] - 2;
-        let normal = |stream: &mut Stream| DVector::from_fn(size, |_, _| stream.normal());
-        let wishart = |stream: &mut Stream| {
-            (0..freedom).fold(DMatrix::zeros(size, size), |mut sum: DMatrix<f64>, _| {
-                let z = normal(stream);
-                sum.ger(1.0, &z, &z, 1.0);
-                sum
-            })
-        };
-        let precision = wishart(stream) / freedom as f64;
+        let precision = wishart(freedom, size, stream) / freedom as f64;
         let root = precision.cholesky().and_then(|c| c.l().transpose().try_inverse());
         let root = root.unwrap_or_else(|| DMatrix::identity(size, size));
-        let means = counts.map(|count| &root * normal(stream) / f64::from(count as u32).sqrt());
-        let scatter = &root * wishart(stream) * root.transpose();
+        let means = counts.map(|count| &root * normal(size, stream) / f64::from(count as u32).sqrt());
+        let scatter = &root * wishart(freedom, size, stream) * root.transpose();
+        Moments { counts, means, scatter }
+    }
+
+    /// Moments of as many simulated runs whose covariance is known, `root` times its transpose, about these means.
+    pub fn about(counts: [usize; 2], means: [DVector<f64>; 2], root: &DMatrix<f64>, stream: &mut Stream) -> Moments {
+        let size = root.nrows();
+        let mut means = means;
+        for (mean, count) in means.iter_mut().zip(counts) {
+            *mean += root * normal(size, stream) / f64::from(count as u32).sqrt();
+        }
+        let scatter = root * wishart(counts[0] + counts[1] - 2, size, stream) * root.transpose();
         Moments { counts, means, scatter }
     }
 
@@ -70,6 +73,19 @@ impl Moments {
     pub fn count(&self, group: usize) -> f64 {
         f64::from(self.counts[group] as u32)
     }
+}
+
+fn normal(size: usize, stream: &mut Stream) -> DVector<f64> {
+    DVector::from_fn(size, |_, _| stream.normal())
+}
+
+/// Σ z zᵀ over as many standard normal vectors as there are degrees of freedom.
+fn wishart(freedom: usize, size: usize, stream: &mut Stream) -> DMatrix<f64> {
+    (0..freedom).fold(DMatrix::zeros(size, size), |mut sum, _| {
+        let z = normal(size, stream);
+        sum.ger(1.0, &z, &z, 1.0);
+        sum
+    })
 }
 
 /// Least squares in units of the pooled scatter S = E/ν: means as one vector of unit variances, less what a base explains.

@@ -7,8 +7,9 @@ use super::moments::Whitened;
 use super::{Ends, FEWEST_RUNS, Fitted, circle, contrasts};
 use crate::diagnose::experiments::next_experiments;
 use crate::diagnose::identifiability::of_ends;
+use crate::diagnose::likeness::correlations;
 use crate::diagnose::{
-    Detectable, DiagnoseError, Diagnosis, Estimate, GoodnessOfFit, Level, OnCircle, Options, Suspect, Verdict,
+    Detectable, DiagnoseError, Diagnosis, Estimate, GoodnessOfFit, Level, Likeness, OnCircle, Options, Suspect, Verdict,
 };
 use crate::effect::Model;
 use crate::stats::{normal_quantile, student_t_quantile};
@@ -24,6 +25,8 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
         verdict: Verdict::NotEnoughData,
         model: fitted.model.clone(),
         fitted: fitted.estimates.clone(),
+        correlations: correlations(fitted.covariance.as_ref()),
+        likeness: Likeness::default(),
         goodness_of_fit: Vec::new(),
         ranking: Vec::new(),
         certified: 0,
@@ -56,6 +59,7 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
     diagnosis.ranking = ranking(&asked, &family, &certificate(&asked, options.seed), options.size);
     diagnosis.minimum_detectable = detectable(&asked, options.size);
     diagnosis.invisible = asked.unseen.clone();
+    diagnosis.likeness = asked.likeness();
     judge(&mut diagnosis, &asked, &family, options);
     diagnosis.next_experiments = next_experiments(ends, &fitted, &asked, &diagnosis.ranking)?;
     Ok(diagnosis)

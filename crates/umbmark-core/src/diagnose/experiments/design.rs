@@ -9,7 +9,7 @@ use crate::replay::Track;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, Vector3};
 
 /// Carrying the robot to START, lining it up and writing the end pose down \[min\].
-pub(in crate::diagnose) const MINUTES_A_RUN: f64 = 1.0;
+pub(crate) const MINUTES_A_RUN: f64 = 1.0;
 /// Taping a pose on the way \[min\].
 const MINUTES_A_STOP: f64 = 0.5;
 /// What a tape and a protractor scatter: 2 mm and 0.15 degrees.
@@ -18,7 +18,7 @@ const TAPE: [f64; 3] = [2e-3, 2e-3, 2.6e-3];
 /// How poses scatter: wheel noise along the way and the tape at its end.
 pub(super) struct Noise {
     /// Variance of each wheel's travel a metre \[m\].
-    variance: f64,
+    pub variance: f64,
     /// 3, or 2 where headings are not measured.
     coordinates: usize,
 }
@@ -198,7 +198,7 @@ pub(super) fn designs(ends: &Ends) -> Vec<Design> {
 
 /// A path driven as it is, one way or both.
 fn plain(what: &str, path: Option<Path>, robot: &Robot, runs: usize, both: bool) -> Option<Design> {
-    let path = path?;
+    let path = path.filter(|path| path.suits(robot))?;
     let directions: &[Direction] = if both { &Direction::BOTH } else { &[Direction::Ccw] };
     let leg = |d: &Direction| Leg {
         track: Track::in_pieces(&path, *d, robot),
@@ -220,7 +220,7 @@ fn again(path: &Path, robot: &Robot, how: &str, stops: bool, turned: f64) -> Opt
 }
 
 /// Time on the way \[min\].
-pub(in crate::diagnose) fn minutes(path: &Path, robot: &Robot) -> f64 {
+pub(crate) fn minutes(path: &Path, robot: &Robot) -> f64 {
     let moves = path.moves(Direction::Ccw);
     let seconds: f64 = moves
         .iter()

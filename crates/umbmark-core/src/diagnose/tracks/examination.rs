@@ -4,7 +4,7 @@ use super::errors::Errors;
 use super::errors::Misses;
 use super::smooth::{self, Covariate, Motion, smooth_columns};
 use super::system::{ABSORBED, Projected, System};
-use crate::effect::{CATALOGUE, Entry, Model, ModelError};
+use crate::effect::{Entry, Model, ModelError, of_drive};
 use crate::likelihood::{Column, Fitted, Noise, Observed};
 use crate::parameter::Parameter;
 use nalgebra::{DMatrix, DVector};
@@ -347,7 +347,8 @@ struct WithColumns {
 /// Every effect of the catalogue that the model lacks and that moves some observation, with its columns by run.
 fn candidates(observed: &Observed, fitted: &Fitted) -> Result<Vec<WithColumns>, ModelError> {
     let model = &fitted.model;
-    let missing = CATALOGUE.iter().filter(|entry| model.parts().iter().all(|part| part.effect != *entry));
+    let missing =
+        of_drive(model.robot().drive.kind()).filter(|entry| model.parts().iter().all(|part| part.effect != *entry));
     let mut found = Vec::new();
     for effect in missing {
         let mut plain = model.clone();

@@ -1,0 +1,49 @@
+//! Whole tests of each drive, the paper's five runs each way, without effects but wheel noise.
+//!
+//! `cargo bench -p umbmark-benches --bench drives`; throughput is in trials per second on one thread.
+
+use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
+use std::time::Duration;
+use umbmark_benches::studies;
+use umbmark_core::drive::{AckermannDrive, Drive, Encoder, Robot};
+use umbmark_core::effect::Model;
+use umbmark_core::monte_carlo::{CHUNK, Study};
+use umbmark_core::path::{Path, ROUNDED_RECTANGLE, SpeedProfile};
+use umbmark_core::preset::Preset;
+
+fn tricycle() -> (Robot, Path) {
+    let drive = AckermannDrive::new(0.5, 0.4, 0.15, 20_000.0, 0.0).expect("positive lengths");
+    let encoder = Encoder::new(2000.0, None, None).expect("positive ticks");
+    let path = Path::new(&ROUNDED_RECTANGLE, &[4.0, 4.0, 1.0], SpeedProfile::default()).expect("corners that fit");
+    (Robot { name: "tricycle".into(), drive: Drive::Ackermann(drive), encoder }, path)
+}
+
+fn drives(criterion: &mut Criterion) {
+    let preset = |name: &str| {
+        let preset = Preset::find(name).expect("a preset");
+        (preset.robot(), preset.path())
+    };
+    let mut group = criterion.benchmark_group("drives");
+    group.sampling_mode(SamplingMode::Flat);
+    for (name, (robot, path)) in
+        [("differential", preset("trc-labmate-docal")), ("synchro", preset("k2a")), ("ackermann", tricycle())]
+    {
+        let mut model = Model::new(&robot);
+        model.set("wheel_noise", "k_sqrt_m", 1e-3).expect("a usual size");
+        let study = Study { path, ..Study::new(model, 4 * CHUNK, 1) };
+        group.throughput(Throughput::Elements(study.trials));
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+        group.bench_function(name, |bencher| pool.install(|| bencher.iter(|| studies::run(&study))));
+    }
+    group.finish();
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default()
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(3))
+        .sample_size(10);
+    targets = drives
+}
+criterion_main!(benches);

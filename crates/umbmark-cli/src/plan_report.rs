@@ -1,0 +1,396 @@
+//! What is said of a plan: for people, and as a document.
+
+use serde_json::{Map, Value, json};
+use umbmark_core::diagnose::{Experiment, Options, Unseen, Why};
+use umbmark_core::plan::{Alternative, Drift, ExpectedInterval, ExtendedTest, MOST_RUNS, Setting, Shown, Sought};
+use umbmark_core::stats::Interval;
+
+use crate::model_report::unit_of;
+use crate::prose::hanging;
+use crate::table::table;
+
+/// Numbers of runs that are printed.
+pub const PRINTED: [usize; 7] = [3, 4, 5, 7, 10, 20, 30];
+/// Those of them that least sizes are printed for.
+const LEAST_AT: [usize; 5] = [3, 5, 10, 20, 30];
+/// So many experiments are printed.
+const EXPERIMENTS: usize = 5;
+
+/// Where the robot and its scatter are from.
+#[derive(Debug)]
+pub struct Known {
+    /// What nobody said and was assumed, a phrase each.
+    pub assumed: Vec<String>,
+    /// Whether they are from measured runs.
+    pub from_data: bool,
+    /// Where sigma may lie, as the measured runs say.
+    pub sigma_interval: Option<Interval>,
+}
+
+/// What is said of one size that is to be seen.
+#[derive(Debug)]
+pub struct Answer {
+    /// The size.
+    pub sought: Sought,
+    /// Its value, as it was given.
+    pub value: f64,
+    /// Runs a direction that it takes; `None` where [`MOST_RUNS`] are too few.
+    pub runs: Option<usize>,
+    /// The same at both ends of sigma's interval.
+    pub runs_at_sigma: Option<[Option<usize>; 2]>,
+    /// Probability that the planned runs show it.
+    pub power: f64,
+    /// By what.
+    pub shown: Shown,
+    /// Experiments that show it where return poses do not.
+    pub separable: Vec<Experiment>,
+}
+
+/// What one number of runs shows.
+#[derive(Debug)]
+pub struct Row {
+    /// E_max,sys and its interval.
+    pub interval: ExpectedInterval,
+    /// The least of each size.
+    pub least: Vec<Option<f64>>,
+}
+
+/// All that is said.
+#[derive(Debug)]
+pub struct Report {
+    /// What is driven.
+    pub summary: String,
+    /// The robot on its path.
+    pub setting: Setting,
+    /// Where it is from.
+    pub known: Known,
+    /// Runs a direction.
+    pub runs: usize,
+    /// The power that is wanted.
+    pub power: f64,
+    /// How it is tested.
+    pub options: Options,
+    /// What is to be seen.
+    pub answers: Vec<Answer>,
+    /// Sizes that the planned test would show.
+    pub sizes: Vec<Sought>,
+    /// Effects that it cannot show.
+    pub unseen: Vec<Unseen>,
+    /// Numbers of runs.
+    pub rows: Vec<Row>,
+    /// Other tests.
+    pub alternatives: Vec<Alternative>,
+    /// Sizes that the other tests are compared by.
+    pub watched: Vec<Sought>,
+    /// With bumps.
+    pub extended: Option<ExtendedTest>,
+    /// What drifts do in each order.
+    pub drifts: Vec<Drift>,
+    /// Whether not all numbers of runs were looked at.
+    pub partial: bool,
+}
+
+fn millimetres(value: f64) -> String {
+    format!("{:.1}", 1e3 * value)
+}
+
+fn or_dash(value: Option<f64>, text: impl Fn(f64) -> String) -> String {
+    value.map_or("-".to_owned(), text)
+}
+
+/// A size to three digits.
+fn brief(value: f64) -> String {
+    if value != 0.0 && !(1e-3..1e4).contains(&value.abs()) {
+        return format!("{value:.2e}");
+    }
+    let decimals = (2 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 9) as usize;
+    format!("{value:.decimals$}")
+}
+
+fn name_of(sought: &Sought) -> String {
+    format!("{} of {}", sought.parameter.name, sought.effect.about.name)
+}
+
+/// For people.
+pub fn text(report: &Report) -> String {
+    let setting = &report.setting;
+    let mut text = format!("Plan for {}\n", setting.robot().name);
+    text += &hanging("", 2, &report.summary);
+    text += &heading(report);
+    text += &answers(report);
+    text += &intervals(report);
+    text += &least(report);
+    text += &alternatives(report);
+    text += &orders(report);
+    text += "\numbmark plan -o protocol.html writes the steps and the table to fill in.\n";
+    text
+}
+
+fn heading(report: &Report) -> String {
+    let setting = &report.setting;
+    let mut text = String::new();
+    let from = if report.known.from_data { "the data's" } else { "expected" };
+    let interval = report.known.sigma_interval;
+    let between = interval.map(|i| format!(" ({} to {})", millimetres(i.low), millimetres(i.high))).unwrap_or_default();
+    text += &hanging(
+        "",
+        2,
+        &format!(
+            "sigma {} mm{between}, {from}; E_max,sys of the robot itself {} mm",
+            millimetres(setting.sigma()),
+            millimetres(setting.e_max_sys())
+        ),
+    );
+    for assumption in &report.known.assumed {
+        text += &hanging("", 2, &format!("assumed: {assumption}"));
+    }
+    text
+}
+
+fn answers(report: &Report) -> String {
+    if report.answers.is_empty() {
+        return String::new();
+    }
+    let runs = |runs: Option<usize>| runs.map_or(format!("> {MOST_RUNS}"), |n| n.to_string());
+    let row = |a: &Answer| {
+        let unit = unit_of(a.sought.effect.about.name, a.sought.parameter.name);
+        let needed = match a.shown {
+            Shown::Absorbed(_) => "never".to_owned(),
+            _ => runs(a.runs),
+        };
+        let range = a.runs_at_sigma.filter(|_| a.runs.is_some());
+        let range = range.map_or("-".to_owned(), |[low, high]| format!("{} to {}", runs(low), runs(high)));
+        vec![
+            format!("{} {}{unit} of {}", a.sought.parameter.name, a.value, a.sought.effect.about.name),
+            needed,
+            range,
+            format!("{:.1} %", 100.0 * a.power),
+        ]
+    };
+    let title = format!("to see with {:.0} %", 100.0 * report.power);
+    let header = [title.as_str(), "runs a direction", "if sigma is off", &format!("seen with {0} + {0}", report.runs)];
+    let mut text = format!("\n{}\n", table(&header, report.answers.iter().map(row)));
+    for answer in &report.answers {
+        let name = answer.sought.effect.about.name;
+        let why = match &answer.shown {
+            Shown::Fitted(_) | Shown::Asked => continue,
+            Shown::Absorbed(by) => {
+                let best = answer.separable.iter().find(|e| e.sd >= ENOUGH).or(answer.separable.first());
+                let advice = best.map_or(String::new(), |e| {
+                    format!(" To tell them apart: {} ({:.1} sd in {:.0} min).", e.experiment, e.sd, e.minutes)
+                });
+                format!("{name} shows in no return pose: {} does what it does.{advice}", by.join(" with "))
+            }
+            Shown::BelowNoise => format!(
+                "with {0} + {0} runs diagnose does not ask for {name}: at its usual size it is below half a standard deviation of the means",
+                report.runs
+            ),
+        };
+        text += &hanging("", 2, &why);
+    }
+    text
+}
+
+/// Standard deviations that are seen in nine cases of ten.
+const ENOUGH: f64 = 3.24;
+
+fn intervals(report: &Report) -> String {
+    let row = |row: &Row| {
+        let i = &row.interval;
+        vec![
+            i.runs.to_string(),
+            format!("{:.0}", 2.0 * i.runs as f64 * report.setting.minutes_a_run()),
+            format!("{} ± {}", millimetres(i.mean), millimetres(i.std_dev)),
+            millimetres(i.half_width),
+            format!("{:.1}", 100.0 * i.coverage),
+            millimetres(i.noise_band),
+        ]
+    };
+    let header = ["runs", "min", "E_max,sys reads [mm]", "interval ± [mm]", "holds [%]", "chance alone [mm]"];
+    format!("\n{}\n", table(&header, report.rows.iter().map(row)))
+}
+
+fn least(report: &Report) -> String {
+    let runs: Vec<&Row> = report.rows.iter().filter(|row| LEAST_AT.contains(&row.interval.runs)).collect();
+    let mut header = vec![format!("least size seen with {:.0} %, runs:", 100.0 * report.power)];
+    header.extend(runs.iter().map(|row| row.interval.runs.to_string()));
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let row = |(i, sought): (usize, &Sought)| {
+        let cells = runs.iter().map(|row| or_dash(row.least[i], brief));
+        std::iter::once(name_of(sought)).chain(cells).collect()
+    };
+    let mut text = format!("\n{}\n", table(&header, report.sizes.iter().enumerate().map(row)));
+    let absorbed = |u: &&Unseen| matches!(u.why, Why::Absorbed(_));
+    let names: Vec<&str> = report.unseen.iter().filter(absorbed).map(|u| u.effect).collect();
+    if !names.is_empty() {
+        text += &hanging("never:", 8, &format!("{} (E_d or E_b does what they do)", names.join(", ")));
+    }
+    text
+}
+
+fn alternatives(report: &Report) -> String {
+    let mut header = vec!["instead".to_owned(), "runs".into(), "min".into(), "sigma [mm]".into(), "± [mm]".into()];
+    header.extend(report.watched.iter().map(|s| format!("least {}", s.parameter.name)));
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let row = |a: &Alternative| {
+        let runs = if a.runs[1] == 0 { format!("{} + 0", a.runs[0]) } else { format!("{} + {}", a.runs[0], a.runs[1]) };
+        let cells = [runs, format!("{:.0}", a.minutes), millimetres(a.sigma), or_dash(a.half_width, millimetres)];
+        let least = a.least.iter().map(|size| or_dash(*size, brief));
+        std::iter::once(a.what.clone()).chain(cells).chain(least).collect()
+    };
+    let mut text = format!("\n{}\n", table(&header, report.alternatives.iter().map(row)));
+    if let Some(e) = &report.extended {
+        text += &hanging(
+            "bumps",
+            8,
+            &format!(
+                "{0} + {0} runs over {1:.0} bumps, {2:.0} min more: orientation error {3:.2} ± {4:.2} deg (half the interval)",
+                e.runs,
+                e.bumps,
+                e.minutes,
+                e.orientation.to_degrees(),
+                e.half_width.to_degrees()
+            ),
+        );
+    }
+    text
+}
+
+fn orders(report: &Report) -> String {
+    let row = |d: &Drift| {
+        let cells = d.errors.iter().map(|(_, error, sd)| format!("{error:+.1e} ({sd:+.1} sd)"));
+        let what = format!("{} grows by {}", d.parameter, brief(d.change));
+        [what, d.order.name().to_owned()].into_iter().chain(cells).collect()
+    };
+    let Some(first) = report.drifts.first() else { return String::new() };
+    let mut header = vec!["in the session".to_owned(), "order".into()];
+    header.extend(first.errors.iter().map(|(name, _, _)| format!("error of {name}")));
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    format!("\n{}\n", table(&header, report.drifts.iter().map(row)))
+}
+
+/// One document.
+pub fn document(report: &Report) -> Value {
+    let setting = &report.setting;
+    let least = |sizes: &[Sought], values: &[Option<f64>]| -> Value {
+        let one = |(s, value): (&Sought, &Option<f64>)| json!({ "effect": s.effect.about.name, "parameter": s.parameter.name, "size": value });
+        json!(sizes.iter().zip(values).map(one).collect::<Vec<_>>())
+    };
+    let row = |row: &Row| {
+        let i = &row.interval;
+        json!({
+            "runs": i.runs,
+            "minutes": 2.0 * i.runs as f64 * setting.minutes_a_run(),
+            "e_max_sys_m": { "mean": i.mean, "std_dev": i.std_dev, "interval_half_width_m": i.half_width,
+                             "coverage": i.coverage, "tests": i.tests, "noise_band_m": i.noise_band },
+            "minimum_detectable": least(&report.sizes, &row.least),
+        })
+    };
+    let alternative = |a: &Alternative| {
+        json!({ "what": a.what, "runs": { "cw": a.runs[0], "ccw": a.runs[1] }, "minutes": a.minutes, "sigma_m": a.sigma,
+                "e_max_sys_interval_half_width_m": a.half_width, "minimum_detectable": least(&report.watched, &a.least) })
+    };
+    let drift = |d: &Drift| {
+        let of = |which: fn(&(&'static str, f64, f64)) -> f64| -> Map<String, Value> {
+            d.errors.iter().map(|e| (e.0.to_owned(), json!(which(e)))).collect()
+        };
+        json!({ "effect": d.effect, "parameter": d.parameter, "change": d.change, "order": d.order.name(),
+                "error": of(|e| e.1), "error_sd": of(|e| e.2) })
+    };
+    json!({
+        "robot": setting.robot().name,
+        "runs": report.runs,
+        "minutes_a_run": setting.minutes_a_run(),
+        "sigma_m": setting.sigma(),
+        "sigma_interval_m": report.known.sigma_interval.map(|i| [i.low, i.high]),
+        "e_max_sys_m": setting.e_max_sys(),
+        "with_heading": setting.with_heading,
+        "power": report.power,
+        "size": report.options.size,
+        "draws": report.options.draws,
+        "seed": report.options.seed,
+        "see": report.answers.iter().map(answer_json).collect::<Vec<_>>(),
+        "by_runs": report.rows.iter().map(row).collect::<Vec<_>>(),
+        "invisible": report.unseen.iter().map(|u| u.effect).collect::<Vec<_>>(),
+        "alternatives": report.alternatives.iter().map(alternative).collect::<Vec<_>>(),
+        "extended": report.extended.map(|e| json!({
+            "bumps": e.bumps, "runs": e.runs, "minutes": e.minutes, "nonsys_orientation_rad": e.orientation,
+            "interval_half_width_rad": e.half_width,
+        })),
+        "order": report.drifts.iter().map(drift).collect::<Vec<_>>(),
+        "assumed": report.known.assumed,
+        "partial": report.partial,
+        "version": umbmark_core::VERSION,
+    })
+}
+
+fn answer_json(answer: &Answer) -> Value {
+    let (by, absorbed) = match &answer.shown {
+        Shown::Fitted(_) => ("calibrate", None),
+        Shown::Asked => ("diagnose", None),
+        Shown::Absorbed(by) => ("never", Some(by)),
+        Shown::BelowNoise => ("not_asked", None),
+    };
+    json!({
+        "effect": answer.sought.effect.about.name,
+        "parameter": answer.sought.parameter.name,
+        "value": answer.value,
+        "seen_by": by,
+        "absorbed_by": absorbed,
+        "runs": answer.runs,
+        "runs_at_sigma_interval": answer.runs_at_sigma,
+        "power": answer.power,
+        "experiments": answer.separable.iter().map(experiment_json).collect::<Vec<_>>(),
+    })
+}
+
+fn experiment_json(e: &Experiment) -> Value {
+    json!({ "separates": e.separates, "experiment": e.experiment, "minutes": e.minutes, "sd": e.sd })
+}
+
+/// Experiments that tell two effects apart.
+#[derive(Debug)]
+pub struct Separation {
+    /// The two.
+    pub pair: [String; 2],
+    /// What they come on top of.
+    pub after: String,
+    /// The most telling per minute first.
+    pub experiments: Vec<Experiment>,
+}
+
+impl Separation {
+    /// For people.
+    pub fn text(&self) -> String {
+        let [a, b] = &self.pair;
+        let mut text = format!("To tell {a} from {b}, beside {}\n\n", self.after);
+        if self.experiments.iter().all(|e| e.sd < 1.0) {
+            text += &hanging("", 2, "Nothing on offer tells them apart by as much as a standard deviation.");
+            return text;
+        }
+        text += "    sd  min  sd^2/min\n";
+        for e in self.experiments.iter().take(EXPERIMENTS) {
+            let sure = if e.sd >= ENOUGH { "" } else { " (not sure)" };
+            let numbers = format!("{:>6.1} {:>4.0} {:>9.2}", e.sd, e.minutes, e.sd * e.sd / e.minutes);
+            text += &hanging(&numbers, 24, &format!("{}{sure}", e.experiment));
+        }
+        text += "\n";
+        text += &hanging(
+            "",
+            2,
+            "sd: how far apart they then are, at usual sizes; from 3.24 on, nine cases of ten are told at 5 %.",
+        );
+        text
+    }
+
+    /// One document.
+    pub fn json(&self, options: &Options) -> Value {
+        json!({
+            "separates": self.pair,
+            "beside": self.after,
+            "next_experiments": self.experiments.iter().map(experiment_json).collect::<Vec<_>>(),
+            "seed": options.seed,
+            "version": umbmark_core::VERSION,
+        })
+    }
+}

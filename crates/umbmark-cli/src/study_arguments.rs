@@ -1,0 +1,32 @@
+//! The arguments of the verbs that draw: what a study is made of.
+
+use std::path::Path;
+
+use umbmark_core::dataset::{Dataset, read_model};
+use umbmark_plot::study::{Options, Study};
+
+use crate::Session;
+use crate::test_arguments::TestArguments;
+
+/// How a study is made.
+#[derive(Debug, clap::Args)]
+pub struct StudyArguments {
+    #[command(flatten)]
+    test: TestArguments,
+
+    /// Simulated tests of the model
+    #[arg(short = 'n', long, default_value_t = 1000, value_name = "N", value_parser = clap::value_parser!(u64).range(100..))]
+    trials: u64,
+}
+
+impl StudyArguments {
+    /// A study of a dataset and a model from a file, or the one that it teaches.
+    pub fn study(&self, name: &str, data: Dataset, model: Option<&Path>, session: &Session) -> anyhow::Result<Study> {
+        let given = match model {
+            None => None,
+            Some(file) => Some((file.display().to_string(), read_model(file, data.nominal_robot()?)?.0)),
+        };
+        let options = Options { diagnose: self.test.options(session), trials: self.trials };
+        Ok(Study::new(name, data, given, options))
+    }
+}

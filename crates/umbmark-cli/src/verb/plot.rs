@@ -1,0 +1,147 @@
+//! `umbmark plot`: one figure as SVG, PNG or PDF.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use serde_json::json;
+use umbmark_plot::figure::Figure;
+use umbmark_plot::kind::{KINDS, Kind, find};
+use umbmark_plot::render::{bitmap, plotly, svg};
+
+use crate::Session;
+use crate::data_arguments::DataArguments;
+use crate::files::Pending;
+use crate::prose::hanging;
+use crate::study_arguments::StudyArguments;
+
+/// How a figure is written, by the ending of its file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Svg,
+    Png,
+    Pdf,
+    Plotly,
+}
+
+/// A file of one of these formats.
+#[derive(Clone, Debug)]
+struct Drawing {
+    path: PathBuf,
+    format: Format,
+}
+
+fn drawing(text: &str) -> Result<Drawing, String> {
+    let path = PathBuf::from(text);
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let format = match ending.as_str() {
+        "svg" => Format::Svg,
+        "png" => Format::Png,
+        "pdf" => Format::Pdf,
+        "json" => Format::Plotly,
+        _ => return Err("a figure is written as NAME.svg, NAME.png, NAME.pdf or NAME.json (for Plotly)".into()),
+    };
+    Ok(Drawing { path, format })
+}
+
+fn kind(name: &str) -> Result<&'static Kind, String> {
+    find(name).ok_or_else(|| format!("there is no such kind of figure\n\n{}", kinds()))
+}
+
+/// The kinds of figures, a line each.
+fn kinds() -> String {
+    let lines = KINDS.iter().map(|kind| hanging(&format!("  {}", kind.name), 18, kind.about));
+    format!("Kinds:\n{}", lines.collect::<String>())
+}
+
+/// Arguments of `plot`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = kinds())]
+pub struct Arguments {
+    /// What to draw; the kinds are listed below
+    #[arg(value_name = "KIND", value_parser = kind)]
+    kind: &'static Kind,
+
+    #[command(flatten)]
+    data: DataArguments,
+
+    /// The file: NAME.svg, NAME.png, NAME.pdf, or NAME.json for Plotly
+    #[arg(short, long, value_name = "FILE", value_parser = drawing)]
+    output: Drawing,
+
+    /// A model with the values that it has, its free ones fitted [default: the one that the data teaches]
+    #[arg(long, value_name = "FILE")]
+    model: Option<PathBuf>,
+
+    /// Width of the figure: a column of a journal
+    #[arg(long, default_value_t = 88.0, value_name = "MM", value_parser = width)]
+    width: f64,
+
+    /// Dots per inch of a PNG
+    #[arg(long, default_value_t = 300, value_name = "DPI", value_parser = clap::value_parser!(u32).range(30..=1200))]
+    dpi: u32,
+
+    /// Replace a file that exists
+    #[arg(long)]
+    force: bool,
+
+    #[command(flatten)]
+    study: StudyArguments,
+}
+
+fn width(text: &str) -> Result<f64, String> {
+    let width = crate::effect_flags::number(text)?;
+    if (40.0..=400.0).contains(&width) { Ok(width) } else { Err("must be from 40 to 400 mm".into()) }
+}
+
+pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
+    let data = arguments.data.load()?;
+    for warning in data.warnings.iter().filter(|_| !session.json()) {
+        session.message("warning", warning);
+    }
+    let name = arguments.data.data.display().to_string();
+    let study = arguments.study.study(&name, data, arguments.model.as_deref(), session)?;
+    let kind = arguments.kind;
+    let figure = session
+        .on_threads(|| (kind.build)(&study))?
+        .with_context(|| format!("{} cannot be drawn from {name}", kind.name))?;
+    let bytes = bytes(&figure, &arguments)?;
+    let mut file = Pending::create(&arguments.output.path, arguments.force)?;
+    file.write_all(&bytes).with_context(|| file.failed())?;
+    file.finish()?;
+    let output = arguments.output.path.display().to_string();
+    if session.json() {
+        let told = json!({ "shows": figure.told.shows, "good": figure.told.good, "says": figure.told.says });
+        let table = json!({ "header": figure.table.header, "rows": figure.table.rows });
+        session.print_json(&json!({
+            "kind": kind.name,
+            "output": output,
+            "told": told,
+            "table": table,
+            "seed": session.seed(),
+            "version": umbmark_core::VERSION,
+        }))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    write!(session.out(), "{}", text(&figure, &output))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn text(figure: &Figure, output: &str) -> String {
+    let mut text = hanging("", 0, &figure.told.says);
+    text += &hanging("shows", 8, &figure.told.shows);
+    text += &hanging("good", 8, &figure.told.good);
+    text + &format!("\nwrote {output}\n")
+}
+
+fn bytes(figure: &Figure, arguments: &Arguments) -> anyhow::Result<Vec<u8>> {
+    let style = svg::Style { width_mm: arguments.width, ..svg::Style::default() };
+    let drawn = || svg::svg(figure, &style);
+    Ok(match arguments.output.format {
+        Format::Svg => drawn().into_bytes(),
+        Format::Png => bitmap::png(&drawn(), f64::from(arguments.dpi))?,
+        Format::Pdf => bitmap::pdf(&drawn())?,
+        Format::Plotly => serde_json::to_vec(&plotly::figure(figure))?,
+    })
+}

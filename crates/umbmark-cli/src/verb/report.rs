@@ -1,0 +1,141 @@
+//! `umbmark report`: everything on one page.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Context;
+use serde_json::json;
+use umbmark_core::dataset::Dataset;
+use umbmark_plot::kind::KINDS;
+use umbmark_plot::page::{Origin, Provenance, page, verdict};
+use umbmark_plot::study::Study;
+
+use crate::Session;
+use crate::files::Pending;
+use crate::prose::hanging;
+use crate::study_arguments::StudyArguments;
+
+/// No more stand side by side.
+const MOST: usize = 2;
+
+/// Arguments of `report`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A dataset folder or file; two of them are put side by side, as before and after a calibration
+    #[arg(value_name = "DATA", required = true, num_args = 1..=MOST)]
+    data: Vec<PathBuf>,
+
+    /// A model with the values that it has, its free ones fitted; two of them are put side by side
+    /// [default: the one that the data teaches]
+    #[arg(long, value_name = "FILE")]
+    model: Vec<PathBuf>,
+
+    /// The page
+    #[arg(short, long, default_value = "report.html", value_name = "FILE", value_parser = html)]
+    output: PathBuf,
+
+    /// Replace a file that exists
+    #[arg(long)]
+    force: bool,
+
+    #[command(flatten)]
+    study: StudyArguments,
+}
+
+fn html(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    match ending.as_deref() {
+        Some("html" | "htm") => Ok(path),
+        _ => Err("a report is written as NAME.html".into()),
+    }
+}
+
+pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
+    let studies = arguments.studies(session)?;
+    let provenance = arguments.provenance(session)?;
+    // Refused before the long work, not after it.
+    let mut file = Pending::create(&arguments.output, arguments.force)?;
+    let mut progress = session.progress(KINDS.len() as u64, "figures");
+    let made = session.on_threads(|| page(&studies, &provenance, |done| progress.at(done as u64)))?;
+    drop(progress);
+    let text = made.context("the page cannot be put together")?;
+    file.write_all(text.as_bytes()).with_context(|| file.failed())?;
+    file.finish()?;
+    let output = arguments.output.display().to_string();
+    if session.json() {
+        let told = |study: &Study| json!({ "name": study.name, "verdict": verdict(study) });
+        session.print_json(&json!({
+            "output": output,
+            "bytes": text.len(),
+            "studies": studies.iter().map(told).collect::<Vec<_>>(),
+            "seed": session.seed(),
+            "version": umbmark_core::VERSION,
+        }))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    for study in &studies {
+        let name = if studies.len() > 1 { format!("{}: ", study.name) } else { String::new() };
+        write!(session.out(), "{}", hanging("", 0, &format!("{name}{}", verdict(study))))?;
+    }
+    writeln!(session.out(), "\nwrote {output} ({:.1} MB)", text.len() as f64 / 1e6)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Arguments {
+    /// One study for each dataset or model.
+    fn studies(&self, session: &Session) -> anyhow::Result<Vec<Study>> {
+        let of = |place: &Path, model: Option<&Path>, name: &str| {
+            let data = Dataset::load(place)?;
+            for warning in data.warnings.iter().filter(|_| !session.json()) {
+                session.message("warning", warning);
+            }
+            self.study.study(name, data, model, session)
+        };
+        match (&self.data[..], &self.model[..]) {
+            ([place], []) => Ok(vec![of(place, None, &short(place))?]),
+            ([place], [model]) => Ok(vec![of(place, Some(model), &short(place))?]),
+            ([place], models) if models.len() <= MOST => {
+                models.iter().map(|model| of(place, Some(model), &short(model))).collect()
+            }
+            (places, []) => places.iter().map(|place| of(place, None, &short(place))).collect(),
+            (places, models) if places.len() == models.len() => {
+                places.iter().zip(models).map(|(place, model)| of(place, Some(model), &short(place))).collect()
+            }
+            (places, [model]) => places.iter().map(|place| of(place, Some(model), &short(place))).collect(),
+            (_, models) => {
+                anyhow::bail!("{} models are too many: {MOST} studies at most stand side by side", models.len())
+            }
+        }
+    }
+
+    fn provenance(&self, session: &Session) -> anyhow::Result<Provenance> {
+        let mut files = Vec::new();
+        for place in &self.data {
+            let read = Origin::of_dataset(place);
+            files.extend(read.with_context(|| format!("cannot read the files of {}", place.display()))?);
+        }
+        for model in &self.model {
+            files.push(Origin::of(model).with_context(|| format!("cannot read {}", model.display()))?);
+        }
+        let (version, seed) = (umbmark_core::VERSION.to_owned(), session.seed());
+        Ok(Provenance { version, seed, command: command(), files })
+    }
+}
+
+/// A place by the last part of its name.
+fn short(place: &Path) -> String {
+    place.file_name().unwrap_or(place.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// The command as it was given, fit for a shell.
+fn command() -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+@%".contains(c);
+    let word = |word: String| match !word.is_empty() && word.chars().all(plain) {
+        true => word,
+        false => format!("'{}'", word.replace('\'', r"'\''")),
+    };
+    let words = std::env::args_os().skip(1).map(|argument| word(argument.to_string_lossy().into_owned()));
+    std::iter::once("umbmark".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+}

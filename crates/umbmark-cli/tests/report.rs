@@ -1,0 +1,122 @@
+//! `umbmark plot` and `umbmark report`: what they write, and what they refuse.
+
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn data(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name).display().to_string()
+}
+
+fn umbmark(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_umbmark")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn said(output: &Output) -> (String, String) {
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+    (text(&output.stdout), text(&output.stderr))
+}
+
+fn written(folder: &Path, arguments: &[&str], file: &str) -> Vec<u8> {
+    let output = umbmark(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", said(&output).1);
+    std::fs::read(folder.join(file)).unwrap()
+}
+
+#[test]
+fn a_figure_is_written_in_the_format_that_its_name_says_and_the_same_each_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let slope = data("slope");
+    for (file, begin) in [("a.svg", &b"<svg"[..]), ("a.png", b"\x89PNG"), ("a.pdf", b"%PDF"), ("a.json", b"{")] {
+        let arguments = ["plot", "return_errors", &slope, "-o", file, "--draws", "99", "--force"];
+        let first = written(folder.path(), &arguments, file);
+        assert!(first.starts_with(begin), "{file}");
+        assert!(first == written(folder.path(), &arguments, file), "{file}");
+    }
+    let again = umbmark(folder.path(), &["plot", "return_errors", &slope, "-o", "a.svg", "--draws", "99"]);
+    assert_eq!(again.status.code(), Some(1));
+    assert!(said(&again).1.contains("a.svg exists already; --force replaces it"));
+}
+
+#[test]
+fn a_kind_that_there_is_not_is_answered_by_those_that_there_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = umbmark(folder.path(), &["plot", "pie", &data("slope"), "-o", "a.svg"]);
+    assert_eq!(output.status.code(), Some(2));
+    let error = said(&output).1;
+    for line in
+        ["there is no such kind of figure", "  return_errors   return errors, centres", "  tracks          measured"]
+    {
+        assert!(error.contains(line), "{error}");
+    }
+}
+
+#[test]
+fn files_of_other_endings_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = umbmark(folder.path(), &["plot", "tracks", &data("slope"), "-o", "a.jpg"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said(&output).1.contains("NAME.svg, NAME.png, NAME.pdf or NAME.json"));
+    let output = umbmark(folder.path(), &["report", &data("slope"), "-o", "a.pdf"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said(&output).1.contains("a report is written as NAME.html"));
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused_with_the_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = umbmark(folder.path(), &["plot", "residuals_along", &data("slope"), "-o", "a.svg", "--draws", "99"]);
+    assert_eq!(output.status.code(), Some(1));
+    let error = said(&output).1;
+    assert!(error.contains("residuals_along cannot be drawn from"), "{error}");
+    assert!(error.contains("not observed on the way"), "{error}");
+    assert!(!folder.path().join("a.svg").exists());
+}
+
+#[test]
+fn a_report_tells_the_verdict_its_files_and_its_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let labmate = data("labmate");
+    let arguments = ["report", &labmate, "--draws", "99", "-n", "100", "--json"];
+    let output = umbmark(folder.path(), &arguments);
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert_eq!(document["bytes"], page.len());
+    assert!(page.len() < 5_000_000);
+    let verdict = document["studies"][0]["verdict"].as_str().unwrap();
+    assert!(verdict.starts_with("TRC LabMate comes back 267 mm off START (E_max,sys);"), "{verdict}");
+    assert!(page.contains("E_max,sys"));
+    // SHA-256 of the sheet, as any other tool gives it.
+    let sheet = PathBuf::from(&labmate).join("returns.csv");
+    let sum = Command::new("sha256sum").arg(sheet).output();
+    if let Ok(sum) = sum.map(|sum| String::from_utf8(sum.stdout).unwrap()) {
+        assert!(page.contains(&sum[..64]), "{sum}");
+    }
+    assert!(page.contains("--draws 99 -n 100 --json"));
+    let again = umbmark(folder.path(), &arguments);
+    assert_eq!(again.status.code(), Some(1));
+    assert!(said(&again).1.contains("report.html exists already; --force replaces it"));
+}
+
+#[test]
+fn two_datasets_and_two_models_stand_side_by_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let (slope, labmate) = (data("slope"), data("labmate"));
+    let page = written(
+        folder.path(),
+        &["report", &slope, &labmate, "--draws", "99", "-n", "100", "-o", "both.html"],
+        "both.html",
+    );
+    let page = String::from_utf8(page).unwrap();
+    assert!(page.contains("<h3>slope</h3>") && page.contains("<h3>labmate</h3>"));
+    assert!(page.contains("id=\"return_errors-0\"") && page.contains("id=\"return_errors-1\""));
+    std::fs::write(folder.path().join("nominal.toml"), "").unwrap();
+    let effect = "[[effect]]\nname = \"wheelbase\"\ne_b = 1.0\nfree = true\n";
+    std::fs::write(folder.path().join("wheelbase.toml"), effect).unwrap();
+    let models = ["--model", "nominal.toml", "--model", "wheelbase.toml"];
+    let arguments = [&["report", &slope, "--draws", "99", "-n", "100", "-o", "models.html"][..], &models].concat();
+    let page = String::from_utf8(written(folder.path(), &arguments, "models.html")).unwrap();
+    assert!(page.contains("<h3>nominal.toml</h3>") && page.contains("<h3>wheelbase.toml</h3>"));
+}

@@ -1,0 +1,68 @@
+//! How alike effects look in a dataset.
+
+use nalgebra::DMatrix;
+
+/// How far effects can be taken for one another: |cos| of the angle between what each does to the observations, in units of
+/// their noise and less what the model's free parameters absorb. 1 cannot be told apart.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Likeness {
+    /// The effects that can be seen, each by the size that shows most.
+    pub effects: Vec<&'static str>,
+    /// For each of them, its likeness to every one.
+    pub values: Vec<Vec<f64>>,
+}
+
+impl Likeness {
+    /// From products of the responses to usual sizes, one column a size: of each effect, the strongest counts.
+    pub(super) fn new(names: &[&'static str], products: &DMatrix<f64>) -> Likeness {
+        let strength = |column: usize| products[(column, column)];
+        let mut strongest: Vec<usize> = Vec::new();
+        for column in (0..names.len()).filter(|column| strength(*column) > 0.0) {
+            match strongest.iter_mut().find(|known| names[**known] == names[column]) {
+                Some(known) if strength(*known) >= strength(column) => {}
+                Some(known) => *known = column,
+                None => strongest.push(column),
+            }
+        }
+        let likeness = |a: usize, b: usize| (products[(a, b)].abs() / (strength(a) * strength(b)).sqrt()).min(1.0);
+        Likeness {
+            effects: strongest.iter().map(|column| names[*column]).collect(),
+            values: strongest.iter().map(|a| strongest.iter().map(|b| likeness(*a, *b)).collect()).collect(),
+        }
+    }
+}
+
+/// Correlations from a covariance; none where it is not known.
+pub(super) fn correlations(covariance: Option<&DMatrix<f64>>) -> Vec<Vec<f64>> {
+    let Some(c) = covariance.filter(|c| (0..c.nrows()).all(|i| c[(i, i)] > 0.0)) else { return Vec::new() };
+    let of = |i: usize, j: usize| (c[(i, j)] / (c[(i, i)] * c[(j, j)]).sqrt()).clamp(-1.0, 1.0);
+    (0..c.nrows()).map(|i| (0..c.nrows()).map(|j| of(i, j)).collect()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DVector;
+
+    #[test]
+    fn an_effect_stands_for_its_strongest_size_and_signs_do_not_matter() {
+        let columns = [
+            DVector::from_vec(vec![0.0, 1.0]),
+            DVector::from_vec(vec![3.0, 0.0]),
+            DVector::from_vec(vec![-1.0, 1.0]),
+            DVector::from_vec(vec![0.0, 0.0]),
+        ];
+        let products = DMatrix::from_fn(4, 4, |i, j| columns[i].dot(&columns[j]));
+        let likeness = Likeness::new(&["a", "a", "b", "absorbed"], &products);
+        assert_eq!(likeness.effects, ["a", "b"]);
+        assert!((likeness.values[0][1] - 0.5f64.sqrt()).abs() < 1e-12 && likeness.values[1][1] == 1.0);
+    }
+
+    #[test]
+    fn correlations_have_ones_on_the_diagonal_and_need_a_covariance() {
+        let covariance = DMatrix::from_row_slice(2, 2, &[4.0, -1.0, -1.0, 1.0]);
+        assert_eq!(correlations(Some(&covariance)), [[1.0, -0.5], [-0.5, 1.0]]);
+        assert!(correlations(None).is_empty());
+        assert!(correlations(Some(&DMatrix::from_element(1, 1, f64::NAN))).is_empty());
+    }
+}

@@ -1,0 +1,197 @@
+//! Ackermann and tricycle drive: an axle that cannot steer, and a wheel (or two that act as one) before it that can.
+
+use super::{Counting, DifferentialDrive, DriveError, Encoder, WheelTravel, positive};
+use crate::parameter::{DefaultValue, Parameter};
+use std::f64::consts::{PI, TAU};
+
+/// No wheel is steered farther than this \[rad\]: at a right angle the robot would turn about its own axle.
+pub(super) const MOST_STEERING: f64 = 1.4;
+
+/// The numbers of an Ackermann drive, in the order of [`AckermannDrive::from_values`].
+pub(super) const PARAMETERS: [Parameter; 5] = [
+    length("axle_distance_m", 0.5, "distance of the steered wheel from the rear axle"),
+    length("track_width_m", 0.4, "distance of the rear wheels' contact points"),
+    length("wheel_diameter_m", 0.15, "diameter of the wheels that the drive encoder counts, on the rear axle"),
+    Parameter {
+        name: "steering_ticks_per_revolution",
+        flag: "",
+        unit: "",
+        default: DefaultValue::Value(20_000.0),
+        typical: 20_000.0,
+        bounds: (1.0, 1e9),
+        meaning: "counts of the steering per revolution of the steered wheel about the vertical",
+        choices: &[],
+    },
+    Parameter::size(
+        "steering_zero_rad",
+        "",
+        "rad",
+        5e-3,
+        (-0.5, 0.5),
+        "angle of the steered wheel where its counter shows 0, as the odometry reckons",
+    ),
+];
+
+const fn length(name: &'static str, typical: f64, meaning: &'static str) -> Parameter {
+    let default = DefaultValue::Value(typical);
+    Parameter { name, flag: "", unit: "m", default, typical, bounds: (1e-3, 100.0), meaning, choices: &[] }
+}
+
+/// The nominal kinematics of a car or a tricycle, about the middle of its rear axle.
+///
+/// forward = π D n_d/N_d, rotation = forward · tan(δ)/W, with the steering angle δ = 2π n_s/N_s + δ₀ (absolute, left positive)
+/// and the axle distance W. It steers while it stands: in a move the steering keeps still, and the robot drives an arc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AckermannDrive {
+    pub(super) axle: DifferentialDrive,
+    axle_distance: f64,
+    steering_ticks: f64,
+    steering_zero: f64,
+}
+
+impl AckermannDrive {
+    /// A drive from axle distance, track width and wheel diameter \[m\], the steering counts per revolution, and the angle
+    /// \[rad\] where they are 0.
+    pub fn new(
+        axle_distance: f64,
+        track_width: f64,
+        wheel_diameter: f64,
+        steering_ticks: f64,
+        steering_zero: f64,
+    ) -> Result<Self, DriveError> {
+        positive("axle distance", axle_distance, "m")?;
+        positive("track width", track_width, "m")?;
+        positive("wheel diameter", wheel_diameter, "m")?;
+        positive("steering ticks per revolution", steering_ticks, "ticks")?;
+        if !(steering_zero.abs() < MOST_STEERING) {
+            return Err(DriveError::NotFinite { quantity: "steering zero", value: steering_zero, unit: "rad" });
+        }
+        let axle = DifferentialDrive::new(track_width, wheel_diameter, wheel_diameter)?;
+        Ok(AckermannDrive { axle, axle_distance, steering_ticks, steering_zero })
+    }
+
+    pub(super) fn from_values(values: &[f64]) -> Result<Self, DriveError> {
+        AckermannDrive::new(values[0], values[1], values[2], values[3], values[4])
+    }
+
+    pub(super) fn values(&self) -> Vec<f64> {
+        let axle = &self.axle;
+        vec![self.axle_distance, axle.wheelbase(), axle.wheel_diameter_left(), self.steering_ticks, self.steering_zero]
+    }
+
+    /// The drive as its odometry must believe it to be, for a true steering zero δ₀ \[rad\], gain g and scale E_s.
+    ///
+    /// The true angle is (1 + g)(2π n_s/N_s + believed zero + δ₀).
+    pub(super) fn corrected(&self, [zero, gain, scale]: [f64; 3]) -> Result<Self, DriveError> {
+        AckermannDrive::new(
+            self.axle_distance,
+            self.axle.wheelbase(),
+            self.axle.wheel_diameter_left() * scale,
+            self.steering_ticks / (1.0 + gain),
+            (1.0 + gain) * (self.steering_zero + zero),
+        )
+    }
+
+    /// W \[m\].
+    pub fn axle_distance(&self) -> f64 {
+        self.axle_distance
+    }
+
+    /// Metres per count of the drive, radians per count of the steering.
+    fn per_count(&self, encoder: &Encoder) -> [f64; 2] {
+        [PI * self.axle.wheel_diameter_left() / encoder.ticks_per_revolution(), TAU / self.steering_ticks]
+    }
+
+    /// Rotation per metre at a count of the steering.
+    fn curvature(&self, encoder: &Encoder, steering: f64) -> f64 {
+        let angle = steering * self.per_count(encoder)[1] + self.steering_zero;
+        libm::tan(angle.clamp(-MOST_STEERING, MOST_STEERING)) / self.axle_distance
+    }
+
+    /// The count of the steering at which the robot turns so much \[rad/m\].
+    fn steering(&self, encoder: &Encoder, curvature: f64) -> f64 {
+        (libm::atan(curvature * self.axle_distance) - self.steering_zero) / self.per_count(encoder)[1]
+    }
+
+    /// `None` for a turn on the spot, and for one so tight that the wheel would have to be steered too far.
+    pub(super) fn counting(&self, encoder: &Encoder, forward: f64, rotation: f64) -> Option<Counting> {
+        let tightest = libm::tan(MOST_STEERING) / self.axle_distance;
+        if !(rotation.abs() <= tightest * forward.abs()) {
+            return None;
+        }
+        let curvature = if rotation == 0.0 { 0.0 } else { rotation / forward };
+        let held = self.steering(encoder, curvature).round();
+        let drive = self.per_count(encoder)[0];
+        let per_count = self.axle.wheel_travel(drive, drive * self.curvature(encoder, held));
+        Some(Counting {
+            per_count: [per_count, WheelTravel::default()],
+            gain: [forward / drive, 0.0],
+            held: held as i64,
+        })
+    }
+
+    /// The steering is taken halfway between the readings.
+    pub(super) fn travel(&self, encoder: &Encoder, before: [f64; 2], after: [f64; 2]) -> WheelTravel {
+        let forward = (after[0] - before[0]) * self.per_count(encoder)[0];
+        self.axle.wheel_travel(forward, forward * self.curvature(encoder, 0.5 * (before[1] + after[1])))
+    }
+
+    /// The counts that gained this travel, from a reading on; the steering as it was where nothing moved.
+    pub(super) fn reading(&self, encoder: &Encoder, before: [f64; 2], travel: &WheelTravel) -> [f64; 2] {
+        match self.halfway(encoder, travel) {
+            None => before,
+            Some(halfway) => {
+                let forward = self.axle.displacement(travel).forward;
+                [before[0] + forward / self.per_count(encoder)[0], 2.0 * halfway - before[1]]
+            }
+        }
+    }
+
+    /// The count of the steering halfway through a travel, where something moved.
+    pub(super) fn halfway(&self, encoder: &Encoder, travel: &WheelTravel) -> Option<f64> {
+        let moved = self.axle.displacement(travel);
+        (moved.forward != 0.0).then(|| self.steering(encoder, moved.rotation / moved.forward))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tricycle() -> (AckermannDrive, Encoder) {
+        (AckermannDrive::new(0.5, 0.4, 0.15, 20_000.0, 1e-3).unwrap(), Encoder::new(2000.0, None, None).unwrap())
+    }
+
+    #[test]
+    fn an_arc_is_driven_with_the_steering_held_at_the_nearest_count() {
+        let (drive, encoder) = tricycle();
+        for angle in [std::f64::consts::FRAC_PI_2, -std::f64::consts::FRAC_PI_2] {
+            let counting = drive.counting(&encoder, 1.5 * angle.abs(), angle).unwrap();
+            // atan(0.5 m / 1.5 m) less the zero, in counts of 2π/20000.
+            let expected = ((0.5_f64 / 1.5).atan().copysign(angle) - 1e-3) / (TAU / 20_000.0);
+            assert_eq!(counting.held, expected.round() as i64);
+            let travel = counting.per_count[0].scaled(counting.gain[0]);
+            let moved = drive.axle.displacement(&travel);
+            assert!((moved.forward - 1.5 * angle.abs()).abs() < 1e-12);
+            // Half a count of steering is 1.6e-4 rad: of the curvature, 1.6e-4 (1 + 1/9)/(1/3).
+            assert!((moved.rotation / angle - 1.0).abs() < 6e-4, "{moved:?}");
+        }
+    }
+
+    #[test]
+    fn readings_undo_travels_and_turns_on_the_spot_are_impossible() {
+        let (drive, encoder) = tricycle();
+        let (before, after) = ([10.0, -40.0], [95.0, 32.0]);
+        let travel = drive.travel(&encoder, before, after);
+        let again = drive.reading(&encoder, before, &travel);
+        assert!((again[0] - after[0]).abs() < 1e-9 && (again[1] - after[1]).abs() < 1e-6, "{again:?}");
+        assert_eq!(drive.reading(&encoder, before, &WheelTravel::default()), before);
+        assert!(drive.counting(&encoder, 0.0, 1.0).is_none() && drive.counting(&encoder, 0.01, 1.0).is_none());
+    }
+
+    #[test]
+    fn impossible_numbers_are_refused() {
+        assert!(AckermannDrive::new(-0.5, 0.4, 0.15, 1e4, 0.0).is_err());
+        assert!(AckermannDrive::new(0.5, 0.4, 0.15, 1e4, f64::NAN).is_err());
+    }
+}

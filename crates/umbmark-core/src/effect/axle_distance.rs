@@ -1,0 +1,56 @@
+//! The distance of the steered wheel.
+
+use super::{About, ActsOn, Context, Effect};
+use crate::drive::{Kind, Kinds};
+use crate::geometry::{Displacement2, Real};
+use crate::parameter::{DefaultValue, Parameter};
+
+/// The ratio of true to nominal distance between the steered wheel and the axle.
+pub struct AxleDistance;
+
+impl Effect for AxleDistance {
+    const ABOUT: About = About {
+        name: "axle_distance",
+        title: "distance of the steered wheel from the axle",
+        acts_on: ActsOn::Body,
+        parameters: &[Parameter {
+            name: "ratio",
+            flag: "axle-distance-ratio",
+            unit: "",
+            default: DefaultValue::Value(1.0),
+            typical: 5e-3,
+            bounds: (0.2, 5.0),
+            meaning: "true / nominal distance of the steered wheel from the axle",
+            choices: &[],
+        }],
+        equation: "Δθ ← Δθ / r",
+        physics: "The distance is not what it is believed to be, or the wheel touches the floor before or behind its axis.",
+        signature: "Every corner is too sharp or too blunt, opposite in ccw and cw. On corners of one radius nothing tells it from the \
+                    gain of the steering.",
+        confused_with: &["steering_gain"],
+        separated_by: "circles of two radii: a gain of the steering acts more than in proportion where it is steered far",
+        source: "kinematics; Lee, Chung & Yoo (2010) calibrate cars by such a square",
+    };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
+
+    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+        motion.rotation /= p[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, stops_with};
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn a_longer_robot_turns_less_in_proportion() {
+        for ratio in [1.01, 0.99] {
+            for (direction, sign) in ccw_and_cw() {
+                let stops = stops_with(&[("axle_distance", "ratio", ratio)], direction);
+                assert!((stops[7].heading - sign * TAU / ratio).abs() < 1e-12);
+            }
+        }
+    }
+}

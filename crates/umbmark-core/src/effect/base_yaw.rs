@@ -1,0 +1,76 @@
+//! A base that turns as its wheels pull unevenly.
+
+use super::{About, ActsOn, Context, Effect, at_work};
+use crate::drive::{Kind, Kinds};
+use crate::geometry::{Displacement2, Real};
+use crate::parameter::Parameter;
+
+/// A rate of turn per metre that depends on how far the wheels are steered from where they were at START.
+pub struct BaseYaw;
+
+impl Effect for BaseYaw {
+    const ABOUT: About = About {
+        name: "base_yaw",
+        title: "yaw of a synchro drive's base",
+        acts_on: ActsOn::Body,
+        parameters: &[
+            Parameter::size(
+                "cosine_rad_per_m",
+                "base-yaw-cosine",
+                "rad/m",
+                1e-3,
+                (-1.0, 1.0),
+                "turn per metre with the wheels as at START; opposite on the way back",
+            ),
+            Parameter::size(
+                "sine_rad_per_m",
+                "base-yaw-sine",
+                "rad/m",
+                1e-3,
+                (-1.0, 1.0),
+                "turn per metre with the wheels a quarter turn to the left of that; opposite on the way back",
+            ),
+        ],
+        equation: "Δθ ← Δθ + (c cos σ + s sin σ) · forward,  σ the steering since START",
+        physics: "One wheel is larger than the others, or stands askew: as it is now ahead of the centre and now beside it, it turns the \
+                  base one way or the other, and the wheels with it. The odometry knows the steering and not the base.",
+        signature: "Opposite sides bend opposite ways: the heading comes right again and the position does not. Return heading and \
+                    position no longer belong together, as in the paper's K2A.",
+        confused_with: &["floor_slope_yaw"],
+        separated_by: "starting the square with the base turned by 90 degrees; a mark on the base watched along the way",
+        source: "kinematics of three wheels on a circle; 1 mrad per metre is assumed",
+    };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Synchro);
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
+
+    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        let (sine, cosine) = (motion.rotation * 0.5 + at.believed_heading).sine_cosine();
+        motion.rotation += (p[0] * cosine + p[1] * sine) * motion.forward;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, stops_with};
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn each_leg_turns_by_the_steering_and_the_sum_is_nothing() {
+        for k in [1e-4, -1e-4] {
+            for (direction, sign) in ccw_and_cw() {
+                let cosine = stops_with(&[("base_yaw", "cosine_rad_per_m", k)], direction);
+                let sine = stops_with(&[("base_yaw", "sine_rad_per_m", k)], direction);
+                assert!((cosine[0].heading - 4.0 * k).abs() < 1e-12 && sine[0].heading.abs() < 1e-12);
+                let corner = sign * TAU / 4.0;
+                assert!((sine[2].heading - corner - sign * 4.0 * k).abs() < 1e-9, "{:?}", sine[2]);
+                for end in [cosine[7], sine[7]] {
+                    assert!((end.heading - sign * TAU).abs() < 1e-9 && libm::hypot(end.x, end.y) > 1e-4, "{end:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! Way that is made while the robot turns, and not counted.
+
+use super::{About, ActsOn, Context, Effect};
+use crate::drive::{Kind, Kinds};
+use crate::geometry::{Displacement2, Real};
+use crate::parameter::Parameter;
+
+/// Way per radian of turn.
+pub struct ContactTrail;
+
+impl Effect for ContactTrail {
+    const ABOUT: About = About {
+        name: "contact_trail",
+        title: "way made in turns and not counted",
+        acts_on: ActsOn::Body,
+        parameters: &[Parameter::size(
+            "trail_m",
+            "contact-trail",
+            "m",
+            5e-3,
+            (-10.0, 10.0),
+            "way per radian of turn to the left that no encoder counts",
+        )],
+        equation: "forward ← forward + t · Δθ",
+        physics: "The wheels of a synchro drive touch the floor behind their steering axes, and roll as they are steered. The \
+                  encoder of an Ackermann drive counts a wheel t to the left of the axle's middle, which is the inner one in left turns.",
+        signature: "Each corner shifts the path by the same amount in the robot's own frame: a closed path closes, and return poses \
+                    do not show it.",
+        confused_with: &[],
+        separated_by: "steering on the spot while the centre is watched; the pose at a stop",
+        source: "kinematics; first-order theory of side-periodic errors on closed paths",
+    };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Synchro).and(Kind::Ackermann);
+
+    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+        motion.forward += p[0] * motion.rotation;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, stops_with};
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn a_corner_is_rolled_round_and_the_square_closes() {
+        for trail in [0.01, -0.01] {
+            for (direction, sign) in ccw_and_cw() {
+                let stops = stops_with(&[("contact_trail", "trail_m", trail)], direction);
+                // A quarter turn along an arc of radius t: ahead by t and to its side by t.
+                assert!((stops[1].x - 4.0 - sign * trail * 1.0).abs() < 1e-9, "{:?}", stops[1]);
+                assert!((stops[1].y - trail).abs() < 1e-9 && (stops[1].heading.abs() - FRAC_PI_2).abs() < 1e-12);
+                assert!(stops[7].x.abs() < 1e-9 && stops[7].y.abs() < 1e-9);
+            }
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! The scale of a synchro drive's way.
+
+use super::{About, ActsOn, Context, Effect};
+use crate::drive::{Kind, Kinds};
+use crate::geometry::{Displacement2, Real};
+use crate::parameter::{DefaultValue, Parameter};
+
+/// The ratio of true to nominal way; the steering has gears of its own and is not touched.
+pub struct DriveScale;
+
+impl Effect for DriveScale {
+    const ABOUT: About = About {
+        name: "drive_scale",
+        title: "scale of the drive, E_s of a synchro drive",
+        acts_on: ActsOn::Body,
+        parameters: &[Parameter {
+            name: "e_s",
+            flag: "drive-scale",
+            unit: "",
+            default: DefaultValue::Value(1.0),
+            typical: 4e-3,
+            bounds: (0.2, 5.0),
+            meaning: "true / nominal way per count of the drive",
+            choices: &[],
+        }],
+        equation: "forward ← E_s forward",
+        physics: "The wheels' diameter differs from the nominal one. All wheels are driven by one shaft, and the course is set by \
+                  another: turns are right all the same.",
+        signature: "Legs are longer than believed. A closed path closes: return poses do not show it.",
+        confused_with: &[],
+        separated_by: "the length of one straight leg by tape, or the pose at a stop",
+        source: "kinematics; Martinelli (2002) has the same error per way",
+    };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Synchro);
+
+    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+        motion.forward *= p[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, stops_with};
+
+    #[test]
+    fn legs_are_longer_and_turns_are_right() {
+        for ratio in [1.01, 0.99] {
+            for (direction, sign) in ccw_and_cw() {
+                let stops = stops_with(&[("drive_scale", "e_s", ratio)], direction);
+                assert!((stops[2].x - 4.0 * ratio).abs() < 1e-12 && (stops[2].y - sign * 4.0 * ratio).abs() < 1e-12);
+                assert!(stops[7].x.abs() < 1e-12 && stops[7].y.abs() < 1e-12);
+            }
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! The scale of a synchro drive's steering.
+
+use super::{About, ActsOn, Context, Effect};
+use crate::drive::{Kind, Kinds};
+use crate::geometry::{Displacement2, Real};
+use crate::parameter::{DefaultValue, Parameter};
+
+/// The ratio of true to believed turns of the course.
+pub struct SteerScale;
+
+impl Effect for SteerScale {
+    const ABOUT: About = About {
+        name: "steer_scale",
+        title: "scale of the steering",
+        acts_on: ActsOn::Body,
+        parameters: &[Parameter {
+            name: "ratio",
+            flag: "steer-scale",
+            unit: "",
+            default: DefaultValue::Value(1.0),
+            typical: 3e-3,
+            bounds: (0.2, 5.0),
+            meaning: "true / believed turn of the course",
+            choices: &[],
+        }],
+        equation: "Δθ ← r Δθ",
+        physics: "Counts per revolution of the steering are not what is believed, or its belts slip.",
+        signature: "Every corner is too sharp or too blunt: return headings are opposite in ccw and cw, as E_b is in a \
+                    differential drive (r = 1/E_b).",
+        confused_with: &[],
+        separated_by: "ten turns of the steering on the spot",
+        source: "kinematics",
+    };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Synchro);
+
+    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+        motion.rotation *= p[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, stops_with};
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn four_corners_turn_by_the_ratio_and_legs_are_straight() {
+        for ratio in [1.01, 0.99] {
+            for (direction, sign) in ccw_and_cw() {
+                let stops = stops_with(&[("steer_scale", "ratio", ratio)], direction);
+                assert!(stops[0].heading == 0.0 && (stops[7].heading - sign * TAU * ratio).abs() < 1e-12);
+            }
+        }
+    }
+}

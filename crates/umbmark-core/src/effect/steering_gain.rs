@@ -1,0 +1,65 @@
+//! The gain of a steered wheel.
+
+use super::steering_zero::{steer_on, steered};
+use super::{About, ActsOn, Context, Effect, at_work};
+use crate::drive::{Kind, Kinds};
+use crate::geometry::{Displacement2, Real};
+use crate::parameter::Parameter;
+
+/// How much farther than believed the wheel is steered, as a share.
+pub struct SteeringGain;
+
+impl Effect for SteeringGain {
+    const ABOUT: About = About {
+        name: "steering_gain",
+        title: "gain of the steering",
+        acts_on: ActsOn::Body,
+        parameters: &[Parameter::size(
+            "share",
+            "steering-gain",
+            "",
+            5e-3,
+            (-0.5, 0.5),
+            "how much farther than believed the wheel is steered, as a share of the angle",
+        )],
+        equation: "Δθ = forward · tan((1 + g) δ)/W,  tan δ = W · believed Δθ/forward",
+        physics: "Counts per revolution of the steering are not what is believed, or its linkage is not as it is drawn.",
+        signature: "Every corner is too sharp or too blunt, opposite in ccw and cw, as with E_b of a differential drive.",
+        confused_with: &["axle_distance", "understeer"],
+        separated_by: "circles of two radii; a protractor at the wheel",
+        source: "kinematics",
+    };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
+
+    fn varies(p: &[f64]) -> bool {
+        at_work(p)
+    }
+
+    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        if let Some(tangent) = steered(at, motion) {
+            let t = tangent.value();
+            let angle = tangent.mapped(libm::atan(t), 1.0 / (1.0 + t * t));
+            steer_on(at, motion, tangent, p[0] * angle);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, circle_end_with, stops_with};
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn a_circle_is_steered_by_the_share_more_and_a_leg_is_straight() {
+        for share in [0.01, -0.01] {
+            let model = [("steering_gain", "share", share)];
+            for (direction, sign) in ccw_and_cw() {
+                assert_eq!(stops_with(&model, direction)[0].heading, 0.0);
+                let expected = sign * 2.0 * TAU * ((1.0 + share) * (0.34_f64 / 2.0).atan()).tan() / 0.34;
+                let end = circle_end_with(&model, direction);
+                assert!((end.heading - expected).abs() < 1e-6, "{end:?} {expected}");
+            }
+        }
+    }
+}

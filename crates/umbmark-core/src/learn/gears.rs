@@ -1,0 +1,92 @@
+//! Calibration of any drive: its first effects fitted, and the robot that follows.
+
+use super::{Fit, fit};
+use crate::calibrate::CalibrateError;
+use crate::dataset::{Dataset, ReturnError};
+use crate::diagnose::{DiagnoseError, Estimate, Identifiability, first_model, identifiability};
+use crate::drive::{DriveError, Robot};
+use crate::effect::{Model, TestKind};
+use crate::path::{Direction, Path};
+use crate::replay::Track;
+use crate::score::summarise;
+
+/// A robot calibrated by its [first effects](crate::drive::Kind::first_effects), whatever its drive.
+#[derive(Clone, Debug)]
+pub struct GearCalibration {
+    /// What was fitted.
+    pub estimates: Vec<Estimate>,
+    /// Effects that the data does not show, each by itself or apart from the others; they were left as they are.
+    pub not_shown: Vec<&'static str>,
+    /// The nominal robot with the effects, fitted.
+    pub model: Model,
+    /// The robot with its odometry corrected.
+    pub corrected: Robot,
+    /// What return poses of the path determine; `None` where the path is not known.
+    pub identifiability: Option<Identifiability>,
+    /// E_max,sys of the test as driven \[m\].
+    pub e_max_sys_before: Option<f64>,
+    /// What is left of it once the fitted motion is taken away \[m\]: E_max,sys expected with the correction.
+    pub e_max_sys_after: Option<f64>,
+}
+
+/// What leaves nothing to calibrate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GearError {
+    /// The fit.
+    #[error(transparent)]
+    Fit(#[from] DiagnoseError),
+    /// A correction that leaves no possible robot.
+    #[error("the fitted values belong to no robot ({0}); are signs, units and directions right?")]
+    Drive(#[from] DriveError),
+}
+
+/// Calibrates a robot of any drive from its regular runs.
+pub fn calibrate_gears(data: &Dataset) -> Result<GearCalibration, GearError> {
+    let robot = data.robot.as_ref().ok_or(DiagnoseError::Evidence(CalibrateError::NoRobot))?;
+    let asked = first_model(data)?;
+    let Fit { model, estimates, .. } = fit(data, &asked)?;
+    let shown = |effect: &str| estimates.iter().any(|e| e.effect == effect);
+    let first = robot.drive.kind().first_effects();
+    let mut all = model.clone();
+    let mut values = [0.0; 3];
+    for (value, effect) in values.iter_mut().zip(first) {
+        *value = all.add(effect).map_err(DiagnoseError::from)?.values[0];
+    }
+    let corrected = Robot { drive: robot.drive.corrected(values)?, ..robot.clone() };
+    let directions: Vec<Direction> = Direction::BOTH
+        .into_iter()
+        .filter(|direction| data.returns(TestKind::Systematic, *direction).next().is_some())
+        .collect();
+    let with_heading =
+        directions.iter().all(|d| data.returns(TestKind::Systematic, *d).all(|error| error.heading.is_some()));
+    let identified = data.path.as_ref().filter(|_| !directions.is_empty());
+    let identified = identified.map(|path| identifiability(&asked, path, &directions, with_heading)).transpose()?;
+    Ok(GearCalibration {
+        not_shown: asked.parts().iter().map(|part| part.effect.name()).filter(|name| !shown(name)).collect(),
+        estimates,
+        corrected,
+        identifiability: identified,
+        e_max_sys_before: e_max_sys(data, |_| Some(ReturnError::default())),
+        e_max_sys_after: data.path.as_ref().and_then(|path| e_max_sys(data, |d| explained(&model, path, d))),
+        model,
+    })
+}
+
+/// The return error that a model makes on a path.
+fn explained(model: &Model, path: &Path, direction: Direction) -> Option<ReturnError> {
+    let track = if model.varies() { Track::in_pieces } else { Track::from_path };
+    let end = track(path, direction, model.robot()).end(&model.chain());
+    let told = path.end(direction);
+    Some(ReturnError { x: end.x - told.x, y: end.y - told.y, heading: None })
+}
+
+/// E_max,sys of the measured returns less what is explained of them.
+fn e_max_sys(data: &Dataset, explained: impl Fn(Direction) -> Option<ReturnError>) -> Option<f64> {
+    let left = |direction: Direction| -> Option<Vec<ReturnError>> {
+        let known = explained(direction)?;
+        let less = |error: ReturnError| ReturnError { x: error.x - known.x, y: error.y - known.y, heading: None };
+        Some(data.returns(TestKind::Systematic, direction).map(less).collect())
+    };
+    summarise(&left(Direction::Cw)?, &left(Direction::Ccw)?).e_max_sys()
+}

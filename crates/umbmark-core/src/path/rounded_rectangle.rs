@@ -1,0 +1,42 @@
+//! A rectangle with round corners, for robots that cannot turn on the spot.
+
+use super::square::SIDE_BOUNDS;
+use super::{Move, PathError, Shape};
+use crate::parameter::{DefaultValue, Parameter, ParameterError};
+use std::f64::consts::FRAC_PI_2;
+
+/// Four straight legs and four quarter circles. START is where the first corner's arc would begin if it came before the first leg: at
+/// the end of the last arc.
+pub static ROUNDED_RECTANGLE: Shape = Shape {
+    name: "rounded_rectangle",
+    about: "two long and two short legs with quarter circles for corners: for robots that cannot turn on the spot",
+    parameters: &[
+        size("length_m", "length", 4.0, "length of the first side, corners included"),
+        size("width_m", "width", 4.0, "length of the second side, corners included"),
+        size("corner_radius_m", "corner-radius", 1.0, "radius of the corners"),
+    ],
+    moves: |values| {
+        let [length, width, radius] = [values[0], values[1], values[2]];
+        let side = |side: f64| {
+            let straight = side - 2.0 * radius;
+            let leg = (straight > 0.0).then_some(Move::Straight { length: straight });
+            leg.into_iter().chain([Move::Arc { radius, angle: FRAC_PI_2 }])
+        };
+        [length, width, length, width].into_iter().flat_map(side).collect()
+    },
+};
+
+const fn size(name: &'static str, flag: &'static str, typical: f64, meaning: &'static str) -> Parameter {
+    let default = DefaultValue::Value(typical);
+    Parameter { name, flag, unit: "m", default, typical, bounds: SIDE_BOUNDS, meaning, choices: &[] }
+}
+
+/// Refuses corners that do not fit.
+pub(super) fn check(values: &[f64]) -> Result<(), PathError> {
+    let most = 0.5 * values[0].min(values[1]);
+    if values[2] <= most {
+        return Ok(());
+    }
+    let allowed = format!("between {} and {most} m (half of the shorter side)", SIDE_BOUNDS.0);
+    Err(ParameterError { name: "corner_radius_m", value: values[2], allowed }.into())
+}

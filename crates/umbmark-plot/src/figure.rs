@@ -1,0 +1,167 @@
+//! What a figure is: numbers, their meaning and three sentences, before anything is drawn.
+
+mod table;
+
+use umbmark_core::path::Direction;
+
+use crate::tone::Tone;
+
+pub use table::Table;
+
+/// A figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// Its name in files and on the command line.
+    pub kind: &'static str,
+    /// A few words.
+    pub title: String,
+    /// What it shows, what good looks like, and what this one says: a sentence or two each.
+    pub told: Told,
+    /// What is drawn, from top to bottom.
+    pub panels: Vec<Panel>,
+    /// Its message as numbers, for those who cannot see it.
+    pub table: Table,
+}
+
+/// The sentences of a figure.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Told {
+    /// What it shows.
+    pub shows: String,
+    /// What good looks like.
+    pub good: String,
+    /// What this one says.
+    pub says: String,
+}
+
+/// A pair of axes and what is drawn in it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Panel {
+    /// What stands above it; may be empty.
+    pub title: String,
+    /// To the right.
+    pub x: Axis,
+    /// Upwards.
+    pub y: Axis,
+    /// Whether a unit is as long on both axes.
+    pub equal: bool,
+    /// From the lowest to the uppermost.
+    pub layers: Vec<Layer>,
+}
+
+/// An axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Axis {
+    /// What it shows, with its unit in brackets.
+    pub title: String,
+    /// Names at 0, 1, 2, ...; where there are some, the axis has no numbers.
+    pub names: Vec<String>,
+    /// Both ends, where they are not left to the data.
+    pub range: Option<[f64; 2]>,
+    /// Whether values fall along it.
+    pub falling: bool,
+}
+
+impl Axis {
+    /// An axis of numbers.
+    pub fn of(title: impl Into<String>) -> Axis {
+        Axis { title: title.into(), ..Axis::default() }
+    }
+
+    /// An axis of names, the first at 0.
+    pub fn named(names: Vec<String>) -> Axis {
+        Axis { names, ..Axis::default() }
+    }
+
+    /// The same from the top down.
+    pub fn falling(self) -> Axis {
+        Axis { falling: true, ..self }
+    }
+
+    /// The same with given ends.
+    pub fn from_to(self, low: f64, high: f64) -> Axis {
+        Axis { range: Some([low, high]), ..self }
+    }
+}
+
+/// How the places of a layer are drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mark {
+    /// Full circles.
+    Dots,
+    /// Empty circles.
+    Rings,
+    /// Upright crosses.
+    Crosses,
+    /// A line from place to place; a place that is no number breaks it.
+    Line,
+    /// The same, dashed.
+    Dashes,
+    /// Bars from zero upwards, so wide.
+    Bars(f64),
+    /// A dot with an interval to the left and right: lower and upper ends.
+    Spans(Vec<f64>, Vec<f64>),
+    /// Squares of side one, shaded by their values from -1 to 1.
+    Cells(Vec<f64>),
+    /// Words beside the places.
+    Words(Vec<String>),
+}
+
+/// Places that are drawn alike.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    /// Its name in the legend; empty for none.
+    pub name: String,
+    /// Its colour.
+    pub tone: Tone,
+    /// How it is drawn.
+    pub mark: Mark,
+    /// To the right.
+    pub x: Vec<f64>,
+    /// Upwards.
+    pub y: Vec<f64>,
+    /// What is said of each place where it is pointed at; empty where its coordinates say it.
+    pub said: Vec<String>,
+    /// The run that each place belongs to, as its index in the dataset; empty for what is no run's.
+    pub runs: Vec<usize>,
+    /// The direction that all of it is about.
+    pub direction: Option<Direction>,
+}
+
+impl Layer {
+    /// Places with a name in the legend.
+    pub fn new(name: impl Into<String>, tone: Tone, mark: Mark, places: impl IntoIterator<Item = [f64; 2]>) -> Layer {
+        let (x, y) = places.into_iter().map(|[x, y]| (x, y)).unzip();
+        Layer { name: name.into(), tone, mark, x, y, said: Vec::new(), runs: Vec::new(), direction: None }
+    }
+
+    /// The same about runs of one direction.
+    pub fn of(self, direction: Direction) -> Layer {
+        Layer { direction: Some(direction), ..self }
+    }
+
+    /// The same with words for each place.
+    pub fn saying(self, said: Vec<String>) -> Layer {
+        Layer { said, ..self }
+    }
+
+    /// The same with the run of each place.
+    pub fn from_runs(self, runs: Vec<usize>) -> Layer {
+        Layer { runs, ..self }
+    }
+
+    /// Whether nothing of it can be drawn.
+    pub fn is_empty(&self) -> bool {
+        !self.x.iter().zip(&self.y).any(|(x, y)| x.is_finite() && y.is_finite())
+    }
+}
+
+/// A circle or an ellipse as a closed line about (`x`, `y`), half axes `a` and `b`, the first turned by `angle` \[rad\].
+pub fn ellipse(x: f64, y: f64, a: f64, b: f64, angle: f64) -> impl Iterator<Item = [f64; 2]> {
+    const CORNERS: u32 = 96;
+    let (sine, cosine) = angle.sin_cos();
+    (0..=CORNERS).map(move |i| {
+        let (s, c) = (f64::from(i) / f64::from(CORNERS) * std::f64::consts::TAU).sin_cos();
+        [x + a * c * cosine - b * s * sine, y + a * c * sine + b * s * cosine]
+    })
+}

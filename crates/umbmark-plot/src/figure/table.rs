@@ -1,0 +1,17 @@
+//! The numbers behind a figure.
+
+/// Rows of words and numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// Above the columns.
+    pub header: Vec<String>,
+    /// Below one another.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table.
+    pub fn new<const N: usize>(header: [&str; N], rows: impl IntoIterator<Item = [String; N]>) -> Table {
+        Table { header: header.map(str::to_owned).into(), rows: rows.into_iter().map(Vec::from).collect() }
+    }
+}

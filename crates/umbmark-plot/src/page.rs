@@ -1,0 +1,230 @@
+//! One page of everything: a single file that needs no network.
+
+mod provenance;
+mod quality;
+mod unseen;
+mod verdict;
+
+use minijinja::value::Serde;
+use minijinja::{Environment, Error, Value, context};
+use serde::Serialize;
+use serde_json::json;
+
+use crate::figure::{Axis, Figure, Table};
+use crate::kind::KINDS;
+use crate::render::{legend, plotly, svg};
+use crate::scale;
+use crate::study::Study;
+use crate::tone::Tone;
+
+pub use provenance::{Origin, Provenance};
+pub use verdict::verdict;
+
+const TEMPLATE: &str = include_str!("page/report.html");
+const TABLE: &str = include_str!("page/table.html");
+const STYLE: &str = include_str!("page/report.css");
+const SCRIPT: &str = include_str!("page/report.js");
+const PLOTLY: &str = include_str!("../vendor/plotly-basic.min.js");
+
+/// A section: one kind of figure, or one kind of list, for each study.
+#[derive(Debug, Serialize)]
+struct Section {
+    id: &'static str,
+    title: String,
+    parts: Vec<Part>,
+}
+
+/// What a section says of one study.
+#[derive(Debug, Default, Serialize)]
+struct Part {
+    study: String,
+    figure: Option<Drawn>,
+    /// Why there is no figure.
+    absent: Option<String>,
+    lists: Vec<List>,
+}
+
+/// A figure, ready for the page.
+#[derive(Debug, Serialize)]
+struct Drawn {
+    id: String,
+    title: String,
+    shows: String,
+    good: String,
+    says: String,
+    height: f64,
+    /// Least width of the plot in characters.
+    least: usize,
+    legend: Vec<(String, &'static str, &'static str)>,
+    print: String,
+    table: Rows,
+}
+
+/// Sentences or a table under a heading.
+#[derive(Debug, Default, Serialize)]
+struct List {
+    title: String,
+    sentences: Vec<String>,
+    table: Option<Rows>,
+}
+
+#[derive(Debug, Serialize)]
+struct Rows {
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl From<Table> for Rows {
+    fn from(table: Table) -> Rows {
+        Rows { header: table.header, rows: table.rows }
+    }
+}
+
+/// The page of one study, or of several side by side; `seen` hears how many of [`KINDS`] are built.
+pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usize)) -> Result<String, Error> {
+    let mut figures = serde_json::Map::new();
+    let mut sections: Vec<Section> = Vec::new();
+    for (index, kind) in KINDS.iter().enumerate() {
+        seen(index);
+        sections.push(figure_section(studies, kind, &mut figures));
+        match kind.name {
+            "confusability" => {
+                sections.push(list_section(studies, "unseen", "What these runs cannot show", unseen::unseen));
+                sections.push(list_section(studies, "next", "What to measure next", unseen::next));
+            }
+            "runs" => {
+                sections.push(list_section(studies, "quality", "Is the data any good?", quality::quality));
+            }
+            _ => {}
+        }
+    }
+    let runs = |study: &Study| {
+        let run = |run: &umbmark_core::dataset::Run| json!({ "name": run.name, "direction": run.direction.map(|d| d.name()) });
+        json!({ "name": study.name, "runs": study.data.runs.iter().map(run).collect::<Vec<_>>() })
+    };
+    let tones: serde_json::Map<_, _> =
+        Tone::ALL.iter().map(|t| (t.name().to_owned(), json!([t.on_white(), t.on_black()]))).collect();
+    let data = json!({ "figures": figures, "studies": studies.iter().map(runs).collect::<Vec<_>>(), "tones": tones });
+    let mut environment = Environment::new();
+    environment.add_template("report.html", TEMPLATE)?;
+    environment.add_template("table.html", TABLE)?;
+    let filters: Vec<_> = studies.iter().map(filter).collect();
+    environment.get_template("report.html")?.render(context! {
+        title => title(studies),
+        verdicts => studies.iter().map(|s| (s.name.clone(), verdict(s))).collect::<Vec<_>>(),
+        many => studies.len() > 1,
+        sections => Value::from(Serde(&sections)),
+        filters => Value::from(Serde(&filters)),
+        tones => Tone::ALL.map(|t| (t.name(), t.on_white(), t.on_black())),
+        provenance => Value::from(Serde(provenance)),
+        style => Value::from_safe_string(STYLE.to_owned()),
+        script => Value::from_safe_string(SCRIPT.to_owned()),
+        plotly => Value::from_safe_string(PLOTLY.to_owned()),
+        data => Value::from_safe_string(data.to_string().replace('<', "\\u003c")),
+    })
+}
+
+fn title(studies: &[Study]) -> String {
+    let names: Vec<&str> = studies.iter().map(|study| study.name.as_str()).collect();
+    names.join(" and ")
+}
+
+/// The runs that can be chosen.
+fn filter(study: &Study) -> serde_json::Value {
+    let directions: Vec<&str> = umbmark_core::path::Direction::BOTH
+        .into_iter()
+        .filter(|direction| study.data.runs.iter().any(|run| run.direction == Some(*direction)))
+        .map(|direction| direction.name())
+        .collect();
+    let names: Vec<&str> = study.data.runs.iter().map(|run| run.name.as_str()).collect();
+    json!({ "name": study.name, "directions": directions, "runs": names })
+}
+
+fn figure_section(
+    studies: &[Study],
+    kind: &crate::kind::Kind,
+    figures: &mut serde_json::Map<String, serde_json::Value>,
+) -> Section {
+    let mut built: Vec<_> = studies.iter().map(kind.build).collect();
+    align(built.iter_mut().flatten().collect());
+    let title = built.iter().flatten().next().map_or_else(|| spoken(kind.name), |figure| figure.title.clone());
+    let mut parts = Vec::new();
+    for (index, (study, figure)) in studies.iter().zip(built).enumerate() {
+        let mut part = Part { study: study.name.clone(), ..Part::default() };
+        match figure {
+            Ok(figure) => {
+                let drawn = drawn(figure, index, figures);
+                part.figure = Some(drawn);
+            }
+            Err(absent) => part.absent = Some(absent.to_string()),
+        }
+        parts.push(part);
+    }
+    Section { id: kind.name, title, parts }
+}
+
+fn drawn(figure: Figure, index: usize, figures: &mut serde_json::Map<String, serde_json::Value>) -> Drawn {
+    let id = format!("{}-{index}", figure.kind);
+    let mut plot = plotly::figure(&figure);
+    let height = plot["layout"]["height"].as_f64().unwrap_or(400.0);
+    plot["study"] = json!(index);
+    figures.insert(id.clone(), plot);
+    let legend = legend::entries(&figure);
+    let legend =
+        legend.iter().map(|(name, tone, mark)| ((*name).to_owned(), tone.name(), legend::word(mark))).collect();
+    let print = svg::svg(&figure, &svg::Style { width_mm: 130.0, id: format!("print-{id}") });
+    let least =
+        figure.panels.iter().map(|panel| panel.x.names.len() + usize::from(!panel.x.names.is_empty()) * 8).max();
+    Drawn {
+        title: figure.title,
+        shows: figure.told.shows,
+        good: figure.told.good,
+        says: figure.told.says,
+        height,
+        least: least.unwrap_or(0),
+        legend,
+        print,
+        table: figure.table.into(),
+        id,
+    }
+}
+
+fn list_section(studies: &[Study], id: &'static str, title: &str, of: fn(&Study) -> Vec<List>) -> Section {
+    let part = |study: &Study| Part { study: study.name.clone(), lists: of(study), ..Part::default() };
+    Section { id, title: title.into(), parts: studies.iter().map(part).collect() }
+}
+
+fn spoken(name: &str) -> String {
+    let words = name.replace('_', " ");
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// Gives the same kind of figure the same ends in all studies, so that they can be compared by eye.
+fn align(mut figures: Vec<&mut Figure>) {
+    let panels = figures.iter().map(|figure| figure.panels.len()).min().unwrap_or(0);
+    if figures.len() < 2 || figures.iter().any(|figure| figure.panels.len() != panels) {
+        return;
+    }
+    for index in 0..panels {
+        let ends: Vec<_> = figures.iter().map(|figure| scale::ends(&figure.panels[index])).collect();
+        let all = |of: fn(&([f64; 2], [f64; 2])) -> [f64; 2]| {
+            ends.iter()
+                .map(of)
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)])
+        };
+        let (x, y) = (all(|e| e.0), all(|e| e.1));
+        for figure in &mut figures {
+            let panel = &mut figure.panels[index];
+            for (axis, ends) in [(&mut panel.x, x), (&mut panel.y, y)] {
+                widen(axis, ends);
+            }
+        }
+    }
+}
+
+fn widen(axis: &mut Axis, ends: [f64; 2]) {
+    if axis.names.is_empty() {
+        axis.range = Some(ends);
+    }
+}

@@ -1,0 +1,89 @@
+//! What the runs cannot show, and what would.
+
+use umbmark_core::diagnose::{Detectable, Diagnosis, Why};
+
+use super::{List, Rows};
+use crate::study::Study;
+
+/// Experiments that are told.
+const MOST: usize = 6;
+
+pub(super) fn unseen(study: &Study) -> Vec<List> {
+    let Ok(diagnosis) = study.diagnosis() else { return vec![nothing("There is no diagnosis.")] };
+    let mut sentences = hidden(diagnosis);
+    sentences.extend(diagnosis.remarks.iter().cloned());
+    if sentences.is_empty() && diagnosis.minimum_detectable.is_empty() {
+        return vec![nothing("No test could be made, so nothing can be said of what is not seen.")];
+    }
+    let rows = smallest(&diagnosis.minimum_detectable)
+        .into_iter()
+        .map(|d| vec![d.effect.to_owned(), d.parameter.to_owned(), format!("{:.2e}", d.size)]);
+    let table = Rows { header: ["effect", "parameter", "least size"].map(str::to_owned).into(), rows: rows.collect() };
+    let mut lists = vec![List { sentences, ..List::default() }];
+    if !table.rows.is_empty() {
+        let title = "Sizes that would have been seen in four cases of five".into();
+        lists.push(List { title, table: Some(table), ..List::default() });
+    }
+    lists
+}
+
+/// Of each parameter, the least size: where the shape of an effect is not known, several are tried.
+fn smallest(sizes: &[Detectable]) -> Vec<&Detectable> {
+    let mut least: Vec<&Detectable> = Vec::new();
+    for size in sizes {
+        match least.iter_mut().find(|known| (known.effect, known.parameter) == (size.effect, size.parameter)) {
+            Some(known) if known.size <= size.size => {}
+            Some(known) => *known = size,
+            None => least.push(size),
+        }
+    }
+    least
+}
+
+fn hidden(diagnosis: &Diagnosis) -> Vec<String> {
+    let mut absorbers: Vec<&Vec<&str>> = Vec::new();
+    for unseen in &diagnosis.invisible {
+        if let Why::Absorbed(by) = &unseen.why
+            && !absorbers.contains(&by)
+        {
+            absorbers.push(by);
+        }
+    }
+    let named = |why: &dyn Fn(&Why) -> bool| {
+        let names = diagnosis.invisible.iter().filter(|u| why(&u.why)).map(|u| u.effect);
+        names.collect::<Vec<_>>().join(", ")
+    };
+    let mut sentences: Vec<String> = absorbers
+        .iter()
+        .map(|by| {
+            let names = named(&|why| matches!(why, Why::Absorbed(own) if own == *by));
+            format!("What {} of the model does as well: {names}.", by.join(" with "))
+        })
+        .collect();
+    let below = named(&|why| *why == Why::BelowNoise);
+    if !below.is_empty() {
+        sentences.push(format!("What moves the runs by less than their scatter at its usual size: {below}."));
+    }
+    sentences
+}
+
+pub(super) fn next(study: &Study) -> Vec<List> {
+    let Ok(diagnosis) = study.diagnosis() else { return vec![nothing("There is no diagnosis.")] };
+    let experiments = &diagnosis.next_experiments;
+    if experiments.is_empty() {
+        return vec![nothing("No experiment is needed to tell effects apart that these runs leave alike.")];
+    }
+    let row = |e: &umbmark_core::diagnose::Experiment| {
+        let [a, b] = e.separates;
+        vec![e.experiment.clone(), format!("{a} from {b}"), format!("{:.1}", e.sd), format!("{:.0}", e.minutes)]
+    };
+    let header = ["experiment", "tells", "standard deviations", "minutes"].map(str::to_owned).into();
+    let table = Rows { header, rows: experiments.iter().take(MOST).map(row).collect() };
+    let sentence =
+        "The most telling per minute first; 3.3 standard deviations are seen in nine cases of ten.".to_owned();
+    vec![List { sentences: vec![sentence], table: Some(table), ..List::default() }]
+}
+
+fn nothing(sentence: &str) -> List {
+    List { sentences: vec![sentence.to_owned()], ..List::default() }
+}

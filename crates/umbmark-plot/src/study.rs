@@ -1,0 +1,203 @@
+//! Everything that is known of a dataset beside one model, each part worked out when it is first asked for.
+
+mod chance;
+mod paths;
+
+use std::sync::OnceLock;
+
+use umbmark_core::calibrate::{self, Calibration, Estimate, Method, calibrate};
+use umbmark_core::compare::tracks::TrackComparison;
+use umbmark_core::compare::{Comparison, compare, compare_tracks};
+use umbmark_core::dataset::{Dataset, Inspection, ReturnError};
+use umbmark_core::diagnose::{self, Diagnosis, diagnose};
+use umbmark_core::effect::{Model, TestKind};
+use umbmark_core::geometry::wrap;
+use umbmark_core::learn::{Learnt, learn};
+use umbmark_core::path::Direction;
+use umbmark_core::replay::Track;
+use umbmark_core::score::{Score, score};
+
+pub use chance::Chance;
+pub use paths::{Paths, RunPath};
+
+/// Why something cannot be drawn, in a sentence.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Absent(pub String);
+
+impl Absent {
+    pub(crate) fn because(why: impl std::fmt::Display) -> Absent {
+        Absent(why.to_string())
+    }
+}
+
+/// How a study is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Of all tests and simulations; 1 - `size` is the probability that intervals hold with.
+    pub diagnose: diagnose::Options,
+    /// Simulated tests of the model.
+    pub trials: u64,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options { diagnose: diagnose::Options::default(), trials: 1000 }
+    }
+}
+
+/// A dataset and a model of its robot: one that was given, or the one that the dataset teaches.
+#[derive(Debug)]
+pub struct Study {
+    /// What it is called.
+    pub name: String,
+    /// The runs.
+    pub data: Dataset,
+    /// The model that was given, with its name.
+    pub given: Option<(String, Model)>,
+    /// How.
+    pub options: Options,
+    inspection: OnceLock<Inspection>,
+    score: OnceLock<Result<Score, Absent>>,
+    calibration: OnceLock<Result<Calibration, Absent>>,
+    learnt: OnceLock<Result<Learnt, Absent>>,
+    diagnosis: OnceLock<Result<Diagnosis, Absent>>,
+    comparison: OnceLock<Result<Comparison, Absent>>,
+    along: OnceLock<Result<TrackComparison, Absent>>,
+    chance: OnceLock<Result<Chance, Absent>>,
+    paths: OnceLock<Result<Paths, Absent>>,
+}
+
+/// The value of a part, worked out once.
+fn once<T>(cell: &OnceLock<Result<T, Absent>>, work: impl FnOnce() -> Result<T, Absent>) -> Result<&T, Absent> {
+    cell.get_or_init(work).as_ref().map_err(Clone::clone)
+}
+
+impl Study {
+    /// A study of a dataset; nothing is worked out yet.
+    pub fn new(name: impl Into<String>, data: Dataset, given: Option<(String, Model)>, options: Options) -> Study {
+        Study {
+            name: name.into(),
+            data,
+            given,
+            options,
+            inspection: OnceLock::new(),
+            score: OnceLock::new(),
+            calibration: OnceLock::new(),
+            learnt: OnceLock::new(),
+            diagnosis: OnceLock::new(),
+            comparison: OnceLock::new(),
+            along: OnceLock::new(),
+            chance: OnceLock::new(),
+            paths: OnceLock::new(),
+        }
+    }
+
+    /// The probability that intervals hold with.
+    pub fn level(&self) -> f64 {
+        1.0 - self.options.diagnose.size
+    }
+
+    /// What the dataset holds.
+    pub fn inspection(&self) -> &Inspection {
+        self.inspection.get_or_init(|| self.data.inspect())
+    }
+
+    /// The scores of the test.
+    pub fn score(&self) -> Result<&Score, Absent> {
+        once(&self.score, || score(&self.data.runs, self.level()).map_err(Absent::because))
+    }
+
+    /// The calibration.
+    pub fn calibration(&self) -> Result<&Calibration, Absent> {
+        let work = || calibrate(&self.data, &calibrate::Options::default()).map_err(Absent::because);
+        once(&self.calibration, work)
+    }
+
+    /// The exact fit of the calibration.
+    pub fn exact(&self) -> Option<&Estimate> {
+        self.calibration().ok()?.estimate(Method::Exact)
+    }
+
+    /// How the model was learnt.
+    pub fn learnt(&self) -> Result<&Learnt, Absent> {
+        if let Some((name, _)) = &self.given {
+            return Err(Absent(format!("The model was given ({name}), not learnt.")));
+        }
+        once(&self.learnt, || learn(&self.data, &self.options.diagnose).map_err(Absent::because))
+    }
+
+    /// What the model is missing.
+    pub fn diagnosis(&self) -> Result<&Diagnosis, Absent> {
+        match &self.given {
+            None => self.learnt().map(|learnt| &learnt.diagnosis),
+            Some((_, model)) => {
+                once(&self.diagnosis, || diagnose(&self.data, model, &self.options.diagnose).map_err(Absent::because))
+            }
+        }
+    }
+
+    /// The model, its free parameters fitted.
+    pub fn model(&self) -> Result<&Model, Absent> {
+        self.diagnosis().map(|diagnosis| &diagnosis.model)
+    }
+
+    /// What the model is called in sentences.
+    pub fn model_name(&self) -> &str {
+        self.given.as_ref().map_or("the learnt model", |(name, _)| name)
+    }
+
+    /// The nominal robot and the model, named.
+    fn models(&self) -> Result<[(String, Model); 2], Absent> {
+        let nominal = Model::new(self.data.nominal_robot().map_err(Absent::because)?);
+        Ok([("nominal robot".to_owned(), nominal), (self.model_name().to_owned(), self.model()?.clone())])
+    }
+
+    /// The nominal robot and the model beside the return poses.
+    pub fn comparison(&self) -> Result<&Comparison, Absent> {
+        let work = || compare(&self.data, &self.models()?, &self.options.diagnose).map_err(Absent::because);
+        once(&self.comparison, work)
+    }
+
+    /// The nominal robot and the model beside the tracks.
+    pub fn along(&self) -> Result<&TrackComparison, Absent> {
+        let work = || {
+            let along = compare_tracks(&self.data, &self.models()?, &self.options.diagnose).map_err(Absent::because)?;
+            match along.poses {
+                0 => Err(Absent("The runs were not observed on the way, only at their ends.".into())),
+                _ => Ok(along),
+            }
+        };
+        once(&self.along, work)
+    }
+
+    /// Simulated tests of the model.
+    pub fn chance(&self) -> Result<&Chance, Absent> {
+        once(&self.chance, || Chance::new(self))
+    }
+
+    /// Paths of the runs as measured, computed and modelled.
+    pub fn paths(&self) -> Result<&Paths, Absent> {
+        once(&self.paths, || Paths::new(self))
+    }
+
+    /// Return errors of a test and direction, each with the index of its run.
+    pub fn returns(&self, test: TestKind, direction: Direction) -> Vec<(usize, ReturnError)> {
+        let fits = |run: &umbmark_core::dataset::Run| run.test == test && run.direction == Some(direction);
+        let runs = self.data.runs.iter().enumerate().filter(|(_, run)| fits(run));
+        runs.filter_map(|(index, run)| Some((index, run.returned?))).collect()
+    }
+
+    /// Numbers of regular runs that returned, clockwise and counter-clockwise.
+    pub fn counts(&self) -> [usize; 2] {
+        Direction::BOTH.map(|direction| self.returns(TestKind::Systematic, direction).len())
+    }
+
+    /// The return error that the model predicts, without chance; `None` where path or model are not known.
+    pub fn predicted_return(&self, direction: Direction) -> Option<ReturnError> {
+        let (model, path) = (self.model().ok()?, self.data.path.as_ref()?);
+        let end = Track::in_pieces(path, direction, model.robot()).end(&model.chain());
+        let told = path.end(direction);
+        Some(ReturnError { x: end.x - told.x, y: end.y - told.y, heading: Some(wrap(end.heading - told.heading)) })
+    }
+}

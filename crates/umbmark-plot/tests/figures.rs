@@ -1,0 +1,120 @@
+//! Every kind of figure of two small datasets: drawn to the letter, and said in words.
+//!
+//! `SNAPSHOTS=overwrite cargo test -p umbmark-plot --test figures` writes the golden files anew; look at them.
+
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+use std::sync::LazyLock;
+
+use snapbox::{Data, assert_data_eq};
+use umbmark_core::dataset::Dataset;
+use umbmark_core::diagnose;
+use umbmark_plot::figure::Figure;
+use umbmark_plot::kind::{KINDS, find};
+use umbmark_plot::page::{Provenance, page};
+use umbmark_plot::render::{bitmap, plotly, svg};
+use umbmark_plot::study::{Options, Study};
+
+fn study(name: &str) -> Study {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../umbmark-cli/tests/data").join(name);
+    let diagnose = diagnose::Options { draws: 99, ..diagnose::Options::default() };
+    Study::new(name, Dataset::load(folder).unwrap(), None, Options { diagnose, trials: 200 })
+}
+
+/// Return poses of a robot on a slope.
+static SLOPE: LazyLock<Study> = LazyLock::new(|| study("slope"));
+/// One tracked run each way.
+static TRACKED: LazyLock<Study> = LazyLock::new(|| study("tracked"));
+
+fn drawn(study: &Study) -> Vec<Figure> {
+    KINDS.iter().filter_map(|kind| (kind.build)(study).ok()).collect()
+}
+
+fn golden(figure: &Figure, of: &str) {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/{}_{of}.svg", figure.kind));
+    assert_data_eq!(svg::svg(figure, &svg::Style::default()), Data::read_from(&file, None).raw());
+}
+
+#[test]
+fn figures_of_return_poses_are_drawn_as_they_were() {
+    let figures = drawn(&SLOPE);
+    let kinds: Vec<&str> = figures.iter().map(|figure| figure.kind).collect();
+    let expected = [
+        "return_errors",
+        "circle",
+        "tracks",
+        "learning",
+        "confusability",
+        "parameters",
+        "correlations",
+        "monte_carlo",
+        "runs",
+    ];
+    assert_eq!(kinds, expected);
+    figures.iter().for_each(|figure| golden(figure, "slope"));
+}
+
+#[test]
+fn figures_of_tracks_are_drawn_as_they_were() {
+    let kinds = ["tracks", "residuals_along", "residuals_by_move"];
+    for kind in kinds {
+        golden(&(find(kind).unwrap().build)(&TRACKED).unwrap(), "tracked");
+    }
+}
+
+#[test]
+fn what_cannot_be_drawn_says_why_in_a_sentence() {
+    for study in [&*SLOPE, &*TRACKED] {
+        for kind in &KINDS {
+            let Err(absent) = (kind.build)(study) else { continue };
+            let why = absent.to_string();
+            assert!(why.ends_with('.') && why.len() > 20, "{}: {why}", kind.name);
+        }
+    }
+}
+
+#[test]
+fn every_figure_says_what_it_shows_what_good_is_and_what_it_finds() {
+    for figure in drawn(&SLOPE).iter().chain(&drawn(&TRACKED)) {
+        for sentence in [&figure.told.shows, &figure.told.good, &figure.told.says] {
+            assert!(sentence.ends_with('.') && !sentence.contains("NaN") && !sentence.contains("inf "), "{sentence}");
+        }
+        assert!(figure.table.rows.iter().all(|row| row.len() == figure.table.header.len()), "{}", figure.kind);
+    }
+}
+
+#[test]
+fn no_drawing_holds_what_is_no_number() {
+    for figure in drawn(&SLOPE).iter().chain(&drawn(&TRACKED)) {
+        let json = plotly::figure(figure).to_string();
+        let svg = svg::svg(figure, &svg::Style::default());
+        for text in [&json, &svg] {
+            assert!(!text.contains("NaN") && !text.contains(":inf"), "{}", figure.kind);
+        }
+    }
+}
+
+#[test]
+fn pictures_and_pages_for_paper_are_the_same_each_time() {
+    let figure = (find("return_errors").unwrap().build)(&SLOPE).unwrap();
+    let drawing = svg::svg(&figure, &svg::Style::default());
+    let png = bitmap::png(&drawing, 192.0).unwrap();
+    assert!(png == bitmap::png(&drawing, 192.0).unwrap());
+    assert_eq!(&png[1..4], b"PNG");
+    // 88 mm at 192 dots per inch.
+    let width = u32::from_be_bytes(png[16..20].try_into().unwrap());
+    assert_eq!(width, (88.0 * 192.0 / 25.4f64).ceil() as u32);
+    let pdf = bitmap::pdf(&drawing).unwrap();
+    assert!((0..8).all(|_| pdf == bitmap::pdf(&drawing).unwrap()));
+    assert!(pdf.starts_with(b"%PDF"));
+}
+
+#[test]
+fn a_page_of_one_study_is_one_file_without_a_network() {
+    let text = page(std::slice::from_ref(&*SLOPE), &Provenance::default(), |_| ()).unwrap();
+    assert!(text.len() < 5_000_000);
+    for outside in ["<link", "<script src", "@import", "src=\"http"] {
+        assert!(!text.contains(outside), "{outside}");
+    }
+}

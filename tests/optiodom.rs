@@ -1,0 +1,186 @@
+//! Learnt on squares, driven on circles and straights: OptiOdom's robot (Sousa et al. 2022) against its authors' calibrations.
+//!
+//! `UMBMARK_OPTIODOM=all cargo test -p umbmark-tests --test optiodom -- --nocapture` prints the tables of docs/optiodom.md.
+
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use umbmark_core::calibrate::Correction;
+use umbmark_core::dataset::Dataset;
+use umbmark_core::diagnose::{Options, base_model, first_model};
+use umbmark_core::drive::{DifferentialDrive, Robot};
+use umbmark_core::effect::Model;
+use umbmark_core::geometry::wrap;
+use umbmark_core::learn::{fit, fit_to_returns, learn};
+use umbmark_core::replay::Track;
+
+/// Squares to learn from, and the sets of other paths that were driven within the same days.
+struct Days {
+    name: &'static str,
+    squares: [&'static str; 3],
+    circles: [&'static str; 6],
+    straights: &'static [&'static str],
+}
+
+const DAYS: [Days; 2] = [
+    Days {
+        name: "June",
+        squares: ["230620202042", "230620202258", "230620202317"],
+        circles: ["250620202104", "250620202119", "250620202236", "250620202251", "250620202317", "250620202345"],
+        straights: &["250620201618", "250620201636", "250620201655", "250620201738"],
+    },
+    Days {
+        name: "December",
+        squares: ["231220200029", "231220200045", "231220200048"],
+        circles: ["231220200121", "231220200141", "231220200146", "231220200150", "231220200154", "231220200157"],
+        straights: &["231220200057", "231220200102", "231220200104"],
+    },
+];
+
+/// The folder, or a notice that it is not there.
+fn optiodom() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/optiodom");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    // Past the harness, which keeps what a passing test prints to itself.
+    let _ = writeln!(std::io::stderr(), "skipped: {} is not there", folder.display());
+    None
+}
+
+/// Whatever the controller of a set believed, ticks are ticks: one nominal robot, 84 mm and 200 mm, for all sets.
+fn load(folder: &Path, kind: &str, sets: &[&str]) -> Dataset {
+    let mut all: Option<Dataset> = None;
+    for set in sets {
+        let mut data = Dataset::load(folder.join("raw").join(kind).join(set)).unwrap();
+        let robot = data.robot.take().unwrap();
+        data.robot = Some(Robot { drive: DifferentialDrive::new(0.200, 0.084, 0.084).unwrap(), ..robot });
+        data.runs.iter_mut().for_each(|run| run.name = format!("{set} {}", run.name));
+        match &mut all {
+            Some(all) => all.runs.extend(data.runs),
+            None => all = Some(data),
+        }
+    }
+    all.unwrap()
+}
+
+/// The authors' calibration from a set of squares: rows of `published_diff-METHOD.csv` give L, D_R, D_L \[m\].
+fn published(folder: &Path, method: &str, set: &str, robot: &Robot) -> Model {
+    let text = std::fs::read_to_string(folder.join(format!("published_diff-{method}.csv"))).unwrap();
+    let row = text.lines().find(|line| line.starts_with(&format!("diff/square/{set}/"))).unwrap();
+    let cells: Vec<&str> = row.split(',').collect();
+    let [wheelbase, right, left] = [8, 9, 10].map(|i| cells[i].parse::<f64>().unwrap());
+    let (e_d, e_b, e_s) = (right / left, wheelbase / 0.200, 0.5 * (right + left) / 0.084);
+    Correction { e_d, e_b, e_s }.model(robot).unwrap()
+}
+
+/// Σ of squared errors of final positions \[m²\] and headings \[rad²\], and their number.
+#[derive(Clone, Copy, Default)]
+struct Ends([f64; 2], usize);
+
+impl Ends {
+    fn of(model: &Model, data: &Dataset) -> Ends {
+        let mut ends = Ends::default();
+        for log in data.runs.iter().filter_map(|run| run.log.as_ref()).filter(|log| !log.reference.is_empty()) {
+            let end = Track::from_log(log, model.robot()).unwrap().cut_at_last().end(&model.chain());
+            let seen = log.reference.last().unwrap();
+            let off = wrap(seen.heading.unwrap() - end.heading);
+            ends.0[0] += (seen.x - end.x).powi(2) + (seen.y - end.y).powi(2);
+            ends.0[1] += off * off;
+            ends.1 += 1;
+        }
+        ends
+    }
+
+    fn plus(self, other: Ends) -> Ends {
+        Ends([self.0[0] + other.0[0], self.0[1] + other.0[1]], self.1 + other.1)
+    }
+
+    /// Root mean square \[mm, degrees\].
+    fn rms(&self) -> [f64; 2] {
+        let root = |square: f64| (square / self.1.max(1) as f64).sqrt();
+        [1e3 * root(self.0[0]), root(self.0[1]).to_degrees()]
+    }
+}
+
+/// A name, and the model that it makes of squares: of the folder, a set's name, and its data.
+type Way = (&'static str, fn(&Path, &str, &Dataset) -> Model);
+
+const WAYS: [Way; 7] = [
+    ("nominal", |_, _, data| Model::new(data.robot.as_ref().unwrap())),
+    ("authors: UMBmark", |folder, set, data| published(folder, "UMBmark", set, data.robot.as_ref().unwrap())),
+    ("authors: Jung & Chung", |folder, set, data| {
+        published(folder, "Jung-and-Chung", set, data.robot.as_ref().unwrap())
+    }),
+    ("authors: OptiOdom", |folder, set, data| published(folder, "Sousa", set, data.robot.as_ref().unwrap())),
+    ("E_d, E_b from end poses", |_, _, data| {
+        fit_to_returns(data, &base_model(data.robot.as_ref().unwrap()).unwrap()).unwrap().0
+    }),
+    ("E_d, E_b, E_s from tracks", |_, _, data| fit(data, &first_model(data).unwrap()).unwrap().0),
+    ("learn", |_, _, data| learn(data, &Options::default()).unwrap().model),
+];
+
+fn effects(model: &Model) -> String {
+    let part = |part: &umbmark_core::effect::Part| {
+        let values: Vec<String> = part.values.iter().map(|value| format!("{value:.5}")).collect();
+        format!("{} {}", part.effect.name(), values.join(" "))
+    };
+    model.parts().iter().map(part).collect::<Vec<_>>().join(", ")
+}
+
+/// Errors on circles and straights of what is learnt from each set of squares, all sets together.
+fn tested(folder: &Path, days: &Days, way: &Way, sets: &[Vec<&str>]) -> [Ends; 3] {
+    let others = [load(folder, "circular", &days.circles), load(folder, "ivanjko", days.straights)];
+    let mut errors = [Ends::default(); 3];
+    for set in sets {
+        let own = load(folder, "square", set);
+        let model = way.1(folder, set[0], &own);
+        let _ = writeln!(std::io::stderr(), "  {} {set:?} {}: {}", days.name, way.0, effects(&model));
+        let rest: Vec<&str> = days.squares.iter().copied().filter(|other| !set.contains(other)).collect();
+        if !rest.is_empty() {
+            errors[0] = errors[0].plus(Ends::of(&model, &load(folder, "square", &rest)));
+        }
+        for (sum, data) in errors[1..].iter_mut().zip(&others) {
+            *sum = sum.plus(Ends::of(&model, data));
+        }
+    }
+    errors
+}
+
+#[test]
+fn what_squares_teach_holds_on_circles_and_straights() {
+    let Some(folder) = optiodom() else { return };
+    let all = std::env::var("UMBMARK_OPTIODOM").is_ok_and(|which| which == "all");
+    let mut rows = Vec::new();
+    for days in if all { &DAYS[..] } else { &DAYS[..1] } {
+        let single = days.squares.map(|set| vec![set]);
+        for way in &WAYS {
+            if !all && way.0 == "learn" {
+                continue;
+            }
+            rows.push((days.name, way.0.to_owned(), tested(&folder, days, way, &single)));
+            if all && !way.0.starts_with("authors") && way.0 != "nominal" {
+                rows.push((
+                    days.name,
+                    format!("{}, all squares at once", way.0),
+                    tested(&folder, days, way, &[days.squares.to_vec()]),
+                ));
+            }
+        }
+    }
+    let mut table =
+        "\n| days | calibration | other squares | circles | straights and spins |\n|---|---|---|---|---|\n".to_owned();
+    for (days, way, errors) in &rows {
+        let cell = |ends: &Ends| {
+            let [mm, deg] = ends.rms();
+            if ends.1 > 0 { format!("{mm:.1} mm, {deg:.2} deg") } else { "-".to_owned() }
+        };
+        table += &format!("| {days} | {way} | {} | {} | {} |\n", cell(&errors[0]), cell(&errors[1]), cell(&errors[2]));
+    }
+    let _ = writeln!(std::io::stderr(), "{table}");
+    let of =
+        |name: &str| rows.iter().find(|(days, way, _)| *days == "June" && way == name).unwrap().2.map(|e| e.rms()[0]);
+    let (nominal, tracks) = (of("nominal"), of("E_d, E_b, E_s from tracks"));
+    assert!(tracks[0] < 0.7 * nominal[0] && tracks[1] < 0.8 * nominal[1], "{nominal:?} {tracks:?}");
+}
