@@ -205,7 +205,7 @@ mod tests {
             (
                 "acts_on",
                 "\"heading_per_meter\"",
-                "3: acts_on must be one of heading_per_metre, forward_scale, sideways_per_metre, left_wheel_scale, \
+                "3: acts_on must be one of heading_per_metre, forward_scale, turn_scale, sideways_per_metre, left_wheel_scale, \
                  right_wheel_scale, got \"heading_per_meter\"; did you mean \"heading_per_metre\"?",
             ),
             ("formula", "", "1: [[effect]] has no formula; add e.g. formula = \"k * sin(heading)\""),
@@ -230,7 +230,7 @@ mod tests {
                 "parameters",
                 "",
                 "4: formula must be one that can be evaluated, got \"k * sin(heading)\"; column 1: there is no \"k\"; name \
-                 it among the parameters, or use speed, turn_rate, acceleration, heading, wheel_angle_left, wheel_angle_right, \
+                 it among the parameters, or use speed, turn_rate, acceleration, turn_acceleration, heading, wheel_angle_left, wheel_angle_right, \
                  distance, time, session_distance, since_turn, last_turn, direction, pi and the functions sin, cos, tan, \
                  exp, log, sqrt, abs, sign, min, max, tanh",
             ),

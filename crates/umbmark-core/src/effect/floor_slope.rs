@@ -61,7 +61,10 @@ impl Effect for FloorSlope {
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let slide = libm::hypot(p[2], p[3]);
-        format!("{}, and {} on each radian of a turn.", carried(p), mm(slide))
+        match slide > 0.0 {
+            true => format!("{}, and {} on each radian of a turn.", carried(p), mm(slide)),
+            false => format!("{}.", carried(p)),
+        }
     }
 
     fn varies(p: &[f64]) -> bool {

@@ -48,7 +48,7 @@ impl Observed {
             }
             for ((run, block), deviations) in found {
                 fitted.outliers.push(fitted.outlier((run, block), f64::from_bits(deviations)));
-                fitted.observed.runs[run].blocks[block].afresh = true;
+                fitted.observed.runs[run].start_afresh(block, &fitted.model.chain());
             }
             fitted.settle()?;
         }

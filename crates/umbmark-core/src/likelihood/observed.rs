@@ -61,6 +61,8 @@ pub struct ObservedRun {
     /// Its believed travel.
     pub track: Arc<Track>,
     /// Measured poses: x, y \[m\] and, where it was measured, heading \[rad\].
+    pub measured: Arc<[(f64, f64, Option<f64>)]>,
+    /// The same, laid on the prediction where the run starts anew.
     pub seen: Arc<[(f64, f64, Option<f64>)]>,
     /// The poses in blocks.
     pub blocks: Vec<Block>,
@@ -102,7 +104,10 @@ impl Observed {
     /// The same runs, none of which starts anew on the way.
     pub(super) fn whole(&self) -> Observed {
         let mut observed = self.clone();
-        observed.runs.iter_mut().flat_map(|run| &mut run.blocks).for_each(|block| block.afresh = false);
+        for run in &mut observed.runs {
+            run.seen = Arc::clone(&run.measured);
+            run.blocks.iter_mut().for_each(|block| block.afresh = false);
+        }
         observed
     }
 
@@ -127,7 +132,8 @@ impl ObservedRun {
         let chain = Model::new(robot).chain();
         let blocks = blocks(&track, &seen, &chain);
         let (name, direction, track) = (run.name.clone(), run.direction, Arc::new(track));
-        let mut observed = ObservedRun { name, direction, track, seen, blocks, start_seen };
+        let measured = Arc::clone(&seen);
+        let mut observed = ObservedRun { name, direction, track, measured, seen, blocks, start_seen };
         observed.lay_along(&chain);
         Ok((observed.blocks.len() >= 3).then_some(observed))
     }
@@ -138,9 +144,26 @@ impl ObservedRun {
         let chain = model.chain();
         let blocks = blocks(&track, &seen, &chain);
         let (name, direction, track) = (String::new(), Some(direction), Arc::new(track));
-        let mut planned = ObservedRun { name, direction, track, seen, blocks, start_seen: true };
+        let measured = Arc::clone(&seen);
+        let mut planned = ObservedRun { name, direction, track, measured, seen, blocks, start_seen: true };
         planned.lay_along(&chain);
         planned
+    }
+
+    /// Starts anew at a block: what was measured from there on is laid on what the model predicts there, since turned by degrees
+    /// it would be off by more than a small rotation moves it.
+    pub(super) fn start_afresh(&mut self, block: usize, chain: &Chain<f64>) {
+        let [dx, dy, turned] = self.residuals(chain)[block];
+        let Block { first, place, .. } = self.blocks[block];
+        let (sine, cosine) = libm::sincos(-turned);
+        let laid = |(x, y, heading): (f64, f64, Option<f64>)| {
+            let (ahead, aside) = (x - place.x - dx, y - place.y - dy);
+            let (x, y) = (place.x + cosine * ahead - sine * aside, place.y + sine * ahead + cosine * aside);
+            (x, y, heading.map(|heading| heading - turned))
+        };
+        let seen = self.seen.iter().enumerate();
+        self.seen = seen.map(|(i, pose)| if i < first { *pose } else { laid(*pose) }).collect();
+        self.blocks[block].afresh = true;
     }
 
     /// Places the blocks, and the growth of the error between them, along the poses that a model predicts.

@@ -179,7 +179,15 @@ mod tests {
                 }
             })
             .collect();
-        ObservedRun { name: "a few".into(), direction: None, track: track.into(), seen: [].into(), blocks, start_seen }
+        ObservedRun {
+            name: "a few".into(),
+            direction: None,
+            track: track.into(),
+            measured: [].into(),
+            seen: [].into(),
+            blocks,
+            start_seen,
+        }
     }
 
     fn noise() -> Noise {

@@ -118,7 +118,7 @@ pub enum FormulaError {
 }
 
 /// What formulas are made of.
-const OFFERED: &str = "name it among the parameters, or use speed, turn_rate, acceleration, heading, wheel_angle_left, \
+const OFFERED: &str = "name it among the parameters, or use speed, turn_rate, acceleration, turn_acceleration, heading, wheel_angle_left, \
                        wheel_angle_right, distance, time, session_distance, since_turn, last_turn, direction, pi and the \
                        functions sin, cos, tan, exp, log, sqrt, abs, sign, min, max, tanh";
 
