@@ -78,7 +78,10 @@ fn what_is_written_is_read_back_to_the_last_bit() {
         assert_eq!((path.values(), path.speed), (written.values(), written.speed));
         data.runs.sort_by_key(|run| (run.test, run.direction, run.number));
         for (read, written) in read.runs.iter().zip(&data.runs) {
-            assert_eq!((read.returned, &read.log), (written.returned, &written.log), "{}", read.name);
+            // Counters of few bits are written as they roll over, which the reader undoes and says.
+            let mended = read.log.as_ref().map(|log| log.mended).unwrap_or_default();
+            let written_log = written.log.clone().map(|log| TickLog { mended, ..log });
+            assert_eq!((read.returned, &read.log), (written.returned, &written_log), "{}", read.name);
             assert_eq!((read.test, read.direction, read.number), (written.test, written.direction, written.number));
         }
         assert_eq!(read.runs.len(), data.runs.len());
