@@ -105,9 +105,7 @@ def called_unlisted(answer: dict[str, Any], told: tuple[str, str | None]) -> Non
 
 
 @pytest.mark.parametrize("case", [*OUTSIDE, *(ALSO_OUTSIDE if ALL else [])])
-def test_the_formula_suggested_for_an_unlisted_cause_explains_it(
-    case: str, tmp_path: File
-) -> None:
+def test_the_formula_suggested_for_an_unlisted_cause_explains_it(case: str, tmp_path: File) -> None:
     answer, _ = learnt(case, tmp_path / "data")
     called_unlisted(answer, (OUTSIDE | ALSO_OUTSIDE)[case])
     model = tmp_path / "suggested.toml"

@@ -41,7 +41,7 @@ pub fn compare(
             }
             (true, Level::Tracks) => {
                 let fitted = learning::fit(&shared, &first_model(&shared)?)?.model;
-                vec![nominal(&robot), ("E_d, E_b and E_s, fitted to these runs".into(), fitted)]
+                vec![nominal(&robot), ("E_d, E_b, E_s fitted".into(), fitted)]
             }
         };
         Ok(match level {

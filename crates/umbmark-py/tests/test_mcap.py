@@ -294,6 +294,9 @@ TOPICS = {
     "/odom": "nav_msgs/msg/Odometry",
     "/tf": "tf2_msgs/msg/TFMessage",
     "/ground_truth": "geometry_msgs/msg/PoseStamped",
+    "/scene/computed_path": "nav_msgs/msg/Path",
+    "/scene/true_path": "nav_msgs/msg/Path",
+    "/scene/errors": "visualization_msgs/msg/MarkerArray",
 }
 
 
@@ -327,11 +330,8 @@ def test_mcap_ros2_support_reads_what_umbmark_writes(written: tuple[Path, dict[s
         for schema, channel, message, decoded in reader.iter_decoded_messages():
             assert schema is not None
             assert schema.name == TOPICS[channel.topic]
-            stamp = (
-                decoded.transforms[0].header.stamp
-                if channel.topic == "/tf"
-                else decoded.header.stamp
-            )
+            first = {"/tf": "transforms", "/scene/errors": "markers"}.get(channel.topic)
+            stamp = (getattr(decoded, first)[0] if first else decoded).header.stamp
             assert stamp.sec * 10**9 + stamp.nanosec == message.log_time
             messages.setdefault(channel.topic, []).append(decoded)
         summary = reader.get_summary()

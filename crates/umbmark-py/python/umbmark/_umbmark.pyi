@@ -192,7 +192,7 @@ class Study:
     def metrics(self) -> list[str]: ...
     def run(
         self,
-        shard: tuple[int, int] = (0, 1),
+        shard: tuple[int, int] = ...,
         *,
         known: Ensemble | None = None,
         threads: int = 0,
