@@ -179,7 +179,7 @@ fn drawn(figure: Figure, index: usize, figures: &mut serde_json::Map<String, ser
         legend.iter().map(|(name, tone, mark)| ((*name).to_owned(), tone.name(), legend::word(mark))).collect();
     let print = svg::svg(&figure, &svg::Style { width_mm: 130.0, id: format!("print-{id}") });
     let least =
-        figure.panels.iter().map(|panel| panel.x.names.len() + usize::from(!panel.x.names.is_empty()) * 8).max();
+        figure.panels.iter().map(|panel| panel.x.names.len() + usize::from(!panel.x.names.is_empty()) * 14).max();
     Drawn {
         title: figure.title,
         shows: figure.told.shows,

@@ -53,7 +53,7 @@ pub fn figure(figure: &Figure) -> Value {
 fn height(panel: &Panel) -> f64 {
     match (panel.equal, panel.y.names.len()) {
         (true, 0) => 400.0,
-        (true, names) => (names as f64 * 20.0 + 60.0).clamp(220.0, 560.0),
+        (true, names) => (names as f64 * 20.0 + 60.0).max(220.0),
         (false, 0) => 230.0,
         (false, names) if names > 6 => names as f64 * 25.0,
         (false, names) => (names as f64 * 38.0).max(90.0),
