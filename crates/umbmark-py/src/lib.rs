@@ -2,7 +2,7 @@
 //!
 //! One file for each room of `umbmark-core` that Python sees. Robots, paths, models and datasets are frozen classes here.
 //! Results cross as the documents that `--json` prints ([`umbmark_core::document`]); the package decodes them into typed
-//! classes. Every call has three steps: arguments are read under the interpreter lock, the work runs without it ([`work`]),
+//! classes. Every call has three steps: arguments are read under the interpreter lock, the work runs without it (`work`),
 //! and its result is handed over.
 
 mod arrays;
