@@ -19,17 +19,8 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 """
 
 from umbmark._calibration import Calibration, Correction, calibrate
-from umbmark._diagnosis import (
-    Comparison,
-    Diagnosis,
-    Fitted,
-    Learnt,
-    TrackComparison,
-    compare,
-    diagnose,
-    fit,
-    learn,
-)
+from umbmark._comparison import Comparison, TrackComparison, compare
+from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
 from umbmark._effects import Effect, effects
 from umbmark._formula import formula_of
 from umbmark._inspection import Inspection, inspect

@@ -10,7 +10,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from umbmark._calibration import Calibration
-    from umbmark._diagnosis import Comparison, Diagnosis, Fitted, Learnt, TrackComparison
+    from umbmark._comparison import Comparison, TrackComparison
+    from umbmark._diagnosis import Diagnosis, Fitted, Learnt
     from umbmark._inspection import Inspection
     from umbmark._monte_carlo import MonteCarlo
     from umbmark._scores import Score
