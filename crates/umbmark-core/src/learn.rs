@@ -15,7 +15,7 @@ use crate::calibrate::CalibrateError;
 use crate::dataset::Dataset;
 use crate::diagnose::{self, DiagnoseError, Diagnosis, Estimate, Level, Suspect, Verdict};
 use crate::effect::{Model, Part};
-use crate::likelihood::Outlier;
+use crate::likelihood::{Outlier, Weighing};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -164,6 +164,8 @@ pub struct Fit {
     pub estimates: Vec<Estimate>,
     /// Where runs were disturbed, and what happened there left out; from tracks only.
     pub outliers: Vec<Outlier>,
+    /// What of the tracks was fitted; `None` for return poses.
+    pub weighing: Option<Weighing>,
 }
 
 /// Fits a model's free parameters to a dataset.
@@ -171,12 +173,12 @@ pub fn fit(data: &Dataset, model: &Model) -> Result<Fit, DiagnoseError> {
     match diagnose::level(data) {
         Level::Ends => {
             let (model, estimates) = fit_to_returns(data, model)?;
-            Ok(Fit { model, estimates, outliers: Vec::new() })
+            Ok(Fit { model, estimates, outliers: Vec::new(), weighing: None })
         }
         Level::Tracks => {
-            let fitted = diagnose::tracks::fit(&diagnose::tracks_of(data)?, model)?;
+            let fitted = diagnose::tracks::predicting(&diagnose::tracks_of(data)?, model)?;
             let estimates = diagnose::tracks::estimates(&fitted);
-            Ok(Fit { model: fitted.model, estimates, outliers: fitted.outliers })
+            Ok(Fit { model: fitted.model, estimates, outliers: fitted.outliers, weighing: Some(fitted.weighing) })
         }
     }
 }

@@ -12,16 +12,17 @@ mod fitting;
 mod noise;
 mod observed;
 mod outliers;
+mod products;
 mod simplex;
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 pub(crate) mod watched;
 mod whiten;
 
+pub use fitting::{Column, Fitted, NUISANCE, Weighing};
 pub(crate) use fitting::seeded;
-pub use fitting::{Column, Fitted};
 pub use noise::Noise;
-pub(crate) use noise::gram;
 pub use observed::{Block, Growth, Observed, ObservedRun};
 pub use outliers::Outlier;
+pub(crate) use products::{ABSORBED, ScaledCholesky, gram, scaled_cholesky, share_left, solver};
 pub use whiten::Whitened;

@@ -6,10 +6,12 @@ use std::process::ExitCode;
 
 use umbmark_core::document;
 use umbmark_core::learn::{Fit, fit};
+use umbmark_core::likelihood::Weighing;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::model_report::{estimates_table, meaning_text, model_of, outliers_text, write_model};
+use crate::prose::hanging;
 
 /// Arguments of `fit`.
 #[derive(Debug, clap::Args)]
@@ -48,7 +50,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         anyhow::bail!("no effect of the model is free: say free = true in its file, or --add EFFECT");
     }
     let fitted = session.on_threads(|| fit(&data, &model))??;
-    let Fit { model, estimates, outliers } = &fitted;
+    let Fit { model, estimates, outliers, weighing } = &fitted;
     if let Some(file) = &arguments.output {
         write_model(model, file, arguments.force)?;
     }
@@ -65,6 +67,10 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     }
     writeln!(session.out(), "{}", estimates_table(estimates, arguments.level))?;
     write!(session.out(), "{}{}", meaning_text(estimates, model), outliers_text(outliers))?;
+    let caution = weighing.map_or("", Weighing::caution);
+    if !caution.is_empty() {
+        write!(session.out(), "{}", hanging("note", 10, caution))?;
+    }
     if let Some(file) = &arguments.output {
         writeln!(session.out(), "\nwrote {}", file.display())?;
     }

@@ -2,12 +2,14 @@
 //!
 //! One replay for each size of each effect gives the columns of a linear model around the fit; whitened by the likelihood
 //! ([`crate::likelihood`]), all tests follow from their products. An effect is certified as missing where three things hold: its F
-//! stands out of all effects asked (Bonferroni), so does its score when the signs of runs are flipped, which trusts no
-//! noise model, and runs that are left out are predicted better with it, the choice being made anew without each.
+//! stands out of all effects asked (Bonferroni), by the noise model and by how the runs differ from one another; so does its
+//! score when the signs of runs are flipped, which trusts no noise model; and runs that are left out are predicted better with
+//! it, the choice being made anew without each.
 //!
 //! Smooth functions of how the robot drives stand beside the catalogue: where one explains clearly more than the best
 //! effect does, something is missing that the catalogue does not list.
 
+mod alone;
 mod curve;
 mod errors;
 mod examination;
@@ -30,6 +32,7 @@ use examination::Question;
 use smooth::Motion;
 use system::Projected;
 
+pub(crate) use alone::Alone;
 pub use errors::Misses;
 pub(crate) use examination::Examination;
 pub(crate) use look::Finding;
@@ -418,15 +421,23 @@ fn remarks(exam: &Examination, unlisted: Option<&Dependence>) -> Vec<String> {
         ));
     }
     remarks.push(format!(
-        "Noise found: heading {:.2} mrad per root metre and {:.2} mrad per root radian, forward {:.2} mm per root metre.",
+        "Noise found: heading {:.2} mrad per root metre and {:.2} mrad per root radian, forward {:.2} mm per root metre; clock of the \
+         reference {:.1} ms from pose to pose and {:.1} ms from run to run.",
         1e3 * noise.heading_per_metre,
         1e3 * noise.heading_per_radian,
-        1e3 * noise.forward_per_metre
+        1e3 * noise.forward_per_metre,
+        1e3 * noise.reference_time,
+        1e3 * noise.reference_delay
     ));
     remarks
 }
 
-/// Fits the free parameters of a model to tracks.
+/// The free parameters of a model that predict whole runs best.
+pub(crate) fn predicting(observed: &Observed, model: &crate::effect::Model) -> Result<Fitted, DiagnoseError> {
+    Ok(Alone::new(fit(observed, model)?).predicting()?)
+}
+
+/// Fits the free parameters of a model to what is new from pose to pose.
 pub(crate) fn fit(observed: &Observed, model: &crate::effect::Model) -> Result<Fitted, DiagnoseError> {
     model.check_along(observed.tracks().flat_map(|track| track.contexts()))?;
     let fitted = observed.fit(model, &crate::likelihood::Noise::default(), &[])?;

@@ -4,7 +4,7 @@ use super::{ends, finite, model::model};
 use crate::diagnose::Estimate;
 use crate::effect::Model;
 use crate::learn::Fit;
-use crate::likelihood::Outlier;
+use crate::likelihood::{Outlier, Weighing};
 use serde_json::{Map, Value, json};
 
 /// A fit: its numbers, the free effects that the data does not show, and the model.
@@ -14,6 +14,7 @@ pub fn fitted(fit: &Fit, level: f64) -> Value {
         "not_shown": not_shown(&fit.model, &fit.estimates),
         "meaning": meaning(&fit.estimates, &fit.model),
         "outliers": outliers(&fit.outliers),
+        "weighed": fit.weighing.map(Weighing::name),
         "model": model(&fit.model),
         "level": level,
         "version": crate::VERSION,

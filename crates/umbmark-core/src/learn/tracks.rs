@@ -1,34 +1,34 @@
 //! Learning from tracks: the same story, told from products of columns instead of one fit for each fold.
 
 use super::{Error, Learnt, MOST, Step};
-use crate::diagnose::tracks::{self, Examination, LEAST_GAIN, Misses, Search};
+use crate::diagnose::tracks::{self, Alone, LEAST_GAIN, Misses, Search};
 use crate::diagnose::{DiagnoseError, Diagnosis, Options, Verdict};
 use crate::effect::Model;
-use crate::likelihood::{Noise, Observed};
+use crate::likelihood::{Fitted, Noise, Observed, Weighing};
 
 /// Learns which effects the robot of some tracks has, beside those of a `start`.
 pub(super) fn learn(observed: &Observed, start: &Model, options: &Options) -> Result<Learnt, DiagnoseError> {
     let mut model = Model::new(&observed.robot);
-    let mut steps = vec![step(&plainly(observed, &model)?, None)];
+    let mut steps = vec![step(plainly(observed, &model)?, None)];
     let first = observed.robot.drive.kind().first_effects();
-    let mut add = |model: &mut Model, effect: &'static str, exam: Examination| {
-        *model = exam.fitted.model.clone();
-        steps.push(step(&exam, Some((effect, vec![effect], None))));
+    let mut add = |model: &mut Model, effect: &'static str, fitted: Fitted| {
+        *model = fitted.model.clone();
+        steps.push(step(fitted, Some((effect, vec![effect], None))));
     };
     for effect in first {
         model.add(effect)?.free = true;
-        let exam = plainly(observed, &model)?;
-        add(&mut model, effect, exam);
+        let fitted = plainly(observed, &model)?;
+        add(&mut model, effect, fitted);
     }
     for part in start.parts().iter().filter(|part| !first.contains(&part.effect.name())) {
         model.adopt(part);
-        let exam = Examination::bare(tracks::fit(observed, &model)?);
-        add(&mut model, part.effect.name(), exam);
+        let fitted = tracks::fit(observed, &model)?;
+        add(&mut model, part.effect.name(), fitted);
     }
     let search = tracks::search(tracks::fit(observed, &model)?, options, MOST)?;
     for (exam, (finding, suspect)) in search.exams[1..].iter().zip(&search.added) {
         let told = (suspect.best, suspect.class.clone(), Some(finding.p_adjusted()));
-        steps.push(step(&Examination::bare(exam.fitted.clone()), Some(told)));
+        steps.push(step(exam.fitted.clone(), Some(told)));
     }
     finish(search, steps, options)
 }
@@ -50,7 +50,13 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         hints.extend(hint);
     }
     let Some(last) = search.exams.pop() else { return Err(DiagnoseError::NotConverged { how: "has no model" }) };
-    let diagnosis = tracks::conclude(last, told, options)?;
+    let best = Alone::new(last.fitted.clone()).predicting()?;
+    let mut diagnosis = tracks::conclude(last, told, options)?;
+    if best.weighing == Weighing::Tracks {
+        diagnosis.remarks.push(Weighing::Tracks.caution().to_owned());
+        diagnosis.fitted = tracks::estimates(&best);
+        diagnosis.model = best.model;
+    }
     hints.extend(tracks::uncertified(&search.left.asked, options));
     let mut remarks = [diagnosis.remarks.clone(), hints].concat();
     let ranking = search.left.asked;
@@ -68,17 +74,18 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
 }
 
 /// A model fitted under noise of the usual size: enough for its errors.
-fn plainly(observed: &Observed, model: &Model) -> Result<Examination, DiagnoseError> {
+fn plainly(observed: &Observed, model: &Model) -> Result<Fitted, DiagnoseError> {
     let mut fitted = observed.unfitted(model, &Noise::default());
     // The second time the noise grows along the poses of the first.
     fitted.refit()?;
     fitted.refit()?;
-    Ok(Examination::bare(fitted))
+    Ok(fitted)
 }
 
-fn step(exam: &Examination, added: Option<(&'static str, Vec<&'static str>, Option<f64>)>) -> Step {
-    let (inside, held_out) = exam.best_errors();
-    let (aicc, bic, weighted) = exam.criteria();
+fn step(fitted: Fitted, added: Option<(&'static str, Vec<&'static str>, Option<f64>)>) -> Step {
+    let alone = Alone::new(fitted);
+    let (inside, held_out) = alone.misses();
+    let (aicc, bic, weighted) = alone.criteria();
     let error = |misses: Misses| Error { position: misses.position, heading: misses.heading, weighted };
     let (added, class, p_adjusted) = added.map_or((None, Vec::new(), None), |(name, class, p)| (Some(name), class, p));
     Step { added, class, p_adjusted, error: error(inside), held_out: error(held_out), aicc: Some(aicc), bic: Some(bic) }

@@ -3,14 +3,48 @@
 use super::noise::Noise;
 use super::observed::{Observed, ObservedRun};
 use super::outliers::Outlier;
-use crate::effect::{Chain, Model, ModelError};
-use crate::fit::{Fit, Options, Problem, least_squares};
+use super::products::{ABSORBED, gram, share_left};
+use crate::effect::{Chain, Model, ModelError, find};
+use crate::fit::{Options, Problem, least_squares};
 use crate::geometry::{Dual, Pose2};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// One (x, y, heading) a block.
 pub type Column = Vec<[f64; 3]>;
+
+/// Effects of the reference that every track has; they are fitted out before anything is said of the robot.
+pub const NUISANCE: [&str; 3] = ["reference_delay", "marker_offset", "marker_yaw"];
+
+/// What of its runs a model was fitted to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weighing {
+    /// What is new from pose to pose: the likeliest values, where nothing is missing from the model.
+    Increments,
+    /// Positions and headings all along: the values that predict best where something is missing.
+    Tracks,
+}
+
+impl Weighing {
+    /// As in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Weighing::Increments => "increments",
+            Weighing::Tracks => "tracks",
+        }
+    }
+
+    /// What is to be said of values so fitted; empty where nothing is.
+    pub fn caution(self) -> &'static str {
+        match self {
+            Weighing::Increments => "",
+            Weighing::Tracks => {
+                "Fitted to whole tracks, which predict the runs left out better than what is new from pose to pose does: a complete \
+                 model would not let that happen. Use the values to predict this robot; as its physics, take them with caution."
+            }
+        }
+    }
+}
 
 /// A model fitted to tracks, and the noise that it leaves.
 #[derive(Clone, Debug)]
@@ -23,8 +57,12 @@ pub struct Fitted {
     pub noise: Noise,
     /// Which of [`Model::values`] were fitted.
     pub free: Vec<usize>,
-    /// Their covariance; `None` where the data leaves a combination of them open.
+    /// What the effects of the reference that the model lacks would do, run by run: fitted along and left out of the model.
+    pub reference: Vec<Vec<Column>>,
+    /// The covariance of the free values; `None` where the data leaves a combination of them open.
     pub covariance: Option<DMatrix<f64>>,
+    /// What was fitted.
+    pub weighing: Weighing,
     /// Where runs were disturbed; what happened there is left out.
     pub outliers: Vec<Outlier>,
 }
@@ -52,7 +90,7 @@ impl Observed {
             }
             fitted.settle()?;
         }
-        fitted.covariance = fitted.refit()?.covariance();
+        fitted.refit()?;
         Ok(fitted)
     }
 
@@ -63,8 +101,10 @@ impl Observed {
             observed: self.along(model),
             model: model.clone(),
             noise: *noise,
+            reference: vec![Vec::new(); self.runs.len()],
             free,
             covariance: None,
+            weighing: Weighing::Increments,
             outliers: Vec::new(),
         }
     }
@@ -105,7 +145,8 @@ impl Fitted {
             self.refit()?;
             let mut columns = self.observed.columns(&self.model, &self.free);
             let chain = self.model.chain();
-            for (run, columns) in self.observed.runs.iter().zip(&mut columns) {
+            for ((run, columns), reference) in self.observed.runs.iter().zip(&mut columns).zip(&self.reference) {
+                columns.extend(reference.iter().cloned());
                 columns.push(run.residuals(&chain));
             }
             self.noise = Noise::estimate(&self.observed, &chain, &columns, &self.noise);
@@ -113,26 +154,51 @@ impl Fitted {
         Ok(())
     }
 
-    /// Fits the free values under the noise as it is.
-    pub fn refit(&mut self) -> Result<Fit, ModelError> {
+    /// Fits the free values under the noise as it is, and the effects of the reference with them.
+    ///
+    /// A yaw of 6 mrad of the markers that is not fitted along moves E_d by 1 %: the reference's course over a leg says where the
+    /// robot went, its heading where it looked.
+    pub fn refit(&mut self) -> Result<(), ModelError> {
+        self.reference = self.reference_columns()?;
         let start: Vec<f64> = self.model.values().collect();
-        let start: Vec<f64> = self.free.iter().map(|i| start[*i]).collect();
-        let problem = Tracks { observed: &self.observed, model: &self.model, noise: &self.noise, free: &self.free };
-        let fit = least_squares(&problem, &start, &STOP);
-        self.model = self.model.with_values(&self.free, &fit.values)?;
+        let mut start: Vec<f64> = self.free.iter().map(|i| start[*i]).collect();
+        start.resize(self.free.len() + self.reference.first().map_or(0, Vec::len), 0.0);
+        let fit = least_squares(&Tracks(self), &start, &STOP);
+        let own = self.free.len();
+        self.covariance = fit.covariance().map(|all| all.view((0, 0), (own, own)).into_owned());
+        self.model = self.model.with_values(&self.free, &fit.values[..own])?;
         self.observed = self.observed.along(&self.model);
-        Ok(fit)
+        Ok(())
     }
-}
 
-struct Tracks<'a> {
-    observed: &'a Observed,
-    model: &'a Model,
-    noise: &'a Noise,
-    free: &'a [usize],
-}
+    /// The columns of the effects of the reference that the model lacks and that its free values leave visible.
+    fn reference_columns(&self) -> Result<Vec<Vec<Column>>, ModelError> {
+        let (mut with, mut own) = (self.model.clone(), Vec::new());
+        let known = |name: &&str| self.model.parts().iter().any(|part| part.effect.name() == *name);
+        let lacking: Vec<&str> = NUISANCE.into_iter().filter(|name| !known(name)).collect();
+        for name in &lacking {
+            with.add(name)?;
+        }
+        for name in lacking {
+            let parameters = find(name)?.about.parameters;
+            own.extend(parameters.iter().filter_map(|parameter| with.place_of(name, parameter.name)));
+        }
+        let free = self.observed.columns(&self.model, &self.free);
+        let mut columns = self.observed.columns(&with, &own);
+        let both: Vec<Vec<Column>> = free.iter().zip(&columns).map(|(a, b)| [&a[..], b].concat()).collect();
+        let stacked = self.stacked(&both);
+        let products = gram(stacked.transpose().as_slice(), stacked.ncols());
+        let mut base: Vec<usize> = (0..self.free.len()).collect();
+        for column in self.free.len()..products.ncols() {
+            if share_left(&products, &base, column) > ABSORBED {
+                base.push(column);
+            }
+        }
+        let kept: Vec<usize> = base[self.free.len()..].iter().map(|column| column - self.free.len()).collect();
+        columns.iter_mut().for_each(|run| *run = kept.iter().map(|column| run[*column].clone()).collect());
+        Ok(columns)
+    }
 
-impl Tracks<'_> {
     /// Whitens one set of columns a run into one matrix.
     fn stacked(&self, columns: &[Vec<Column>]) -> DMatrix<f64> {
         let runs: Vec<Vec<f64>> = self
@@ -151,22 +217,38 @@ impl Tracks<'_> {
     }
 }
 
+/// The free values of a model, and behind them the sizes of the effects of the reference.
+struct Tracks<'a>(&'a Fitted);
+
+impl Tracks<'_> {
+    fn model(&self, parameters: &[f64]) -> Result<Model, ModelError> {
+        self.0.model.with_values(&self.0.free, &parameters[..self.0.free.len()])
+    }
+}
+
 impl Problem for Tracks<'_> {
     fn residuals(&self, parameters: &[f64]) -> DVector<f64> {
-        let Ok(model) = self.model.with_values(self.free, parameters) else {
+        let Ok(model) = self.model(parameters) else {
             return DVector::from_element(1, f64::INFINITY);
         };
-        let chain = model.chain();
-        let residuals: Vec<Vec<Column>> =
-            self.observed.runs.par_iter().map(|run| vec![run.residuals(&chain)]).collect();
-        let stacked = self.stacked(&residuals);
-        DVector::from_column_slice(stacked.as_slice())
+        let (chain, sizes) = (model.chain(), &parameters[self.0.free.len()..]);
+        let left = |(run, reference): (&ObservedRun, &Vec<Column>)| {
+            let mut left = run.residuals(&chain);
+            for (column, size) in reference.iter().zip(sizes) {
+                left.iter_mut().zip(column).for_each(|(l, c)| (0..3).for_each(|k| l[k] -= size * c[k]));
+            }
+            vec![left]
+        };
+        let residuals: Vec<Vec<Column>> = self.0.observed.runs.par_iter().zip(&self.0.reference).map(left).collect();
+        DVector::from_column_slice(self.0.stacked(&residuals).as_slice())
     }
 
     fn jacobian(&self, parameters: &[f64]) -> DMatrix<f64> {
-        let Ok(model) = self.model.with_values(self.free, parameters) else {
-            return DMatrix::zeros(1, self.free.len());
+        let Ok(model) = self.model(parameters) else {
+            return DMatrix::zeros(1, parameters.len());
         };
-        -self.stacked(&self.observed.columns(&model, self.free))
+        let mut columns = self.0.observed.columns(&model, &self.0.free);
+        columns.iter_mut().zip(&self.0.reference).for_each(|(own, more)| own.extend(more.iter().cloned()));
+        -self.0.stacked(&columns)
     }
 }

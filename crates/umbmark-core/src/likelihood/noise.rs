@@ -1,6 +1,7 @@
 //! The sizes of the noise, and how they are found.
 
 use super::observed::{Growth, Observed, ObservedRun};
+use super::products::gram;
 use super::simplex;
 use crate::effect::Chain;
 use nalgebra::{DMatrix, Matrix3};
@@ -21,6 +22,10 @@ pub struct Noise {
     pub reference_position: f64,
     /// The same of the heading \[rad\].
     pub reference_heading: f64,
+    /// Scatter of the moments at which the reference was taken \[s\]: it shows while the robot moves and not where it rests.
+    pub reference_time: f64,
+    /// Scatter of the delay of the reference from run to run \[s\].
+    pub reference_delay: f64,
     /// Reference noise from pose to pose within a block, each coordinate \[m\].
     pub within_position: f64,
     /// The same of the heading \[rad\].
@@ -41,6 +46,8 @@ impl Default for Noise {
             sideways_per_metre: 1e-4,
             reference_position: 5e-4,
             reference_heading: 5e-4,
+            reference_time: 5e-4,
+            reference_delay: 1e-3,
             within_position: 0.0,
             within_heading: 0.0,
             start_position: 2e-3,
@@ -55,11 +62,11 @@ const RANGE: f64 = 1e-2;
 const FIRST_EDGE: f64 = 0.7;
 const LATER_EDGE: f64 = 0.2;
 /// Evaluations of the likelihood.
-const EVALUATIONS: usize = 110;
+const EVALUATIONS: usize = 150;
 
 impl Noise {
     /// How many sizes are estimated.
-    pub const SIZES: usize = 6;
+    pub const SIZES: usize = 8;
 
     /// The sizes under which the residuals of a model are likeliest, by restricted maximum likelihood:
     ///
@@ -75,7 +82,7 @@ impl Noise {
             if count > 0 { (sum / count as f64).sqrt() } else { 0.0 }
         };
         (start.within_position, start.within_heading) = (pooled(0), pooled(1));
-        let sizes = |x: &[f64; 6]| {
+        let sizes = |x: &[f64; Noise::SIZES]| {
             let usual = Noise::default();
             let at = |i: usize, usual: f64| usual * libm::exp(x[i].clamp(libm::log(RANGE), -libm::log(RANGE)));
             Noise {
@@ -85,6 +92,8 @@ impl Noise {
                 sideways_per_metre: at(3, usual.sideways_per_metre),
                 reference_position: at(4, usual.reference_position),
                 reference_heading: at(5, usual.reference_heading),
+                reference_time: at(6, usual.reference_time),
+                reference_delay: at(7, usual.reference_delay),
                 ..start
             }
         };
@@ -96,8 +105,10 @@ impl Noise {
             libm::log(from.sideways_per_metre / usual.sideways_per_metre),
             libm::log(from.reference_position / usual.reference_position),
             libm::log(from.reference_heading / usual.reference_heading),
+            libm::log(from.reference_time / usual.reference_time),
+            libm::log(from.reference_delay / usual.reference_delay),
         ];
-        let cost = |x: &[f64; 6]| {
+        let cost = |x: &[f64; Noise::SIZES]| {
             // A faint preference for usual sizes keeps what the data does not show where it is.
             let pull: f64 = x.iter().map(|v| 0.02 * v * v).sum();
             sizes(x).deviance(&observed.runs, columns) + pull
@@ -164,41 +175,6 @@ impl Noise {
             at(5),
         )
     }
-}
-
-/// Rows that are taken at once: the sums are read and written once for all of them.
-const TOGETHER: usize = 8;
-
-/// XᵀX of a matrix stored row by row.
-pub(crate) fn gram(values: &[f64], columns: usize) -> DMatrix<f64> {
-    let mut sum = DMatrix::zeros(columns, columns);
-    let columns = columns.max(1);
-    let whole = values.chunks_exact(TOGETHER * columns);
-    let rest = whole.remainder();
-    for rows in whole {
-        let rows: [&[f64]; TOGETHER] = std::array::from_fn(|k| &rows[k * columns..(k + 1) * columns]);
-        for (j, mut own) in sum.column_iter_mut().enumerate() {
-            let own = &mut own.as_mut_slice()[..=j];
-            let weights = rows.map(|row| row[j]);
-            let rows = rows.map(|row| &row[..=j]);
-            for i in 0..=j {
-                let mut added = 0.0;
-                for k in 0..TOGETHER {
-                    added += weights[k] * rows[k][i];
-                }
-                own[i] += added;
-            }
-        }
-    }
-    for row in rest.chunks_exact(columns) {
-        for j in 0..columns {
-            for i in 0..=j {
-                sum[(i, j)] += row[i] * row[j];
-            }
-        }
-    }
-    sum.fill_lower_triangle_with_upper_triangle();
-    sum
 }
 
 #[cfg(test)]

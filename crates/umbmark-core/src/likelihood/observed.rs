@@ -42,6 +42,8 @@ pub struct Block {
     pub headings: usize,
     /// Where the model has it, on average.
     pub place: Pose2,
+    /// How its pose changes there, on average \[m/s, m/s, rad/s\].
+    pub velocity: [f64; 3],
     /// How the error grows from the block before to this one.
     pub growth: Growth,
     /// Which quarter of the way it lies in, from 0.
@@ -175,6 +177,7 @@ impl ObservedRun {
             let middle = own[(own.len() - 1) / 2];
             let mean = |of: fn(&Pose2) -> f64| own.iter().map(|i| of(&walk.places[*i])).sum::<f64>() / own.len() as f64;
             block.place = Pose2::new(mean(|p| p.x), mean(|p| p.y), mean(|p| p.heading));
+            block.velocity = walk.velocity(&self.track, own);
             block.growth = walk.growth(before, middle);
             before = middle;
         }
@@ -268,6 +271,7 @@ fn blocks(track: &Track, seen: &[(f64, f64, Option<f64>)], chain: &Chain<f64>) -
             count,
             headings,
             place: Pose2::IDENTITY,
+            velocity: [0.0; 3],
             growth: Growth::default(),
             unit,
             afresh: false,
@@ -298,6 +302,19 @@ impl Walk {
             walk.turned.push(turned);
         }
         walk
+    }
+
+    /// Mean rate of change of the pose over the pieces that end at some observations.
+    fn velocity(&self, track: &Track, own: &[usize]) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for made in own.iter().filter(|made| **made > 0) {
+            let at = &track.contexts()[made - 1];
+            let (sine, cosine) = libm::sincos(self.places[*made].heading);
+            for (total, rate) in sum.iter_mut().zip([at.speed * cosine, at.speed * sine, at.turn_rate]) {
+                *total += rate / own.len() as f64;
+            }
+        }
+        sum
     }
 
     fn growth(&self, from: usize, to: usize) -> Growth {

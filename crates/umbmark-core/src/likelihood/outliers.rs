@@ -1,7 +1,7 @@
 //! Collisions and glitches: places in a run where what is new cannot be noise.
 //!
 //! What the filter finds new in a block, by the noise of all runs and the usual size in its own run, is a few standard deviations
-//! at most. Where it is ten, the robot was pushed, or the reference jumped. From such a block the run starts anew, as if it had been
+//! at most. Where it is ten, and far beyond what the tails of this data reach, the robot was pushed, or the reference jumped. From such a block the run starts anew, as if it had been
 //! put down there: neither the fit nor any test sees the jump. What happens at the same place in other runs too is no accident
 //! but an effect, and stays; so do jumps without number.
 
@@ -9,9 +9,11 @@ use super::fitting::Fitted;
 use super::observed::ObservedRun;
 use std::collections::BTreeSet;
 
-/// So many standard deviations are no noise. Gaussian noise has it once in 1e21 blocks; `docs/diagnosis.md` tells the rate found
-/// with heavy tails.
+/// So many standard deviations are no noise, unless the noise itself has heavy tails: Gaussian noise has it once in 1e21 blocks.
 const BEYOND: f64 = 10.0;
+/// Blocks so many in a data set may be beyond, by tails that fall on as they do between these two shares of all blocks.
+const LEVEL: f64 = 0.01;
+const TAIL: [f64; 2] = [0.05, 0.01];
 /// So many, within [`NEAR`], make a jump in another run one of the same kind.
 const ALIKE: f64 = 4.0;
 /// Way (of a wheel, in a turn) within which two runs are at the same place \[m\].
@@ -55,7 +57,8 @@ impl Fitted {
             let others = (0..runs.len()).filter(|other| *other != run);
             others.clone().filter(|other| there(*other)).count() as f64 >= (SHARED * others.count() as f64).max(1.0)
         };
-        let beyond = |run: usize| runs[run].iter().enumerate().filter(|(_, d)| **d > BEYOND).map(|(block, _)| block);
+        let least = least_beyond(&runs);
+        let beyond = |run: usize| runs[run].iter().enumerate().filter(|(_, d)| **d > least).map(|(block, _)| block);
         let places = (0..runs.len()).flat_map(|run| beyond(run).map(move |block| (run, block)));
         let alone = places.filter(|(run, block)| !shared(*run, ways[*run][*block]));
         let found: BTreeSet<_> = alone.map(|place| (place, runs[place.0][place.1].to_bits())).collect();
@@ -94,6 +97,20 @@ impl Fitted {
             deviations,
         }
     }
+}
+
+/// How many standard deviations are beyond noise: where the tails are heavy, as many as a power law would reach in this many
+/// blocks with probability [`LEVEL`].
+fn least_beyond(runs: &[Vec<f64>]) -> f64 {
+    let mut all: Vec<f64> = runs.iter().flatten().copied().filter(|d| *d > 0.0).collect();
+    all.sort_by(|a, b| b.total_cmp(a));
+    let count = all.len() as f64;
+    let [some, few] = TAIL.map(|share| all.get((share * count) as usize).copied().unwrap_or(0.0));
+    if some <= 0.0 || few <= some {
+        return BEYOND;
+    }
+    let power = libm::log(TAIL[0] / TAIL[1]) / libm::log(few / some);
+    BEYOND.max(few * libm::pow((TAIL[1] * count / LEVEL).max(1.0), 1.0 / power))
 }
 
 /// How far each block is along its run: way driven, and way of the wheels in turns.

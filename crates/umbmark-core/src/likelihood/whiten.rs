@@ -1,5 +1,6 @@
 //! Residuals and Jacobian columns of a run, made independent by a Kalman filter along it.
 
+use super::fitting::Column;
 use super::noise::Noise;
 use super::observed::{Block, ObservedRun};
 use nalgebra::{Matrix3, Vector3};
@@ -28,6 +29,26 @@ impl Whitened {
     pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
         self.values.chunks_exact(self.columns.max(1))
     }
+
+    /// Takes the last column z for the response to a number that the whole run shares, of standard deviation `sd`, and makes the
+    /// others independent of it: x ← (1 + sd² z zᵀ)^(-1/2) x.
+    fn less_a_common(&mut self, sd: f64) {
+        let width = self.columns;
+        let mut products = vec![0.0; width];
+        for row in self.values.chunks_exact(width) {
+            products.iter_mut().zip(row).for_each(|(sum, value)| *sum += value * row[width - 1]);
+        }
+        let length = products[width - 1];
+        let grown = 1.0 + sd * sd * length;
+        let share = if length > 0.0 { (1.0 / grown.sqrt() - 1.0) / length } else { 0.0 };
+        let rows = self.values.chunks_exact(width).flat_map(|row| {
+            let common = share * row[width - 1];
+            row[..width - 1].iter().zip(&products).map(move |(value, product)| value + common * product)
+        });
+        self.values = rows.collect();
+        self.columns = width - 1;
+        self.log_scale += 0.5 * libm::log(grown);
+    }
 }
 
 impl Noise {
@@ -38,6 +59,8 @@ impl Noise {
     /// in the error coordinates of [`Growth`](super::Growth). The same gains serve all columns, so linear relations between
     /// columns are kept.
     pub fn whiten(&self, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> Whitened {
+        let late: Column = run.blocks.iter().map(|block| block.velocity).collect();
+        let columns = &[columns, &[&late]].concat();
         let mut out = Whitened {
             columns: columns.len(),
             values: Vec::with_capacity(3 * columns.len() * run.blocks.len()),
@@ -65,6 +88,7 @@ impl Noise {
             out.log_scale += libm::log(stage.diagonal[..rows].iter().product());
             p -= stage.taken();
         }
+        out.less_a_common(self.reference_delay);
         out
     }
 
@@ -81,7 +105,8 @@ impl Noise {
             0 => NOT_MEASURED * NOT_MEASURED,
             count => self.reference_heading.powi(2) + self.within_heading.powi(2) / count as f64,
         };
-        Matrix3::from_diagonal(&Vector3::new(position, position, heading))
+        let late = Vector3::from(block.velocity) * self.reference_time;
+        Matrix3::from_diagonal(&Vector3::new(position, position, heading)) + late * late.transpose()
     }
 }
 
@@ -108,9 +133,9 @@ impl Stage {
         let (first, second, third) = (s(0), s(1), s(2));
         let root = |square: f64| (square > 0.0).then(|| square.sqrt());
         let d0 = root(first[0] + measurement[(0, 0)])?;
-        let (l10, l20) = (second[0] / d0, third[0] / d0);
+        let (l10, l20) = ((second[0] + measurement[(1, 0)]) / d0, (third[0] + measurement[(2, 0)]) / d0);
         let d1 = root(second[1] + measurement[(1, 1)] - l10 * l10)?;
-        let l21 = (third[1] - l20 * l10) / d1;
+        let l21 = (third[1] + measurement[(2, 1)] - l20 * l10) / d1;
         let d2 = root(third[2] + measurement[(2, 2)] - l20 * l20 - l21 * l21)?;
         let mut stage = Stage { x, y, diagonal: [d0, d1, d2], below: [l10, l20, l21], w: [[0.0; 3]; 3] };
         let columns: [[f64; 3]; 3] = std::array::from_fn(|k| stage.solved(hp.map(|row| row[k])));
@@ -173,6 +198,7 @@ mod tests {
                     count: 2,
                     headings,
                     place: Pose2::new(*x, *y, 0.0),
+                    velocity: [0.3 * i as f64, 0.1, 0.5],
                     growth,
                     unit: 0,
                     afresh: false,
@@ -191,7 +217,14 @@ mod tests {
     }
 
     fn noise() -> Noise {
-        Noise { heading_per_metre: 0.02, heading_per_radian: 0.01, forward_per_metre: 0.005, ..Noise::default() }
+        Noise {
+            heading_per_metre: 0.02,
+            heading_per_radian: 0.01,
+            forward_per_metre: 0.005,
+            reference_time: 0.003,
+            reference_delay: 0.02,
+            ..Noise::default()
+        }
     }
 
     /// From error coordinates to the error of the pose at a block: δp = q + θ J p.
@@ -214,6 +247,8 @@ mod tests {
                 if i == j {
                     shared += noise.measurement(&run.blocks[i]);
                 }
+                let late = [i, j].map(|k| Vector3::from(run.blocks[k].velocity) * noise.reference_delay);
+                shared += late[0] * late[1].transpose();
                 whole.view_mut((3 * i, 3 * j), (3, 3)).copy_from(&shared);
             }
         }

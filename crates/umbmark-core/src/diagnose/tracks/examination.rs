@@ -3,14 +3,12 @@
 use super::errors::Errors;
 use super::errors::Misses;
 use super::smooth::{self, Covariate, Motion, smooth_columns};
-use super::system::{ABSORBED, Projected, System};
+use super::system::{Projected, System};
 use crate::effect::{Entry, Model, ModelError, of_drive};
-use crate::likelihood::{Column, Fitted, Noise, Observed};
+use crate::likelihood::{ABSORBED, Column, Fitted, NUISANCE, Noise, Observed, share_left};
 use crate::parameter::Parameter;
 use nalgebra::{DMatrix, DVector};
 
-/// Effects of the reference that every track has; they are fitted out before physics is asked about.
-pub const NUISANCE: [&str; 3] = ["reference_delay", "marker_offset", "marker_yaw"];
 /// At its usual size a candidate must move the observations by so many standard deviations to be asked about.
 const VISIBLE: f64 = 0.3;
 /// Response that others must be able to make to be of the same class, as a cosine.
@@ -124,20 +122,6 @@ impl Examination {
         Ok(examination)
     }
 
-    /// A fitted model asked about nothing: for its errors alone.
-    pub fn bare(fitted: Fitted) -> Examination {
-        let observed = &fitted.observed;
-        let mut columns = observed.columns(&fitted.model, &fitted.free);
-        let chain = fitted.model.chain();
-        for (all, run) in columns.iter_mut().zip(&observed.runs) {
-            all.push(run.residuals(&chain));
-        }
-        let system = System::new(observed, &fitted.noise, &columns);
-        let errors = Errors::new(observed, &system, &columns, (0..system.width).collect());
-        let free = (0..fitted.free.len()).collect();
-        Examination { fitted, system, asked: Vec::new(), free, errors, columns }
-    }
-
     /// Estimates the noise anew with what is most evidently missing fitted out, so that it is noise alone. Says whether anything
     /// was.
     fn clean(&mut self) -> bool {
@@ -181,7 +165,7 @@ impl Examination {
         let others = self.asked.iter().enumerate().filter(|(i, other)| other.nuisance && Some(*i) != asked);
         let mut base = self.free.clone();
         for column in others.flat_map(|(_, other)| other.columns.iter().copied()) {
-            if Projected::share_left(&self.system.whole, &base, column) > ABSORBED {
+            if share_left(&self.system.whole, &base, column) > ABSORBED {
                 base.push(column);
             }
         }
@@ -238,29 +222,6 @@ impl Examination {
             let values = Projected::fit(&products, &columns);
             (columns, values)
         })
-    }
-
-    /// Errors inside and in runs left out, of the model fitted to increments (as its values are) or to whole tracks, whichever
-    /// predicts runs left out better: the first is right where nothing is missing, the second does what can be done where
-    /// something is.
-    pub fn best_errors(&self) -> (Misses, Misses) {
-        let increments = (self.errors.in_sample(), self.left_out(&[]));
-        let all = self.errors.fit(&self.free, None);
-        let inside = self.errors.misses(|_| (self.free.clone(), all.clone()));
-        let left_out = self.errors.misses(|run| (self.free.clone(), self.errors.fit(&self.free, Some(run))));
-        if left_out.position < increments.1.position { (inside, left_out) } else { increments }
-    }
-
-    /// AICc, BIC and the root mean square of the whitened residuals.
-    pub fn criteria(&self) -> (f64, f64, f64) {
-        let residual = self.system.residual();
-        let runs = self.fitted.observed.runs.iter().zip(&self.columns);
-        let scales = runs.map(|(run, columns)| self.fitted.noise.whiten(run, &[&columns[residual]]).log_scale);
-        let squares = self.system.whole[(residual, residual)];
-        let deviance = 2.0 * scales.sum::<f64>() + squares;
-        let (n, k) = (self.system.rows as f64, (self.free.len() + Noise::SIZES) as f64);
-        let aicc = deviance + 2.0 * k * n / (n - k - 1.0).max(1.0);
-        (aicc, deviance + k * libm::log(n), (squares / n).sqrt())
     }
 
     /// The effect that explains most of some products, of those `wanted`, beside the model.

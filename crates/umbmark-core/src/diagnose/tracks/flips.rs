@@ -12,6 +12,7 @@
 //! standardised by the flip's own variance, De Santis, Goeman, Davenport, Hemerik & Finos (2022); the greatest statistic, Westfall & Young (1993).
 
 use crate::random::Stream;
+use crate::stats::f_upper_tail;
 use nalgebra::{DMatrix, DVector};
 use rand::Rng;
 use rayon::prelude::*;
@@ -30,11 +31,24 @@ pub struct Scores {
     pub units: Vec<DVector<f64>>,
     /// How much of the columns that were fitted out each unit's columns hold, those made orthonormal: one a unit.
     pub held: Vec<DMatrix<f64>>,
+    /// What each unit holds of the information.
+    pub parts: Vec<DMatrix<f64>>,
     /// Covariance of the sum of all scores.
     pub information: DMatrix<f64>,
 }
 
 impl Scores {
+    /// p of a step by how the units' scores differ from what they would be at it: Student's t along the step, squared, with one
+    /// value a unit. What noise that remembers does to whole runs is in it, where the noise model sees steps of centimetres.
+    pub fn p_by_units(&self, step: &DVector<f64>) -> f64 {
+        let units = self.units.len() as f64;
+        let off = |(score, part): (&DVector<f64>, &DMatrix<f64>)| (score - part * step).dot(step).powi(2);
+        let scatter: f64 = self.units.iter().zip(&self.parts).map(off).sum();
+        let sum: f64 = self.units.iter().map(|score| score.dot(step)).sum();
+        let t_squared = sum * sum * (units - 1.0) / (units * scatter);
+        if units < 2.0 || t_squared.is_nan() { 1.0 } else { f_upper_tail(t_squared, [1.0, units - 1.0]) }
+    }
+
     /// How far the flipped sum is from zero, as a standard normal's quantile (Wilson & Hilferty 1931).
     fn distance(&self, flips: &[bool]) -> f64 {
         let terms = self.information.nrows();
@@ -95,6 +109,7 @@ mod tests {
         Scores {
             units: scores.iter().map(|s| DVector::from_element(1, *s)).collect(),
             held: vec![DMatrix::zeros(0, 1); scores.len()],
+            parts: vec![DMatrix::from_element(1, 1, information / scores.len() as f64); scores.len()],
             information: DMatrix::from_element(1, 1, information),
         }
     }
@@ -106,6 +121,20 @@ mod tests {
         let both = [one.clone(), balanced.clone()];
         assert_eq!(family_wise(&one, &both, 1), 2.0 / 512.0);
         assert_eq!(family_wise(&balanced, &both, 1), 1.0);
+    }
+
+    /// Textbook: the mean of ten values, 1.0 more or less, t = mean/(sd/√10) with sd by n - 1.
+    #[test]
+    fn units_that_agree_speak_for_a_step_by_their_own_scatter() {
+        let values = [1.3, 0.6, 1.1, 0.9, 1.4, 0.7, 1.2, 0.8, 1.0, 1.0];
+        let scores = group(&values);
+        let step = values.iter().sum::<f64>() / scores.information[(0, 0)];
+        let mean = values.iter().sum::<f64>() / 10.0;
+        let expected = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 9.0;
+        let t_squared = 10.0 * mean * mean / expected;
+        let p = scores.p_by_units(&DVector::from_element(1, step));
+        assert!((p / f_upper_tail(t_squared, [1.0, 9.0]) - 1.0).abs() < 1e-9, "{p}");
+        assert!(group(&[1.0, -1.0, 1.1, -0.9, 1.2, -0.8]).p_by_units(&DVector::from_element(1, 0.1)) > 0.3);
     }
 
     /// `asked` columns beside four that are fitted, in ten runs whose noise is the same all along a run and as heavy-tailed
@@ -131,6 +160,7 @@ mod tests {
             Scores {
                 units: (0..10).map(|run| DVector::from_element(1, own[run] * residual[run])).collect(),
                 held: (0..10).map(held).collect(),
+                parts: Vec::new(),
                 information: own.tr_mul(&own),
             }
         };

@@ -15,7 +15,8 @@ const ENOUGH_RUNS: usize = 8;
 pub struct Finding {
     /// The group after one step.
     pub answer: Answer,
-    /// Family-wise p by F and Bonferroni, among effects (or among smooths).
+    /// Family-wise p by F and Bonferroni, among effects (or among smooths): by the noise model, or by the scatter of the runs,
+    /// whichever is larger.
     pub p_f: f64,
     /// Family-wise p by sign flips; 1 where F does not accuse, which no flips can change.
     pub p_flips: f64,
@@ -67,8 +68,10 @@ pub fn look(exam: &Examination, smooths: bool, options: &Options) -> Vec<Finding
         findings.push(Finding { answer, p_f: p, p_flips: 1.0, degrees_of_freedom: [q, spare], f, p, projected });
     }
     let asked = findings.len() as f64;
-    findings.iter_mut().for_each(|finding| finding.p_f = (asked * finding.p).min(1.0));
     let scores: Vec<Scores> = findings.iter().map(|finding| scores(exam, finding)).collect();
+    for (finding, own) in findings.iter_mut().zip(&scores) {
+        finding.p_f = (asked * finding.p.max(own.p_by_units(&finding.answer.step))).min(1.0);
+    }
     for (finding, own) in findings.iter_mut().zip(&scores).filter(|(finding, _)| finding.p_f <= options.size) {
         finding.p_flips = family_wise(own, &scores, options.seed);
     }
@@ -97,22 +100,27 @@ pub fn possible(exam: &Examination, finding: &Finding) -> bool {
 fn scores(exam: &Examination, finding: &Finding) -> Scores {
     let by_quarter = exam.fitted.observed.runs.len() < ENOUGH_RUNS;
     let columns = &finding.answer.columns;
-    let (mut units, mut parts, mut before) = (Vec::new(), Vec::new(), None);
+    let information = finding.projected.information(columns);
+    let mut scores = Scores { units: Vec::new(), held: Vec::new(), parts: Vec::new(), information };
+    let mut before = None;
     for unit in &exam.system.units {
         let (score, held) = finding.projected.score(&unit.white, columns);
-        match (units.last_mut(), parts.last_mut()) {
-            (Some(last), Some(part)) if !by_quarter && before == Some(unit.run) => {
-                *last += score;
-                *part += held;
+        let part = finding.projected.information_of(&unit.white, columns);
+        match (scores.units.last_mut(), scores.held.last_mut(), scores.parts.last_mut()) {
+            (Some(units), Some(all), Some(parts)) if !by_quarter && before == Some(unit.run) => {
+                *units += score;
+                *all += held;
+                *parts += part;
             }
             _ => {
-                units.push(score);
-                parts.push(held);
+                scores.units.push(score);
+                scores.held.push(held);
+                scores.parts.push(part);
             }
         }
         before = Some(unit.run);
     }
-    Scores { units, held: parts, information: finding.projected.information(columns) }
+    scores
 }
 
 /// The effects whose response could be taken for that of a finding, itself not among them: the best shape of each.

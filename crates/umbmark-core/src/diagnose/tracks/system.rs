@@ -1,8 +1,8 @@
 //! A model's residuals beside what its parameters, and the effects that it may be missing, would do to them: products of
 //! whitened columns, summed run by run, from which every test and every fold of a cross-validation follows.
 
-use crate::likelihood::{Column, Noise, Observed, gram};
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use crate::likelihood::{ABSORBED, Column, Noise, Observed, ScaledCholesky, gram, scaled_cholesky, solver};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// A part of a run that is taken as independent of the others.
@@ -85,10 +85,6 @@ pub struct Projected {
     solver: Option<ScaledCholesky>,
 }
 
-/// A column with less than this share of its square left is absorbed by the base: a collinearity index above 20, the rule of
-/// Brun, Reichert & Künsch (2001, Water Resources Research 37).
-pub const ABSORBED: f64 = 1.0 / 400.0;
-
 impl Projected {
     /// Fits the columns `base` out of all columns.
     pub fn new(products: &DMatrix<f64>, base: &[usize]) -> Projected {
@@ -124,14 +120,6 @@ impl Projected {
         values.map_or_else(|| DVector::zeros(columns.len()), |values| values.column(0).into_owned())
     }
 
-    /// Square of what is left of one column beside others, as a share of its own.
-    pub fn share_left(products: &DMatrix<f64>, base: &[usize], column: usize) -> f64 {
-        let cross = DMatrix::from_fn(base.len(), 1, |i, _| products[(base[i], column)]);
-        let whole = products[(column, column)];
-        let explained = solver(products, base).map_or(0.0, |solver| cross.dot(&solver.solve(&cross)));
-        if whole > 0.0 { 1.0 - explained / whole } else { 0.0 }
-    }
-
     /// Share of the response of `values` of the columns `from` that the columns `to` can make, as a cosine.
     pub fn likeness(&self, from: &[usize], values: &DVector<f64>, to: &[usize]) -> f64 {
         let response = |k: usize| from.iter().zip(values.iter()).map(|(j, v)| self.products[(k, *j)] * v).sum::<f64>();
@@ -157,49 +145,18 @@ impl Projected {
         (scores, half)
     }
 
+    /// What a unit holds of the products of a group's columns, the base fitted out.
+    pub fn information_of(&self, unit: &DMatrix<f64>, group: &[usize]) -> DMatrix<f64> {
+        let between =
+            |from: &[usize], to: &[usize]| DMatrix::from_fn(from.len(), to.len(), |i, j| unit[(from[i], to[j])]);
+        let taken = DMatrix::from_fn(self.base.len(), group.len(), |i, k| self.coefficients[(i, group[k])]);
+        let shared = taken.tr_mul(&between(&self.base, group));
+        let fitted = taken.tr_mul(&(between(&self.base, &self.base) * &taken));
+        between(group, group) - &shared - shared.transpose() + fitted
+    }
+
     /// Products of a group's columns, the base fitted out.
     pub fn information(&self, group: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(group.len(), group.len(), |i, j| self.products[(group[i], group[j])])
     }
-}
-
-/// What solves for the values of some columns.
-fn solver(products: &DMatrix<f64>, columns: &[usize]) -> Option<ScaledCholesky> {
-    let of = |i: usize, j: usize| products[(columns[i], columns[j])];
-    scaled_cholesky(&DMatrix::from_fn(columns.len(), columns.len(), of)).filter(|_| !columns.is_empty())
-}
-
-/// A positive definite matrix with its rows and columns scaled to a unit diagonal, factored.
-#[derive(Clone, Debug)]
-pub(super) struct ScaledCholesky {
-    factor: Cholesky<f64, Dyn>,
-    lengths: Vec<f64>,
-}
-
-impl ScaledCholesky {
-    pub(super) fn solve(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
-        let scaled = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| right[(i, j)] / self.lengths[i]);
-        let solved = self.factor.solve(&scaled);
-        DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| solved[(i, j)] / self.lengths[i])
-    }
-
-    /// L⁻¹ of some columns, with L Lᵀ the matrix.
-    fn half(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut scaled = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| right[(i, j)] / self.lengths[i]);
-        self.factor.l_dirty().solve_lower_triangular_mut(&mut scaled);
-        scaled
-    }
-}
-
-pub(super) fn scaled_cholesky(matrix: &DMatrix<f64>) -> Option<ScaledCholesky> {
-    let n = matrix.nrows();
-    let lengths: Vec<f64> = (0..n).map(|i| matrix[(i, i)].sqrt()).collect();
-    if lengths.iter().any(|l| !(*l > 0.0 && l.is_finite())) {
-        return None;
-    }
-    let mut scaled = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (lengths[i] * lengths[j]));
-    for i in 0..n {
-        scaled[(i, i)] += 1e-12;
-    }
-    Some(ScaledCholesky { factor: scaled.cholesky()?, lengths })
 }

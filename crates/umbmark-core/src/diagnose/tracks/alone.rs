@@ -1,0 +1,126 @@
+//! A fitted model by itself: its errors, in the runs it was fitted to and in runs left out, and how these runs are weighed.
+
+use super::TELLING;
+use super::errors::{Errors, Misses};
+use super::system::{Projected, System};
+use crate::effect::ModelError;
+use crate::likelihood::{Column, Fitted, Noise, Weighing};
+use nalgebra::{DMatrix, DVector};
+
+/// Steps of Gauss and Newton that fit whole tracks, from the fit of increments.
+const STEPS: usize = 8;
+/// Stops where no value changes by more.
+const SMALL: f64 = 1e-10;
+
+/// A fitted model, its residuals, and the columns of its free values and of the effects of the reference that are fitted along.
+pub(crate) struct Alone {
+    fitted: Fitted,
+    columns: Vec<Vec<Column>>,
+    system: System,
+    errors: Errors,
+}
+
+impl Alone {
+    /// A model as it was fitted.
+    pub fn new(fitted: Fitted) -> Alone {
+        let observed = &fitted.observed;
+        let mut columns = observed.columns(&fitted.model, &fitted.free);
+        let chain = fitted.model.chain();
+        for ((all, run), reference) in columns.iter_mut().zip(&observed.runs).zip(&fitted.reference) {
+            all.extend(reference.iter().cloned());
+            all.push(run.residuals(&chain));
+        }
+        let system = System::new(observed, &fitted.noise, &columns);
+        let errors = Errors::new(observed, &system, &columns, (0..system.width).collect());
+        Alone { fitted, columns, system, errors }
+    }
+
+    /// Columns that are fitted together.
+    fn together(&self) -> Vec<usize> {
+        (0..self.system.residual()).collect()
+    }
+
+    /// The model's own part of the values of a fit.
+    fn own(&self, values: &DVector<f64>) -> (Vec<usize>, DVector<f64>) {
+        let own = self.fitted.free.len();
+        ((0..own).collect(), values.rows(0, own).into_owned())
+    }
+
+    /// Errors of runs left out, the others fitted pose by pose or as whole tracks.
+    fn left_out(&self, weighing: Weighing) -> Misses {
+        self.errors.misses(|run| {
+            self.own(&match weighing {
+                Weighing::Increments => Projected::fit(&self.system.without(run), &self.together()),
+                Weighing::Tracks => self.errors.fit(&self.together(), Some(run)),
+            })
+        })
+    }
+
+    /// What predicts runs left out better: the fit of what is new from pose to pose, which is the likeliest where nothing is
+    /// missing from the model, or that of whole tracks, which does what can be done where something is. Whole tracks are weighed
+    /// only where they are better by a tenth.
+    pub fn weighing(&self) -> Weighing {
+        let [increments, tracks] = [Weighing::Increments, Weighing::Tracks].map(|by| self.left_out(by).position);
+        let better = !self.fitted.free.is_empty() && tracks < (1.0 - TELLING) * increments;
+        if better { Weighing::Tracks } else { Weighing::Increments }
+    }
+
+    /// Errors inside and in runs left out, so weighed.
+    pub fn misses(&self) -> (Misses, Misses) {
+        let weighing = self.weighing();
+        let inside = match weighing {
+            Weighing::Increments => self.errors.in_sample(),
+            Weighing::Tracks => {
+                let all = self.errors.fit(&self.together(), None);
+                self.errors.misses(|_| self.own(&all))
+            }
+        };
+        (inside, self.left_out(weighing))
+    }
+
+    /// AICc, BIC and the root mean square of the whitened residuals, the effects of the reference fitted out.
+    pub fn criteria(&self) -> (f64, f64, f64) {
+        let residual = self.system.residual();
+        let runs = self.fitted.observed.runs.iter().zip(&self.columns);
+        let scales = runs.map(|(run, columns)| self.fitted.noise.whiten(run, &[&columns[residual]]).log_scale);
+        let reference: Vec<usize> = (self.fitted.free.len()..residual).collect();
+        let squares = Projected::new(&self.system.whole, &reference).products[(residual, residual)];
+        let deviance = 2.0 * scales.sum::<f64>() + squares;
+        let (n, k) = (self.system.rows as f64, (residual + Noise::SIZES) as f64);
+        let aicc = deviance + 2.0 * k * n / (n - k - 1.0).max(1.0);
+        (aicc, deviance + k * libm::log(n), (squares / n).sqrt())
+    }
+
+    /// The model with the values that predict runs left out best. Where these are of whole tracks, their covariance comes from
+    /// leaving out one run after the other.
+    pub fn predicting(self) -> Result<Fitted, ModelError> {
+        if self.weighing() == Weighing::Increments {
+            return Ok(self.fitted);
+        }
+        let mut now = self;
+        for _ in 0..STEPS {
+            let step = now.own(&now.errors.fit(&now.together(), None)).1;
+            let values: Vec<f64> = now.fitted.model.values().collect();
+            let moved: Vec<f64> = now.fitted.free.iter().zip(step.iter()).map(|(i, step)| values[*i] + step).collect();
+            let model = now.fitted.model.with_values(&now.fitted.free, &moved)?;
+            let observed = now.fitted.observed.along(&model);
+            now = Alone::new(Fitted { model, observed, weighing: Weighing::Tracks, ..now.fitted });
+            if step.iter().all(|step| step.abs() < SMALL) {
+                break;
+            }
+        }
+        let covariance = now.jackknife();
+        Ok(Fitted { covariance, ..now.fitted })
+    }
+
+    /// (n - 1)/n Σ Δ Δᵀ, with Δ the change of the values when one of n runs is left out.
+    fn jackknife(&self) -> Option<DMatrix<f64>> {
+        let (runs, own) = (self.fitted.observed.runs.len(), self.fitted.free.len());
+        let mut sum = DMatrix::zeros(own, own);
+        for run in 0..runs {
+            let change = self.own(&self.errors.fit(&self.together(), Some(run))).1;
+            sum += &change * change.transpose();
+        }
+        (runs > 1).then(|| sum * ((runs - 1) as f64 / runs as f64))
+    }
+}

@@ -1,0 +1,91 @@
+//! Products of whitened columns, and what follows from them.
+
+use nalgebra::{Cholesky, DMatrix, Dyn};
+
+/// A column with less than this share of its square left is absorbed by the base: a collinearity index above 20, the rule of
+/// Brun, Reichert & Künsch (2001, Water Resources Research 37).
+pub(crate) const ABSORBED: f64 = 1.0 / 400.0;
+
+/// Rows that are taken at once: the sums are read and written once for all of them.
+const TOGETHER: usize = 8;
+
+/// XᵀX of a matrix stored row by row.
+pub(crate) fn gram(values: &[f64], columns: usize) -> DMatrix<f64> {
+    let mut sum = DMatrix::zeros(columns, columns);
+    let columns = columns.max(1);
+    let whole = values.chunks_exact(TOGETHER * columns);
+    let rest = whole.remainder();
+    for rows in whole {
+        let rows: [&[f64]; TOGETHER] = std::array::from_fn(|k| &rows[k * columns..(k + 1) * columns]);
+        for (j, mut own) in sum.column_iter_mut().enumerate() {
+            let own = &mut own.as_mut_slice()[..=j];
+            let weights = rows.map(|row| row[j]);
+            let rows = rows.map(|row| &row[..=j]);
+            for i in 0..=j {
+                let mut added = 0.0;
+                for k in 0..TOGETHER {
+                    added += weights[k] * rows[k][i];
+                }
+                own[i] += added;
+            }
+        }
+    }
+    for row in rest.chunks_exact(columns) {
+        for j in 0..columns {
+            for i in 0..=j {
+                sum[(i, j)] += row[i] * row[j];
+            }
+        }
+    }
+    sum.fill_lower_triangle_with_upper_triangle();
+    sum
+}
+
+/// Square of what is left of one column beside others, as a share of its own.
+pub(crate) fn share_left(products: &DMatrix<f64>, base: &[usize], column: usize) -> f64 {
+    let cross = DMatrix::from_fn(base.len(), 1, |i, _| products[(base[i], column)]);
+    let whole = products[(column, column)];
+    let explained = solver(products, base).map_or(0.0, |solver| cross.dot(&solver.solve(&cross)));
+    if whole > 0.0 { 1.0 - explained / whole } else { 0.0 }
+}
+
+/// What solves for the values of some columns.
+pub(crate) fn solver(products: &DMatrix<f64>, columns: &[usize]) -> Option<ScaledCholesky> {
+    let of = |i: usize, j: usize| products[(columns[i], columns[j])];
+    scaled_cholesky(&DMatrix::from_fn(columns.len(), columns.len(), of)).filter(|_| !columns.is_empty())
+}
+
+/// A positive definite matrix with its rows and columns scaled to a unit diagonal, factored.
+#[derive(Clone, Debug)]
+pub(crate) struct ScaledCholesky {
+    factor: Cholesky<f64, Dyn>,
+    lengths: Vec<f64>,
+}
+
+impl ScaledCholesky {
+    pub(crate) fn solve(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
+        let scaled = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| right[(i, j)] / self.lengths[i]);
+        let solved = self.factor.solve(&scaled);
+        DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| solved[(i, j)] / self.lengths[i])
+    }
+
+    /// L⁻¹ of some columns, with L Lᵀ the matrix.
+    pub(crate) fn half(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut scaled = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| right[(i, j)] / self.lengths[i]);
+        self.factor.l_dirty().solve_lower_triangular_mut(&mut scaled);
+        scaled
+    }
+}
+
+pub(crate) fn scaled_cholesky(matrix: &DMatrix<f64>) -> Option<ScaledCholesky> {
+    let n = matrix.nrows();
+    let lengths: Vec<f64> = (0..n).map(|i| matrix[(i, i)].sqrt()).collect();
+    if lengths.iter().any(|l| !(*l > 0.0 && l.is_finite())) {
+        return None;
+    }
+    let mut scaled = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (lengths[i] * lengths[j]));
+    for i in 0..n {
+        scaled[(i, i)] += 1e-12;
+    }
+    Some(ScaledCholesky { factor: scaled.cholesky()?, lengths })
+}
