@@ -12,6 +12,8 @@ from robot import Array, Robot
 
 RESTING_RAD_S = 0.02
 """Turn rates of the body below this are no turn."""
+SETTLED_M = 5e-3
+"""A turn after so much way is another turn."""
 
 
 @dataclass
@@ -102,6 +104,7 @@ class TrueMotion:
         self.distance = np.zeros(runs)
         self.since_turn = np.zeros(runs)
         self.last_turn = np.zeros(runs)
+        self.turned = np.zeros(runs)
 
     def stretch(self, rate: Array, step_s: float) -> Stretch:
         """The steps with the given wheel rates [W], before any cause."""
@@ -170,4 +173,7 @@ class TrueMotion:
         self.distance = self.distance + driven
         turned = s.on_the_spot[-1] > 0
         self.since_turn = np.where(turned, 0.0, self.since_turn + driven)
-        self.last_turn = np.where(turned, np.sign(s.w[-1]), self.last_turn)
+        # A servo that settles turns back a little: the sense is that of the whole turn.
+        gone = self.since_turn > SETTLED_M
+        self.turned = np.where(gone, 0.0, self.turned) + np.where(turned, s.w.sum(0) * s.step_s, 0.0)
+        self.last_turn = np.where(turned, np.sign(self.turned), self.last_turn)

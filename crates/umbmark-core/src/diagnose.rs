@@ -313,6 +313,41 @@ impl Diagnosis {
     pub fn certified(&self) -> &[Suspect] {
         &self.ranking[..self.certified]
     }
+
+    /// What this data would have seen, effect by effect: of each parameter the least size, whatever shapes were tried.
+    pub fn least_sizes(&self) -> Vec<Vec<&Detectable>> {
+        let mut effects: Vec<Vec<&Detectable>> = Vec::new();
+        for size in &self.minimum_detectable {
+            let Some(own) = effects.iter_mut().find(|own| own[0].effect == size.effect) else {
+                effects.push(vec![size]);
+                continue;
+            };
+            match own.iter_mut().find(|known| known.parameter == size.parameter) {
+                Some(known) if known.size <= size.size => {}
+                Some(known) => *known = size,
+                None => own.push(size),
+            }
+        }
+        effects
+    }
+
+    /// The effects that this data cannot see because parts of the model do the same, by these parts.
+    pub fn absorbed(&self) -> Vec<(&[&'static str], Vec<&'static str>)> {
+        let mut parts: Vec<(&[&str], Vec<&str>)> = Vec::new();
+        for unseen in &self.invisible {
+            let Why::Absorbed(by) = &unseen.why else { continue };
+            match parts.iter_mut().find(|(own, _)| own == by) {
+                Some((_, names)) => names.push(unseen.effect),
+                None => parts.push((by, vec![unseen.effect])),
+            }
+        }
+        parts
+    }
+
+    /// The effects that at their usual size move nothing by as much as the noise.
+    pub fn below_noise(&self) -> Vec<&'static str> {
+        self.invisible.iter().filter(|unseen| unseen.why == Why::BelowNoise).map(|unseen| unseen.effect).collect()
+    }
 }
 
 /// The model that is asked first: E_d and E_b, and where tracks show it E_s, all free.

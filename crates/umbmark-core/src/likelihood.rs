@@ -19,8 +19,8 @@ mod simplex;
 pub(crate) mod watched;
 mod whiten;
 
-pub use fitting::{Column, Fitted, NUISANCE, Weighing};
 pub(crate) use fitting::seeded;
+pub use fitting::{Column, Fitted, NUISANCE, Weighing};
 pub use noise::Noise;
 pub use observed::{Block, Growth, Observed, ObservedRun};
 pub use outliers::Outlier;

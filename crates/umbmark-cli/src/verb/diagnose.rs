@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use umbmark_core::dataset::Dataset;
-use umbmark_core::diagnose::{Diagnosis, Experiment, Identifiability, Level, Options, Suspect, Verdict, Why, diagnose};
+use umbmark_core::diagnose::{
+    Detectable, Diagnosis, Experiment, GoodnessOfFit, Identifiability, Level, Options, Suspect, Verdict, diagnose,
+};
 use umbmark_core::document;
 
 use crate::Session;
@@ -19,7 +21,7 @@ use crate::test_arguments::TestArguments;
 use crate::unlisted::unlisted_text;
 
 /// So many experiments are printed; --json has all.
-const EXPERIMENTS: usize = 6;
+const EXPERIMENTS: usize = 3;
 
 /// Arguments of `diagnose`.
 #[derive(Debug, clap::Args)]
@@ -85,26 +87,55 @@ fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, terminal: bool
     for remark in &diagnosis.remarks {
         text += &hanging("note", 10, remark);
     }
+    text += &next_text(diagnosis);
     text += &unlisted_text(diagnosis.dependence.as_ref(), terminal);
     if !diagnosis.fitted.is_empty() {
         text += &format!("\n{}\n", estimates_table(&diagnosis.fitted, 1.0 - options.size));
         text += &meaning_text(&diagnosis.fitted, &diagnosis.model);
     }
+    text += &ranking_text(&diagnosis.ranking);
+    text += &whole_model_text(&diagnosis.goodness_of_fit);
     text += &identifiability_text(&diagnosis.identifiability);
-    for gof in &diagnosis.goodness_of_fit {
-        let freedom = gof.degrees_of_freedom.map(|[a, b]| format!("F({a}, {b}) = ")).unwrap_or_default();
-        text += &format!("\nwhole model: {}, {freedom}{:.2}, p = {}\n", gof.name, gof.statistic, p_text(gof.p));
-    }
     if !diagnosis.contrasts.is_empty() {
         text += &format!("\n{}\n", contrasts_table(&diagnosis.contrasts));
     }
     if !diagnosis.circle.is_empty() {
         text += &format!("\n{}\n", circle_table(&diagnosis.circle));
     }
-    text += &ranking_text(&diagnosis.ranking);
     text += &unseen_text(diagnosis);
-    text += &experiments_text(&diagnosis.next_experiments);
     text
+}
+
+/// What to do now: with the model, and with the robot.
+fn next_text(diagnosis: &Diagnosis) -> String {
+    let with_the_model = match diagnosis.verdict {
+        Verdict::Explained => "nothing asks to be added; what these runs cannot show stands at the end.",
+        Verdict::MissingEffect | Verdict::SeveralMissing => {
+            "umbmark learn adds what is missing, fits it, and tells by how much runs that are left out are predicted better."
+        }
+        Verdict::UnlistedEffect => {
+            "umbmark learn --model FILE tries a formula of your own; umbmark compare shows where the error is made."
+        }
+        Verdict::NotEnoughData => "drive at least three runs each way; umbmark plan says how many show what.",
+    };
+    let mut text = format!("\nnext\n{}", hanging("", 2, with_the_model));
+    if !diagnosis.next_experiments.is_empty() {
+        text += "  to measure, the most telling per minute first\n";
+        text += &experiments_text(&diagnosis.next_experiments);
+    }
+    text
+}
+
+/// The tests of the model as a whole, a row each.
+fn whole_model_text(tests: &[GoodnessOfFit]) -> String {
+    let row = |test: &GoodnessOfFit| {
+        let freedom = test.degrees_of_freedom.map_or_else(String::new, |[a, b]| format!("F({a}, {b}) = "));
+        vec![test.name.to_owned(), format!("{freedom}{:.2}", test.statistic), p_text(test.p)]
+    };
+    if tests.is_empty() {
+        return String::new();
+    }
+    format!("\n{}\n", table(&["the model as a whole", "", "p"], tests.iter().map(row)))
 }
 
 fn identifiability_text(identifiability: &Identifiability) -> String {
@@ -128,81 +159,70 @@ fn identifiability_text(identifiability: &Identifiability) -> String {
     text
 }
 
+/// So many suspects are printed; --json has all.
+const SUSPECTS: usize = 8;
+
 fn ranking_text(ranking: &[Suspect]) -> String {
     if ranking.is_empty() {
         return String::new();
     }
-    let row = |(i, s): (usize, &Suspect)| {
+    let row = |s: &Suspect| {
         let e = &s.estimate[0];
         let error = with_precision_of(e.standard_error, e.standard_error);
         let unit = unit_of(e.effect, e.parameter);
         vec![
-            format!("{}", i + 1),
+            s.best.to_owned(),
             format!("{} ± {error}{unit}", with_precision_of(e.value, e.standard_error)),
             format!("{:.1}", s.f),
             p_text(s.p),
             p_text(s.p_adjusted),
-            s.p_flips.map_or("-".into(), p_text),
         ]
     };
     let mut text = String::from("\nasked, the likeliest first (p of all: among all that were asked)\n\n");
-    text += &table(&["", "size", "F", "p", "p of all", "p of signs"], ranking.iter().enumerate().map(row));
-    text += "\n\n";
-    for (i, suspect) in ranking.iter().enumerate() {
+    let told = &ranking[..ranking.len().min(SUSPECTS)];
+    text += &table(&["effect", "size", "F", "p", "p of all"], told.iter().map(row));
+    text += "\n";
+    for suspect in told.iter().filter(|suspect| suspect.class.len() > 1) {
         let others: Vec<&str> = suspect.class.iter().copied().filter(|name| *name != suspect.best).collect();
-        let alike = if others.is_empty() { String::new() } else { format!("; or {}", others.join(", ")) };
-        let what = format!("{} of {}{alike}", suspect.estimate[0].parameter, suspect.best);
-        text += &hanging(&format!("{}", i + 1), 4, &what);
+        text += &hanging("", 2, &format!("{} may as well be {}", suspect.best, others.join(" or ")));
+    }
+    if let rest @ 1.. = ranking.len() - told.len() {
+        text += &hanging("", 2, &format!("and {rest} more (--json)"));
     }
     text
 }
 
 fn unseen_text(diagnosis: &Diagnosis) -> String {
     let mut text = String::new();
-    if !diagnosis.minimum_detectable.is_empty() {
-        text += "\nthis test would have shown, in four cases of five\n";
-        for d in &diagnosis.minimum_detectable {
-            let size = format!("{} of {} above", d.parameter, d.effect);
-            text += &format!("  {size:<44} {:.2e}{}\n", d.size, unit_of(d.effect, d.parameter));
+    let sizes = diagnosis.least_sizes();
+    if !sizes.is_empty() {
+        text += "\nthis test would have shown, in four cases of five, sizes above\n";
+        let one = |d: &&Detectable| format!("{} {:.2e}", d.parameter, d.size);
+        for effect in &sizes {
+            let own: Vec<String> = effect.iter().map(one).collect();
+            text += &hanging(&format!("  {}", effect[0].effect), 34, &own.join(", "));
         }
     }
-    if diagnosis.invisible.is_empty() {
-        return text;
+    let (absorbed, below) = (diagnosis.absorbed(), diagnosis.below_noise());
+    if !(absorbed.is_empty() && below.is_empty()) {
+        text += "\nit cannot show\n";
     }
-    text += "\nit cannot show\n";
-    let mut absorbers: Vec<Vec<&str>> = Vec::new();
-    for unseen in &diagnosis.invisible {
-        if let Why::Absorbed(by) = &unseen.why
-            && !absorbers.contains(by)
-        {
-            absorbers.push(by.clone());
-        }
+    for (by, names) in absorbed {
+        text += &hanging("", 2, &format!("what {} does as well: {}", by.join(" with "), names.join(", ")));
     }
-    let named = |why: &dyn Fn(&Why) -> bool| {
-        let names = diagnosis.invisible.iter().filter(|u| why(&u.why)).map(|u| u.effect);
-        names.collect::<Vec<_>>().join(", ")
-    };
-    for by in &absorbers {
-        let names = named(&|why| matches!(why, Why::Absorbed(own) if own == by));
-        text += &hanging("", 2, &format!("what {} does as well: {names}", by.join(" with ")));
-    }
-    let below = named(&|why| *why == Why::BelowNoise);
     if !below.is_empty() {
-        text += &hanging("", 2, &format!("what is below the scatter at its usual size: {below}"));
+        text += &hanging("", 2, &format!("what is below the scatter at its usual size: {}", below.join(", ")));
     }
     text
 }
 
 fn experiments_text(experiments: &[Experiment]) -> String {
-    if experiments.is_empty() {
-        return String::new();
-    }
-    let mut text = String::from("\nwhat to measure next, the most telling per minute first\n");
+    let mut text = String::new();
     for e in experiments.iter().take(EXPERIMENTS) {
-        text += &hanging("", 2, &experiment_text(e));
+        text += &hanging("  -", 4, &experiment_text(e));
     }
     if let rest @ 1.. = experiments.len().saturating_sub(EXPERIMENTS) {
-        text += &hanging("", 2, &format!("and {rest} more (--json)"));
+        text += &hanging("", 4, &format!("and {rest} more (--json)"));
     }
     text
 }

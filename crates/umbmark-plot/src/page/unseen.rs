@@ -1,6 +1,6 @@
 //! What the runs cannot show, and what would.
 
-use umbmark_core::diagnose::{Detectable, Diagnosis, Why};
+use umbmark_core::diagnose::Diagnosis;
 
 use super::{List, Rows};
 use crate::study::Study;
@@ -15,8 +15,10 @@ pub(super) fn unseen(study: &Study) -> Vec<List> {
     if sentences.is_empty() && diagnosis.minimum_detectable.is_empty() {
         return vec![nothing("No test could be made, so nothing can be said of what is not seen.")];
     }
-    let rows = smallest(&diagnosis.minimum_detectable)
+    let rows = diagnosis
+        .least_sizes()
         .into_iter()
+        .flatten()
         .map(|d| vec![d.effect.to_owned(), d.parameter.to_owned(), format!("{:.2e}", d.size)]);
     let table = Rows { header: ["effect", "parameter", "least size"].map(str::to_owned).into(), rows: rows.collect() };
     let mut lists = vec![List { sentences, ..List::default() }];
@@ -27,42 +29,15 @@ pub(super) fn unseen(study: &Study) -> Vec<List> {
     lists
 }
 
-/// Of each parameter, the least size: where the shape of an effect is not known, several are tried.
-fn smallest(sizes: &[Detectable]) -> Vec<&Detectable> {
-    let mut least: Vec<&Detectable> = Vec::new();
-    for size in sizes {
-        match least.iter_mut().find(|known| (known.effect, known.parameter) == (size.effect, size.parameter)) {
-            Some(known) if known.size <= size.size => {}
-            Some(known) => *known = size,
-            None => least.push(size),
-        }
-    }
-    least
-}
-
 fn hidden(diagnosis: &Diagnosis) -> Vec<String> {
-    let mut absorbers: Vec<&Vec<&str>> = Vec::new();
-    for unseen in &diagnosis.invisible {
-        if let Why::Absorbed(by) = &unseen.why
-            && !absorbers.contains(&by)
-        {
-            absorbers.push(by);
-        }
-    }
-    let named = |why: &dyn Fn(&Why) -> bool| {
-        let names = diagnosis.invisible.iter().filter(|u| why(&u.why)).map(|u| u.effect);
-        names.collect::<Vec<_>>().join(", ")
-    };
-    let mut sentences: Vec<String> = absorbers
-        .iter()
-        .map(|by| {
-            let names = named(&|why| matches!(why, Why::Absorbed(own) if own == *by));
-            format!("What {} of the model does as well: {names}.", by.join(" with "))
-        })
+    let absorbed = diagnosis.absorbed().into_iter();
+    let mut sentences: Vec<String> = absorbed
+        .map(|(by, names)| format!("What {} of the model does as well: {}.", by.join(" with "), names.join(", ")))
         .collect();
-    let below = named(&|why| *why == Why::BelowNoise);
+    let below = diagnosis.below_noise();
     if !below.is_empty() {
-        sentences.push(format!("What moves the runs by less than their scatter at its usual size: {below}."));
+        sentences
+            .push(format!("What moves the runs by less than their scatter at its usual size: {}.", below.join(", ")));
     }
     sentences
 }

@@ -38,6 +38,13 @@ pub struct Scores {
 }
 
 impl Scores {
+    /// How many units carry the group: all of them where each shows it as much, one where one shows it alone.
+    pub fn carrying(&self) -> f64 {
+        let weight = |part: &DMatrix<f64>| part.diagonal().component_div(&self.information.diagonal()).sum();
+        let (sum, squares) = self.parts.iter().map(weight).fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
+        if squares > 0.0 { sum * sum / squares } else { 0.0 }
+    }
+
     /// p of a step by how the units' scores differ from what they would be at it: Student's t along the step, squared, with one
     /// value a unit. What noise that remembers does to whole runs is in it, where the noise model sees steps of centimetres.
     pub fn p_by_units(&self, step: &DVector<f64>) -> f64 {
@@ -134,6 +141,7 @@ mod tests {
         let t_squared = 10.0 * mean * mean / expected;
         let p = scores.p_by_units(&DVector::from_element(1, step));
         assert!((p / f_upper_tail(t_squared, [1.0, 9.0]) - 1.0).abs() < 1e-9, "{p}");
+        assert!((scores.carrying() - 10.0).abs() < 1e-9, "{}", scores.carrying());
         assert!(group(&[1.0, -1.0, 1.1, -0.9, 1.2, -0.8]).p_by_units(&DVector::from_element(1, 0.1)) > 0.3);
     }
 

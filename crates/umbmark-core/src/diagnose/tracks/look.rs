@@ -9,6 +9,8 @@ use std::sync::Arc;
 
 /// Runs that carry a certificate on their own; with fewer, quarters of runs do.
 const ENOUGH_RUNS: usize = 8;
+/// The same of those runs in which a group shows: the flips of five runs never fall below 1/16.
+const ENOUGH_CARRYING: f64 = 6.0;
 
 /// A group beside the base that it was asked in.
 #[derive(Clone, Debug)]
@@ -67,14 +69,7 @@ pub fn look(exam: &Examination, smooths: bool, options: &Options) -> Vec<Finding
         let p = f_upper_tail(f.max(0.0), [q, spare]);
         findings.push(Finding { answer, p_f: p, p_flips: 1.0, degrees_of_freedom: [q, spare], f, p, projected });
     }
-    let asked = findings.len() as f64;
-    let scores: Vec<Scores> = findings.iter().map(|finding| scores(exam, finding)).collect();
-    for (finding, own) in findings.iter_mut().zip(&scores) {
-        finding.p_f = (asked * finding.p.max(own.p_by_units(&finding.answer.step))).min(1.0);
-    }
-    for (finding, own) in findings.iter_mut().zip(&scores).filter(|(finding, _)| finding.p_f <= options.size) {
-        finding.p_flips = family_wise(own, &scores, options.seed);
-    }
+    certify(exam, &mut findings, options);
     findings.sort_by(|a, b| worth(&b.answer).total_cmp(&worth(&a.answer)));
     let mut named = Vec::new();
     findings.retain(|finding| {
@@ -84,6 +79,22 @@ pub fn look(exam: &Examination, smooths: bool, options: &Options) -> Vec<Finding
         !known
     });
     findings
+}
+
+/// The p-values of findings that come from the scores of runs, or of quarters of runs where too few runs show a group.
+fn certify(exam: &Examination, findings: &mut [Finding], options: &Options) {
+    let few = exam.fitted.observed.runs.len() < ENOUGH_RUNS;
+    let all = |by_quarter: bool| findings.iter().map(|finding| scores(exam, finding, by_quarter)).collect::<Vec<_>>();
+    let by_run = all(few);
+    let by_quarter = if by_run.iter().all(|own| own.carrying() >= ENOUGH_CARRYING) { Vec::new() } else { all(true) };
+    let asked = findings.len() as f64;
+    for (index, finding) in findings.iter_mut().enumerate() {
+        let scores = if by_run[index].carrying() < ENOUGH_CARRYING { &by_quarter } else { &by_run };
+        finding.p_f = (asked * finding.p.max(scores[index].p_by_units(&finding.answer.step))).min(1.0);
+        if finding.p_f <= options.size {
+            finding.p_flips = family_wise(&scores[index], scores, options.seed);
+        }
+    }
 }
 
 /// Whether the sizes that an effect would have are ones that it can have: no bump gives travel back.
@@ -96,9 +107,8 @@ pub fn possible(exam: &Examination, finding: &Finding) -> bool {
     })
 }
 
-/// Scores of a group by run, or by quarter of a run where runs are few.
-fn scores(exam: &Examination, finding: &Finding) -> Scores {
-    let by_quarter = exam.fitted.observed.runs.len() < ENOUGH_RUNS;
+/// Scores of a group by run or by quarter of a run.
+fn scores(exam: &Examination, finding: &Finding, by_quarter: bool) -> Scores {
     let columns = &finding.answer.columns;
     let information = finding.projected.information(columns);
     let mut scores = Scores { units: Vec::new(), held: Vec::new(), parts: Vec::new(), information };
