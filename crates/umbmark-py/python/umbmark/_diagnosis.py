@@ -220,6 +220,9 @@ class Fitted(Result, frozen=True):
         The free parameters.
     not_shown : tuple of str
         Free effects that this data does not show apart from the rest; they keep their values.
+    weighed : str or None
+        What of tracks was fitted: "increments" from pose to pose, or whole "tracks" where these
+        predict runs left out better. None for return poses.
     model : Model
         The model with the fitted values.
     level : float
@@ -230,6 +233,7 @@ class Fitted(Result, frozen=True):
     not_shown: tuple[str, ...]
     meaning: dict[str, str]
     outliers: tuple[Outlier, ...]
+    weighed: str | None
     model: Model
     level: float
     version: str
