@@ -2,6 +2,8 @@
 //!
 //! The floor is suspected to turn the robot, to the left where it heads up the room and to the right where it heads down.
 
+#![allow(clippy::print_stdout)]
+
 use std::error::Error;
 
 use umbmark_core::dataset::Dataset;
