@@ -14,7 +14,6 @@ mod model_report;
 mod output_arguments;
 mod plan_report;
 mod prose;
-mod protocol_sheet;
 mod residual_strips;
 mod robot_flags;
 mod sensitivity_report;
