@@ -20,7 +20,6 @@ mod sensitivity_report;
 mod session;
 mod setup;
 mod signature;
-mod strip;
 mod study_arguments;
 mod study_flags;
 mod sweep;

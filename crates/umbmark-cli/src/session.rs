@@ -100,14 +100,24 @@ impl Session {
 
     /// Runs `work` on the threads that were asked for: Ctrl-C stops it, and a bar of a thousand steps of `unit` shows how far it is.
     pub fn watched<R: Send>(&self, unit: &'static str, work: impl FnOnce(&Watch) -> R + Send) -> anyhow::Result<R> {
-        let progress = Mutex::new(self.progress(STEPS as u64, unit));
-        let tell = |share: f64| {
-            if let Ok(mut progress) = progress.lock() {
-                progress.at((share * STEPS) as u64);
-            }
-        };
         let stop = self.catch_interrupt()?;
-        self.on_threads(|| work(&Watch { stop: &stop, progress: &tell }))
+        self.told(unit, |progress| work(&Watch { stop: &stop, progress }))
+    }
+
+    /// Runs `work` on the threads that were asked for; a bar of a thousand steps of `unit` shows the share that it tells.
+    pub fn told<R: Send>(
+        &self,
+        unit: &'static str,
+        work: impl FnOnce(&(dyn Fn(f64) + Sync)) -> R + Send,
+    ) -> anyhow::Result<R> {
+        let progress = Mutex::new(self.progress(STEPS as u64, unit));
+        self.on_threads(|| {
+            work(&|share| {
+                if let Ok(mut progress) = progress.lock() {
+                    progress.at((share * STEPS) as u64);
+                }
+            })
+        })
     }
 
     /// A flag that Ctrl-C sets from now on, instead of killing; a second one kills.

@@ -15,7 +15,7 @@ pub(crate) mod tracks;
 use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, Run};
 use crate::drive::{Kind, Robot};
-use crate::effect::{Model, ModelError, TestKind};
+use crate::effect::{Model, ModelError, TestKind, find};
 use crate::likelihood::{Observed, Outlier};
 use crate::replay::ReplayError;
 use crate::stats::{Interval, student_t_quantile};
@@ -409,10 +409,17 @@ impl Options {
 
 /// Every experiment on offer for telling two effects apart, together with this data; the most telling per minute first.
 ///
-/// What the model has is fitted to the return poses; each effect is taken at its usual size, the hardest of its sizes. None
-/// where the runs have no scatter to judge by.
+/// What the model has is fitted to the data: to whole tracks, where the runs were observed on the way, and further drives are then
+/// watched as these were. Each effect is taken at its usual size, the hardest of its sizes. None where the runs have no
+/// scatter to judge by.
 pub fn separating(data: &Dataset, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
-    experiments::separating(&ends::Ends::new(data)?, model, pair)
+    match level(data) {
+        Level::Ends => experiments::separating(&ends::Ends::new(data)?, model, pair),
+        Level::Tracks => {
+            let pair = [find(pair[0])?.about.name, find(pair[1])?.about.name];
+            tracks::separating(tracks::fit(&tracks_of(data)?, model)?, pair)
+        }
+    }
 }
 
 /// The tracks of a dataset.

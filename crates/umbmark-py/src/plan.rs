@@ -4,9 +4,8 @@ use std::sync::Arc;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use umbmark_core::calibrate::CalibrateError;
 use umbmark_core::dataset::Dataset as CoreDataset;
-use umbmark_core::diagnose::{Options, base_model, separating};
+use umbmark_core::diagnose::{Options, first_model, separating};
 use umbmark_core::document;
 use umbmark_core::path::Path as CorePath;
 use umbmark_core::plan::{Measured, Order, PlanError, Protocol, Request, Setting, Sought, expected_dataset};
@@ -140,8 +139,7 @@ pub fn separate(
                 (Arc::new(planned), format!("a test of {runs} + {runs} runs"))
             }
         };
-        let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
-        let ranked = separating(&data, &base_model(robot)?, names)?;
+        let ranked = separating(&data, &first_model(&data)?, names)?;
         Ok(document::separation(names, &beside, &ranked, &options).to_string())
     };
     watched(py, threads, None, work)?.map_err(refused)

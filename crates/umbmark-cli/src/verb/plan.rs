@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use umbmark_core::dataset::Dataset;
-use umbmark_core::diagnose::{base_model, separating};
+use umbmark_core::diagnose::{first_model, separating};
 use umbmark_core::document;
 use umbmark_core::effect::CATALOGUE;
 use umbmark_core::plan::{Measured, Options, Order, Protocol, Request, Setting, Sought, expected_dataset};
@@ -192,7 +192,7 @@ impl Arguments {
         let pair = [self.separate[0].as_str(), self.separate[1].as_str()];
         anyhow::ensure!(pair[0] != pair[1], "--separate needs two effects, got {} twice", pair[0]);
         let of = data.unwrap_or(&planned);
-        let experiments = separating(of, &base_model(setting.robot())?, pair)?;
+        let experiments = separating(of, &first_model(of)?, pair)?;
         let after = match data {
             Some(_) => "the data".to_owned(),
             None => format!("a test of {0} + {0} runs", self.runs),

@@ -235,6 +235,11 @@ pub(crate) fn next_experiments(
     Ok((told, hints))
 }
 
+/// Every drive on offer for telling two effects apart, together with these tracks.
+pub(crate) fn separating(fitted: Fitted, pair: [&'static str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
+    experiments::separating(&Examination::new(fitted)?, pair)
+}
+
 /// What stands far out by F and is not certified by the flips: these runs are too few, or too unlike, to vouch for it.
 pub(crate) fn uncertified(asked: &[Suspect], options: &Options) -> Option<String> {
     let loud = asked.first().filter(|s| s.p < LOUD && s.p_adjusted > options.size)?;

@@ -330,6 +330,7 @@ mod tests {
     use crate::sensitivity::test_functions::{Function, ISHIGAMI, SOBOL_G, ishigami_indices, sobol_g_indices, uniform};
     use crate::sensitivity::{Correlation, Estimate, Input};
     use std::f64::consts::PI;
+    use std::sync::atomic::{AtomicBool, Ordering};
 
     fn indices(response: &dyn Response, inputs: &Inputs, base_points: u64, second_order: bool, seed: u64) -> Indices {
         let options = SobolOptions { base_points, second_order, seed };
@@ -471,5 +472,19 @@ mod tests {
         );
         let part = design.indices(&SobolSums::from_numbers(&design, &of(0..all - 1))).unwrap();
         assert_eq!((part.base_points, part.partial), (512 * 15 / 16, true));
+    }
+
+    #[test]
+    fn what_is_stopped_on_the_way_has_the_indices_of_the_whole_scrambles_that_are_done() {
+        let inputs = Inputs::new(uniform(3, -PI, PI), &[]).unwrap();
+        let options = SobolOptions { base_points: 1 << 14, second_order: false, seed: 1 };
+        let stop = AtomicBool::new(false);
+        let half = |share: f64| stop.store(share >= 0.5, Ordering::Relaxed);
+        let found = sobol_indices(&ISHIGAMI, &inputs, &options, &Watch { stop: &stop, progress: &half }).unwrap();
+        assert!(found.partial && found.base_points >= 2 << 10 && found.base_points < 1 << 14, "{}", found.base_points);
+        assert_near(&found.outputs[0].first, &ishigami_indices().0, 0.03);
+        let never_begun = Watch { stop: &AtomicBool::new(true), progress: &|_| () };
+        let refused = sobol_indices(&ISHIGAMI, &inputs, &options, &never_begun).unwrap_err();
+        assert_eq!(refused, SensitivityError::Stopped);
     }
 }
