@@ -31,7 +31,7 @@ fn told(output: &Output) -> serde_json::Value {
 fn studies_end_with_what_is_done_marked_as_partial() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::copy(
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/tolerances.toml"),
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/tolerances.toml"),
         folder.path().join("tolerances.toml"),
     )
     .unwrap();

@@ -416,8 +416,10 @@ pub fn separating(data: &Dataset, model: &Model, pair: [&str; 2]) -> Result<Vec<
     match level(data) {
         Level::Ends => experiments::separating(&ends::Ends::new(data)?, model, pair),
         Level::Tracks => {
-            let pair = [find(pair[0])?.about.name, find(pair[1])?.about.name];
-            tracks::separating(tracks::fit(&tracks_of(data)?, model)?, pair)
+            let [first, second] = [find(pair[0])?, find(pair[1])?];
+            let model = experiments::with_one_of(model, [first, second])?;
+            let fitted = tracks::fit(&tracks_of(data)?, &model)?;
+            tracks::separating(fitted, [first.about.name, second.about.name])
         }
     }
 }

@@ -257,7 +257,8 @@ def test_a_robot_of_another_drive_is_calibrated_as_by_the_command(
     assert found.to_dict().keys() == expected.keys()
     read = umbmark.calibrate_gears(tmp_path / "synchro")
     assert read.to_dict() == expected
-    (scale,) = [one for one in found.fitted if one.effect == "scale"]
+    scale = found.fitted[0]
+    assert scale.effect == "drive_scale"
     assert scale.interval is not None
     assert scale.interval[0] < 1.01 < scale.interval[1]
     assert found.corrected["wheel_diameter_m"] == pytest.approx(0.15 * scale.value)

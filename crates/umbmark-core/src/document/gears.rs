@@ -10,7 +10,8 @@ pub fn gears(robot: &Robot, calibration: &GearCalibration, level: f64, warnings:
     let corrected: Map<String, Value> =
         calibration.changes(robot).into_iter().map(|(key, _, new)| (key.to_owned(), json!(new))).collect();
     let determined = calibration.identifiability.as_ref().map(|i| {
-        let hidden: Vec<Value> = i.hidden.iter().map(|h| json!(h.weights)).collect();
+        let named = |(name, weight): &(&str, f64)| ((*name).to_owned(), json!(weight));
+        let hidden: Vec<Map<String, Value>> = i.hidden.iter().map(|h| h.weights.iter().map(named).collect()).collect();
         json!({ "rank": i.rank, "of": i.shares.len(), "hidden": hidden })
     });
     json!({
