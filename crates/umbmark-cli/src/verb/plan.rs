@@ -54,7 +54,8 @@ pub struct Arguments {
     see: Vec<(String, f64)>,
 
     /// Two effects that are to be told apart: ranks experiments by what they tell per minute
-    #[arg(long, num_args = 2, value_names = ["EFFECT", "EFFECT"], value_parser = effect_names(), conflicts_with = "see")]
+    #[arg(long, num_args = 2, value_names = ["EFFECT", "EFFECT"], value_parser = effect_names(),
+          conflicts_with = "see")]
     separate: Vec<String>,
 
     /// Scatter of the return positions, one coordinate, as in 50mm [default: that of the robot's noise, or of DATA]
@@ -116,19 +117,20 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let options =
         Options { size: arguments.size, draws: arguments.draws as usize, seed: session.seed(), ..Options::default() };
     let data = arguments.data.as_ref().map(Dataset::load).transpose()?;
-    let (setting, known, sigma_interval) =
-        session.on_threads(|| arguments.setting(data.as_ref(), session.seed()))??;
-    let sheet = Protocol::new(&setting, usize::from(arguments.runs), arguments.order.into(), setting.bumps());
-    let written = arguments.write(&sheet)?;
-    for file in &written {
-        session.message("wrote", file);
-    }
     if !arguments.separate.is_empty() {
-        let separation = session.on_threads(|| arguments.separation(&setting, data.as_ref()))??;
+        if !arguments.output.is_empty() {
+            let (setting, ..) = session.on_threads(|| arguments.setting(data.as_ref(), session.seed()))??;
+            arguments.write(&arguments.sheet(&setting), session)?;
+        }
+        let separation = session.on_threads(|| arguments.separation(data.as_ref(), session.seed()))??;
         let [a, b] = &separation.pair;
         let document = document::separation([a, b], &separation.after, &separation.experiments, &options);
         return answer(session, separation.text(), &document);
     }
+    let (setting, known, sigma_interval) =
+        session.on_threads(|| arguments.setting(data.as_ref(), session.seed()))??;
+    let sheet = arguments.sheet(&setting);
+    arguments.write(&sheet, session)?;
     let see = arguments.sought(&setting)?;
     let numbers: Vec<usize> = if session.json() { RUNS.collect() } else { plan_report::PRINTED.to_vec() };
     let (runs, power) = (usize::from(arguments.runs), arguments.power);
@@ -171,9 +173,13 @@ impl Arguments {
         Ok((setting, Known { assumed, from_data: data.is_some() }, sigma_interval))
     }
 
+    /// The sheet of the planned test.
+    fn sheet(&self, setting: &Setting) -> Protocol {
+        Protocol::new(setting, usize::from(self.runs), self.order.into(), setting.bumps())
+    }
+
     /// Writes the sheets that were asked for.
-    fn write(&self, sheet: &Protocol) -> anyhow::Result<Vec<String>> {
-        let mut written = Vec::new();
+    fn write(&self, sheet: &Protocol, session: &Session) -> anyhow::Result<()> {
         for file in &self.output {
             let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
             let text = match ending.as_str() {
@@ -182,21 +188,24 @@ impl Arguments {
                 _ => anyhow::bail!("{}: a sheet ends in .md, .txt or .html", file.display()),
             };
             Pending::write_whole(file, self.force, &text).context("the sheet was not written")?;
-            written.push(file.display().to_string());
+            session.message("wrote", &file.display().to_string());
         }
-        Ok(written)
+        Ok(())
     }
 
-    fn separation(&self, setting: &Setting, data: Option<&Dataset>) -> anyhow::Result<Separation> {
-        let planned = expected_dataset(setting, usize::from(self.runs));
+    /// Experiments that tell two effects apart, together with the data or a planned test.
+    fn separation(&self, data: Option<&Dataset>, seed: u64) -> anyhow::Result<Separation> {
         let pair = [self.separate[0].as_str(), self.separate[1].as_str()];
         anyhow::ensure!(pair[0] != pair[1], "--separate needs two effects, got {} twice", pair[0]);
-        let of = data.unwrap_or(&planned);
-        let experiments = separating(of, &first_model(of)?, pair)?;
-        let after = match data {
-            Some(_) => "the data".to_owned(),
-            None => format!("a test of {0} + {0} runs", self.runs),
+        let (of, after) = match data {
+            Some(data) => (data.clone(), "the data".to_owned()),
+            None => {
+                let (setting, ..) = self.setting(None, seed)?;
+                let planned = expected_dataset(&setting, usize::from(self.runs));
+                (planned, format!("a test of {0} + {0} runs", self.runs))
+            }
         };
+        let experiments = separating(&of, &first_model(&of)?, pair)?;
         Ok(Separation { pair: pair.map(str::to_owned), after, experiments })
     }
 
