@@ -17,11 +17,7 @@ pub trait Real: DualNum<Primitive = f64> + Copy + Send + Sync {
     fn value(self) -> f64;
 
     /// (sin x, cos x).
-    #[inline]
-    fn sine_cosine(self) -> (Self, Self) {
-        let (sinc, cosine) = self.sinc_cos();
-        (sinc * self, cosine)
-    }
+    fn sine_cosine(self) -> (Self, Self);
 
     /// e^x by `libm`, the same bits on every machine.
     fn exponential(self) -> Self;
@@ -81,6 +77,12 @@ impl Real for Dual {
             (cosine - sinc) / x
         };
         (Dual::new(sinc, slope * self.eps), Dual::new(cosine, -sinc * x * self.eps))
+    }
+
+    #[inline]
+    fn sine_cosine(self) -> (Dual, Dual) {
+        let (sine, cosine) = self.re.sine_cosine();
+        (Dual::new(sine, cosine * self.eps), Dual::new(cosine, -sine * self.eps))
     }
 
     #[inline]
@@ -144,11 +146,14 @@ pub(crate) fn sin_cos_reduced(x: f64) -> (f64, f64) {
     if !(x.abs() < 1e5) {
         return libm::sincos(x);
     }
-    let quarter_turns = (x * std::f64::consts::FRAC_2_PI).round();
+    // Halves away from zero, as `round`, which without SSE 4.1 is a call of the system's library.
+    let turns = x * std::f64::consts::FRAC_2_PI;
+    let whole = (turns + 0.5_f64.next_down().copysign(turns)) as i64;
+    let quarter_turns = whole as f64;
     let rest = ((x - quarter_turns * HALF_PI[0]) - quarter_turns * HALF_PI[1]) - quarter_turns * HALF_PI[2];
     let (sinc, cosine) = sinc_cos_near_zero(rest);
     let sine = sinc * rest;
-    match (quarter_turns as i64) & 3 {
+    match whole & 3 {
         0 => (sine, cosine),
         1 => (cosine, -sine),
         2 => (-sine, -cosine),
