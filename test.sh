@@ -108,11 +108,11 @@ begin 'Python: module'
 "$python" -m maturin develop --manifest-path "$package/Cargo.toml"
 
 begin 'Python: formatting and lints'
-"$python" -m ruff format --check --config "$package/pyproject.toml" "$package" tests/reference tests/report notebooks .ci
-"$python" -m ruff check --config "$package/pyproject.toml" "$package" tests/reference tests/report notebooks .ci
+"$python" -m ruff format --check --config "$package/pyproject.toml" "$package" tests/reference tests/report notebooks examples .ci
+"$python" -m ruff check --config "$package/pyproject.toml" "$package" tests/reference tests/report notebooks examples .ci
 
 begin 'Python: types'
-"$python" -m mypy --config-file "$package/pyproject.toml" "$package/python" "$package/tests" .ci
+"$python" -m mypy --config-file "$package/pyproject.toml" "$package/python" "$package/tests" examples .ci
 "$python" -m mypy --config-file "$package/pyproject.toml" tests/reference
 "$python" -m mypy --config-file "$package/pyproject.toml" tests/report
 "$python" -m mypy.stubtest --mypy-config-file "$package/pyproject.toml" \

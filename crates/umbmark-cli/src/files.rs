@@ -1,16 +1,18 @@
 //! Files written beside and renamed, so that nobody ever sees half of one.
 
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use tempfile::NamedTempFile;
+use tempfile::TempPath;
 
 /// A file that appears under its name only when it is whole.
 #[derive(Debug)]
 pub struct Pending {
     path: PathBuf,
-    file: BufWriter<NamedTempFile>,
+    file: BufWriter<File>,
+    beside: TempPath,
     force: bool,
 }
 
@@ -24,10 +26,11 @@ impl Pending {
         let mut builder = tempfile::Builder::new();
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder
+        let (file, beside) = builder
             .tempfile_in(folder)
-            .with_context(|| format!("cannot write into the folder {}", folder.display()))?;
-        Ok(Pending { path: path.to_owned(), file: BufWriter::new(file), force })
+            .with_context(|| format!("cannot write into the folder {}", folder.display()))?
+            .into_parts();
+        Ok(Pending { path: path.to_owned(), file: BufWriter::new(file), beside, force })
     }
 
     /// What to say when writing fails.
@@ -39,8 +42,10 @@ impl Pending {
     pub fn finish(self) -> anyhow::Result<()> {
         let failed = self.failed();
         let file = self.file.into_inner().map_err(io::IntoInnerError::into_error).with_context(|| failed.clone())?;
-        file.as_file().sync_all().with_context(|| failed.clone())?;
-        let named = if self.force { file.persist(&self.path) } else { file.persist_noclobber(&self.path) };
+        file.sync_all().with_context(|| failed.clone())?;
+        drop(file);
+        let named =
+            if self.force { self.beside.persist(&self.path) } else { self.beside.persist_noclobber(&self.path) };
         named.map_err(|error| error.error).with_context(|| failed)?;
         Ok(())
     }

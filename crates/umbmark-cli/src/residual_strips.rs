@@ -7,10 +7,10 @@ use crate::signature::three_digits;
 use crate::strip::strip;
 
 /// Characters across and, on a terminal, down.
-const WIDTH: usize = 30;
+const WIDTH: usize = 29;
 const HEIGHT: usize = 3;
 /// Columns of the labels.
-const INDENT: usize = 18;
+const INDENT: usize = 20;
 
 /// One mark a value: within ±1 the middle one, beyond ±1, ±2 and ±4 farther up or down; a space for what is not there.
 pub fn marks(values: &[Option<f64>], terminal: bool) -> String {

@@ -219,7 +219,7 @@ error: [..]sweep.json exists already; --resume goes on with it, --force begins a
 /// The example of the documentation: what is bought keeps the target, and nothing cheaper does.
 #[test]
 fn the_cheapest_tolerances_of_the_example_keep_the_target() {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/tolerances.toml");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/tolerances.toml");
     let study = ["tolerance", file, "-n", "4000", "--target", "50mm", "--share", "0.95"];
     let document = json(&study);
     let cheapest = &document["cheapest"];

@@ -59,7 +59,7 @@ pub struct ParameterError {
 
 impl Parameter {
     /// A size that does nothing where it is 0, its value where none is given.
-    pub(crate) const fn size(
+    pub const fn size(
         name: &'static str,
         flag: &'static str,
         unit: &'static str,

@@ -63,6 +63,16 @@ pub const KINDS: [Kind; 15] = [
     Kind { name: "runs", about: "each run's distance from the others: outliers, drift", build: runs::figure },
 ];
 
+/// A p-value in a sentence or a table: "0.013", and "< 0.001" below that.
+fn p_value(p: f64) -> String {
+    if p < 0.001 { "< 0.001".into() } else { format!("{p:.3}") }
+}
+
+/// A p-value behind its letter: "p = 0.013", "p < 0.001".
+fn p_is(p: f64) -> String {
+    if p < 0.001 { "p < 0.001".into() } else { format!("p = {p:.3}") }
+}
+
 /// The kind of this name.
 pub fn find(name: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.name == name)

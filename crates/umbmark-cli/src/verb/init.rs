@@ -28,7 +28,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         session.print_json(&json!({ "written": [robot, returns] }))?;
         return Ok(ExitCode::SUCCESS);
     }
-    let folder = arguments.folder.display();
+    let folder = arguments.folder.to_string_lossy();
+    let folder = shlex::try_quote(&folder)?;
     write!(
         session.out(),
         "wrote {robot}\n  say what your robot believes of itself: wheelbase, wheels, encoders, path\n\

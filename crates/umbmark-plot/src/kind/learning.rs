@@ -3,6 +3,7 @@
 use umbmark_core::learn::{Learnt, Step};
 
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
+use crate::kind::p_value;
 use crate::study::{Absent, Study};
 use crate::tone::Tone;
 
@@ -83,7 +84,7 @@ fn table(steps: &[Step]) -> Table {
         let degrees = |heading: Option<f64>| heading.map_or("–".to_owned(), |h| format!("{:.2}", h.to_degrees()));
         [
             name(step),
-            step.p_adjusted.map_or("–".into(), |p| if p < 0.001 { "< 0.001".into() } else { format!("{p:.3}") }),
+            step.p_adjusted.map_or("–".into(), p_value),
             format!("{:.1}", MM * step.error.position),
             format!("{:.1}", MM * step.held_out.position),
             degrees(step.held_out.heading),

@@ -4,6 +4,7 @@ use umbmark_core::compare::tracks::{Against, Bin, By, Mean, Part, Rate, TracksJu
 use umbmark_core::path::Direction;
 
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
+use crate::kind::p_is;
 use crate::scale::written;
 use crate::study::{Absent, Study};
 use crate::thin::thin;
@@ -84,13 +85,13 @@ fn says(title: &str, pairs: &[(&Against, &Against)], tests: usize, size: f64) ->
     let depending: Vec<String> = pairs
         .iter()
         .filter(|(_, model)| all(model) < size)
-        .map(|(_, model)| format!("{} (p = {:.3} of all {tests} tests)", model.rate.name(), all(model)))
+        .map(|(_, model)| format!("{} ({} of all {tests} tests)", model.rate.name(), p_is(all(model))))
         .collect();
     if !depending.is_empty() {
         return format!("What the model leaves depends on {title}: {}.", depending.join(", "));
     }
     let least = pairs.iter().map(|(_, model)| p_of(model)).fold(1.0, f64::min);
-    format!("What the model leaves is not seen to depend on {title} (smallest p {least:.3}, one of {tests} tests).")
+    format!("What the model leaves is not seen to depend on {title} (smallest {}, one of {tests} tests).", p_is(least))
 }
 
 fn against_panel(nominal: &Against, model: &Against) -> Panel {

@@ -7,6 +7,7 @@ use umbmark_core::path::Direction;
 use umbmark_core::stats::f_upper_tail;
 
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
+use crate::kind::p_is;
 use crate::study::{Absent, Study};
 use crate::tone::Tone;
 
@@ -27,7 +28,7 @@ pub(super) fn figure(study: &Study) -> Result<Figure, Absent> {
     let count = all.len() as f64;
     let dots = |direction: Direction| {
         let own: Vec<(usize, &Among)> = all.iter().enumerate().filter(|(_, a)| a.direction == direction).collect();
-        let said = |a: &Among| format!("{}: p = {:.3}", name(a.run), a.p);
+        let said = |a: &Among| format!("{}: {}", name(a.run), p_is(a.p));
         Layer::new(
             format!("{} runs", direction.name()),
             Tone::of(direction),

@@ -127,7 +127,7 @@ impl Drawing {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
              font-family=\"{FAMILY}\" font-size=\"{LETTERS}\" fill=\"{ink}\" role=\"img\">\n\
-             <title>{title}</title>\n<desc>{description}</desc>\n{body}</svg>\n"
+             <title>{title}</title>\n<desc>{description}</desc>\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{body}</svg>\n"
         )
     }
 }
