@@ -272,7 +272,7 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
     let travel = WheelTravel { left: 0.3, right: 0.5 };
     let motion = Displacement2 { forward: 0.4, sideways: 0.1, rotation: 0.2 };
     let pose = Pose2::new(1.0, 2.0, 0.5);
-    let sight = Sight { time: 30.0, speed: 0.2, turn_rate: 0.3, ..Sight::default() };
+    let sight = Sight { time: 30.0, speed: 0.2, turn_rate: 0.3 };
     let Mean { start, wheels, body, seen } = entry.values;
     let Scatter { diffusion, bumps, start_scatter, measured } = entry.scatter;
     let mut stream = Stream::new(1, 2, 3);

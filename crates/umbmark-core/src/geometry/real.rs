@@ -17,7 +17,11 @@ pub trait Real: DualNum<Primitive = f64> + Copy + Send + Sync {
     fn value(self) -> f64;
 
     /// (sin x, cos x).
-    fn sine_cosine(self) -> (Self, Self);
+    #[inline(always)]
+    fn sine_cosine(self) -> (Self, Self) {
+        let (sinc, cosine) = self.sinc_cos();
+        (sinc * self, cosine)
+    }
 
     /// e^x by `libm`, the same bits on every machine.
     fn exponential(self) -> Self;
@@ -65,7 +69,8 @@ impl Real for f64 {
 }
 
 impl Real for Dual {
-    #[inline]
+    /// Always inlined: mostly one of the two is not wanted.
+    #[inline(always)]
     fn sinc_cos(self) -> (Dual, Dual) {
         let x = self.re;
         let (sinc, cosine) = x.sinc_cos();
@@ -77,12 +82,6 @@ impl Real for Dual {
             (cosine - sinc) / x
         };
         (Dual::new(sinc, slope * self.eps), Dual::new(cosine, -sinc * x * self.eps))
-    }
-
-    #[inline]
-    fn sine_cosine(self) -> (Dual, Dual) {
-        let (sine, cosine) = self.re.sine_cosine();
-        (Dual::new(sine, cosine * self.eps), Dual::new(cosine, -sine * self.eps))
     }
 
     #[inline]
