@@ -14,8 +14,8 @@ pub(crate) mod tracks;
 
 use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, Run};
-use crate::drive::{Kind, Robot};
-use crate::effect::{Model, ModelError, TestKind};
+use crate::drive::Robot;
+use crate::effect::{Model, ModelError, TestKind, check_predicted};
 use crate::likelihood::{Observed, Outlier};
 use crate::replay::ReplayError;
 use crate::stats::{Interval, student_t_quantile};
@@ -327,9 +327,7 @@ pub fn first_model(data: &Dataset) -> Result<Model, DiagnoseError> {
 
 /// The model of the paper: E_d and E_b, both free; for other drives, the two that do alike on a square.
 pub fn base_model(robot: &Robot) -> Result<Model, ModelError> {
-    if robot.drive.kind() == Kind::Clapper {
-        return Err(ModelError::NotPredicted { drive: robot.drive.kind().name() });
-    }
+    check_predicted(robot.drive.kind())?;
     let mut model = Model::new(robot);
     for effect in &robot.drive.kind().first_effects()[..2] {
         model.add(effect)?.free = true;

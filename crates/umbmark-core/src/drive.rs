@@ -4,11 +4,28 @@
 //! is that of the axle's wheels, whatever the drive, so what predicts, simulates, fits and tests is written once. A drive's own
 //! file says how its two counters become travel of the axle, and back; [`Encoder`] is what they count with.
 
+/// Hands every drive to a macro: its kind, and the type in its file.
+macro_rules! every_drive {
+    ($make:ident) => {
+        $make! {
+            /// Two driven wheels on one axle.
+            Differential(DifferentialDrive),
+            /// Wheels that are driven together and steered together.
+            Synchro(SynchroDrive),
+            /// Two differential trucks and a link that corrects their headings; its axle is that of a truck.
+            Clapper(ClapperDrive),
+            /// A driven axle and a steered wheel, or two, before it: cars and tricycles.
+            Ackermann(AckermannDrive),
+        }
+    };
+}
+
 mod ackermann;
 mod clapper;
 mod differential;
 mod encoder;
 mod kind;
+mod kinematics;
 mod synchro;
 
 pub use ackermann::AckermannDrive;
@@ -18,6 +35,7 @@ pub use encoder::{Encoder, MAX_COUNTER_BITS, roll_over};
 pub use kind::{Kind, Kinds};
 pub use synchro::SynchroDrive;
 
+use kinematics::Kinematics;
 use std::ops::Deref;
 
 /// One of the two drive wheels.
@@ -84,61 +102,105 @@ fn positive(quantity: &'static str, value: f64, unit: &'static str) -> Result<f6
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err(DriveError::NotPositive { quantity, value, unit }) }
 }
 
-/// A drive: its axle, and what its counters count.
-///
-/// It [derefs](Deref) to the axle, real or virtual.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Drive {
-    /// Two driven wheels on one axle.
-    Differential(DifferentialDrive),
-    /// Wheels that are driven together and steered together.
-    Synchro(SynchroDrive),
-    /// A driven axle, and a steered wheel before it.
-    Ackermann(AckermannDrive),
-    /// Two trucks and their link; its axle is that of a truck.
-    Clapper(ClapperDrive),
-}
-
-impl From<DifferentialDrive> for Drive {
-    fn from(drive: DifferentialDrive) -> Drive {
-        Drive::Differential(drive)
-    }
-}
-
-impl Deref for Drive {
-    type Target = DifferentialDrive;
-
-    fn deref(&self) -> &DifferentialDrive {
-        match self {
-            Drive::Differential(axle) => axle,
-            Drive::Synchro(synchro) => &synchro.axle,
-            Drive::Ackermann(ackermann) => &ackermann.axle,
-            Drive::Clapper(clapper) => clapper.truck(),
+/// Makes the type of all drives from the list of them.
+macro_rules! drives {
+    ($($(#[$about:meta])* $kind:ident($drive:ident),)+) => {
+        /// A drive: its axle, and what its counters count.
+        ///
+        /// It [derefs](Deref) to the axle, real or virtual.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Drive {
+            $($(#[$about])* $kind($drive),)+
         }
-    }
+
+        $(impl From<$drive> for Drive {
+            fn from(drive: $drive) -> Drive {
+                Drive::$kind(drive)
+            }
+        })+
+
+        impl Deref for Drive {
+            type Target = DifferentialDrive;
+
+            #[inline]
+            fn deref(&self) -> &DifferentialDrive {
+                match self {
+                    $(Drive::$kind(drive) => drive.axle(),)+
+                }
+            }
+        }
+
+        impl Drive {
+            /// Its kind.
+            pub fn kind(&self) -> Kind {
+                match self {
+                    $(Drive::$kind(_) => Kind::$kind,)+
+                }
+            }
+
+            /// The numbers that its kind [lists](Kind::parameters), in that order.
+            pub fn values(&self) -> Vec<f64> {
+                match self {
+                    $(Drive::$kind(drive) => drive.values(),)+
+                }
+            }
+
+            /// The drive as its odometry must believe it to be, where these are the true values of its [first
+            /// effects](Kind::first_effects).
+            pub fn corrected(&self, first: [f64; 3]) -> Result<Drive, DriveError> {
+                match self {
+                    $(Drive::$kind(drive) => drive.corrected(first).map(Drive::$kind),)+
+                }
+            }
+
+            /// Distance of the steered wheel from the axle \[m\]; for a drive without one, that of a wheel which would steer it
+            /// as far before the axle as its wheels are apart.
+            pub fn axle_distance(&self) -> f64 {
+                match self {
+                    $(Drive::$kind(drive) => drive.axle_distance(),)+
+                }
+            }
+
+            /// What the axle's wheels make of a bump under a wheel on one side, which costs that wheel so much way \[m\].
+            #[inline]
+            pub fn bumped(&self, wheel: Wheel, lost: f64) -> WheelTravel {
+                match self {
+                    $(Drive::$kind(drive) => drive.bumped(wheel, lost),)+
+                }
+            }
+
+            fn counting(&self, encoder: &Encoder, forward: f64, rotation: f64) -> Option<Counting> {
+                match self {
+                    $(Drive::$kind(drive) => drive.counting(encoder, forward, rotation),)+
+                }
+            }
+
+            fn travel(&self, encoder: &Encoder, before: [f64; 2], after: [f64; 2]) -> WheelTravel {
+                match self {
+                    $(Drive::$kind(drive) => drive.travel(encoder, before, after),)+
+                }
+            }
+
+            fn reading(&self, encoder: &Encoder, before: [f64; 2], travel: &WheelTravel) -> [f64; 2] {
+                match self {
+                    $(Drive::$kind(drive) => drive.reading(encoder, before, travel),)+
+                }
+            }
+
+            fn standing(&self, encoder: &Encoder, before: [f64; 2], ahead: &[WheelTravel]) -> [f64; 2] {
+                match self {
+                    $(Drive::$kind(drive) => drive.standing(encoder, before, ahead),)+
+                }
+            }
+        }
+    };
 }
+every_drive!(drives);
 
 impl Drive {
     /// A drive from the numbers that its kind [lists](Kind::parameters), in that order.
     pub fn from_values(kind: Kind, values: &[f64]) -> Result<Drive, DriveError> {
-        match kind {
-            Kind::Differential => DifferentialDrive::new(values[0], values[1], values[2]).map(Drive::Differential),
-            Kind::Synchro => SynchroDrive::from_values(values).map(Drive::Synchro),
-            Kind::Ackermann => AckermannDrive::from_values(values).map(Drive::Ackermann),
-            Kind::Clapper => ClapperDrive::from_values(values).map(Drive::Clapper),
-        }
-    }
-
-    /// The numbers that its kind [lists](Kind::parameters), in that order.
-    pub fn values(&self) -> Vec<f64> {
-        match self {
-            Drive::Differential(axle) => {
-                vec![axle.wheelbase(), axle.wheel_diameter_left(), axle.wheel_diameter_right()]
-            }
-            Drive::Synchro(drive) => drive.values(),
-            Drive::Ackermann(drive) => drive.values(),
-            Drive::Clapper(drive) => drive.values(),
-        }
+        kind.drive(values)
     }
 
     /// The drive with another value of one of its numbers, by its name in files; `wheel_diameter_m` is that of all wheels. What is
@@ -155,52 +217,6 @@ impl Drive {
             }
         }
         Drive::from_values(kind, &values)
-    }
-
-    /// The drive as its odometry must believe it to be, where these are the true values of its [first
-    /// effects](Kind::first_effects).
-    pub fn corrected(&self, first: [f64; 3]) -> Result<Drive, DriveError> {
-        match self {
-            Drive::Differential(axle) => {
-                let [e_d, e_b, e_s] = first;
-                let left = 2.0 * e_s / (1.0 + e_d);
-                let (left, right) = (axle.wheel_diameter_left() * left, axle.wheel_diameter_right() * left * e_d);
-                DifferentialDrive::new(axle.wheelbase() * e_b, left, right).map(Drive::Differential)
-            }
-            Drive::Synchro(drive) => drive.corrected(first).map(Drive::Synchro),
-            Drive::Ackermann(drive) => drive.corrected(first).map(Drive::Ackermann),
-            // What its own trucks have is corrected by the link; nothing of it is known from returns.
-            Drive::Clapper(drive) => Ok(Drive::Clapper(*drive)),
-        }
-    }
-
-    /// Its kind.
-    pub fn kind(&self) -> Kind {
-        match self {
-            Drive::Differential(_) => Kind::Differential,
-            Drive::Synchro(_) => Kind::Synchro,
-            Drive::Ackermann(_) => Kind::Ackermann,
-            Drive::Clapper(_) => Kind::Clapper,
-        }
-    }
-
-    /// Distance of the steered wheel from the axle \[m\]; for a drive without one, that of a wheel which would steer it as far
-    /// before the axle as its wheels are apart.
-    pub fn axle_distance(&self) -> f64 {
-        match self {
-            Drive::Ackermann(drive) => drive.axle_distance(),
-            _ => self.wheelbase(),
-        }
-    }
-
-    /// What the axle's wheels make of a bump under a wheel on one side, which costs that wheel so much way \[m\].
-    #[inline]
-    pub fn bumped(&self, wheel: Wheel, lost: f64) -> WheelTravel {
-        match (self, wheel) {
-            (Drive::Synchro(drive), _) => drive.lost(wheel, lost),
-            (_, Wheel::Left) => WheelTravel { left: -lost, right: 0.0 },
-            (_, Wheel::Right) => WheelTravel { left: 0.0, right: -lost },
-        }
     }
 }
 
@@ -247,26 +263,11 @@ impl Robot {
     /// What the counters do while the axle's centre advances `forward` \[m\] and the robot turns by `rotation` \[rad\], at a
     /// constant ratio of the two; `None` for a turn that the drive cannot make.
     pub fn counting(&self, forward: f64, rotation: f64) -> Option<Counting> {
-        match &self.drive {
-            Drive::Differential(_) | Drive::Clapper(_) => {
-                let (per_tick, travel) = (self.metres_per_tick(), self.drive.wheel_travel(forward, rotation));
-                let left = WheelTravel { left: per_tick.left, right: 0.0 };
-                let right = WheelTravel { left: 0.0, right: per_tick.right };
-                let gain = [travel.left / per_tick.left, travel.right / per_tick.right];
-                Some(Counting { per_count: [left, right], gain, held: 0 })
-            }
-            Drive::Synchro(drive) => Some(drive.counting(&self.encoder, forward, rotation)),
-            Drive::Ackermann(drive) => drive.counting(&self.encoder, forward, rotation),
-        }
+        self.drive.counting(&self.encoder, forward, rotation)
     }
 
     /// Ticks of the axle's wheels since START, as logs hold them, for readings of the drive's own counters.
     pub fn axle_ticks(&self, counters: &[Vec<f64>; 2]) -> [Vec<f64>; 2] {
-        let travel = |before, after| match &self.drive {
-            Drive::Differential(_) | Drive::Clapper(_) => WheelTravel::default(),
-            Drive::Synchro(drive) => drive.travel(&self.encoder, before, after),
-            Drive::Ackermann(drive) => drive.travel(&self.encoder, before, after),
-        };
         if self.drive.kind().counters() == Kind::Differential.counters() {
             return counters.clone();
         }
@@ -275,7 +276,7 @@ impl Robot {
         let (mut left, mut right, mut before) = (0.0, 0.0, None);
         for (first, second) in counters[0].iter().zip(&counters[1]) {
             let now = [*first, *second];
-            let rolled = travel(before.unwrap_or(now), now);
+            let rolled = self.drive.travel(&self.encoder, before.unwrap_or(now), now);
             (left, right, before) =
                 (left + rolled.left / per_tick.left, right + rolled.right / per_tick.right, Some(now));
             ticks[0].push(left);
@@ -296,17 +297,13 @@ impl Robot {
                 right: (ticks[1][i] - ticks[1][i - 1]) * per_tick.right,
             })
             .collect();
-        let mut now = [0.0, self.first_steering(&travels)];
-        let mut counters = [vec![now[0]], vec![now[1]]];
+        let mut now = self.drive.standing(&self.encoder, [0.0; 2], &travels);
+        let mut counters = now.map(|count| vec![count]);
         for (i, travel) in travels.iter().enumerate() {
-            now = match &self.drive {
-                Drive::Differential(_) | Drive::Clapper(_) => now,
-                Drive::Synchro(drive) => drive.reading(&self.encoder, now, travel),
-                // It steers while it stands, ahead of the next move.
-                Drive::Ackermann(_) if *travel == WheelTravel::default() => {
-                    [now[0], self.first_steering(&travels[i + 1..])]
-                }
-                Drive::Ackermann(drive) => drive.reading(&self.encoder, now, travel),
+            now = if *travel == WheelTravel::default() {
+                self.drive.standing(&self.encoder, now, &travels[i + 1..])
+            } else {
+                self.drive.reading(&self.encoder, now, travel)
             }
             .map(f64::round);
             counters[0].push(now[0]);
@@ -315,18 +312,8 @@ impl Robot {
         counters
     }
 
-    /// Where an absolute steering counter stands before these travels.
-    fn first_steering(&self, travels: &[WheelTravel]) -> f64 {
-        let Drive::Ackermann(drive) = &self.drive else { return 0.0 };
-        travels.iter().find_map(|travel| drive.halfway(&self.encoder, travel)).map_or(0.0, f64::round)
-    }
-
     /// Travel of each wheel of the axle per encoder tick \[m\]: π D / (ticks per revolution).
     pub fn metres_per_tick(&self) -> WheelTravel {
-        let per_diameter = std::f64::consts::PI / self.encoder.ticks_per_revolution();
-        WheelTravel {
-            left: self.drive.wheel_diameter_left() * per_diameter,
-            right: self.drive.wheel_diameter_right() * per_diameter,
-        }
+        self.drive.metres_per_tick(&self.encoder)
     }
 }

@@ -75,6 +75,7 @@ pub use changes::Changes;
 pub use context::{Context, Place, Progress, Sight};
 pub use formula::{Formula, FormulaError, Target};
 pub use law::Law;
+pub(crate) use model::check_predicted;
 pub use model::{Chain, Model, ModelError, Part};
 
 /// The largest number of parameters of one effect.

@@ -2,8 +2,8 @@
 
 use super::{CalibrateError, noise_shape};
 use crate::dataset::{Dataset, Run};
-use crate::drive::{Kind, Robot};
-use crate::effect::{Model, ModelError, TestKind};
+use crate::drive::Robot;
+use crate::effect::{Model, TestKind, check_predicted};
 use crate::geometry::Pose2;
 use crate::path::Direction;
 use crate::replay::Track;
@@ -79,9 +79,7 @@ impl Evidence {
 
 /// The end poses of the regular test, weighted by the shape of their scatter; headings only where every run has one.
 pub(crate) fn end_poses(data: &Dataset, robot: &Robot) -> Result<Vec<Drive>, CalibrateError> {
-    if robot.drive.kind() == Kind::Clapper {
-        return Err(ModelError::NotPredicted { drive: robot.drive.kind().name() }.into());
-    }
+    check_predicted(robot.drive.kind())?;
     let mut drives = Vec::with_capacity(data.runs.len());
     for run in data.runs.iter().filter(|run| run.test == TestKind::Systematic) {
         drives.extend(ended(run, data, robot)?);

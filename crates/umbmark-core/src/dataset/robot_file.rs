@@ -82,10 +82,10 @@ fn read_differential(table: &Table) -> Result<Result<Drive, DriveError>, Dataset
 }
 
 fn read_kind(drive: &Entry) -> Result<Kind, DatasetError> {
-    let names = Kind::ALL.map(Kind::name);
+    let names: Vec<&str> = Kind::ALL.iter().map(|kind| kind.name()).collect();
     let allowed = format!("one of {}", names.join(", "));
     let word = drive.word(&allowed)?;
-    let kind = Kind::ALL.into_iter().find(|kind| kind.name() == word);
+    let kind = Kind::ALL.iter().copied().find(|kind| kind.name() == word);
     kind.ok_or_else(|| drive.wrong(&allowed, &did_you_mean(word, names)))
 }
 

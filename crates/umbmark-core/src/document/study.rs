@@ -24,7 +24,7 @@ pub struct Theory {
 impl Theory {
     /// That of a study, all drawn parameters in their middle.
     pub fn of(study: &Study) -> Result<Theory, StudyError> {
-        if study.robot().drive.kind() == Kind::Clapper {
+        if !study.robot().drive.kind().has_one_axle() {
             return Ok(Theory { exact: None, first_order: None });
         }
         let [cw, ccw] = study.noise_free()?;

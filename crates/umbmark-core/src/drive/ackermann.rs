@@ -1,36 +1,12 @@
 //! Ackermann and tricycle drive: an axle that cannot steer, and a wheel (or two that act as one) before it that can.
 
+use super::kinematics::Kinematics;
 use super::{Counting, DifferentialDrive, DriveError, Encoder, WheelTravel, positive};
 use crate::parameter::{DefaultValue, Parameter};
 use std::f64::consts::{PI, TAU};
 
 /// No wheel is steered farther than this \[rad\]: at a right angle the robot would turn about its own axle.
-pub(super) const MOST_STEERING: f64 = 1.4;
-
-/// The numbers of an Ackermann drive, in the order of [`AckermannDrive::from_values`].
-pub(super) const PARAMETERS: [Parameter; 5] = [
-    length("axle_distance_m", 0.5, "distance of the steered wheel from the rear axle"),
-    length("track_width_m", 0.4, "distance of the rear wheels' contact points"),
-    length("wheel_diameter_m", 0.15, "diameter of the wheels that the drive encoder counts, on the rear axle"),
-    Parameter {
-        name: "steering_ticks_per_revolution",
-        flag: "",
-        unit: "",
-        default: DefaultValue::Value(20_000.0),
-        typical: 20_000.0,
-        bounds: (1.0, 1e9),
-        meaning: "counts of the steering per revolution of the steered wheel about the vertical",
-        choices: &[],
-    },
-    Parameter::size(
-        "steering_zero_rad",
-        "",
-        "rad",
-        5e-3,
-        (-0.5, 0.5),
-        "angle of the steered wheel where its counter shows 0, as the odometry reckons",
-    ),
-];
+const MOST_STEERING: f64 = 1.4;
 
 const fn length(name: &'static str, typical: f64, meaning: &'static str) -> Parameter {
     let default = DefaultValue::Value(typical);
@@ -43,7 +19,7 @@ const fn length(name: &'static str, typical: f64, meaning: &'static str) -> Para
 /// and the axle distance W. It steers while it stands: in a move the steering keeps still, and the robot drives an arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AckermannDrive {
-    pub(super) axle: DifferentialDrive,
+    axle: DifferentialDrive,
     axle_distance: f64,
     steering_ticks: f64,
     steering_zero: f64,
@@ -70,33 +46,6 @@ impl AckermannDrive {
         Ok(AckermannDrive { axle, axle_distance, steering_ticks, steering_zero })
     }
 
-    pub(super) fn from_values(values: &[f64]) -> Result<Self, DriveError> {
-        AckermannDrive::new(values[0], values[1], values[2], values[3], values[4])
-    }
-
-    pub(super) fn values(&self) -> Vec<f64> {
-        let axle = &self.axle;
-        vec![self.axle_distance, axle.wheelbase(), axle.wheel_diameter_left(), self.steering_ticks, self.steering_zero]
-    }
-
-    /// The drive as its odometry must believe it to be, for a true steering zero δ₀ \[rad\], gain g and scale E_s.
-    ///
-    /// The true angle is (1 + g)(2π n_s/N_s + believed zero + δ₀).
-    pub(super) fn corrected(&self, [zero, gain, scale]: [f64; 3]) -> Result<Self, DriveError> {
-        AckermannDrive::new(
-            self.axle_distance,
-            self.axle.wheelbase(),
-            self.axle.wheel_diameter_left() * scale,
-            self.steering_ticks / (1.0 + gain),
-            (1.0 + gain) * (self.steering_zero + zero),
-        )
-    }
-
-    /// W \[m\].
-    pub fn axle_distance(&self) -> f64 {
-        self.axle_distance
-    }
-
     /// Metres per count of the drive, radians per count of the steering.
     fn per_count(&self, encoder: &Encoder) -> [f64; 2] {
         [PI * self.axle.wheel_diameter_left() / encoder.ticks_per_revolution(), TAU / self.steering_ticks]
@@ -113,8 +62,76 @@ impl AckermannDrive {
         (libm::atan(curvature * self.axle_distance) - self.steering_zero) / self.per_count(encoder)[1]
     }
 
+    /// The count of the steering halfway through a travel, where something moved.
+    fn halfway(&self, encoder: &Encoder, travel: &WheelTravel) -> Option<f64> {
+        let moved = self.axle.displacement(travel);
+        (moved.forward != 0.0).then(|| self.steering(encoder, moved.rotation / moved.forward))
+    }
+}
+
+impl Kinematics for AckermannDrive {
+    const NAME: &'static str = "ackermann";
+
+    const COUNTERS: [&'static str; 2] = ["drive", "steering"];
+
+    const PARAMETERS: &'static [Parameter] = &[
+        length("axle_distance_m", 0.5, "distance of the steered wheel from the rear axle"),
+        length("track_width_m", 0.4, "distance of the rear wheels' contact points"),
+        length("wheel_diameter_m", 0.15, "diameter of the wheels that the drive encoder counts, on the rear axle"),
+        Parameter {
+            name: "steering_ticks_per_revolution",
+            flag: "",
+            unit: "",
+            default: DefaultValue::Value(20_000.0),
+            typical: 20_000.0,
+            bounds: (1.0, 1e9),
+            meaning: "counts of the steering per revolution of the steered wheel about the vertical",
+            choices: &[],
+        },
+        Parameter::size(
+            "steering_zero_rad",
+            "",
+            "rad",
+            5e-3,
+            (-0.5, 0.5),
+            "angle of the steered wheel where its counter shows 0, as the odometry reckons",
+        ),
+    ];
+
+    const FIRST_EFFECTS: [&'static str; 3] = ["steering_zero", "steering_gain", "scale"];
+
+    fn axle(&self) -> &DifferentialDrive {
+        &self.axle
+    }
+
+    fn axle_distance(&self) -> f64 {
+        self.axle_distance
+    }
+
+    fn from_values(values: &[f64]) -> Result<Self, DriveError> {
+        AckermannDrive::new(values[0], values[1], values[2], values[3], values[4])
+    }
+
+    fn values(&self) -> Vec<f64> {
+        let axle = &self.axle;
+        vec![self.axle_distance, axle.wheelbase(), axle.wheel_diameter_left(), self.steering_ticks, self.steering_zero]
+    }
+
+    /// The drive as its odometry must believe it to be, for a true steering zero δ₀ \[rad\], gain g and scale E_s.
+    ///
+    /// The true angle is (1 + g)(2π n_s/N_s + believed zero + δ₀).
+    fn corrected(&self, [zero, gain, scale]: [f64; 3]) -> Result<Self, DriveError> {
+        AckermannDrive::new(
+            self.axle_distance,
+            self.axle.wheelbase(),
+            self.axle.wheel_diameter_left() * scale,
+            self.steering_ticks / (1.0 + gain),
+            (1.0 + gain) * (self.steering_zero + zero),
+        )
+    }
+
     /// `None` for a turn on the spot, and for one so tight that the wheel would have to be steered too far.
-    pub(super) fn counting(&self, encoder: &Encoder, forward: f64, rotation: f64) -> Option<Counting> {
+    fn counting(&self, encoder: &Encoder, forward: f64, rotation: f64) -> Option<Counting> {
         let tightest = libm::tan(MOST_STEERING) / self.axle_distance;
         if !(rotation.abs() <= tightest * forward.abs()) {
             return None;
@@ -131,13 +148,13 @@ impl AckermannDrive {
     }
 
     /// The steering is taken halfway between the readings.
-    pub(super) fn travel(&self, encoder: &Encoder, before: [f64; 2], after: [f64; 2]) -> WheelTravel {
+    fn travel(&self, encoder: &Encoder, before: [f64; 2], after: [f64; 2]) -> WheelTravel {
         let forward = (after[0] - before[0]) * self.per_count(encoder)[0];
         self.axle.wheel_travel(forward, forward * self.curvature(encoder, 0.5 * (before[1] + after[1])))
     }
 
     /// The counts that gained this travel, from a reading on; the steering as it was where nothing moved.
-    pub(super) fn reading(&self, encoder: &Encoder, before: [f64; 2], travel: &WheelTravel) -> [f64; 2] {
+    fn reading(&self, encoder: &Encoder, before: [f64; 2], travel: &WheelTravel) -> [f64; 2] {
         match self.halfway(encoder, travel) {
             None => before,
             Some(halfway) => {
@@ -147,10 +164,10 @@ impl AckermannDrive {
         }
     }
 
-    /// The count of the steering halfway through a travel, where something moved.
-    pub(super) fn halfway(&self, encoder: &Encoder, travel: &WheelTravel) -> Option<f64> {
-        let moved = self.axle.displacement(travel);
-        (moved.forward != 0.0).then(|| self.steering(encoder, moved.rotation / moved.forward))
+    /// It steers while it stands, ahead of the next move.
+    fn standing(&self, encoder: &Encoder, before: [f64; 2], ahead: &[WheelTravel]) -> [f64; 2] {
+        let steering = ahead.iter().find_map(|travel| self.halfway(encoder, travel));
+        [before[0], steering.map_or(0.0, f64::round)]
     }
 }
 

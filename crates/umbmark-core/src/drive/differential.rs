@@ -1,15 +1,9 @@
 //! Differential drive: two driven wheels on one axle.
 
-use super::{DriveError, positive};
+use super::kinematics::Kinematics;
+use super::{DriveError, Encoder, positive};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::{DefaultValue, Parameter};
-
-/// The numbers of a differential drive, in the order of [`DifferentialDrive::new`].
-pub(super) const PARAMETERS: [Parameter; 3] = [
-    length("wheelbase_m", 0.340, (1e-3, 100.0), "distance of the two wheels' contact points"),
-    length("wheel_diameter_left_m", 0.150, (1e-3, 10.0), "diameter of the left wheel"),
-    length("wheel_diameter_right_m", 0.150, (1e-3, 10.0), "diameter of the right wheel"),
-];
 
 const fn length(name: &'static str, typical: f64, bounds: (f64, f64), meaning: &'static str) -> Parameter {
     let default = DefaultValue::Value(typical);
@@ -71,6 +65,12 @@ impl DifferentialDrive {
         self.wheel_diameter_right
     }
 
+    /// Travel of each wheel per encoder tick \[m\]: π D / (ticks per revolution).
+    pub fn metres_per_tick(&self, encoder: &Encoder) -> WheelTravel {
+        let per_diameter = std::f64::consts::PI / encoder.ticks_per_revolution();
+        WheelTravel { left: self.wheel_diameter_left * per_diameter, right: self.wheel_diameter_right * per_diameter }
+    }
+
     /// Body motion of the axle's centre for given wheel travels, at constant ratio of the wheel speeds.
     #[inline]
     pub fn displacement<T: Real>(&self, travel: &WheelTravel<T>) -> Displacement2<T> {
@@ -86,6 +86,34 @@ impl DifferentialDrive {
     pub fn wheel_travel(&self, forward: f64, rotation: f64) -> WheelTravel {
         let half = 0.5 * self.wheelbase * rotation;
         WheelTravel { left: forward - half, right: forward + half }
+    }
+}
+
+impl Kinematics for DifferentialDrive {
+    const NAME: &'static str = "differential";
+
+    const PARAMETERS: &'static [Parameter] = &[
+        length("wheelbase_m", 0.340, (1e-3, 100.0), "distance of the two wheels' contact points"),
+        length("wheel_diameter_left_m", 0.150, (1e-3, 10.0), "diameter of the left wheel"),
+        length("wheel_diameter_right_m", 0.150, (1e-3, 10.0), "diameter of the right wheel"),
+    ];
+
+    fn from_values(values: &[f64]) -> Result<Self, DriveError> {
+        DifferentialDrive::new(values[0], values[1], values[2])
+    }
+
+    fn values(&self) -> Vec<f64> {
+        vec![self.wheelbase, self.wheel_diameter_left, self.wheel_diameter_right]
+    }
+
+    fn axle(&self) -> &DifferentialDrive {
+        self
+    }
+
+    fn corrected(&self, [e_d, e_b, e_s]: [f64; 3]) -> Result<Self, DriveError> {
+        let left = 2.0 * e_s / (1.0 + e_d);
+        let (left, right) = (self.wheel_diameter_left * left, self.wheel_diameter_right * left * e_d);
+        DifferentialDrive::new(self.wheelbase * e_b, left, right)
     }
 }
 

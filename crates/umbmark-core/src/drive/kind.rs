@@ -1,61 +1,87 @@
-//! The kinds of drives, by name.
+//! The kinds of drives: what is known of one before there is a robot.
 
+use super::kinematics::Kinematics;
+use super::{AckermannDrive, ClapperDrive, DifferentialDrive, Drive, DriveError, SynchroDrive};
 use crate::parameter::Parameter;
 
-/// A kind of drive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
-    /// Two driven wheels on one axle.
-    Differential,
-    /// Wheels that are driven together and steered together.
-    Synchro,
-    /// A driven axle and a steered wheel, or two, before it: cars and tricycles.
-    Ackermann,
-    /// Two differential trucks and a link that corrects their headings.
-    Clapper,
+/// Makes the kinds from the list of drives.
+macro_rules! kinds {
+    ($($(#[$about:meta])* $kind:ident($drive:ident),)+) => {
+        /// A kind of drive.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Kind {
+            $($(#[$about])* $kind,)+
+        }
+
+        impl Kind {
+            /// All of them.
+            pub const ALL: &[Kind] = &[$(Kind::$kind,)+];
+
+            const fn facts(self) -> &'static Facts {
+                match self {
+                    $(Kind::$kind => const { &Facts::of::<$drive>() },)+
+                }
+            }
+        }
+    };
+}
+every_drive!(kinds);
+
+/// What a drive's file says of its kind.
+struct Facts {
+    name: &'static str,
+    counters: [&'static str; 2],
+    parameters: &'static [Parameter],
+    first_effects: [&'static str; 3],
+    has_one_axle: bool,
+    from_values: fn(&[f64]) -> Result<Drive, DriveError>,
+}
+
+impl Facts {
+    const fn of<D: Kinematics + Into<Drive>>() -> Facts {
+        Facts {
+            name: D::NAME,
+            counters: D::COUNTERS,
+            parameters: D::PARAMETERS,
+            first_effects: D::FIRST_EFFECTS,
+            has_one_axle: D::HAS_ONE_AXLE,
+            from_values: |values| D::from_values(values).map(Into::into),
+        }
+    }
 }
 
 impl Kind {
-    /// All of them.
-    pub const ALL: [Kind; 4] = [Kind::Differential, Kind::Synchro, Kind::Clapper, Kind::Ackermann];
-
     /// As in files.
     pub fn name(self) -> &'static str {
-        match self {
-            Kind::Differential => "differential",
-            Kind::Synchro => "synchro",
-            Kind::Ackermann => "ackermann",
-            Kind::Clapper => "clapper",
-        }
+        self.facts().name
     }
 
     /// What its two counters are called in files.
     pub fn counters(self) -> [&'static str; 2] {
-        match self {
-            Kind::Differential | Kind::Clapper => ["left", "right"],
-            Kind::Synchro | Kind::Ackermann => ["drive", "steering"],
-        }
+        self.facts().counters
     }
 
     /// The numbers of its nominal robot beside those of the encoder. In files, those of a differential drive have other names
     /// too.
     pub fn parameters(self) -> &'static [Parameter] {
-        match self {
-            Kind::Differential => &super::differential::PARAMETERS,
-            Kind::Synchro => &super::synchro::PARAMETERS,
-            Kind::Ackermann => &super::ackermann::PARAMETERS,
-            Kind::Clapper => &super::clapper::PARAMETERS,
-        }
+        self.facts().parameters
     }
 
     /// The effects that are fitted before anything is asked: what bends a leg, what changes a turn, and what lengthens the
     /// way. On a square driven both ways, the first shows as Type B of the paper's companion and the second as Type A.
     pub fn first_effects(self) -> [&'static str; 3] {
-        match self {
-            Kind::Differential | Kind::Clapper => ["wheel_diameter_ratio", "wheelbase", "scale"],
-            Kind::Synchro => ["steer_coupling", "steer_scale", "drive_scale"],
-            Kind::Ackermann => ["steering_zero", "steering_gain", "scale"],
-        }
+        self.facts().first_effects
+    }
+
+    /// Whether its motion is that of one axle, so that a model of effects predicts where it ends; not where a link corrects its
+    /// parts as they drive.
+    pub fn has_one_axle(self) -> bool {
+        self.facts().has_one_axle
+    }
+
+    /// A drive from the numbers that the kind [lists](Kind::parameters), in that order.
+    pub(super) fn drive(self, values: &[f64]) -> Result<Drive, DriveError> {
+        (self.facts().from_values)(values)
     }
 }
 
@@ -65,10 +91,19 @@ pub struct Kinds(u8);
 
 impl Kinds {
     /// Every drive.
-    pub const ALL: Kinds = Kinds(0b1111);
+    pub const ALL: Kinds = Kinds((1 << Kind::ALL.len()) - 1);
 
     /// Those whose motion is that of one axle.
-    pub const OF_ONE_AXLE: Kinds = Kinds(0b0111);
+    pub const OF_ONE_AXLE: Kinds = {
+        let (mut kinds, mut i) = (Kinds(0), 0);
+        while i < Kind::ALL.len() {
+            if Kind::ALL[i].facts().has_one_axle {
+                kinds = kinds.and(Kind::ALL[i]);
+            }
+            i += 1;
+        }
+        kinds
+    };
 
     /// One kind.
     pub const fn of(kind: Kind) -> Kinds {
@@ -87,7 +122,7 @@ impl Kinds {
 
     /// Each of them.
     pub fn each(self) -> impl Iterator<Item = Kind> {
-        Kind::ALL.into_iter().filter(move |kind| self.contains(*kind))
+        Kind::ALL.iter().copied().filter(move |kind| self.contains(*kind))
     }
 }
 

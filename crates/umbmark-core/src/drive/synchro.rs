@@ -3,33 +3,10 @@
 //! The course is where the wheels point; the base below the turret keeps its heading as it was at START. A heading, believed
 //! or measured, is that of the course: of the turret, which turns with the wheels.
 
+use super::kinematics::Kinematics;
 use super::{Counting, DifferentialDrive, DriveError, Encoder, Wheel, WheelTravel, positive};
 use crate::parameter::{DefaultValue, Parameter};
 use std::f64::consts::{PI, TAU};
-
-/// The numbers of a synchro drive, in the order of [`SynchroDrive::from_values`].
-pub(super) const PARAMETERS: [Parameter; 4] = [
-    length("wheel_circle_m", 0.5, "diameter of the circle that the wheels stand on"),
-    length("wheel_diameter_m", 0.25, "diameter of the wheels"),
-    Parameter {
-        name: "steering_ticks_per_revolution",
-        flag: "",
-        unit: "",
-        default: DefaultValue::Value(10_000.0),
-        typical: 10_000.0,
-        bounds: (1.0, 1e9),
-        meaning: "counts of the steering per revolution of the wheels about the vertical",
-        choices: &[],
-    },
-    Parameter::size(
-        "coupling_rad_per_m",
-        "",
-        "rad/m",
-        1e-3,
-        (-10.0, 10.0),
-        "turn of the course per metre driven that the odometry reckons with",
-    ),
-];
 
 const fn length(name: &'static str, typical: f64, meaning: &'static str) -> Parameter {
     let default = DefaultValue::Value(typical);
@@ -42,7 +19,7 @@ const fn length(name: &'static str, typical: f64, meaning: &'static str) -> Para
 /// per revolution, and the coupling e. Source: Everett (1995), Sensors for Mobile Robots, chapter 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SynchroDrive {
-    pub(super) axle: DifferentialDrive,
+    axle: DifferentialDrive,
     steering_ticks: f64,
     coupling: f64,
 }
@@ -61,11 +38,57 @@ impl SynchroDrive {
         Ok(SynchroDrive { axle, steering_ticks, coupling })
     }
 
-    pub(super) fn from_values(values: &[f64]) -> Result<Self, DriveError> {
+    /// Metres per count of the drive, radians per count of the steering.
+    fn per_count(&self, encoder: &Encoder) -> [f64; 2] {
+        [PI * self.axle.wheel_diameter_left() / encoder.ticks_per_revolution(), TAU / self.steering_ticks]
+    }
+
+    /// Counts of drive and steering in a motion.
+    fn gain(&self, encoder: &Encoder, forward: f64, rotation: f64) -> [f64; 2] {
+        let [drive, steering] = self.per_count(encoder);
+        [forward / drive, (rotation - self.coupling * forward) / steering]
+    }
+}
+
+impl Kinematics for SynchroDrive {
+    const NAME: &'static str = "synchro";
+
+    const COUNTERS: [&'static str; 2] = ["drive", "steering"];
+
+    const PARAMETERS: &'static [Parameter] = &[
+        length("wheel_circle_m", 0.5, "diameter of the circle that the wheels stand on"),
+        length("wheel_diameter_m", 0.25, "diameter of the wheels"),
+        Parameter {
+            name: "steering_ticks_per_revolution",
+            flag: "",
+            unit: "",
+            default: DefaultValue::Value(10_000.0),
+            typical: 10_000.0,
+            bounds: (1.0, 1e9),
+            meaning: "counts of the steering per revolution of the wheels about the vertical",
+            choices: &[],
+        },
+        Parameter::size(
+            "coupling_rad_per_m",
+            "",
+            "rad/m",
+            1e-3,
+            (-10.0, 10.0),
+            "turn of the course per metre driven that the odometry reckons with",
+        ),
+    ];
+
+    const FIRST_EFFECTS: [&'static str; 3] = ["steer_coupling", "steer_scale", "drive_scale"];
+
+    fn axle(&self) -> &DifferentialDrive {
+        &self.axle
+    }
+
+    fn from_values(values: &[f64]) -> Result<Self, DriveError> {
         SynchroDrive::new(values[0], values[1], values[2], values[3])
     }
 
-    pub(super) fn values(&self) -> Vec<f64> {
+    fn values(&self) -> Vec<f64> {
         vec![self.axle.wheelbase(), self.axle.wheel_diameter_left(), self.steering_ticks, self.coupling]
     }
 
@@ -73,7 +96,7 @@ impl SynchroDrive {
     ///
     /// True forward = E_s f and true rotation = r (2π n_s/N_s + e₀ f) + e E_s f, with the believed f and e₀: so the wheels are D E_s,
     /// the steering counts N_s/r, and the coupling r e₀/E_s + e.
-    pub(super) fn corrected(&self, [coupling, steer_scale, drive_scale]: [f64; 3]) -> Result<Self, DriveError> {
+    fn corrected(&self, [coupling, steer_scale, drive_scale]: [f64; 3]) -> Result<Self, DriveError> {
         SynchroDrive::new(
             self.axle.wheelbase(),
             self.axle.wheel_diameter_left() * drive_scale,
@@ -82,31 +105,25 @@ impl SynchroDrive {
         )
     }
 
-    /// Metres per count of the drive, radians per count of the steering.
-    fn per_count(&self, encoder: &Encoder) -> [f64; 2] {
-        [PI * self.axle.wheel_diameter_left() / encoder.ticks_per_revolution(), TAU / self.steering_ticks]
-    }
-
-    pub(super) fn counting(&self, encoder: &Encoder, forward: f64, rotation: f64) -> Counting {
+    fn counting(&self, encoder: &Encoder, forward: f64, rotation: f64) -> Option<Counting> {
         let [drive, steering] = self.per_count(encoder);
-        let turned = rotation - self.coupling * forward;
-        Counting {
+        Some(Counting {
             per_count: [self.axle.wheel_travel(drive, drive * self.coupling), self.axle.wheel_travel(0.0, steering)],
-            gain: [forward / drive, turned / steering],
+            gain: self.gain(encoder, forward, rotation),
             held: 0,
-        }
+        })
     }
 
-    pub(super) fn travel(&self, encoder: &Encoder, before: [f64; 2], after: [f64; 2]) -> WheelTravel {
+    fn travel(&self, encoder: &Encoder, before: [f64; 2], after: [f64; 2]) -> WheelTravel {
         let [drive, steering] = self.per_count(encoder);
         let forward = (after[0] - before[0]) * drive;
         self.axle.wheel_travel(forward, (after[1] - before[1]) * steering + self.coupling * forward)
     }
 
     /// The counts that gained this travel, from a reading on.
-    pub(super) fn reading(&self, encoder: &Encoder, before: [f64; 2], travel: &WheelTravel) -> [f64; 2] {
+    fn reading(&self, encoder: &Encoder, before: [f64; 2], travel: &WheelTravel) -> [f64; 2] {
         let moved = self.axle.displacement(travel);
-        let gain = self.counting(encoder, moved.forward, moved.rotation).gain;
+        let gain = self.gain(encoder, moved.forward, moved.rotation);
         [before[0] + gain[0], before[1] + gain[1]]
     }
 
@@ -116,7 +133,7 @@ impl SynchroDrive {
     /// With wheels at (x_i, y_i) on a circle of radius ρ, least squares of their slips give forward = -D/3 and rotation =
     /// y_i D/(3ρ²). With two wheels the same rule gives the differential drive's D/2 and D/b. The bumped wheel is the outer
     /// one of its side, y = ρ √3/2.
-    pub(super) fn lost(&self, wheel: Wheel, lost: f64) -> WheelTravel {
+    fn bumped(&self, wheel: Wheel, lost: f64) -> WheelTravel {
         let lean = if wheel == Wheel::Left { 1.0 } else { -1.0 };
         let radius = 0.5 * self.axle.wheelbase();
         let rotation = lean * 0.5 * 3.0_f64.sqrt() * lost / (3.0 * radius);
@@ -137,7 +154,7 @@ mod tests {
     fn counts_and_travel_undo_each_other_both_ways_round() {
         let (drive, encoder) = carmel();
         for (forward, rotation) in [(4.0, 0.0), (0.0, -1.5), (-0.3, 0.7)] {
-            let counting = drive.counting(&encoder, forward, rotation);
+            let counting = drive.counting(&encoder, forward, rotation).unwrap();
             let moved = drive.axle.displacement(&drive.travel(
                 &encoder,
                 [3.0, -5.0],
@@ -172,7 +189,7 @@ mod tests {
             }
             let slips = DMatrix::from_row_slice(6, 2, &rows);
             let twist = slips.svd(true, true).solve(&DVector::from_vec(right), 1e-12).unwrap();
-            let moved = drive.axle.displacement(&drive.lost(wheel, 3e-3));
+            let moved = drive.axle.displacement(&drive.bumped(wheel, 3e-3));
             assert!(
                 (moved.forward - twist[0]).abs() < 1e-15 && (moved.rotation - twist[1]).abs() < 1e-14,
                 "{moved:?} {twist}"

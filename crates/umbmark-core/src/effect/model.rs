@@ -1,7 +1,7 @@
 //! A model: a choice of effects with values.
 
 use super::{Changes, Context, Entry, Evaluate, Formula, Law, MAX_PARAMETERS, Mean, Sight, find};
-use crate::drive::{DifferentialDrive, Kinds, Robot, WheelTravel};
+use crate::drive::{DifferentialDrive, Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
 use crate::parameter::{DefaultValue, Parameter, ParameterError, nearest};
 use std::sync::Arc;
@@ -120,6 +120,11 @@ pub struct Part {
 pub struct Model {
     robot: Robot,
     parts: Vec<Part>,
+}
+
+/// That a model of effects predicts where robots with this drive end.
+pub(crate) fn check_predicted(kind: Kind) -> Result<(), ModelError> {
+    if kind.has_one_axle() { Ok(()) } else { Err(ModelError::NotPredicted { drive: kind.name() }) }
 }
 
 impl Model {

@@ -60,7 +60,7 @@ impl Simulator {
         }
         if self.convoy.is_some() {
             return Err(SimulateError::Unsupported {
-                drive: Kind::Clapper.name(),
+                drive: self.robot().drive.kind().name(),
                 what: "tick logs; `umbmark mc` simulates it",
             });
         }

@@ -1,0 +1,75 @@
+//! What a drive's own file says of it.
+
+use super::{Counting, DifferentialDrive, DriveError, Encoder, Wheel, WheelTravel};
+use crate::parameter::Parameter;
+
+/// One drive: its numbers, and how its two counters become travel of its axle. Where nothing else is said, the counters are
+/// those of the axle's two wheels.
+pub(super) trait Kinematics: Sized {
+    /// As in files.
+    const NAME: &'static str;
+
+    /// What its two counters are called in files.
+    const COUNTERS: [&'static str; 2] = ["left", "right"];
+
+    /// The numbers of its nominal robot beside those of the encoder.
+    const PARAMETERS: &'static [Parameter];
+
+    /// See [`Kind::first_effects`](super::Kind::first_effects).
+    const FIRST_EFFECTS: [&'static str; 3] = ["wheel_diameter_ratio", "wheelbase", "scale"];
+
+    /// See [`Kind::has_one_axle`](super::Kind::has_one_axle).
+    const HAS_ONE_AXLE: bool = true;
+
+    /// A drive from the values of [`Kinematics::PARAMETERS`].
+    fn from_values(values: &[f64]) -> Result<Self, DriveError>;
+
+    /// The values of [`Kinematics::PARAMETERS`].
+    fn values(&self) -> Vec<f64>;
+
+    /// Its axle, real or virtual.
+    fn axle(&self) -> &DifferentialDrive;
+
+    /// The drive as its odometry must believe it to be, where these are the true values of its first effects.
+    fn corrected(&self, first: [f64; 3]) -> Result<Self, DriveError>;
+
+    /// Distance of the steered wheel from the axle \[m\]; for a drive without one, that of a wheel which would steer it as far
+    /// before the axle as its wheels are apart.
+    fn axle_distance(&self) -> f64 {
+        self.axle().wheelbase()
+    }
+
+    /// What the counters do in a move; `None` for a turn that the drive cannot make.
+    fn counting(&self, encoder: &Encoder, forward: f64, rotation: f64) -> Option<Counting> {
+        let (per_tick, travel) = (self.axle().metres_per_tick(encoder), self.axle().wheel_travel(forward, rotation));
+        let left = WheelTravel { left: per_tick.left, right: 0.0 };
+        let right = WheelTravel { left: 0.0, right: per_tick.right };
+        let gain = [travel.left / per_tick.left, travel.right / per_tick.right];
+        Some(Counting { per_count: [left, right], gain, held: 0 })
+    }
+
+    /// Travel of the axle's wheels from one reading to another.
+    fn travel(&self, encoder: &Encoder, before: [f64; 2], after: [f64; 2]) -> WheelTravel {
+        let per_tick = self.axle().metres_per_tick(encoder);
+        WheelTravel { left: (after[0] - before[0]) * per_tick.left, right: (after[1] - before[1]) * per_tick.right }
+    }
+
+    /// The counts that gained this travel, from a reading on.
+    fn reading(&self, encoder: &Encoder, before: [f64; 2], travel: &WheelTravel) -> [f64; 2] {
+        let per_tick = self.axle().metres_per_tick(encoder);
+        [before[0] + travel.left / per_tick.left, before[1] + travel.right / per_tick.right]
+    }
+
+    /// The counts while it stands, before it makes these travels.
+    fn standing(&self, _encoder: &Encoder, before: [f64; 2], _ahead: &[WheelTravel]) -> [f64; 2] {
+        before
+    }
+
+    /// What the axle's wheels make of a bump under a wheel on one side, which costs that wheel so much way \[m\].
+    fn bumped(&self, wheel: Wheel, lost: f64) -> WheelTravel {
+        match wheel {
+            Wheel::Left => WheelTravel { left: -lost, right: 0.0 },
+            Wheel::Right => WheelTravel { left: 0.0, right: -lost },
+        }
+    }
+}
