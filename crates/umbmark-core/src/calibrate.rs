@@ -231,6 +231,7 @@ pub fn calibrate(data: &Dataset, options: &Options) -> Result<Calibration, Calib
         estimate.replayed_before = outcome::replayed(&evidence, robot, &Correction::NONE);
         estimate.replayed_after = outcome::replayed(&evidence, robot, &estimate.correction);
     }
+    warn_of_large_errors(&estimates, &mut warnings);
     warn_of_few_runs(&cw, &ccw, &mut warnings);
     let heading_arm = (evidence.level == Level::Tracks).then_some(evidence.heading_arm);
     Ok(Calibration { estimates, level: evidence.level, heading_arm, warnings })
@@ -361,6 +362,26 @@ fn warn_of_what_does_not_show(shown: &[bool; 3], evidence: &Evidence, warnings: 
         let advice = if one_way { "Drive the path in the other direction too" } else { "Drive a square both ways" };
         warnings
             .push(format!("{missing} not determined: this experiment does not tell {verb} from the rest. {advice}."));
+    }
+}
+
+/// Where a fifth of E_max,sys would be left, and twice what the exact fit leaves, the closed forms are out of their depth: their
+/// own scatter does not leave so much of an error that shows at all.
+fn warn_of_large_errors(estimates: &[Estimate], warnings: &mut Vec<String>) {
+    let of = |method| estimates.iter().find(|estimate| estimate.method == method);
+    let left = |estimate: &Estimate| estimate.e_max_sys_after.zip(estimate.e_max_sys_before);
+    let (Some((mean, before)), Some((exact, _))) =
+        (of(Method::ClosedForm(ClosedForm::Mean)).and_then(left), of(Method::Exact).and_then(left))
+    else {
+        return;
+    };
+    if mean > 0.2 * before && mean > 2.0 * exact {
+        warnings.push(format!(
+            "The closed forms are of first order in the errors, and these are large: their mean would leave {:.0} of {:.0} mm. Use the \
+             exact fit.",
+            1e3 * mean,
+            1e3 * before
+        ));
     }
 }
 

@@ -15,6 +15,7 @@
 mod assembly;
 mod columns;
 mod dead_reckoning;
+mod decimal;
 mod distribution_table;
 mod document;
 mod error;

@@ -106,6 +106,19 @@ fn the_exact_fit_of_noise_free_returns_leaves_nothing() {
 
 /// Section 3.1 of the paper; E_d as the share 1 % by which the wheels differ.
 #[test]
+fn the_closed_forms_are_warned_of_where_a_skid_steered_robot_is_out_of_their_depth() {
+    let warned = |e_b: f64| {
+        let truth = Correction { e_d: 1.003, e_b, e_s: 1.0 };
+        let calibration = calibrate(&noise_free(&truth), &Options::default()).unwrap();
+        let exact = calibration.estimate(Method::Exact).unwrap().correction;
+        assert!((exact.e_b / e_b - 1.0).abs() < 1e-9, "{exact:?}");
+        calibration.warnings.iter().any(|w| w.starts_with("The closed forms are of first order"))
+    };
+    assert!(warned(1.5) && warned(1.875));
+    assert!(!warned(1.01) && !warned(0.97));
+}
+
+#[test]
 fn a_square_driven_one_way_hides_two_large_errors_and_the_other_way_adds_them() {
     let share: f64 = 0.01;
     let e_d = (1.0 + 0.5 * share) / (1.0 - 0.5 * share);

@@ -1,6 +1,6 @@
 //! The distance of the steered wheel.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kind, Kinds};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::{DefaultValue, Parameter};
@@ -33,6 +33,8 @@ impl Effect for AxleDistance {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation /= p[0];

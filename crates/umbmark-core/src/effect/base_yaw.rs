@@ -1,6 +1,6 @@
 //! A base that turns as its wheels pull unevenly.
 
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Kind, Kinds};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -42,6 +42,8 @@ impl Effect for BaseYaw {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Synchro);
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

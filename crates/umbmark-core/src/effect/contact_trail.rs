@@ -1,6 +1,6 @@
 //! Way that is made while the robot turns, and not counted.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kind, Kinds};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -32,6 +32,8 @@ impl Effect for ContactTrail {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Synchro).and(Kind::Ackermann);
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.forward += p[0] * motion.rotation;

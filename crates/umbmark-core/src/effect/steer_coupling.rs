@@ -1,6 +1,6 @@
 //! A course that turns as the robot drives.
 
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kind, Kinds};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -31,6 +31,8 @@ impl Effect for SteerCoupling {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Synchro);
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation += p[0] * motion.forward;

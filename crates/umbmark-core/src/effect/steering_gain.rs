@@ -1,7 +1,7 @@
 //! The gain of a steered wheel.
 
 use super::steering_zero::{steer_on, steered};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Kind, Kinds};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -31,6 +31,8 @@ impl Effect for SteeringGain {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

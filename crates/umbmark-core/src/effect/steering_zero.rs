@@ -1,6 +1,6 @@
 //! A steered wheel that does not stand straight where its counter says so.
 
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Kind, Kinds};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -30,6 +30,8 @@ impl Effect for SteeringZero {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

@@ -1,7 +1,7 @@
 //! Tyres that run wide in fast corners.
 
 use super::steering_zero::{steer_on, steered};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Kind, Kinds};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -31,6 +31,8 @@ impl Effect for Understeer {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
