@@ -1,15 +1,17 @@
-//! A diagnosis of ten end poses with 999 simulated null tests: fit, the whole catalogue, certificates, next experiments.
+//! What a model is missing: from ten end poses with 999 simulated null tests (fit, the whole catalogue, certificates, next
+//! experiments), and from the tracks of ten runs of 10,000 samples, a pose with each fifth.
 //!
-//! `cargo bench -p umbmark-benches --bench diagnose`.
+//! `cargo bench -p umbmark-benches --bench diagnose`; throughput of the tracks is in samples per second.
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use std::time::Duration;
 use umbmark_core::dataset::{Dataset, Run};
 use umbmark_core::diagnose::{Options, base_model, diagnose};
-use umbmark_core::drive::Robot;
-use umbmark_core::effect::TestKind;
+use umbmark_core::drive::{Encoder, Robot};
+use umbmark_core::effect::{Model, TestKind};
+use umbmark_core::learn::{fit, learn};
 use umbmark_core::path::{Direction, Path};
-use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth};
+use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth, record_test};
 
 /// Five runs each way of the paper's robot.
 fn ten_end_poses() -> Dataset {
@@ -43,12 +45,66 @@ fn diagnosis(criterion: &mut Criterion) {
     }
 }
 
+/// Tracks of ten runs round the paper's square, 104 s each, counters read `rate` times a second and poses a fifth as often: a robot
+/// with five systematic effects beside its noise.
+fn tracks(rate: f64) -> Dataset {
+    let labmate = Robot::labmate();
+    let encoder = Encoder::new(labmate.encoder.ticks_per_revolution(), Some(rate), None).expect("a rate");
+    let mut model = Model::new(&Robot { encoder, ..labmate });
+    for (effect, parameter, value) in [
+        ("wheel_noise", "k_sqrt_m", 2e-4),
+        ("reference_noise", "position_sd_m", 1e-3),
+        ("reference_noise", "heading_sd_rad", 2e-3),
+        ("wheel_diameter_ratio", "e_d", 1.002),
+        ("wheelbase", "e_b", 1.01),
+        ("scale", "e_s", 0.997),
+        ("wheel_eccentricity_left", "sine_m", 1e-3),
+        ("caster_kick", "kick_rad", 7e-3),
+    ] {
+        model.set(effect, parameter, value).expect("a value within its bounds");
+    }
+    record_test(&model, &Path::umbmark(), &[TestKind::Systematic], [5, 5], rate / 5.0, [1, 0]).expect("a test")
+}
+
+/// The same three steps as on the command line: what is missing, six parameters fitted, the whole loop.
+fn tracked(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("tracks of ten runs");
+    group.sampling_mode(SamplingMode::Flat).sample_size(10);
+    let on_two = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
+    let base = Model::new(&Robot::labmate());
+    let with = |effects: &[&str]| {
+        let mut model = base.clone();
+        effects.iter().for_each(|effect| model.add(effect).expect("an effect of the catalogue").free = true);
+        model
+    };
+    let three = with(&["wheel_diameter_ratio", "wheelbase", "scale"]);
+    let six = with(&["wheel_diameter_ratio", "wheelbase", "scale", "wheel_eccentricity_left", "crab"]);
+    for rate in [50.0, 100.0, 200.0] {
+        let data = tracks(rate);
+        let samples: usize = data.runs.iter().filter_map(|run| Some(run.log.as_ref()?.time.len())).sum();
+        group.throughput(Throughput::Elements(samples as u64));
+        group.bench_function(format!("diagnose, {rate} Hz"), |bencher| {
+            on_two.install(|| bencher.iter(|| diagnose(&data, &three, &Options::default()).expect("tracks")));
+        });
+        group.bench_function(format!("fit of six, {rate} Hz"), |bencher| {
+            on_two.install(|| bencher.iter(|| fit(&data, &six).expect("tracks")));
+        });
+        if rate == 100.0 {
+            let steps = learn(&data, &Options::default()).expect("tracks").steps.len() - 1;
+            group.bench_function(format!("learn, {steps} steps"), |bencher| {
+                on_two.install(|| bencher.iter(|| learn(&data, &Options::default()).expect("tracks")));
+            });
+        }
+    }
+    group.finish();
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default()
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(5))
         .sample_size(20);
-    targets = diagnosis
+    targets = diagnosis, tracked
 }
 criterion_main!(benches);

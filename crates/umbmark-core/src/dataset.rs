@@ -15,6 +15,7 @@
 mod assembly;
 mod columns;
 mod dead_reckoning;
+mod decimal;
 mod distribution_table;
 mod document;
 mod error;
@@ -81,6 +82,13 @@ pub struct ReturnError {
     pub y: f64,
     /// ε_θ \[rad\] in (-π, π], where the heading was measured.
     pub heading: Option<f64>,
+}
+
+/// A row of an array: x, y \[m\] and heading \[rad\], NaN where it was not measured.
+impl From<[f64; 3]> for ReturnError {
+    fn from([x, y, heading]: [f64; 3]) -> ReturnError {
+        ReturnError { x, y, heading: Some(heading).filter(|heading| !heading.is_nan()) }
+    }
 }
 
 /// An absolute pose of the robot, in the frame of START.

@@ -21,6 +21,7 @@ mod bumps;
 mod carpet_nap;
 mod caster_kick;
 mod centripetal_load;
+mod changes;
 mod contact_trail;
 mod context;
 mod crab;
@@ -70,6 +71,7 @@ use crate::path::Direction;
 use crate::random::Stream;
 
 pub use bumps::extra_travel;
+pub use changes::Changes;
 pub use context::{Context, Place, Progress, Sight};
 pub use formula::{Formula, FormulaError, Target};
 pub use law::Law;
@@ -268,6 +270,9 @@ pub trait Effect {
     /// The drives that may have it.
     const DRIVES: Kinds = Kinds::of(Kind::Differential);
 
+    /// Which of the methods from [`wheels`](Effect::wheels) on it overrides: the others are not called.
+    const CHANGES: Changes = Changes::ALL;
+
     /// What these values mean for the robot: a sentence. Empty where there is nothing to say.
     fn means(_p: &[f64], _robot: &Robot) -> String {
         String::new()
@@ -389,6 +394,8 @@ pub struct Entry {
     pub about: About,
     /// See [`Effect::DRIVES`].
     pub drives: Kinds,
+    /// See [`Effect::CHANGES`].
+    pub changes: Changes,
     /// See [`Effect::means`].
     pub means: fn(&[f64], &Robot) -> String,
     /// See [`Effect::varies`].
@@ -405,6 +412,7 @@ impl Entry {
         Entry {
             about: E::ABOUT,
             drives: E::DRIVES,
+            changes: E::CHANGES,
             means: E::means,
             varies: E::varies,
             values: Mean {

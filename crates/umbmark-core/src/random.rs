@@ -2,7 +2,7 @@
 
 use rand::rand_core::{Infallible, TryRng};
 use rand::{Rng, RngExt};
-use rand_distr::StandardNormal;
+use rand_distr::{Distribution, StandardNormal};
 
 /// A counter-based random stream: Philox4x64-10.
 ///
@@ -30,9 +30,12 @@ impl Stream {
     }
 
     /// A draw from the standard normal distribution (ziggurat).
-    #[inline]
+    ///
+    /// Not inlined, so that it comes back in a register: draws that go through memory one by one and are read in pairs make
+    /// the reader wait.
+    #[inline(never)]
     pub fn normal(&mut self) -> f64 {
-        self.sample(StandardNormal)
+        StandardNormal.sample(self)
     }
 
     /// A draw from the uniform distribution on [0, 1).

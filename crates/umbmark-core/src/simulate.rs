@@ -10,6 +10,7 @@ mod diffusion;
 mod pieces;
 mod record;
 mod recorded_test;
+mod rolls;
 mod sampling;
 mod truth;
 mod way;

@@ -49,9 +49,9 @@ pub(super) fn parse_motive(file: &str, text: &str, warnings: &mut Vec<String>) -
     let layout = Layout::read(file, &mut lines)?;
     let mut rows = TrackRows { file: file.to_owned(), column: "Time (Seconds)".into(), ..TrackRows::default() };
     let mut found: Vec<(Vector3<f64>, Matrix3<f64>)> = Vec::new();
-    let mut cells = Vec::new();
+    let (mut cells, mut decimals) = (Vec::new(), Vec::new());
     for (line, row) in lines {
-        split(row, &mut cells);
+        split(row, &mut cells, &mut decimals);
         let cell = |column: usize| cells.get(column).copied().unwrap_or("");
         let columns = || layout.position.into_iter().chain(layout.rotation.into_iter().flatten());
         if columns().all(|column| cell(column).is_empty()) {
@@ -98,7 +98,7 @@ impl Layout {
         let (mut types, mut names, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
         let (mut per_metre, mut rotation_type) = (1.0, String::from("XYZ"));
         for (line, row) in lines.by_ref() {
-            split(row, &mut cells);
+            split(row, &mut cells, &mut Vec::new());
             let owned = || cells.iter().map(|cell| (*cell).to_owned()).collect::<Vec<String>>();
             let after = |key: &str| Some(cells[cells.iter().position(|cell| *cell == key)? + 1..].first()?.to_owned());
             match (cells[0], cells.get(1).copied().unwrap_or("")) {

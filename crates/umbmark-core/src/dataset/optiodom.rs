@@ -89,7 +89,7 @@ impl<'a> Metadata<'a> {
     fn cells(&self, key: &str) -> Option<(usize, Vec<&'a str>)> {
         let mut cells = Vec::new();
         Rows::of(self.text).find_map(|(line, text)| {
-            split(text, &mut cells);
+            split(text, &mut cells, &mut Vec::new());
             (cells[0] == key).then(|| (line, cells[1..].to_vec()))
         })
     }

@@ -178,17 +178,16 @@ impl Recording {
 fn was_reset(before: f64, after: f64, expected: f64, bits: Option<u32>) -> bool {
     let fell = after.abs() <= AFTER_RESET * expected && before.abs() > BEFORE_RESET * expected;
     let full = |bits: u32| (f64::from(bits).exp2() - before).abs() <= 4.0 * expected;
-    let rolled = match bits {
+    fell && !match bits {
         Some(bits) => full(bits),
         None => USUAL_BITS.into_iter().any(full),
-    };
-    fell && !rolled
+    }
 }
 
 /// The counter that rolled over where a wheel went `size` ticks and about `expected` are usual.
 fn rolled_bits(size: f64, expected: f64) -> Option<u32> {
     let near = |bits: &u32| (size - f64::from(*bits).exp2()).abs() <= 4.0 * expected;
-    USUAL_BITS.into_iter().find(near).filter(|_| size > 10.0 * expected)
+    if size > 10.0 * expected { USUAL_BITS.into_iter().find(near) } else { None }
 }
 
 /// The error of time that goes back, or stands still, at row `at`.

@@ -3,6 +3,7 @@
 //! Tolerated, because they do no harm: Windows and old Mac line ends, a byte order mark, blank lines, lines of nothing
 //! but commas, comment lines (#), spaces round cells, quotation marks round cells, empty cells after the last column.
 
+use super::decimal::Decimal;
 use super::error::{DatasetError, quoted};
 
 /// A text with a header.
@@ -11,6 +12,8 @@ pub(super) struct Sheet<'a> {
     /// Names of the columns, in lower case.
     pub header: Vec<String>,
     pub header_line: usize,
+    /// No more rows than this follow.
+    pub most_rows: usize,
     body: Rows<'a>,
 }
 
@@ -19,6 +22,8 @@ pub(super) struct Row<'r> {
     pub file: &'r str,
     pub line: usize,
     pub cells: &'r [&'r str],
+    /// Of each cell that is a [`Decimal`], its value; NaN of others.
+    pub decimals: &'r [f64],
 }
 
 /// The lines of a text that hold something, with their numbers.
@@ -41,7 +46,7 @@ impl<'a> Iterator for Rows<'a> {
     fn next(&mut self) -> Option<(usize, &'a str)> {
         for line in self.lines.by_ref() {
             self.line += 1;
-            let line = line.trim();
+            let line = trimmed(line);
             if !line.starts_with('#') && line.bytes().any(|byte| byte != b',' && !byte.is_ascii_whitespace()) {
                 return Some((self.line, line));
             }
@@ -61,28 +66,30 @@ impl<'a> Sheet<'a> {
         };
         check_separator(file, header_line, header)?;
         let mut cells = Vec::new();
-        split(header, &mut cells);
+        split(header, &mut cells, &mut Vec::new());
         if cells[0].parse::<f64>().is_ok() {
             return Err(DatasetError::NoHeader { file: file.to_owned(), line: header_line, value: quoted(cells[0]) });
         }
         let used = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
         let header = cells[..used].iter().map(|cell| cell.to_lowercase()).collect();
-        Ok(Sheet { file, header, header_line, body })
+        Ok(Sheet { file, header, header_line, most_rows: line_ends(text), body })
     }
 
     /// Takes every row as data, of a number of columns.
     pub fn headless(file: &'a str, text: &'a str, columns: usize) -> Sheet<'a> {
-        Sheet { file, header: vec![String::new(); columns], header_line: 0, body: Rows::of(text) }
+        let (header, most_rows) = (vec![String::new(); columns], 1 + line_ends(text));
+        Sheet { file, header, header_line: 0, most_rows, body: Rows::of(text) }
     }
 
     /// Visits every row; there must be one.
     pub fn for_each(&self, mut visit: impl FnMut(&Row) -> Result<(), DatasetError>) -> Result<(), DatasetError> {
         let mut cells = Vec::with_capacity(self.header.len());
+        let mut decimals = Vec::with_capacity(self.header.len());
         let mut any = false;
         for (line, text) in self.body.clone() {
-            split(text, &mut cells);
+            split(text, &mut cells, &mut decimals);
             self.check_width(line, text, &cells)?;
-            visit(&Row { file: self.file, line, cells: &cells })?;
+            visit(&Row { file: self.file, line, cells: &cells, decimals: &decimals })?;
             any = true;
         }
         if any {
@@ -109,6 +116,10 @@ impl<'a> Sheet<'a> {
     }
 }
 
+fn line_ends(text: &str) -> usize {
+    text.bytes().filter(|byte| matches!(byte, b'\n' | b'\r')).count()
+}
+
 fn check_separator(file: &str, line: usize, text: &str) -> Result<(), DatasetError> {
     let found = match text {
         _ if text.contains(';') => "semicolons",
@@ -120,30 +131,48 @@ fn check_separator(file: &str, line: usize, text: &str) -> Result<(), DatasetErr
     Err(DatasetError::Separator { file: file.to_owned(), line, found })
 }
 
-/// Cuts a line at its commas, but not at those in quotation marks.
-pub(super) fn split<'a>(line: &'a str, cells: &mut Vec<&'a str>) {
+/// Cuts a line at its commas, but not at those in quotation marks. A cell that is a [`Decimal`] is read on the way.
+pub(super) fn split<'a>(line: &'a str, cells: &mut Vec<&'a str>, decimals: &mut Vec<f64>) {
     cells.clear();
-    let (mut start, mut inside) = (0, false);
-    for (at, byte) in line.bytes().enumerate() {
-        match byte {
-            b'"' => inside = !inside,
-            b',' if !inside => {
-                cells.push(tidy(&line[start..at]));
-                start = at + 1;
-            }
-            _ => {}
+    decimals.clear();
+    let bytes = line.as_bytes();
+    let mut start = 0;
+    loop {
+        let Decimal { value, length } = Decimal::at_start_of(&bytes[start..]);
+        let mut end = start + length;
+        if bytes.get(end).is_none_or(|byte| *byte == b',') {
+            cells.push(&line[start..end]);
+            decimals.push(value);
+        } else {
+            end += text_length(&bytes[end..]);
+            cells.push(tidy(&line[start..end]));
+            decimals.push(f64::NAN);
         }
+        if end == bytes.len() {
+            return;
+        }
+        start = end + 1;
     }
-    cells.push(tidy(&line[start..]));
+}
+
+/// How many bytes there are before a comma that is not in quotation marks.
+fn text_length(bytes: &[u8]) -> usize {
+    let mut inside = false;
+    let ends = |byte: &u8| {
+        inside ^= *byte == b'"';
+        *byte == b',' && !inside
+    };
+    bytes.iter().position(ends).unwrap_or(bytes.len())
 }
 
 /// A cell without the spaces and quotation marks round it; most have none.
 fn tidy(cell: &str) -> &str {
-    let plain = |byte: Option<&u8>| byte.is_none_or(|byte| byte.is_ascii_graphic() && *byte != b'"');
-    let bytes = cell.as_bytes();
-    if plain(bytes.first()) && plain(bytes.last()) {
-        return cell;
-    }
-    let cell = cell.trim();
+    let cell = trimmed(cell);
     cell.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).map_or(cell, str::trim)
+}
+
+/// A text without the spaces round it; most have none.
+fn trimmed(text: &str) -> &str {
+    let plain = |byte: Option<&u8>| byte.is_none_or(u8::is_ascii_graphic);
+    if plain(text.as_bytes().first()) && plain(text.as_bytes().last()) { text } else { text.trim() }
 }

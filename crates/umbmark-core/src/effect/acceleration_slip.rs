@@ -1,7 +1,7 @@
 //! Slip under drive and brake.
 
 use super::words::{either, percent};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -30,6 +30,8 @@ impl Effect for AccelerationSlip {
         separated_by: "a second acceleration at the same speed: a delay does not care",
         source: "linear creep of a rolling tyre; 2 % per m/s² is assumed",
     };
+
+    const CHANGES: Changes = Changes::WHEELS;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

@@ -1,7 +1,7 @@
 //! Play between motor and wheel.
 
 use super::words::{deg, mm};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -30,6 +30,8 @@ impl Effect for Backlash {
         separated_by: "turning each wheel by hand with its motor held; a track",
         source: "geometry; hobby drives with about 1 degree of body heading are reported, 0.5 mm is assumed",
     };
+
+    const CHANGES: Changes = Changes::WHEELS;
 
     fn means(p: &[f64], robot: &Robot) -> String {
         format!(

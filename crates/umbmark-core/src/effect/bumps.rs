@@ -1,7 +1,7 @@
 //! Bumps met by chance, and the geometry of one.
 
 use super::words::{deg, size};
-use super::{About, ActsOn, Bump, Effect, Stretch};
+use super::{About, ActsOn, Bump, Changes, Effect, Stretch};
 use crate::drive::{Kind, Kinds, Robot, Wheel};
 use crate::parameter::{DefaultValue, Parameter};
 use crate::random::Stream;
@@ -41,6 +41,8 @@ impl Effect for Bumps {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro);
+
+    const CHANGES: Changes = Changes::BUMPS;
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let lost = lost_travel(p[1], p[2], p[3]);

@@ -1,7 +1,7 @@
 //! A carpet whose pile leans one way.
 
 use super::floor_slope::{DRIFT, DRIFT_X, DRIFT_Y, carried, drift};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -37,6 +37,8 @@ impl Effect for CarpetNap {
     };
 
     const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("{}.", carried(p))

@@ -1,7 +1,7 @@
 //! The kick of casters that swing round after a turn.
 
 use super::words::{deg, either, mm};
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::{DefaultValue, Parameter};
@@ -38,6 +38,8 @@ impl Effect for CasterKick {
         separated_by: "a track; 0.3 m of driving straight before each turn, on and off; ball casters",
         source: "users' reports of drift after a change of direction; 0.2 degree and 5 cm are assumed",
     };
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

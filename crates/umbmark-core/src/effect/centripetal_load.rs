@@ -1,7 +1,7 @@
 //! The outer tyre gives way in arcs.
 
 use super::words::{either, percent};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -30,6 +30,8 @@ impl Effect for CentripetalLoad {
         separated_by: "circles driven slowly and fast, both ways",
         source: "load transfer on a linear tyre; 0.1 % per m/s² is assumed",
     };
+
+    const CHANGES: Changes = Changes::WHEELS;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

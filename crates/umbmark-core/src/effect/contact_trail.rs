@@ -1,11 +1,9 @@
 //! Way that is made while the robot turns, and not counted.
 
-use super::words::{either, mm};
-use super::{About, ActsOn, Context, Effect};
-use crate::drive::{Kind, Kinds, Robot};
+use super::{About, ActsOn, Changes, Context, Effect};
+use crate::drive::{Kind, Kinds};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-use std::f64::consts::FRAC_PI_2;
 
 /// Way per radian of turn.
 pub struct ContactTrail;
@@ -35,13 +33,7 @@ impl Effect for ContactTrail {
 
     const DRIVES: Kinds = Kinds::of(Kind::Synchro).and(Kind::Ackermann);
 
-    fn means(p: &[f64], _robot: &Robot) -> String {
-        let way = mm(p[0] * FRAC_PI_2);
-        format!(
-            "A quarter turn to the left carries the robot {way} {} that no encoder counts.",
-            either(p[0], "ahead", "back")
-        )
-    }
+    const CHANGES: Changes = Changes::BODY;
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.forward += p[0] * motion.rotation;

@@ -1,7 +1,7 @@
 //! Crab: wheels that stand askew, both to the same side.
 
 use super::words::{deg, mm, side};
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -33,6 +33,8 @@ impl Effect for Crab {
     };
 
     const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

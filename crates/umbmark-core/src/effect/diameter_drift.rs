@@ -1,7 +1,7 @@
 //! Wheel diameters that change as the robot drives.
 
 use super::words::{either, mm};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -40,6 +40,8 @@ impl Effect for DiameterDrift {
         separated_by: "the heading along the track; cw and ccw runs in random order",
         source: "0.12 % over a run is assumed",
     };
+
+    const CHANGES: Changes = Changes::WHEELS;
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let mean = 0.5 * (robot.drive.wheel_diameter_left() + robot.drive.wheel_diameter_right());

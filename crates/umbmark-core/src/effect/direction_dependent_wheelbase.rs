@@ -1,7 +1,7 @@
 //! A wheelbase that is not the same for left and right turns.
 
 use super::words::mm;
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -31,6 +31,8 @@ impl Effect for DirectionDependentWheelbase {
         separated_by: "spins both ways, or a heading at each corner before and after the turn",
         source: "first-order theory of side-periodic errors; 0.4 % is assumed",
     };
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let b = robot.drive.wheelbase();

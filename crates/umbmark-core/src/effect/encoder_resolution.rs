@@ -1,7 +1,7 @@
 //! What lies between two counts.
 
 use super::words::mm;
-use super::{About, ActsOn, Effect};
+use super::{About, ActsOn, Changes, Effect};
 use crate::drive::Robot;
 use crate::geometry::{Pose2, Real};
 use crate::parameter::{DefaultValue, Parameter};
@@ -43,6 +43,8 @@ impl Effect for EncoderResolution {
         separated_by: "the scatter of standing poses against that of driven ones; counting finer",
         source: "variance q²/12 of rounding; a count of the assumed LabMate is 0.236 mm",
     };
+
+    const CHANGES: Changes = Changes::MEASURED;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("A count of {} leaves the travel of each wheel uncertain by half of that, either way.", mm(p[0]))

@@ -2,7 +2,7 @@
 
 use super::crab::turn_course;
 use super::words::{deg, size};
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -33,6 +33,8 @@ impl Effect for EncoderSampling {
         separated_by: "replaying the recorded ticks: it must vanish",
         source: "Euler's rule against the mid-point rule; 50 ms is assumed",
     };
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

@@ -1,7 +1,7 @@
 //! Encoders that are not read at the same moment.
 
 use super::words::{deg, either, size};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -31,6 +31,8 @@ impl Effect for EncoderSkew {
         separated_by: "a second speed, or the heading just before and just after a stop",
         source: "kinematics: 10 ms at 0.2 m/s is 0.34 degree with b = 0.34 m",
     };
+
+    const CHANGES: Changes = Changes::WHEELS;
 
     fn means(p: &[f64], robot: &Robot) -> String {
         format!(

@@ -1,7 +1,7 @@
 //! A sloping floor that lets the robot drift downhill.
 
 use super::words::mm;
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -58,6 +58,8 @@ impl Effect for FloorSlope {
     };
 
     const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let slide = libm::hypot(p[2], p[3]);

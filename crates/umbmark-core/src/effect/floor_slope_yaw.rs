@@ -1,7 +1,7 @@
 //! A sloping floor that turns the robot as it drives across.
 
 use super::words::deg;
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -43,6 +43,8 @@ impl Effect for FloorSlopeYaw {
     };
 
     const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

@@ -1,6 +1,6 @@
 //! What an effect of a model does: an entry, or a formula of the user's own.
 
-use super::{CATALOGUE, Entry, Formula, Scatter, WheelVariance};
+use super::{CATALOGUE, Changes, Entry, Formula, Scatter, WheelVariance};
 use crate::geometry::Pose2;
 use crate::parameter::Parameter;
 use std::fmt;
@@ -51,6 +51,11 @@ impl Law {
     /// Whether it changes motion along the way at these values; a formula is taken to.
     pub fn varies(&self, values: &[f64]) -> bool {
         self.entry().is_none_or(|entry| (entry.varies)(values))
+    }
+
+    /// What it changes.
+    pub(crate) fn changes(&self) -> Changes {
+        self.entry().map_or(Changes::WHEELS.and(Changes::BODY), |entry| entry.changes)
     }
 
     /// Its random part; a formula has none.

@@ -2,7 +2,7 @@
 
 use super::caster_kick::{TRAIL, faded};
 use super::words::{deg, mm, side};
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -39,6 +39,8 @@ impl Effect for LegKick {
         separated_by: "a heading in the middle of a leg and at its end; sides of another length",
         source: "first-order theory of side-periodic errors; 0.2 degree and 5 cm are assumed",
     };
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

@@ -1,7 +1,7 @@
 //! A marker that is not over the axle's centre.
 
 use super::words::{either, mm, side};
-use super::{About, ActsOn, Effect, Sight};
+use super::{About, ActsOn, Changes, Effect, Sight};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
@@ -43,6 +43,8 @@ impl Effect for MarkerOffset {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    const CHANGES: Changes = Changes::SEEN;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

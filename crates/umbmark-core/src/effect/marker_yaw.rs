@@ -1,7 +1,7 @@
 //! A marker that is mounted askew.
 
 use super::words::{deg, side};
-use super::{About, ActsOn, Effect, Sight};
+use super::{About, ActsOn, Changes, Effect, Sight};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
@@ -33,6 +33,8 @@ impl Effect for MarkerYaw {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    const CHANGES: Changes = Changes::SEEN;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("The marker faces {} to the {} of where the robot does.", deg(p[0]), side(p[0]))

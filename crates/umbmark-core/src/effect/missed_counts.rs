@@ -1,7 +1,7 @@
 //! Encoders that are too slow for the wheel.
 
 use super::words::{either, percent, size};
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
@@ -68,6 +68,8 @@ impl Effect for MissedCounts {
         separated_by: "ten turns of each wheel by hand or motor, off the floor, counted",
         source: "reports of users of small controllers; sizes are assumed",
     };
+
+    const CHANGES: Changes = Changes::WHEELS;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let more = |wheel: usize| {

@@ -1,6 +1,6 @@
 //! A model: a choice of effects with values.
 
-use super::{Context, Entry, Evaluate, Formula, Law, MAX_PARAMETERS, Mean, Sight, find};
+use super::{Changes, Context, Entry, Evaluate, Formula, Law, MAX_PARAMETERS, Mean, Sight, find};
 use crate::drive::{DifferentialDrive, Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
 use crate::parameter::{DefaultValue, Parameter, ParameterError, nearest};
@@ -353,6 +353,7 @@ impl Model {
                 Law::Entry(entry) => Work::Entry(*T::mean(entry)),
                 Law::Formula(formula) => Work::Formula(Arc::clone(formula)),
             },
+            changes: part.effect.changes(),
             count: part.values.len(),
             values: [T::from(0.0); MAX_PARAMETERS],
         });
@@ -377,6 +378,7 @@ pub struct Chain<T: Evaluate> {
 #[derive(Clone, Debug)]
 struct Link<T: Evaluate> {
     work: Work<T>,
+    changes: Changes,
     count: usize,
     values: [T; MAX_PARAMETERS],
 }
@@ -388,6 +390,12 @@ enum Work<T: Evaluate> {
 }
 
 impl<T: Evaluate> Chain<T> {
+    /// Its links that change this.
+    #[inline]
+    fn links(&self, change: Changes) -> impl Iterator<Item = &Link<T>> {
+        self.links.iter().filter(move |link| link.changes.include(change))
+    }
+
     /// Replaces all values, in the order of [`Model::values`].
     ///
     /// # Panics
@@ -404,7 +412,7 @@ impl<T: Evaluate> Chain<T> {
     /// Where the robot truly stands at START on average, seen from where it is believed to stand.
     pub fn start(&self) -> Pose2<T> {
         let start = Pose2::IDENTITY.lift();
-        self.links.iter().fold(start, |pose, link| match &link.work {
+        self.links(Changes::START).fold(start, |pose, link| match &link.work {
             Work::Entry(mean) => pose.compose(&(mean.start)(&link.values)),
             Work::Formula(_) => pose,
         })
@@ -413,30 +421,54 @@ impl<T: Evaluate> Chain<T> {
     /// True wheel travel for a believed one.
     #[inline]
     pub fn wheel_travel(&self, at: &Context<T>, believed: &WheelTravel) -> WheelTravel<T> {
-        let mut travel = WheelTravel { left: T::from(believed.left), right: T::from(believed.right) };
-        for link in &self.links {
-            match &link.work {
-                Work::Entry(mean) => (mean.wheels)(&link.values, at, &mut travel),
-                Work::Formula(formula) => {
-                    let rotation = self.drive.displacement(&travel).rotation;
-                    formula.wheels(&link.values, at, rotation, &mut travel);
+        let mut travel = [WheelTravel { left: T::from(believed.left), right: T::from(believed.right) }];
+        self.change_wheels(at, &mut travel);
+        let [travel] = travel;
+        travel
+    }
+
+    /// Makes true wheel travels of believed ones, all in one place: link after link, so that no travel waits for another.
+    #[inline]
+    pub(crate) fn change_wheels(&self, at: &Context<T>, travels: &mut [WheelTravel<T>]) {
+        for link in self.links(Changes::WHEELS) {
+            for travel in &mut *travels {
+                match &link.work {
+                    Work::Entry(mean) => (mean.wheels)(&link.values, at, travel),
+                    Work::Formula(formula) => {
+                        let rotation = self.drive.displacement(travel).rotation;
+                        formula.wheels(&link.values, at, rotation, travel);
+                    }
                 }
             }
         }
-        travel
     }
 
     /// Body motion that a true wheel travel makes.
     #[inline]
     pub fn body(&self, at: &Context<T>, travel: &WheelTravel<T>) -> Displacement2<T> {
-        let mut motion = self.drive.displacement(travel);
-        for link in &self.links {
-            match &link.work {
-                Work::Entry(mean) => (mean.body)(&link.values, at, &mut motion),
-                Work::Formula(formula) => formula.body(&link.values, at, &mut motion),
+        let mut motion = [self.drive.displacement(travel)];
+        self.change_bodies(at, &mut motion);
+        let [motion] = motion;
+        motion
+    }
+
+    /// Body motions that true wheel travels make, all in one place, into `motions`.
+    pub(crate) fn bodies(&self, at: &Context<T>, travels: &[WheelTravel<T>], motions: &mut Vec<Displacement2<T>>) {
+        motions.clear();
+        motions.extend(travels.iter().map(|travel| self.drive.displacement(travel)));
+        self.change_bodies(at, motions);
+    }
+
+    #[inline]
+    fn change_bodies(&self, at: &Context<T>, motions: &mut [Displacement2<T>]) {
+        for link in self.links(Changes::BODY) {
+            for motion in &mut *motions {
+                match &link.work {
+                    Work::Entry(mean) => (mean.body)(&link.values, at, motion),
+                    Work::Formula(formula) => formula.body(&link.values, at, motion),
+                }
             }
         }
-        motion
     }
 
     /// Body motion for a believed wheel travel at constant ratio of the wheel speeds.
@@ -449,7 +481,7 @@ impl<T: Evaluate> Chain<T> {
     #[inline]
     pub fn seen(&self, at: &Sight, pose: &Pose2<T>) -> Pose2<T> {
         let mut seen = *pose;
-        for link in &self.links {
+        for link in self.links(Changes::SEEN) {
             if let Work::Entry(mean) = &link.work {
                 (mean.seen)(&link.values, at, &mut seen);
             }

@@ -2,7 +2,7 @@
 
 use super::bumps::{HEIGHT, PROFILE, WHEEL_RADIUS, lost_travel};
 use super::words::{deg, mm, size};
-use super::{About, ActsOn, Bump, Context, Effect, Stretch, TestKind};
+use super::{About, ActsOn, Bump, Changes, Context, Effect, Stretch, TestKind};
 use crate::drive::{Kind, Kinds, Robot, Wheel, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
@@ -54,6 +54,8 @@ impl Effect for PlacedBumps {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro).and(Kind::Clapper);
+
+    const CHANGES: Changes = Changes::WHEELS.and(Changes::BUMPS);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let (single, share) = (lost_travel(p[1], p[2], p[3]), p[4]);

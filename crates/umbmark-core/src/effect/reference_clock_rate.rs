@@ -2,7 +2,7 @@
 
 use super::reference_delay::go_back;
 use super::words::{either, size};
-use super::{About, ActsOn, Effect, Sight};
+use super::{About, ActsOn, Changes, Effect, Sight};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
@@ -34,6 +34,8 @@ impl Effect for ReferenceClockRate {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    const CHANGES: Changes = Changes::SEEN;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("The clock of the reference {} {} ms in a minute.", either(p[0], "loses", "gains"), size(6e4 * p[0]))

@@ -1,7 +1,7 @@
 //! A reference whose clock is behind.
 
 use super::words::{either, mm, size};
-use super::{About, ActsOn, Effect, Sight};
+use super::{About, ActsOn, Changes, Effect, Sight};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Pose2, Real};
 use crate::parameter::Parameter;
@@ -32,6 +32,8 @@ impl Effect for ReferenceDelay {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    const CHANGES: Changes = Changes::SEEN;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

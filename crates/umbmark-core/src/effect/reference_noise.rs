@@ -1,7 +1,7 @@
 //! Noise of the absolute measurement.
 
 use super::words::{deg, mm};
-use super::{About, ActsOn, Effect};
+use super::{About, ActsOn, Changes, Effect};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::Pose2;
 use crate::parameter::Parameter;
@@ -44,6 +44,8 @@ impl Effect for ReferenceNoise {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    const CHANGES: Changes = Changes::MEASURED;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("A measured position scatters by {} along each axis, a heading by {}.", mm(p[0]), deg(p[1]))

@@ -1,7 +1,7 @@
 //! E_s: the scale.
 
 use super::words::{either, mm};
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
@@ -35,6 +35,8 @@ impl Effect for Scale {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Ackermann).and(Kind::Clapper);
+
+    const CHANGES: Changes = Changes::WHEELS;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let (off, word) = (p[0] - 1.0, either(p[0] - 1.0, "long", "short"));

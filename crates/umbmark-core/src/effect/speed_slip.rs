@@ -1,7 +1,7 @@
 //! Slip of both wheels that grows with their speed.
 
 use super::words::{either, percent};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -26,6 +26,8 @@ impl Effect for SpeedSlip {
         separated_by: "one measured straight leg at each of two speeds",
         source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
     };
+
+    const CHANGES: Changes = Changes::WHEELS;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         creeps(p[0], "both wheels get")

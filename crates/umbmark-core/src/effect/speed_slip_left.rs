@@ -1,7 +1,7 @@
 //! Slip of the left wheel that grows with its speed.
 
 use super::speed_slip::{CREEP, PER_SPEED, creeps, kept};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -26,6 +26,8 @@ impl Effect for SpeedSlipLeft {
         separated_by: "a long straight at two speeds: the curvature of E_d stays",
         source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
     };
+
+    const CHANGES: Changes = Changes::WHEELS;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         creeps(p[0], "the left wheel gets")

@@ -1,7 +1,7 @@
 //! Misplacement at START.
 
 use super::words::{deg, either, mm, side};
-use super::{About, ActsOn, Effect};
+use super::{About, ActsOn, Changes, Effect};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
@@ -56,6 +56,8 @@ impl Effect for StartPose {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    const CHANGES: Changes = Changes::START.and(Changes::START_SCATTER);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

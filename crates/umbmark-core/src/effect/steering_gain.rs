@@ -1,14 +1,10 @@
 //! The gain of a steered wheel.
 
 use super::steering_zero::{steer_on, steered};
-use super::words::{deg, either, percent};
-use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::{Kind, Kinds, Robot};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use crate::drive::{Kind, Kinds};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// A usual angle of steering \[rad\].
-const TWENTY: f64 = 0.349;
 
 /// How much farther than believed the wheel is steered, as a share.
 pub struct SteeringGain;
@@ -36,14 +32,7 @@ impl Effect for SteeringGain {
 
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
 
-    fn means(p: &[f64], _robot: &Robot) -> String {
-        let more = either(p[0], "more", "less");
-        format!(
-            "The wheel is steered {} {more} than is counted: 20 degrees are {}.",
-            percent(p[0]),
-            deg((1.0 + p[0]) * TWENTY)
-        )
-    }
+    const CHANGES: Changes = Changes::BODY;
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

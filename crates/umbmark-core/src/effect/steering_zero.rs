@@ -1,8 +1,7 @@
 //! A steered wheel that does not stand straight where its counter says so.
 
-use super::words::{deg, side};
-use super::{About, ActsOn, Context, Effect, at_work};
-use crate::drive::{Kind, Kinds, Robot};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use crate::drive::{Kind, Kinds};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -32,9 +31,7 @@ impl Effect for SteeringZero {
 
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
 
-    fn means(p: &[f64], _robot: &Robot) -> String {
-        format!("Where straight ahead is believed, the wheel is steered {} to the {}.", deg(p[0]), side(p[0]))
-    }
+    const CHANGES: Changes = Changes::BODY;
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

@@ -227,9 +227,9 @@ fn each_number_acts_linearly_where_the_effect_does_nothing() {
     }
 }
 
-#[test]
-fn an_effect_says_whether_it_depends_on_where_and_how_the_robot_drives() {
-    let other = Context {
+/// In a turn and on the first leg, with nothing at zero that an effect may depend on.
+fn contexts() -> [Context; 2] {
+    let turn = Context {
         heading: 1.0,
         duration: 0.1,
         speed: 0.2,
@@ -252,14 +252,59 @@ fn an_effect_says_whether_it_depends_on_where_and_how_the_robot_drives() {
         direction: 1.0,
         recorded: false,
     };
-    let first_leg = Context { last_turn: 0.0, wheel_speed: [0.2; 2], ..other };
+    [turn, Context { last_turn: 0.0, wheel_speed: [0.2; 2], ..turn }]
+}
+
+#[test]
+fn an_effect_says_whether_it_depends_on_where_and_how_the_robot_drives() {
     let travel = WheelTravel { left: 0.005, right: 0.035 };
     for entry in CATALOGUE {
         let model = alone(entry, Parameter::usual);
         let chain = model.chain();
         let anywhere = chain.displacement(&Context::default(), &travel);
-        let depends = [other, first_leg].iter().any(|at| chain.displacement(at, &travel) != anywhere);
+        let depends = contexts().iter().any(|at| chain.displacement(at, &travel) != anywhere);
         assert_eq!(depends, model.varies(), "{}", entry.about.name);
+    }
+}
+
+/// What an effect is seen to change, asked for everything.
+fn changed(entry: &Entry, values: &[f64]) -> Changes {
+    let travel = WheelTravel { left: 0.3, right: 0.5 };
+    let motion = Displacement2 { forward: 0.4, sideways: 0.1, rotation: 0.2 };
+    let pose = Pose2::new(1.0, 2.0, 0.5);
+    let sight = Sight { time: 30.0, speed: 0.2, turn_rate: 0.3 };
+    let Mean { start, wheels, body, seen } = entry.values;
+    let Scatter { diffusion, bumps, start_scatter, measured } = entry.scatter;
+    let mut stream = Stream::new(1, 2, 3);
+    let (mut rolled, mut moved, mut shown, mut found) = ([travel; 2], [motion; 2], pose, pose);
+    for ((at, rolled), moved) in contexts().iter().zip(&mut rolled).zip(&mut moved) {
+        wheels(values, at, rolled);
+        body(values, at, moved);
+    }
+    seen(values, &sight, &mut shown);
+    measured(values, &mut stream, &mut found);
+    let mut met = Vec::new();
+    let long = WheelTravel { left: 300.0, right: 500.0 };
+    let stretch = Stretch { index: 0, direction: Direction::Ccw, test: TestKind::Bumps, travel: long };
+    bumps(values, &stretch, &mut stream, &mut met);
+    let found = [
+        (Changes::WHEELS, rolled != [travel; 2]),
+        (Changes::BODY, moved != [motion; 2]),
+        (Changes::SEEN, shown != pose),
+        (Changes::MEASURED, found != pose),
+        (Changes::BUMPS, !met.is_empty()),
+        (Changes::DIFFUSION, diffusion(values, &travel) != WheelVariance::default()),
+        (Changes::START, start(values) != Pose2::IDENTITY),
+        (Changes::START_SCATTER, start_scatter(values, &mut stream) != Pose2::IDENTITY),
+    ];
+    found.into_iter().filter(|(_, seen)| *seen).map(|(change, _)| change).reduce(Changes::and).unwrap()
+}
+
+#[test]
+fn an_effect_changes_what_it_says_and_nothing_else() {
+    for entry in CATALOGUE {
+        let values: Vec<f64> = alone(entry, Parameter::usual).values().collect();
+        assert_eq!(changed(entry, &values), entry.changes, "{}", entry.about.name);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Scrub in turns on the spot.
 
 use super::words::{deg, either};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -31,6 +31,8 @@ impl Effect for TurnSlip {
         separated_by: "another surface or load; wide arcs beside spins",
         source: "Borenstein & Feng (1995), section 2 (up to 1 %); factors 1.5 to 1.9 that users set for skid-steer robots",
     };
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

@@ -1,7 +1,7 @@
 //! Slip that grows with the rate of turn.
 
 use super::words::{deg, either};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -29,6 +29,8 @@ impl Effect for TurnSlipRate {
         separated_by: "spins at two rates of turn",
         source: "linear creep of a rolling tyre; 0.8 % per rad/s is assumed",
     };
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

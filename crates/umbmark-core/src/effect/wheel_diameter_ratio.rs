@@ -1,7 +1,7 @@
 //! E_d: unequal wheel diameters.
 
 use super::words::{deg, either, mm, side};
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::{DefaultValue, Parameter};
@@ -42,6 +42,8 @@ impl Effect for WheelDiameterRatio {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Clapper);
+
+    const CHANGES: Changes = Changes::WHEELS;
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let ratio = 2.0 * (p[0] - 1.0) / (p[0] + 1.0);

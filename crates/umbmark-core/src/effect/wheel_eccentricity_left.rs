@@ -1,7 +1,7 @@
 //! Run-out of the left wheel.
 
 use super::words::{deg, mm};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -35,6 +35,8 @@ impl Effect for WheelEccentricityLeft {
         separated_by: "the track against the wheel's angle: in turns the wheels roll opposite ways and their waves part",
         source: "geometry of an off-centre wheel; 0.3 mm is assumed",
     };
+
+    const CHANGES: Changes = Changes::WHEELS;
 
     fn means(p: &[f64], robot: &Robot) -> String {
         run_out(p, robot, "left")

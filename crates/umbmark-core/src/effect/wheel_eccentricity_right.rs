@@ -1,7 +1,7 @@
 //! Run-out of the right wheel.
 
 use super::wheel_eccentricity_left::{COSINE, RUN_OUT, SINE, run_out, wave};
-use super::{About, ActsOn, Context, Effect, at_work};
+use super::{About, ActsOn, Changes, Context, Effect, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -34,6 +34,8 @@ impl Effect for WheelEccentricityRight {
         separated_by: "the track against the wheel's angle: in turns the wheels roll opposite ways and their waves part",
         source: "geometry of an off-centre wheel; 0.3 mm is assumed",
     };
+
+    const CHANGES: Changes = Changes::WHEELS;
 
     fn means(p: &[f64], robot: &Robot) -> String {
         run_out(p, robot, "right")

@@ -1,7 +1,7 @@
 //! Random slip and unevenness, wheel by wheel.
 
 use super::words::{deg, mm};
-use super::{About, ActsOn, Effect, WheelVariance};
+use super::{About, ActsOn, Changes, Effect, WheelVariance};
 use crate::drive::{Kinds, Robot, WheelTravel};
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -34,6 +34,8 @@ impl Effect for WheelNoise {
     };
 
     const DRIVES: Kinds = Kinds::ALL;
+
+    const CHANGES: Changes = Changes::DIFFUSION;
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let scattered = p[0] * libm::sqrt(10.0);

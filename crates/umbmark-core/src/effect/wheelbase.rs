@@ -1,7 +1,7 @@
 //! E_b: the effective wheelbase.
 
 use super::words::{deg, mm};
-use super::{About, ActsOn, Context, Effect};
+use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::{DefaultValue, Parameter};
@@ -35,6 +35,8 @@ impl Effect for Wheelbase {
     };
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Clapper);
+
+    const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let b = robot.drive.wheelbase();

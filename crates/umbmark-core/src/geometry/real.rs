@@ -17,7 +17,7 @@ pub trait Real: DualNum<Primitive = f64> + Copy + Send + Sync {
     fn value(self) -> f64;
 
     /// (sin x, cos x).
-    #[inline]
+    #[inline(always)]
     fn sine_cosine(self) -> (Self, Self) {
         let (sinc, cosine) = self.sinc_cos();
         (sinc * self, cosine)
@@ -69,7 +69,8 @@ impl Real for f64 {
 }
 
 impl Real for Dual {
-    #[inline]
+    /// Always inlined: mostly one of the two is not wanted.
+    #[inline(always)]
     fn sinc_cos(self) -> (Dual, Dual) {
         let x = self.re;
         let (sinc, cosine) = x.sinc_cos();
@@ -144,11 +145,14 @@ pub(crate) fn sin_cos_reduced(x: f64) -> (f64, f64) {
     if !(x.abs() < 1e5) {
         return libm::sincos(x);
     }
-    let quarter_turns = (x * std::f64::consts::FRAC_2_PI).round();
+    // Halves away from zero, as `round`, which without SSE 4.1 is a call of the system's library.
+    let turns = x * std::f64::consts::FRAC_2_PI;
+    let whole = (turns + 0.5_f64.next_down().copysign(turns)) as i64;
+    let quarter_turns = whole as f64;
     let rest = ((x - quarter_turns * HALF_PI[0]) - quarter_turns * HALF_PI[1]) - quarter_turns * HALF_PI[2];
     let (sinc, cosine) = sinc_cos_near_zero(rest);
     let sine = sinc * rest;
-    match (quarter_turns as i64) & 3 {
+    match whole & 3 {
         0 => (sine, cosine),
         1 => (cosine, -sine),
         2 => (-sine, -cosine),

@@ -86,10 +86,11 @@ impl Statistics {
     /// Takes one more number.
     pub fn take(&mut self, value: f64) {
         let value = value.clamp(-Self::GREATEST, Self::GREATEST);
-        let units = (value / Self::RESOLUTION).round() as i128;
+        // At most 2^52 of them.
+        let units = (value / Self::RESOLUTION).round() as i64;
         self.count += 1;
-        self.sum += units;
-        self.squares = self.squares.saturating_add(units * units);
+        self.sum += i128::from(units);
+        self.squares = self.squares.saturating_add(i128::from(units) * i128::from(units));
         self.sketch.add(value);
     }
 

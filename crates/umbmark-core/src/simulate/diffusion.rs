@@ -1,7 +1,7 @@
 //! White wheel noise along a stretch of driving, as one normal draw of its end pose.
 
 use crate::effect::WheelVariance;
-use crate::geometry::{Displacement2, Real};
+use crate::geometry::{Displacement2, Real, sinc_cos_near_zero};
 use crate::random::Stream;
 
 /// The distribution of the end pose of a constant-twist stretch whose wheels roll with white noise.
@@ -27,6 +27,10 @@ pub struct Diffusion {
 /// What the integrals over a stretch of rotation ω have in common, h = ω/2: smooth and even in ω, so that nothing is
 /// divided by a rotation.
 struct Integrals {
+    /// sinc h
+    sinc: f64,
+    /// cos h
+    cosine: f64,
     /// (sinc h - cos h) / ω²
     lag: f64,
     /// (1/2 - 3/2 sinc ω + cos² h) / ω⁴
@@ -64,18 +68,39 @@ const SERIES: [[f64; 3]; TERMS] = {
 };
 
 impl Integrals {
-    /// For the rotation ω, given sinc h and cos h.
+    /// For any rotation ω.
     #[inline]
-    fn new(rotation: f64, sinc: f64, cosine: f64) -> Integrals {
-        let z = rotation * rotation;
-        let [lag, bow, swing] = if rotation.abs() <= SERIES_REACH {
-            SERIES.iter().rev().fold([0.0; 3], |sum, term| [0, 1, 2].map(|i| sum[i] * z + term[i]))
-        } else {
-            let whole_sinc = sinc * cosine;
-            [(sinc - cosine) / z, (0.5 - 1.5 * whole_sinc + cosine * cosine) / (z * z), 0.5 * (1.0 - whole_sinc) / z]
-        };
-        Integrals { lag, bow, swing }
+    fn new(rotation: f64) -> Integrals {
+        let (sinc, cosine) = (0.5 * rotation).sinc_cos();
+        if rotation.abs() <= SERIES_REACH {
+            return Integrals::from_series(rotation, (sinc, cosine));
+        }
+        let (z, whole_sinc) = (rotation * rotation, sinc * cosine);
+        let bow = (0.5 - 1.5 * whole_sinc + cosine * cosine) / (z * z);
+        Integrals { sinc, cosine, lag: (sinc - cosine) / z, bow, swing: 0.5 * (1.0 - whole_sinc) / z }
     }
+
+    /// The same for |ω| <= π/2, without a branch.
+    #[inline(always)]
+    fn of_small_turn(rotation: f64) -> Integrals {
+        Integrals::from_series(rotation, sinc_cos_near_zero(0.5 * rotation))
+    }
+
+    #[inline(always)]
+    fn from_series(rotation: f64, (sinc, cosine): (f64, f64)) -> Integrals {
+        let z = rotation * rotation;
+        let (mut lag, mut bow, mut swing) = (0.0, 0.0, 0.0);
+        for [a, b, c] in SERIES.iter().rev() {
+            (lag, bow, swing) = (lag * z + a, bow * z + b, swing * z + c);
+        }
+        Integrals { sinc, cosine, lag, bow, swing }
+    }
+}
+
+/// What [`Diffusion::scatter`] is made of.
+#[inline(always)]
+pub fn normals(stream: &mut Stream) -> [f64; 3] {
+    [stream.normal(), stream.normal(), stream.normal()]
 }
 
 impl Diffusion {
@@ -83,31 +108,46 @@ impl Diffusion {
     /// rotation \[rad/m\] that a metre of difference between the wheels makes, 1/b.
     #[inline]
     pub fn new(motion: &Displacement2, variance: &WheelVariance, rotation_per_metre: f64) -> Diffusion {
-        let (mean, covariance) = moments(motion, variance, rotation_per_metre);
+        Diffusion::from_moments(moments(motion, variance, rotation_per_metre, &Integrals::new(motion.rotation)))
+    }
+
+    /// The same bits for rotations of a quarter turn or less, without a branch.
+    #[inline(always)]
+    pub fn of_small_turn(motion: &Displacement2, variance: &WheelVariance, rotation_per_metre: f64) -> Diffusion {
+        let integrals = Integrals::of_small_turn(motion.rotation);
+        Diffusion::from_moments(moments(motion, variance, rotation_per_metre, &integrals))
+    }
+
+    #[inline(always)]
+    fn from_moments((mean, covariance): ([f64; 2], [f64; 6])) -> Diffusion {
         Diffusion { mean, factor: cholesky(covariance) }
     }
 
-    /// A draw of how the noise moves the end of a stretch, seen from its start: (x, y) \[m\] and heading \[rad\].
-    #[inline]
-    pub fn draw(&self, stream: &mut Stream) -> [f64; 3] {
-        let z = [stream.normal(), stream.normal(), stream.normal()];
+    /// How the noise moves the end of a stretch, seen from its start: (x, y) \[m\] and heading \[rad\], from three
+    /// independent standard normal draws.
+    #[inline(always)]
+    pub fn scatter(&self, z: [f64; 3]) -> [f64; 3] {
         let f = &self.factor;
         [self.mean[0] + f[0] * z[0], self.mean[1] + f[1] * z[0] + f[2] * z[1], f[3] * z[0] + f[4] * z[1] + f[5] * z[2]]
     }
 }
 
-/// Mean (x, y) and lower triangle of the covariance of (x, y, heading), by rows; arguments as of [`Diffusion::new`].
+/// Mean (x, y) and lower triangle of the covariance of (x, y, heading), by rows; arguments as of [`Diffusion::new`], and
+/// the integrals of the rotation.
 ///
 /// Seen from the heading halfway, a stretch looks the same from either end: half of the integrals vanish, the others are
 /// closed forms. Turned by half the rotation they are those seen from the start.
-#[inline]
-fn moments(motion: &Displacement2, variance: &WheelVariance, rotation_per_metre: f64) -> ([f64; 2], [f64; 6]) {
+#[inline(always)]
+fn moments(
+    motion: &Displacement2,
+    variance: &WheelVariance,
+    rotation_per_metre: f64,
+    integrals: &Integrals,
+) -> ([f64; 2], [f64; 6]) {
     let (v, w, inverse_b) = (motion.forward, motion.rotation, rotation_per_metre);
     let (sum, difference) = (variance.right + variance.left, variance.right - variance.left);
-    let half = 0.5 * w;
-    let (sinc, cosine) = half.sinc_cos();
-    let sine = sinc * half;
-    let Integrals { lag, bow, swing } = Integrals::new(w, sinc, cosine);
+    let Integrals { sinc, cosine, lag, bow, swing } = *integrals;
+    let sine = sinc * (0.5 * w);
     let per_metre = v * inverse_b;
     let (along, lean) = (sum * per_metre, difference * per_metre);
 
@@ -136,6 +176,7 @@ fn moments(motion: &Displacement2, variance: &WheelVariance, rotation_per_metre:
 
 /// Lower Cholesky factor of a 3 x 3 covariance given and returned as its lower triangle by rows; a direction without
 /// variance gets a zero column.
+#[inline(always)]
 fn cholesky(c: [f64; 6]) -> [f64; 6] {
     let root = |pivot: f64, size: f64| if pivot > 1e-14 * size { pivot.sqrt() } else { 0.0 };
     let over = |numerator: f64, root: f64| if root > 0.0 { numerator / root } else { 0.0 };

@@ -5,6 +5,8 @@
 //! where it began does not depend on the others. So the pieces of all runs of a test are worked out in one loop without a
 //! branch, and only the products along each run wait for each other.
 
+use super::diffusion::Diffusion;
+use crate::effect::WheelVariance;
 use crate::engine::{Instructions, Motion};
 use crate::geometry::{Displacement2, Pose2, sinc_cos_near_zero};
 
@@ -16,8 +18,19 @@ mod x86;
 pub(super) struct Piece {
     /// Twist times time.
     pub motion: Displacement2,
-    /// What noise adds at the end: (x, y) \[m\] and heading \[rad\].
-    pub scatter: [f64; 3],
+    /// What moves its end.
+    pub noise: Noise,
+}
+
+/// How noise moves the end of a piece, seen from its start: (x, y) \[m\] and heading \[rad\].
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Noise {
+    /// Not at all.
+    None,
+    /// By so much.
+    Moves([f64; 3]),
+    /// As wheels do that roll with this variance, by these draws from the standard normal distribution.
+    Draws { variance: WheelVariance, normals: [f64; 3] },
 }
 
 /// Pieces side by side.
@@ -31,6 +44,11 @@ struct Block {
     sideways: [f64; WIDTH],
     rotation: [f64; WIDTH],
     scatter: [[f64; WIDTH]; 3],
+    /// Of the left and the right wheel, where scatter is yet to be worked out.
+    variance: [[f64; WIDTH]; 2],
+    normals: [[f64; WIDTH]; 3],
+    /// Whether any scatter is.
+    draws: bool,
 }
 
 /// (sinc h, sin h, cos h) from q = h/2 within the polynomials' range, |q| <= π/4: no quarter or half turn is past it.
@@ -46,8 +64,60 @@ impl Block {
         self.forward[place] = piece.motion.forward;
         self.sideways[place] = piece.motion.sideways;
         self.rotation[place] = piece.motion.rotation;
-        for (row, value) in self.scatter.iter_mut().zip(piece.scatter) {
-            row[place] = value;
+        let put = |rows: &mut [[f64; WIDTH]; 3], values: [f64; 3]| {
+            rows.iter_mut().zip(values).for_each(|(row, value)| row[place] = value);
+        };
+        match piece.noise {
+            Noise::None => {}
+            Noise::Moves(scatter) => put(&mut self.scatter, scatter),
+            Noise::Draws { variance, normals } => {
+                self.draws = true;
+                (self.variance[0][place], self.variance[1][place]) = (variance.left, variance.right);
+                put(&mut self.normals, normals);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn motion(&self, place: usize) -> Displacement2 {
+        Displacement2 { forward: self.forward[place], sideways: self.sideways[place], rotation: self.rotation[place] }
+    }
+
+    #[inline(always)]
+    fn variance(&self, place: usize) -> WheelVariance {
+        WheelVariance { left: self.variance[0][place], right: self.variance[1][place] }
+    }
+
+    /// Works out the scatter of the pieces that have draws.
+    #[inline(always)]
+    fn spread(&mut self, rotation_per_metre: f64) {
+        let mut any_large = false;
+        for i in 0..WIDTH {
+            let variance = self.variance(i);
+            let draws = variance.left + variance.right > 0.0;
+            let small = self.rotation[i].abs() <= std::f64::consts::FRAC_PI_2;
+            any_large |= draws & !small;
+            let diffusion = Diffusion::of_small_turn(&self.motion(i), &variance, rotation_per_metre);
+            let scatter = diffusion.scatter([self.normals[0][i], self.normals[1][i], self.normals[2][i]]);
+            for (row, value) in self.scatter.iter_mut().zip(scatter) {
+                row[i] = if draws & small { value } else { row[i] };
+            }
+        }
+        if any_large {
+            self.spread_large(rotation_per_metre);
+        }
+    }
+
+    /// The same for turns past a quarter, one by one.
+    #[cold]
+    fn spread_large(&mut self, rotation_per_metre: f64) {
+        for i in 0..WIDTH {
+            let variance = self.variance(i);
+            if variance.left + variance.right > 0.0 && !(self.rotation[i].abs() <= std::f64::consts::FRAC_PI_2) {
+                let diffusion = Diffusion::new(&self.motion(i), &variance, rotation_per_metre);
+                let scatter = diffusion.scatter(self.normals.map(|row| row[i]));
+                self.scatter.iter_mut().zip(scatter).for_each(|(row, value)| row[i] = value);
+            }
         }
     }
 
@@ -92,8 +162,7 @@ impl Block {
     #[cold]
     fn replace_large(&self, ends: &mut [Motion; WIDTH]) {
         for (i, motion) in ends.iter_mut().enumerate().filter(|(i, _)| self.is_large(*i)) {
-            let (forward, sideways, rotation) = (self.forward[i], self.sideways[i], self.rotation[i]);
-            let end = Pose2::exp(&Displacement2 { forward, sideways, rotation });
+            let end = Pose2::exp(&self.motion(i));
             *motion = Motion::from(Pose2 {
                 x: end.x + self.scatter[0][i],
                 y: end.y + self.scatter[1][i],
@@ -105,23 +174,26 @@ impl Block {
 
 /// The ends of all pieces of `blocks`, one block after the other.
 #[inline(always)]
-fn all_ends(blocks: &[Block], ends: &mut [[Motion; WIDTH]]) {
-    for (block, ends) in blocks.iter().zip(ends) {
+fn all_ends(blocks: &mut [Block], ends: &mut [[Motion; WIDTH]], rotation_per_metre: f64) {
+    for (block, ends) in blocks.iter_mut().zip(ends) {
+        if block.draws {
+            block.spread(rotation_per_metre);
+        }
         block.ends(ends);
     }
 }
 
-fn work_out(instructions: Instructions, blocks: &[Block], ends: &mut [[Motion; WIDTH]]) {
+fn work_out(instructions: Instructions, blocks: &mut [Block], ends: &mut [[Motion; WIDTH]], rotation_per_metre: f64) {
     #[cfg(target_arch = "x86_64")]
     match instructions {
         // SAFETY: `instructions` is never more than what the machine was found to have.
-        Instructions::Avx512 => return unsafe { x86::all_ends_by_eight(blocks, ends) },
+        Instructions::Avx512 => return unsafe { x86::all_ends_by_eight(blocks, ends, rotation_per_metre) },
         // SAFETY: as above.
-        Instructions::Avx2 => return unsafe { x86::all_ends_by_four(blocks, ends) },
+        Instructions::Avx2 => return unsafe { x86::all_ends_by_four(blocks, ends, rotation_per_metre) },
         Instructions::Portable => {}
     }
     let _ = instructions;
-    all_ends(blocks, ends);
+    all_ends(blocks, ends, rotation_per_metre);
 }
 
 /// A run under way.
@@ -180,10 +252,10 @@ impl Pieces {
         self.count += 1;
     }
 
-    /// Moves every run to the end of its pieces.
-    pub(super) fn settle(&mut self) {
+    /// Moves every run to the end of its pieces; `rotation_per_metre` as of [`Diffusion::new`].
+    pub(super) fn settle(&mut self, rotation_per_metre: f64) {
         self.ends.resize(self.blocks.len(), [Motion::IDENTITY; WIDTH]);
-        work_out(self.instructions, &self.blocks, &mut self.ends);
+        work_out(self.instructions, &mut self.blocks, &mut self.ends, rotation_per_metre);
         let ends = self.ends.as_flattened();
         let mut end = self.count;
         for run in self.runs.iter_mut().rev() {
@@ -204,17 +276,32 @@ impl Pieces {
 mod tests {
     use super::*;
 
+    const ROTATION_PER_METRE: f64 = 1.0 / 0.34;
+
     fn pieces_of(run: usize) -> impl Iterator<Item = Piece> {
         let rotations = [0.0, 1e-9, -1.57, 1.572, 3.13, -3.145, 3.2, -7.0, 20.0, 0.3, -0.02];
         rotations.into_iter().cycle().skip(run).take(5 + 7 * run).enumerate().map(|(i, rotation)| Piece {
             motion: Displacement2 { forward: 4.0 - i as f64, sideways: 0.1 * i as f64, rotation },
-            scatter: [1e-2, -2e-2, 1e-3 * (i as f64 - 5.0)],
+            noise: match i % 3 {
+                0 => Noise::None,
+                1 => Noise::Moves([1e-2, -2e-2, 1e-3 * (i as f64 - 5.0)]),
+                _ => Noise::Draws {
+                    variance: WheelVariance { left: 1e-6 * i as f64, right: 2e-6 },
+                    normals: [0.5, -1.0, 0.1 * i as f64],
+                },
+            },
         })
     }
 
     /// The piece by its definition, pose by pose.
     fn driven(pose: Pose2, piece: &Piece) -> Pose2 {
-        let [x, y, turned] = piece.scatter;
+        let [x, y, turned] = match piece.noise {
+            Noise::None => [0.0; 3],
+            Noise::Moves(by) => by,
+            Noise::Draws { variance, normals } => {
+                Diffusion::new(&piece.motion, &variance, ROTATION_PER_METRE).scatter(normals)
+            }
+        };
         let end = Pose2::exp(&piece.motion);
         pose.compose(&Pose2::new(end.x + x, end.y + y, end.heading + turned))
     }
@@ -231,12 +318,12 @@ mod tests {
                 pieces_of(run).for_each(|piece| pieces.push(&piece));
                 expected.push(pieces_of(run).fold(start, |pose, piece| driven(pose, &piece)));
             }
-            pieces.settle();
+            pieces.settle(ROTATION_PER_METRE);
             let last =
-                Piece { motion: Displacement2 { forward: 1.0, sideways: 0.0, rotation: -0.5 }, scatter: [0.0; 3] };
+                Piece { motion: Displacement2 { forward: 1.0, sideways: 0.0, rotation: -0.5 }, noise: Noise::None };
             pieces.push(&last);
             expected[3] = driven(expected[3], &last);
-            pieces.settle();
+            pieces.settle(ROTATION_PER_METRE);
             let reached: Vec<Pose2> = pieces.reached().collect();
             assert_eq!(reached.len(), 4);
             for (reached, expected) in reached.iter().zip(&expected) {
@@ -252,7 +339,7 @@ mod tests {
             let mut pieces = Pieces::new(Instructions::Portable);
             pieces.start(Pose2::IDENTITY);
             pieces.push(piece);
-            pieces.settle();
+            pieces.settle(ROTATION_PER_METRE);
             pieces.reached().next().unwrap()
         };
         for instructions in [Instructions::Portable, Instructions::Avx2, Instructions::Avx512] {
@@ -261,7 +348,7 @@ mod tests {
                 pieces.start(Pose2::IDENTITY);
                 pieces.push(&piece);
             }
-            pieces.settle();
+            pieces.settle(ROTATION_PER_METRE);
             for (piece, reached) in pieces_of(3).zip(pieces.reached()) {
                 assert_eq!(reached, alone(&piece), "{instructions:?} {piece:?}");
             }

@@ -1,11 +1,12 @@
 //! The true motion of a robot whose odometry believes something else.
 
 use super::Leg;
-use super::diffusion::Diffusion;
-use super::pieces::{Piece, Pieces};
+use super::diffusion::{Diffusion, normals};
+use super::pieces::{Noise, Piece, Pieces};
+use super::rolls::{Roll, Rolls};
 use super::way::Way;
 use crate::drive::{Drive, WheelTravel};
-use crate::effect::{Bump, Chain, Context, Law, Model, Sight, Stretch, WheelVariance};
+use crate::effect::{Bump, Chain, Changes, Context, Law, Model, Scatter, Sight, Stretch, WheelVariance};
 use crate::engine::Instructions;
 use crate::geometry::{Displacement2, Pose2, Real};
 use crate::path::Direction;
@@ -30,6 +31,9 @@ pub struct Truth {
     varies: bool,
     way: Way,
     noise: Stream,
+    /// Where effects are asked that do not vary along the way.
+    anywhere: Context,
+    rolls: Rolls,
     pieces: Pieces,
     /// Travel of the present stretch as the robot believes it.
     believed: WheelTravel,
@@ -44,8 +48,26 @@ pub struct Truth {
 #[derive(Debug)]
 struct RandomPart {
     effect: Law,
+    changes: Changes,
+    scatter: &'static Scatter,
+    purpose: u64,
     values: Vec<f64>,
     stream: Stream,
+}
+
+/// Variance that the wheels of a robot with these parts gather over a true travel.
+fn variance(parts: &[RandomPart], travel: &WheelTravel) -> WheelVariance {
+    let diffusing = parts.iter().filter(|part| part.changes.include(Changes::DIFFUSION));
+    diffusing.fold(WheelVariance::default(), |sum, part| {
+        let v = (part.scatter.diffusion)(&part.values, travel);
+        WheelVariance { left: sum.left + v.left, right: sum.right + v.right }
+    })
+}
+
+/// Those of the parts that change this.
+#[inline]
+fn changing(parts: &mut [RandomPart], change: Changes) -> impl Iterator<Item = &mut RandomPart> {
+    parts.iter_mut().filter(move |part| part.changes.include(change))
 }
 
 impl Truth {
@@ -56,6 +78,9 @@ impl Truth {
             .iter()
             .map(|part| RandomPart {
                 effect: part.effect.clone(),
+                changes: part.effect.changes(),
+                scatter: part.effect.scatter(),
+                purpose: part.effect.purpose(),
                 values: part.values.clone(),
                 stream: Stream::new(0, 0, 0),
             })
@@ -69,6 +94,8 @@ impl Truth {
             varies: false,
             way: Way::new(model.robot()),
             noise: Stream::new(0, 0, 0),
+            anywhere: Context::default(),
+            rolls: Rolls::default(),
             pieces: Pieces::new(Instructions::best()),
             believed: WheelTravel::default(),
             commanded: WheelTravel::default(),
@@ -102,18 +129,10 @@ impl Truth {
 
     fn refresh(&mut self) {
         self.whole.clear();
-        self.rotation_per_metre =
-            self.chain.body(&Context::default(), &WheelTravel { left: -0.5, right: 0.5 }).rotation;
-        let variance = self.variance(&WheelTravel { left: 1.0, right: 1.0 });
+        self.rotation_per_metre = self.chain.body(&self.anywhere, &WheelTravel { left: -0.5, right: 0.5 }).rotation;
+        let variance = variance(&self.random, &WheelTravel { left: 1.0, right: 1.0 });
         self.noisy = variance != WheelVariance::default();
         self.varies = self.random.iter().any(|part| part.effect.varies(&part.values));
-    }
-
-    fn variance(&self, travel: &WheelTravel) -> WheelVariance {
-        self.random.iter().fold(WheelVariance::default(), |sum, part| {
-            let v = (part.effect.scatter().diffusion)(&part.values, travel);
-            WheelVariance { left: sum.left + v.left, right: sum.right + v.right }
-        })
     }
 
     /// Opens the random streams of a trial; its runs make one session.
@@ -121,7 +140,7 @@ impl Truth {
         self.way.open();
         self.noise = Stream::new(seed, WHEEL_NOISE, trial);
         for part in &mut self.random {
-            part.stream = Stream::new(seed, part.effect.purpose(), trial);
+            part.stream = Stream::new(seed, part.purpose, trial);
         }
     }
 
@@ -133,13 +152,14 @@ impl Truth {
 
     /// Forgets all runs.
     pub(super) fn forget(&mut self) {
+        self.rolls.clear();
         self.pieces.clear();
     }
 
     /// Where the robot stands at START in one more run.
     pub(super) fn draw_start(&mut self) -> Pose2 {
-        self.random.iter_mut().fold(self.chain.start(), |pose, part| {
-            pose.compose(&(part.effect.scatter().start_scatter)(&part.values, &mut part.stream))
+        changing(&mut self.random, Changes::START_SCATTER).fold(self.chain.start(), |pose, part| {
+            pose.compose(&(part.scatter.start_scatter)(&part.values, &mut part.stream))
         })
     }
 
@@ -150,15 +170,15 @@ impl Truth {
 
     /// True motion for a small believed travel, of which one wheel or both lose some at bumps; wheel noise included.
     pub(super) fn rolled(&mut self, believed: &WheelTravel, lost: &WheelTravel) -> Displacement2 {
-        let mut travel = self.chain.wheel_travel(&Context::default(), believed);
+        let mut travel = self.chain.wheel_travel(&self.anywhere, believed);
         if self.noisy {
-            let variance = self.variance(&travel);
+            let variance = variance(&self.random, &travel);
             travel.left += variance.left.sqrt() * self.noise.normal();
             travel.right += variance.right.sqrt() * self.noise.normal();
         }
         travel.left += lost.left;
         travel.right += lost.right;
-        self.chain.body(&Context::default(), &travel)
+        self.chain.body(&self.anywhere, &travel)
     }
 
     /// A true pose at rest as an absolute measurement shows it.
@@ -171,9 +191,10 @@ impl Truth {
         let start = self.draw_start();
         if self.varies {
             // Room for the pieces of one run, not of all.
-            self.pieces.settle();
+            self.pieces.settle(self.rotation_per_metre);
             self.way.start(direction, recorded, start.heading);
         }
+        self.make_pieces();
         self.pieces.start(start);
         self.done = 1.0;
     }
@@ -190,8 +211,8 @@ impl Truth {
         }
         self.commanded = leg.travel;
         self.ahead.clear();
-        for part in &mut self.random {
-            (part.effect.scatter().bumps)(&part.values, &stretch, &mut part.stream, &mut self.ahead);
+        for part in changing(&mut self.random, Changes::BUMPS) {
+            (part.scatter.bumps)(&part.values, &stretch, &mut part.stream, &mut self.ahead);
         }
         self.ahead.sort_unstable_by(|a, b| b.at.total_cmp(&a.at));
         self.believed = stretch.travel;
@@ -222,18 +243,31 @@ impl Truth {
         if self.varies {
             return self.roll_in_pieces(share);
         }
-        let whole = piece == 1.0;
-        let travel = self.chain.wheel_travel(&Context::default(), &self.believed.scaled(piece));
-        let motion = self.chain.body(&Context::default(), &travel);
-        let scatter = match (self.noisy, whole) {
-            (false, _) => [0.0; 3],
-            (true, false) => self.diffusion(&travel, &motion).draw(&mut self.noise),
-            (true, true) => {
-                let known = self.find_whole_diffusion();
-                self.whole[known].1.draw(&mut self.noise)
-            }
-        };
-        self.pieces.push(&Piece { motion, scatter });
+        let whole = self.noisy && piece == 1.0;
+        let kind = if whole { Roll::Whole(self.find_whole_diffusion()) } else { Roll::Part };
+        self.rolls.push(self.believed.scaled(piece), kind);
+    }
+
+    /// Makes pieces of motion of all travel that waits.
+    fn make_pieces(&mut self) {
+        self.rolls.work_out(&self.chain, &self.anywhere);
+        for (kind, travel, motion) in self.rolls.all() {
+            let noise = match kind {
+                Roll::Whole(known) => Noise::Moves(self.whole[known].1.scatter(normals(&mut self.noise))),
+                Roll::Part if self.noisy => {
+                    Noise::Draws { variance: variance(&self.random, travel), normals: normals(&mut self.noise) }
+                }
+                Roll::Part | Roll::Bump(_) => Noise::None,
+            };
+            self.pieces.push(&Piece { motion, noise });
+        }
+        self.rolls.clear();
+    }
+
+    /// Moves all runs to where they have come.
+    fn settle(&mut self) {
+        self.make_pieces();
+        self.pieces.settle(self.rotation_per_metre);
     }
 
     #[inline(never)]
@@ -243,7 +277,7 @@ impl Truth {
             let travel = self.chain.wheel_travel(&at, &believed);
             let motion = self.chain.body(&at, &travel);
             self.way.turn(motion.rotation);
-            self.pieces.push(&Piece { motion, scatter: [0.0; 3] });
+            self.pieces.push(&Piece { motion, noise: Noise::None });
             rolled = WheelTravel { left: rolled.left + travel.left, right: rolled.right + travel.right };
             moved = Displacement2 {
                 forward: moved.forward + motion.forward,
@@ -253,16 +287,16 @@ impl Truth {
         }
         if self.noisy {
             // Drawn as seen from where all this began, and added as seen from where it ends.
-            let [x, y, turned] = self.diffusion(&rolled, &moved).draw(&mut self.noise);
+            let [x, y, turned] = self.diffusion(&rolled, &moved).scatter(normals(&mut self.noise));
             let (sine, cosine) = moved.rotation.sine_cosine();
-            let scatter = [cosine * x + sine * y, cosine * y - sine * x, turned];
+            let noise = Noise::Moves([cosine * x + sine * y, cosine * y - sine * x, turned]);
             self.way.turn(turned);
-            self.pieces.push(&Piece { motion: Displacement2::NONE, scatter });
+            self.pieces.push(&Piece { motion: Displacement2::NONE, noise });
         }
     }
 
     fn diffusion(&self, travel: &WheelTravel, motion: &Displacement2) -> Diffusion {
-        Diffusion::new(motion, &self.variance(travel), self.rotation_per_metre)
+        Diffusion::new(motion, &variance(&self.random, travel), self.rotation_per_metre)
     }
 
     /// The noise of a whole stretch, taken for its commanded travel: the driven one differs by less than a tick or two,
@@ -270,23 +304,25 @@ impl Truth {
     fn find_whole_diffusion(&mut self) -> usize {
         let commanded = self.commanded;
         self.whole.iter().position(|(travel, _)| *travel == commanded).unwrap_or_else(|| {
-            let travel = self.chain.wheel_travel(&Context::default(), &commanded);
-            self.whole.push((commanded, self.diffusion(&travel, &self.chain.body(&Context::default(), &travel))));
+            let travel = self.chain.wheel_travel(&self.anywhere, &commanded);
+            self.whole.push((commanded, self.diffusion(&travel, &self.chain.body(&self.anywhere, &travel))));
             self.whole.len() - 1
         })
     }
 
     fn meet(&mut self, bump: &Bump) {
         let travel = self.drive.bumped(bump.wheel, bump.lost);
-        let at = if self.varies { self.way.moment() } else { Context::default() };
-        let motion = self.chain.body(&at, &travel);
+        if !self.varies {
+            return self.rolls.push(WheelTravel::default(), Roll::Bump(travel));
+        }
+        let motion = self.chain.body(&self.way.moment(), &travel);
         self.way.turn(motion.rotation);
-        self.pieces.push(&Piece { motion, scatter: [0.0; 3] });
+        self.pieces.push(&Piece { motion, noise: Noise::None });
     }
 
     /// The true pose.
     pub fn pose(&mut self) -> Pose2 {
-        self.pieces.settle();
+        self.settle();
         self.pieces.reached().last().unwrap_or_default()
     }
 
@@ -298,7 +334,7 @@ impl Truth {
 
     /// The ends of all runs as absolute measurements at this moment of each show them, in the order in which they were begun.
     pub(super) fn measure_all(&mut self, at: Sight) -> impl Iterator<Item = Pose2> + '_ {
-        self.pieces.settle();
+        self.settle();
         let Truth { pieces, random, chain, .. } = self;
         pieces.reached().map(move |pose| measured(chain, random, &at, &pose))
     }
@@ -307,8 +343,8 @@ impl Truth {
 /// A true pose as an absolute measurement at this moment shows it.
 fn measured(chain: &Chain<f64>, random: &mut [RandomPart], at: &Sight, pose: &Pose2) -> Pose2 {
     let mut seen = chain.seen(at, pose);
-    for part in random {
-        (part.effect.scatter().measured)(&part.values, &mut part.stream, &mut seen);
+    for part in changing(random, Changes::MEASURED) {
+        (part.scatter.measured)(&part.values, &mut part.stream, &mut seen);
     }
     seen
 }

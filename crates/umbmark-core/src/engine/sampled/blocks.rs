@@ -8,11 +8,14 @@
 //! With equal tick lengths every heading is a whole multiple of δ/b. Its cosine and sine come from a second table, and
 //! what remains for eight readings is one complex product and an integer sum: no rounding is carried along.
 
-use super::carries::{WORD, carry_words};
+use super::carries::{Carries, OneByOne, WORD};
 use super::constant_rate::{EqualPieces, Step};
 use super::directions::{Directions, sum, turned};
 use super::{TickGeometry, Update};
 use crate::engine::Instructions;
+
+#[cfg(target_arch = "x86_64")]
+mod x86;
 
 /// Words of eight carries at a constant rate.
 const WORDS: usize = 76;
@@ -23,13 +26,9 @@ const KEPT: usize = 16;
 /// Segments with fewer readings are not worth a table.
 const FEWEST_READINGS: u32 = 64;
 
-/// What a carry word means: its place among the possible ones, and by how many ticks it turns the robot.
-#[derive(Clone, Copy)]
-struct Rank {
-    column: u16,
-    row: u16,
-    turn: i32,
-}
+/// What a carry word of one wheel means: in the lower half what it adds to the place of a pair of words among the possible ones,
+/// in the upper half by how many ticks it turns the robot. So one addition adds both.
+type Rank = i64;
 
 /// The words that can occur, in numerical order.
 const POSSIBLE: [u8; WORDS] = {
@@ -46,18 +45,18 @@ const POSSIBLE: [u8; WORDS] = {
     possible
 };
 
-/// The ranks of the words of a wheel whose ticks turn the robot counter-clockwise: a right one forward or a left one
-/// backward. Words that cannot occur have none.
-static COUNTER_CLOCKWISE: [Rank; 256] = ranks(1);
-static CLOCKWISE: [Rank; 256] = ranks(-1);
+/// The ranks of the words of each wheel as it turns. Words that cannot occur have none.
+static LEFT_FORWARD: [Rank; 256] = ranks(1, -1);
+static LEFT_BACKWARD: [Rank; 256] = ranks(1, 1);
+static RIGHT_FORWARD: [Rank; 256] = ranks(WORDS, 1);
+static RIGHT_BACKWARD: [Rank; 256] = ranks(WORDS, -1);
 
-const fn ranks(sign: i32) -> [Rank; 256] {
-    let mut ranks = [Rank { column: 0, row: 0, turn: 0 }; 256];
+const fn ranks(stride: usize, sign: i64) -> [Rank; 256] {
+    let mut ranks = [0; 256];
     let mut place = 0;
     while place < WORDS {
         let word = POSSIBLE[place];
-        ranks[word as usize] =
-            Rank { column: place as u16, row: (WORDS * place) as u16, turn: sign * word.count_ones() as i32 };
+        ranks[word as usize] = (sign * word.count_ones() as i64) << 32 | (stride * place) as i64;
         place += 1;
     }
     ranks
@@ -126,12 +125,69 @@ impl Motions {
     }
 }
 
+/// A way in words of eight readings, one pair of words after the other.
+struct Walk<'a> {
+    left: &'a [Rank; 256],
+    right: &'a [Rank; 256],
+    /// As of [`Motions::eight`].
+    motions: &'a [[f64; 2]],
+    directions: &'a [[f64; 2]],
+    /// Place of heading 0 among the directions.
+    origin: i64,
+    /// Ticks that the robot turns in eight readings without a carry.
+    whole: i64,
+}
+
+/// Where a way has led.
+struct Reached {
+    /// By the words in even and in odd places: two sums, so that one addition need not wait for the other.
+    ends: [[f64; 2]; 2],
+    /// Place of the heading among the directions.
+    heading: i64,
+}
+
+impl Walk<'_> {
+    #[inline(always)]
+    fn take(&self, heading: &mut i64, left: u8, right: u8) -> [f64; 2] {
+        let rank = self.left[usize::from(left)] + self.right[usize::from(right)];
+        let moved = turned(self.directions[*heading as usize], self.motions[rank as u32 as usize]);
+        *heading += self.whole + (rank >> 32);
+        moved
+    }
+
+    /// Takes so many words of each wheel.
+    #[inline(always)]
+    fn along<C: Carries>(&self, [mut left, mut right]: [C; 2], words: u32) -> Reached {
+        let (mut even, mut odd, mut heading) = ([0.0; 2], [0.0; 2], self.origin);
+        for _ in 0..words / 2 {
+            even = sum(even, self.take(&mut heading, left.word(), right.word()));
+            odd = sum(odd, self.take(&mut heading, left.word(), right.word()));
+        }
+        if words % 2 == 1 {
+            even = sum(even, self.take(&mut heading, left.word(), right.word()));
+        }
+        Reached { ends: [even, odd], heading }
+    }
+
+    fn along_by(&self, instructions: Instructions, pieces: &EqualPieces, words: u32) -> Reached {
+        #[cfg(target_arch = "x86_64")]
+        match instructions {
+            // SAFETY: `instructions` is never more than what the machine was found to have.
+            Instructions::Avx512 => return unsafe { x86::walk_by_eight(self, pieces, words) },
+            // SAFETY: as above.
+            Instructions::Avx2 => return unsafe { x86::walk_by_four(self, pieces, words) },
+            Instructions::Portable => {}
+        }
+        let _ = instructions;
+        self.along([0, 1].map(|i| OneByOne::new(pieces.phase[i], pieces.rest[i])), words)
+    }
+}
+
 /// Scratch memory for segments at constant rates. What is in it changes the time a segment takes, never its result.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Blocks {
     motions: Vec<Motions>,
     next_replaced: usize,
-    words: [Vec<u8>; 2],
 }
 
 impl Blocks {
@@ -149,37 +205,22 @@ impl Blocks {
         directions: &Directions,
         pieces: &EqualPieces,
     ) -> (f64, f64) {
-        let words = (pieces.readings / WORD) as usize;
-        for wheel in 0..2 {
-            self.words[wheel].resize(words, 0);
-            carry_words(instructions, pieces.phase[wheel], pieces.rest[wheel], &mut self.words[wheel]);
-        }
         let motions = self.find_motions(geometry, update, pieces);
         let motions = &self.motions[motions];
 
         let [left_sign, right_sign] = pieces.sign;
         let whole = right_sign * pieces.whole[1] - left_sign * pieces.whole[0];
-        let (directions, mut heading) = directions.table();
-        let ranks = |sign: i64| if sign > 0 { &COUNTER_CLOCKWISE } else { &CLOCKWISE };
-        let (left_ranks, right_ranks) = (ranks(-left_sign), ranks(right_sign));
-        let mut eight = |left: u8, right: u8| {
-            let (left, right) = (left_ranks[usize::from(left)], right_ranks[usize::from(right)]);
-            let motion = motions.eight[usize::from(left.column) + usize::from(right.row)];
-            let turned = turned(directions[heading as usize], motion);
-            heading += 8 * whole + i64::from(left.turn + right.turn);
-            turned
+        let (directions, origin) = directions.table();
+        let walk = Walk {
+            left: if left_sign > 0 { &LEFT_FORWARD } else { &LEFT_BACKWARD },
+            right: if right_sign > 0 { &RIGHT_FORWARD } else { &RIGHT_BACKWARD },
+            motions: &motions.eight,
+            directions,
+            origin,
+            whole: 8 * whole,
         };
-        // Two sums, so that one addition need not wait for the other.
-        let (mut even, mut odd) = ([0.0; 2], [0.0; 2]);
-        let (left_pairs, left_last) = self.words[0].as_chunks::<2>();
-        let (right_pairs, right_last) = self.words[1].as_chunks::<2>();
-        for (left, right) in left_pairs.iter().zip(right_pairs) {
-            even = sum(even, eight(left[0], right[0]));
-            odd = sum(odd, eight(left[1], right[1]));
-        }
-        for (left, right) in left_last.iter().zip(right_last) {
-            even = sum(even, eight(*left, *right));
-        }
+        let Reached { ends: [even, mut odd], mut heading } =
+            walk.along_by(instructions, pieces, pieces.readings / WORD);
 
         let done = u64::from(pieces.readings / WORD * WORD);
         let mut phase = [0, 1].map(|i| pieces.phase[i].wrapping_add(pieces.rest[i].wrapping_mul(done)));

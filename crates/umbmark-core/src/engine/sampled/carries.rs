@@ -1,43 +1,51 @@
 //! At which readings a wheel's count changes by the larger of its two values.
 
-use crate::engine::Instructions;
-
 #[cfg(target_arch = "x86_64")]
-mod x86;
+pub(super) mod x86;
 
 /// Readings per word.
 pub(super) const WORD: u32 = u8::BITS;
 
-/// Carry words: bit i of `words[w]` is whether `phase + (8 w + i + 1) rest` wraps past 2^64 at that addition.
+/// Carry words, one after the other: bit i of word w is whether `phase + (8 w + i + 1) rest` wraps past 2^64 at that addition.
 ///
 /// Whole numbers, so every instruction set gives the same words.
-pub(super) fn carry_words(instructions: Instructions, phase: u64, rest: u64, words: &mut [u8]) {
-    #[cfg(target_arch = "x86_64")]
-    match instructions {
-        // SAFETY: `instructions` is never more than what the machine was found to have.
-        Instructions::Avx512 => return unsafe { x86::carry_words_of_eight(phase, rest, words) },
-        // SAFETY: as above.
-        Instructions::Avx2 => return unsafe { x86::carry_words_of_four(phase, rest, words) },
-        Instructions::Portable => {}
+pub(super) trait Carries {
+    /// The next word.
+    fn word(&mut self) -> u8;
+}
+
+/// Carry by carry.
+pub(super) struct OneByOne {
+    phase: u64,
+    rest: u64,
+}
+
+impl OneByOne {
+    pub fn new(phase: u64, rest: u64) -> OneByOne {
+        OneByOne { phase, rest }
     }
-    let _ = instructions;
-    let mut phase = phase;
-    for word in words {
-        *word = (0..WORD).fold(0, |bits, i| {
+}
+
+impl Carries for OneByOne {
+    #[inline(always)]
+    fn word(&mut self) -> u8 {
+        (0..WORD).fold(0, |bits, i| {
             let carry;
-            (phase, carry) = phase.overflowing_add(rest);
+            (self.phase, carry) = self.phase.overflowing_add(self.rest);
             bits | u8::from(carry) << i
-        });
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::random_lines::Source;
 
+    #[cfg(target_arch = "x86_64")]
     #[test]
     fn every_instruction_set_finds_the_same_carries() {
+        use crate::engine::Instructions;
+        use crate::engine::random_lines::Source;
         let mut source = Source(21);
         for i in 0..2_000 {
             let rest = match i % 4 {
@@ -47,12 +55,16 @@ mod tests {
                 _ => source.bits(),
             };
             let phase = source.bits();
-            let mut portable = vec![0; i % 37];
-            carry_words(Instructions::Portable, phase, rest, &mut portable);
-            for instructions in [Instructions::Avx2, Instructions::Avx512].map(|set| set.min(Instructions::best())) {
-                let mut words = vec![0xff; portable.len()];
-                carry_words(instructions, phase, rest, &mut words);
-                assert_eq!(words, portable, "{instructions:?} {phase} {rest}");
+            let words = |carries: &mut dyn Carries| (0..i % 37).map(|_| carries.word()).collect::<Vec<u8>>();
+            let portable = words(&mut OneByOne::new(phase, rest));
+            // SAFETY: asked only of what the machine was found to have.
+            unsafe {
+                if Instructions::best() >= Instructions::Avx2 {
+                    assert_eq!(words(&mut x86::TwiceFour::new(phase, rest)), portable, "{phase} {rest}");
+                }
+                if Instructions::best() >= Instructions::Avx512 {
+                    assert_eq!(words(&mut x86::Eight::new(phase, rest)), portable, "{phase} {rest}");
+                }
             }
         }
     }
@@ -61,9 +73,7 @@ mod tests {
     fn a_carry_is_a_tick_more() {
         // Three eighths of a tick per reading, from one eighth.
         let eighth = 1_u64 << 61;
-        let mut words = [0; 2];
-        carry_words(Instructions::Portable, eighth, 3 * eighth, &mut words);
         // After eight readings the phase is 25 eighths: readings 3, 5 and 8 passed a whole tick.
-        assert_eq!(words[0], 1 << 2 | 1 << 4 | 1 << 7);
+        assert_eq!(OneByOne::new(eighth, 3 * eighth).word(), 1 << 2 | 1 << 4 | 1 << 7);
     }
 }

@@ -5,7 +5,7 @@
 //! is the identity to the last bit; so each line sees the operations it would see alone, in the same order.
 
 use crate::engine::lane::Lane;
-use crate::engine::mid_heading::MidHeading;
+use crate::engine::mid_heading::{MidHeading, Root};
 use crate::engine::trigonometry::LARGE;
 use crate::engine::{TickGeometry, UNITS_PER_TICK, WheelLine};
 
@@ -114,23 +114,32 @@ fn small_power<T: Lane>(motion: &MidHeading<T>, exponent: T) -> MidHeading<T> {
     power(motion, exponent, closed)
 }
 
-/// Three powers of the same motion. The usual case, all angles near zero, is decided once for all.
-#[inline(always)]
-fn three_powers<T: Lane>(motion: &MidHeading<T>, exponents: [T; 3]) -> [MidHeading<T>; 3] {
-    let [a, b, c] = exponents;
-    let largest = a.max(b).max(c.max(a.splat(1.0))) * motion.half.abs();
-    let [a_closed, b_closed, c_closed] = if T::any(largest.splat(LARGE).less(largest)) {
-        let root = motion.root_in_lanes();
-        [motion.closed_power(&root, a), motion.closed_power(&root, b), motion.closed_power(&root, c)]
-    } else {
-        let root = motion.root_near_zero();
-        [
-            motion.closed_power_near_zero(&root, a),
-            motion.closed_power_near_zero(&root, b),
-            motion.closed_power_near_zero(&root, c),
-        ]
-    };
-    [power(motion, a, a_closed), power(motion, b, b_closed), power(motion, c, c_closed)]
+/// Powers of one motion. The usual case, all angles near zero, is decided once for all.
+struct Powers<T> {
+    motion: MidHeading<T>,
+    root: Root<T>,
+    near_zero: bool,
+}
+
+impl<T: Lane> Powers<T> {
+    /// For exponents up to `largest`, lane by lane.
+    #[inline(always)]
+    fn new(motion: MidHeading<T>, largest: T) -> Powers<T> {
+        let angle = largest.max(largest.splat(1.0)) * motion.half.abs();
+        let near_zero = !T::any(angle.splat(LARGE).less(angle));
+        let root = if near_zero { motion.root_near_zero() } else { motion.root_in_lanes() };
+        Powers { motion, root, near_zero }
+    }
+
+    #[inline(always)]
+    fn of(&self, exponent: T) -> MidHeading<T> {
+        let closed = if self.near_zero {
+            self.motion.closed_power_near_zero(&self.root, exponent)
+        } else {
+            self.motion.closed_power(&self.root, exponent)
+        };
+        power(&self.motion, exponent, closed)
+    }
 }
 
 /// A forward tick in every lane, or its reverse where `sign` is -1.
@@ -208,19 +217,23 @@ pub(super) fn results<T: Lane>(
         let (tail, tail_rest) = divided(last, p, per_p);
         let (k, k_rest) = divided(q, p, per_p);
         let groups = u_count - one;
+        let more = zero.less(groups);
         let head = T::select(active, head, zero);
         let tail = T::select(active, tail + one, zero);
-        let k = T::select(zero.less(groups), k, zero);
+        let k = T::select(more, k, zero);
 
         // Lines that are done must not send the others down the path of large angles.
         let base = MidHeading { half: T::select(active, x.half, zero), ..x };
-        let [x_head, x_tail, x_k] = three_powers(&base, [head, tail, k]);
-        let front_more = front.product(&x_head).product(&u);
-        let x_more = x_k.product(&u);
+        let powers = Powers::new(base, head.max(tail).max(k));
+        let front_more = front.product(&powers.of(head)).product(&u);
         front = select_motion(active, front_more, front);
-        back = x_tail.product(&back);
-        u = select_motion(active, x, u);
-        x = select_motion(active, x_more, x);
+        back = powers.of(tail).product(&back);
+        // With the last U a line has no X's left, and needs neither again.
+        if T::any(more) {
+            let x_more = powers.of(k).product(&u);
+            u = select_motion(active, x, u);
+            x = select_motion(active, x_more, x);
+        }
 
         first = head_rest;
         last = (p - one) - tail_rest;

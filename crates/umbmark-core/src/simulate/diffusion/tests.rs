@@ -70,7 +70,7 @@ fn the_closed_form_is_the_integral() {
             for (left, right) in [(1e-6, 1e-6), (1e-6, 3e-6), (2e-6, 0.0), (0.0, 1e-3)] {
                 let motion = Displacement2 { forward, sideways: 0.0, rotation };
                 let variance = WheelVariance { left, right };
-                let (mean, covariance) = moments(&motion, &variance, 1.0 / WHEELBASE);
+                let (mean, covariance) = moments(&motion, &variance, 1.0 / WHEELBASE, &Integrals::new(motion.rotation));
                 let (expected_mean, expected) = quadrature(&motion, &variance, 1.0 / WHEELBASE);
                 let place = (expected[0] + expected[2]).sqrt();
                 let sd = [place, place, expected[5].sqrt()];
@@ -123,7 +123,7 @@ fn the_closed_form_has_the_distribution_of_fine_stepping_on_legs_turns_and_arcs(
         let mut stream = Stream::new(11, 1, case as u64);
         let drawn: Vec<Pose2> = (0..n)
             .map(|_| {
-                let [dx, dy, turned] = diffusion.draw(&mut stream);
+                let [dx, dy, turned] = diffusion.scatter(normals(&mut stream));
                 Pose2::new(end.x + dx, end.y + dy, end.heading + turned)
             })
             .collect();
@@ -183,5 +183,5 @@ fn a_straight_leg_scatters_sideways_with_the_power_three_halves_of_its_length() 
 fn no_variance_moves_nothing() {
     let motion = Displacement2 { forward: 1.0, sideways: 0.0, rotation: 0.3 };
     let d = Diffusion::new(&motion, &WheelVariance::default(), 3.0);
-    assert_eq!(d.draw(&mut Stream::new(0, 0, 0)), [0.0; 3]);
+    assert_eq!(d.scatter(normals(&mut Stream::new(0, 0, 0))), [0.0; 3]);
 }

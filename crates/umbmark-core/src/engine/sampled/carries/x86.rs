@@ -1,5 +1,6 @@
 //! Carry words with the comparisons of AVX2 and AVX-512.
 
+use super::Carries;
 use std::arch::x86_64::*;
 
 /// The phases after readings 1 to 8.
@@ -7,33 +8,79 @@ fn first_eight(phase: u64, rest: u64) -> [i64; 8] {
     std::array::from_fn(|i| phase.wrapping_add(rest.wrapping_mul(i as u64 + 1)) as i64)
 }
 
-#[target_feature(enable = "avx512f")]
-pub(super) fn carry_words_of_eight(phase: u64, rest: u64, words: &mut [u8]) {
-    let [a, b, c, d, e, f, g, h] = first_eight(phase, rest);
-    let mut phases = _mm512_setr_epi64(a, b, c, d, e, f, g, h);
-    let step = _mm512_set1_epi64(rest.wrapping_mul(8) as i64);
-    let rest = _mm512_set1_epi64(rest as i64);
-    for word in words {
-        // A sum that wrapped is less than what was added.
-        *word = _mm512_cmplt_epu64_mask(phases, rest);
-        phases = _mm512_add_epi64(phases, step);
+/// A word by one comparison; whoever holds one runs on a machine with AVX-512F.
+pub(in crate::engine::sampled) struct Eight {
+    phases: __m512i,
+    step: __m512i,
+    rest: __m512i,
+}
+
+impl Eight {
+    /// # Safety
+    /// The machine must have AVX-512F.
+    #[inline(always)]
+    pub unsafe fn new(phase: u64, rest: u64) -> Eight {
+        let [a, b, c, d, e, f, g, h] = first_eight(phase, rest);
+        // SAFETY: the caller's word.
+        unsafe {
+            Eight {
+                phases: _mm512_setr_epi64(a, b, c, d, e, f, g, h),
+                step: _mm512_set1_epi64(rest.wrapping_mul(8) as i64),
+                rest: _mm512_set1_epi64(rest as i64),
+            }
+        }
     }
 }
 
-#[target_feature(enable = "avx2")]
-pub(super) fn carry_words_of_four(phase: u64, rest: u64, words: &mut [u8]) {
-    // There are only signed comparisons; flipping the top bit makes them unsigned, and addition does not mind.
-    let flipped = |value: i64| value ^ i64::MIN;
-    let [a, b, c, d, e, f, g, h] = first_eight(phase, rest).map(flipped);
-    let mut low = _mm256_setr_epi64x(a, b, c, d);
-    let mut high = _mm256_setr_epi64x(e, f, g, h);
-    let step = _mm256_set1_epi64x(rest.wrapping_mul(8) as i64);
-    let rest = _mm256_set1_epi64x(flipped(rest as i64));
-    for word in words {
-        let low_carries = _mm256_movemask_pd(_mm256_castsi256_pd(_mm256_cmpgt_epi64(rest, low)));
-        let high_carries = _mm256_movemask_pd(_mm256_castsi256_pd(_mm256_cmpgt_epi64(rest, high)));
-        *word = (low_carries | high_carries << 4) as u8;
-        low = _mm256_add_epi64(low, step);
-        high = _mm256_add_epi64(high, step);
+impl Carries for Eight {
+    #[inline(always)]
+    fn word(&mut self) -> u8 {
+        // SAFETY: `self` exists only where the instructions do.
+        unsafe {
+            // A sum that wrapped is less than what was added.
+            let word = _mm512_cmplt_epu64_mask(self.phases, self.rest);
+            self.phases = _mm512_add_epi64(self.phases, self.step);
+            word
+        }
+    }
+}
+
+/// A word by two comparisons of four; whoever holds one runs on a machine with AVX2.
+pub(in crate::engine::sampled) struct TwiceFour {
+    phases: [__m256i; 2],
+    step: __m256i,
+    rest: __m256i,
+}
+
+impl TwiceFour {
+    /// # Safety
+    /// The machine must have AVX2.
+    #[inline(always)]
+    pub unsafe fn new(phase: u64, rest: u64) -> TwiceFour {
+        // There are only signed comparisons; flipping the top bit makes them unsigned, and addition does not mind.
+        let flipped = |value: i64| value ^ i64::MIN;
+        let [a, b, c, d, e, f, g, h] = first_eight(phase, rest).map(flipped);
+        // SAFETY: the caller's word.
+        unsafe {
+            TwiceFour {
+                phases: [_mm256_setr_epi64x(a, b, c, d), _mm256_setr_epi64x(e, f, g, h)],
+                step: _mm256_set1_epi64x(rest.wrapping_mul(8) as i64),
+                rest: _mm256_set1_epi64x(flipped(rest as i64)),
+            }
+        }
+    }
+}
+
+impl Carries for TwiceFour {
+    #[inline(always)]
+    fn word(&mut self) -> u8 {
+        // SAFETY: `self` exists only where the instructions do.
+        unsafe {
+            let [low, high] = self.phases;
+            let low_carries = _mm256_movemask_pd(_mm256_castsi256_pd(_mm256_cmpgt_epi64(self.rest, low)));
+            let high_carries = _mm256_movemask_pd(_mm256_castsi256_pd(_mm256_cmpgt_epi64(self.rest, high)));
+            self.phases = [_mm256_add_epi64(low, self.step), _mm256_add_epi64(high, self.step)];
+            (low_carries | high_carries << 4) as u8
+        }
     }
 }
