@@ -1,9 +1,7 @@
 //! What is said of a plan: for people, and as a document.
 
-use serde_json::{Map, Value, json};
-use umbmark_core::diagnose::{Experiment, Options, Unseen, Why};
-use umbmark_core::plan::{Alternative, Drift, ExpectedInterval, ExtendedTest, MOST_RUNS, Setting, Shown, Sought};
-use umbmark_core::stats::Interval;
+use umbmark_core::diagnose::{Experiment, Unseen, Why};
+use umbmark_core::plan::{Alternative, Answer, Drift, Findings, MOST_RUNS, OfRuns, Request, Setting, Shown, Sought};
 
 use crate::model_report::unit_of;
 use crate::prose::hanging;
@@ -23,71 +21,21 @@ pub struct Known {
     pub assumed: Vec<String>,
     /// Whether they are from measured runs.
     pub from_data: bool,
-    /// Where sigma may lie, as the measured runs say.
-    pub sigma_interval: Option<Interval>,
-}
-
-/// What is said of one size that is to be seen.
-#[derive(Debug)]
-pub struct Answer {
-    /// The size.
-    pub sought: Sought,
-    /// Its value, as it was given.
-    pub value: f64,
-    /// Runs a direction that it takes; `None` where [`MOST_RUNS`] are too few.
-    pub runs: Option<usize>,
-    /// The same at both ends of sigma's interval.
-    pub runs_at_sigma: Option<[Option<usize>; 2]>,
-    /// Probability that the planned runs show it.
-    pub power: f64,
-    /// By what.
-    pub shown: Shown,
-    /// Experiments that show it where return poses do not.
-    pub separable: Vec<Experiment>,
-}
-
-/// What one number of runs shows.
-#[derive(Debug)]
-pub struct Row {
-    /// E_max,sys and its interval.
-    pub interval: ExpectedInterval,
-    /// The least of each size.
-    pub least: Vec<Option<f64>>,
 }
 
 /// All that is said.
 #[derive(Debug)]
-pub struct Report {
+pub struct Report<'a> {
     /// What is driven.
-    pub summary: String,
+    pub summary: &'a str,
     /// The robot on its path.
-    pub setting: Setting,
+    pub setting: &'a Setting,
     /// Where it is from.
-    pub known: Known,
-    /// Runs a direction.
-    pub runs: usize,
-    /// The power that is wanted.
-    pub power: f64,
-    /// How it is tested.
-    pub options: Options,
-    /// What is to be seen.
-    pub answers: Vec<Answer>,
-    /// Sizes that the planned test would show.
-    pub sizes: Vec<Sought>,
-    /// Effects that it cannot show.
-    pub unseen: Vec<Unseen>,
-    /// Numbers of runs.
-    pub rows: Vec<Row>,
-    /// Other tests.
-    pub alternatives: Vec<Alternative>,
-    /// Sizes that the other tests are compared by.
-    pub watched: Vec<Sought>,
-    /// With bumps.
-    pub extended: Option<ExtendedTest>,
-    /// What drifts do in each order.
-    pub drifts: Vec<Drift>,
-    /// Whether not all numbers of runs were looked at.
-    pub partial: bool,
+    pub known: &'a Known,
+    /// What was asked.
+    pub request: &'a Request<'a>,
+    /// What was found.
+    pub findings: &'a Findings,
 }
 
 fn millimetres(value: f64) -> String {
@@ -114,9 +62,9 @@ fn name_of(sought: &Sought) -> String {
 
 /// For people.
 pub fn text(report: &Report) -> String {
-    let setting = &report.setting;
+    let setting = report.setting;
     let mut text = format!("Plan for {}\n", setting.robot().name);
-    text += &hanging("", 2, &report.summary);
+    text += &hanging("", 2, report.summary);
     text += &heading(report);
     text += &answers(report);
     text += &intervals(report);
@@ -128,10 +76,10 @@ pub fn text(report: &Report) -> String {
 }
 
 fn heading(report: &Report) -> String {
-    let setting = &report.setting;
+    let setting = report.setting;
     let mut text = String::new();
     let from = if report.known.from_data { "the data's" } else { "expected" };
-    let interval = report.known.sigma_interval;
+    let interval = report.request.sigma_interval;
     let between = interval.map(|i| format!(" ({} to {})", millimetres(i.low), millimetres(i.high))).unwrap_or_default();
     text += &hanging(
         "",
@@ -149,7 +97,7 @@ fn heading(report: &Report) -> String {
 }
 
 fn answers(report: &Report) -> String {
-    if report.answers.is_empty() {
+    if report.findings.answers.is_empty() {
         return String::new();
     }
     let runs = |runs: Option<usize>| runs.map_or(format!("> {MOST_RUNS}"), |n| n.to_string());
@@ -168,10 +116,11 @@ fn answers(report: &Report) -> String {
             format!("{:.1} %", 100.0 * a.power),
         ]
     };
-    let title = format!("to see with {:.0} %", 100.0 * report.power);
-    let header = [title.as_str(), "runs a direction", "if sigma is off", &format!("seen with {0} + {0}", report.runs)];
-    let mut text = format!("\n{}\n", table(&header, report.answers.iter().map(row)));
-    for answer in &report.answers {
+    let title = format!("to see with {:.0} %", 100.0 * report.request.power);
+    let header =
+        [title.as_str(), "runs a direction", "if sigma is off", &format!("seen with {0} + {0}", report.request.runs)];
+    let mut text = format!("\n{}\n", table(&header, report.findings.answers.iter().map(row)));
+    for answer in &report.findings.answers {
         let name = answer.sought.effect.about.name;
         let why = match &answer.shown {
             Shown::Fitted(_) | Shown::Asked => continue,
@@ -184,7 +133,7 @@ fn answers(report: &Report) -> String {
             }
             Shown::BelowNoise => format!(
                 "with {0} + {0} runs diagnose does not ask for {name}: at its usual size it is below half a standard deviation of the means",
-                report.runs
+                report.request.runs
             ),
         };
         text += &hanging("", 2, &why);
@@ -196,7 +145,7 @@ fn answers(report: &Report) -> String {
 const ENOUGH: f64 = 3.24;
 
 fn intervals(report: &Report) -> String {
-    let row = |row: &Row| {
+    let row = |row: &OfRuns| {
         let i = &row.interval;
         vec![
             i.runs.to_string(),
@@ -208,21 +157,22 @@ fn intervals(report: &Report) -> String {
         ]
     };
     let header = ["runs", "min", "E_max,sys reads [mm]", "interval ± [mm]", "holds [%]", "chance alone [mm]"];
-    format!("\n{}\n", table(&header, report.rows.iter().map(row)))
+    format!("\n{}\n", table(&header, report.findings.by_runs.iter().map(row)))
 }
 
 fn least(report: &Report) -> String {
-    let runs: Vec<&Row> = report.rows.iter().filter(|row| LEAST_AT.contains(&row.interval.runs)).collect();
-    let mut header = vec![format!("least size seen with {:.0} %, runs:", 100.0 * report.power)];
+    let runs: Vec<&OfRuns> =
+        report.findings.by_runs.iter().filter(|row| LEAST_AT.contains(&row.interval.runs)).collect();
+    let mut header = vec![format!("least size seen with {:.0} %, runs:", 100.0 * report.request.power)];
     header.extend(runs.iter().map(|row| row.interval.runs.to_string()));
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let row = |(i, sought): (usize, &Sought)| {
         let cells = runs.iter().map(|row| or_dash(row.least[i], brief));
         std::iter::once(name_of(sought)).chain(cells).collect()
     };
-    let mut text = format!("\n{}\n", table(&header, report.sizes.iter().enumerate().map(row)));
+    let mut text = format!("\n{}\n", table(&header, report.findings.sizes.iter().enumerate().map(row)));
     let absorbed = |u: &&Unseen| matches!(u.why, Why::Absorbed(_));
-    let names: Vec<&str> = report.unseen.iter().filter(absorbed).map(|u| u.effect).collect();
+    let names: Vec<&str> = report.findings.unseen.iter().filter(absorbed).map(|u| u.effect).collect();
     if !names.is_empty() {
         text += &hanging("never:", 8, &format!("{} (E_d or E_b does what they do)", names.join(", ")));
     }
@@ -231,7 +181,7 @@ fn least(report: &Report) -> String {
 
 fn alternatives(report: &Report) -> String {
     let mut header = vec!["instead".to_owned(), "runs".into(), "min".into(), "sigma [mm]".into(), "± [mm]".into()];
-    header.extend(report.watched.iter().map(|s| format!("least {}", s.parameter.name)));
+    header.extend(report.findings.compared.iter().map(|s| format!("least {}", s.parameter.name)));
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let row = |a: &Alternative| {
         let runs = if a.runs[1] == 0 { format!("{} + 0", a.runs[0]) } else { format!("{} + {}", a.runs[0], a.runs[1]) };
@@ -239,8 +189,8 @@ fn alternatives(report: &Report) -> String {
         let least = a.least.iter().map(|size| or_dash(*size, brief));
         std::iter::once(a.what.clone()).chain(cells).chain(least).collect()
     };
-    let mut text = format!("\n{}\n", table(&header, report.alternatives.iter().map(row)));
-    if let Some(e) = &report.extended {
+    let mut text = format!("\n{}\n", table(&header, report.findings.alternatives.iter().map(row)));
+    if let Some(e) = &report.findings.extended {
         text += &hanging(
             "bumps",
             8,
@@ -263,90 +213,11 @@ fn orders(report: &Report) -> String {
         let what = format!("{} grows by {}", d.parameter, brief(d.change));
         [what, d.order.name().to_owned()].into_iter().chain(cells).collect()
     };
-    let Some(first) = report.drifts.first() else { return String::new() };
+    let Some(first) = report.findings.drifts.first() else { return String::new() };
     let mut header = vec!["in the session".to_owned(), "order".into()];
     header.extend(first.errors.iter().map(|(name, _, _)| format!("error of {name}")));
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
-    format!("\n{}\n", table(&header, report.drifts.iter().map(row)))
-}
-
-/// One document.
-pub fn document(report: &Report) -> Value {
-    let setting = &report.setting;
-    let least = |sizes: &[Sought], values: &[Option<f64>]| -> Value {
-        let one = |(s, value): (&Sought, &Option<f64>)| json!({ "effect": s.effect.about.name, "parameter": s.parameter.name, "size": value });
-        json!(sizes.iter().zip(values).map(one).collect::<Vec<_>>())
-    };
-    let row = |row: &Row| {
-        let i = &row.interval;
-        json!({
-            "runs": i.runs,
-            "minutes": 2.0 * i.runs as f64 * setting.minutes_a_run(),
-            "e_max_sys_m": { "mean": i.mean, "std_dev": i.std_dev, "interval_half_width_m": i.half_width,
-                             "coverage": i.coverage, "tests": i.tests, "noise_band_m": i.noise_band },
-            "minimum_detectable": least(&report.sizes, &row.least),
-        })
-    };
-    let alternative = |a: &Alternative| {
-        json!({ "what": a.what, "runs": { "cw": a.runs[0], "ccw": a.runs[1] }, "minutes": a.minutes, "sigma_m": a.sigma,
-                "e_max_sys_interval_half_width_m": a.half_width, "minimum_detectable": least(&report.watched, &a.least) })
-    };
-    let drift = |d: &Drift| {
-        let of = |which: fn(&(&'static str, f64, f64)) -> f64| -> Map<String, Value> {
-            d.errors.iter().map(|e| (e.0.to_owned(), json!(which(e)))).collect()
-        };
-        json!({ "effect": d.effect, "parameter": d.parameter, "change": d.change, "order": d.order.name(),
-                "error": of(|e| e.1), "error_sd": of(|e| e.2) })
-    };
-    json!({
-        "robot": setting.robot().name,
-        "runs": report.runs,
-        "minutes_a_run": setting.minutes_a_run(),
-        "sigma_m": setting.sigma(),
-        "sigma_interval_m": report.known.sigma_interval.map(|i| [i.low, i.high]),
-        "e_max_sys_m": setting.e_max_sys(),
-        "with_heading": setting.with_heading,
-        "power": report.power,
-        "size": report.options.size,
-        "draws": report.options.draws,
-        "seed": report.options.seed,
-        "see": report.answers.iter().map(answer_json).collect::<Vec<_>>(),
-        "by_runs": report.rows.iter().map(row).collect::<Vec<_>>(),
-        "invisible": report.unseen.iter().map(|u| u.effect).collect::<Vec<_>>(),
-        "alternatives": report.alternatives.iter().map(alternative).collect::<Vec<_>>(),
-        "extended": report.extended.map(|e| json!({
-            "bumps": e.bumps, "runs": e.runs, "minutes": e.minutes, "nonsys_orientation_rad": e.orientation,
-            "interval_half_width_rad": e.half_width,
-        })),
-        "order": report.drifts.iter().map(drift).collect::<Vec<_>>(),
-        "assumed": report.known.assumed,
-        "partial": report.partial,
-        "version": umbmark_core::VERSION,
-    })
-}
-
-fn answer_json(answer: &Answer) -> Value {
-    let (by, absorbed) = match &answer.shown {
-        Shown::Fitted(_) => ("calibrate", None),
-        Shown::Asked => ("diagnose", None),
-        Shown::Absorbed(by) => ("never", Some(by)),
-        Shown::BelowNoise => ("not_asked", None),
-    };
-    json!({
-        "effect": answer.sought.effect.about.name,
-        "parameter": answer.sought.parameter.name,
-        "value": answer.value,
-        "seen_by": by,
-        "absorbed_by": absorbed,
-        "runs": answer.runs,
-        "runs_at_sigma_interval": answer.runs_at_sigma,
-        "power": answer.power,
-        "experiments": answer.separable.iter().map(experiment_json).collect::<Vec<_>>(),
-    })
-}
-
-fn experiment_json(e: &Experiment) -> Value {
-    json!({ "separates": e.separates, "experiment": e.experiment, "minutes": e.minutes, "sd": e.sd })
+    format!("\n{}\n", table(&header, report.findings.drifts.iter().map(row)))
 }
 
 /// Experiments that tell two effects apart.
@@ -382,16 +253,5 @@ impl Separation {
             "sd: how far apart they then are, at usual sizes; from 3.24 on, nine cases of ten are told at 5 %.",
         );
         text
-    }
-
-    /// One document.
-    pub fn json(&self, options: &Options) -> Value {
-        json!({
-            "separates": self.pair,
-            "beside": self.after,
-            "next_experiments": self.experiments.iter().map(experiment_json).collect::<Vec<_>>(),
-            "seed": options.seed,
-            "version": umbmark_core::VERSION,
-        })
     }
 }

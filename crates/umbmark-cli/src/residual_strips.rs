@@ -4,7 +4,7 @@ use umbmark_core::compare::tracks::TrackResiduals;
 use umbmark_core::path::Direction;
 
 use crate::signature::three_digits;
-use crate::strip::strip;
+use umbmark_plot::render::strip::strip;
 
 /// Characters across and, on a terminal, down.
 const WIDTH: usize = 29;

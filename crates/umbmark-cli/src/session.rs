@@ -1,13 +1,17 @@
 //! What all verbs share: options, the way out, progress, and the wish to stop.
 
 use std::io::{self, BufWriter, IsTerminal, Stdout, Write};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use umbmark_core::watch::Watch;
 use umbmark_plot::render::terminal::Look;
+
+/// Steps of the bar of work that tells a share.
+const STEPS: f64 = 1000.0;
 
 /// The options of every verb.
 #[derive(Clone, Debug, clap::Args)]
@@ -92,6 +96,28 @@ impl Session {
             .build()
             .context("cannot start the threads")?;
         Ok(pool.install(work))
+    }
+
+    /// Runs `work` on the threads that were asked for: Ctrl-C stops it, and a bar of a thousand steps of `unit` shows how far it is.
+    pub fn watched<R: Send>(&self, unit: &'static str, work: impl FnOnce(&Watch) -> R + Send) -> anyhow::Result<R> {
+        let stop = self.catch_interrupt()?;
+        self.told(unit, |progress| work(&Watch { stop: &stop, progress }))
+    }
+
+    /// Runs `work` on the threads that were asked for; a bar of a thousand steps of `unit` shows the share that it tells.
+    pub fn told<R: Send>(
+        &self,
+        unit: &'static str,
+        work: impl FnOnce(&(dyn Fn(f64) + Sync)) -> R + Send,
+    ) -> anyhow::Result<R> {
+        let progress = Mutex::new(self.progress(STEPS as u64, unit));
+        self.on_threads(|| {
+            work(&|share| {
+                if let Ok(mut progress) = progress.lock() {
+                    progress.at((share * STEPS) as u64);
+                }
+            })
+        })
     }
 
     /// A flag that Ctrl-C sets from now on, instead of killing; a second one kills.

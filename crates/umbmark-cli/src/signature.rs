@@ -8,7 +8,7 @@ use umbmark_core::path::{CIRCLE, Direction, Path, SpeedProfile};
 use umbmark_core::replay::Track;
 
 use crate::prose::hanging;
-use crate::strip::strip;
+use umbmark_plot::render::strip::strip;
 
 /// Errors below this are rounding \[m, rad\].
 const NOTHING: f64 = 1e-9;

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use anyhow::Context;
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value, json};
+use umbmark_core::document;
 use umbmark_core::monte_carlo::{Axis, Metric, MetricSummary, Quantity, Study, Sweep, SweepPoint};
 
 use crate::Session;
@@ -90,15 +90,8 @@ impl SweepFlags {
     }
 
     fn metric(&self) -> anyhow::Result<Metric> {
-        metric_named(&self.metric)
+        Ok(Metric::named(&self.metric)?)
     }
-}
-
-/// A metric by its name in files.
-pub fn metric_named(name: &str) -> anyhow::Result<Metric> {
-    let found = Metric::ALL.into_iter().find(|metric| metric.name() == name);
-    let names = Metric::ALL.map(Metric::name).join(", ");
-    found.with_context(|| format!("there is no metric \"{name}\"; there are {names}"))
 }
 
 impl Files<'_> {
@@ -170,7 +163,7 @@ pub fn run(
     }
     let report = SweepReport { sweep: &sweep, points: &done.points, metric, assumed };
     if session.json() {
-        session.print_json(&report.json())?;
+        session.print_json(&document::sweep(&sweep, &done.points, assumed))?;
     } else {
         let terminal = session.on_terminal();
         write!(session.out(), "{}", report.text(terminal))?;
@@ -210,33 +203,6 @@ struct SweepReport<'a> {
 const ROWS: usize = 60;
 
 impl SweepReport<'_> {
-    fn json(&self) -> Value {
-        let axes = self.sweep.axes().iter().map(|axis| {
-            json!({ "name": axis.quantity.key(), "flag": axis.quantity.parameter().flag, "first": axis.first,
-                    "last": axis.last, "count": axis.count })
-        });
-        let summary = |s: &MetricSummary| {
-            let quantiles: Map<String, Value> =
-                SweepPoint::QUANTILES.iter().zip(s.quantiles).map(|(q, v)| (q.to_string(), json!(v))).collect();
-            let value =
-                json!({ "mean": s.mean, "std_dev": s.std_dev, "std_error": s.std_error, "quantiles": quantiles });
-            (s.metric.clone(), value)
-        };
-        let point = |point: &SweepPoint| {
-            let metrics: Map<String, Value> = point.metrics.iter().map(summary).collect();
-            json!({ "values": point.values, "metrics": metrics })
-        };
-        json!({
-            "axes": axes.collect::<Value>(),
-            "n": self.sweep.study().trials,
-            "seed": self.sweep.study().seed,
-            "partial": (self.points.len() as u64) < self.sweep.points(),
-            "points": self.points.iter().map(point).collect::<Value>(),
-            "assumed": self.assumed,
-            "version": umbmark_core::VERSION,
-        })
-    }
-
     fn text(&self, terminal: bool) -> String {
         let (axes, study) = (self.sweep.axes(), self.sweep.study());
         let count = self.points.len();

@@ -90,3 +90,25 @@ fn what_cannot_be_planned_is_refused_with_what_to_do() {
         assert!(error.contains(sentence), "{arguments:?}: {error}");
     }
 }
+
+/// One watched square each way: a straight shows the scale that E_b hides from return poses, turns on the spot do not.
+#[test]
+fn experiments_beside_tracks_are_drives_that_are_watched_as_the_tracks_were() {
+    let ranked = |pair: [&str; 2]| -> Vec<(String, f64, f64)> {
+        let text = said(&data(), &["tracked", "--separate", pair[0], pair[1], "--json"]);
+        let document: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(document["separates"], serde_json::json!(pair));
+        let told = |e: &Value| {
+            let number = |key: &str| e[key].as_f64().unwrap();
+            (e["experiment"].as_str().unwrap().to_owned(), number("sd"), number("minutes"))
+        };
+        document["next_experiments"].as_array().unwrap().iter().map(told).collect()
+    };
+    let found = ranked(["turn_slip", "crab"]);
+    let worth = |(_, sd, minutes): &(String, f64, f64)| sd * sd / minutes;
+    assert!(found.len() > 8 && found.windows(2).all(|pair| worth(&pair[0]) >= worth(&pair[1])), "{found:?}");
+    let sd = |found: &[(String, f64, f64)], what: &str| found.iter().find(|e| e.0.starts_with(what)).unwrap().1;
+    let fitted = ranked(["wheelbase", "scale"]);
+    assert!(sd(&fitted, "a straight of 10 m,") > 2.0 * sd(&fitted, "5 turns on the spot,"), "{fitted:?}");
+    assert!(refused(&["tracked", "--separate", "crab", "crab"]).contains("--separate needs two effects"));
+}

@@ -84,6 +84,13 @@ pub struct ReturnError {
     pub heading: Option<f64>,
 }
 
+/// A row of an array: x, y \[m\] and heading \[rad\], NaN where it was not measured.
+impl From<[f64; 3]> for ReturnError {
+    fn from([x, y, heading]: [f64; 3]) -> ReturnError {
+        ReturnError { x, y, heading: Some(heading).filter(|heading| !heading.is_nan()) }
+    }
+}
+
 /// An absolute pose of the robot, in the frame of START.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReferencePose {

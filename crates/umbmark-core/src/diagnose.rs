@@ -15,7 +15,7 @@ pub(crate) mod tracks;
 use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, Run};
 use crate::drive::Robot;
-use crate::effect::{Model, ModelError, TestKind, check_predicted};
+use crate::effect::{Model, ModelError, TestKind, check_predicted, find};
 use crate::likelihood::{Observed, Outlier};
 use crate::replay::ReplayError;
 use crate::stats::{Interval, student_t_quantile};
@@ -407,10 +407,19 @@ impl Options {
 
 /// Every experiment on offer for telling two effects apart, together with this data; the most telling per minute first.
 ///
-/// What the model has is fitted to the return poses; each effect is taken at its usual size, the hardest of its sizes. None
-/// where the runs have no scatter to judge by.
+/// What the model has is fitted to the data: to whole tracks, where the runs were observed on the way, and further drives are then
+/// watched as these were. Each effect is taken at its usual size, the hardest of its sizes. None where the runs have no
+/// scatter to judge by.
 pub fn separating(data: &Dataset, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
-    experiments::separating(&ends::Ends::new(data)?, model, pair)
+    match level(data) {
+        Level::Ends => experiments::separating(&ends::Ends::new(data)?, model, pair),
+        Level::Tracks => {
+            let [first, second] = [find(pair[0])?, find(pair[1])?];
+            let model = experiments::with_one_of(model, [first, second])?;
+            let fitted = tracks::fit(&tracks_of(data)?, &model)?;
+            tracks::separating(fitted, [first.about.name, second.about.name])
+        }
+    }
 }
 
 /// The tracks of a dataset.

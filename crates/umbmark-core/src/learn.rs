@@ -16,6 +16,7 @@ use crate::dataset::Dataset;
 use crate::diagnose::{self, DiagnoseError, Diagnosis, Estimate, Level, Suspect, Verdict};
 use crate::effect::{Model, Part};
 use crate::likelihood::Outlier;
+use crate::watch::Watch;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -65,6 +66,8 @@ pub struct Learnt {
     pub diagnosis: Diagnosis,
     /// What else should be said, a sentence each.
     pub remarks: Vec<String>,
+    /// Whether it was stopped while an effect was certified that may have been added.
+    pub partial: bool,
 }
 
 /// Sums of squared errors of some poses.
@@ -143,15 +146,20 @@ pub(crate) trait Evidence: Sized + Sync {
 /// ```
 pub fn learn(data: &Dataset, options: &diagnose::Options) -> Result<Learnt, DiagnoseError> {
     let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
-    learn_from(data, &Model::new(robot), options)
+    Watch::nobody(|watch| learn_from(data, &Model::new(robot), options, watch))
 }
 
 /// [`learn`], with the effects of a `start` model in the story from the beginning: a formula to try, say. They are fitted
-/// where they are free, after E_d, E_b and (from tracks) E_s.
-pub fn learn_from(data: &Dataset, start: &Model, options: &diagnose::Options) -> Result<Learnt, DiagnoseError> {
+/// where they are free, after E_d, E_b and (from tracks) E_s. Once stopped, it ends with the step that it is at.
+pub fn learn_from(
+    data: &Dataset,
+    start: &Model,
+    options: &diagnose::Options,
+    watch: &Watch,
+) -> Result<Learnt, DiagnoseError> {
     match options.evidence(data) {
-        Level::Ends => from_evidence(&diagnose::ends::Ends::new(data)?, start, options),
-        Level::Tracks => tracks::learn(&diagnose::tracks_of(data)?, start, options),
+        Level::Ends => from_evidence(&diagnose::ends::Ends::new(data)?, start, options, watch),
+        Level::Tracks => tracks::learn(&diagnose::tracks_of(data)?, start, options, watch),
     }
 }
 
@@ -191,6 +199,7 @@ pub(crate) fn from_evidence<E: Evidence>(
     evidence: &E,
     start: &Model,
     options: &diagnose::Options,
+    watch: &Watch,
 ) -> Result<Learnt, DiagnoseError> {
     let mut story = Story::new(evidence, evidence.nominal())?;
     if evidence.both_ways() {
@@ -204,8 +213,14 @@ pub(crate) fn from_evidence<E: Evidence>(
     }
     let mut remarks = Vec::new();
     let mut diagnosis = evidence.diagnose(&story.model, options)?;
+    let mut partial = false;
     while story.model.parts().len() < MOST {
+        (watch.progress)(story.model.parts().len() as f64 / MOST as f64);
         let Some(suspect) = diagnosis.certified().first().cloned() else { break };
+        partial = watch.is_stopped();
+        if partial {
+            break;
+        }
         let why = match story.grown_by(&suspect, options) {
             Ok(Some(further)) => {
                 (story, diagnosis) = further;
@@ -222,7 +237,7 @@ pub(crate) fn from_evidence<E: Evidence>(
     }
     remarks.extend(diagnosis.remarks.iter().cloned());
     let (steps, model, verdict) = (story.steps, story.model, diagnosis.verdict);
-    Ok(Learnt { steps, verdict, model, diagnosis, remarks })
+    Ok(Learnt { steps, verdict, model, diagnosis, remarks, partial })
 }
 
 /// A model as it grows, on all runs and without each of them.

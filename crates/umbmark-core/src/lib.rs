@@ -34,6 +34,7 @@ pub mod score;
 pub mod sensitivity;
 pub mod simulate;
 pub mod stats;
+pub mod watch;
 
 /// The version of this crate, printed beside every result.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -31,7 +31,7 @@ use crate::simulate::{Odometry, Phase, SimulateError};
 
 pub use distribution::{Distribution, DistributionError, Draw};
 pub use ensemble::{Ensemble, MergeError};
-pub use metric::Metric;
+pub use metric::{Metric, UnknownMetric};
 pub use quantity::{Quantity, QuantityError};
 pub use shard::{Shard, ShardError};
 pub use statistics::Statistics;

@@ -6,6 +6,7 @@
 //! | how wide is the interval of E_max,sys with n runs? | [`intervals`] |
 //! | another side, another speed, one direction only, bumps? | [`alternatives`], [`extended_test`] |
 //! | in which order are the runs best driven? | [`drifts`] |
+//! | all of these at once | [`Request`] |
 //! | what is done, step by step? | [`Protocol`] |
 //!
 //! A planned test is a dataset whose runs scatter about their means exactly as much as they are expected to. The fits and
@@ -13,10 +14,12 @@
 
 mod alternatives;
 mod expected;
+mod findings;
 mod intervals;
 mod order;
 mod power;
 mod protocol;
+mod sheet;
 
 use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, ReturnError};
@@ -26,14 +29,16 @@ use crate::drive::Robot;
 use crate::effect::{Model, ModelError, TestKind};
 use crate::monte_carlo::{Study, StudyError};
 use crate::path::{Direction, Path, PathError};
-use crate::score::Scatter;
+use crate::score::{Scatter, score};
 use crate::simulate::{Odometry, Phase, SimulateError, Simulator, Truth};
+use crate::stats::Interval;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 pub use crate::diagnose::Options;
 pub use alternatives::{Alternative, ExtendedTest, alternatives, extended_test};
 pub use expected::expected_dataset;
+pub use findings::{Answer, Findings, OfRuns, Request};
 pub use intervals::{ExpectedInterval, intervals};
 pub use order::{Drift, Order, drifts};
 pub use power::{MOST_RUNS, Planned, Shown, Sought, runs_needed};
@@ -169,6 +174,24 @@ impl Setting {
         self
     }
 
+    /// A robot whose runs scatter with σ \[m\] as it is expected. Where its model has no wheel noise, they scatter as those of
+    /// evenly noisy wheels, and the phrase that says so is given too.
+    pub fn expecting(
+        path: &Path,
+        truth: &Model,
+        sigma: Option<f64>,
+        seed: u64,
+    ) -> Result<(Setting, Option<&'static str>), PlanError> {
+        let Some(sigma) = sigma else { return Ok((Setting::new(path, truth, seed)?, None)) };
+        if truth.get("wheel_noise", "k_sqrt_m").is_some_and(|k| k > 0.0) {
+            return Ok((Setting::new(path, truth, seed)?.with_sigma(sigma), None));
+        }
+        let mut noisy = truth.clone();
+        noisy.set("wheel_noise", "k_sqrt_m", 1e-3)?;
+        let setting = Setting::new(path, &noisy, seed)?.with_sigma(sigma);
+        Ok((setting, Some("the runs scatter as those of evenly noisy wheels")))
+    }
+
     /// The same robot, with or without its return headings measured.
     pub fn with_heading(self, with_heading: bool) -> Setting {
         Setting { with_heading, ..self }
@@ -195,6 +218,11 @@ impl Setting {
         self.means.iter().map(|mean| libm::hypot(mean.x, mean.y)).fold(0.0, f64::max)
     }
 
+    /// Bumps of the test; 0 without any.
+    pub fn bumps(&self) -> f64 {
+        self.truth.get("placed_bumps", "count").unwrap_or(0.0)
+    }
+
     /// The nominal robot.
     pub fn robot(&self) -> &Robot {
         self.truth.robot()
@@ -215,6 +243,8 @@ pub struct Measured {
     pub truth: Model,
     /// Whether return headings were measured.
     pub with_heading: bool,
+    /// Where σ lies with probability 95 % \[m\], by the scatter of its runs.
+    pub sigma_interval: Option<Interval>,
 }
 
 impl Measured {
@@ -227,7 +257,8 @@ impl Measured {
         let k = experiments::wheel_noise(&ends, &fitted).filter(|_| ends.enough()).ok_or(PlanError::TooFewRuns)?;
         let mut truth = fitted.model;
         truth.set("wheel_noise", "k_sqrt_m", k)?;
-        Ok(Measured { path, truth, with_heading: ends.with_heading })
+        let sigma_interval = score(&data.runs, 0.95).ok().and_then(|score| score.intervals).map(|i| i.sigma_axis);
+        Ok(Measured { path, truth, with_heading: ends.with_heading, sigma_interval })
     }
 }
 

@@ -145,30 +145,37 @@ pub fn score(runs: &[Run], level: f64) -> Result<Score, ScoreError> {
     if returns.cw.is_empty() && returns.ccw.is_empty() {
         return Err(ScoreError::NothingReturned { runs: runs.len() });
     }
-    score_returns(&returns, level)
+    let Returns { cw, ccw, bumps_cw, bumps_ccw } = &returns;
+    score_returns([cw, ccw], [bumps_cw, bumps_ccw], level)
 }
 
-/// The same for return errors that are sorted, and finite.
-pub fn score_returns(returns: &Returns, level: f64) -> Result<Score, ScoreError> {
+/// The same for return errors that are sorted, and finite: of regular runs and of runs with bumps, each cw and ccw. Rows of an
+/// array of x, y and heading are read where they lie.
+pub fn score_returns<E: Copy + Into<ReturnError>>(
+    regular: [&[E]; 2],
+    bumps: [&[E]; 2],
+    level: f64,
+) -> Result<Score, ScoreError> {
     if !(level > 0.0 && level < 1.0) {
         return Err(ScoreError::Level { value: level });
     }
-    let summary = summarise(&returns.cw, &returns.ccw);
+    let [cw, ccw] = regular;
+    let summary = summarise(cw, ccw);
     if summary.cw.is_none() && summary.ccw.is_none() {
-        return Err(ScoreError::NothingReturned { runs: returns.bumps_cw.len() + returns.bumps_ccw.len() });
+        return Err(ScoreError::NothingReturned { runs: bumps[0].len() + bumps[1].len() });
     }
     let mut warnings = Vec::new();
-    let (n_cw, n_ccw) = (returns.cw.len(), returns.ccw.len());
+    let (n_cw, n_ccw) = (cw.len(), ccw.len());
     warn_of_missing_direction(n_cw, n_ccw, &mut warnings);
     let enough = warn_of_few_runs(n_cw, n_ccw, &mut warnings);
-    let scatter = Scatter::pooled(&returns.cw, &returns.ccw).filter(|_| enough);
+    let scatter = enough.then(|| Scatter::about(&summary, cw, ccw)).flatten();
     let chance = summary.sigma_axis().filter(|_| enough && n_cw > 0 && n_ccw > 0);
     Ok(Score {
         summary,
         level,
         intervals: scatter.map(|s| Intervals::new(&summary, &s, level)),
         noise_band: chance.map(|sigma| noise_band(sigma, n_cw, n_ccw, level)),
-        extended: score_extended(returns, level, &mut warnings),
+        extended: score_extended(bumps, regular, level, &mut warnings),
         warnings,
     })
 }
@@ -211,12 +218,16 @@ fn warn_of_few_runs(n_cw: usize, n_ccw: usize, warnings: &mut Vec<String>) -> bo
     few.is_empty()
 }
 
-fn score_extended(returns: &Returns, level: f64, warnings: &mut Vec<String>) -> Option<Extended> {
-    if returns.bumps_cw.is_empty() && returns.bumps_ccw.is_empty() {
+fn score_extended<E: Copy + Into<ReturnError>>(
+    bumps: [&[E]; 2],
+    regular: [&[E]; 2],
+    level: f64,
+    warnings: &mut Vec<String>,
+) -> Option<Extended> {
+    if bumps.iter().all(|errors| errors.is_empty()) {
         return None;
     }
-    let bumps: [&[ReturnError]; 2] = [&returns.bumps_cw, &returns.bumps_ccw];
-    let extended = Extended::new(bumps, [&returns.cw, &returns.ccw], level);
+    let extended = Extended::new(bumps, regular, level);
     match &extended {
         None => warnings.push(
             "The extended test has no score: Eq. 5 needs return headings of both directions, with bumps and without."

@@ -24,17 +24,18 @@ mod test_functions;
 mod tests_of_robots;
 pub mod tolerance;
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
 use crate::monte_carlo::StudyError;
 use crate::stats::{Interval, student_t_quantile};
+use crate::watch::Watch;
 
 pub use inputs::{Correlation, Input, Inputs};
 pub use local::{Derivative, local_derivatives};
 pub use morris::{Screened, Screening, screen};
-pub use sobol_indices::{Indices, SobolOptions, sobol_indices};
+pub use sobol_indices::{Indices, SobolDesign, SobolOptions, SobolSums, sobol_indices};
 pub use sobol_points::SobolPoints;
 pub use sums::OutputIndices;
 pub use tests_of_robots::{Noise, Tests};
@@ -158,20 +159,7 @@ impl Estimate {
     }
 }
 
-/// How long work goes on, and who is told.
-pub struct Watch<'a> {
-    /// Once set, no further piece of work is begun.
-    pub stop: &'a AtomicBool,
-    /// Told the share of the work that is done.
-    pub progress: &'a (dyn Fn(f64) + Sync),
-}
-
 impl Watch<'_> {
-    /// Work that nobody watches.
-    pub fn nobody<R>(work: impl FnOnce(&Watch) -> R) -> R {
-        work(&Watch { stop: &AtomicBool::new(false), progress: &|_| () })
-    }
-
     /// Does pieces of work on the present rayon pool: their results in order, none where it was stopped before.
     fn pieces<T: Send>(
         &self,
@@ -187,7 +175,7 @@ impl Watch<'_> {
                 || response.evaluator(),
                 |evaluator, piece| {
                     let evaluator = evaluator.as_mut().map_err(|error| error.clone())?;
-                    if self.stop.load(Ordering::Relaxed) {
+                    if self.is_stopped() {
                         return Ok(None);
                     }
                     let result = work(evaluator, piece)?;

@@ -113,9 +113,11 @@ pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usi
     environment.add_template("report.html", TEMPLATE)?;
     environment.add_template("table.html", TABLE)?;
     let filters: Vec<_> = studies.iter().map(filter).collect();
+    let verdicts: Vec<_> = studies.iter().map(|s| (s.name.clone(), verdict(s))).collect();
     environment.get_template("report.html")?.render(context! {
         title => title(studies),
-        verdicts => studies.iter().map(|s| (s.name.clone(), verdict(s))).collect::<Vec<_>>(),
+        verdicts => verdicts,
+        partial => studies.iter().any(Study::is_partial),
         many => studies.len() > 1,
         sections => Value::from(Serde(&sections)),
         absent => Value::from(Serde(&absent)),
@@ -150,7 +152,7 @@ fn figure_section(
     kind: &crate::kind::Kind,
     figures: &mut serde_json::Map<String, serde_json::Value>,
 ) -> Section {
-    let mut built: Vec<_> = studies.iter().map(kind.build).collect();
+    let mut built: Vec<_> = studies.iter().map(|study| study.begin().and_then(|()| (kind.build)(study))).collect();
     align(built.iter_mut().flatten().collect());
     let title = built.iter().flatten().next().map_or_else(|| spoken(kind.name), |figure| figure.title.clone());
     let mut parts = Vec::new();

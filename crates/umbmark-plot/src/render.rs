@@ -2,8 +2,10 @@
 
 pub mod bitmap;
 pub mod plotly;
+pub mod strip;
 pub mod svg;
 pub mod terminal;
 
+mod braille;
 mod font;
 pub(crate) mod legend;

@@ -3,7 +3,8 @@
 mod chance;
 mod paths;
 
-use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use umbmark_core::calibrate::{self, Calibration, Estimate, Method, calibrate};
 use umbmark_core::compare::tracks::TrackComparison;
@@ -12,10 +13,11 @@ use umbmark_core::dataset::{Dataset, Inspection, ReturnError};
 use umbmark_core::diagnose::{self, Diagnosis, diagnose};
 use umbmark_core::effect::{Model, TestKind};
 use umbmark_core::geometry::wrap;
-use umbmark_core::learn::{Learnt, learn};
+use umbmark_core::learn::{Learnt, learn_from};
 use umbmark_core::path::Direction;
 use umbmark_core::replay::Track;
 use umbmark_core::score::{Score, score};
+use umbmark_core::watch::Watch;
 
 pub use chance::Chance;
 pub use paths::{Paths, RunPath};
@@ -66,11 +68,8 @@ pub struct Study {
     along: OnceLock<Result<TrackComparison, Absent>>,
     chance: OnceLock<Result<Chance, Absent>>,
     paths: OnceLock<Result<Paths, Absent>>,
-}
-
-/// The value of a part, worked out once.
-fn once<T>(cell: &OnceLock<Result<T, Absent>>, work: impl FnOnce() -> Result<T, Absent>) -> Result<&T, Absent> {
-    cell.get_or_init(work).as_ref().map_err(Clone::clone)
+    stop: Arc<AtomicBool>,
+    cut_short: AtomicBool,
 }
 
 impl Study {
@@ -90,7 +89,54 @@ impl Study {
             along: OnceLock::new(),
             chance: OnceLock::new(),
             paths: OnceLock::new(),
+            stop: Arc::default(),
+            cut_short: AtomicBool::new(false),
         }
+    }
+
+    /// The same study, of which nothing further is worked out once `stop` is set.
+    pub fn stopped_by(self, stop: &Arc<AtomicBool>) -> Study {
+        Study { stop: Arc::clone(stop), ..self }
+    }
+
+    /// Whether something was left out because it was stopped.
+    pub fn is_partial(&self) -> bool {
+        self.cut_short.load(Ordering::Relaxed)
+    }
+
+    /// Refuses to begin where it was stopped.
+    pub(crate) fn begin(&self) -> Result<(), Absent> {
+        if self.stop.load(Ordering::Relaxed) {
+            self.cut_short.store(true, Ordering::Relaxed);
+            return Err(Absent("It was stopped before this was worked out.".into()));
+        }
+        Ok(())
+    }
+
+    /// The value of a part, worked out once.
+    fn once<'a, T>(
+        &self,
+        cell: &'a OnceLock<Result<T, Absent>>,
+        work: impl FnOnce() -> Result<T, Absent>,
+    ) -> Result<&'a T, Absent> {
+        if cell.get().is_none() {
+            self.begin()?;
+        }
+        cell.get_or_init(work).as_ref().map_err(Clone::clone)
+    }
+
+    /// How the model was learnt; `progress` is told the share of the steps that are done.
+    pub fn learn(&self, progress: &(dyn Fn(f64) + Sync)) -> Result<&Learnt, Absent> {
+        if let Some((name, _)) = &self.given {
+            return Err(Absent(format!("The model was given ({name}), not learnt.")));
+        }
+        self.once(&self.learnt, || {
+            let start = Model::new(self.data.nominal_robot().map_err(Absent::because)?);
+            let watch = Watch { stop: &self.stop, progress };
+            let learnt = learn_from(&self.data, &start, &self.options.diagnose, &watch).map_err(Absent::because)?;
+            self.cut_short.fetch_or(learnt.partial, Ordering::Relaxed);
+            Ok(learnt)
+        })
     }
 
     /// The probability that intervals hold with.
@@ -105,13 +151,13 @@ impl Study {
 
     /// The scores of the test.
     pub fn score(&self) -> Result<&Score, Absent> {
-        once(&self.score, || score(&self.data.runs, self.level()).map_err(Absent::because))
+        self.once(&self.score, || score(&self.data.runs, self.level()).map_err(Absent::because))
     }
 
     /// The calibration.
     pub fn calibration(&self) -> Result<&Calibration, Absent> {
         let work = || calibrate(&self.data, &calibrate::Options::default()).map_err(Absent::because);
-        once(&self.calibration, work)
+        self.once(&self.calibration, work)
     }
 
     /// The exact fit of the calibration.
@@ -121,19 +167,15 @@ impl Study {
 
     /// How the model was learnt.
     pub fn learnt(&self) -> Result<&Learnt, Absent> {
-        if let Some((name, _)) = &self.given {
-            return Err(Absent(format!("The model was given ({name}), not learnt.")));
-        }
-        once(&self.learnt, || learn(&self.data, &self.options.diagnose).map_err(Absent::because))
+        self.learn(&|_| ())
     }
 
     /// What the model is missing.
     pub fn diagnosis(&self) -> Result<&Diagnosis, Absent> {
         match &self.given {
             None => self.learnt().map(|learnt| &learnt.diagnosis),
-            Some((_, model)) => {
-                once(&self.diagnosis, || diagnose(&self.data, model, &self.options.diagnose).map_err(Absent::because))
-            }
+            Some((_, model)) => self
+                .once(&self.diagnosis, || diagnose(&self.data, model, &self.options.diagnose).map_err(Absent::because)),
         }
     }
 
@@ -156,7 +198,7 @@ impl Study {
     /// The nominal robot and the model beside the return poses.
     pub fn comparison(&self) -> Result<&Comparison, Absent> {
         let work = || compare(&self.data, &self.models()?, &self.options.diagnose).map_err(Absent::because);
-        once(&self.comparison, work)
+        self.once(&self.comparison, work)
     }
 
     /// The nominal robot and the model beside the tracks.
@@ -168,17 +210,17 @@ impl Study {
                 _ => Ok(along),
             }
         };
-        once(&self.along, work)
+        self.once(&self.along, work)
     }
 
     /// Simulated tests of the model.
     pub fn chance(&self) -> Result<&Chance, Absent> {
-        once(&self.chance, || Chance::new(self))
+        self.once(&self.chance, || Chance::new(self))
     }
 
     /// Paths of the runs as measured, computed and modelled.
     pub fn paths(&self) -> Result<&Paths, Absent> {
-        once(&self.paths, || Paths::new(self))
+        self.once(&self.paths, || Paths::new(self))
     }
 
     /// Return errors of a test and direction, each with the index of its run.

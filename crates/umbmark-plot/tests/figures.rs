@@ -118,3 +118,16 @@ fn a_page_of_one_study_is_one_file_without_a_network() {
         assert!(!text.contains(outside), "{outside}");
     }
 }
+
+#[test]
+fn a_page_that_is_stopped_says_so_and_what_is_missing() {
+    let stop = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
+    let stopped = [study("slope").stopped_by(&stop)];
+    let last = |done: usize| stop.store(done >= 1, std::sync::atomic::Ordering::Relaxed);
+    let text = page(&stopped, &Provenance::default(), last).unwrap();
+    assert!(stopped[0].is_partial());
+    for part in ["<strong>PARTIAL.</strong>", "It was stopped before this was worked out.", "comes back"] {
+        assert!(text.contains(part), "{part}");
+    }
+    assert!(!page(std::slice::from_ref(&*SLOPE), &Provenance::default(), |_| ()).unwrap().contains("PARTIAL"));
+}

@@ -7,8 +7,10 @@ use pyo3::prelude::*;
 use umbmark_core::calibrate::{self as core, Correction, Options, RadiusWheelbase, export as texts};
 use umbmark_core::document;
 use umbmark_core::drive::Kind;
+use umbmark_core::learn;
 
 use crate::dataset::Dataset;
+use crate::model::Model;
 use crate::path::Path;
 use crate::robot::Robot;
 use crate::work::watched;
@@ -34,9 +36,7 @@ pub fn calibrate(
     let robot = data.0.nominal_robot().map_err(refused)?;
     if robot.drive.kind() != Kind::Differential {
         let kind = robot.drive.kind().name();
-        let words = format!(
-            "this calibrates differential drives, got drive = \"{kind}\"; `umbmark calibrate` knows the others"
-        );
+        let words = format!("this calibrates differential drives, got drive = \"{kind}\"; use calibrate_gears");
         return Err(PyValueError::new_err(words));
     }
     let shared = Arc::clone(&data.0);
@@ -47,6 +47,22 @@ pub fn calibrate(
     }
     calibration.warnings.splice(0..0, data.0.warnings.iter().cloned());
     Ok(document::calibration(robot, &calibration, level).to_string())
+}
+
+/// A calibration of any drive by its first effects: the document, the model, and the corrected robot.
+#[pyfunction]
+pub fn calibrate_gears(py: Python<'_>, data: &Dataset, level: f64) -> PyResult<(String, Model, Robot)> {
+    probability("level", level)?;
+    let robot = data.0.nominal_robot().map_err(refused)?;
+    let shared = Arc::clone(&data.0);
+    let found = watched(py, 1, None, move |_| learn::calibrate_gears(&shared))?.map_err(refused)?;
+    if found.estimates.is_empty() {
+        return Err(PyValueError::new_err(
+            "nothing can be calibrated from these runs: drive a closed path in both directions, or measure poses on the way",
+        ));
+    }
+    let document = document::gears(robot, &found, level, &data.0.warnings).to_string();
+    Ok((document, found.model.into(), Robot(found.corrected)))
 }
 
 /// Corrected lengths as a file of another program: "ros2_control", "robot_toml" or "c_header".

@@ -11,7 +11,7 @@ use umbmark_core::{document, effect, learn as learning};
 
 use crate::dataset::Dataset;
 use crate::model::Model;
-use crate::work::watched;
+use crate::work::{Watch, watched};
 use crate::{probability, refused};
 
 /// Numbers of simulated tests that a p-value may come from.
@@ -99,18 +99,24 @@ pub fn fit(
     Ok((document::fitted(&fitted, level).to_string(), fitted.model.into()))
 }
 
-/// The whole loop, and the model that was learnt.
+/// The whole loop, from a model where one is given, and the model that was learnt.
 #[pyfunction]
 pub fn learn(
     py: Python<'_>,
     data: &Dataset,
+    start: Option<&Model>,
     options: (f64, usize, u64),
     return_poses: bool,
     threads: usize,
 ) -> PyResult<(String, Model)> {
     let options = options_of(options, return_poses)?;
     let shared = Arc::clone(&data.0);
-    let learnt = watched(py, threads, None, move |_| learning::learn(&shared, &options))?.map_err(refused)?;
+    let start = match start {
+        Some(start) => start.model.clone(),
+        None => effect::Model::new(data.0.nominal_robot().map_err(refused)?),
+    };
+    let work = move |told: &Watch| told.work(|watch| learning::learn_from(&shared, &start, &options, watch));
+    let learnt = watched(py, threads, None, work)?.map_err(refused)?;
     Ok((document::learnt(&learnt, &options).to_string(), learnt.model.into()))
 }
 
@@ -123,7 +129,8 @@ fn asked(data: &Dataset, model: Option<&Model>) -> PyResult<effect::Model> {
     }
 }
 
-fn options_of((size, draws, seed): (f64, usize, u64), ends_only: bool) -> PyResult<Options> {
+/// Size, draws and seed of tests, checked.
+pub fn options_of((size, draws, seed): (f64, usize, u64), ends_only: bool) -> PyResult<Options> {
     probability("size", size)?;
     if !DRAWS.contains(&draws) {
         let (least, most) = (DRAWS.start(), DRAWS.end());

@@ -13,13 +13,17 @@ mod effect;
 mod keys;
 mod model;
 mod monte_carlo;
+mod parameters;
 mod path;
+mod plan;
 mod preset;
 mod robot;
 mod run;
 mod score;
 mod sensitivity;
 mod simulate;
+mod sweep;
+mod tolerance;
 mod work;
 
 use pyo3::exceptions::PyValueError;
@@ -31,7 +35,7 @@ mod _umbmark {
     use pyo3::prelude::*;
 
     #[pymodule_export]
-    use super::calibrate::{calibrate, export};
+    use super::calibrate::{calibrate, calibrate_gears, export};
     #[pymodule_export]
     use super::dataset::{Dataset, inspect, load_dataset};
     #[pymodule_export]
@@ -45,6 +49,8 @@ mod _umbmark {
     #[pymodule_export]
     use super::path::Path;
     #[pymodule_export]
+    use super::plan::{plan, separate};
+    #[pymodule_export]
     use super::preset::presets;
     #[pymodule_export]
     use super::robot::Robot;
@@ -53,9 +59,13 @@ mod _umbmark {
     #[pymodule_export]
     use super::score::{score_arrays, score_dataset};
     #[pymodule_export]
-    use super::sensitivity::sensitivity;
+    use super::sensitivity::{Sobol, sensitivity};
     #[pymodule_export]
     use super::simulate::simulate;
+    #[pymodule_export]
+    use super::sweep::sweep;
+    #[pymodule_export]
+    use super::tolerance::tolerance;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

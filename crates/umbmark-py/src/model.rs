@@ -162,6 +162,13 @@ impl Model {
 }
 
 impl Model {
+    /// The paper's LabMate, its runs scattering about as in the paper.
+    pub fn noisy_labmate() -> Result<effect::Model, effect::ModelError> {
+        let mut model = effect::Model::new(&drive::Robot::labmate());
+        model.set("wheel_noise", "k_sqrt_m", 1e-3)?;
+        Ok(model)
+    }
+
     /// Its effects as in a file.
     fn tables(&self) -> PyResult<Vec<Table>> {
         let file: Table = self.to_toml().parse().map_err(|error: toml::de::Error| refused(error))?;

@@ -1,15 +1,19 @@
 //! `score`.
 
 use pyo3::prelude::*;
+use umbmark_core::dataset::ReturnError;
 use umbmark_core::document;
-use umbmark_core::score::{self as core, Convention, Returns, ScoreError};
+use umbmark_core::score::{self as core, Convention, ScoreError};
 
-use crate::arrays::return_errors;
+use crate::arrays::ReturnErrors;
 use crate::dataset::Dataset;
 use crate::work::detached;
 use crate::{choice, refused};
 
 const CONVENTIONS: [(&str, Convention); 2] = [("mean", Convention::Mean), ("sum", Convention::Sum)];
+
+/// The names of the arrays, as in the call.
+const ARRAYS: [&str; 4] = ["cw", "ccw", "bumps_cw", "bumps_ccw"];
 
 /// The score of return errors in arrays.
 #[pyfunction]
@@ -22,20 +26,16 @@ pub fn score_arrays(
     convention: &str,
 ) -> PyResult<String> {
     let convention = choice("convention", convention, &CONVENTIONS)?;
-    let mut returns = Returns::default();
-    for (name, array, errors) in [
-        ("cw", Some(cw), &mut returns.cw),
-        ("ccw", Some(ccw), &mut returns.ccw),
-        ("bumps_cw", bumps_cw, &mut returns.bumps_cw),
-        ("bumps_ccw", bumps_ccw, &mut returns.bumps_ccw),
-    ] {
-        if let Some(array) = array {
-            *errors = return_errors(name, array)?;
-        }
-    }
+    let given = ARRAYS.into_iter().zip([Some(cw), Some(ccw), bumps_cw, bumps_ccw]);
+    let arrays: PyResult<Vec<_>> =
+        given.map(|(name, array)| array.map(|array| ReturnErrors::new(name, array)).transpose()).collect();
+    let arrays = arrays?;
+    let rows = |index: usize| arrays[index].as_ref().map_or(Ok(&[][..]), ReturnErrors::rows);
+    let all = [rows(0)?, rows(1)?, rows(2)?, rows(3)?];
     let score = detached(cw.py(), || {
-        all_finite(&returns)?;
-        core::score_returns(&returns, level)
+        ARRAYS.into_iter().zip(all).try_for_each(|(name, rows)| all_finite(name, rows))?;
+        let [cw, ccw, bumps_cw, bumps_ccw] = all;
+        core::score_returns([cw, ccw], [bumps_cw, bumps_ccw], level)
     })?;
     Ok(document::score(&score.map_err(refused)?, convention).to_string())
 }
@@ -50,18 +50,9 @@ pub fn score_dataset(py: Python<'_>, data: &Dataset, level: f64, convention: &st
 }
 
 /// Refuses a return error that is no number, its run named as Python would index it.
-fn all_finite(returns: &Returns) -> Result<(), ScoreError> {
-    for (name, errors) in
-        [("cw", &returns.cw), ("ccw", &returns.ccw), ("bumps_cw", &returns.bumps_cw), ("bumps_ccw", &returns.bumps_ccw)]
-    {
-        let finite = |e: &umbmark_core::dataset::ReturnError| {
-            e.x.is_finite() && e.y.is_finite() && e.heading.is_none_or(f64::is_finite)
-        };
-        if let Some(row) = errors.iter().position(|error| !finite(error)) {
-            let error = errors[row];
-            let run = format!("{name}[{row}]");
-            return Err(ScoreError::NotFinite { run, x: error.x, y: error.y, heading: error.heading });
-        }
-    }
-    Ok(())
+fn all_finite(name: &str, rows: &[[f64; 3]]) -> Result<(), ScoreError> {
+    let wrong = |[x, y, heading]: &[f64; 3]| !x.is_finite() || !y.is_finite() || heading.is_infinite();
+    let Some(row) = rows.iter().position(wrong) else { return Ok(()) };
+    let ReturnError { x, y, heading } = rows[row].into();
+    Err(ScoreError::NotFinite { run: format!("{name}[{row}]"), x, y, heading })
 }

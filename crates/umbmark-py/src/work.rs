@@ -12,6 +12,9 @@ use pyo3::prelude::*;
 /// Time between two looks at whether Ctrl-C was pressed, and two calls of a progress function.
 const LOOK: Duration = Duration::from_millis(50);
 
+/// Steps that a share is told in.
+const STEPS: f64 = 1000.0;
+
 /// What the work tells and is told while it runs.
 #[derive(Clone, Default)]
 pub struct Watch {
@@ -65,6 +68,12 @@ pub fn watched<T: Send + 'static>(
 }
 
 impl Watch {
+    /// Does work of the core, which tells the share that is done in thousandths.
+    pub fn work<T>(&self, work: impl FnOnce(&umbmark_core::watch::Watch) -> T) -> T {
+        let progress = |share: f64| self.done.store((share * STEPS) as u64, Ordering::Relaxed);
+        work(&umbmark_core::watch::Watch { stop: &self.stop, progress: &progress })
+    }
+
     /// Tells Python how far the work is and hears whether it should stop.
     fn look(&self, py: Python<'_>, progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let heard = py.check_signals().and_then(|()| match progress {

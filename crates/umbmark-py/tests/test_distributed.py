@@ -80,7 +80,8 @@ def test_a_killed_worker_changes_no_bit(client: Client) -> None:
         if done > 4000 and not killed:
             killed.append(kill_one(client))
 
-    many = umbmark.distributed.monte_carlo(client, MODEL, chunk=1024, progress=at, **keys)
+    study = umbmark.Study(MODEL, **keys)
+    many = umbmark.distributed.monte_carlo(client, study, chunk=1024, progress=at)
     assert killed
     assert killed[0] not in client.run(os.getpid).values()
     one = umbmark.monte_carlo(MODEL, **keys)
@@ -91,9 +92,8 @@ def test_a_killed_worker_changes_no_bit(client: Client) -> None:
 
 def test_a_precise_study_ends_at_the_same_trial_whatever_the_chunks_do(client: Client) -> None:
     def found(on: Client) -> umbmark.MonteCarlo:
-        return umbmark.distributed.monte_carlo(
-            on, MODEL, runs=1, until_std_error_m=2e-3, chunk=512, n=200_000
-        )
+        study = umbmark.Study(MODEL, runs=1, n=200_000)
+        return umbmark.distributed.monte_carlo(on, study, until_std_error_m=2e-3, chunk=512)
 
     many = found(client)
     assert not many.partial
@@ -102,6 +102,26 @@ def test_a_precise_study_ends_at_the_same_trial_whatever_the_chunks_do(client: C
     for alone in cluster(1):
         again = found(alone)
     assert (again.n, bits(again)) == (many.n, bits(many))
+
+
+def test_sobol_indices_are_those_of_one_process_though_a_worker_is_killed(client: Client) -> None:
+    parameters = [{"name": "side", "min": 2, "max": 5}]
+    killed: list[int] = []
+
+    def at(done: int, _: int) -> None:
+        if done > 20 and not killed:
+            killed.append(kill_one(client))
+
+    study = umbmark.Study(MODEL, runs=2, seed=5)
+    many = umbmark.distributed.sensitivity(
+        client, study, parameters=parameters, base_points=2048, chunk=3, progress=at
+    )
+    assert killed
+    one = umbmark.sensitivity(MODEL, parameters=parameters, effort=2048, runs=2, seed=5)
+    assert many == one
+    assert not many.partial
+    with pytest.raises(ValueError, match="nothing is varied"):
+        umbmark.distributed.sensitivity(client, umbmark.Study(umbmark.Model()))
 
 
 def test_verdicts_on_complete_robots_are_those_of_one_process(client: Client) -> None:
@@ -147,9 +167,9 @@ def test_an_impossible_study_is_a_value_error(
 
 def test_what_a_chunk_refuses_reaches_the_caller(client: Client) -> None:
     with pytest.raises(ValueError, match="number of runs"):
-        umbmark.distributed.monte_carlo(client, MODEL, n=10, runs=0)
+        umbmark.distributed.monte_carlo(client, umbmark.Study(MODEL, n=10, runs=0))
     with pytest.raises(ValueError, match="chunk must be 1 or more"):
-        umbmark.distributed.monte_carlo(client, MODEL, n=10, chunk=0)
+        umbmark.distributed.monte_carlo(client, umbmark.Study(MODEL, n=10), chunk=0)
 
 
 @pytest.mark.skipif("UMBMARK_LONG_STUDIES" not in os.environ, reason="UMBMARK_LONG_STUDIES")
@@ -158,7 +178,8 @@ def test_a_hundred_million_trials_on_four_workers_are_those_on_one() -> None:
     for workers in (4, 1):
         for client in cluster(workers):
             began = time.perf_counter()
-            found = umbmark.distributed.monte_carlo(client, MODEL, n=100_000_000, runs=1, seed=2)
+            study = umbmark.Study(MODEL, n=100_000_000, runs=1, seed=2)
+            found = umbmark.distributed.monte_carlo(client, study)
             told.append(bits(found))
             seconds = time.perf_counter() - began
             print(f"{workers} workers: {seconds:.0f} s, E_max {found.metrics['e_max_sys_m']}")

@@ -52,6 +52,14 @@ CALLS: dict[str, tuple[Callable[[Path], Result], tuple[str, ...]]] = {
     ),
     "learn": (lambda place: umbmark.learn(place, draws=99), ("learn", "--draws", "99")),
     "inspect": (lambda place: umbmark.inspect(place), ("inspect",)),
+    "plan": (
+        lambda place: umbmark.plan(place, see={"eb": 1.005, "es": 1.01}, draws=99),
+        ("plan", "--see", "eb=1.005", "--see", "es=1.01", "--draws", "99"),
+    ),
+    "separate": (
+        lambda place: umbmark.separate("wheelbase", "crab", place),
+        ("plan", "--separate", "wheelbase", "crab"),
+    ),
 }
 
 
@@ -70,11 +78,104 @@ def test_a_result_is_the_document_of_the_command(
     assert call(place).to_dict() == told(command, words[0], place, *words[1:])
 
 
+GRADES: list[dict[str, Any]] = [
+    {"name": "ed", "mean": 1.0, "sd": 0.001},
+    {
+        "name": "eb",
+        "grades": [{"mean": 1, "sd": 0.01, "cost": 0}, {"min": 0.998, "max": 1.002, "cost": 8}],
+    },
+]
+GRADES_FILE = """
+[[parameter]]
+name = "ed"
+mean = 1.0
+sd = 0.001
+
+[[parameter]]
+name = "eb"
+grades = [{ mean = 1, sd = 0.01, cost = 0 }, { min = 0.998, max = 1.002, cost = 8 }]
+
+[[correlation]]
+of = ["ed", "eb"]
+value = 0.3
+"""
+
+
+@pytest.fixture(scope="module")
+def grades(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a file of parameters with their grades."""
+    place = tmp_path_factory.mktemp("grades") / "parameters.toml"
+    place.write_text(GRADES_FILE)
+    return place
+
+
+NOISE = umbmark.Model().add("wheel_noise", k_sqrt_m=1e-3)
+
+# What is asked without data; the words of the command, {} being the file of grades.
+STUDIES: dict[str, tuple[Callable[[Path], Result], str]] = {
+    "tolerance": (
+        lambda _: umbmark.tolerance(GRADES, robots=2000, correlations={("ed", "eb"): 0.3}),
+        "tolerance {} -n 2000",
+    ),
+    "tolerance of a file": (
+        lambda file: umbmark.tolerance(file, NOISE, robots=500, target=0.04, with_noise=True),
+        "tolerance {} -n 500 --target 40mm --with-noise",
+    ),
+    "sweep of one axis": (
+        lambda _: umbmark.sweep(NOISE, {"eb": (0.99, 1.01, 3)}, n=20, seed=4),
+        "mc --sweep eb=0.99:1.01:3 -n 20 --seed 4",
+    ),
+    "sweep of two": (
+        lambda _: umbmark.sweep(NOISE, {"ed": (1.0, 1.002, 2), "side": (2, 4, 3)}, n=20),
+        "mc --sweep ed=1.0:1.002:2 --sweep side=2:4:3 -n 20",
+    ),
+    "sensitivity": (
+        lambda file: umbmark.sensitivity(NOISE, parameters=file, effort=64),
+        "sensitivity --parameters {} -n 64",
+    ),
+    "sensitivity to what is given": (
+        lambda _: umbmark.sensitivity(
+            NOISE,
+            effort=64,
+            parameters=[
+                {"name": "ed", "mean": 1.0, "sd": 0.001},
+                {"name": "side", "min": 2, "max": 5},
+            ],
+            correlations={("ed", "side"): 0.5},
+        ),
+        "sensitivity -n 64 --vary ed=normal:1:0.001 --vary side=uniform:2:5"
+        " --correlate ed,side=0.5",
+    ),
+    "plan": (
+        lambda _: umbmark.plan(see={"floor_slope.drift_x": 0.004}, draws=99, runs=4),
+        "plan --see slope-x=0.004 --draws 99 --runs 4",
+    ),
+    "separate": (lambda _: umbmark.separate("crab", "scale"), "plan --separate crab scale"),
+}
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_a_study_is_the_document_of_the_command(name: str, command: Path, grades: Path) -> None:
+    call, words = STUDIES[name]
+    expected = told(command, *words.format(grades).split())
+    # What the command assumes, Python is told.
+    found = call(grades).to_dict() | {"assumed": expected.get("assumed")}
+    assert found == expected | {"assumed": expected.get("assumed")}
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_a_study_has_a_table_a_figure_and_a_pickle(name: str, grades: Path) -> None:
+    has_all(STUDIES[name][0](grades))
+
+
 @pytest.mark.parametrize("verb", CALLS)
 def test_a_result_has_a_table_a_figure_and_a_pickle(verb: str, folder: Path) -> None:
+    has_all(CALLS[verb][0](folder))
+
+
+def has_all(result: Any) -> None:
     from matplotlib import pyplot
 
-    result: Any = CALLS[verb][0](folder)
     rows = result.table()
     assert len(rows) > 0
     assert list(result.to_pandas().columns) == list(rows[0]) == result.to_polars().columns
@@ -137,6 +238,57 @@ def test_a_calibration_is_put_to_use(data: umbmark.Dataset, folder: Path, tmp_pa
         found.export("c_header", method="best")
 
 
+def test_a_robot_of_another_drive_is_calibrated_as_by_the_command(
+    command: Path, tmp_path: Path
+) -> None:
+    robot = umbmark.Robot(
+        drive="synchro",
+        wheel_circle_m=0.5,
+        wheel_diameter_m=0.15,
+        ticks_per_revolution=2000,
+        steering_ticks_per_revolution=10_000,
+    )
+    truth = umbmark.Model(robot).add("wheel_noise", k_sqrt_m=3e-4).add("scale", e_s=1.01)
+    data = umbmark.simulate(truth, umbmark.Path(side_m=SIDE), runs=3, reference_rate_hz=5)
+    data.save(tmp_path / "synchro")
+    found = umbmark.calibrate_gears(data)
+    # The folder knows its times to a microsecond only.
+    expected = told(command, "calibrate", tmp_path / "synchro")
+    assert found.to_dict().keys() == expected.keys()
+    read = umbmark.calibrate_gears(tmp_path / "synchro")
+    assert read.to_dict() == expected
+    scale = found.fitted[0]
+    assert scale.effect == "drive_scale"
+    assert scale.interval is not None
+    assert scale.interval[0] < 1.01 < scale.interval[1]
+    assert found.corrected["wheel_diameter_m"] == pytest.approx(0.15 * scale.value)
+    has_all(read)
+    with pytest.raises(ValueError, match='got drive = "synchro"; use calibrate_gears'):
+        umbmark.calibrate(data)
+
+
+def test_learning_begins_with_the_model_that_is_given(
+    folder: Path, command: Path, tmp_path: Path
+) -> None:
+    start = umbmark.Model().add("floor_slope", free=True)
+    (tmp_path / "start.toml").write_text(start.to_toml())
+    learnt = umbmark.learn(folder, start, draws=99)
+    words = ("learn", folder, "--draws", "99", "--model", tmp_path / "start.toml")
+    assert learnt.to_dict() == told(command, *words)
+    added = [step.added for step in learnt.steps]
+    assert added[:4] == [None, "wheel_diameter_ratio", "wheelbase", "floor_slope"]
+
+
+def test_the_sheet_of_a_plan_is_that_of_the_command(command: Path, tmp_path: Path) -> None:
+    files = [tmp_path / "sheet.md", tmp_path / "sheet.html"]
+    written = ("-o", files[0], "-o", files[1], "--order", "blocks", "--runs", "4", "--draws", "99")
+    told(command, "plan", *written)
+    found = umbmark.plan(runs=4, order="blocks", numbers=[], draws=99)
+    assert [found.sheet("md"), found.sheet("html")] == [file.read_text() for file in files]
+    with pytest.raises(ValueError, match='format must be one of md, html, got "pdf"'):
+        found.sheet("pdf")
+
+
 def test_a_model_that_was_learnt_explains_the_data(folder: Path) -> None:
     learnt = umbmark.learn(folder, draws=199)
     assert learnt.steps[0].added is None
@@ -166,6 +318,18 @@ def test_a_model_that_was_learnt_explains_the_data(folder: Path) -> None:
             "the nominal robot is not known",
         ),
         (lambda _: umbmark.inspect(umbmark.Dataset()), "there are no runs"),
+        (lambda _: umbmark.plan(see={"e_bb": 1.0}), 'no effect has a size "e_bb"'),
+        (lambda _: umbmark.plan(runs=2), "runs a direction must be between 3 and 1000, got 2"),
+        (lambda _: umbmark.plan(power=0.04), r"power must be greater than size, 0\.05"),
+        (lambda _: umbmark.plan(sigma_m=-1), "sigma_m must be positive and finite"),
+        (lambda _: umbmark.plan(order="random"), "order must be one of mirrored, alternating"),
+        (lambda _: umbmark.separate("crab", "crab"), "two effects are told apart, got crab twice"),
+        (lambda _: umbmark.tolerance([{"name": "e_dd", "mean": 1, "sd": 1}]), "e_dd"),
+        (lambda _: umbmark.tolerance(GRADES, target=-1), "target must be positive and finite"),
+        (lambda _: umbmark.tolerance(GRADES, metric="e_max"), 'there is no metric "e_max"'),
+        (lambda _: umbmark.sweep(NOISE, {"e_dd": (0, 1, 2)}), 'there is no parameter "e_dd"'),
+        (lambda _: umbmark.sweep(NOISE, {"ed": (0.9, 1, 0)}), "a sweep has between 1 and"),
+        (lambda _: umbmark.sensitivity(NOISE), "nothing is varied"),
     ],
 )
 def test_what_cannot_be_answered_is_a_value_error(

@@ -7,7 +7,8 @@ use std::process::ExitCode;
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Experiment, Level, Options};
 use umbmark_core::document;
-use umbmark_core::learn::{Learnt, Step, learn, learn_from};
+use umbmark_core::effect::Model;
+use umbmark_core::learn::{Learnt, Step, learn_from};
 
 use super::diagnose::{experiment_text, in_words};
 use crate::Session;
@@ -44,10 +45,15 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let data = arguments.data.load()?;
     let options = arguments.test.options(session);
     let start = arguments.model.as_deref().map(|file| model_of(Some(file), &data)).transpose()?;
-    let learnt = session.on_threads(|| match &start {
-        Some(start) => learn_from(&data, start, &options),
-        None => learn(&data, &options),
-    })??;
+    let start = match start {
+        Some(start) => start,
+        None => Model::new(data.nominal_robot()?),
+    };
+    let learnt =
+        session.watched("per mille of the steps at most", |watch| learn_from(&data, &start, &options, watch))??;
+    if learnt.partial {
+        session.message("partial", "stopped while an effect was still missing");
+    }
     if let Some(file) = &arguments.output {
         write_model(&learnt.model, file, arguments.force)?;
     }

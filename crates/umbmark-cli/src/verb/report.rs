@@ -16,6 +16,9 @@ use crate::files::Pending;
 use crate::prose::hanging;
 use crate::study_arguments::StudyArguments;
 
+/// Measured poses that take minutes to learn from: some 0.1 ms each on one thread.
+const MANY: usize = 200_000;
+
 /// No more stand side by side.
 const MOST: usize = 2;
 
@@ -53,10 +56,20 @@ fn html(text: &str) -> Result<PathBuf, String> {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let studies = arguments.studies(session)?;
+    let stop = session.catch_interrupt()?;
+    let studies: Vec<Study> = arguments.studies(session)?.into_iter().map(|study| study.stopped_by(&stop)).collect();
     let provenance = arguments.provenance(session)?;
     // Refused before the long work, not after it.
     let mut file = Pending::create(&arguments.output, arguments.force)?;
+    for study in studies.iter().filter(|study| study.given.is_none()) {
+        let poses: usize = study.data.runs.iter().flat_map(|run| &run.log).map(|log| log.reference.len()).sum();
+        if poses > MANY && !study.options.diagnose.ends_only {
+            let cost = "takes minutes; --model FILE spares it, --return-poses learns from return poses alone";
+            session.message("note", &format!("learning from {poses} measured poses {cost}"));
+        }
+        // Why nothing could be learnt, the page says.
+        let _ = session.told("per mille of the steps at most of learning", |tell| study.learn(tell).is_ok())?;
+    }
     let mut progress = session.progress(KINDS.len() as u64, "figures");
     let made = session.on_threads(|| page(&studies, &provenance, |done| progress.at(done as u64)))?;
     drop(progress);
@@ -64,12 +77,17 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     file.write_all(text.as_bytes()).with_context(|| file.failed())?;
     file.finish()?;
     let output = arguments.output.display().to_string();
+    let partial = studies.iter().any(Study::is_partial);
+    if partial {
+        session.message("partial", "stopped before all was worked out; the page says what is missing");
+    }
     if session.json() {
         let told = |study: &Study| json!({ "name": study.name, "verdict": verdict(study) });
         session.print_json(&json!({
             "output": output,
             "bytes": text.len(),
             "studies": studies.iter().map(told).collect::<Vec<_>>(),
+            "partial": partial,
             "seed": session.seed(),
             "version": umbmark_core::VERSION,
         }))?;

@@ -2,15 +2,14 @@
 
 use std::io::Write;
 use std::process::ExitCode;
-use std::sync::Mutex;
 
 use umbmark_core::document::Found;
-use umbmark_core::sensitivity::{Inputs, Noise, SobolOptions, Tests, Watch, local_derivatives, screen, sobol_indices};
+use umbmark_core::monte_carlo::Metric;
+use umbmark_core::sensitivity::{Inputs, Noise, SobolOptions, Tests, local_derivatives, screen, sobol_indices};
 
 use crate::Session;
 use crate::sensitivity_report::SensitivityReport;
 use crate::study_flags::StudyFlags;
-use crate::sweep::metric_named;
 use crate::vary::VaryFlags;
 
 /// How sensitivities are found.
@@ -64,7 +63,7 @@ pub struct Arguments {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let (study, known) = arguments.study.resolve(arguments.trials, session.seed())?;
-    let metric = metric_named(&arguments.metric)?;
+    let metric = Metric::named(&arguments.metric)?;
     let varied = arguments.vary.resolve(&study)?;
     let noise = if arguments.noise_free { Noise::Absent } else { Noise::Simulated };
     let tests = Tests::new(&study, &varied.parameters, noise)?;
@@ -92,23 +91,13 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     Ok(ExitCode::SUCCESS)
 }
 
-/// Steps of the progress bar.
-const STEPS: f64 = 1000.0;
-
 fn find(arguments: &Arguments, tests: &Tests, inputs: &Inputs, session: &Session) -> anyhow::Result<Found> {
-    let progress = Mutex::new(session.progress(STEPS as u64, "per mille"));
-    let tell = |share: f64| {
-        if let Ok(mut progress) = progress.lock() {
-            progress.at((share * STEPS) as u64);
-        }
-    };
-    let stop = session.catch_interrupt()?;
-    let watch = Watch { stop: &stop, progress: &tell };
+    let Arguments { method, base_points, second_order, trajectories, trials, .. } = *arguments;
     let seed = session.seed();
-    let options = SobolOptions { base_points: arguments.base_points, second_order: arguments.second_order, seed };
-    Ok(session.on_threads(|| match arguments.method {
-        Method::Sobol => sobol_indices(tests, inputs, &options, &watch).map(Found::Sobol),
-        Method::Morris => screen(tests, inputs, arguments.trajectories, seed, &watch).map(Found::Morris),
-        Method::Local => local_derivatives(tests, inputs, arguments.trials, &watch).map(Found::Local),
+    let options = SobolOptions { base_points, second_order, seed };
+    Ok(session.watched("per mille", |watch| match method {
+        Method::Sobol => sobol_indices(tests, inputs, &options, watch).map(Found::Sobol),
+        Method::Morris => screen(tests, inputs, trajectories, seed, watch).map(Found::Morris),
+        Method::Local => local_derivatives(tests, inputs, trials, watch).map(Found::Local),
     })??)
 }

@@ -3,19 +3,17 @@
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Mutex;
 
-use serde_json::{Map, Value, json};
 use umbmark_core::dataset::{ParameterFile, read_parameters};
+use umbmark_core::document::{self, Wanted};
 use umbmark_core::monte_carlo::Metric;
 use umbmark_core::sensitivity::tolerance::{Choice, Findings, Target, Tolerances};
-use umbmark_core::sensitivity::{Correlation, Estimate, Noise, Tests, Watch};
+use umbmark_core::sensitivity::{Correlation, Noise, Tests};
 
 use crate::Session;
 use crate::distribution_text::distribution_words;
 use crate::ensemble_report::unit;
 use crate::study_flags::StudyFlags;
-use crate::sweep::metric_named;
 use crate::table::{table, with_precision_of};
 use crate::terminal::histogram;
 
@@ -60,7 +58,7 @@ fn size(text: &str) -> Result<(f64, bool), String> {
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let (study, known) = arguments.study.resolve(1, session.seed())?;
     let file = read_parameters(&arguments.file, &study)?;
-    let metric = metric_named(&arguments.metric)?;
+    let metric = Metric::named(&arguments.metric)?;
     let (at_most, is_angle) = arguments.target;
     let wanted = if metric.is_angle() { "an angle, as in 2deg" } else { "a length, as in 50mm" };
     anyhow::ensure!(is_angle == metric.is_angle(), "--target: {} needs {wanted}", metric.name());
@@ -79,36 +77,28 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         robots: arguments.robots,
         seed: session.seed(),
     };
-    let findings = search(&tolerances, &target, session)?;
+    let findings = session.watched("per mille of all choices", |watch| tolerances.search(&target, watch))??;
     let assumed = if arguments.with_noise { known.assumed } else { Vec::new() };
     let report = Report { findings: &findings, file: &file, target: &target, metric, assumed: &assumed };
     if findings.partial {
         session.message("partial", "stopped before all choices were looked at");
     }
     if session.json() {
-        let document = report.json(session.seed(), arguments.with_noise);
-        session.print_json(&document)?;
+        let wanted = Wanted {
+            parameters: &file.parameters,
+            metric,
+            target: &target,
+            noise,
+            seed: session.seed(),
+            assumed: &assumed,
+        };
+        session.print_json(&document::tolerance(&findings, &wanted))?;
     } else {
         let text = report.text(arguments.with_noise, session.on_terminal())
             + &format!("\nseed {}, umbmark {}\n", session.seed(), umbmark_core::VERSION);
         write!(session.out(), "{text}")?;
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// Steps of the progress bar.
-const STEPS: f64 = 1000.0;
-
-fn search(tolerances: &Tolerances, target: &Target, session: &Session) -> anyhow::Result<Findings> {
-    let progress = Mutex::new(session.progress(STEPS as u64, "per mille of all choices"));
-    let tell = |share: f64| {
-        if let Ok(mut progress) = progress.lock() {
-            progress.at((share * STEPS) as u64);
-        }
-    };
-    let stop = session.catch_interrupt()?;
-    let watch = Watch { stop: &stop, progress: &tell };
-    Ok(session.on_threads(|| tolerances.search(target, &watch))??)
 }
 
 struct Report<'a> {
@@ -120,33 +110,6 @@ struct Report<'a> {
 }
 
 impl Report<'_> {
-    fn json(&self, seed: u64, with_noise: bool) -> Value {
-        let estimate = |e: Estimate| json!({ "value": e.value, "interval": [e.interval.low, e.interval.high] });
-        let choice = |choice: &Choice| {
-            let grade = |(one, grade): (&umbmark_core::dataset::Varied, &usize)| {
-                let chosen = &one.grades[*grade];
-                let value = json!({ "grade": grade + 1, "distribution": umbmark_core::document::distribution(&chosen.distribution), "cost": chosen.cost });
-                (one.quantity.key(), value)
-            };
-            let grades: Map<String, Value> = self.file.parameters.iter().zip(&choice.grades).map(grade).collect();
-            json!({
-                "grades": grades, "cost": choice.cost,
-                "share_within": estimate(choice.robots.share_within(self.target.at_most)),
-                "quantile": estimate(choice.robots.quantile(self.target.share)),
-            })
-        };
-        let at_most = if self.metric.is_angle() { "at_most_rad" } else { "at_most_m" };
-        json!({
-            "metric": self.metric.name(), "target": { at_most: self.target.at_most, "share": self.target.share },
-            "noise": if with_noise { "simulated" } else { "absent" },
-            "robots": self.findings.now.robots.sizes().len(), "seed": seed, "partial": self.findings.partial,
-            "now": choice(&self.findings.now), "alone": self.findings.alone.iter().map(choice).collect::<Value>(),
-            "last": choice(&self.findings.last),
-            "cheapest": self.findings.cheapest.as_ref().map(choice), "choices_looked_at": self.findings.looked_at,
-            "assumed": self.assumed, "version": umbmark_core::VERSION,
-        })
-    }
-
     fn text(&self, with_noise: bool, unicode: bool) -> String {
         let (unit, factor) = unit(self.metric);
         let now = &self.findings.now;

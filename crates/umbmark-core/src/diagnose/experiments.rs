@@ -49,9 +49,7 @@ pub(super) fn next_experiments(
 /// Each effect is taken at its usual size, the hardest of those of its sizes that show at all; what the model has is fitted.
 pub(crate) fn separating(ends: &Ends, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
     let [first, second] = [find(pair[0])?, find(pair[1])?];
-    let has = |model: &Model, entry: &Entry| model.parts().iter().any(|part| part.effect.name() == entry.about.name);
-    // Of two that are fitted, the first stays.
-    let model = if has(model, first) && has(model, second) { without(model, second)? } else { model.clone() };
+    let model = with_one_of(model, [first, second])?;
     let fitted = Fitted::new(ends, &model)?;
     let mut sizes: Vec<SizeOf> = Vec::new();
     let of_both = [first, second].map(|entry| {
@@ -76,6 +74,15 @@ pub(crate) fn separating(ends: &Ends, model: &Model, pair: [&str; 2]) -> Result<
     let mut experiments = offer.told(&pair);
     experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     Ok(experiments)
+}
+
+fn has(model: &Model, entry: &Entry) -> bool {
+    model.parts().iter().any(|part| part.effect.name() == entry.about.name)
+}
+
+/// The model with one of two effects at most: of two that are fitted, the first stays.
+pub(super) fn with_one_of(model: &Model, [first, second]: [&Entry; 2]) -> Result<Model, DiagnoseError> {
+    if has(model, first) && has(model, second) { without(model, second) } else { Ok(model.clone()) }
 }
 
 /// The model without an effect of the catalogue.

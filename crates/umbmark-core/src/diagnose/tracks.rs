@@ -26,6 +26,7 @@ use super::{
 use crate::diagnose::likeness::correlations;
 use crate::likelihood::{Fitted, Observed};
 use crate::stats::{chi_squared_upper_tail, normal_quantile};
+use crate::watch::Watch;
 use examination::Question;
 use smooth::Motion;
 use system::Projected;
@@ -135,12 +136,15 @@ pub(crate) struct Search {
     pub left: Missing,
 }
 
-/// Adds what is certified as missing, at most `most` effects, each fitted without approximation before the next is asked.
-pub(crate) fn search(fitted: Fitted, options: &Options, most: usize) -> Result<Search, DiagnoseError> {
+/// Adds what is certified as missing, at most `most` effects, each fitted without approximation before the next is asked; once
+/// stopped, no more.
+pub(crate) fn search(fitted: Fitted, options: &Options, most: usize, watch: &Watch) -> Result<Search, DiagnoseError> {
     let exam = Examination::new(fitted)?;
     let left = missing(&exam, options);
     let mut search = Search { exams: vec![exam], added: Vec::new(), left };
-    while let Some((finding, suspect)) = search.left.effect.clone().filter(|_| search.added.len() < most) {
+    let goes_on = |search: &Search| search.added.len() < most && !watch.is_stopped();
+    while let Some((finding, suspect)) = search.left.effect.clone().filter(|_| goes_on(&search)) {
+        (watch.progress)((search.added.len() + 1) as f64 / (most + 1) as f64);
         let exam = Examination::new(growth::grown(search.last(), &suspect)?)?;
         if search.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&exam, smooth, options)) {
             break;
@@ -185,7 +189,7 @@ pub(crate) fn dependence(exam: &Examination, finding: &Finding, asked: &[Suspect
 
 /// Fits a model's free parameters to tracks and asks every other effect, and every smooth, whether it is missing.
 pub(crate) fn diagnose(fitted: Fitted, options: &Options) -> Result<Diagnosis, DiagnoseError> {
-    let search = search(fitted, options, MOST)?;
+    let search = Watch::nobody(|watch| search(fitted, options, MOST, watch))?;
     let verdict = verdict(&search);
     let Search { mut exams, added, left } = search;
     let last = exams.len() - 1;
@@ -229,6 +233,11 @@ pub(crate) fn next_experiments(
         }
     }
     Ok((told, hints))
+}
+
+/// Every drive on offer for telling two effects apart, together with these tracks.
+pub(crate) fn separating(fitted: Fitted, pair: [&'static str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
+    experiments::separating(&Examination::new(fitted)?, pair)
 }
 
 /// What stands far out by F and is not certified by the flips: these runs are too few, or too unlike, to vouch for it.

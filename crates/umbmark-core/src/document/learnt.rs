@@ -32,6 +32,7 @@ pub fn learnt(learnt: &Learnt, options: &Options) -> Value {
         "meaning": meaning(&learnt.diagnosis.fitted, &learnt.model),
         "outliers": outliers(&learnt.diagnosis.outliers),
         "remarks": learnt.remarks,
+        "partial": learnt.partial,
         "size": options.size,
         "draws": options.draws,
         "seed": options.seed,

@@ -29,6 +29,15 @@ pub struct GearCalibration {
     pub e_max_sys_after: Option<f64>,
 }
 
+impl GearCalibration {
+    /// The numbers of the `nominal` robot that the correction changes: key, nominal, corrected.
+    pub fn changes(&self, nominal: &Robot) -> Vec<(&'static str, f64, f64)> {
+        let keys = nominal.drive.kind().parameters().iter().map(|p| p.name);
+        let values = nominal.drive.values().into_iter().zip(self.corrected.drive.values());
+        keys.zip(values).filter(|(_, (a, b))| a != b).map(|(key, (a, b))| (key, a, b)).collect()
+    }
+}
+
 /// What leaves nothing to calibrate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

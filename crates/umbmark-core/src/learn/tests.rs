@@ -8,6 +8,7 @@ use crate::diagnose::{Options, base_model};
 use crate::drive::Robot;
 use crate::path::Path;
 use std::io::Write;
+use std::sync::atomic::AtomicBool;
 
 /// Seed 29; the whole catalogue is on offer.
 #[test]
@@ -129,4 +130,17 @@ fn a_parameter_that_does_not_show_keeps_its_value() {
         (fit(&data, &base_model(&Robot::labmate()).unwrap()).unwrap().estimates[1].standard_error / error - 1.0).abs()
             < 1e-6
     );
+}
+
+#[test]
+fn learning_that_is_stopped_ends_with_the_step_that_it_is_at_and_says_so() {
+    let sloped = robot_with(&[("floor_slope", "drift_x", 0.02)]);
+    let data = simulated(&sloped, &Path::umbmark(), 5, 31, 0..1).remove(0);
+    let options = Options { draws: 199, ..Options::default() };
+    let nominal = Model::new(&Robot::labmate());
+    let stopped = Watch { stop: &AtomicBool::new(true), progress: &|_| () };
+    let part = learn_from(&data, &nominal, &options, &stopped).unwrap();
+    let whole = learn(&data, &options).unwrap();
+    assert!(part.partial && part.steps.len() == 3 && part.verdict != Verdict::Explained);
+    assert!(!whole.partial && whole.steps.len() == 4 && whole.steps[..3] == part.steps);
 }

@@ -5,9 +5,15 @@ use crate::diagnose::tracks::{self, Examination, LEAST_GAIN, Misses, Search};
 use crate::diagnose::{DiagnoseError, Diagnosis, Options, Verdict};
 use crate::effect::Model;
 use crate::likelihood::{Noise, Observed};
+use crate::watch::Watch;
 
 /// Learns which effects the robot of some tracks has, beside those of a `start`.
-pub(super) fn learn(observed: &Observed, start: &Model, options: &Options) -> Result<Learnt, DiagnoseError> {
+pub(super) fn learn(
+    observed: &Observed,
+    start: &Model,
+    options: &Options,
+    watch: &Watch,
+) -> Result<Learnt, DiagnoseError> {
     let mut model = Model::new(&observed.robot);
     let mut steps = vec![step(&plainly(observed, &model)?, None)];
     let first = observed.robot.drive.kind().first_effects();
@@ -25,12 +31,13 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options) -> Re
         let exam = Examination::bare(tracks::fit(observed, &model)?);
         add(&mut model, part.effect.name(), exam);
     }
-    let search = tracks::search(tracks::fit(observed, &model)?, options, MOST)?;
+    let search = tracks::search(tracks::fit(observed, &model)?, options, MOST, watch)?;
+    let partial = watch.is_stopped() && search.left.effect.is_some();
     for (exam, (finding, suspect)) in search.exams[1..].iter().zip(&search.added) {
         let told = (suspect.best, suspect.class.clone(), Some(finding.p_adjusted()));
         steps.push(step(&Examination::bare(exam.fitted.clone()), Some(told)));
     }
-    finish(search, steps, options)
+    Ok(Learnt { partial, ..finish(search, steps, options)? })
 }
 
 /// The story's end: the diagnosis of the model that was learnt.
@@ -64,7 +71,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     }
     experiments.extend(diagnosis.next_experiments);
     let diagnosis = Diagnosis { verdict, ranking, next_experiments: experiments, ..diagnosis };
-    Ok(Learnt { steps, verdict, model: diagnosis.model.clone(), remarks, diagnosis })
+    Ok(Learnt { steps, verdict, model: diagnosis.model.clone(), remarks, diagnosis, partial: false })
 }
 
 /// A model fitted under noise of the usual size: enough for its errors.

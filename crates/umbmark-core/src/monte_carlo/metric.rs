@@ -23,6 +23,14 @@ pub enum Metric {
     NonsysOrientation,
 }
 
+/// A name that no metric has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no metric \"{name}\"; there are {}", Metric::ALL.map(Metric::name).join(", "))]
+pub struct UnknownMetric {
+    /// The name.
+    pub name: String,
+}
+
 impl Metric {
     /// How many there are.
     pub const COUNT: usize = 9;
@@ -53,6 +61,12 @@ impl Metric {
             Metric::ReturnHeadingCcw => "return_heading_ccw_rad",
             Metric::NonsysOrientation => "nonsys_orientation_rad",
         }
+    }
+
+    /// The metric of a name in files.
+    pub fn named(name: &str) -> Result<Metric, UnknownMetric> {
+        let found = Metric::ALL.into_iter().find(|metric| metric.name() == name);
+        found.ok_or_else(|| UnknownMetric { name: name.to_owned() })
     }
 
     /// Whether it is an angle \[rad\]; the others are lengths \[m\].

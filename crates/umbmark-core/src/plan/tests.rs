@@ -5,7 +5,9 @@ use crate::calibrate::{self, Method, Ratio, calibrate};
 use crate::diagnose::ends::{Asked, Family};
 use crate::diagnose::tests::{dataset, margin, trials};
 use crate::path::{FIGURE_EIGHT, SpeedProfile};
+use crate::watch::Watch;
 use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 fn labmate(effects: &[(&str, &str, f64)]) -> Model {
     let mut truth = Model::new(&Robot::labmate());
@@ -246,4 +248,20 @@ fn what_cannot_be_planned_is_refused_with_the_reason() {
         Planned::new(&setting, 2, &Options::default()).unwrap_err().to_string(),
         "runs a direction must be between 3 and 1000, got 2"
     );
+}
+
+#[test]
+fn a_plan_that_is_stopped_has_the_numbers_of_runs_that_were_looked_at() {
+    let setting = setting(&Path::umbmark());
+    let see = [(Sought::named("eb", 1.01, setting.robot()).unwrap(), 1.01)];
+    let options = Options { draws: 99, ..Options::default() };
+    let request = Request { runs: 5, see: &see, power: 0.9, numbers: &[3, 4, 5, 6], sigma_interval: None, options };
+    let whole = Watch::nobody(|watch| request.findings(&setting, watch)).unwrap();
+    assert!(!whole.partial && whole.by_runs.len() == 4 && whole.extended.is_some());
+    let stop = AtomicBool::new(false);
+    let after_two = |share: f64| stop.store(share >= 0.5, Ordering::Relaxed);
+    let part = request.findings(&setting, &Watch { stop: &stop, progress: &after_two }).unwrap();
+    assert!(part.partial && part.by_runs.len() == 2 && part.answers.len() == 1);
+    assert!(part.alternatives.is_empty() && part.drifts.is_empty() && part.extended.is_none());
+    assert_eq!(part.by_runs[1].least, whole.by_runs[1].least);
 }

@@ -3,7 +3,7 @@
 use crate::dataset::ReturnError;
 use crate::geometry::wrap;
 use crate::path::Direction;
-use crate::score::summary::Cluster;
+use crate::score::summary::{Cluster, each};
 use crate::stats::{Interval, student_t_quantile};
 
 /// How the two directions' mean absolute orientation errors become one number.
@@ -98,7 +98,7 @@ impl Extended {
     /// Bumps under the inside wheel turn the robot towards that wheel: clockwise (negative) in cw runs, counter-clockwise in ccw
     /// runs. A direction whose mean has the other sign, beyond its t interval, is listed in `contradictions`: the
     /// headings are probably clockwise-positive (as in Table II of the paper), or computed minus absolute.
-    pub fn new(bumps: [&[ReturnError]; 2], regular: [&[ReturnError]; 2], level: f64) -> Option<Extended> {
+    pub fn new<E: Copy + Into<ReturnError>>(bumps: [&[E]; 2], regular: [&[E]; 2], level: f64) -> Option<Extended> {
         let cw = Turned::new(bumps[0], regular[0])?;
         let ccw = Turned::new(bumps[1], regular[1])?;
         let away = |turned: &Turned, sign: f64| {
@@ -171,10 +171,10 @@ struct Turned {
 }
 
 impl Turned {
-    fn new(bumps: &[ReturnError], regular: &[ReturnError]) -> Option<Turned> {
+    fn new<E: Copy + Into<ReturnError>>(bumps: &[E], regular: &[E]) -> Option<Turned> {
         let systematic = Cluster::of(regular)?.heading?;
-        let beyond = |errors: &[ReturnError]| -> Vec<f64> {
-            errors.iter().filter_map(|e| e.heading).map(|h| wrap(h - systematic)).collect()
+        let beyond = |errors: &[E]| -> Vec<f64> {
+            each(errors).filter_map(|error| error.heading).map(|h| wrap(h - systematic)).collect()
         };
         let (signed, regular) = (beyond(bumps), MeanError::of(&beyond(regular)));
         let absolute: Vec<f64> = signed.iter().map(|v| v.abs()).collect();

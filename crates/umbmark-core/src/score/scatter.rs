@@ -3,7 +3,7 @@
 use crate::dataset::ReturnError;
 use crate::geometry::wrap;
 use crate::path::Direction;
-use crate::score::summary::Cluster;
+use crate::score::summary::{Summary, each, summarise};
 use nalgebra::Matrix3;
 
 /// Covariance of one run's return error (x, y, heading) about its direction's mean, pooled over both directions.
@@ -23,13 +23,18 @@ pub struct Scatter {
 
 impl Scatter {
     /// The pooled scatter of the runs of both directions; `None` where no direction has two runs.
-    pub fn pooled(cw: &[ReturnError], ccw: &[ReturnError]) -> Option<Scatter> {
-        let with_heading = cw.iter().chain(ccw).all(|e| e.heading.is_some());
+    pub fn pooled<E: Copy + Into<ReturnError>>(cw: &[E], ccw: &[E]) -> Option<Scatter> {
+        Scatter::about(&summarise(cw, ccw), cw, ccw)
+    }
+
+    /// [`Scatter::pooled`] of runs whose centres of gravity are known.
+    pub(super) fn about<E: Copy + Into<ReturnError>>(means: &Summary, cw: &[E], ccw: &[E]) -> Option<Scatter> {
+        let with_heading = each(cw).chain(each(ccw)).all(|e| e.heading.is_some());
         let (mut squares, mut degrees_of_freedom) = (Matrix3::zeros(), 0);
-        for (errors, sign) in [(cw, -1.0), (ccw, 1.0)] {
-            let Some(mean) = Cluster::of(errors) else { continue };
+        for (errors, mean, sign) in [(cw, means.cw, -1.0), (ccw, means.ccw, 1.0)] {
+            let Some(mean) = mean else { continue };
             degrees_of_freedom += errors.len() - 1;
-            for error in errors {
+            for error in each(errors) {
                 let heading = match (error.heading, mean.heading) {
                     (Some(heading), Some(mean)) if with_heading => wrap(heading - mean),
                     _ => 0.0,

@@ -3,6 +3,12 @@
 use crate::dataset::ReturnError;
 use crate::geometry::{mean_angle, wrap};
 
+/// Return errors, one by one, from whatever they are written down as.
+#[inline]
+pub(super) fn each<E: Copy + Into<ReturnError>>(errors: &[E]) -> impl Iterator<Item = ReturnError> {
+    errors.iter().map(|error| (*error).into())
+}
+
 /// The return errors of one direction in short.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cluster {
@@ -24,19 +30,19 @@ pub struct Cluster {
 impl Cluster {
     /// The cluster of some return errors; `None` for no runs.
     #[inline]
-    pub fn of(errors: &[ReturnError]) -> Option<Cluster> {
+    pub fn of<E: Copy + Into<ReturnError>>(errors: &[E]) -> Option<Cluster> {
         if errors.is_empty() {
             return None;
         }
         let per_run = 1.0 / errors.len() as f64;
         let (mut x, mut y) = (0.0, 0.0);
-        for error in errors {
+        for error in each(errors) {
             x += error.x;
             y += error.y;
         }
         let (x, y) = (x * per_run, y * per_run);
         let (mut squares_x, mut squares_y) = (0.0, 0.0);
-        for error in errors {
+        for error in each(errors) {
             squares_x += (error.x - x) * (error.x - x);
             squares_y += (error.y - y) * (error.y - y);
         }
@@ -75,8 +81,8 @@ impl Cluster {
 }
 
 #[inline]
-fn mean_heading(errors: &[ReturnError]) -> Option<f64> {
-    mean_angle(errors.iter().filter_map(|error| error.heading)).map(wrap)
+fn mean_heading<E: Copy + Into<ReturnError>>(errors: &[E]) -> Option<f64> {
+    mean_angle(each(errors).filter_map(|error| error.heading)).map(wrap)
 }
 
 /// One UMBmark test in short: both clusters, E_max,sys and the spread.
@@ -131,7 +137,7 @@ impl Summary {
 /// assert_eq!(summarise(&[at(-0.3, -0.1)], &[]).e_max_sys(), None);
 /// ```
 #[inline]
-pub fn summarise(cw: &[ReturnError], ccw: &[ReturnError]) -> Summary {
+pub fn summarise<E: Copy + Into<ReturnError>>(cw: &[E], ccw: &[E]) -> Summary {
     Summary { cw: Cluster::of(cw), ccw: Cluster::of(ccw) }
 }
 

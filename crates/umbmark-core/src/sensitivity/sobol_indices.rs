@@ -1,5 +1,7 @@
 //! Sobol indices by pairs of rows of a scrambled design.
 
+use std::ops::Range;
+
 use super::sums::{Outputs, Sums};
 use super::{Evaluator, Inputs, OutputIndices, Response, SensitivityError, SobolPoints, Watch, evaluate};
 
@@ -60,8 +62,9 @@ pub struct Indices {
 /// ```
 /// use umbmark_core::monte_carlo::Distribution;
 /// use umbmark_core::sensitivity::{
-///     Evaluator, Input, Inputs, Response, SensitivityError, SobolOptions, Watch, sobol_indices,
+///     Evaluator, Input, Inputs, Response, SensitivityError, SobolOptions, sobol_indices,
 /// };
+/// use umbmark_core::watch::Watch;
 /// struct Sum;
 /// impl Response for Sum {
 ///     fn outputs(&self) -> usize { 1 }
@@ -86,32 +89,15 @@ pub fn sobol_indices(
     options: &SobolOptions,
     watch: &Watch,
 ) -> Result<Indices, SensitivityError> {
-    options.check()?;
-    if options.second_order && !inputs.are_independent() {
-        return Err(SensitivityError::NeedsIndependence { what: "the index of a pair" });
-    }
-    let design = Design::new(response, inputs, options)?;
-    let pieces = watch.pieces(response, design.blocks(), |evaluator, block| design.block(evaluator, block))?;
-    let replicates: Vec<Vec<Sums>> = pieces.chunks(design.blocks_a_replicate).filter_map(merged).collect();
-    if replicates.len() < 2 {
-        return Err(SensitivityError::Stopped);
-    }
-    let of_output = |output: usize| {
-        let sums: Vec<Sums> = replicates.iter().map(|outputs| outputs[output].clone()).collect();
-        OutputIndices::of(&sums, design.shifts[output])
-    };
-    let base_points = replicates.len() as u64 * design.rows_a_replicate;
-    Ok(Indices {
-        outputs: (0..response.outputs()).map(of_output).collect(),
-        noise: response.is_noisy(),
-        base_points,
-        evaluations: base_points * design.evaluations_a_row(),
-        partial: base_points < options.base_points,
-    })
+    let design = SobolDesign::new(response, inputs, options)?;
+    design.indices(&design.sums(0..design.blocks(), watch)?)
 }
 
+/// What a block of rows comes to, for each output; `None` where it was not begun.
+type Block = Option<Vec<Sums>>;
+
 /// The sums of all outputs over a whole replicate, in the order of its blocks.
-fn merged(blocks: &[Option<Vec<Sums>>]) -> Option<Vec<Sums>> {
+fn merged(blocks: &[Block]) -> Option<Vec<Sums>> {
     let mut blocks = blocks.iter();
     let mut all = blocks.next()?.clone()?;
     for block in blocks {
@@ -120,8 +106,11 @@ fn merged(blocks: &[Option<Vec<Sums>>]) -> Option<Vec<Sums>> {
     Some(all)
 }
 
-/// Where the response is evaluated.
-struct Design<'a> {
+/// Where the response is evaluated: blocks of rows, each of which can be done anywhere.
+///
+/// [`sobol_indices`] does all blocks; on many machines each does some ([`SobolDesign::sums`], [`SobolSums::numbers`]), and one
+/// puts them together in their order ([`SobolSums::from_numbers`], [`SobolDesign::indices`]): to the same bits.
+pub struct SobolDesign<'a> {
     response: &'a dyn Response,
     inputs: &'a Inputs,
     second_order: bool,
@@ -130,7 +119,12 @@ struct Design<'a> {
     blocks_a_replicate: usize,
     /// A value of each output near its mean.
     shifts: Vec<f64>,
+    base_points: u64,
 }
+
+/// What blocks of a design come to, in their order.
+#[derive(Clone, Debug)]
+pub struct SobolSums(Vec<Block>);
 
 /// The most blocks of a replicate: what is held in memory does not grow with the number of points.
 const BLOCKS: u64 = 64;
@@ -138,12 +132,32 @@ const BLOCKS: u64 = 64;
 /// The fewest rows of a block.
 const ROWS: u64 = 16;
 
-impl Design<'_> {
-    fn new<'a>(
+impl SobolSums {
+    /// As plain numbers, block after block; those that were not begun, and what follows them, are left out.
+    pub fn numbers(&self) -> Vec<f64> {
+        self.0.iter().map_while(Option::as_ref).flatten().flat_map(Sums::numbers).collect()
+    }
+
+    /// From the plain numbers of a design, of as many blocks as they are.
+    pub fn from_numbers(design: &SobolDesign, numbers: &[f64]) -> SobolSums {
+        let new = || Sums::new(design.factors(), design.second_order);
+        let each = new().numbers().len();
+        let block = |block: &[f64]| Some(block.chunks_exact(each).map(|numbers| new().with(numbers)).collect());
+        SobolSums(numbers.chunks_exact(each * design.response.outputs()).map(block).collect())
+    }
+}
+
+impl<'a> SobolDesign<'a> {
+    /// The design of some indices.
+    pub fn new(
         response: &'a dyn Response,
         inputs: &'a Inputs,
         options: &SobolOptions,
-    ) -> Result<Design<'a>, SensitivityError> {
+    ) -> Result<SobolDesign<'a>, SensitivityError> {
+        options.check()?;
+        if options.second_order && !inputs.are_independent() {
+            return Err(SensitivityError::NeedsIndependence { what: "the index of a pair" });
+        }
         let scramble = |i| SobolPoints::scrambled(2 * inputs.count(), options.seed, i);
         let rows_a_replicate = options.base_points / SobolOptions::REPLICATES;
         let mut middle = vec![0.5; inputs.count()];
@@ -152,7 +166,7 @@ impl Design<'_> {
         inputs.values(&middle, &mut values);
         let mut shifts = vec![0.0; response.outputs()];
         evaluate(&mut response.evaluator()?, &values, 0, &mut shifts)?;
-        Ok(Design {
+        Ok(SobolDesign {
             response,
             inputs,
             second_order: options.second_order,
@@ -160,10 +174,39 @@ impl Design<'_> {
             rows_a_replicate,
             blocks_a_replicate: rows_a_replicate.div_ceil(ROWS).min(BLOCKS) as usize,
             shifts,
+            base_points: options.base_points,
         })
     }
 
-    fn blocks(&self) -> usize {
+    /// What some of its blocks come to, on the present rayon pool.
+    pub fn sums(&self, blocks: Range<usize>, watch: &Watch) -> Result<SobolSums, SensitivityError> {
+        let block = |evaluator: &mut Evaluator, index| self.block(evaluator, blocks.start + index);
+        watch.pieces(self.response, blocks.len(), block).map(SobolSums)
+    }
+
+    /// The indices that the first of its blocks, or all of them, come to.
+    pub fn indices(&self, sums: &SobolSums) -> Result<Indices, SensitivityError> {
+        let whole = sums.0.chunks(self.blocks_a_replicate).filter(|blocks| blocks.len() == self.blocks_a_replicate);
+        let replicates: Vec<Vec<Sums>> = whole.filter_map(merged).collect();
+        if replicates.len() < 2 {
+            return Err(SensitivityError::Stopped);
+        }
+        let of_output = |output: usize| {
+            let sums: Vec<Sums> = replicates.iter().map(|outputs| outputs[output].clone()).collect();
+            OutputIndices::of(&sums, self.shifts[output])
+        };
+        let base_points = replicates.len() as u64 * self.rows_a_replicate;
+        Ok(Indices {
+            outputs: (0..self.response.outputs()).map(of_output).collect(),
+            noise: self.response.is_noisy(),
+            base_points,
+            evaluations: base_points * self.evaluations_a_row(),
+            partial: base_points < self.base_points,
+        })
+    }
+
+    /// How many blocks it has.
+    pub fn blocks(&self) -> usize {
         self.replicates.len() * self.blocks_a_replicate
     }
 
@@ -196,7 +239,7 @@ impl Design<'_> {
 
 /// Two independent rows of coordinates, and the outputs there and between them.
 struct Row<'a> {
-    design: &'a Design<'a>,
+    design: &'a SobolDesign<'a>,
     point: Vec<f64>,
     coordinates: Vec<f64>,
     values: Vec<f64>,
@@ -208,7 +251,7 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    fn new<'a>(design: &'a Design<'a>) -> Row<'a> {
+    fn new<'a>(design: &'a SobolDesign<'a>) -> Row<'a> {
         let (inputs, outputs, factors) = (design.inputs.count(), design.response.outputs(), design.factors());
         let zeros = |n: usize| vec![0.0; n];
         let swapped = if design.second_order { factors * outputs } else { 0 };
@@ -231,7 +274,7 @@ impl Row<'_> {
 
     /// Evaluates the response at all rows. The noise of a is an even number, that of b the odd one after it.
     fn evaluate(&mut self, evaluator: &mut Evaluator, number: u64) -> Result<(), SensitivityError> {
-        let Design { inputs, response, .. } = self.design;
+        let SobolDesign { inputs, response, .. } = self.design;
         let (count, outputs) = (inputs.count(), response.outputs());
         let [noise_a, noise_b] = [2 * number, 2 * number + 1];
         let (a, b) = self.point.split_at(count);
@@ -287,6 +330,7 @@ mod tests {
     use crate::sensitivity::test_functions::{Function, ISHIGAMI, SOBOL_G, ishigami_indices, sobol_g_indices, uniform};
     use crate::sensitivity::{Correlation, Estimate, Input};
     use std::f64::consts::PI;
+    use std::sync::atomic::{AtomicBool, Ordering};
 
     fn indices(response: &dyn Response, inputs: &Inputs, base_points: u64, second_order: bool, seed: u64) -> Indices {
         let options = SobolOptions { base_points, second_order, seed };
@@ -410,5 +454,37 @@ mod tests {
         let odd = SobolOptions { base_points: 100, ..options };
         let refused = Watch::nobody(|watch| sobol_indices(&broken, &inputs, &odd, watch)).unwrap_err();
         assert_eq!(refused.to_string(), "base points must be a power of two from 32 to 2^30, got 100");
+    }
+
+    #[test]
+    fn blocks_done_apart_and_sent_as_numbers_are_the_indices_of_one_process_to_the_bit() {
+        let inputs = Inputs::new(uniform(3, -PI, PI), &[]).unwrap();
+        let options = SobolOptions { base_points: 512, second_order: true, seed: 4 };
+        let whole = indices(&ISHIGAMI, &inputs, 512, true, 4);
+        let design = SobolDesign::new(&ISHIGAMI, &inputs, &options).unwrap();
+        let of = |blocks| Watch::nobody(|watch| design.sums(blocks, watch)).unwrap().numbers();
+        let (middle, all) = (design.blocks() / 3, design.blocks());
+        let sent = [of(0..middle), of(middle..all)].concat();
+        let together = design.indices(&SobolSums::from_numbers(&design, &sent)).unwrap();
+        assert_eq!(
+            (&together.outputs, together.evaluations, together.partial),
+            (&whole.outputs, whole.evaluations, false)
+        );
+        let part = design.indices(&SobolSums::from_numbers(&design, &of(0..all - 1))).unwrap();
+        assert_eq!((part.base_points, part.partial), (512 * 15 / 16, true));
+    }
+
+    #[test]
+    fn what_is_stopped_on_the_way_has_the_indices_of_the_whole_scrambles_that_are_done() {
+        let inputs = Inputs::new(uniform(3, -PI, PI), &[]).unwrap();
+        let options = SobolOptions { base_points: 1 << 14, second_order: false, seed: 1 };
+        let stop = AtomicBool::new(false);
+        let half = |share: f64| stop.store(share >= 0.5, Ordering::Relaxed);
+        let found = sobol_indices(&ISHIGAMI, &inputs, &options, &Watch { stop: &stop, progress: &half }).unwrap();
+        assert!(found.partial && found.base_points >= 2 << 10 && found.base_points < 1 << 14, "{}", found.base_points);
+        assert_near(&found.outputs[0].first, &ishigami_indices().0, 0.03);
+        let never_begun = Watch { stop: &AtomicBool::new(true), progress: &|_| () };
+        let refused = sobol_indices(&ISHIGAMI, &inputs, &options, &never_begun).unwrap_err();
+        assert_eq!(refused, SensitivityError::Stopped);
     }
 }

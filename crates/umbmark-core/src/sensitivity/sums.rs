@@ -49,6 +49,24 @@ impl Sums {
         Sums { rows: 0.0, a: 0.0, b: 0.0, squares: 0.0, product: 0.0, first, total, second }
     }
 
+    /// All that it holds, in the order of [`Sums::places`].
+    pub fn numbers(&self) -> Vec<f64> {
+        let mut copy = self.clone();
+        copy.places().map(|place| *place).collect()
+    }
+
+    /// The same sums with the numbers of others.
+    pub fn with(mut self, numbers: &[f64]) -> Sums {
+        self.places().zip(numbers).for_each(|(place, number)| *place = *number);
+        self
+    }
+
+    fn places(&mut self) -> impl Iterator<Item = &mut f64> {
+        let scalars = [&mut self.rows, &mut self.a, &mut self.b, &mut self.squares, &mut self.product];
+        let pairs = self.second.iter_mut().flat_map(|p| p.ab.iter_mut().chain(&mut p.ba).chain(&mut p.products));
+        scalars.into_iter().chain(self.first.as_flattened_mut()).chain(&mut self.total).chain(pairs)
+    }
+
     /// Takes one row.
     pub fn take(&mut self, outputs: &Outputs) {
         let [a, b] = outputs.base;

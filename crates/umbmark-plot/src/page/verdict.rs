@@ -23,13 +23,13 @@ pub fn verdict(study: &Study) -> String {
 
 fn cause(diagnosis: &Diagnosis) -> String {
     let parts = diagnosis.model.parts().iter().filter(|part| part.free).map(|part| part.effect.name());
-    let model = match parts.collect::<Vec<_>>() {
-        names if names.is_empty() => "its model".to_owned(),
-        names => joined(&names, "and"),
-    };
+    let names: Vec<&str> = parts.collect();
+    let model = if names.is_empty() { "its model".to_owned() } else { joined(&names, "and") };
     let missing = || diagnosis.certified().iter().map(|s| joined(&s.class, "or")).collect::<Vec<_>>().join("; and ");
     match diagnosis.verdict {
-        Verdict::Explained => format!("{model} explain what these runs can show, with no sign of a further effect"),
+        Verdict::Explained => {
+            format!("{model} {} what these runs can show, with no sign of a further effect", explains(&names))
+        }
         Verdict::MissingEffect => format!("beside {model} one class of effects is missing: {}", missing()),
         Verdict::SeveralMissing => format!("beside {model} several classes of effects are missing: {}", missing()),
         Verdict::UnlistedEffect => {
@@ -38,6 +38,11 @@ fn cause(diagnosis: &Diagnosis) -> String {
         }
         Verdict::NotEnoughData => "these runs are not enough to say what is missing".into(),
     }
+}
+
+/// The verb for one subject or for many.
+fn explains(names: &[&str]) -> &'static str {
+    if names.len() > 1 { "explain" } else { "explains" }
 }
 
 fn joined(names: &[&str], word: &str) -> String {
@@ -54,6 +59,7 @@ mod tests {
 
     #[test]
     fn names_are_joined_as_people_do() {
+        assert_eq!([explains(&[]), explains(&["a"]), explains(&["a", "b"])], ["explains", "explains", "explain"]);
         assert_eq!(joined(&["a"], "and"), "a");
         assert_eq!(joined(&["a", "b", "c"], "or"), "a, b or c");
     }

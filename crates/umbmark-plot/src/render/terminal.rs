@@ -1,5 +1,6 @@
 //! Figures in characters.
 
+use super::braille::{self, DOTS};
 use crate::figure::{Layer, Mark, Panel};
 use crate::scale;
 use crate::tone::Tone;
@@ -12,9 +13,6 @@ pub struct Look {
     /// Whether it shows colours.
     pub colour: bool,
 }
-
-/// Dots of a braille character, across and down, and what each adds to U+2800.
-const DOTS: [[u32; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
 
 /// A panel of `width` by `height` characters, a unit as long across as up (a character is twice as high as wide), with
 /// its axes and a line that says what the marks are.
@@ -114,7 +112,7 @@ impl Canvas {
         for cell in &row[..last] {
             let line = || match (cell.dots, self.look.unicode) {
                 (0, _) => ' ',
-                (dots, true) => char::from_u32(0x2800 + dots).unwrap_or(' '),
+                (dots, true) => braille::character(dots, ' '),
                 (_, false) => '.',
             };
             let character = cell.mark.unwrap_or_else(line);

@@ -1,5 +1,7 @@
 //! How a robot like the model would score: many simulated tests.
 
+use std::ops::ControlFlow;
+
 use umbmark_core::effect::Model;
 use umbmark_core::monte_carlo::{self, Ensemble, Metric};
 use umbmark_core::simulate::{Odometry, Phase};
@@ -53,5 +55,10 @@ fn run(study: &Study, model: Model, trials: u64) -> Result<Ensemble, Absent> {
         runs: study.counts(),
         ..monte_carlo::Study::new(model, trials, study.options.diagnose.seed)
     };
-    made.run(|_| std::ops::ControlFlow::Continue(())).map_err(Absent::because)
+    let go_on = |_: &monte_carlo::Batch| match study.begin() {
+        Ok(()) => ControlFlow::Continue(()),
+        Err(_) => ControlFlow::Break(()),
+    };
+    let ensemble = made.run(go_on).map_err(Absent::because)?;
+    study.begin().map(|()| ensemble)
 }

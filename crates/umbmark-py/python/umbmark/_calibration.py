@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
+import msgspec
+
+from umbmark._diagnosis import Estimate
 from umbmark._result import Interval, Record, Result, Row
 from umbmark._scores import Data, data_of
-from umbmark._umbmark import Path, Robot, export
+from umbmark._umbmark import Model, Path, Robot, export
 from umbmark._umbmark import calibrate as _calibrate
+from umbmark._umbmark import calibrate_gears as _calibrate_gears
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -136,7 +140,7 @@ def calibrate(
     heading_arm_m: float | None = None,
     radius_wheelbase: str = "nominal",
 ) -> Calibration:
-    """Calibrate a measured robot: E_d, E_b, and E_s where the data shows it.
+    """Calibrate a differential drive: E_d, E_b, and E_s where the data shows it.
 
     The paper's closed forms (Eqs. 7 to 20), the heading form, and the exact fit.
 
@@ -156,7 +160,7 @@ def calibrate(
     Raises
     ------
     ValueError
-        If nothing can be calibrated from these runs; it says why.
+        If nothing can be calibrated from these runs, or the drive is another one; it says why.
 
     Examples
     --------
@@ -171,3 +175,98 @@ def calibrate(
     data = data_of(data)
     document = _calibrate(data, level, heading_arm_m, radius_wheelbase)
     return Calibration._of(document, robot=data.robot, path=data.path)
+
+
+class Determined(Record, frozen=True):
+    """What return poses of the path determine: so many combinations of so many sizes."""
+
+    rank: int
+    of: int
+    hidden: tuple[dict[str, float], ...]
+
+
+class GearCalibration(Result, frozen=True):
+    """A robot of any drive, calibrated by the first effects of its drive.
+
+    Attributes
+    ----------
+    drive : str
+        "synchro", "ackermann", ...
+    fitted : tuple of Estimate
+        The sizes of its first effects.
+    not_shown : tuple of str
+        Effects that this data does not show apart from the rest; they keep their values.
+    corrected : dict of str to float
+        The keys of robot.toml that change, with their new values.
+    return_poses_determine : Determined or None
+        What return poses can tell; None where the path is not known.
+    e_max_sys_before_m, e_max_sys_after_m : float or None
+        E_max,sys as driven, and what is left of it with the correction.
+    model : Model
+        The nominal robot with the fitted effects.
+    robot : Robot
+        The robot with its odometry corrected.
+    """
+
+    _beside: ClassVar[tuple[str, ...]] = ("model", "robot")
+
+    drive: str
+    fitted: tuple[Estimate, ...]
+    not_shown: tuple[str, ...]
+    corrected: dict[str, float]
+    return_poses_determine: Determined | None
+    e_max_sys_before_m: float | None
+    e_max_sys_after_m: float | None
+    level: float
+    warnings: tuple[str, ...]
+    version: str
+    model: Model
+    robot: Robot
+
+    def table(self) -> list[Row]:
+        """Give the fitted sizes, one dict a row."""
+        return [msgspec.structs.asdict(estimate) for estimate in self.fitted]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the fitted sizes in units of their standard errors, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.fitted(self, ax)
+
+
+def calibrate_gears(data: Data, *, level: float = 0.95) -> GearCalibration:
+    """Calibrate a robot of any drive by the first effects of its drive.
+
+    Parameters
+    ----------
+    data : Dataset or path-like
+        The measurements.
+    level : float, default 0.95
+        Probability with which the intervals hold.
+
+    Returns
+    -------
+    GearCalibration
+
+    Raises
+    ------
+    ValueError
+        If nothing can be calibrated from these runs; it says why.
+
+    Examples
+    --------
+    >>> import umbmark
+    >>> robot = umbmark.Robot(
+    ...     drive="synchro",
+    ...     wheel_circle_m=0.5,
+    ...     wheel_diameter_m=0.15,
+    ...     ticks_per_revolution=2000,
+    ...     steering_ticks_per_revolution=10_000,
+    ... )
+    >>> truth = umbmark.Model(robot).add("wheel_noise", k_sqrt_m=0.0003)
+    >>> data = umbmark.simulate(truth)
+    >>> umbmark.calibrate_gears(data).drive
+    'synchro'
+    """
+    document, model, robot = _calibrate_gears(data_of(data), level)
+    return GearCalibration._of(document, model=model, robot=robot)

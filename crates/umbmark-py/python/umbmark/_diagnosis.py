@@ -272,6 +272,8 @@ class Learnt(Result, frozen=True):
         The model that was learnt.
     fitted : tuple of Estimate
         Its free parameters.
+    partial : bool
+        Whether it was stopped while an effect was still missing.
     """
 
     steps: tuple[Step, ...]
@@ -283,6 +285,7 @@ class Learnt(Result, frozen=True):
     meaning: dict[str, str]
     outliers: tuple[Outlier, ...]
     remarks: tuple[str, ...]
+    partial: bool
     size: float
     draws: int
     seed: int
@@ -379,6 +382,7 @@ def fit(
 
 def learn(
     data: Data,
+    model: Model | None = None,
     *,
     size: float = 0.05,
     draws: int = 999,
@@ -392,6 +396,8 @@ def learn(
     ----------
     data : Dataset or path-like
         The measurements.
+    model : Model, optional
+        Effects to begin with beside E_d and E_b, on tracks E_s too: a formula to try, say.
     size : float, default 0.05
         Probability with which an effect is added to a complete model.
     draws, seed, return_poses, threads
@@ -401,7 +407,15 @@ def learn(
     ------
     ValueError
         If there is nothing to learn from, or a number is out of range.
+
+    Examples
+    --------
+    >>> import umbmark
+    >>> truth = umbmark.Model().add("wheelbase", e_b=1.01).add("wheel_noise", k_sqrt_m=0.0003)
+    >>> learnt = umbmark.learn(umbmark.simulate(truth, reference_rate_hz=0), draws=99)
+    >>> [step.added for step in learnt.steps], learnt.verdict
+    ([None, 'wheel_diameter_ratio', 'wheelbase'], 'explained')
     """
     options = (size, draws, seed)
-    document, learnt = _umbmark.learn(data_of(data), options, return_poses, threads)
+    document, learnt = _umbmark.learn(data_of(data), model, options, return_poses, threads)
     return Learnt._of(document, model=learnt)

@@ -175,9 +175,8 @@ def monte_carlo(
     0.306 m
     """
     n = n or (1000 if until_std_error_m is None else MOST_UNTIL)
-    both = (runs, runs) if isinstance(runs, int) else runs
     study = Study(
-        model, path, n=n, runs=both, seed=seed, odometry=odometry, update=update, phase=phase
+        model, path, n=n, runs=runs, seed=seed, odometry=odometry, update=update, phase=phase
     )
     with Bar(progress, n, "trials") as bar:
         ensemble, trials, seconds = study.run(

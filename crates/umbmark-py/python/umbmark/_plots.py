@@ -9,13 +9,16 @@ import numpy as np
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from umbmark._calibration import Calibration
+    from umbmark._calibration import Calibration, GearCalibration
     from umbmark._comparison import Comparison, TrackComparison
     from umbmark._diagnosis import Diagnosis, Fitted, Learnt
     from umbmark._inspection import Inspection
     from umbmark._monte_carlo import MonteCarlo
+    from umbmark._plan import Plan, Separation
     from umbmark._scores import Score
     from umbmark._sensitivity import Sensitivity
+    from umbmark._sweep import Sweep
+    from umbmark._tolerance import Tolerance
     from umbmark._umbmark import Dataset
 
 COLOURS = {"cw": "tab:blue", "ccw": "tab:orange"}
@@ -141,7 +144,7 @@ def diagnosis(result: Diagnosis, ax: Axes | None) -> Axes:
     return ax
 
 
-def fitted(result: Fitted, ax: Axes | None) -> Axes:
+def fitted(result: Fitted | GearCalibration, ax: Axes | None) -> Axes:
     """Draw how far each value lies from what does nothing, in standard errors."""
     from umbmark._effects import effects
 
@@ -213,12 +216,92 @@ def monte_carlo(result: MonteCarlo, ax: Axes | None, metric: str) -> Axes:
     low, high = result.ensemble.quantile(metric, np.array([0.001, 0.999]))
     edges = np.linspace(low, high, 41) if high > low else np.array([low - 1e-6, low + 1e-6])
     below = result.ensemble.share_below(metric, edges)
-    angle = metric.endswith("_rad")
-    scale, unit = (np.degrees(1.0), "deg") if angle else (MM, "mm")
+    scale, name, unit = _metric(metric)
     ax.stairs(np.diff(below), scale * edges, fill=True, alpha=0.6)
     mean = scale * result.ensemble.mean(metric)
     ax.axvline(mean, color="tab:red", label=f"mean {mean:.4g} {unit}")
-    name = metric.removesuffix("_rad").removesuffix("_m").replace("_", " ")
     ax.set(xlabel=f"{name} [{unit}]", ylabel="share of trials", title=f"{result.n} trials")
+    ax.legend()
+    return ax
+
+
+def _metric(metric: str) -> tuple[float, str, str]:
+    """Give the scale of a metric, its name in words, and the unit of both."""
+    scale, unit = (np.degrees(1.0), "deg") if metric.endswith("_rad") else (MM, "mm")
+    return scale, metric.removesuffix("_rad").removesuffix("_m").replace("_", " "), unit
+
+
+def sweep(result: Sweep, ax: Axes | None, metric: str) -> Axes:
+    """Draw the mean of a metric along one axis with its 5 and 95 % quantiles, or as a map."""
+    scale, name, unit = _metric(metric)
+    ends = [(axis.first, axis.last, axis.count) for axis in result.axes]
+    if len(ends) > 2:
+        raise ValueError(f"a figure has one axis or two, the sweep {len(ends)}; use table()")
+    ax = _axes(ax)
+    told = [point.metrics[metric] for point in result.points]
+    mean = scale * np.array([one.mean for one in told], float)
+    if len(ends) == 1:
+        at = [point.values[0] for point in result.points]
+        low, high = (
+            scale * np.array([one.quantiles[share] for one in told], float)
+            for share in ("0.05", "0.95")
+        )
+        ax.plot(at, mean, label="mean")
+        ax.fill_between(at, low, high, alpha=0.3, label="5 to 95 %")
+        ax.set(xlabel=result.axes[0].flag, ylabel=f"{name} [{unit}]")
+        ax.legend()
+        return ax
+    up, right = (np.linspace(*axis) for axis in ends)
+    grid = np.full(len(up) * len(right), np.nan)
+    grid[: len(mean)] = mean
+    drawn = ax.pcolormesh(right, up, grid.reshape(len(up), len(right)), shading="nearest")
+    ax.figure.colorbar(drawn, ax=ax, label=f"mean {name} [{unit}]")
+    ax.set(xlabel=result.axes[1].flag, ylabel=result.axes[0].flag)
+    return ax
+
+
+def tolerance(result: Tolerance, ax: Axes | None) -> Axes:
+    """Draw the distribution of the metric over the robots as they are now, and the target."""
+    scale, name, unit = _metric(result.metric)
+    ax = _axes(ax)
+    ax.hist(scale * np.array(result.sizes), bins=40, alpha=0.6)
+    wanted = result.target.at_most_m or result.target.at_most_rad
+    at = scale * float(wanted or 0.0)
+    within = 100 * (result.now.share_within.value or 0.0)
+    ax.axvline(at, color="tab:red", label=f"{within:.1f} % within {at:.4g} {unit}")
+    ax.set(xlabel=f"{name} [{unit}]", ylabel="robots", title=f"{result.robots} robots")
+    ax.legend()
+    return ax
+
+
+def plan(result: Plan, ax: Axes | None) -> Axes:
+    """Draw what E_max,sys would read with each number of runs, in mm."""
+    ax = _axes(ax)
+    runs = [row.runs for row in result.by_runs]
+    told = [row.e_max_sys_m for row in result.by_runs]
+    mean, spread, half, band = (
+        MM * np.array(values)
+        for values in zip(
+            *((e.mean, e.std_dev, e.interval_half_width_m, e.noise_band_m) for e in told),
+            strict=True,
+        )
+    )
+    ax.errorbar(runs, mean, yerr=spread, fmt="o", capsize=3, label="E_max,sys as it would read")
+    ax.plot(runs, half, "s--", label="half of its interval")
+    ax.plot(runs, band, ":", label="chance alone stays below")
+    ax.axhline(MM * result.e_max_sys_m, color="grey", linewidth=0.8, label="the robot itself")
+    ax.set(xlabel="runs in each direction", ylabel="mm", ylim=(0, None))
+    ax.legend()
+    return ax
+
+
+def separation(result: Separation, ax: Axes | None) -> Axes:
+    """Draw how many standard deviations apart each experiment puts two effects."""
+    ax = _axes(ax)
+    rows = result.table()[:10]
+    ax.barh([row["experiment"] for row in rows], [row["sd"] for row in rows])
+    ax.axvline(3.24, color="tab:red", linestyle="--", label="told in nine cases of ten")
+    ax.invert_yaxis()
+    ax.set(xlabel="standard deviations apart", title=" or ".join(result.separates))
     ax.legend()
     return ax

@@ -8,6 +8,7 @@ from msgspec import UNSET, UnsetType
 
 from umbmark import _umbmark
 from umbmark._monte_carlo import Bar, Progress
+from umbmark._parameters import Correlations, Parameters, keys_of
 from umbmark._result import Record, Result, Row
 from umbmark._umbmark import Model, Path, Study
 
@@ -128,6 +129,8 @@ def sensitivity(
     second_order: bool = False,
     noise_free: bool = False,
     runs: int | tuple[int, int] = 5,
+    parameters: Parameters | None = None,
+    correlations: Correlations | None = None,
     seed: int = 1,
     threads: int = 0,
     progress: Progress = None,
@@ -137,7 +140,7 @@ def sensitivity(
     Parameters
     ----------
     model : Model
-        The robot; what varies are the parameters that have a distribution.
+        The robot; what varies are the parameters that have a distribution, and ``parameters``.
     path : Path, optional
         The path; the paper's 4 x 4 m square where none is given.
     method : str, default "sobol"
@@ -151,6 +154,11 @@ def sensitivity(
         Whether to ask the return of exact kinematics, and not whole tests.
     runs : int or tuple of int, default 5
         Runs in each direction, or (cw, ccw).
+    parameters : path-like or sequence of dict, optional
+        A file of parameters that vary too, or its tables: {"name": "side", "min": 2, "max": 5}.
+        What ``umbmark mc`` has a flag with a number for can be varied.
+    correlations : dict of (str, str) to float, optional
+        Correlations of the normal scores of two of them.
     seed, threads, progress
         As of ``monte_carlo``.
 
@@ -168,12 +176,12 @@ def sensitivity(
     >>> found.metrics["return_heading_cw_rad"].first["wheelbase.e_b"].value > 0.9
     True
     """
-    both = (runs, runs) if isinstance(runs, int) else runs
     if method in EFFORT:
         effort = effort or EFFORT[method]
-    study = Study(model, path, n=effort or 1, runs=both, seed=seed)
+    study = Study(model, path, n=effort or 1, runs=runs, seed=seed)
+    keys = None if parameters is None else keys_of(parameters, correlations)
     with Bar(progress, 1000, "per mille") as bar:
         document = _umbmark.sensitivity(
-            study, method, effort or 1, second_order, noise_free, threads, bar.at
+            study, keys, method, effort or 1, second_order, noise_free, threads, bar.at
         )
     return Sensitivity._of(document)

@@ -13,9 +13,11 @@ __all__ = [
     "Path",
     "Robot",
     "Run",
+    "Sobol",
     "Study",
     "__version__",
     "calibrate",
+    "calibrate_gears",
     "compare",
     "diagnose",
     "effects",
@@ -24,11 +26,15 @@ __all__ = [
     "inspect",
     "learn",
     "load_dataset",
+    "plan",
     "presets",
     "score_arrays",
     "score_dataset",
     "sensitivity",
+    "separate",
     "simulate",
+    "sweep",
+    "tolerance",
 ]
 
 __version__: str
@@ -238,6 +244,7 @@ def score_arrays(
 def score_dataset(data: Dataset, level: float, convention: str) -> str: ...
 def sensitivity(
     study: Study,
+    parameters: str | Mapping[str, Any] | None,
     method: str,
     effort: int,
     second_order: bool,
@@ -245,6 +252,57 @@ def sensitivity(
     threads: int,
     progress: Callable[[int], object] | None,
 ) -> str: ...
+
+@final
+class Sobol:
+    def __new__(
+        cls,
+        study: Study,
+        parameters: str | Mapping[str, Any] | None,
+        base_points: int,
+        second_order: bool,
+        noise_free: bool,
+    ) -> Self: ...
+    @property
+    def blocks(self) -> int: ...
+    def sums(self, first: int, end: int) -> Floats: ...
+    def document(self, numbers: Floats) -> str: ...
+
+def sweep(
+    study: Study,
+    axes: Sequence[tuple[str, float, float, int]],
+    threads: int,
+    progress: Callable[[int], object] | None,
+) -> str: ...
+def tolerance(
+    study: Study,
+    parameters: str | Mapping[str, Any],
+    metric: str,
+    target: tuple[float, float],
+    robots: int,
+    with_noise: bool,
+    threads: int,
+    progress: Callable[[int], object] | None,
+) -> tuple[str, list[float]]: ...
+def plan(
+    whose: object,
+    runs: int,
+    see: Sequence[tuple[str, float]],
+    power: float,
+    numbers: Sequence[int],
+    order: str,
+    options: tuple[float, int, int],
+    threads: int,
+    progress: Callable[[int], object] | None,
+) -> tuple[str, str, str]: ...
+def separate(
+    pair: tuple[str, str],
+    whose: object,
+    runs: int,
+    options: tuple[float, int, int],
+    threads: int,
+) -> str: ...
+def calibrate_gears(data: Dataset, level: float) -> tuple[str, Model, Robot]: ...
 def calibrate(
     data: Dataset, level: float, heading_arm_m: float | None, radius_wheelbase: str
 ) -> str: ...
@@ -273,7 +331,11 @@ def fit(
     data: Dataset, model: Model | None, add: Sequence[str], level: float
 ) -> tuple[str, Model]: ...
 def learn(
-    data: Dataset, options: tuple[float, int, int], return_poses: bool, threads: int
+    data: Dataset,
+    start: Model | None,
+    options: tuple[float, int, int],
+    return_poses: bool,
+    threads: int,
 ) -> tuple[str, Model]: ...
 def simulate(
     model: Model,

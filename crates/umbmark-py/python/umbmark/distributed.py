@@ -14,20 +14,24 @@ from __future__ import annotations
 import functools
 from collections import Counter
 from collections.abc import Callable, Generator
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
 from distributed import as_completed
+from numpy.typing import NDArray
 
 from umbmark._diagnosis import diagnose, learn
-from umbmark._monte_carlo import MOST_UNTIL, Bar, MonteCarlo, Progress, is_precise, result_of
+from umbmark._monte_carlo import Bar, MonteCarlo, Progress, is_precise, result_of
+from umbmark._parameters import Correlations, Parameters, keys_of
 from umbmark._result import Interval, Record, Row
-from umbmark._umbmark import Ensemble, Model, Path, Study, __version__
+from umbmark._sensitivity import Sensitivity
+from umbmark._umbmark import Ensemble, Model, Path, Sobol, Study, __version__
 from umbmark._umbmark import simulate as _simulate
 
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-__all__ = ["Verdicts", "monte_carlo", "verdicts"]
+__all__ = ["Verdicts", "monte_carlo", "sensitivity", "verdicts"]
 
 # Chunks that are under way or wait for one before them, for each thread of the cluster.
 AHEAD = 4
@@ -39,32 +43,27 @@ Part = TypeVar("Part")
 
 def monte_carlo(
     client: Client,
-    model: Model,
-    path: Path | None = None,
+    study: Study,
     *,
-    n: int | None = None,
-    runs: int | tuple[int, int] = 5,
-    seed: int = 1,
     until_std_error_m: float | None = None,
-    odometry: str = "robot",
-    update: str = "arc",
-    phase: str = "random",
     chunk: int = 65536,
     progress: Progress = None,
 ) -> MonteCarlo:
-    """Simulate whole UMBmark tests on a cluster: the bits of ``umbmark.monte_carlo``.
+    """Run a study on a cluster: the bits of one process.
 
     Parameters
     ----------
     client : distributed.Client
         The cluster.
-    model, path, n, runs, seed, odometry, update, phase, progress
-        As of ``umbmark.monte_carlo``.
+    study : Study
+        The study: robot, path, number of trials, seed.
     until_std_error_m : float, optional
         Stop at the first chunk after which the standard error of the mean E_max,sys is this small,
-        in m, with all chunks before it.
+        in m, with all chunks before it; at ``study.n`` trials at the latest.
     chunk : int, default 65536
         Trials of a chunk, about; with ``until_std_error_m`` the number of trials depends on it.
+    progress : bool or callable, optional
+        As of ``umbmark.monte_carlo``.
 
     Returns
     -------
@@ -74,19 +73,14 @@ def monte_carlo(
     Raises
     ------
     ValueError
-        If the test cannot be driven, or a number is out of range.
+        If a number is out of range.
     distributed.KilledWorker
         If a chunk's worker died more often than the scheduler allows.
     """
-    n = n or (1000 if until_std_error_m is None else MOST_UNTIL)
-    both = (runs, runs) if isinstance(runs, int) else runs
-    study = Study(
-        model, path, n=n, runs=both, seed=seed, odometry=odometry, update=update, phase=phase
-    )
-    count = _chunks(n, chunk)
+    count = _chunks(study.n, chunk)
     parts = _in_order(client, functools.partial(_shard, study, count), count)
     merged: Ensemble | None = None
-    with Bar(progress, n, "trials") as bar:
+    with Bar(progress, study.n, "trials") as bar:
         for part in parts:
             merged = part if merged is None else merged.merge(part)
             bar.at(merged.trials)
@@ -94,12 +88,75 @@ def monte_carlo(
                 parts.close()
                 break
     assert merged is not None, "a study has at least one chunk"
-    partial = merged.trials < n and not is_precise(merged, until_std_error_m)
+    partial = merged.trials < study.n and not is_precise(merged, until_std_error_m)
     return result_of(study, merged, partial, None)
 
 
 def _shard(study: Study, count: int, index: int) -> Ensemble:
     return study.run((index, count), threads=1)[0]
+
+
+def sensitivity(
+    client: Client,
+    study: Study,
+    *,
+    parameters: Parameters | None = None,
+    correlations: Correlations | None = None,
+    base_points: int = 4096,
+    second_order: bool = False,
+    noise_free: bool = False,
+    chunk: int = 8,
+    progress: Progress = None,
+) -> Sensitivity:
+    """Find Sobol indices on a cluster: the bits of ``umbmark.sensitivity``.
+
+    Parameters
+    ----------
+    client : distributed.Client
+        The cluster.
+    study : Study
+        The robot, its path and its runs; what varies are the parameters of the model that have a
+        distribution, and ``parameters``.
+    parameters, correlations, second_order, noise_free
+        As of ``umbmark.sensitivity``.
+    base_points : int, default 4096
+        Base points, a power of two.
+    chunk : int, default 8
+        Blocks of a chunk, of which there are 1024 at most; no number depends on it.
+    progress : bool or callable, optional
+        As of ``umbmark.monte_carlo``.
+
+    Returns
+    -------
+    Sensitivity
+
+    Raises
+    ------
+    ValueError
+        If nothing is varied, or a number is out of range.
+    """
+    if chunk < 1:
+        raise ValueError(f"chunk must be 1 or more, got {chunk}")
+    keys = None if parameters is None else keys_of(parameters, correlations)
+    asked = (study, keys, base_points, second_order, noise_free)
+    design = Sobol(*asked)
+    sums = []
+    with Bar(progress, design.blocks, "blocks") as bar:
+        work = functools.partial(_blocks, asked, design.blocks, chunk)
+        for part in _in_order(client, work, -(-design.blocks // chunk)):
+            sums.append(part)
+            bar.at(min(design.blocks, chunk * len(sums)))
+    return Sensitivity._of(design.document(np.concatenate(sums)))
+
+
+def _blocks(
+    asked: tuple[Study, str | dict[str, Any] | None, int, bool, bool],
+    blocks: int,
+    chunk: int,
+    index: int,
+) -> NDArray[np.float64]:
+    """Give the sums of the blocks of one chunk; the design is the same everywhere."""
+    return Sobol(*asked).sums(index * chunk, min(blocks, (index + 1) * chunk))
 
 
 class Verdicts(Record, frozen=True):

@@ -4,8 +4,8 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use serde_json::{Value, json};
 use umbmark_core::dataset::{Dataset, robot_text};
+use umbmark_core::document;
 use umbmark_core::drive::Robot;
 use umbmark_core::learn::{GearCalibration, calibrate_gears};
 
@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
         Pending::write_whole(file, arguments.force, &text).context("the corrected robot was not written")?;
     }
     if session.json() {
-        session.print_json(&document(&calibration, robot, arguments.level, &data.warnings))?;
+        session.print_json(&document::gears(robot, &calibration, arguments.level, &data.warnings))?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &data.warnings {
@@ -54,34 +54,6 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
     Ok(ExitCode::SUCCESS)
 }
 
-/// The numbers of the robot that the correction changes: key, nominal, corrected.
-fn changes(calibration: &GearCalibration, robot: &Robot) -> Vec<(&'static str, f64, f64)> {
-    let keys = robot.drive.kind().parameters().iter().map(|p| p.name);
-    let values = robot.drive.values().into_iter().zip(calibration.corrected.drive.values());
-    keys.zip(values).filter(|(_, (a, b))| a != b).map(|(key, (a, b))| (key, a, b)).collect()
-}
-
-fn document(calibration: &GearCalibration, robot: &Robot, level: f64, warnings: &[String]) -> Value {
-    let corrected: serde_json::Map<String, Value> =
-        changes(calibration, robot).into_iter().map(|(key, _, new)| (key.to_owned(), json!(new))).collect();
-    let determined = calibration.identifiability.as_ref().map(|i| {
-        let hidden: Vec<Value> = i.hidden.iter().map(|h| json!(h.weights)).collect();
-        json!({ "rank": i.rank, "of": i.shares.len(), "hidden": hidden })
-    });
-    json!({
-        "drive": robot.drive.kind().name(),
-        "fitted": umbmark_core::document::estimates(&calibration.estimates, level),
-        "not_shown": calibration.not_shown,
-        "corrected": corrected,
-        "return_poses_determine": determined,
-        "e_max_sys_before_m": calibration.e_max_sys_before,
-        "e_max_sys_after_m": calibration.e_max_sys_after,
-        "level": level,
-        "warnings": warnings,
-        "version": umbmark_core::VERSION,
-    })
-}
-
 fn text(calibration: &GearCalibration, robot: &Robot, level: f64) -> String {
     let mut text = format!("Calibration of {}, drive = \"{}\"\n\n", robot.name, robot.drive.kind().name());
     text += &estimates_table(&calibration.estimates, level);
@@ -95,7 +67,8 @@ fn text(calibration: &GearCalibration, robot: &Robot, level: f64) -> String {
     let mm = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{:.1} mm", v * 1e3));
     let (before, after) = (mm(calibration.e_max_sys_before), mm(calibration.e_max_sys_after));
     text += &format!("\n\nE_max,sys as driven: {before}; with the correction: {after}\n\n");
-    let rows = changes(calibration, robot)
+    let rows = calibration
+        .changes(robot)
         .into_iter()
         .map(|(key, old, new)| vec![key.to_owned(), format!("{old}"), format!("{new:.9}")]);
     text + &table(&["robot.toml", "nominal", "corrected"], rows) + "\n"

@@ -12,6 +12,7 @@ use crate::diagnose::experiments::{best, worth};
 use crate::diagnose::{DiagnoseError, Experiment, Unseen, Why};
 use crate::effect::{Model, ModelError};
 use crate::likelihood::{Noise, ObservedRun, gram, seeded};
+use crate::parameter::Parameter;
 use crate::path::{CIRCLE, Direction, FIGURE_EIGHT, Path, SPIN, SQUARE, STRAIGHT, Shape, SpeedProfile, WAYPOINTS};
 use crate::replay::Track;
 use nalgebra::{DMatrix, DVector};
@@ -33,6 +34,7 @@ struct Drive {
 }
 
 /// Something that may be true, and what it must be told from.
+#[derive(Clone)]
 struct Doubt {
     separates: [&'static str; 2],
     truth: Vec<usize>,
@@ -46,6 +48,38 @@ struct Doubt {
 pub fn next(exam: &Examination, certified: &[&Finding], unseen: &[Unseen]) -> Result<Vec<Experiment>, DiagnoseError> {
     let mut doubts: Vec<Doubt> = certified.iter().flat_map(|finding| of_class(exam, finding)).collect();
     doubts.extend(unseen.iter().flat_map(|unseen| of_unseen(exam, unseen)));
+    let mut experiments: Vec<Experiment> = offers(exam, &doubts)?.into_iter().filter_map(best).collect();
+    experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+    Ok(experiments)
+}
+
+/// Every drive on offer for telling two effects apart, together with these tracks, at the hardest of their usual sizes; the most
+/// telling per minute first.
+pub fn separating(exam: &Examination, pair: [&'static str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
+    let asked = pair.map(|name| exam.asked.iter().position(|a| a.effect().is_some_and(|e| e.about.name == name)));
+    let of = |truth: Option<usize>, rival: Option<usize>| {
+        let Some(Asked { question: Question::Effect(_, parameters), columns, .. }) = truth.map(|i| &exam.asked[i])
+        else {
+            return Vec::new();
+        };
+        let rivals = rival.map_or(&[][..], |i| &exam.asked[i].columns);
+        let against: Vec<usize> = exam.base(truth).iter().chain(rivals).copied().collect();
+        let doubt = |(column, parameter): (&usize, &&'static Parameter)| Doubt {
+            separates: pair,
+            truth: vec![*column],
+            values: DVector::from_element(1, parameter.typical),
+            against: against.iter().filter(|other| *other != column).copied().collect(),
+        };
+        columns.iter().zip(parameters).map(doubt).collect::<Vec<Doubt>>()
+    };
+    let doubts = [of(asked[0], asked[1]), of(asked[1], asked[0])].concat();
+    let mut experiments = offers(exam, &doubts)?.pop().unwrap_or_default();
+    experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+    Ok(experiments)
+}
+
+/// Every drive on offer, for each pair in doubt.
+fn offers(exam: &Examination, doubts: &[Doubt]) -> Result<Vec<Vec<Experiment>>, DiagnoseError> {
     let mut columns: Vec<usize> = doubts.iter().flat_map(|d| d.truth.iter().chain(&d.against)).copied().collect();
     columns.sort_unstable();
     columns.dedup();
@@ -56,8 +90,7 @@ pub fn next(exam: &Examination, certified: &[&Finding], unseen: &[Unseen]) -> Re
         .map(|drive| drive.products(exam, &columns).map(|new| &today + new))
         .collect::<Result<_, _>>()?;
     let place = |column: &usize| columns.binary_search(column).unwrap_or(0);
-    let mut experiments: Vec<Experiment> = Vec::new();
-    for separates in pairs(&doubts) {
+    let of_pair = |separates: [&'static str; 2]| {
         let own: Vec<&Doubt> = doubts.iter().filter(|doubt| doubt.separates == separates).collect();
         let offers = drives.iter().zip(&told).map(|(drive, products)| Experiment {
             separates,
@@ -65,10 +98,9 @@ pub fn next(exam: &Examination, certified: &[&Finding], unseen: &[Unseen]) -> Re
             minutes: drive.minutes(exam),
             sd: own.iter().map(|doubt| doubt.distance(products, place)).fold(f64::INFINITY, f64::min),
         });
-        experiments.extend(best(offers.collect()));
-    }
-    experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
-    Ok(experiments)
+        offers.collect()
+    };
+    Ok(pairs(doubts).into_iter().map(of_pair).collect())
 }
 
 fn pairs(doubts: &[Doubt]) -> Vec<[&'static str; 2]> {

@@ -1,10 +1,6 @@
 //! Strip charts: how a number runs along a way, in braille dots.
 
-/// Dots of a character, across and down.
-const ACROSS: usize = 2;
-const DOWN: usize = 4;
-/// What each dot adds to U+2800, by row and column.
-const DOTS: [[u32; ACROSS]; DOWN] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
+use super::braille::{ACROSS, DOTS, DOWN, character};
 
 /// The line through `points` (way, value) in `height` lines of `width` characters, for ways in [0, `span`] and values
 /// within ±`limit`. An odd height has a dotted line at zero.
@@ -26,8 +22,8 @@ pub fn strip(points: &[(f64, f64)], span: f64, limit: f64, width: usize, height:
         }
     }
     let blank = |line: usize| if 2 * line + 1 == height { '·' } else { ' ' };
-    let character = |line, dots| if dots == 0 { blank(line) } else { char::from_u32(0x2800 + dots).unwrap_or(' ') };
-    cells.iter().enumerate().map(|(line, row)| row.iter().map(|dots| character(line, *dots)).collect()).collect()
+    let text = |(line, row): (usize, &Vec<u32>)| row.iter().map(|dots| character(*dots, blank(line))).collect();
+    cells.iter().enumerate().map(text).collect()
 }
 
 #[cfg(test)]

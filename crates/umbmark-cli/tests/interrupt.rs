@@ -1,0 +1,83 @@
+//! Ctrl-C: what is done so far, marked partial, and nothing half-written.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+/// The command, interrupted once after some time.
+fn interrupted(folder: &Path, after: Duration, arguments: &[&str]) -> Output {
+    let child = Command::new(env!("CARGO_BIN_EXE_umbmark"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(after);
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    child.wait_with_output().unwrap()
+}
+
+fn told(output: &Output) -> serde_json::Value {
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Work far longer than the test waits for.
+#[test]
+fn studies_end_with_what_is_done_marked_as_partial() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/tolerances.toml"),
+        folder.path().join("tolerances.toml"),
+    )
+    .unwrap();
+    for arguments in [
+        "mc --sweep ed=0.999:1.001:1000 --sweep eb=0.99:1.01:1000 -n 20 -o sweep.csv",
+        "plan --see eb=1.005 --see ed=1.0004 --draws 20000",
+        "tolerance tolerances.toml -n 200000",
+    ] {
+        let words: Vec<&str> = arguments.split(' ').chain(["--json"]).collect();
+        let output = interrupted(folder.path(), Duration::from_millis(2500), &words);
+        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+        if errors.starts_with("error: stopped before") {
+            // A slow machine had nothing yet to tell.
+            assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{arguments}");
+            continue;
+        }
+        assert_eq!(told(&output)["partial"], true, "{arguments}");
+        assert!(errors.starts_with("partial: stopped "), "{arguments}: {errors}");
+    }
+    let rows = std::fs::read_to_string(folder.path().join("sweep.csv")).unwrap().lines().count();
+    assert!((2..1_000_000).contains(&rows), "{rows}");
+}
+
+#[test]
+fn sensitivities_end_with_whole_scrambles_or_say_that_there_is_nothing_to_tell() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["sensitivity", "--vary", "eb=normal:1:0.003", "--noise-free", "-n", "4194304", "--json"];
+    let output = interrupted(folder.path(), Duration::from_secs(2), &words);
+    if output.status.code() == Some(0) {
+        assert_eq!(told(&output)["partial"], true);
+    } else {
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0));
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(errors.starts_with("error: stopped before"), "{errors}");
+    }
+}
+
+/// The page is written whole, with what is missing said in it, and no file of the writing is left beside it.
+#[test]
+fn a_report_is_whole_and_says_what_is_missing() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/slope");
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["report", data.to_str().unwrap(), "-o", "report.html", "-n", "50000000", "--json"];
+    let output = interrupted(folder.path(), Duration::from_millis(700), &words);
+    assert_eq!(told(&output)["partial"], true);
+    let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.contains("<strong>PARTIAL.</strong>") && page.trim_end().ends_with("</html>"));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}

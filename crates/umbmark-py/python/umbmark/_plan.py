@@ -1,0 +1,355 @@
+"""Before the robot is driven: what a test would show, and how many runs it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from umbmark import _umbmark
+from umbmark._diagnosis import Experiment
+from umbmark._monte_carlo import Bar, Progress, Runs
+from umbmark._result import Interval, Record, Result, Row
+from umbmark._scores import Data, data_of
+from umbmark._umbmark import Dataset, Model, Path
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Sought(Record, frozen=True):
+    """A size that is to be seen, and how many runs a direction show it.
+
+    ``seen_by`` is "calibrate", "diagnose", "not_asked" or "never"; ``runs`` is None where 1000 do
+    not show it; ``power`` is that of the planned runs; ``experiments`` would show it where return
+    poses do not.
+    """
+
+    effect: str
+    parameter: str
+    value: float
+    seen_by: str
+    absorbed_by: tuple[str, ...] | None
+    runs: int | None
+    runs_at_sigma_interval: tuple[int | None, int | None] | None
+    power: float
+    experiments: tuple[Experiment, ...]
+
+
+class LeastSize(Record, frozen=True):
+    """The least size of an effect that is seen with the wanted power; None where none is."""
+
+    effect: str
+    parameter: str
+    size: float | None
+
+
+class ExpectedEMaxSys(Record, frozen=True):
+    """E_max,sys as tests would read it, and half the width of its interval, in m."""
+
+    mean: float
+    std_dev: float
+    interval_half_width_m: float
+    coverage: float
+    tests: int
+    noise_band_m: float
+
+
+class OfRuns(Record, frozen=True):
+    """What a number of runs a direction shows."""
+
+    runs: int
+    minutes: float
+    e_max_sys_m: ExpectedEMaxSys
+    minimum_detectable: tuple[LeastSize, ...]
+
+
+class Alternative(Record, frozen=True):
+    """Another test in place of the planned one."""
+
+    what: str
+    runs: Runs
+    minutes: float
+    sigma_m: float
+    e_max_sys_interval_half_width_m: float | None
+    minimum_detectable: tuple[LeastSize, ...]
+
+
+class Extended(Record, frozen=True):
+    """The extended test, with bumps."""
+
+    bumps: float
+    runs: int
+    minutes: float
+    nonsys_orientation_rad: float
+    interval_half_width_rad: float
+
+
+class Drift(Record, frozen=True):
+    """A change over the session, and the error that it makes in an order of the runs."""
+
+    effect: str
+    parameter: str
+    change: float
+    order: str
+    error: dict[str, float]
+    error_sd: dict[str, float]
+
+
+class Plan(Result, frozen=True):
+    """What a test would show before it is driven.
+
+    Attributes
+    ----------
+    see : tuple of Sought
+        The sizes that are to be seen, with the runs that they take.
+    by_runs : tuple of OfRuns
+        What each number of runs a direction shows.
+    alternatives : tuple of Alternative
+        Another size, another speed, one direction only.
+    order : tuple of Drift
+        What a drift of the session does in each order of the runs.
+    invisible : tuple of str
+        Effects that no number of runs shows.
+    sigma_m, e_max_sys_m, minutes_a_run
+        Of the robot on its path.
+    """
+
+    _beside: ClassVar[tuple[str, ...]] = ("sheets",)
+
+    robot: str
+    runs: int
+    minutes_a_run: float
+    sigma_m: float
+    sigma_interval_m: Interval | None
+    e_max_sys_m: float
+    with_heading: bool
+    power: float
+    size: float
+    draws: int
+    seed: int
+    see: tuple[Sought, ...]
+    by_runs: tuple[OfRuns, ...]
+    invisible: tuple[str, ...]
+    alternatives: tuple[Alternative, ...]
+    extended: Extended | None
+    order: tuple[Drift, ...]
+    assumed: tuple[str, ...]
+    partial: bool
+    version: str
+    sheets: dict[str, str]
+
+    def sheet(self, format: str = "md") -> str:
+        """Give the sheet to drive by, steps and the table to fill in, as "md" or "html"."""
+        if format not in self.sheets:
+            raise ValueError(f'format must be one of {", ".join(self.sheets)}, got "{format}"')
+        return self.sheets[format]
+
+    def table(self) -> list[Row]:
+        """Give what each number of runs shows, one dict a row."""
+        return [
+            {
+                "runs": row.runs,
+                "minutes": row.minutes,
+                "e_max_sys_mean_m": row.e_max_sys_m.mean,
+                "e_max_sys_std_dev_m": row.e_max_sys_m.std_dev,
+                "interval_half_width_m": row.e_max_sys_m.interval_half_width_m,
+                "noise_band_m": row.e_max_sys_m.noise_band_m,
+            }
+            | {f"least_{least.effect}.{least.parameter}": least.size for least in _first(row)}
+            for row in self.by_runs
+        ]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw what E_max,sys would read, by the number of runs, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.plan(self, ax)
+
+
+def _first(row: OfRuns) -> tuple[LeastSize, ...]:
+    """Give the least E_d and E_b."""
+    return row.minimum_detectable[:2]
+
+
+class Separation(Result, frozen=True):
+    """Experiments that tell two effects apart, the most telling per minute first.
+
+    Attributes
+    ----------
+    separates : tuple of str
+        The two effects.
+    beside : str
+        What the experiments come on top of.
+    next_experiments : tuple of Experiment
+        How many standard deviations apart each puts them, and how long it takes.
+    """
+
+    separates: tuple[str, str]
+    beside: str
+    next_experiments: tuple[Experiment, ...]
+    seed: int
+    version: str
+
+    def table(self) -> list[Row]:
+        """Give the experiments, one dict a row."""
+        return [
+            {
+                "experiment": e.experiment,
+                "sd": e.sd,
+                "minutes": e.minutes,
+                "sd2_a_minute": e.sd**2 / e.minutes,
+            }
+            for e in self.next_experiments
+        ]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw what each experiment tells, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.separation(self, ax)
+
+
+@dataclass(frozen=True)
+class _Whose:
+    """Whose test is planned, as the extension reads it."""
+
+    data: Dataset | None
+    model: Model | None
+    path: Path | None
+    sigma_m: float | None
+    with_heading: bool
+    seed: int
+
+
+def plan(
+    data: Data | None = None,
+    *,
+    model: Model | None = None,
+    path: Path | None = None,
+    runs: int = 5,
+    see: Mapping[str, float] | None = None,
+    sigma_m: float | None = None,
+    power: float = 0.9,
+    size: float = 0.05,
+    with_heading: bool = True,
+    numbers: Sequence[int] = tuple(range(3, 31)),
+    order: str = "mirrored",
+    draws: int = 999,
+    seed: int = 1,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Plan:
+    """Plan a test: how many runs, what they would show, and the sheet to drive by.
+
+    Parameters
+    ----------
+    data : Dataset or path-like, optional
+        Measured runs of the robot, whose errors and scatter are planned with.
+    model : Model, optional
+        The robot in place of the data's; without data the paper's LabMate with a wheel noise of
+        0.001 m^0.5 where none is given.
+    path : Path, optional
+        The path; the data's, or the paper's 4 x 4 m square.
+    runs : int, default 5
+        Runs in each direction that are planned.
+    see : dict of str to float, optional
+        Sizes that are to be seen: {"eb": 1.005, "floor_slope.drift_x": 0.002}.
+    sigma_m : float, optional
+        Scatter of the return positions, one coordinate, in m; that of the noise or of the data.
+    power : float, default 0.9
+        Probability with which it is to be seen.
+    size : float, default 0.05
+        Probability with which a robot without it is accused all the same.
+    with_heading : bool, default True
+        Whether return headings are measured.
+    numbers : sequence of int, default 3 to 30
+        Numbers of runs a direction to look at.
+    order : str, default "mirrored"
+        Order of the runs on the sheet: "mirrored", "alternating" or "blocks".
+    draws : int, default 999
+        Simulated tests behind every figure that has no closed form.
+    seed, threads, progress
+        As of ``monte_carlo``.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    ValueError
+        If the test cannot be planned, or a number is out of range.
+
+    Examples
+    --------
+    >>> import umbmark
+    >>> found = umbmark.plan(see={"eb": 1.005}, sigma_m=0.05, numbers=[5], draws=99)
+    >>> found.see[0].runs, found.see[0].power > 0.99
+    (4, True)
+    >>> print(found.sheet().splitlines()[0])
+    # UMBmark test sheet: TRC LabMate
+    """
+    sizes = [(name, float(value)) for name, value in (see or {}).items()]
+    whose = _Whose(_read(data), model, path, sigma_m, with_heading, seed)
+    with Bar(progress, 1000, "per mille") as bar:
+        document, markdown, html = _umbmark.plan(
+            whose,
+            runs,
+            sizes,
+            power,
+            [*numbers],
+            order,
+            (size, draws, seed),
+            threads,
+            bar.at,
+        )
+    return Plan._of(document, sheets={"md": markdown, "html": html})
+
+
+def separate(
+    first: str,
+    second: str,
+    data: Data | None = None,
+    *,
+    model: Model | None = None,
+    path: Path | None = None,
+    runs: int = 5,
+    sigma_m: float | None = None,
+    with_heading: bool = True,
+    seed: int = 1,
+    threads: int = 0,
+) -> Separation:
+    """Rank experiments by how well they tell two effects apart, per minute.
+
+    Parameters
+    ----------
+    first, second : str
+        The two effects.
+    data : Dataset or path-like, optional
+        What is measured already: return poses, or tracks.
+    model, path, runs, sigma_m, with_heading, seed, threads
+        As of ``plan``: the test that is planned, where there is no data.
+
+    Returns
+    -------
+    Separation
+
+    Raises
+    ------
+    ValueError
+        If there is no such effect, or nothing to judge by.
+
+    Examples
+    --------
+    >>> import umbmark
+    >>> umbmark.separate("wheelbase", "scale").next_experiments[0].sd > 3
+    True
+    """
+    whose = _Whose(_read(data), model, path, sigma_m, with_heading, seed)
+    options = (0.05, 999, seed)
+    return Separation._of(_umbmark.separate((first, second), whose, runs, options, threads))
+
+
+def _read(data: Data | None) -> Dataset | None:
+    return None if data is None else data_of(data)

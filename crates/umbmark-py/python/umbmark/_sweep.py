@@ -1,0 +1,136 @@
+"""Studies repeated on the points of a grid."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from umbmark import _umbmark
+from umbmark._monte_carlo import Bar, Progress
+from umbmark._result import Record, Result, Row
+from umbmark._umbmark import Model, Path, Study
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Axis(Record, frozen=True):
+    """Equally spaced values of a parameter, by its full name and its flag."""
+
+    name: str
+    flag: str
+    first: float
+    last: float
+    count: int
+
+
+class Summary(Record, frozen=True):
+    """Statistics of a metric over the trials of a point, in its unit."""
+
+    mean: float | None
+    std_dev: float | None
+    std_error: float | None
+    quantiles: dict[str, float | None]
+
+
+class Point(Record, frozen=True):
+    """A point of the grid: the values of the axes, and the metrics there."""
+
+    values: tuple[float, ...]
+    metrics: dict[str, Summary]
+
+
+class Sweep(Result, frozen=True):
+    """A study on every point of a grid.
+
+    Attributes
+    ----------
+    axes : tuple of Axis
+        What is swept; the last axis varies fastest.
+    n : int
+        Trials of each point. Trial i has the same noise at every point.
+    points : tuple of Point
+        The points, in order.
+    partial : bool
+        Whether points that were asked for are not done.
+    """
+
+    axes: tuple[Axis, ...]
+    n: int
+    seed: int
+    partial: bool
+    points: tuple[Point, ...]
+    assumed: tuple[str, ...]
+    version: str
+
+    def table(self) -> list[Row]:
+        """Give each metric at each point, one dict a row."""
+        names = [axis.flag for axis in self.axes]
+        return [
+            dict(zip(names, point.values, strict=True))
+            | {"metric": metric, "mean": s.mean, "std_error": s.std_error, "std_dev": s.std_dev}
+            | {f"q{share}": value for share, value in s.quantiles.items()}
+            for point in self.points
+            for metric, s in point.metrics.items()
+        ]
+
+    def plot(self, ax: Axes | None = None, *, metric: str = "e_max_sys_m") -> Axes:
+        """Draw the mean of a metric over one axis, or as a map over two, on new axes or ``ax``."""
+        from umbmark import _plots
+
+        return _plots.sweep(self, ax, metric)
+
+
+def sweep(
+    model: Model,
+    axes: Mapping[str, tuple[float, float, int]],
+    path: Path | None = None,
+    *,
+    n: int = 1000,
+    runs: int | tuple[int, int] = 5,
+    seed: int = 1,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Sweep:
+    """Repeat a study for equally spaced values of parameters, on a grid where there are several.
+
+    Parameters
+    ----------
+    model : Model
+        The robot and its effects.
+    axes : dict of str to (first, last, count)
+        What is swept, by the flag of ``umbmark mc`` or the full name: "ed", "floor_slope.drift_x",
+        "side", "runs", "encoder-rate".
+    path : Path, optional
+        The path; the paper's 4 x 4 m square where none is given.
+    n : int, default 1000
+        Trials of each point. Trial i has the same noise at every point, so that differences between
+        points are smoother than either.
+    runs, seed, threads, progress
+        As of ``monte_carlo``.
+
+    Returns
+    -------
+    Sweep
+
+    Raises
+    ------
+    ValueError
+        If there is no such parameter, or a value is out of range.
+
+    Examples
+    --------
+    >>> import umbmark
+    >>> found = umbmark.sweep(umbmark.Model(), {"eb": (0.99, 1.01, 3)}, n=1, runs=1)
+    >>> [f"{p.metrics['e_max_sys_m'].mean:.2f} m" for p in found.points]
+    ['0.18 m', '0.00 m', '0.18 m']
+    """
+    study = Study(model, path, n=n, runs=runs, seed=seed)
+    given = [
+        (name, float(first), float(last), count) for name, (first, last, count) in axes.items()
+    ]
+    points = math.prod(count for *_, count in given)
+    with Bar(progress, points, "points") as bar:
+        document = _umbmark.sweep(study, given, threads, bar.at)
+    return Sweep._of(document)

@@ -1,0 +1,53 @@
+//! `tolerance`.
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use umbmark_core::document::{self, Wanted};
+use umbmark_core::monte_carlo::Metric;
+use umbmark_core::sensitivity::tolerance::{Target, Tolerances};
+use umbmark_core::sensitivity::{Noise, SensitivityError, Tests};
+
+use crate::monte_carlo::Study;
+use crate::work::watched;
+use crate::{parameters, probability, refused};
+
+/// How many robots keep a target, and the cheapest grades that make it enough: the document, and the sizes of the robots as
+/// they are now, in order.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+pub fn tolerance(
+    py: Python<'_>,
+    study: &Study,
+    parameters: &Bound<'_, PyAny>,
+    metric: &str,
+    target: (f64, f64),
+    robots: u64,
+    with_noise: bool,
+    threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(String, Vec<f64>)> {
+    let (at_most, share) = target;
+    probability("share", share)?;
+    if !(at_most > 0.0 && at_most.is_finite()) {
+        return Err(PyValueError::new_err(format!("target must be positive and finite, got {at_most}")));
+    }
+    let metric = Metric::named(metric).map_err(refused)?;
+    let study = study.core().clone();
+    let file = parameters::read(parameters, &study)?;
+    let noise = if with_noise { Noise::Simulated } else { Noise::Absent };
+    let first: Vec<_> = file.parameters.iter().map(|one| (one.quantity, one.grades[0].distribution)).collect();
+    let tests = Tests::new(&study, &first, noise).map_err(refused)?;
+    let Some(output) = tests.metrics().iter().position(|one| *one == metric) else {
+        return Err(PyValueError::new_err(format!("{} is not a metric of these tests", metric.name())));
+    };
+    let target = Target { output, at_most, share };
+    let found = watched(py, threads, progress, move |told| -> Result<_, SensitivityError> {
+        let correlations = parameters::correlations(&file);
+        let (parameters, seed) = (file.parameters.as_slice(), study.seed);
+        let tolerances = Tolerances { tests: &tests, parameters, correlations: &correlations, robots, seed };
+        let findings = told.work(|watch| tolerances.search(&target, watch))?;
+        let wanted = Wanted { parameters, metric, target: &target, noise, seed, assumed: &[] };
+        Ok((document::tolerance(&findings, &wanted).to_string(), findings.now.robots.sizes().to_vec()))
+    })?;
+    found.map_err(refused)
+}
