@@ -12,8 +12,6 @@ pub(super) struct Sheet<'a> {
     /// Names of the columns, in lower case.
     pub header: Vec<String>,
     pub header_line: usize,
-    /// No more rows than this follow.
-    pub most_rows: usize,
     body: Rows<'a>,
 }
 
@@ -72,13 +70,12 @@ impl<'a> Sheet<'a> {
         }
         let used = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
         let header = cells[..used].iter().map(|cell| cell.to_lowercase()).collect();
-        Ok(Sheet { file, header, header_line, most_rows: line_ends(text), body })
+        Ok(Sheet { file, header, header_line, body })
     }
 
     /// Takes every row as data, of a number of columns.
     pub fn headless(file: &'a str, text: &'a str, columns: usize) -> Sheet<'a> {
-        let (header, most_rows) = (vec![String::new(); columns], 1 + line_ends(text));
-        Sheet { file, header, header_line: 0, most_rows, body: Rows::of(text) }
+        Sheet { file, header: vec![String::new(); columns], header_line: 0, body: Rows::of(text) }
     }
 
     /// Visits every row; there must be one.
@@ -114,10 +111,6 @@ impl<'a> Sheet<'a> {
         };
         Err(DatasetError::Ragged { file: self.file.to_owned(), line, got: cells.len(), expected, remedy })
     }
-}
-
-fn line_ends(text: &str) -> usize {
-    text.bytes().filter(|byte| matches!(byte, b'\n' | b'\r')).count()
 }
 
 fn check_separator(file: &str, line: usize, text: &str) -> Result<(), DatasetError> {

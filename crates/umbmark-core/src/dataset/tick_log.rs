@@ -45,11 +45,6 @@ pub(super) fn parse_tick_log(
         columns: [&time, &counts[0], &counts[1]].map(|column| column.name.clone()),
         ..Recording::default()
     };
-    recording.lines.reserve(sheet.most_rows);
-    let [left, right] = &mut recording.counts;
-    for numbers in [&mut recording.time, left, right] {
-        numbers.reserve(sheet.most_rows);
-    }
     sheet.for_each(|row| {
         recording.lines.push(row.line);
         recording.time.push(row.number(&time)?);
