@@ -4,7 +4,7 @@ use super::{Error, Learnt, MOST, Step};
 use crate::diagnose::tracks::{self, Alone, LEAST_GAIN, Misses, Search};
 use crate::diagnose::{DiagnoseError, Diagnosis, Options, Verdict};
 use crate::effect::Model;
-use crate::likelihood::{Fitted, Noise, Observed, Weighing};
+use crate::likelihood::{Fitted, Noise, Observed};
 use crate::watch::Watch;
 
 /// Learns which effects the robot of some tracks has, beside those of a `start`.
@@ -57,13 +57,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         hints.extend(hint);
     }
     let Some(last) = search.exams.pop() else { return Err(DiagnoseError::NotConverged { how: "has no model" }) };
-    let best = Alone::new(last.fitted.clone()).predicting()?;
-    let mut diagnosis = tracks::conclude(last, told, options)?;
-    if best.weighing == Weighing::Tracks {
-        diagnosis.remarks.push(Weighing::Tracks.caution().to_owned());
-        diagnosis.fitted = tracks::estimates(&best);
-        diagnosis.model = best.model;
-    }
+    let diagnosis = tracks::conclude(last, told, options)?;
     hints.extend(tracks::uncertified(&search.left.asked, options));
     let mut remarks = [diagnosis.remarks.clone(), hints].concat();
     let ranking = search.left.asked;
