@@ -67,14 +67,6 @@ pub fn number_flag(parameter: &'static Parameter) -> Arg {
     }
 }
 
-/// A number written with a decimal point.
-pub fn number(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|_| {
-        if text.contains(',') { "write decimals with a point, as in 1.002" } else { "not a number" }.to_owned()
-    })?;
-    if value.is_finite() { Ok(value) } else { Err("must be finite".to_owned()) }
-}
-
 /// The value of a number's flag, choices as their index.
 pub fn number_of(matches: &ArgMatches, parameter: &Parameter) -> Option<f64> {
     if matches.value_source(parameter.flag) != Some(ValueSource::CommandLine) {
