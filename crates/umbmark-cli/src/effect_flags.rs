@@ -1,5 +1,6 @@
 //! Flags for every number of every effect, made from the catalogue.
 
+use crate::numbers::number;
 use anyhow::Context;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
