@@ -1,12 +1,13 @@
 //! Flags for every number of every effect, made from the catalogue.
 
-use crate::numbers::number;
 use anyhow::Context;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
 use umbmark_core::effect::{ActsOn, CATALOGUE, Entry, Model};
 use umbmark_core::monte_carlo::{Distribution, Draw};
 use umbmark_core::parameter::{DefaultValue, Parameter};
+
+use crate::numbers::number;
 
 /// The heading that the flags of an effect stand under in the help.
 fn heading(entry: &Entry) -> &'static str {
