@@ -2,7 +2,7 @@
 
 use umbmark_core::monte_carlo::Distribution;
 
-use crate::effect_flags::number;
+use crate::numbers::number;
 
 /// What a distribution looks like on the command line.
 const FORMS: &str = "normal:MEAN:SD, uniform:MIN:MAX, triangular:MIN:MODE:MAX or loguniform:MIN:MAX";

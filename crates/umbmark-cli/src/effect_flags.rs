@@ -7,6 +7,8 @@ use umbmark_core::effect::{ActsOn, CATALOGUE, Entry, Model};
 use umbmark_core::monte_carlo::{Distribution, Draw};
 use umbmark_core::parameter::{DefaultValue, Parameter};
 
+use crate::numbers::number;
+
 /// The heading that the flags of an effect stand under in the help.
 fn heading(entry: &Entry) -> &'static str {
     match entry.about.acts_on {
@@ -65,14 +67,6 @@ pub fn number_flag(parameter: &'static Parameter) -> Arg {
     } else {
         arg.value_parser(clap::builder::PossibleValuesParser::new(parameter.choices))
     }
-}
-
-/// A number written with a decimal point.
-pub fn number(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|_| {
-        if text.contains(',') { "write decimals with a point, as in 1.002" } else { "not a number" }.to_owned()
-    })?;
-    if value.is_finite() { Ok(value) } else { Err("must be finite".to_owned()) }
 }
 
 /// The value of a number's flag, choices as their index.

@@ -11,6 +11,7 @@ mod ensemble_report;
 mod files;
 mod heat_map;
 mod model_report;
+mod numbers;
 mod output_arguments;
 mod plan_report;
 mod prose;

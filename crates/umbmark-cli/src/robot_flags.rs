@@ -6,7 +6,8 @@ use umbmark_core::drive::{Drive, Encoder, Kind, Robot};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{Path, SHAPES, SpeedProfile, WAYPOINTS};
 
-use crate::effect_flags::{number, number_flag, number_of};
+use crate::effect_flags::{number_flag, number_of};
+use crate::numbers::number;
 
 /// What was said of robot and path on the command line.
 #[derive(Clone, Debug, Default)]

@@ -12,10 +12,10 @@ use umbmark_core::document;
 use umbmark_core::monte_carlo::{Axis, Metric, MetricSummary, Quantity, Study, Sweep, SweepPoint};
 
 use crate::Session;
-use crate::effect_flags::number;
 use crate::ensemble_report::{title, unit};
 use crate::files::Pending;
 use crate::heat_map::HeatMap;
+use crate::numbers::number;
 use crate::table::{table, with_precision_of};
 
 /// The flags of a sweep.

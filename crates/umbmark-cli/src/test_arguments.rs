@@ -16,7 +16,7 @@ pub struct TestArguments {
     draws: u32,
 
     /// Probability with which a complete model is accused all the same
-    #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = crate::verb::size)]
+    #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = crate::numbers::probability)]
     size: f64,
 }
 

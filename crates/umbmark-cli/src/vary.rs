@@ -8,7 +8,7 @@ use umbmark_core::monte_carlo::{Distribution, Quantity, Study};
 use umbmark_core::sensitivity::Correlation;
 
 use crate::distribution_text::{Named, named};
-use crate::effect_flags::number;
+use crate::numbers::number;
 
 /// The flags of what is varied.
 #[derive(Debug, clap::Args)]

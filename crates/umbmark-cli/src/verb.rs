@@ -96,9 +96,3 @@ impl Verb {
         }
     }
 }
-
-/// A probability between 0 and 1, both excluded.
-pub(crate) fn size(text: &str) -> Result<f64, String> {
-    let size = crate::effect_flags::number(text)?;
-    if size > 0.0 && size < 1.0 { Ok(size) } else { Err("must be between 0 and 1, both excluded".to_owned()) }
-}

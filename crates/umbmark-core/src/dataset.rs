@@ -117,6 +117,9 @@ pub struct TickLog {
     pub reference: Vec<ReferencePose>,
     /// What was mended while it was read.
     pub mended: Mended,
+    /// Where on the floor a wheel met a bump, seen from START \[m\]; known of simulated runs alone.
+    #[serde(default)]
+    pub bumps: Vec<[f64; 2]>,
 }
 
 /// What was mended in a log while it was read, counted.

@@ -363,3 +363,20 @@ def test_rosbags_reads_what_umbmark_writes(written: tuple[Path, dict[str, Any]])
             message = reader.deserialize(raw, connection.msgtype)
             messages.setdefault(connection.topic, []).append(message)
     check(messages, said)
+
+
+def test_bumps_that_a_simulated_run_met_lie_beside_its_path(command: Path, tmp_path: Path) -> None:
+    file = tmp_path / "bumps.mcap"
+    flags = ["--bump-rate", "0.3", "--wheel-noise", "0", "--reference-rate", "20"]
+    subprocess.run([command, "simulate", "-o", file, *flags], check=True, capture_output=True)
+    with file.open("rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        topics = ["/scene/bumps", "/scene/true_path"]
+        found = {c.topic: d for _, c, _, d in reader.iter_decoded_messages(topics)}
+    (marker,) = found["/scene/bumps"].markers
+    sphere_list, half_wheelbase = 7, 0.17
+    assert marker.type == sphere_list
+    assert len(marker.points) > 3
+    way = [(at.pose.position.x, at.pose.position.y) for at in found["/scene/true_path"].poses]
+    aside = [min(math.dist((b.x, b.y), place) for place in way) for b in marker.points]
+    assert max(aside) == pytest.approx(half_wheelbase, abs=0.02)

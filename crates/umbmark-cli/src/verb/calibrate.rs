@@ -45,12 +45,12 @@ pub struct Arguments {
     data: DataArguments,
 
     /// Probability with which the intervals hold
-    #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = crate::effect_flags::number)]
+    #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = crate::numbers::number)]
     level: f64,
 
     /// Metres that a radian of heading error counts as when whole tracks are fitted
     /// [default: root mean square distance of the poses from START]
-    #[arg(long, value_name = "M", value_parser = crate::effect_flags::number)]
+    #[arg(long, value_name = "M", value_parser = crate::numbers::number)]
     heading_arm: Option<f64>,
 
     /// Wheelbase in the closed forms' formula for E_d

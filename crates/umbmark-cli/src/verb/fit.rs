@@ -32,7 +32,7 @@ pub struct Arguments {
     output: Option<PathBuf>,
 
     /// Probability with which the intervals hold
-    #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = super::size)]
+    #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = crate::numbers::probability)]
     level: f64,
 
     /// Replace a file that exists

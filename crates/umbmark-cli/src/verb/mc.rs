@@ -13,8 +13,8 @@ use umbmark_core::parameter::Parameter;
 
 use crate::checkpoint::Checkpoint;
 use crate::distribution_text::distribution_words;
-use crate::effect_flags::number;
 use crate::ensemble_report::{Description, Report};
+use crate::numbers::number;
 use crate::study_flags::{Known, StudyFlags};
 use crate::sweep::{self, SweepFlags};
 use crate::{Session, files};

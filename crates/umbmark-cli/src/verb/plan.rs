@@ -12,8 +12,8 @@ use umbmark_core::effect::CATALOGUE;
 use umbmark_core::plan::{Measured, Options, Order, Protocol, Request, Setting, Sought, expected_dataset};
 use umbmark_core::stats::Interval;
 
-use crate::effect_flags::number;
 use crate::files::Pending;
+use crate::numbers::number;
 use crate::plan_report::{Known, Report, Separation};
 use crate::setup::{Directions, Setup, SetupFlags};
 use crate::{Session, plan_report};
@@ -63,11 +63,11 @@ pub struct Arguments {
     sigma: Option<f64>,
 
     /// Probability with which it is to be seen
-    #[arg(long, default_value_t = 0.9, value_name = "P", value_parser = super::size)]
+    #[arg(long, default_value_t = 0.9, value_name = "P", value_parser = crate::numbers::probability)]
     power: f64,
 
     /// Probability with which a robot without it is accused all the same
-    #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = super::size)]
+    #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = crate::numbers::probability)]
     size: f64,
 
     /// Runs in each direction that are planned

@@ -91,7 +91,7 @@ pub struct Arguments {
 }
 
 fn width(text: &str) -> Result<f64, String> {
-    let width = crate::effect_flags::number(text)?;
+    let width = crate::numbers::number(text)?;
     if (40.0..=400.0).contains(&width) { Ok(width) } else { Err("must be from 40 to 400 mm".into()) }
 }
 

@@ -33,7 +33,7 @@ pub struct Arguments {
     data: DataArguments,
 
     /// Probability with which the intervals hold
-    #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = crate::effect_flags::number)]
+    #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = crate::numbers::number)]
     level: f64,
 
     /// How the extended test joins both directions

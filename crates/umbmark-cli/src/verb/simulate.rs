@@ -26,7 +26,7 @@ pub struct Arguments {
     runs: Option<u32>,
 
     /// How often the absolute pose is measured on the way; 0 for the end pose alone
-    #[arg(long, default_value_t = 20.0, value_name = "HZ", value_parser = crate::effect_flags::number)]
+    #[arg(long, default_value_t = 20.0, value_name = "HZ", value_parser = crate::numbers::number)]
     reference_rate: f64,
 
     #[command(flatten)]

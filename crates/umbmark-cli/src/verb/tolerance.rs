@@ -29,7 +29,7 @@ pub struct Arguments {
     target: (f64, bool),
 
     /// The share of robots that must keep the target
-    #[arg(long, value_name = "SHARE", value_parser = super::size, default_value = "0.95")]
+    #[arg(long, value_name = "SHARE", value_parser = crate::numbers::probability, default_value = "0.95")]
     share: f64,
 
     /// The metric of the target; its size counts where it has a sign
@@ -51,7 +51,7 @@ pub struct Arguments {
 /// A length or an angle with its unit, in SI, and whether it is an angle.
 fn size(text: &str) -> Result<(f64, bool), String> {
     let Some(degrees) = text.strip_suffix("deg") else { return super::mc::length(text).map(|metres| (metres, false)) };
-    let value = crate::effect_flags::number(degrees.trim())?;
+    let value = crate::numbers::number(degrees.trim())?;
     if value > 0.0 { Ok((value.to_radians(), true)) } else { Err("must be positive".to_owned()) }
 }
 

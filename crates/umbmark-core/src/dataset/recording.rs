@@ -60,7 +60,7 @@ impl Recording {
             ));
         }
         let [left, right] = robot.map_or([left.clone(), right.clone()], |robot| robot.axle_ticks(&[left, right]));
-        Ok(TickLog { time: self.time, left, right, reference: self.reference, mended })
+        Ok(TickLog { time: self.time, left, right, reference: self.reference, mended, bumps: Vec::new() })
     }
 
     fn add_up(&mut self) {

@@ -2,7 +2,7 @@
 
 use super::{Leg, Rest, SimulateError, Simulator, Truth, return_error};
 use crate::dataset::{ReferencePose, ReturnError, TickLog};
-use crate::drive::{Kind, Robot, WheelTravel};
+use crate::drive::{Kind, Robot, Wheel, WheelTravel};
 use crate::effect::{Sight, Stretch, TestKind};
 use crate::engine::{SampledOdometry, TickGeometry, UNITS_PER_TICK, Update};
 use crate::geometry::Pose2;
@@ -87,7 +87,7 @@ impl Simulator {
             let driving = time - STANDING;
             // Every move that ended since the last sample is driven to its end, the present one as far as it has come.
             while begun > 0 && begun < legs.len() && driving >= legs[begun].begins || begun == 0 && driving >= 0.0 {
-                truth.advance(1.0);
+                self.advance(truth, 1.0, &mut recording.log.bumps);
                 let line = rests[begun].line_to(&rests[begun + 1]);
                 let stretch = Stretch { index: begun, direction, test, travel: self.believed(&legs[begun], &line) };
                 truth.begin(stretch, &legs[begun]);
@@ -97,7 +97,7 @@ impl Simulator {
                 None => ([0; 2], 0),
                 Some(index) => {
                     let share = legs[index].profile.fraction(driving - legs[index].begins);
-                    truth.advance(share);
+                    self.advance(truth, share, &mut recording.log.bumps);
                     let line = rests[index].line_to(&rests[index + 1]);
                     let counts: [i64; 2] = std::array::from_fn(|wheel| {
                         let angle = line.start()[wheel] + (line.travel()[wheel] as f64 * share) as i64;
@@ -132,6 +132,17 @@ impl Simulator {
         let measured = truth.measure(&Sight { time: samples as f64 / rate, ..Sight::default() });
         recording.returned = return_error(&measured, &recording.computed.last().copied().unwrap_or_default());
         Ok(recording)
+    }
+
+    /// Drives on, and notes where the wheels of the axle meet bumps: to a sample's way.
+    fn advance(&self, truth: &mut Truth, share: f64, bumps: &mut Vec<[f64; 2]>) {
+        let ahead = truth.ahead().to_vec();
+        truth.advance(share);
+        let (pose, half) = (truth.pose(), 0.5 * self.robot().drive.wheelbase());
+        for bump in ahead[truth.ahead().len()..].iter().rev() {
+            let left = if bump.wheel == Wheel::Left { half } else { -half };
+            bumps.push([pose.x - left * libm::sin(pose.heading), pose.y + left * libm::cos(pose.heading)]);
+        }
     }
 
     /// How the robot moves at `time` \[s\] of the recording, `driving` of it since START.

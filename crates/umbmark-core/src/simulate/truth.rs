@@ -225,6 +225,11 @@ impl Truth {
         self.ahead.insert(behind, bump);
     }
 
+    /// Bumps of the stretch that lie ahead, the nearest last.
+    pub(super) fn ahead(&self) -> &[Bump] {
+        &self.ahead
+    }
+
     /// Drives on until `share` of the stretch is done.
     pub fn advance(&mut self, share: f64) {
         while let Some(bump) = self.ahead.pop_if(|bump| bump.at < share) {

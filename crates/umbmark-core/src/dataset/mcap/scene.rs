@@ -1,7 +1,7 @@
 //! What a viewer shows of a whole run: both paths and the error between them.
 //!
 //! `/scene/computed_path` and `/scene/true_path` are nav_msgs/Path, `/scene/errors` is a visualization_msgs/MarkerArray of lines from
-//! where the robot computed to be to where it was measured. All are in the frame odom, which stands on START as the measured poses do,
+//! where the robot computed to be to where it was measured; `/scene/bumps` holds a ball where a simulated wheel met a bump. All are in the frame odom, which stands on START as the measured poses do,
 //! and stand at the begin of the log, so that a viewer has them at any time.
 
 use super::super::{ReferencePose, TickLog};
@@ -14,10 +14,14 @@ const POSES: usize = 2000;
 const VECTORS: usize = 200;
 /// What a marker is, as visualization_msgs numbers it.
 const LINE_LIST: i32 = 5;
+const SPHERE_LIST: i32 = 7;
 /// Width of a line \[m\].
 const WIDTH: f64 = 0.004;
+/// Diameter of a bump, so that it is seen \[m\].
+const BUMP: f64 = 0.04;
 /// Red, green, blue and opacity.
 const RED: [f32; 4] = [0.84, 0.2, 0.15, 1.0];
+const BROWN: [f32; 4] = [0.55, 0.35, 0.15, 1.0];
 
 /// About evenly chosen places, the last among them.
 fn chosen(count: usize, most: usize) -> impl Iterator<Item = usize> {
@@ -49,28 +53,35 @@ fn path(cdr: &mut Cdr, time: u64, poses: Vec<(f64, f64, Option<f64>)>) {
 
 /// Lines from computed to measured places.
 pub(super) fn errors(cdr: &mut Cdr, time: u64, log: &TickLog, computed: &[Pose2]) {
-    let pairs: Vec<(&Pose2, &ReferencePose)> = chosen(log.reference.len(), VECTORS)
+    let ends = chosen(log.reference.len(), VECTORS)
         .filter_map(|i| Some((computed.get(log.reference[i].sample)?, &log.reference[i])))
-        .collect();
+        .flat_map(|(computed, measured)| [[computed.x, computed.y], [measured.x, measured.y]]);
+    marker(cdr, time, "errors", LINE_LIST, [WIDTH, 0.0, 0.0], RED, &ends.collect::<Vec<_>>());
+}
+
+/// Where wheels met bumps.
+pub(super) fn bumps(cdr: &mut Cdr, time: u64, places: &[[f64; 2]]) {
+    marker(cdr, time, "bumps", SPHERE_LIST, [BUMP; 3], BROWN, places);
+}
+
+/// One marker of many points on the floor, which stays for good.
+fn marker(cdr: &mut Cdr, time: u64, name: &str, kind: i32, scale: [f64; 3], colour: [f32; 4], places: &[[f64; 2]]) {
     cdr.write_sequence_length(1);
     header(cdr, time, "odom");
-    cdr.write_string("errors");
-    for number in [0, LINE_LIST, 0] {
+    cdr.write_string(name);
+    for number in [0, kind, 0] {
         cdr.write_i32(number);
     }
     numbers(cdr, [0.0; 3]);
     numbers(cdr, orientation(0.0));
-    numbers(cdr, [WIDTH, 0.0, 0.0]);
-    RED.into_iter().for_each(|part| cdr.write_f32(part));
+    numbers(cdr, scale);
+    colour.into_iter().for_each(|part| cdr.write_f32(part));
     // It stays for good, and stands in its frame as that was at its time.
     cdr.write_i32(0);
     cdr.write_u32(0);
     cdr.write_bool(false);
-    cdr.write_sequence_length(2 * pairs.len());
-    for (computed, measured) in pairs {
-        numbers(cdr, [computed.x, computed.y, 0.0]);
-        numbers(cdr, [measured.x, measured.y, 0.0]);
-    }
+    cdr.write_sequence_length(places.len());
+    places.iter().for_each(|[x, y]| numbers(cdr, [*x, *y, 0.0]));
     nothing_more(cdr, time);
 }
 

@@ -81,6 +81,10 @@ fn write_scene<W: Write + Seek>(writer: &mut Writer<W>, log: &TickLog, poses: &[
         let mut errors = Topic::add(writer, "/scene/errors", &MARKER_ARRAY)?;
         errors.write(writer, time, |cdr| scene::errors(cdr, time, log, poses))?;
     }
+    if !log.bumps.is_empty() {
+        let mut bumps = Topic::add(writer, "/scene/bumps", &MARKER_ARRAY)?;
+        bumps.write(writer, time, |cdr| scene::bumps(cdr, time, &log.bumps))?;
+    }
     Ok(())
 }
 

@@ -1,0 +1,15 @@
+//! Numbers as they stand behind flags.
+
+/// A number written with a decimal point.
+pub fn number(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| {
+        if text.contains(',') { "write decimals with a point, as in 1.002" } else { "not a number" }.to_owned()
+    })?;
+    if value.is_finite() { Ok(value) } else { Err("must be finite".to_owned()) }
+}
+
+/// A probability between 0 and 1, both excluded.
+pub fn probability(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if value > 0.0 && value < 1.0 { Ok(value) } else { Err("must be between 0 and 1, both excluded".to_owned()) }
+}
