@@ -59,7 +59,9 @@ fn bumps_on_the_first_leg_are_found_in_an_engines_data() {
 fn a_scale_error_that_end_poses_cannot_see_shows_on_the_tracks_of_a_real_robot() {
     let Some(learnt) = learnt("optiodom/raw/square/230620202317") else { return };
     let scale = learnt.diagnosis.fitted.iter().find(|e| e.parameter == "e_s").unwrap();
-    assert!((0.9953..0.9958).contains(&scale.value), "{}", scale.value);
+    // The authors' own ticks and poses give -0.43 to -0.46 % by fits that take delay and lever arm for known.
+    let apart = (scale.value - 0.9955) / scale.standard_error;
+    assert!(apart.abs() < 1.96 && scale.value + 4.0 * scale.standard_error < 1.0, "{scale:?}");
     assert!((learnt.steps[0].held_out.position - 13.3e-3).abs() < 0.5e-3);
     assert!(learnt.steps.last().unwrap().held_out.position < 8.8e-3);
 }

@@ -41,27 +41,10 @@ impl Effect for MissedCounts {
                 meaning: "wheel speed up to which every count is kept",
                 choices: &[],
             },
-            Parameter::size(
-                "left_share",
-                "missed-left-share",
-                "",
-                2e-3,
-                (-1.0, 1.0),
-                "share of its travel that the left counter misses at every speed above the threshold",
-            ),
-            Parameter::size(
-                "right_share",
-                "missed-right-share",
-                "",
-                2e-3,
-                (-1.0, 1.0),
-                "share of its travel that the right counter misses at every speed above the threshold",
-            ),
         ],
-        equation: "s_w ← (1 + q_w + k_w (|v_w| - v₀)) s_w  where |v_w| > v₀",
+        equation: "s_w ← (1 + k_w max(0, |v_w| - v₀)) s_w",
         physics: "Counts come faster than an interrupt routine or an input filter takes them, and some are lost: the wheel \
-                  has rolled farther than was counted: a filter loses a share of them at once (q), an interrupt routine the more \
-                  the faster they come (k). A negative share counts edges twice.",
+                  has rolled farther than was counted. A negative share counts edges twice.",
         signature: "Legs driven fast curve away from the wheel that misses counts, as E_d does; both wheels alike are E_s. \
                     Below the threshold nothing.",
         confused_with: &["wheel_diameter_ratio", "speed_slip_left", "speed_slip_right"],
@@ -72,52 +55,34 @@ impl Effect for MissedCounts {
     const CHANGES: Changes = Changes::WHEELS;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
-        let more = |wheel: usize| {
-            let missed = 0.1 * p[wheel] + p[3 + wheel];
-            format!("{} {}", percent(missed), either(missed, "more", "less"))
-        };
+        let more = |k: f64| format!("{} {}", percent(0.1 * k), either(k, "more", "less"));
         format!(
             "0.1 m/s above {} m/s the left wheel rolls {} than is counted, the right wheel {}.",
             size(p[2]),
-            more(0),
-            more(1)
+            more(p[0]),
+            more(p[1])
         )
     }
 
     fn varies(p: &[f64]) -> bool {
-        [0, 1, 3, 4].iter().any(|size| p[*size] != 0.0)
+        p[0] != 0.0 || p[1] != 0.0
     }
 
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        for (wheel, travelled) in [&mut travel.left, &mut travel.right].into_iter().enumerate() {
-            let over = -p[2] + at.wheel_speed[wheel].abs();
-            if over.value() > 0.0 {
-                *travelled *= p[wheel] * over + p[3 + wheel] + 1.0;
-            }
-        }
+        travel.left *= p[0] * above(at.wheel_speed[0], p[2]) + 1.0;
+        travel.right *= p[1] * above(at.wheel_speed[1], p[2]) + 1.0;
     }
+}
+
+/// By how much a wheel is faster than the threshold \[m/s\].
+fn above<T: Real>(speed: f64, threshold: T) -> T {
+    let over = -threshold + speed.abs();
+    if over.value() > 0.0 { over } else { T::from(0.0) }
 }
 
 #[cfg(test)]
 mod tests {
     use crate::effect::tests::{ccw_and_cw, circle_speeds, halfway_round_with, stops_with};
-
-    #[test]
-    fn a_share_is_missed_at_every_speed_above_the_threshold() {
-        // Half of each ramp of 0.1 m, less a quarter of it below 0.1 m/s, is driven faster: 4 - 2 (0.1²/(2 · 0.2)) m.
-        for share in [2e-3, -2e-3] {
-            let effects = [
-                ("missed_counts", "threshold_m_s", 0.1),
-                ("missed_counts", "left_share", share),
-                ("missed_counts", "right_share", share),
-            ];
-            for (direction, _) in ccw_and_cw() {
-                let leg = stops_with(&effects, direction)[0];
-                let expected = 4.0 + share * (4.0 - 2.0 * 0.025);
-                assert!((leg.x - expected).abs() < 2e-5, "{} {expected}", leg.x);
-            }
-        }
-    }
 
     #[test]
     fn a_leg_counts_short_in_cruise_and_in_the_upper_half_of_its_ramps_only() {
