@@ -1,9 +1,11 @@
 //! The distance of the steered wheel.
 
+use super::words::{deg, either, percent};
 use super::{About, ActsOn, Changes, Context, Effect};
-use crate::drive::{Kind, Kinds};
+use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::{DefaultValue, Parameter};
+use std::f64::consts::FRAC_PI_2;
 
 /// The ratio of true to nominal distance between the steered wheel and the axle.
 pub struct AxleDistance;
@@ -35,6 +37,16 @@ impl Effect for AxleDistance {
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
 
     const CHANGES: Changes = Changes::BODY;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        let off = p[0] - 1.0;
+        format!(
+            "The steered wheel acts as if it stood {} {} the axle than it is drawn: 90 degrees by odometry are {}.",
+            percent(off),
+            either(off, "farther from", "nearer to"),
+            deg(FRAC_PI_2 / p[0])
+        )
+    }
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation /= p[0];

@@ -1,7 +1,8 @@
 //! A base that turns as its wheels pull unevenly.
 
+use super::words::{deg, side};
 use super::{About, ActsOn, Changes, Context, Effect, at_work};
-use crate::drive::{Kind, Kinds};
+use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -44,6 +45,16 @@ impl Effect for BaseYaw {
     const DRIVES: Kinds = Kinds::of(Kind::Synchro);
 
     const CHANGES: Changes = Changes::BODY;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        let angle = libm::atan2(p[1], p[0]);
+        format!(
+            "The base turns by up to {} a metre, most to the left with the wheels steered {} to the {} of their place at START.",
+            deg(p[0].hypot(p[1])),
+            deg(angle),
+            side(angle)
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

@@ -1,9 +1,11 @@
 //! Way that is made while the robot turns, and not counted.
 
+use super::words::{either, mm};
 use super::{About, ActsOn, Changes, Context, Effect};
-use crate::drive::{Kind, Kinds};
+use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
+use std::f64::consts::FRAC_PI_2;
 
 /// Way per radian of turn.
 pub struct ContactTrail;
@@ -34,6 +36,14 @@ impl Effect for ContactTrail {
     const DRIVES: Kinds = Kinds::of(Kind::Synchro).and(Kind::Ackermann);
 
     const CHANGES: Changes = Changes::BODY;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        let way = mm(p[0] * FRAC_PI_2);
+        format!(
+            "A quarter turn to the left carries the robot {way} {} that no encoder counts.",
+            either(p[0], "ahead", "back")
+        )
+    }
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.forward += p[0] * motion.rotation;

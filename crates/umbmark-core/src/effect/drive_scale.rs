@@ -1,7 +1,8 @@
 //! The scale of a synchro drive's way.
 
+use super::words::{either, mm};
 use super::{About, ActsOn, Changes, Context, Effect};
-use crate::drive::{Kind, Kinds};
+use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::{DefaultValue, Parameter};
 
@@ -35,6 +36,11 @@ impl Effect for DriveScale {
     const DRIVES: Kinds = Kinds::of(Kind::Synchro);
 
     const CHANGES: Changes = Changes::BODY;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        let off = p[0] - 1.0;
+        format!("A metre by odometry is {} too {} on the floor.", mm(off), either(off, "long", "short"))
+    }
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.forward *= p[0];

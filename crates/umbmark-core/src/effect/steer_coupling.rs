@@ -1,7 +1,8 @@
 //! A course that turns as the robot drives.
 
+use super::words::{deg, side};
 use super::{About, ActsOn, Changes, Context, Effect};
-use crate::drive::{Kind, Kinds};
+use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -33,6 +34,10 @@ impl Effect for SteerCoupling {
     const DRIVES: Kinds = Kinds::of(Kind::Synchro);
 
     const CHANGES: Changes = Changes::BODY;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!("Each metre ahead turns the course by {} to the {}, whatever is steered.", deg(p[0]), side(p[0]))
+    }
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation += p[0] * motion.forward;

@@ -1,9 +1,11 @@
 //! The scale of a synchro drive's steering.
 
+use super::words::deg;
 use super::{About, ActsOn, Changes, Context, Effect};
-use crate::drive::{Kind, Kinds};
+use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::{DefaultValue, Parameter};
+use std::f64::consts::FRAC_PI_2;
 
 /// The ratio of true to believed turns of the course.
 pub struct SteerScale;
@@ -35,6 +37,10 @@ impl Effect for SteerScale {
     const DRIVES: Kinds = Kinds::of(Kind::Synchro);
 
     const CHANGES: Changes = Changes::BODY;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!("Where the steering counts 90 degrees the course turns by {}.", deg(p[0] * FRAC_PI_2))
+    }
 
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation *= p[0];

@@ -1,13 +1,17 @@
 //! The gain of a steered wheel.
 
 use super::steering_zero::{steer_on, steered};
+use super::words::{deg, either, percent};
 use super::{About, ActsOn, Changes, Context, Effect, at_work};
-use crate::drive::{Kind, Kinds};
+use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// How much farther than believed the wheel is steered, as a share.
 pub struct SteeringGain;
+
+/// A usual angle of steering \[rad\].
+const TWENTY: f64 = 0.349;
 
 impl Effect for SteeringGain {
     const ABOUT: About = About {
@@ -33,6 +37,15 @@ impl Effect for SteeringGain {
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
 
     const CHANGES: Changes = Changes::BODY;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        let more = either(p[0], "more", "less");
+        format!(
+            "The wheel is steered {} {more} than is counted: 20 degrees are {}.",
+            percent(p[0]),
+            deg((1.0 + p[0]) * TWENTY)
+        )
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

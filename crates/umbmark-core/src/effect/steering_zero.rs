@@ -1,7 +1,8 @@
 //! A steered wheel that does not stand straight where its counter says so.
 
+use super::words::{deg, side};
 use super::{About, ActsOn, Changes, Context, Effect, at_work};
-use crate::drive::{Kind, Kinds};
+use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -32,6 +33,10 @@ impl Effect for SteeringZero {
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
 
     const CHANGES: Changes = Changes::BODY;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!("Where straight ahead is believed, the wheel is steered {} to the {}.", deg(p[0]), side(p[0]))
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)

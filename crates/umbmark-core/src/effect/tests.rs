@@ -329,7 +329,7 @@ fn an_effect_varies_from_the_first_of_its_sizes_that_is_not_zero_and_not_before(
 fn an_effect_says_what_its_numbers_mean_in_a_sentence_that_changes_with_their_size() {
     let robot = Robot::labmate();
     for entry in CATALOGUE {
-        let said = |model: Model| model.meaning(entry.about.name).unwrap();
+        let said = |model: Model| model.meaning(entry.about.name).unwrap_or_else(|| panic!("{}", entry.about.name));
         let usual = said(alone(entry, Parameter::usual));
         assert!(usual.ends_with('.') && usual.contains(|c: char| c.is_ascii_digit()), "{}: {usual}", entry.about.name);
         assert!(!usual.contains("NaN") && !usual.contains("inf") && !usual.contains("  "), "{usual}");

@@ -1,8 +1,9 @@
 //! Tyres that run wide in fast corners.
 
 use super::steering_zero::{steer_on, steered};
+use super::words::{deg, either};
 use super::{About, ActsOn, Changes, Context, Effect, at_work};
-use crate::drive::{Kind, Kinds};
+use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -33,6 +34,11 @@ impl Effect for Understeer {
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
 
     const CHANGES: Changes = Changes::BODY;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        let less = either(p[0], "less", "more");
+        format!("In a curve with 1 m/s² of side force the wheel acts as if it were steered by {} {less}.", deg(p[0]))
+    }
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
