@@ -62,7 +62,9 @@ fn a_fit_finds_size_and_shape_of_a_formula_from_nothing_on_tracks_and_on_return_
         let (read, _) = parse_model("model.toml", &model_text(&fitted), &Robot::labmate()).unwrap();
         assert_eq!(read, fitted);
         let again = fit(&data, &read).unwrap().model;
-        assert!((again.get("nap", "k").unwrap() - found[0]).abs() < 1e-3 * found[0].abs());
+        let moved = (again.get("nap", "k").unwrap() - found[0]) / estimates[0].standard_error;
+        // Which weights are taken depends on the start; the values are the same within their error.
+        assert!(moved.abs() < 1.0, "{moved} standard errors, {:?}", estimates[0]);
     }
 }
 
