@@ -175,5 +175,7 @@ class TrueMotion:
         self.since_turn = np.where(turned, 0.0, self.since_turn + driven)
         # A servo that settles turns back a little: the sense is that of the whole turn.
         gone = self.since_turn > SETTLED_M
-        self.turned = np.where(gone, 0.0, self.turned) + np.where(turned, s.w.sum(0) * s.step_s, 0.0)
+        self.turned = np.where(gone, 0.0, self.turned) + np.where(
+            turned, s.w.sum(0) * s.step_s, 0.0
+        )
         self.last_turn = np.where(turned, np.sign(self.turned), self.last_turn)
