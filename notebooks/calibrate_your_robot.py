@@ -94,3 +94,14 @@ again = umbmark.score(umbmark.simulate(left, path, reference_rate_hz=0, seed=12)
 print(f"{1e3 * score.e_max_sys_m:.0f} mm before, {1e3 * again.e_max_sys_m:.0f} mm after")
 assert again.e_max_sys_m < 0.2 * score.e_max_sys_m
 assert np.isclose(found.exact.e_max_sys_before_m, score.e_max_sys_m)
+
+# %% [markdown]
+# ## To show it to others
+#
+# A figure of the report, with what it says, as SVG, PNG, PDF or for Plotly; and all of them on one
+# page: `umbmark.report(data).save("report.html")`.
+
+# %%
+figure = umbmark.plot("return_errors", data)
+print(figure.says)
+figure

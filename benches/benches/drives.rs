@@ -1,4 +1,5 @@
-//! Whole tests of each drive, the paper's five runs each way, without effects but wheel noise.
+//! Whole tests of each drive, the paper's five runs each way, without effects but wheel noise; the CLAPPER's on its rectangle, in
+//! fewer trials.
 //!
 //! `cargo bench -p umbmark-benches --bench drives`; throughput is in trials per second on one thread.
 
@@ -25,12 +26,15 @@ fn drives(criterion: &mut Criterion) {
     };
     let mut group = criterion.benchmark_group("drives");
     group.sampling_mode(SamplingMode::Flat);
-    for (name, (robot, path)) in
-        [("differential", preset("trc-labmate-docal")), ("synchro", preset("k2a")), ("ackermann", tricycle())]
-    {
+    for (name, (robot, path), chunks) in [
+        ("differential", preset("trc-labmate-docal"), 4),
+        ("synchro", preset("k2a"), 4),
+        ("ackermann", tricycle(), 4),
+        ("clapper", preset("clapper"), 1),
+    ] {
         let mut model = Model::new(&robot);
         model.set("wheel_noise", "k_sqrt_m", 1e-3).expect("a usual size");
-        let study = Study { path, ..Study::new(model, 4 * CHUNK, 1) };
+        let study = Study { path, ..Study::new(model, chunks * CHUNK, 1) };
         group.throughput(Throughput::Elements(study.trials));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
         group.bench_function(name, |bencher| pool.install(|| bencher.iter(|| studies::run(&study))));

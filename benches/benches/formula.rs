@@ -7,7 +7,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::{Evaluate, Formula, Model, Target};
-use umbmark_core::geometry::Dual;
+use umbmark_core::geometry::seeded;
 use umbmark_core::path::{Direction, Path};
 use umbmark_core::replay::Track;
 
@@ -52,14 +52,13 @@ fn pairs() -> Vec<Pair> {
     ]
 }
 
-fn replay<T: Evaluate>(criterion: &mut Criterion, kind: &str, seeded: fn(usize, f64) -> T) {
+fn replay<T: Evaluate>(criterion: &mut Criterion, kind: &str, values: fn(&Model) -> Vec<T>) {
     let track = Track::watched(&Path::umbmark(), Direction::Ccw, &Robot::labmate());
     for (name, listed, own) in pairs() {
         let mut group = criterion.benchmark_group(format!("formula {name} {kind}"));
         group.throughput(Throughput::Elements(track.travel().len() as u64));
         for (which, model) in [("nothing", Model::new(&Robot::labmate())), ("listed", listed), ("formula", own)] {
-            let values: Vec<T> = model.values().enumerate().map(|(i, value)| seeded(i, value)).collect();
-            let chain = model.chain_with(&values);
+            let chain = model.chain_with(&values(&model));
             group.bench_function(which, |bencher| bencher.iter(|| black_box(&track).end(&chain)));
         }
         group.finish();
@@ -67,8 +66,8 @@ fn replay<T: Evaluate>(criterion: &mut Criterion, kind: &str, seeded: fn(usize, 
 }
 
 fn formula(criterion: &mut Criterion) {
-    replay(criterion, "values", |_, value| value);
-    replay(criterion, "derivatives", |i, value| Dual::new(value, f64::from(u8::from(i == 0))));
+    replay(criterion, "values", |model| model.values().collect());
+    replay(criterion, "derivatives", |model| seeded(model.values(), &[0, 1][..model.values().count().min(2)]));
 }
 
 criterion_group!(benches, formula);

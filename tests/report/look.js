@@ -35,6 +35,13 @@ const overlaps = () => {
   return pairs;
 };
 
+// Texts of figures under their buttons.
+const covered = () => [...document.querySelectorAll(".plot")].flatMap((plot) => {
+  const buttons = [...plot.querySelectorAll(".modebar-btn")].map((e) => e.getBoundingClientRect());
+  const under = (box) => buttons.some((b) => b.left < box.right && box.left < b.right && b.top + 2 < box.bottom && box.top < b.bottom - 2);
+  return [...plot.querySelectorAll("text")].filter((e) => under(e.getBoundingClientRect())).map((e) => e.textContent);
+});
+
 // Texts of figures that the edge of their figure cuts.
 const cut = () => [...document.querySelectorAll(".plot")].flatMap((plot) => {
   const edge = plot.getBoundingClientRect();

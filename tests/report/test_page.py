@@ -83,6 +83,7 @@ def test_no_text_overlaps_or_is_cut_and_nothing_leaves_the_page_at_any_width(
     assert wide <= width
     assert look(browser, "overlaps") == []
     assert look(browser, "cut") == []
+    assert look(browser, "covered") == []
 
 
 def test_a_tooltip_names_the_run(browser: webdriver.Chrome, pages: Path) -> None:

@@ -3,13 +3,14 @@
 //! Parsing only parses: each verb's `Arguments` are turned into one resolved configuration of the core before anything is
 //! computed. Results go to stdout, messages and progress to stderr.
 
-mod checkpoint;
+mod checkpoint_flags;
 mod data_arguments;
 mod distribution_text;
 mod effect_flags;
 mod ensemble_report;
 mod files;
 mod heat_map;
+mod level_argument;
 mod model_report;
 mod numbers;
 mod output_arguments;

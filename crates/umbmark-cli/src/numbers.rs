@@ -8,6 +8,12 @@ pub fn number(text: &str) -> Result<f64, String> {
     if value.is_finite() { Ok(value) } else { Err("must be finite".to_owned()) }
 }
 
+/// A whole number, 0 or more; 1e6 is one too.
+pub fn whole(text: &str) -> Result<u64, String> {
+    let short = || text.parse().ok().filter(|n: &f64| n.fract() == 0.0 && (0.0..=9e15).contains(n)).map(|n| n as u64);
+    text.parse().ok().or_else(short).ok_or_else(|| "must be a whole number, 0 or more".to_owned())
+}
+
 /// A probability between 0 and 1, both excluded.
 pub fn probability(text: &str) -> Result<f64, String> {
     let value = number(text)?;

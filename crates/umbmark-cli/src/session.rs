@@ -22,7 +22,7 @@ pub struct Options {
     pub json: bool,
 
     /// Seed of all random numbers: the same seed gives the same results
-    #[arg(long, global = true, default_value_t = 1, value_name = "N")]
+    #[arg(long, global = true, default_value_t = 1, value_name = "N", value_parser = crate::numbers::whole)]
     pub seed: u64,
 
     /// Threads to use; the results do not depend on it [default: all processors]

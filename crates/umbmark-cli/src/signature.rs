@@ -1,10 +1,11 @@
 //! What one effect of usual size does along a path, ccw and cw.
 
 use serde_json::{Value, json};
-use umbmark_core::drive::Robot;
+use umbmark_core::drive::{Kind, Kinds, Robot};
 use umbmark_core::effect::{Entry, Model};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{CIRCLE, Direction, Path, SpeedProfile};
+use umbmark_core::preset::Preset;
 use umbmark_core::replay::Track;
 
 use crate::prose::hanging;
@@ -48,11 +49,16 @@ pub struct Moment {
 
 impl Signature {
     /// The signature of an effect's first number that has one, on the paper's square, or on a circle where the square shows nothing; `None` where it
-    /// acts by chance only.
+    /// acts by chance only. The robot is the LabMate, and the CLAPPER where only that may have it.
     pub fn of(entry: &'static Entry) -> anyhow::Result<Option<Signature>> {
-        let robot = Robot::labmate();
+        let trucks = entry.drives == Kinds::of(Kind::Clapper);
+        let robot = match Preset::find("clapper") {
+            Ok(preset) if trucks => preset.robot(),
+            _ => Robot::labmate(),
+        };
         let circle = Path::new(&CIRCLE, &[1.0, 1.0], SpeedProfile::default())?;
-        let paths = [("4 m square", Path::umbmark()), ("circle of radius 1 m", circle)];
+        let mut paths = vec![("4 m square", Path::umbmark()), ("circle of radius 1 m", circle)];
+        paths.retain(|(_, path)| path.suits(&robot));
         for parameter in entry.about.parameters {
             let value = parameter.usual(&robot);
             let mut model = Model::new(&robot);

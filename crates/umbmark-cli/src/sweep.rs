@@ -2,16 +2,16 @@
 
 use std::io::Write;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Instant;
 
 use anyhow::Context;
-use serde::{Deserialize, Serialize};
+use umbmark_core::checkpoint::{Checkpoint, Keeper};
 use umbmark_core::document;
 use umbmark_core::monte_carlo::{Axis, Metric, MetricSummary, Quantity, Study, Sweep, SweepPoint};
 
 use crate::Session;
+use crate::checkpoint_flags::with_remedy;
 use crate::ensemble_report::{title, unit};
 use crate::files::Pending;
 use crate::heat_map::HeatMap;
@@ -57,21 +57,10 @@ fn given(text: &str) -> Result<Given, String> {
 /// Where a sweep is written down, and what may be replaced.
 #[derive(Debug)]
 pub struct Files<'a> {
-    /// The file of `--checkpoint`.
-    pub checkpoint: Option<&'a Path>,
-    /// Time between two checkpoints \[s\].
-    pub every: f64,
-    /// Whether to go on with it.
-    pub resume: bool,
+    /// What `--checkpoint` says.
+    pub checkpoint: Option<&'a Checkpoint>,
     /// Whether files may be replaced.
     pub force: bool,
-}
-
-/// A sweep as far as it is done.
-#[derive(Debug, Serialize, Deserialize)]
-struct Done {
-    sweep: String,
-    points: Vec<SweepPoint>,
 }
 
 impl SweepFlags {
@@ -94,34 +83,6 @@ impl SweepFlags {
     }
 }
 
-impl Files<'_> {
-    /// The points that are done already.
-    fn load(&self, sweep: &Sweep) -> anyhow::Result<Done> {
-        let new = || Done { sweep: sweep.identity(), points: Vec::new() };
-        let Some(file) = self.checkpoint.filter(|file| file.exists()) else { return Ok(new()) };
-        if !self.resume {
-            let name = file.display();
-            anyhow::ensure!(self.force, "{name} exists already; --resume goes on with it, --force begins anew");
-            return Ok(new());
-        }
-        let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
-        let done: Done = serde_json::from_str(&text)
-            .with_context(|| format!("{} is no checkpoint of a sweep of this version of umbmark", file.display()))?;
-        let same = done.sweep == sweep.identity() && done.points.len() as u64 <= sweep.points();
-        anyhow::ensure!(
-            same,
-            "{} is of another sweep; say the same flags, seed and number of trials as before",
-            file.display()
-        );
-        Ok(done)
-    }
-
-    fn save(&self, done: &Done) -> anyhow::Result<()> {
-        let Some(file) = self.checkpoint else { return Ok(()) };
-        Pending::write_whole(file, true, &(serde_json::to_string(done)? + "\n"))
-    }
-}
-
 /// Runs a sweep and tells of it.
 pub fn run(
     flags: &SweepFlags,
@@ -132,38 +93,36 @@ pub fn run(
 ) -> anyhow::Result<ExitCode> {
     let (sweep, metric) = (flags.resolve(study)?, flags.metric()?);
     let output = flags.output.as_deref().map(|file| Pending::create(file, files.force)).transpose()?;
-    let mut done = files.load(&sweep)?;
+    let begin = |checkpoint: &Checkpoint| checkpoint.begin_sweep(&sweep).map_err(with_remedy);
+    let mut points = files.checkpoint.map(begin).transpose()?.unwrap_or_default();
+    let mut keeper = Keeper::of(files.checkpoint);
     let mut progress = session.progress(sweep.points(), "points");
     let stop = session.catch_interrupt()?;
     let mut failure = None;
     session.on_threads(|| {
-        let mut saved = Instant::now();
-        sweep.run(done.points.len() as u64, &stop, |points| {
-            done.points.extend(points);
-            progress.at(done.points.len() as u64);
-            if saved.elapsed().as_secs_f64() >= files.every {
-                failure = files.save(&done).err();
-                saved = Instant::now();
-            }
+        sweep.run(points.len() as u64, &stop, |more| {
+            points.extend(more);
+            progress.at(points.len() as u64);
+            failure = keeper.look_at(&sweep, &points).err();
             if failure.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
     })??;
     drop(progress);
     if let Some(error) = failure {
-        return Err(error);
+        return Err(error.into());
     }
-    files.save(&done)?;
+    keeper.keep_points(&sweep, &points)?;
     if let Some(mut file) = output {
-        file.write_all(csv(&sweep, &done.points).as_bytes()).with_context(|| file.failed())?;
+        file.write_all(csv(&sweep, &points).as_bytes()).with_context(|| file.failed())?;
         file.finish()?;
     }
-    let count = done.points.len() as u64;
+    let count = points.len() as u64;
     if count < sweep.points() {
         session.message("partial", &format!("stopped after {count} of {} points", sweep.points()));
     }
-    let report = SweepReport { sweep: &sweep, points: &done.points, metric, assumed };
+    let report = SweepReport { sweep: &sweep, points: &points, metric, assumed };
     if session.json() {
-        session.print_json(&document::sweep(&sweep, &done.points, assumed))?;
+        session.print_json(&document::sweep(&sweep, &points, assumed))?;
     } else {
         let terminal = session.on_terminal();
         write!(session.out(), "{}", report.text(terminal))?;

@@ -38,7 +38,7 @@ fn studies_end_with_what_is_done_marked_as_partial() {
     for arguments in [
         "mc --sweep ed=0.999:1.001:1000 --sweep eb=0.99:1.01:1000 -n 20 -o sweep.csv",
         "plan --see eb=1.005 --see ed=1.0004 --draws 20000",
-        "tolerance tolerances.toml -n 200000",
+        "tolerance tolerances.toml -n 10000000",
     ] {
         let words: Vec<&str> = arguments.split(' ').chain(["--json"]).collect();
         let output = interrupted(folder.path(), Duration::from_millis(2500), &words);

@@ -153,7 +153,7 @@ error: [..]trials with a space.csv exists already; --force replaces it
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     let nowhere = folder.path().join("no/such/folder.csv");
     mc(&["-n", "5", "--out", nowhere.to_str().unwrap()]).code(1).stderr_eq(str![[r#"
-error: cannot write into the folder [..]: [..]
+error: cannot write into the folder [..]: there is no such folder; make it first
 
 "#]]);
 }
@@ -317,7 +317,7 @@ error: cannot merge [..]1.json with what comes before it: trials 0 to 1023 are i
 
 "#]]);
     mc(&["-n", "3000", "--seed", "5", "--checkpoint", &one, "--resume"]).code(1).stderr_eq(str![[r#"
-error: [..]1.json is of another study or shard; say the same flags, seed and number of trials as before
+error: [..]1.json is of another study or shard; give the robot, path, seed and number of trials that it was begun with
 
 "#]]);
     mc(&["-n", "3000", "--checkpoint", &one]).code(1).stderr_eq(str![[r#"
@@ -326,7 +326,7 @@ error: [..]1.json exists already; --resume goes on with it, --force begins anew
 "#]]);
     std::fs::write(folder.path().join("1.json"), "{}").unwrap();
     merge(&[&one]).code(1).stderr_eq(str![[r#"
-error: [..]1.json is no checkpoint of this version of umbmark; give a file of `mc --checkpoint`: missing field [..]
+error: [..]1.json is no checkpoint of a study by this version of umbmark: missing field [..]
 
 "#]]);
 }

@@ -73,8 +73,8 @@ fn what_a_drive_does_not_have_is_refused_with_a_reason() {
             "error: --wheelbase is for robots with drive = \"differential\"; say the synchro robot's numbers in a robot.toml\n",
         ),
         (
-            &["simulate", "--robot", "clapper", "-o", "never"],
-            "error: drive = \"clapper\" does not support tick logs; `umbmark mc` simulates it\n",
+            &["mc", "--robot", "clapper", "--shape", "circle"],
+            "error: drive = \"clapper\" does not support paths with arcs\n",
         ),
     ] {
         umbmark(arguments).code(1).stdout_eq(str![""]).stderr_eq(message);

@@ -207,7 +207,7 @@ fn a_sweep_goes_on_where_its_checkpoint_ends() {
     resumed["points"][7] = whole["points"][7].clone();
     assert_eq!(resumed, whole);
     umbmark(&[&SWEEP[..7], &checkpoint, &["--resume", "--seed", "4"]].concat()).code(1).stderr_eq(str![[r#"
-error: [..]sweep.json is of another sweep; say the same flags, seed and number of trials as before
+error: [..]sweep.json is of another sweep; give the robot, path, seed and number of trials that it was begun with
 
 "#]]);
     umbmark(&[&SWEEP[..], &checkpoint].concat()).code(1).stderr_eq(str![[r#"

@@ -20,7 +20,6 @@ mod outcome;
 
 use crate::dataset::{Dataset, ReturnError};
 use crate::drive::{Kind, Robot};
-use crate::effect::ModelError;
 use crate::fit::Termination;
 use crate::path::{Path, SQUARE};
 use crate::replay::ReplayError;
@@ -49,9 +48,16 @@ pub enum CalibrateError {
         /// The kind of the drive.
         drive: &'static str,
     },
-    /// A drive whose poses no model predicts.
-    #[error(transparent)]
-    Model(#[from] ModelError),
+    /// A path that no robot of the drive can drive.
+    #[error(
+        "a robot with drive = \"{drive}\" cannot drive the path, shape = \"{shape}\": it makes legs and turns on the spot, no arcs"
+    )]
+    Path {
+        /// The kind of the drive.
+        drive: &'static str,
+        /// The shape of the path.
+        shape: &'static str,
+    },
     /// No run with an observation that can be predicted.
     #[error(
         "none of {runs} runs can be predicted: each needs a return error and a path in robot.toml, \

@@ -15,7 +15,7 @@ pub(crate) mod tracks;
 use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, Run};
 use crate::drive::Robot;
-use crate::effect::{Model, ModelError, TestKind, check_predicted, find};
+use crate::effect::{Model, ModelError, TestKind, find};
 use crate::likelihood::{Observed, Outlier};
 use crate::replay::ReplayError;
 use crate::stats::{Interval, student_t_quantile};
@@ -355,16 +355,15 @@ pub fn first_model(data: &Dataset) -> Result<Model, DiagnoseError> {
     let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
     let mut model = base_model(robot)?;
     if level(data) == Level::Tracks {
-        model.add(robot.drive.kind().first_effects()[2])?.free = true;
+        model.add(robot.drive.first_effects()[2])?.free = true;
     }
     Ok(model)
 }
 
 /// The model of the paper: E_d and E_b, both free; for other drives, the two that do alike on a square.
 pub fn base_model(robot: &Robot) -> Result<Model, ModelError> {
-    check_predicted(robot.drive.kind())?;
     let mut model = Model::new(robot);
-    for effect in &robot.drive.kind().first_effects()[..2] {
+    for effect in &robot.drive.first_effects()[..2] {
         model.add(effect)?.free = true;
     }
     Ok(model)

@@ -29,7 +29,7 @@ mod kinematics;
 mod synchro;
 
 pub use ackermann::AckermannDrive;
-pub use clapper::ClapperDrive;
+pub use clapper::{ClapperDrive, LinkReading};
 pub use differential::{DifferentialDrive, WheelTravel};
 pub use encoder::{Encoder, MAX_COUNTER_BITS, roll_over};
 pub use kind::{Kind, Kinds};
@@ -145,8 +145,17 @@ macro_rules! drives {
                 }
             }
 
+            /// The effects that are fitted before anything is asked: what bends a leg, what changes a turn, and what
+            /// lengthens the way. On a square driven both ways, the first shows as Type B of the paper's companion and the
+            /// second as Type A.
+            pub fn first_effects(&self) -> [&'static str; 3] {
+                match self {
+                    $(Drive::$kind(drive) => drive.first_effects(),)+
+                }
+            }
+
             /// The drive as its odometry must believe it to be, where these are the true values of its [first
-            /// effects](Kind::first_effects).
+            /// effects](Drive::first_effects).
             pub fn corrected(&self, first: [f64; 3]) -> Result<Drive, DriveError> {
                 match self {
                     $(Drive::$kind(drive) => drive.corrected(first).map(Drive::$kind),)+

@@ -36,15 +36,21 @@ mod floor_slope_yaw;
 mod formula;
 mod law;
 mod leg_kick;
+mod link_length;
 mod marker_offset;
 mod marker_yaw;
 mod missed_counts;
 mod model;
 mod name;
+mod number;
 mod placed_bumps;
+mod rear_truck;
 mod reference_clock_rate;
 mod reference_delay;
 mod reference_noise;
+mod rotary_gain;
+mod rotary_zero_difference;
+mod rotary_zero_mean;
 mod scale;
 mod speed_slip;
 mod speed_slip_left;
@@ -64,7 +70,7 @@ mod wheel_noise;
 mod wheelbase;
 mod words;
 
-use crate::drive::{Kind, Kinds, Robot, Wheel, WheelTravel};
+use crate::drive::{Kind, Kinds, LinkReading, Robot, Wheel, WheelTravel};
 use crate::geometry::{Displacement2, Dual, Pose2, Real};
 use crate::parameter::{Parameter, nearest};
 use crate::path::Direction;
@@ -75,8 +81,9 @@ pub use changes::Changes;
 pub use context::{Context, Place, Progress, Sight};
 pub use formula::{Formula, FormulaError, Target};
 pub use law::Law;
-pub(crate) use model::check_predicted;
+pub(crate) use model::is_shape;
 pub use model::{Chain, Model, ModelError, Part};
+pub use number::{Derived, Number};
 
 /// The largest number of parameters of one effect.
 pub const MAX_PARAMETERS: usize = 6;
@@ -117,6 +124,12 @@ pub static CATALOGUE: &[Entry] = &[
     Entry::of::<steering_zero::SteeringZero>(),
     Entry::of::<steering_gain::SteeringGain>(),
     Entry::of::<understeer::Understeer>(),
+    // Two trucks, and the link between them.
+    Entry::of::<rear_truck::RearTruck>(),
+    Entry::of::<link_length::LinkLength>(),
+    Entry::of::<rotary_zero_difference::RotaryZeroDifference>(),
+    Entry::of::<rotary_zero_mean::RotaryZeroMean>(),
+    Entry::of::<rotary_gain::RotaryGain>(),
     // The contact with the floor, smooth.
     Entry::of::<crab::Crab>(),
     Entry::of::<speed_slip::SpeedSlip>(),
@@ -290,6 +303,9 @@ pub trait Effect {
     /// Changes the body motion that true wheel travel makes.
     fn body<T: Real>(_p: &[T], _at: &Context<T>, _motion: &mut Displacement2<T>) {}
 
+    /// Changes what the encoders of a link between two trucks show of it.
+    fn link<T: Real>(_p: &[T], _shown: &mut LinkReading<T>) {}
+
     /// Changes what an absolute measurement shows of a true pose, other than by chance.
     fn seen<T: Real>(_p: &[T], _at: &Sight, _pose: &mut Pose2<T>) {}
 
@@ -329,6 +345,8 @@ pub struct Mean<T: Real> {
     pub wheels: fn(&[T], &Context<T>, &mut WheelTravel<T>),
     /// See [`Effect::body`].
     pub body: fn(&[T], &Context<T>, &mut Displacement2<T>),
+    /// See [`Effect::link`].
+    pub link: fn(&[T], &mut LinkReading<T>),
     /// See [`Effect::seen`].
     pub seen: fn(&[T], &Sight, &mut Pose2<T>),
 }
@@ -419,12 +437,14 @@ impl Entry {
                 start: E::start::<f64>,
                 wheels: E::wheels::<f64>,
                 body: E::body::<f64>,
+                link: E::link::<f64>,
                 seen: E::seen::<f64>,
             },
             duals: Mean {
                 start: E::start::<Dual>,
                 wheels: E::wheels::<Dual>,
                 body: E::body::<Dual>,
+                link: E::link::<Dual>,
                 seen: E::seen::<Dual>,
             },
             scatter: Scatter {

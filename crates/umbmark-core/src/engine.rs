@@ -15,6 +15,8 @@
 //! every machine, on every instruction set and for every order of the work: additions and multiplications only, never
 //! fused, no trigonometry but the polynomials of [`geometry`](crate::geometry).
 //!
+//! [`Convoy`] is the odometry of two trucks that a link corrects, with the commands that follow from it.
+//!
 //! ```
 //! use umbmark_core::engine::{Integrator, Method, Segment, TickGeometry, WheelLine};
 //!
@@ -28,6 +30,7 @@
 //! # Ok::<(), umbmark_core::engine::EngineError>(())
 //! ```
 
+mod convoy;
 mod digital_line;
 #[cfg(test)]
 mod double_double;
@@ -47,6 +50,7 @@ mod trigonometry;
 mod wheel_line;
 mod word;
 
+pub use convoy::{Convoy, Floor, Predicted, Step, Trucks};
 pub use instructions::Instructions;
 pub use integrator::{Integrator, Method, Segment};
 pub use monoid::Monoid;

@@ -36,12 +36,14 @@ pub struct Options {
     pub step_tolerance: f64,
     /// Stops where a step lowers the sum of squares by less than this share of it.
     pub decrease_tolerance: f64,
+    /// Whether the first steps are damped: needed where the start may be far from the end.
+    pub cautious: bool,
 }
 
 impl Default for Options {
-    /// 100 steps, 1e-14, 1e-15: to the last digits.
+    /// 100 steps, 1e-14, 1e-15: to the last digits, and from afar.
     fn default() -> Self {
-        Options { iterations: 100, step_tolerance: 1e-14, decrease_tolerance: 1e-15 }
+        Options { iterations: 100, step_tolerance: 1e-14, decrease_tolerance: 1e-15, cautious: true }
     }
 }
 
@@ -145,7 +147,7 @@ pub fn least_squares(problem: &impl Problem, start: &[f64], options: &Options) -
         return at.stopped(problem, 0, Termination::SmallStep);
     }
     let mut lengths = vec![0.0_f64; start.len()];
-    let mut damping = FIRST_DAMPING;
+    let mut damping = if options.cautious { FIRST_DAMPING } else { LEAST_DAMPING };
     let mut jacobian = problem.jacobian(&at.values);
     for iteration in 1..=options.iterations {
         for (length, now) in lengths.iter_mut().zip(covariance::column_lengths(&jacobian)) {
@@ -174,6 +176,7 @@ pub fn least_squares(problem: &impl Problem, start: &[f64], options: &Options) -
         damping = match (negligible, better) {
             (true, _) => LEAST_DAMPING,
             (false, true) => (0.1 * damping).max(LEAST_DAMPING),
+            (false, false) if damping <= LEAST_DAMPING => FIRST_DAMPING,
             (false, false) => 10.0 * damping,
         };
     }

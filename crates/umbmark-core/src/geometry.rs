@@ -14,4 +14,4 @@ mod real;
 pub use angle::{mean_angle, wrap};
 pub use pose::{Displacement2, Pose2};
 pub(crate) use real::{COSINE_SERIES, HALF_PI, SINC_SERIES, sinc_cos_near_zero};
-pub use real::{Dual, Real};
+pub use real::{Dual, LANES, Real, direction, seeded};

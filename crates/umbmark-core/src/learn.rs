@@ -205,8 +205,8 @@ pub(crate) fn from_evidence<E: Evidence>(
 ) -> Result<Learnt, DiagnoseError> {
     let mut story = Story::new(evidence, evidence.nominal())?;
     if evidence.both_ways() {
-        let kind = story.model.robot().drive.kind();
-        for effect in &kind.first_effects()[..2] {
+        let first = story.model.robot().drive.first_effects();
+        for effect in &first[..2] {
             story.add(&free_part(evidence, effect)?)?;
         }
     }

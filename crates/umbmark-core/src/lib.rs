@@ -12,6 +12,7 @@
 //! Nothing here prints, parses flags or knows Python.
 
 pub mod calibrate;
+pub mod checkpoint;
 pub mod compare;
 pub mod dataset;
 pub mod diagnose;
@@ -24,6 +25,7 @@ pub mod geometry;
 pub mod learn;
 pub mod likelihood;
 pub mod monte_carlo;
+pub mod paper;
 pub mod parameter;
 pub mod path;
 pub mod plan;
@@ -35,6 +37,7 @@ pub mod sensitivity;
 pub mod simulate;
 pub mod stats;
 pub mod watch;
+pub mod whole_file;
 
 /// The version of this crate, printed beside every result.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -19,7 +19,6 @@ mod simplex;
 pub(crate) mod watched;
 mod whiten;
 
-pub(crate) use fitting::seeded;
 pub use fitting::{Column, Fitted, NUISANCE, Weighing};
 pub use noise::Noise;
 pub use observed::{Block, Growth, Observed, ObservedRun};

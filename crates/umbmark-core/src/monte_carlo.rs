@@ -22,7 +22,7 @@ use rayon::prelude::*;
 
 use crate::dataset::ReturnError;
 use crate::drive::Robot;
-use crate::effect::{Model, ModelError, check_predicted};
+use crate::effect::{Model, ModelError};
 use crate::engine::Instructions;
 use crate::parameter::ParameterError;
 use crate::path::Path;
@@ -178,7 +178,10 @@ impl Study {
     /// The test without noise, bumps and quantisation, all drawn parameters in their middle: its return errors \[cw, ccw\]
     /// by exact kinematics.
     pub fn noise_free(&self) -> Result<[ReturnError; 2], StudyError> {
-        check_predicted(self.robot().drive.kind())?;
+        if !self.robot().drive.kind().has_tick_logs() && !self.path.suits(self.robot()) {
+            let (drive, what) = (self.robot().drive.kind().name(), "paths with arcs");
+            return Err(SimulateError::Unsupported { drive, what }.into());
+        }
         let model = trial::centred(&self.model, &self.draws)?;
         Ok(NoiseFree::new(&model, &self.path, model.varies()).returned())
     }
@@ -264,10 +267,6 @@ impl Study {
         }
         count("number of runs", (self.runs[0] + self.runs[1]) as u64, 1..2 * MAX_RUNS + 1)?;
         self.model.check_drive()?;
-        if !self.robot().drive.kind().has_one_axle() && self.model.varies() {
-            let (drive, what) = (self.robot().drive.kind().name(), "effects that change along the way");
-            return Err(SimulateError::Unsupported { drive, what }.into());
-        }
         check_on_path(&self.model, &self.path)?;
         self.draws.iter().try_for_each(Draw::check)
     }

@@ -1,5 +1,7 @@
 //! Random streams that depend on nothing but the seed, the purpose and the trial.
 
+mod ziggurat;
+
 use rand::rand_core::{Infallible, TryRng};
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
@@ -15,18 +17,26 @@ use rand_distr::{Distribution, StandardNormal};
 pub struct Stream {
     key: [u64; 2],
     counter: [u64; 4],
-    blocks: [[u64; 4]; BLOCKS],
-    used: usize,
+    /// Words worked out ahead, those from `next` to `end` not yet taken.
+    words: [u64; AHEAD],
+    next: usize,
+    end: usize,
 }
 
-/// Blocks of four words worked out at a time: their rounds, each a chain of multiplications, overlap.
-const BLOCKS: usize = 2;
+/// Words worked out ahead at most.
+const AHEAD: usize = 32;
+
+/// Words of a block of Philox.
+const BLOCK: usize = 4;
+
+/// Blocks worked out together: their rounds, each a chain of multiplications, overlap.
+const TOGETHER: usize = 2;
 
 impl Stream {
     /// The stream of a trial for one purpose.
     #[inline]
     pub fn new(seed: u64, purpose: u64, trial: u64) -> Stream {
-        Stream { key: [seed, purpose], counter: [0, 0, 0, trial], blocks: [[0; 4]; BLOCKS], used: 4 * BLOCKS }
+        Stream { key: [seed, purpose], counter: [0, 0, 0, trial], words: [0; AHEAD], next: 0, end: 0 }
     }
 
     /// A draw from the standard normal distribution (ziggurat).
@@ -38,26 +48,51 @@ impl Stream {
         StandardNormal.sample(self)
     }
 
+    /// As many draws of [`Stream::normal`] as there are places, the same bits as one by one.
+    pub fn normals(&mut self, draws: &mut [f64]) {
+        let table = ziggurat::table();
+        let mut rest = draws;
+        while !rest.is_empty() {
+            if self.next == self.end {
+                self.refill(rest.len());
+            }
+            let taken = ziggurat::take_plain(table, &self.words[self.next..self.end], rest);
+            self.next += taken;
+            rest = &mut rest[taken..];
+            if self.next < self.end
+                && let Some(draw) = rest.first_mut()
+            {
+                *draw = self.normal();
+                rest = &mut rest[1..];
+            }
+        }
+    }
+
     /// A draw from the uniform distribution on [0, 1).
     #[inline]
     pub fn uniform(&mut self) -> f64 {
         self.random()
     }
 
-    /// Not inlined, so that taking a word is.
+    /// Works out so many words, or as many as there is room for. Not inlined, so that taking a word is.
     #[inline(never)]
-    fn refill(&mut self) {
-        let [first, rest @ ..] = self.counter;
-        let counter = |i: usize| first.wrapping_add(1 + i as u64);
-        self.blocks = philox(std::array::from_fn(|i| [counter(i), rest[0], rest[1], rest[2]]), self.key);
-        self.counter[0] = counter(BLOCKS - 1);
-        self.used = 0;
+    fn refill(&mut self, wanted: usize) {
+        let [mut first, rest @ ..] = self.counter;
+        self.next = 0;
+        self.end = wanted.next_multiple_of(TOGETHER * BLOCK).min(AHEAD);
+        for words in self.words[..self.end].chunks_exact_mut(TOGETHER * BLOCK) {
+            let counter = |i: usize| first.wrapping_add(1 + i as u64);
+            let blocks = philox::<TOGETHER>(std::array::from_fn(|i| [counter(i), rest[0], rest[1], rest[2]]), self.key);
+            words.copy_from_slice(blocks.as_flattened());
+            first = counter(TOGETHER - 1);
+        }
+        self.counter[0] = first;
     }
 }
 
 /// Ten rounds of Philox on blocks of four 64-bit words.
-#[inline]
-fn philox(mut blocks: [[u64; 4]; BLOCKS], [mut k0, mut k1]: [u64; 2]) -> [[u64; 4]; BLOCKS] {
+#[inline(always)]
+fn philox<const N: usize>(mut blocks: [[u64; BLOCK]; N], [mut k0, mut k1]: [u64; 2]) -> [[u64; BLOCK]; N] {
     const MULTIPLIERS: [u64; 2] = [0xD2E7_470E_E14C_6C93, 0xCA5A_8263_9512_1157];
     const WEYL: [u64; 2] = [0x9E37_79B9_7F4A_7C15, 0xBB67_AE85_84CA_A73B];
     for _ in 0..10 {
@@ -82,11 +117,11 @@ impl TryRng for Stream {
 
     #[inline]
     fn try_next_u64(&mut self) -> Result<u64, Infallible> {
-        if self.used == 4 * BLOCKS {
-            self.refill();
+        if self.next == self.end {
+            self.refill(1);
         }
-        let word = self.blocks.as_flattened()[self.used];
-        self.used += 1;
+        let word = self.words[self.next % AHEAD];
+        self.next += 1;
         Ok(word)
     }
 
@@ -124,6 +159,23 @@ mod tests {
         ];
         let mut stream = Stream::new(42, 0, 7);
         assert_eq!(std::array::from_fn(|_| stream.next_u64()), expected);
+    }
+
+    #[test]
+    fn draws_in_bulk_are_those_one_by_one_and_leave_the_stream_where_they_do() {
+        let (mut bulk, mut single) = (Stream::new(9, 2, 5), Stream::new(9, 2, 5));
+        let mut draws = [0.0; 70];
+        // Long enough for the tail of the distribution, which comes once in 4000 draws, to be met a hundred times.
+        for round in 0..10_000 {
+            let draws = &mut draws[..round % 71];
+            bulk.normals(draws);
+            for draw in draws {
+                assert_eq!(draw.to_bits(), single.normal().to_bits(), "round {round}");
+            }
+            if round % 3 == 0 {
+                assert_eq!(bulk.next_u64(), single.next_u64(), "round {round}");
+            }
+        }
     }
 
     #[test]

@@ -7,15 +7,18 @@
 //! ```
 //!
 //! The effects are those of [`effect`](crate::effect), the same that simulate. With `f64` a replay gives poses; with
-//! [`Dual`](crate::geometry::Dual) it gives poses and one column of their Jacobian. Each sample is an exact arc.
+//! [`Dual`](crate::geometry::Dual) it gives poses and columns of their Jacobian, [`LANES`](crate::geometry::LANES) at once. Each
+//! sample is an exact arc.
 
 mod pace;
 
 use crate::dataset::TickLog;
 use crate::drive::{Robot, WheelTravel};
 use crate::effect::{Chain, Context, Evaluate, Model, ModelError, Place, Progress, Sight};
+use crate::engine::{Convoy, Predicted};
 use crate::geometry::Pose2;
 use crate::path::{Direction, Path, Pieces, SpeedProfile};
+use std::sync::Arc;
 
 /// What makes a log impossible to replay.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -76,6 +79,8 @@ pub struct Track {
     /// How many pieces are made when each observation is taken, never decreasing.
     seen_after: Vec<usize>,
     sights: Vec<Sight>,
+    /// Of two trucks with a link, whose pieces are the periods of their odometry.
+    convoy: Option<Arc<Convoy>>,
 }
 
 impl Track {
@@ -138,6 +143,9 @@ impl Track {
         cut: fn(&WheelTravel, &SpeedProfile) -> Pieces,
         observed: Observed,
     ) -> Track {
+        if let Some(convoy) = Convoy::new(robot, path, direction) {
+            return Track::of_trucks(convoy, robot, observed);
+        }
         let place = Place { direction: Some(direction), ..Place::default() };
         let mut progress = Progress::new(robot, place, false);
         let mut track = Track::empty();
@@ -158,7 +166,26 @@ impl Track {
     }
 
     fn empty() -> Track {
-        Track { travel: Vec::new(), contexts: Vec::new(), seen_after: Vec::new(), sights: Vec::new() }
+        Track { travel: Vec::new(), contexts: Vec::new(), seen_after: Vec::new(), sights: Vec::new(), convoy: None }
+    }
+
+    /// The track of a front truck, one piece a period.
+    fn of_trucks(convoy: Convoy, robot: &Robot, observed: Observed) -> Track {
+        let mut track = Track::empty();
+        for (made, step) in (1..).zip(convoy.steps()) {
+            track.travel.push(step.travel[0]);
+            track.contexts.push(step.contexts[0]);
+            let stops = convoy.stops().contains(&made);
+            if match observed {
+                Observed::Always => true,
+                Observed::AtStops => stops,
+                Observed::AtEnd => made == convoy.steps().len(),
+            } {
+                track.observe(sight(step.time, step.speeds[0], robot));
+            }
+        }
+        track.convoy = Some(Arc::new(convoy));
+        track
     }
 
     fn push(&mut self, travel: WheelTravel, at: Context) {
@@ -213,15 +240,67 @@ impl Track {
         self.contexts.get(made).map_or_else(|| self.length(), |at| at.distance)
     }
 
+    /// The plan of two trucks with a link.
+    pub(crate) fn convoy(&self) -> Option<&Convoy> {
+        self.convoy.as_deref()
+    }
+
     /// Calls `seen` with the number of each observation and the pose predicted for it. It allocates nothing.
     #[inline]
     pub fn replay<T: Evaluate>(&self, chain: &Chain<T>, mut seen: impl FnMut(usize, &Pose2<T>)) {
+        if let Some(convoy) = &self.convoy {
+            return self.replay_trucks(convoy, chain, &Pose2::IDENTITY.lift(), seen);
+        }
         let mut pose = chain.start();
         let mut made = 0;
         for (observation, (after, sight)) in self.seen_after.iter().zip(&self.sights).enumerate() {
             pose = self.drive(chain, pose, made..*after);
             made = *after;
             seen(observation, &chain.seen(sight, &pose));
+        }
+    }
+
+    /// The poses predicted for all observations, as seen from START, where the robot at START heads `turned` \[rad\] in the room.
+    pub(crate) fn poses_turned<T: Evaluate>(&self, chain: &Chain<T>, turned: f64) -> Vec<Pose2<T>> {
+        let room: Pose2<T> = Pose2::new(0.0, 0.0, turned).lift();
+        let mut poses = Vec::with_capacity(self.seen_after.len());
+        if let Some(convoy) = &self.convoy {
+            self.replay_trucks(convoy, chain, &room, |_, pose| poses.push(*pose));
+            return poses;
+        }
+        let mut pose = room.compose(&chain.start());
+        let mut made = 0;
+        for (after, sight) in self.seen_after.iter().zip(&self.sights) {
+            pose = self.drive(chain, pose, made..*after);
+            made = *after;
+            poses.push(room.inverse().compose(&chain.seen(sight, &pose)));
+        }
+        poses
+    }
+
+    /// Calls `seen` for a front truck. Its odometry is not told where to be but finds out, so what is predicted is how far off it
+    /// really is, about where it is to be.
+    fn replay_trucks<T: Evaluate>(
+        &self,
+        convoy: &Convoy,
+        chain: &Chain<T>,
+        room: &Pose2<T>,
+        mut seen: impl FnMut(usize, &Pose2<T>),
+    ) {
+        let mut floor = Predicted::by(chain);
+        let mut trucks = convoy.at_start(room.compose(&chain.start()), &mut floor);
+        let mut made = 0;
+        for (observation, (after, sight)) in self.seen_after.iter().zip(&self.sights).enumerate() {
+            convoy.steps()[made..*after].iter().for_each(|step| convoy.step(step, &mut trucks, &mut floor));
+            made = *after;
+            let (real, told) = (chain.seen(sight, &trucks.real[0]), convoy.meant(made)[0]);
+            let (real, believed) = (room.inverse().compose(&real), &trucks.believed[0]);
+            let pose = Pose2 {
+                x: real.x - believed.x + told.x,
+                y: real.y - believed.y + told.y,
+                heading: real.heading - believed.heading + told.heading,
+            };
+            seen(observation, &pose);
         }
     }
 
@@ -233,6 +312,9 @@ impl Track {
 
     /// The pose predicted for the end of the travel.
     pub fn end<T: Evaluate>(&self, chain: &Chain<T>) -> Pose2<T> {
+        if self.convoy.is_some() {
+            return self.poses(chain).pop().unwrap_or_else(|| chain.start());
+        }
         let end = self.drive(chain, chain.start(), 0..self.travel.len());
         chain.seen(&self.sights.last().copied().unwrap_or_default(), &end)
     }
@@ -289,7 +371,7 @@ fn check(log: &TickLog) -> Result<(), ReplayError> {
 mod tests {
     use super::*;
     use crate::dataset::ReferencePose;
-    use crate::geometry::Dual;
+    use crate::geometry::seeded;
     use std::f64::consts::{FRAC_PI_2, PI};
 
     /// 1 m wheel circumference, 1000 ticks a turn: a millimetre a tick; wheelbase 0.5 m.
@@ -366,9 +448,7 @@ mod tests {
             Track::from_path(&Path::umbmark(), Direction::Ccw, &robot),
         ] {
             for i in 0..values.len() {
-                let seeded: Vec<Dual> =
-                    values.iter().enumerate().map(|(j, v)| Dual::new(*v, f64::from(u8::from(i == j)))).collect();
-                let exact = track.poses(&model.chain_with(&seeded));
+                let exact = track.poses(&model.chain_with(&seeded(values.iter().copied(), &[i])));
                 let at = |step: f64| {
                     let mut moved = values.clone();
                     moved[i] += step;
@@ -377,7 +457,7 @@ mod tests {
                 let h = 1e-5;
                 for (k, (high, low)) in at(h).iter().zip(at(-h)).enumerate() {
                     let numeric = [high.x - low.x, high.y - low.y, high.heading - low.heading].map(|d| d / (2.0 * h));
-                    let column = [exact[k].x.eps, exact[k].y.eps, exact[k].heading.eps];
+                    let column = [exact[k].x, exact[k].y, exact[k].heading].map(|d| d.eps[0]);
                     for (c, n) in column.iter().zip(numeric) {
                         assert!((c - n).abs() < 1e-6 * (1.0 + n.abs()), "parameter {i}, observation {k}: {c} {n}");
                     }

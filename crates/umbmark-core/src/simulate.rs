@@ -3,7 +3,6 @@
 //! The robot drives by its own odometry, as in the paper: it stops when its counters say so. What it believes is then the
 //! path itself, up to quantisation, and what it does is what the effects of the model make of it.
 
-mod convoy;
 mod counters;
 mod course;
 mod diffusion;
@@ -12,6 +11,7 @@ mod record;
 mod recorded_test;
 mod rolls;
 mod sampling;
+mod trucks;
 mod truth;
 mod way;
 
@@ -31,9 +31,9 @@ pub use record::Recording;
 pub use recorded_test::{is_extended, record_test};
 pub use truth::Truth;
 
-use convoy::Convoy;
 use course::Rest;
 use sampling::SampledMoves;
+use trucks::Convoys;
 
 /// Purpose of the stream that encoder phases are drawn from.
 const ENCODER_PHASE: u64 = 1;
@@ -155,7 +155,7 @@ pub struct Simulator {
     courses: [Course; 2],
     computer: Computer,
     /// The plan of a drive of two trucks, which nothing of the rest applies to.
-    convoy: Option<Convoy>,
+    convoys: Option<Convoys>,
     phase: Phase,
     phases: Stream,
     segments: Vec<Segment>,
@@ -167,6 +167,10 @@ impl Simulator {
     pub fn new(robot: &Robot, path: &Path, odometry: Odometry, phase: Phase) -> Result<Simulator, SimulateError> {
         let per_tick = robot.metres_per_tick();
         let geometry = TickGeometry::new(per_tick.left, per_tick.right, robot.drive.wheelbase())?;
+        let convoys = Convoys::new(robot, path);
+        if robot.drive.kind() == Kind::Clapper && convoys.is_none() {
+            return Err(SimulateError::Unsupported { drive: robot.drive.kind().name(), what: "paths with arcs" });
+        }
         let [cw, ccw] = [Course::new(robot, path, Direction::Cw)?, Course::new(robot, path, Direction::Ccw)?];
         let differential = robot.drive.kind() == Kind::Differential;
         let computer = match odometry {
@@ -192,7 +196,7 @@ impl Simulator {
             per_tick: PerTick(per_tick),
             courses: [cw, ccw],
             computer,
-            convoy: Convoy::new(robot, path)?,
+            convoys,
             phase,
             phases: Stream::new(0, 0, 0),
             segments: Vec::new(),
@@ -240,10 +244,10 @@ impl Simulator {
     ///
     /// The same as one run after the other, to the last bit; the odometry of all moves is computed at once.
     pub fn test(&mut self, truth: &mut Truth, test: TestKind, returned: [&mut [ReturnError]; 2]) {
-        if let Some(convoy) = &self.convoy {
+        if let Some(convoys) = &self.convoys {
             for (direction, returned) in Direction::BOTH.into_iter().zip(returned) {
                 let legs = &self.courses[direction as usize].legs;
-                returned.iter_mut().for_each(|returned| *returned = convoy.run(truth, legs, direction, test));
+                returned.iter_mut().for_each(|returned| *returned = convoys.run(truth, legs, direction, test));
             }
             return;
         }

@@ -1,18 +1,26 @@
 //! What a figure is: numbers, their meaning and three sentences, before anything is drawn.
 
+mod gaps;
 mod table;
 
+use serde::{Deserialize, Deserializer, Serialize};
 use umbmark_core::path::Direction;
 
+use crate::kind;
 use crate::tone::Tone;
 
 pub use table::Table;
 
-/// A figure.
-#[derive(Clone, Debug, PartialEq)]
+/// The name of a kind of figure.
+// Behind this name serde does not take it for text that is borrowed.
+pub type Name = &'static str;
+
+/// A figure. It can be written down (serde); infinite numbers come back as none.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
     /// Its name in files and on the command line.
-    pub kind: &'static str,
+    #[serde(deserialize_with = "kind_of")]
+    pub kind: Name,
     /// A few words.
     pub title: String,
     /// What it shows, what good looks like, and what this one says: a sentence or two each.
@@ -23,8 +31,15 @@ pub struct Figure {
     pub table: Table,
 }
 
+/// The name of a kind, which is one of those that there are.
+fn kind_of<'de, D: Deserializer<'de>>(from: D) -> Result<Name, D::Error> {
+    let name = String::deserialize(from)?;
+    let known = kind::find(&name).ok_or_else(|| serde::de::Error::custom(format!("no kind of figure \"{name}\"")))?;
+    Ok(known.name)
+}
+
 /// The sentences of a figure.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Told {
     /// What it shows.
     pub shows: String,
@@ -35,7 +50,7 @@ pub struct Told {
 }
 
 /// A pair of axes and what is drawn in it.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Panel {
     /// What stands above it; may be empty.
     pub title: String,
@@ -50,7 +65,7 @@ pub struct Panel {
 }
 
 /// An axis.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// What it shows, with its unit in brackets.
     pub title: String,
@@ -85,7 +100,7 @@ impl Axis {
 }
 
 /// How the places of a layer are drawn.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Mark {
     /// Full circles.
     Dots,
@@ -100,15 +115,15 @@ pub enum Mark {
     /// Bars from zero upwards, so wide.
     Bars(f64),
     /// A dot with an interval to the left and right: lower and upper ends.
-    Spans(Vec<f64>, Vec<f64>),
+    Spans(#[serde(with = "gaps")] Vec<f64>, #[serde(with = "gaps")] Vec<f64>),
     /// Squares of side one, shaded by their values from -1 to 1.
-    Cells(Vec<f64>),
+    Cells(#[serde(with = "gaps")] Vec<f64>),
     /// Words beside the places.
     Words(Vec<String>),
 }
 
 /// Places that are drawn alike.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
     /// Its name in the legend; empty for none.
     pub name: String,
@@ -117,8 +132,10 @@ pub struct Layer {
     /// How it is drawn.
     pub mark: Mark,
     /// To the right.
+    #[serde(with = "gaps")]
     pub x: Vec<f64>,
     /// Upwards.
+    #[serde(with = "gaps")]
     pub y: Vec<f64>,
     /// What is said of each place where it is pointed at; empty where its coordinates say it.
     pub said: Vec<String>,

@@ -6,7 +6,7 @@ mod unseen;
 mod verdict;
 
 use minijinja::value::Serde;
-use minijinja::{Environment, Error, Value, context};
+use minijinja::{Environment, Value, context};
 use serde::Serialize;
 use serde_json::json;
 
@@ -17,6 +17,7 @@ use crate::scale;
 use crate::study::Study;
 use crate::tone::Tone;
 
+pub use minijinja::Error as PageError;
 pub use provenance::{Origin, Provenance};
 pub use verdict::verdict;
 
@@ -81,7 +82,7 @@ impl From<Table> for Rows {
 }
 
 /// The page of one study, or of several side by side; `seen` hears how many of [`KINDS`] are built.
-pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usize)) -> Result<String, Error> {
+pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usize)) -> Result<String, PageError> {
     let mut figures = serde_json::Map::new();
     let mut sections: Vec<Section> = Vec::new();
     let mut absent = Vec::new();
@@ -154,7 +155,7 @@ fn figure_section(
 ) -> Section {
     let mut built: Vec<_> = studies.iter().map(|study| study.begin().and_then(|()| (kind.build)(study))).collect();
     align(built.iter_mut().flatten().collect());
-    let title = built.iter().flatten().next().map_or_else(|| spoken(kind.name), |figure| figure.title.clone());
+    let title = built.iter().flatten().next().map_or_else(|| spoken(kind.about), |figure| figure.title.clone());
     let mut parts = Vec::new();
     for (index, (study, figure)) in studies.iter().zip(built).enumerate() {
         let mut part = Part { study: study.name.clone(), ..Part::default() };
@@ -201,8 +202,8 @@ fn list_section(studies: &[Study], id: &'static str, title: &str, of: fn(&Study)
     Section { id, title: title.into(), parts: studies.iter().map(part).collect() }
 }
 
-fn spoken(name: &str) -> String {
-    let words = name.replace('_', " ");
+/// Words as the beginning of a sentence.
+fn spoken(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

@@ -1,6 +1,7 @@
 //! Figures as drawings.
 
 pub mod bitmap;
+pub mod file;
 pub mod plotly;
 pub mod strip;
 pub mod svg;

@@ -54,7 +54,7 @@ pub struct Study {
     /// What it is called.
     pub name: String,
     /// The runs.
-    pub data: Dataset,
+    pub data: Arc<Dataset>,
     /// The model that was given, with its name.
     pub given: Option<(String, Model)>,
     /// How.
@@ -74,10 +74,15 @@ pub struct Study {
 
 impl Study {
     /// A study of a dataset; nothing is worked out yet.
-    pub fn new(name: impl Into<String>, data: Dataset, given: Option<(String, Model)>, options: Options) -> Study {
+    pub fn new(
+        name: impl Into<String>,
+        data: impl Into<Arc<Dataset>>,
+        given: Option<(String, Model)>,
+        options: Options,
+    ) -> Study {
         Study {
             name: name.into(),
-            data,
+            data: data.into(),
             given,
             options,
             inspection: OnceLock::new(),

@@ -1,7 +1,9 @@
 //! Colours by meaning, on white and on black, told apart by people with colour-blindness too (after Okabe and Ito).
 
+use serde::{Deserialize, Serialize};
+
 /// What a colour stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Tone {
     /// Clockwise runs.
     Cw,

@@ -131,3 +131,16 @@ fn a_page_that_is_stopped_says_so_and_what_is_missing() {
     }
     assert!(!page(std::slice::from_ref(&*SLOPE), &Provenance::default(), |_| ()).unwrap().contains("PARTIAL"));
 }
+
+#[test]
+fn figures_are_written_down_and_come_back_as_they_were() {
+    for study in [&*SLOPE, &*TRACKED] {
+        for figure in drawn(study) {
+            let written = serde_json::to_string(&figure).unwrap();
+            let read: Figure = serde_json::from_str(&written).unwrap();
+            assert_eq!(svg::svg(&read, &svg::Style::default()), svg::svg(&figure, &svg::Style::default()));
+            assert_eq!(plotly::figure(&read), plotly::figure(&figure), "{}", figure.kind);
+        }
+    }
+    assert!(serde_json::from_str::<Figure>("{\"kind\": \"pie\"}").unwrap_err().to_string().contains("no kind"));
+}

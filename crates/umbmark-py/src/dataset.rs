@@ -8,14 +8,14 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 use serde::{Deserialize, Serialize};
-use umbmark_core::dataset::{self as core, Existing, LAYOUTS, Layout, RunClock, RunTopics, Topics};
+use umbmark_core::dataset::{self as core, LAYOUTS, Layout, RunClock, RunTopics, Topics, write_template};
 use umbmark_core::document;
 
 use crate::path::{DIRECTIONS, Path};
 use crate::robot::Robot;
 use crate::run::{Run, TESTS};
 use crate::work::{detached, watched};
-use crate::{choice, refused};
+use crate::{choice, existing, refused, unwritten};
 
 /// A robot and its runs, measured or simulated. Frozen; ``umbmark.load_dataset`` reads one.
 ///
@@ -137,8 +137,7 @@ impl Dataset {
             Some(name) => choice("layout", name, &LAYOUTS.each_ref().map(named))?,
             None => Layout::of_place(&place),
         };
-        let existing = if replace { Existing::Replace } else { Existing::Keep };
-        detached(py, || self.0.convert(layout, &place, existing))?.map_err(refused)
+        detached(py, || self.0.convert(layout, &place, existing(replace)))?.map_err(unwritten)
     }
 
     /// Draw the return errors, cw and ccw, or the tracks.
@@ -245,4 +244,29 @@ pub fn inspect(py: Python<'_>, data: &Dataset, place: &str) -> PyResult<String> 
     let shared = Arc::clone(&data.0);
     let found = watched(py, 1, None, move |_| shared.inspect())?;
     Ok(document::inspection(place, &data.0, &found).to_string())
+}
+
+/// Write a robot.toml and a returns.csv to fill in.
+///
+/// Parameters
+/// ----------
+/// folder : path-like, default "."
+///     Where to write; it is made where it is not there.
+/// replace : bool, default False
+///     Whether files that exist are replaced.
+///
+/// Returns
+/// -------
+/// tuple of pathlib.Path
+///     The two files.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If files are there already, or nothing can be written.
+#[pyfunction]
+#[pyo3(signature = (folder=PathBuf::from("."), *, replace=false))]
+pub fn init(folder: PathBuf, replace: bool) -> PyResult<(PathBuf, PathBuf)> {
+    let [robot, returns] = write_template(&folder, existing(replace)).map_err(unwritten)?;
+    Ok((robot, returns))
 }

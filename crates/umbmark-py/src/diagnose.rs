@@ -108,6 +108,7 @@ pub fn learn(
     options: (f64, usize, u64),
     return_poses: bool,
     threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(String, Model)> {
     let options = options_of(options, return_poses)?;
     let shared = Arc::clone(&data.0);
@@ -116,7 +117,7 @@ pub fn learn(
         None => effect::Model::new(data.0.nominal_robot().map_err(refused)?),
     };
     let work = move |told: &Watch| told.work(|watch| learning::learn_from(&shared, &start, &options, watch));
-    let learnt = watched(py, threads, None, work)?.map_err(refused)?;
+    let learnt = watched(py, threads, progress, work)?.map_err(refused)?;
     Ok((document::learnt(&learnt, &options).to_string(), learnt.model.into()))
 }
 

@@ -1,22 +1,26 @@
 //! Python bindings: the extension module `umbmark._umbmark`, which the package `umbmark` makes comfortable.
 //!
-//! One file for each room of `umbmark-core` that Python sees. Robots, paths, models and datasets are frozen classes here.
+//! One file for each room of `umbmark-core` that Python sees, and two for `umbmark-plot`. Robots, paths, models and datasets are frozen classes here.
 //! Results cross as the documents that `--json` prints ([`umbmark_core::document`]); the package decodes them into typed
 //! classes. Every call has three steps: arguments are read under the interpreter lock, the work runs without it (`work`),
 //! and its result is handed over.
 
 mod arrays;
 mod calibrate;
+mod checkpoint;
 mod dataset;
 mod diagnose;
 mod effect;
+mod figure;
 mod keys;
 mod model;
 mod monte_carlo;
+mod paper;
 mod parameters;
 mod path;
 mod plan;
 mod preset;
+mod report;
 mod robot;
 mod run;
 mod score;
@@ -28,6 +32,7 @@ mod work;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use umbmark_core::dataset::Existing;
 
 /// The odometry error of wheeled robots: UMBmark.
 #[pymodule]
@@ -37,21 +42,29 @@ mod _umbmark {
     #[pymodule_export]
     use super::calibrate::{calibrate, calibrate_gears, export};
     #[pymodule_export]
-    use super::dataset::{Dataset, inspect, load_dataset};
+    use super::checkpoint::merge;
+    #[pymodule_export]
+    use super::dataset::{Dataset, init, inspect, load_dataset};
     #[pymodule_export]
     use super::diagnose::{compare, diagnose, fit, learn};
     #[pymodule_export]
     use super::effect::effects;
     #[pymodule_export]
+    use super::figure::{Figure, figure, kinds};
+    #[pymodule_export]
     use super::model::Model;
     #[pymodule_export]
     use super::monte_carlo::{Ensemble, Study};
+    #[pymodule_export]
+    use super::paper::paper;
     #[pymodule_export]
     use super::path::Path;
     #[pymodule_export]
     use super::plan::{plan, separate};
     #[pymodule_export]
     use super::preset::presets;
+    #[pymodule_export]
+    use super::report::{report, write};
     #[pymodule_export]
     use super::robot::Robot;
     #[pymodule_export]
@@ -68,7 +81,7 @@ mod _umbmark {
     use super::tolerance::tolerance;
 
     #[pymodule_init]
-    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    fn add_version(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("__version__", umbmark_core::VERSION)
     }
 }
@@ -76,6 +89,21 @@ mod _umbmark {
 /// What the core refuses, in its own words.
 fn refused(error: impl std::error::Error) -> PyErr {
     PyValueError::new_err(error.to_string())
+}
+
+/// What is not written because something is there already, in Python's words.
+fn unwritten(error: impl std::fmt::Display) -> PyErr {
+    let text = error.to_string();
+    let text = match text.strip_suffix("exists already") {
+        Some(_) => format!("{text}; replace=True replaces it"),
+        None => text.replace("say --force", "say replace=True"),
+    };
+    PyValueError::new_err(text)
+}
+
+/// A file that is there is kept, unless it may be replaced.
+fn existing(replace: bool) -> Existing {
+    if replace { Existing::Replace } else { Existing::Keep }
 }
 
 /// A word of a few, by name.

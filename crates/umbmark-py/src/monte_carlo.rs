@@ -1,6 +1,7 @@
 //! `mc`: studies and what is known of them.
 
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -8,15 +9,18 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use serde_json::{Map, Value};
+use umbmark_core::checkpoint::Keeper;
 use umbmark_core::document::{self, Theory, Told};
 use umbmark_core::engine::Update;
 use umbmark_core::monte_carlo::{self as core, Batch, Metric, Shard, Statistics};
 use umbmark_core::replay::check_on_path;
 use umbmark_core::simulate::{Odometry, Phase};
 
+use crate::checkpoint::{Place, unusable};
 use crate::model::Model;
 use crate::path::Path;
-use crate::work::{detached, watched};
+use crate::work::{Watch, detached, watched, watched_to_its_end};
 use crate::{choice, refused};
 
 const UPDATES: [(&str, Update); 3] = [("arc", Update::Arc), ("midpoint", Update::Midpoint), ("euler", Update::Euler)];
@@ -136,6 +140,13 @@ impl Study {
     ///     (index, count): the index-th, from 0, of so many shards of whole chunks of 256 trials.
     /// known : Ensemble, optional
     ///     What is done already of the same study and shard.
+    /// checkpoint : path-like, optional
+    ///     Write what is done to this file every two seconds and at the end, Ctrl-C included: the file of ``umbmark mc
+    ///     --checkpoint``, which ``umbmark.merge`` reads.
+    /// resume : bool, default False
+    ///     Go on with the study of that file, where it is there.
+    /// replace : bool, default False
+    ///     Begin anew where that file is there.
     /// threads : int, default 0
     ///     Threads to use; 0 for all processors. No number depends on it.
     /// until_std_error_m : float, optional
@@ -151,60 +162,78 @@ impl Study {
     ///     The statistics.
     /// trials : dict of str to ndarray of float64, shape (n,), or None
     ///     The metrics of every trial, where they were to be kept.
-    /// seconds : float
-    ///     How long it took.
-    #[pyo3(signature = (shard=(0, 1), *, known=None, threads=0, until_std_error_m=None, keep=false, progress=None))]
+    /// trials_per_s : float
+    ///     Speed.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If what is known, or the file, is of another study or shard; or the file is there, and nobody said what to do.
+    #[pyo3(signature = (shard=(0, 1), *, known=None, checkpoint=None, resume=false, replace=false, threads=0,
+                        until_std_error_m=None, keep=false, progress=None))]
     #[allow(clippy::too_many_arguments)]
     fn run<'py>(
         &self,
         py: Python<'py>,
         shard: (u64, u64),
         known: Option<&Ensemble>,
+        checkpoint: Option<PathBuf>,
+        resume: bool,
+        replace: bool,
         threads: usize,
         until_std_error_m: Option<f64>,
         keep: bool,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Ensemble, Option<Bound<'py, PyDict>>, f64)> {
         let shard = Shard::new(shard.0, shard.1).map_err(refused)?;
-        let mut ensemble = match known {
-            None => core::Ensemble::new(&self.study, shard),
-            Some(known) if known.0.is_of(&self.study, shard) => known.0.clone(),
-            Some(_) => return Err(PyValueError::new_err("what is known is of another study or shard")),
+        let checkpoint = checkpoint.map(|file| Place { file, resume, replace }.checkpoint());
+        if checkpoint.is_some() && (known.is_some() || (keep && resume)) {
+            return Err(PyValueError::new_err("what is known stands in the checkpoint: leave known, or keep, out"));
+        }
+        let told = self.told();
+        let mut ensemble = match (known, &checkpoint) {
+            (None, None) => core::Ensemble::new(&self.study, shard),
+            (None, Some(checkpoint)) => checkpoint.begin(&self.study, shard, &told).map_err(unusable)?.ensemble,
+            (Some(known), _) if known.0.is_of(&self.study, shard) => known.0.clone(),
+            (Some(_), _) => return Err(PyValueError::new_err("what is known is of another study or shard")),
         };
         let study = self.study.clone();
         let metrics = study.metrics();
         let columns: Vec<usize> = (0..Metric::COUNT).filter(|i| metrics.contains(&Metric::ALL[*i])).collect();
-        let outcome = watched(py, threads, progress, move |watch| {
-            let began = Instant::now();
+        let watched = if checkpoint.is_some() { watched_to_its_end } else { watched };
+        let outcome = watched(py, threads, progress, move |watch: &Watch| -> PyResult<_> {
+            let (began, before) = (Instant::now(), ensemble.trials());
             let mut kept: Vec<Vec<f64>> = vec![Vec::new(); if keep { columns.len() } else { 0 }];
+            let mut keeper = Keeper::of(checkpoint.as_ref());
+            let mut failure = None;
             let done = study.resume(&mut ensemble, &watch.stop, |batch: &Batch| {
                 for (values, column) in kept.iter_mut().zip(&columns) {
                     values.extend(batch.rows.iter().map(|row| row[*column]));
                 }
                 watch.done.store(batch.ensemble.trials(), Ordering::Relaxed);
+                failure = keeper.look(study.seed, &told, batch.ensemble).err();
                 let reached = batch.ensemble.get(Metric::EMaxSys).map(Statistics::std_error);
                 let precise = until_std_error_m.zip(reached).is_some_and(|(wanted, reached)| reached <= wanted);
-                if precise { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                if precise || failure.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             });
-            done.map(|()| (ensemble, kept, began.elapsed().as_secs_f64()))
+            done.map_err(refused)?;
+            failure.map_or_else(|| keeper.keep(study.seed, &told, &ensemble), Err).map_err(unusable)?;
+            let speed = (ensemble.trials() - before) as f64 / began.elapsed().as_secs_f64().max(1e-9);
+            Ok((ensemble, kept, speed))
         });
-        let (ensemble, kept, seconds) = outcome?.map_err(refused)?;
+        let (ensemble, kept, trials_per_s) = outcome??;
         let trials = keep.then(|| PyDict::new(py));
         if let Some(trials) = &trials {
             for (metric, values) in metrics.iter().zip(kept) {
                 trials.set_item(metric.name(), PyArray1::from_vec(py, values))?;
             }
         }
-        Ok((Ensemble(ensemble), trials, seconds))
+        Ok((Ensemble(ensemble), trials, trials_per_s))
     }
 
     /// The document of an ensemble of this study.
     fn _document(&self, ensemble: &Ensemble, partial: bool, trials_per_s: Option<f64>) -> String {
-        let noisy = self.study.model.get("wheel_noise", "k_sqrt_m").is_some();
-        let assumed: Vec<String> = (!noisy).then(|| "no wheel noise".to_owned()).into_iter().collect();
-        let told = Told { assumed: &assumed, ..Told::default() };
-        let described = document::study(&self.study, &self.theory, &told);
-        document::ensemble(&ensemble.0, self.study.seed, partial, trials_per_s, &described).to_string()
+        document::ensemble(&ensemble.0, self.study.seed, partial, trials_per_s, &self.told()).to_string()
     }
 
     fn __repr__(&self) -> String {
@@ -233,6 +262,14 @@ impl Study {
 }
 
 impl Study {
+    /// What it is.
+    fn told(&self) -> Map<String, Value> {
+        let noisy = self.study.model.get("wheel_noise", "k_sqrt_m").is_some();
+        let assumed: Vec<String> = (!noisy).then(|| "no wheel noise".to_owned()).into_iter().collect();
+        let told = Told { assumed: &assumed, ..Told::default() };
+        document::study(&self.study, &self.theory, &told)
+    }
+
     /// The study itself.
     pub fn core(&self) -> &core::Study {
         &self.study
@@ -251,7 +288,7 @@ fn runs_of(given: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
 ///
 /// Sums and bins are integers, so ensembles merge in any order to the same bits.
 #[pyclass(frozen, module = "umbmark")]
-pub struct Ensemble(core::Ensemble);
+pub struct Ensemble(pub core::Ensemble);
 
 #[pymethods]
 impl Ensemble {
@@ -328,6 +365,12 @@ impl Ensemble {
     fn __repr__(&self) -> String {
         let missing: u64 = self.0.missing().iter().map(|range| range.end - range.start).sum();
         format!("Ensemble({} trials, {missing} missing)", self.0.trials())
+    }
+
+    /// Whether all that is known is the same, to the last bit.
+    fn __eq__(&self, other: &Ensemble) -> PyResult<bool> {
+        let text = |ensemble: &core::Ensemble| serde_json::to_vec(ensemble).map_err(refused);
+        Ok(text(&self.0)? == text(&other.0)?)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyAny>,))> {

@@ -1,22 +1,26 @@
 //! `mc --sweep`.
 
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use pyo3::prelude::*;
+use umbmark_core::checkpoint::Keeper;
 use umbmark_core::document;
-use umbmark_core::monte_carlo::{Axis, Quantity, Sweep, SweepError};
+use umbmark_core::monte_carlo::{Axis, Quantity, Sweep};
 
+use crate::checkpoint::{Place, unusable};
 use crate::monte_carlo::Study;
 use crate::refused;
-use crate::work::watched;
+use crate::work::{Watch, watched, watched_to_its_end};
 
-/// A study on every point of a grid; axes are (name, first, last, count).
+/// A study on every point of a grid; axes are (name, first, last, count), a checkpoint (file, resume, replace).
 #[pyfunction]
 pub fn sweep(
     py: Python<'_>,
     study: &Study,
     axes: Vec<(String, f64, f64, u64)>,
+    checkpoint: Option<(PathBuf, bool, bool)>,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
@@ -27,14 +31,21 @@ pub fn sweep(
     };
     let axes = axes.iter().map(axis).collect::<PyResult<Vec<Axis>>>()?;
     let sweep = Sweep::new(study, &axes).map_err(refused)?;
-    let found = watched(py, threads, progress, move |told| -> Result<_, SweepError> {
-        let mut done = Vec::new();
-        sweep.run(0, &told.stop, |points| {
-            done.extend(points);
-            told.done.store(done.len() as u64, Ordering::Relaxed);
-            ControlFlow::Continue(())
-        })?;
-        Ok(document::sweep(&sweep, &done, &[]).to_string())
-    })?;
-    found.map_err(refused)
+    let checkpoint = checkpoint.map(|(file, resume, replace)| Place { file, resume, replace }.checkpoint());
+    let known = checkpoint.as_ref().map(|checkpoint| checkpoint.begin_sweep(&sweep)).transpose();
+    let mut points = known.map_err(unusable)?.unwrap_or_default();
+    let watched = if checkpoint.is_some() { watched_to_its_end } else { watched };
+    watched(py, threads, progress, move |told: &Watch| {
+        let mut keeper = Keeper::of(checkpoint.as_ref());
+        let mut failure = None;
+        let done = sweep.run(points.len() as u64, &told.stop, |more| {
+            points.extend(more);
+            told.done.store(points.len() as u64, Ordering::Relaxed);
+            failure = keeper.look_at(&sweep, &points).err();
+            if failure.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        done.map_err(refused)?;
+        failure.map_or_else(|| keeper.keep_points(&sweep, &points), Err).map_err(unusable)?;
+        Ok(document::sweep(&sweep, &points, &[]).to_string())
+    })?
 }

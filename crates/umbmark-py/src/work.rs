@@ -3,11 +3,12 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use rayon::ThreadPoolBuildError;
 
 /// Time between two looks at whether Ctrl-C was pressed, and two calls of a progress function.
 const LOOK: Duration = Duration::from_millis(50);
@@ -30,7 +31,7 @@ pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyR
     py.detach(|| catch_unwind(AssertUnwindSafe(work))).map_err(|_| fault())
 }
 
-/// Runs long `work` on `threads` of its own (0: one for each processor), so that a forked process may call it too.
+/// Runs long `work` on `threads` of its own (0: one for each processor), so that a forked process may call too.
 ///
 /// Ctrl-C raises `KeyboardInterrupt` at once; work that looks at [`Watch::stop`] ends within milliseconds, other work comes to
 /// its end unheard. `progress` is called with the steps done.
@@ -40,30 +41,70 @@ pub fn watched<T: Send + 'static>(
     progress: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(&Watch) -> T + Send + 'static,
 ) -> PyResult<T> {
-    let watch = Watch::default();
-    let (sender, mut receiver) = sync_channel(1);
-    let told = watch.clone();
-    std::thread::spawn(move || {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let result = pool.map(|pool| catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&told)))));
-        // Nobody listens where Python has given up.
-        let _ = sender.send(result);
-    });
-    loop {
-        let heard = &mut receiver;
-        let result = match py.detach(move || heard.recv_timeout(LOOK)) {
-            Err(RecvTimeoutError::Timeout) => {
-                watch.look(py, progress)?;
-                continue;
+    Watched::begin(threads, work).end(py, progress, Left::Alone)
+}
+
+/// The same for work that writes down what is done: it ends before `KeyboardInterrupt` is raised.
+pub fn watched_to_its_end<T: Send + 'static>(
+    py: Python<'_>,
+    threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&Watch) -> T + Send + 'static,
+) -> PyResult<T> {
+    Watched::begin(threads, work).end(py, progress, Left::Awaited)
+}
+
+/// What becomes of work that is given up.
+#[derive(PartialEq)]
+enum Left {
+    Alone,
+    Awaited,
+}
+
+/// Work on threads of its own, and where its result arrives.
+struct Watched<T> {
+    watch: Watch,
+    receiver: Receiver<Result<std::thread::Result<T>, ThreadPoolBuildError>>,
+}
+
+impl<T: Send + 'static> Watched<T> {
+    fn begin(threads: usize, work: impl FnOnce(&Watch) -> T + Send + 'static) -> Watched<T> {
+        let watch = Watch::default();
+        let (sender, receiver) = sync_channel(1);
+        let told = watch.clone();
+        std::thread::spawn(move || {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let result = pool.map(|pool| catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&told)))));
+            // Nobody listens where Python has given up.
+            let _ = sender.send(result);
+        });
+        Watched { watch, receiver }
+    }
+
+    fn end(mut self, py: Python<'_>, progress: Option<&Bound<'_, PyAny>>, left: Left) -> PyResult<T> {
+        loop {
+            let receiver = &mut self.receiver;
+            let result = match py.detach(move || receiver.recv_timeout(LOOK)) {
+                Err(RecvTimeoutError::Timeout) => {
+                    if let Err(given_up) = self.watch.look(py, progress) {
+                        if left == Left::Awaited {
+                            let receiver = &mut self.receiver;
+                            let _ = py.detach(move || receiver.recv());
+                        }
+                        return Err(given_up);
+                    }
+                    continue;
+                }
+                Err(RecvTimeoutError::Disconnected) => return Err(fault()),
+                Ok(result) => result,
+            };
+            if let Some(progress) = progress {
+                progress.call1((self.watch.done.load(Ordering::Relaxed),))?;
             }
-            Err(RecvTimeoutError::Disconnected) => return Err(fault()),
-            Ok(result) => result,
-        };
-        if let Some(progress) = progress {
-            progress.call1((watch.done.load(Ordering::Relaxed),))?;
+            let result =
+                result.map_err(|error| PyRuntimeError::new_err(format!("cannot start the threads: {error}")))?;
+            return result.map_err(|_| fault());
         }
-        let result = result.map_err(|error| PyRuntimeError::new_err(format!("cannot start the threads: {error}")))?;
-        return result.map_err(|_| fault());
     }
 }
 

@@ -151,6 +151,15 @@ def test_a_hidden_effect_is_named(client: Client) -> None:
     assert all("floor_slope" in names for names in found.named)
 
 
+def test_many_robots_are_learnt_as_one_by_one(client: Client) -> None:
+    path = umbmark.Path(side_m=1.0)
+    fleet = [
+        umbmark.simulate(MODEL, path, runs=3, reference_rate_hz=0, seed=seed) for seed in (1, 2)
+    ]
+    learnt = client.gather(client.map(umbmark.learn, fleet, draws=99, threads=1, pure=False))
+    assert learnt == [umbmark.learn(data, draws=99) for data in fleet]
+
+
 @pytest.mark.parametrize(
     ("keys", "words"),
     [

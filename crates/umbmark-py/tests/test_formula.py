@@ -46,6 +46,62 @@ def test_a_function_is_written_as_a_formula_that_means_the_same(
         assert function(at, **PARAMETERS) == pytest.approx(eval(python, words))
 
 
+@pytest.mark.parametrize(
+    ("function", "formula"),
+    [
+        (
+            lambda at, k, q: np.where(at.heading > q, k, 0),
+            "k * max(sign(heading - q), 0.0)",
+        ),
+        (
+            lambda at, k, q: np.where(at.heading <= 0.5, k, q),
+            "k * (1.0 - max(sign(heading - 0.5), 0.0)) + q * max(sign(heading - 0.5), 0.0)",
+        ),
+        (lambda at, k, q: k * (at.heading == q), "k * (1.0 - abs(sign(heading - q)))"),
+        (lambda at, k, q: k * (np.float64(1) != at.heading), "k * abs(sign(1.0 - heading))"),
+        (
+            lambda at, k, q: k * ((at.heading >= -1) & (at.heading < q)),
+            "k * ((1.0 - max(sign(-1.0 - heading), 0.0)) * max(sign(q - heading), 0.0))",
+        ),
+        (
+            lambda at, k, q: np.where((at.heading > q) | (at.heading < -q), k, -k),
+            None,
+        ),
+        (lambda at, k, q: np.where(~(at.heading > 0), 0, k * q), None),
+        (lambda at, k, q: np.where(np.logical_not(at.heading > 0), q, k), None),
+        (lambda at, k, q: np.where(np.logical_and(at.heading > 0, k < q), q, k), None),
+        (lambda at, k, q: k * np.clip(at.heading, -0.5, q), "k * min(max(heading, -0.5), q)"),
+        (lambda at, k, q: np.interp(at.heading, [-1, 0, 0.5, 2], [k, 0, q, -q]), None),
+        (lambda at, k, q: k + np.interp(at.heading, [0, 1], [0.0, 0.25]) * q, None),
+    ],
+)
+def test_choices_and_tables_of_numpy_mean_the_same_as_formulas(
+    function: Callable[..., Any], formula: str | None
+) -> None:
+    made = umbmark.formula_of(function, PARAMETERS)
+    assert formula in (None, made)
+    words = {"sign": np.sign, "max": max, "min": min, "abs": abs, **PARAMETERS}
+    for heading in (-3.0, -2.0, -1.0, -0.4, 0.0, 0.2, 0.5, 1.0, 1.7, 2.0, 2.5):
+        expected = function(SimpleNamespace(heading=np.float64(heading)), **PARAMETERS)
+        value = eval(made, {**words, "heading": heading})
+        assert value == pytest.approx(float(expected), rel=1e-12, abs=1e-15)
+
+
+def test_a_choice_is_driven_and_its_size_is_fitted_back() -> None:
+    """A floor that pushes one way only while the robot drives fast."""
+    own: dict[str, Any] = {
+        "acts_on": "heading_per_metre",
+        "formula": lambda at, k: np.where(at.speed > 0.1, k * np.clip(at.heading, -1, 1), 0),
+    }
+    noisy = umbmark.Model().add("wheel_noise", k_sqrt_m=1e-4)
+    truth = noisy.add("push", parameters={"k": 0.004}, **own)
+    data = umbmark.simulate(truth, umbmark.Path(side_m=2.0), runs=3, reference_rate_hz=2)
+    start = umbmark.Model().add("push", parameters={"k": 0.0}, free=True, **own)
+    (found,) = umbmark.fit(data, start).fitted
+    assert found.standard_error is not None
+    assert abs(found.value - 0.004) < 5 * found.standard_error < 0.002
+
+
 # Expressions as trees: a number of Python, a symbol, or an operator with two of them.
 TREES = st.recursive(
     st.sampled_from(["at.heading", "k", "q", "1.5", "-2.0"]),
@@ -71,6 +127,11 @@ def test_any_expression_keeps_its_value_without_its_own_parentheses(tree: str) -
     ("function", "words"),
     [
         (lambda at, k, q: k if at.heading > 0 else q, "cannot branch on a value"),
+        (lambda at, k, q: k if at.direction == 1 else q, "cannot branch on a value"),
+        (lambda at, k, q: k * q if 0 < at.speed < 1 else 0.0, "cannot branch on a value"),
+        (lambda at, k, q: np.median(at.heading) * k * q, "a formula has no np.median; it has"),
+        (lambda at, k, q: np.interp(at.speed, [0, 0], [k, q]), "needs places that increase"),
+        (lambda at, k, q: np.interp(at.speed, [0, 1], [k]), "as many places as values"),
         (lambda at, k, q: k * q if at.heading else 0.0, "cannot branch on a value"),
         (lambda at, k, q: k * math.sin(at.heading) * q, "one of another module was called"),
         (lambda at, k, q: k * np.arctan(at.heading) * q, "a formula has no np.arctan; it has"),

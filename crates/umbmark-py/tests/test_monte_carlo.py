@@ -8,7 +8,9 @@ import subprocess
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 import umbmark
@@ -66,6 +68,137 @@ def test_studies_and_ensembles_can_be_pickled() -> None:
     one, two = study.run()[0], pickle.loads(pickle.dumps(copy.run()[0]))
     assert repr(two) == "Ensemble(300 trials, 0 missing)"
     assert one.quantile("sigma_m", np.array([0.3])) == two.quantile("sigma_m", np.array([0.3]))
+
+
+def test_a_study_that_was_broken_off_goes_on_to_the_same_bits_here_and_in_the_command(
+    command: Path, tmp_path: Path
+) -> None:
+    file, model = tmp_path / "study.json", tmp_path / "model.toml"
+    model.write_text(MODEL.to_toml())
+    keys: dict[str, Any] = {"n": 60_000, "runs": 1, "seed": 7}
+
+    def enough(done: int, _: int) -> None:
+        if done > 0:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        umbmark.monte_carlo(MODEL, checkpoint=file, progress=enough, **keys)
+    half = umbmark.merge(file)
+    assert half.partial
+    assert 0 < half.n < 60_000
+    assert half.ensemble.missing == [(half.n, 60_000)]
+    copy = tmp_path / "copy.json"
+    copy.write_bytes(file.read_bytes())
+    whole = umbmark.monte_carlo(MODEL, **keys)
+    resumed = umbmark.monte_carlo(MODEL, checkpoint=file, resume=True, **keys)
+    assert (resumed.n, resumed.partial, resumed.metrics) == (60_000, False, whole.metrics)
+    flags = "mc -n 60000 --runs 1 --seed 7 --resume --json --checkpoint".split()
+    run: list[str | Path] = [command, *flags, copy, "--model", model]
+    told = json.loads(subprocess.run(run, check=True, capture_output=True, text=True).stdout)
+    assert told["metrics"] == whole.to_dict()["metrics"]
+    merged = umbmark.merge(copy, output=tmp_path / "again.json")
+    assert merged.metrics == whole.metrics
+    assert umbmark.merge(tmp_path / "again.json") == merged
+
+
+def test_shards_are_written_down_and_merged(tmp_path: Path) -> None:
+    study = umbmark.Study(MODEL, n=2000, seed=3, runs=2)
+    files = [tmp_path / f"{index}.json" for index in range(3)]
+    for index, file in enumerate(files):
+        study.run((index, 3), checkpoint=file)
+    partial = umbmark.merge(files[2], files[0])
+    assert (partial.partial, len(partial.ensemble.missing)) == (True, 1)
+    merged = umbmark.merge(*files[::-1])
+    assert (merged.partial, merged.trials) == (False, None)
+    whole = umbmark.monte_carlo(MODEL, n=2000, seed=3, runs=2)
+    assert merged.metrics == whole.metrics
+    assert merged.to_dict() | {"trials_per_s": None} == whole.to_dict() | {"trials_per_s": None}
+
+
+def test_a_checkpoint_is_neither_lost_nor_taken_for_another_study(tmp_path: Path) -> None:
+    file = tmp_path / "study.json"
+    keys: dict[str, Any] = {"n": 500, "runs": 1, "checkpoint": file}
+    umbmark.monte_carlo(MODEL, **keys)
+    with pytest.raises(ValueError, match="exists already; resume=True goes on with it, replace="):
+        umbmark.monte_carlo(MODEL, **keys)
+    with pytest.raises(ValueError, match="is of another study or shard; give the robot, path"):
+        umbmark.monte_carlo(MODEL, seed=2, resume=True, **keys)
+    with pytest.raises(ValueError, match="leave known, or keep, out"):
+        umbmark.monte_carlo(MODEL, keep=True, resume=True, **keys)
+    assert umbmark.monte_carlo(MODEL, seed=2, replace=True, **keys).seed == 2
+    with pytest.raises(ValueError, match=r"cannot merge .* trials 0 to 499 are in both"):
+        umbmark.merge(file, file)
+    (tmp_path / "again.json").write_text("")
+    with pytest.raises(ValueError, match=r"again\.json exists already; replace=True replaces it"):
+        umbmark.merge(file, output=tmp_path / "again.json")
+    with pytest.raises(ValueError, match="there is no file to merge; give one"):
+        umbmark.merge()
+    file.write_text("{}")
+    with pytest.raises(ValueError, match="is no checkpoint of a study by this version"):
+        umbmark.merge(file)
+
+
+def test_a_shard_without_trials_is_written_down_and_merged(tmp_path: Path) -> None:
+    """Shards are of whole chunks: of ten trials the second of two has none."""
+    study, files = umbmark.Study(MODEL, n=10), [tmp_path / "1.json", tmp_path / "2.json"]
+    parts = [study.run((index, 2), checkpoint=file)[0] for index, file in enumerate(files)]
+    assert sorted(pickle.loads(pickle.dumps(part)).trials for part in parts) == [0, 10]
+    merged = umbmark.merge(*files)
+    assert (merged.n, merged.partial) == (10, False)
+
+
+def test_a_sweep_goes_on_where_its_checkpoint_ends(tmp_path: Path) -> None:
+    file, axes = tmp_path / "sweep.json", {"eb": (0.99, 1.01, 40)}
+    whole = umbmark.sweep(MODEL, axes, n=200, runs=1)
+    written = umbmark.sweep(MODEL, axes, n=200, runs=1, checkpoint=file)
+    assert written == whole
+    document = json.loads(file.read_text())
+    document["points"] = document["points"][:7]
+    document["points"][3]["metrics"][0]["mean"] = 12.5
+    file.write_text(json.dumps(document))
+    resumed = umbmark.sweep(MODEL, axes, n=200, runs=1, checkpoint=file, resume=True)
+    assert resumed.points[3].metrics["e_max_sys_m"].mean == 12.5
+    assert resumed.points[4:] == whole.points[4:]
+    with pytest.raises(ValueError, match="exists already; resume=True"):
+        umbmark.sweep(MODEL, axes, n=200, runs=1, checkpoint=file)
+    with pytest.raises(ValueError, match="is of another sweep"):
+        umbmark.sweep(MODEL, axes, n=201, runs=1, checkpoint=file, resume=True)
+
+
+def test_sampled_odometry_is_asked_for_everywhere() -> None:
+    sizes = {"wheelbase_m": 0.34, "wheel_diameter_m": 0.15, "ticks_per_revolution": 2000}
+    fast = umbmark.Model(umbmark.Robot(**sizes, encoder_rate_hz=20.0)).add("wheelbase", e_b=1.01)
+    how: dict[str, Any] = {"runs": 1, "update": "euler", "phase": "edge"}
+    one = umbmark.monte_carlo(fast, n=1, **how).metrics["e_max_sys_m"].mean
+    swept = umbmark.sweep(fast, {"eb": (1.01, 1.02, 2)}, n=1, **how)
+    assert swept.points[0].metrics["e_max_sys_m"].mean == one
+    how["update"] = "arc"
+    assert umbmark.sweep(fast, {"eb": (1.01, 1.02, 2)}, n=1, **how) != swept
+    grades = [{"name": "eb", "mean": 1.01, "sd": 1e-3}]
+    keys: dict[str, Any] = {"parameters": grades, "model": fast, "runs": 1}
+    for work in (
+        lambda **how: umbmark.tolerance(robots=200, **keys, **how),
+        lambda **how: umbmark.sensitivity(effort=32, **keys, **how),
+    ):
+        work(update="euler")
+        with pytest.raises(ValueError, match="update must be one of arc, midpoint, euler"):
+            work(update="middle")
+
+
+def test_results_compare_by_value_with_all_trials_and_bins() -> None:
+    study = umbmark.Study(MODEL, n=300, runs=1)
+    one, two = (study.run()[0] for _ in range(2))
+    assert one == two
+    assert one != umbmark.Study(MODEL, n=300, runs=1, seed=2).run()[0]
+    kept = [umbmark.monte_carlo(MODEL, n=300, runs=1, keep=True) for _ in range(2)]
+    same = [msgspec.structs.replace(found, trials_per_s=None) for found in kept]
+    assert same[0] == same[1]
+    assert pickle.loads(pickle.dumps(same[0])) == same[1]
+    assert same[0].trials is not None
+    other = {key: value + 1 for key, value in same[0].trials.items()}
+    assert msgspec.structs.replace(same[0], trials=other) != same[1]
+    assert msgspec.structs.replace(same[0], trials=None) != same[1]
+    assert same[0] != "a study"
 
 
 def test_a_study_of_one_direction_has_no_e_max_sys() -> None:

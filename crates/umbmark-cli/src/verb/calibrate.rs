@@ -17,6 +17,7 @@ use umbmark_core::drive::{Kind, Robot};
 use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::files::Pending;
+use crate::level_argument::LevelArgument;
 use crate::table::{table, with_precision_of};
 
 /// The estimate that is exported.
@@ -44,9 +45,8 @@ pub struct Arguments {
     #[command(flatten)]
     data: DataArguments,
 
-    /// Probability with which the intervals hold
-    #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = crate::numbers::number)]
-    level: f64,
+    #[command(flatten)]
+    intervals: LevelArgument,
 
     /// Metres that a radian of heading error counts as when whole tracks are fitted
     /// [default: root mean square distance of the poses from START]
@@ -97,9 +97,6 @@ impl Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    if !(arguments.level > 0.0 && arguments.level < 1.0) {
-        anyhow::bail!("--level must be between 0 and 1, both excluded, got {}", arguments.level);
-    }
     let data = arguments.data.load()?;
     if data.nominal_robot()?.drive.kind() != Kind::Differential {
         return gears::run(&arguments, &data, session);
@@ -112,13 +109,13 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     calibration.warnings.splice(0..0, data.warnings.iter().cloned());
     let written = export_files(&arguments, &data, robot, &calibration)?;
     if session.json() {
-        session.print_json(&document::calibration(robot, &calibration, arguments.level))?;
+        session.print_json(&document::calibration(robot, &calibration, arguments.intervals.level))?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &calibration.warnings {
         session.message("warning", warning);
     }
-    write!(session.out(), "{}", text(robot, &calibration, arguments.level))?;
+    write!(session.out(), "{}", text(robot, &calibration, arguments.intervals.level))?;
     for file in written {
         writeln!(session.out(), "wrote {file}")?;
     }

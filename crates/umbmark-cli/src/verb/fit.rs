@@ -10,6 +10,7 @@ use umbmark_core::likelihood::Weighing;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
+use crate::level_argument::LevelArgument;
 use crate::model_report::{estimates_table, meaning_text, model_of, outliers_text, write_model};
 use crate::prose::hanging;
 
@@ -31,9 +32,8 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 
-    /// Probability with which the intervals hold
-    #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = crate::numbers::probability)]
-    level: f64,
+    #[command(flatten)]
+    intervals: LevelArgument,
 
     /// Replace a file that exists
     #[arg(long)]
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         write_model(model, file, arguments.force)?;
     }
     if session.json() {
-        session.print_json(&document::fitted(&fitted, arguments.level))?;
+        session.print_json(&document::fitted(&fitted, arguments.intervals.level))?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &data.warnings {
@@ -65,7 +65,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         let why = "this data does not show it apart from the rest of the model; it keeps its values";
         session.message("warning", &format!("{effect} was not fitted: {why}"));
     }
-    writeln!(session.out(), "{}", estimates_table(estimates, arguments.level))?;
+    writeln!(session.out(), "{}", estimates_table(estimates, arguments.intervals.level))?;
     write!(session.out(), "{}{}", meaning_text(estimates, model), outliers_text(outliers))?;
     let caution = weighing.map_or("", Weighing::caution);
     if !caution.is_empty() {

@@ -71,7 +71,11 @@ fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
         text += &hanging("", 32, &format!("good: {}", check.good));
     }
     text += "\nwhat can it determine?\n";
-    text += &hanging("  rank", 32, &format!("{} of 3 combinations of E_d, E_b and E_s", inspection.rank));
+    let of = match inspection.determined.first() {
+        Some(first) if first.quantity != "E_d" => "these three",
+        _ => "E_d, E_b and E_s",
+    };
+    text += &hanging("  rank", 32, &format!("{} of 3 combinations of {of}", inspection.rank));
     for answer in &inspection.determined {
         let mark = if answer.yes { "yes" } else { "no" };
         text += &hanging(&format!("  {mark:<6}{}", answer.quantity), 32, answer.because);

@@ -7,14 +7,13 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Context;
+use serde_json::{Map, Value};
+use umbmark_core::checkpoint::{Keeper, Written};
 use umbmark_core::document::{self, Theory};
-use umbmark_core::monte_carlo::{Draw, Ensemble, Metric, Row, Shard, Statistics, Study};
-use umbmark_core::parameter::Parameter;
+use umbmark_core::monte_carlo::{Ensemble, Metric, Row, Shard, Statistics, Study};
 
-use crate::checkpoint::Checkpoint;
-use crate::distribution_text::distribution_words;
-use crate::ensemble_report::{Description, Report};
-use crate::numbers::number;
+use crate::checkpoint_flags::{CheckpointFlags, with_remedy};
+use crate::ensemble_report::Report;
 use crate::study_flags::{Known, StudyFlags};
 use crate::sweep::{self, SweepFlags};
 use crate::{Session, files};
@@ -23,7 +22,7 @@ use crate::{Session, files};
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// Trials: whole tests, each with all its runs [default: 1000; as many as it takes with --until-std-error]
-    #[arg(short = 'n', long, value_name = "N")]
+    #[arg(short = 'n', long, value_name = "N", value_parser = crate::numbers::whole)]
     trials: Option<u64>,
 
     /// Stop as soon as the standard error of the mean E_max,sys is this small, as in 0.1mm
@@ -38,18 +37,8 @@ pub struct Arguments {
     #[arg(long)]
     force: bool,
 
-    /// Write what is done to this file now and then, for --resume and `umbmark merge`
-    #[arg(long, value_name = "FILE", help_heading = "Long studies")]
-    checkpoint: Option<PathBuf>,
-
-    /// Time between two checkpoints
-    #[arg(long, value_name = "SECONDS", default_value_t = 2.0, value_parser = number, requires = "checkpoint",
-          help_heading = "Long studies")]
-    checkpoint_every: f64,
-
-    /// Go on with the study of the checkpoint file, if it is there
-    #[arg(long, requires = "checkpoint", conflicts_with = "out", help_heading = "Long studies")]
-    resume: bool,
+    #[command(flatten)]
+    checkpoint: CheckpointFlags,
 
     /// Run the I-th of K shards, for `umbmark merge` to put together
     #[arg(long, value_name = "I/K", default_value_t = Shard::WHOLE, conflicts_with = "until_std_error",
@@ -66,31 +55,6 @@ pub struct Arguments {
 impl Arguments {
     fn trials(&self) -> u64 {
         self.trials.unwrap_or(if self.until_std_error.is_some() { MOST_UNTIL } else { 1000 })
-    }
-
-    /// What is done already, where a study is taken up again.
-    fn checkpoint(&self, study: &Study, description: &Description) -> anyhow::Result<Checkpoint> {
-        let new = || Checkpoint { description: description.clone(), ensemble: Ensemble::new(study, self.shard) };
-        let Some(file) = self.checkpoint.as_deref().filter(|file| file.exists()) else { return Ok(new()) };
-        if !self.resume {
-            anyhow::ensure!(
-                self.force,
-                "{} exists already; --resume goes on with it, --force begins anew",
-                file.display()
-            );
-            return Ok(new());
-        }
-        let known = Checkpoint::load(file)?;
-        anyhow::ensure!(
-            known.ensemble.is_of(study, self.shard),
-            "{} is of another study or shard; say the same flags, seed and number of trials as before",
-            file.display()
-        );
-        Ok(known)
-    }
-
-    fn save(&self, description: &Description, ensemble: &Ensemble) -> anyhow::Result<()> {
-        self.checkpoint.as_deref().map_or(Ok(()), |file| Checkpoint::save(file, description, ensemble))
     }
 
     fn is_precise(&self, ensemble: &Ensemble) -> bool {
@@ -114,38 +78,34 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let (study, known) = arguments.study.resolve(arguments.trials(), session.seed())?;
+    let checkpoint = arguments.checkpoint.checkpoint(arguments.force)?;
     if arguments.sweep.is_asked_for() {
-        let files = sweep::Files {
-            checkpoint: arguments.checkpoint.as_deref(),
-            every: arguments.checkpoint_every,
-            resume: arguments.resume,
-            force: arguments.force,
-        };
+        let files = sweep::Files { checkpoint: checkpoint.as_ref(), force: arguments.force };
         return sweep::run(&arguments.sweep, &study, &known.assumed, &files, session);
     }
-    let description = describe(&study, &known)?;
-    let mut checkpoint = arguments.checkpoint(&study, &description)?;
+    let told = describe(&study, &known)?;
+    let mut written = match &checkpoint {
+        Some(checkpoint) => checkpoint.begin(&study, arguments.shard, &told).map_err(with_remedy)?,
+        None => Written { seed: study.seed, study: told, ensemble: Ensemble::new(&study, arguments.shard) },
+    };
     let metrics = study.metrics();
     let mut out =
         arguments.out.as_deref().map(|file| TrialsFile::create(file, &metrics, arguments.force)).transpose()?;
-    let (before, all) = (checkpoint.ensemble.trials(), arguments.shard.trials(study.trials));
+    let (before, all) = (written.ensemble.trials(), arguments.shard.trials(study.trials));
     let mut progress = session.progress(all.end - all.start, "trials");
     let stop = session.catch_interrupt()?;
     let began = Instant::now();
     let mut precise = false;
     let mut failure = None;
-    let Checkpoint { ensemble, .. } = &mut checkpoint;
+    let Written { seed, study: told, ensemble } = &mut written;
+    let mut keeper = Keeper::of(checkpoint.as_ref());
     session.on_threads(|| {
-        let mut saved = Instant::now();
         study.resume(ensemble, &stop, |batch| {
             progress.at(batch.ensemble.trials());
-            let mut written = out.as_mut().map_or(Ok(()), |file| file.write(batch.first, batch.rows));
-            if written.is_ok() && saved.elapsed().as_secs_f64() >= arguments.checkpoint_every {
-                written = arguments.save(&description, batch.ensemble);
-                saved = Instant::now();
-            }
+            let kept = out.as_mut().map_or(Ok(()), |file| file.write(batch.first, batch.rows));
+            let kept = kept.and_then(|()| Ok(keeper.look(*seed, told, batch.ensemble)?));
             precise = arguments.is_precise(batch.ensemble);
-            failure = written.err();
+            failure = kept.err();
             if failure.is_some() || precise { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
     })??;
@@ -157,8 +117,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if let Some(file) = out {
         file.finish()?;
     }
-    let ensemble = &checkpoint.ensemble;
-    arguments.save(&description, ensemble)?;
+    keeper.keep(*seed, told, ensemble)?;
     let partial = !precise && ensemble.trials() < all.end - all.start;
     if partial {
         session.message("partial", &format!("stopped after {} of {} trials", ensemble.trials(), all.end - all.start));
@@ -166,7 +125,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         session.message("warning", "all trials are done, and the standard error that was asked for is not reached");
     }
     let took = Some((seconds, ensemble.trials() - before));
-    let report = Report { description: &description, ensemble, partial, took };
+    let report = Report { study: told, seed: *seed, ensemble, partial, took };
     if session.json() {
         session.print_json(&report.json())?;
     } else {
@@ -209,57 +168,8 @@ impl TrialsFile {
     }
 }
 
-/// The study in words and numbers.
-fn describe(study: &Study, known: &Known) -> anyhow::Result<Description> {
-    let theory = Theory::of(study)?;
-    let path = &study.path;
-    let sizes = path.shape().parameters.iter().zip(path.values());
-    let written: Vec<String> = sizes.map(|(p, v)| format!("{} {v}", p.name)).collect();
-    let drawn = |effect: &str, parameter: &Parameter| {
-        study.draws.iter().find(|d| d.effect() == effect && d.parameter().name == parameter.name)
-    };
-    let mut heading = vec![
-        match study.runs {
-            [cw, 0] => format!("{cw} cw runs, uni-directional"),
-            [0, ccw] => format!("{ccw} ccw runs, uni-directional"),
-            [cw, ccw] => format!("{cw} cw + {ccw} ccw runs"),
-        },
-        format!("{}, {} ({})", study.robot().name, path.shape().name.replace('_', "-"), written.join(", ")),
-    ];
-    for part in study.model.parts() {
-        let name = part.effect.name();
-        let mut words = Vec::new();
-        for (parameter, value) in part.effect.parameters().iter().zip(&part.values) {
-            let draw = drawn(name, parameter);
-            words.push(format!("{} {}", parameter.name, value_text(parameter, *value, draw)));
-        }
-        heading.push(format!("  {name}: {}", words.join(", ")));
-    }
-    heading.extend(known.sources.iter().map(|source| format!("  from the paper: {source}")));
-    heading.extend(known.assumed.iter().map(|assumption| format!("  assumed: {assumption}")));
+/// What the study is.
+fn describe(study: &Study, known: &Known) -> anyhow::Result<Map<String, Value>> {
     let told = document::Told { sources: &known.sources, assumed: &known.assumed, published: known.published };
-    let document = document::study(study, &theory, &told);
-    let published = known.published.map(|p| (p.row.to_owned(), p.e_max_sys, p.sigma));
-    Ok(Description { heading, theory: in_words(&theory, study.runs), seed: study.seed, document, published })
-}
-
-/// What the test gives without noise.
-fn in_words(theory: &Theory, runs: [usize; 2]) -> String {
-    let subject = if runs.contains(&0) { "Driven both ways, E_max,sys" } else { "E_max,sys" };
-    let mm = |value: Option<f64>| value.map(|v| format!("{:.1} mm", v * 1e3));
-    match (mm(theory.exact), mm(theory.first_order)) {
-        (Some(exact), Some(first)) => {
-            format!("{subject} without noise: {exact} by exact kinematics, {first} to first order\n\n")
-        }
-        (Some(exact), None) => format!("{subject} without noise: {exact} by exact kinematics\n\n"),
-        _ => String::new(),
-    }
-}
-
-fn value_text(parameter: &Parameter, value: f64, draw: Option<&Draw>) -> String {
-    match (parameter.choices.get(value as usize), draw.map(Draw::distribution)) {
-        (Some(word), _) => (*word).to_owned(),
-        (None, Some(distribution)) => distribution_words(&distribution),
-        (None, None) => value.to_string(),
-    }
+    Ok(document::study(study, &Theory::of(study)?, &told))
 }

@@ -4,11 +4,11 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Context;
+use umbmark_core::checkpoint::Written;
 
 use crate::Session;
-use crate::checkpoint::Checkpoint;
 use crate::ensemble_report::Report;
+use crate::files::Pending;
 
 /// Arguments of `merge`.
 #[derive(Debug, clap::Args)]
@@ -27,23 +27,16 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let (first, rest) = arguments.files.split_first().context("no file to merge")?;
-    let mut merged = Checkpoint::load(first)?;
-    for file in rest {
-        let other = Checkpoint::load(file)?;
-        let name = || format!("cannot merge {} with what comes before it", file.display());
-        merged.ensemble.merge(&other.ensemble).with_context(name)?;
-    }
+    let merged = Written::merged(&arguments.files)?;
     let missing = merged.ensemble.missing();
     for range in &missing {
         session.message("missing", &format!("trials {} to {}", range.start, range.end - 1));
     }
     if let Some(file) = &arguments.output {
-        anyhow::ensure!(arguments.force || !file.exists(), "{} exists already; --force replaces it", file.display());
-        Checkpoint::save(file, &merged.description, &merged.ensemble)?;
+        Pending::write_whole(file, arguments.force, &merged.text()?)?;
     }
-    let Checkpoint { description, ensemble } = &merged;
-    let report = Report { description, ensemble, partial: !missing.is_empty(), took: None };
+    let Written { seed, study, ensemble } = &merged;
+    let report = Report { study, seed: *seed, ensemble, partial: !missing.is_empty(), took: None };
     if session.json() {
         session.print_json(&report.json())?;
     } else {

@@ -1,14 +1,15 @@
 //! `umbmark paper`: the experiments of Borenstein & Feng (1995), beside their numbers.
 
-mod figures;
-mod tables;
-
 use std::io::Write;
 use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
 
 use serde_json::{Map, Value, json};
+use umbmark_core::paper::{self, Bench, BothWays, LinkError, PaperError, Place};
+use umbmark_core::watch::Watch;
 
 use crate::Session;
+use crate::table::table;
 
 /// An experiment of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
@@ -52,41 +53,40 @@ pub struct Arguments {
 }
 
 /// What an experiment found: for people, and as a document.
-pub(crate) struct Found {
+struct Found {
     /// Its key in the document.
     key: &'static str,
     text: String,
     document: Value,
 }
 
-/// What experiments need to know.
-struct Bench<'a> {
-    session: &'a Session,
-    trials: u64,
-}
-
-type Run = fn(&Bench) -> anyhow::Result<Found>;
+type Run = fn(&Bench) -> Result<Found, PaperError>;
 
 const EXPERIMENTS: [(Experiment, Run); 7] = [
-    (Experiment::TableOne, tables::one),
-    (Experiment::TableTwo, tables::two),
-    (Experiment::FigureTwo, figures::masking),
-    (Experiment::FigureFive, figures::clusters),
-    (Experiment::FigureSix, figures::bump_places),
-    (Experiment::FigureEight, figures::figure_eight),
-    (Experiment::Rectangle, figures::rectangle),
+    (Experiment::TableOne, table_one),
+    (Experiment::TableTwo, table_two),
+    (Experiment::FigureTwo, masking),
+    (Experiment::FigureFive, clusters),
+    (Experiment::FigureSix, bump_places),
+    (Experiment::FigureEight, figure_eight),
+    (Experiment::Rectangle, rectangle),
 ];
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let wanted = |experiment: Experiment| [experiment, Experiment::All].contains(&arguments.experiment);
+    let (trials, seed) = (arguments.trials, session.seed());
     let mut found = Vec::new();
     for (_, run) in EXPERIMENTS.iter().filter(|(experiment, _)| wanted(*experiment)) {
-        found.push(run(&Bench { session, trials: arguments.trials })?);
+        let told = session.told("per mille of the tests", |progress| {
+            let stop = AtomicBool::new(false);
+            run(&Bench { trials, seed, watch: &Watch { stop: &stop, progress } })
+        });
+        found.push(told??);
     }
     if session.json() {
         let mut document: Map<String, Value> =
             found.into_iter().map(|found| (found.key.to_owned(), found.document)).collect();
-        document.insert("seed".to_owned(), json!(session.seed()));
+        document.insert("seed".to_owned(), json!(seed));
         document.insert("version".to_owned(), json!(umbmark_core::VERSION));
         session.print_json(&Value::Object(document))?;
         return Ok(ExitCode::SUCCESS);
@@ -94,4 +94,154 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let texts: Vec<String> = found.into_iter().map(|found| found.text).collect();
     writeln!(session.out(), "{}", texts.join("\n\n\n"))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Cells of a published number, in a unit of which so many are one of SI.
+fn cells(place: &Place, factor: f64) -> Vec<String> {
+    let [low, high] = place.middle_95;
+    let scaled = |value: f64| format!("{:.*}", if factor > 500.0 { 0 } else { 2 }, value * factor);
+    vec![
+        scaled(place.published),
+        scaled(place.mean),
+        format!("{} .. {}", scaled(low), scaled(high)),
+        format!("{:.1} %", 100.0 * place.share_below_published),
+    ]
+}
+
+fn table_one(bench: &Bench) -> Result<Found, PaperError> {
+    let found = paper::table_one(bench)?;
+    let (mut rows, mut notes) = (Vec::new(), String::new());
+    for row in &found.rows {
+        let mut words = vec![row.row.to_owned()];
+        words.extend(cells(&row.e_max_sys_m, 1e3));
+        words.extend(cells(&row.sigma_m, 1e3).into_iter().take(2));
+        rows.push(words);
+        notes += &format!("\n{} (--robot {})\n", row.row, row.robot);
+        row.from.sources.iter().for_each(|text| notes += &format!("  from the paper: {text}\n"));
+        row.from.assumed.iter().for_each(|text| notes += &format!("  assumed: {text}\n"));
+    }
+    let error = |e: &LinkError| format!("  {} of {} off by {:.2e}\n", e.parameter, e.effect, e.size);
+    let would: String = found.clapper_would_take.iter().map(error).collect();
+    let header = ["Table I", "E_max,sys [mm]", "simulated", "middle 95 %", "below it", "sigma [mm]", "simulated"];
+    let text = format!(
+        "{}\n\n{} simulated tests of each. \"below it\": the share of them below the published E_max,sys.\n\
+         The CLAPPER's 22 mm are more than noise of its published sigma makes (2.71 sigma/sqrt(5) = 13 mm at most in 95 %): they are\n\
+         systematic, the paper does not say of what, and nothing was invented to make them. Each of these alone would:\n{would}{notes}",
+        table(&header, rows),
+        found.trials
+    );
+    Ok(Found { key: "table_1", text, document: json!(found) })
+}
+
+fn table_two(bench: &Bench) -> Result<Found, PaperError> {
+    let found = paper::table_two(bench)?;
+    let rows = found.columns.iter().map(|column| {
+        let exactly = column.heading_noise_rad == 0.0;
+        let robot = if exactly { column.robot.to_owned() } else { format!("{}, +-0.4 deg", column.robot) };
+        let mut row = vec![robot, format!("{:.2}", column.printed_rad.to_degrees())];
+        row.extend(cells(&column.recomputed, 1f64.to_degrees()));
+        let [least, most] = column.runs_rad.map(f64::to_degrees);
+        row.push(format!("{least:.1} .. {most:.1}"));
+        row
+    });
+    let header = ["Table II [deg]", "printed", "recomputed", "simulated", "middle 95 %", "below it", "its runs"];
+    let (on, off) = (found.clapper_corrected_rad, found.clapper_uncorrected_rad);
+    let text = format!(
+        "{}\n\n{} simulated tests of each, ten bumps of 10 mm under the inside wheel on the first leg.\n\
+         recomputed: half of Eq. (5), the mean over all runs, from the printed headings; the printed 8.35 of the LabMate needs\n\
+         its two systematic means exchanged. \"its runs\": the least and the largest deviation of a single run.\n\
+         The LabMate is taken to be the calibrated one, whose systematic headings are the smaller; the paper does not say which.\n\
+         The K2A turns by D/(2 sqrt(3) rho) a bump if three equal wheels share its slip: that rests on the assumed wheels and circle,\n\
+         and is not fitted to the printed number.\n\
+         CLAPPER: {:.1} deg with its correction off, {:.3} deg with it: {:.0} times less. \"+-0.4 deg\": the same where each heading is\n\
+         measured that well (standard deviation 0.4/sqrt(3) deg), as is reported, at second hand, of a sonar device for such tests.",
+        table(&header, rows),
+        found.trials,
+        off.to_degrees(),
+        on.to_degrees(),
+        off / on
+    );
+    Ok(Found { key: "table_2", text, document: json!(found) })
+}
+
+/// Distances and headings, ccw and cw.
+fn both_ways(rows: &[BothWays]) -> String {
+    let rows = rows.iter().map(|row| {
+        let mut words = vec![row.what.to_owned()];
+        for [x, y, heading] in [row.returns.ccw, row.returns.cw] {
+            words.push(format!("{:.1}", x.hypot(y) * 1e3));
+            words.push(format!("{:.2}", heading.to_degrees()));
+        }
+        words
+    });
+    table(&["", "ccw [mm]", "heading [deg]", "cw [mm]", "heading [deg]"], rows)
+}
+
+/// Figs. 2 to 4.
+fn masking(_: &Bench) -> Result<Found, PaperError> {
+    let found = paper::masking()?;
+    let text = format!(
+        "Figures 2 to 4: errors that compensate for each other in one direction\n\n{}\n\nE_d = {:.5}, E_b = {:.5}, LabMate, 4 x 4 m, \
+         exact kinematics without noise",
+        both_ways(&found.rows),
+        found.e_d,
+        found.e_b
+    );
+    Ok(Found { key: "figure_2", text, document: json!(found) })
+}
+
+/// Fig. 5: one test of the uncalibrated LabMate.
+fn clusters(bench: &Bench) -> Result<Found, PaperError> {
+    let found = paper::clusters(bench.seed)?;
+    let mm = |v: f64| format!("{:.0}", v * 1e3);
+    let mut rows = Vec::new();
+    for cluster in &found {
+        let name = cluster.direction;
+        for (number, [x, y]) in cluster.returns_m.iter().enumerate() {
+            rows.push(vec![format!("{name} {}", number + 1), mm(*x), mm(*y), String::new()]);
+        }
+        let [x, y] = cluster.centre_m;
+        rows.push(vec![format!("{name} centre of gravity"), mm(x), mm(y), mm(cluster.r_m)]);
+    }
+    let text = format!(
+        "Figure 5: return positions of one test, trc-labmate-nocal, seed {}\n\n{}",
+        bench.seed,
+        table(&["", "ex [mm]", "ey [mm]", "r [mm]"], rows)
+    );
+    Ok(Found { key: "figure_5", text, document: json!(found) })
+}
+
+/// Fig. 6: ten bumps at the beginning of the first leg, all along it, and at its end.
+fn bump_places(_: &Bench) -> Result<Found, PaperError> {
+    let found = paper::bump_places()?;
+    let rows = found.iter().map(|place| {
+        let shift = format!("{:.0}", place.return_position_m * 1e3);
+        vec![place.bumps.to_owned(), shift, format!("{:.2}", place.return_heading_rad.to_degrees())]
+    });
+    let text = format!(
+        "Figure 6: ten 10 mm bumps on the first leg, ccw, LabMate, exact kinematics without noise\n\n{}",
+        table(&["", "return position [mm]", "return heading [deg]"], rows)
+    );
+    Ok(Found { key: "figure_6", text, document: json!(found) })
+}
+
+/// What a figure-eight shows of E_d and E_b.
+fn figure_eight(_: &Bench) -> Result<Found, PaperError> {
+    let found = paper::figure_eight()?;
+    let text = format!(
+        "Section 3.1: the figure-eight (two circles of 2 m) hides E_d from a tape measure and E_b from a compass,\n\
+         whichever way it is driven: with positions alone it has the shortcoming that the paper says, with headings it has not\n\n{}",
+        both_ways(&found)
+    );
+    Ok(Found { key: "figure_eight", text, document: json!(found) })
+}
+
+/// The 7 x 4 m rectangle beside the square.
+fn rectangle(_: &Bench) -> Result<Found, PaperError> {
+    let found = paper::rectangle()?;
+    let text = format!(
+        "Section 4.5: the rectangle instead of the square, trc-labmate-nocal, exact kinematics without noise\n\n{}",
+        both_ways(&found)
+    );
+    Ok(Found { key: "rectangle", text, document: json!(found) })
 }

@@ -8,7 +8,7 @@ use anyhow::Context;
 use serde_json::json;
 use umbmark_plot::figure::Figure;
 use umbmark_plot::kind::{KINDS, Kind, find};
-use umbmark_plot::render::{bitmap, plotly, svg};
+use umbmark_plot::render::file::{Format, UnknownEnding, WIDTHS_MM};
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
@@ -16,33 +16,16 @@ use crate::files::Pending;
 use crate::prose::hanging;
 use crate::study_arguments::StudyArguments;
 
-/// How a figure is written, by the ending of its file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    Svg,
-    Png,
-    Pdf,
-    Plotly,
-}
-
-/// A file of one of these formats.
+/// A file of a format.
 #[derive(Clone, Debug)]
 struct Drawing {
     path: PathBuf,
     format: Format,
 }
 
-fn drawing(text: &str) -> Result<Drawing, String> {
+fn drawing(text: &str) -> Result<Drawing, UnknownEnding> {
     let path = PathBuf::from(text);
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let format = match ending.as_str() {
-        "svg" => Format::Svg,
-        "png" => Format::Png,
-        "pdf" => Format::Pdf,
-        "json" => Format::Plotly,
-        _ => return Err("a figure is written as NAME.svg, NAME.png, NAME.pdf or NAME.json (for Plotly)".into()),
-    };
-    Ok(Drawing { path, format })
+    Ok(Drawing { format: Format::of(&path)?, path })
 }
 
 fn kind(name: &str) -> Result<&'static Kind, String> {
@@ -92,7 +75,8 @@ pub struct Arguments {
 
 fn width(text: &str) -> Result<f64, String> {
     let width = crate::numbers::number(text)?;
-    if (40.0..=400.0).contains(&width) { Ok(width) } else { Err("must be from 40 to 400 mm".into()) }
+    let (least, most) = (WIDTHS_MM.start(), WIDTHS_MM.end());
+    if WIDTHS_MM.contains(&width) { Ok(width) } else { Err(format!("must be from {least} to {most} mm")) }
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
@@ -106,7 +90,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let figure = session
         .on_threads(|| (kind.build)(&study))?
         .with_context(|| format!("{} cannot be drawn from {name}", kind.name))?;
-    let bytes = bytes(&figure, &arguments)?;
+    let bytes = arguments.output.format.bytes(&figure, arguments.width, arguments.dpi)?;
     let mut file = Pending::create(&arguments.output.path, arguments.force)?;
     file.write_all(&bytes).with_context(|| file.failed())?;
     file.finish()?;
@@ -133,15 +117,4 @@ fn text(figure: &Figure, output: &str) -> String {
     text += &hanging("shows", 8, &figure.told.shows);
     text += &hanging("good", 8, &figure.told.good);
     text + &format!("\nwrote {output}\n")
-}
-
-fn bytes(figure: &Figure, arguments: &Arguments) -> anyhow::Result<Vec<u8>> {
-    let style = svg::Style { width_mm: arguments.width, ..svg::Style::default() };
-    let drawn = || svg::svg(figure, &style);
-    Ok(match arguments.output.format {
-        Format::Svg => drawn().into_bytes(),
-        Format::Png => bitmap::png(&drawn(), f64::from(arguments.dpi))?,
-        Format::Pdf => bitmap::pdf(&drawn())?,
-        Format::Plotly => serde_json::to_vec(&plotly::figure(figure))?,
-    })
 }

@@ -11,6 +11,7 @@ use umbmark_plot::render::terminal::plan;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
+use crate::level_argument::LevelArgument;
 use crate::table::table;
 
 /// Characters of the figure, across and down.
@@ -32,9 +33,8 @@ pub struct Arguments {
     #[command(flatten)]
     data: DataArguments,
 
-    /// Probability with which the intervals hold
-    #[arg(long, default_value_t = 0.95, value_name = "P", value_parser = crate::numbers::number)]
-    level: f64,
+    #[command(flatten)]
+    intervals: LevelArgument,
 
     /// How the extended test joins both directions
     #[arg(long, value_enum, default_value_t = ConventionKind::Mean, value_name = "HOW")]
@@ -43,7 +43,7 @@ pub struct Arguments {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
-    let mut score = score(&data.runs, arguments.level)?;
+    let mut score = score(&data.runs, arguments.intervals.level)?;
     score.warnings.splice(0..0, data.warnings.iter().cloned());
     let convention = match arguments.convention {
         ConventionKind::Mean => Convention::Mean,

@@ -31,7 +31,7 @@ pub struct Arguments {
     method: Method,
 
     /// Base points of Sobol indices, a power of two; each costs one test a parameter and three more
-    #[arg(short = 'n', long, value_name = "N", default_value_t = 4096)]
+    #[arg(short = 'n', long, value_name = "N", default_value_t = 4096, value_parser = crate::numbers::whole)]
     base_points: u64,
 
     /// Sobol indices of pairs of parameters too, for about twice the tests
@@ -39,11 +39,11 @@ pub struct Arguments {
     second_order: bool,
 
     /// Trajectories of Morris screening; each costs one test a parameter and two more
-    #[arg(long, value_name = "N", default_value_t = 100)]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = crate::numbers::whole)]
     trajectories: u64,
 
     /// Tests on each side of the medians for derivatives
-    #[arg(long, value_name = "N", default_value_t = 1000)]
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = crate::numbers::whole)]
     trials: u64,
 
     /// Ask the return of exact kinematics, without noise, bumps and quantisation, and not whole tests

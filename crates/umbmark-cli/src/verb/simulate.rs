@@ -64,6 +64,12 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let dataset =
         record_test(&model, &path, tests, arguments.numbers()?, arguments.reference_rate, [session.seed(), 0])?;
     let lost = arguments.output.write(&dataset)?;
+    let kind = model.robot().drive.kind();
+    if !kind.has_tick_logs() {
+        let name = kind.name();
+        session
+            .message("note", &format!("a robot with drive = \"{name}\" has no tick logs: returns alone were written"));
+    }
     for text in &assumed {
         session.message("assumed", text);
     }

@@ -37,7 +37,7 @@ pub struct Arguments {
     metric: String,
 
     /// Robots drawn for each choice of grades
-    #[arg(short = 'n', long, value_name = "N", default_value_t = 10_000)]
+    #[arg(short = 'n', long, value_name = "N", default_value_t = 10_000, value_parser = crate::numbers::whole)]
     robots: u64,
 
     /// Judge what a whole test with its noise shows of each robot, not the robot's own systematic error

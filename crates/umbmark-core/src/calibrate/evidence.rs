@@ -3,7 +3,7 @@
 use super::{CalibrateError, noise_shape};
 use crate::dataset::{Dataset, Run};
 use crate::drive::Robot;
-use crate::effect::{Model, TestKind, check_predicted};
+use crate::effect::{Model, TestKind};
 use crate::geometry::Pose2;
 use crate::path::Direction;
 use crate::replay::Track;
@@ -79,10 +79,11 @@ impl Evidence {
 
 /// The end poses of the regular test, weighted by the shape of their scatter; headings only where every run has one.
 pub(crate) fn end_poses(data: &Dataset, robot: &Robot) -> Result<Vec<Drive>, CalibrateError> {
-    check_predicted(robot.drive.kind())?;
+    check_path(data, robot)?;
     let mut drives = Vec::with_capacity(data.runs.len());
+    let mut commanded = [None, None];
     for run in data.runs.iter().filter(|run| run.test == TestKind::Systematic) {
-        drives.extend(ended(run, data, robot)?);
+        drives.extend(ended(run, data, robot, &mut commanded)?);
     }
     if drives.is_empty() {
         return Err(CalibrateError::NothingObserved { runs: data.runs.len() });
@@ -90,8 +91,21 @@ pub(crate) fn end_poses(data: &Dataset, robot: &Robot) -> Result<Vec<Drive>, Cal
     if drives.iter().any(|d| d.seen.iter().any(|s| s.heading.is_none())) {
         drives.iter_mut().flat_map(|d| &mut d.seen).for_each(|s| s.heading = None);
     }
-    drives.iter_mut().for_each(|drive| drive.weight = end_weight(drive, robot));
+    for i in 0..drives.len() {
+        let alike = (0..i).find(|j| drives[*j].track == drives[i].track);
+        drives[i].weight = alike.map_or_else(|| end_weight(&drives[i], robot), |j| drives[j].weight);
+    }
     Ok(drives)
+}
+
+/// Refuses a path that the robot is known to have driven and cannot drive.
+fn check_path(data: &Dataset, robot: &Robot) -> Result<(), CalibrateError> {
+    match &data.path {
+        Some(path) if !robot.drive.kind().has_tick_logs() && !path.suits(robot) => {
+            Err(CalibrateError::Path { drive: robot.drive.kind().name(), shape: path.shape().name })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A run with its recorded track, if it has one.
@@ -116,13 +130,20 @@ fn stops(drive: &Drive) -> usize {
 }
 
 /// A run with its return error, as the absolute pose at the end of what was recorded or, without ticks, of the path.
-fn ended(run: &Run, data: &Dataset, robot: &Robot) -> Result<Option<Drive>, CalibrateError> {
+/// Tracks of the path are made once a direction, in `commanded`.
+fn ended(
+    run: &Run,
+    data: &Dataset,
+    robot: &Robot,
+    commanded: &mut [Option<Track>; 2],
+) -> Result<Option<Drive>, CalibrateError> {
     let Some(error) = run.returned else { return Ok(None) };
     let recorded = track_of(run, robot)?;
     let is_recorded = recorded.is_some();
     let from_path = || {
-        let path = data.path.as_ref()?;
-        Some(Track::from_path(path, run.direction.unwrap_or(Direction::Ccw), robot))
+        let (path, direction) = (data.path.as_ref()?, run.direction.unwrap_or(Direction::Ccw));
+        let track = commanded[direction as usize].get_or_insert_with(|| Track::from_path(path, direction, robot));
+        Some(track.clone())
     };
     let Some(track) = recorded.map(Track::cut_at_last).or_else(from_path) else { return Ok(None) };
     let computed: Pose2 = track.end(&Model::new(robot).chain());

@@ -19,7 +19,7 @@ use crate::dataset::ReturnError;
 use crate::drive::Robot;
 use crate::effect::{Evaluate, Model};
 use crate::fit::{self, Fit, Problem, RANK_TOLERANCE, jackknife_covariance, null_directions};
-use crate::geometry::{Dual, Pose2, wrap};
+use crate::geometry::{Dual, Pose2, seeded, wrap};
 use crate::path::Direction;
 use crate::score::Scatter;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -160,15 +160,13 @@ impl Problem for Kinematics<'_> {
     fn jacobian(&self, parameters: &[f64]) -> DMatrix<f64> {
         let values = self.all(parameters);
         let mut rows = Vec::with_capacity(self.count() * self.free.len());
-        for index in &self.free {
-            let seeded: [Dual; 3] = std::array::from_fn(|j| Dual::new(values[j], f64::from(u8::from(j == *index))));
-            self.predict::<Dual>(&seeded, |drive, observation, pose| {
-                let seen = &drive.seen[observation];
-                let slope = drive.weight * -Vector3::new(pose.x.eps, pose.y.eps, pose.heading.eps);
-                rows.extend_from_slice(&slope.as_slice()[..rows_of(seen.heading)]);
-            });
-        }
-        DMatrix::from_vec(self.count(), self.free.len(), rows)
+        self.predict::<Dual>(&seeded(values, &self.free), |drive, observation, pose| {
+            let slopes = DMatrix::from_fn(3, self.free.len(), |k, lane| -[pose.x, pose.y, pose.heading][k].eps[lane]);
+            let weighted = drive.weight * slopes;
+            let of_row = |row: usize| weighted.row(row).iter().copied().collect::<Vec<_>>();
+            rows.extend((0..rows_of(drive.seen[observation].heading)).flat_map(of_row));
+        });
+        DMatrix::from_row_slice(self.count(), self.free.len(), &rows)
     }
 }
 

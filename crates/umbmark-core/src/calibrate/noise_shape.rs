@@ -1,5 +1,7 @@
 //! The shape of the scatter that evenly noisy wheels give an end pose.
 
+pub(crate) mod trucks;
+
 use crate::drive::{DifferentialDrive, WheelTravel};
 use crate::geometry::Pose2;
 use crate::replay::Track;
@@ -12,8 +14,11 @@ const PIECES: usize = 16;
 ///
 /// Σ = ∫ g_L g_Lᵀ |ds_L| + g_R g_Rᵀ |ds_R|, where g is the shift of the end pose by a unit of wheel travel at the pose q on the way:
 /// half of it along the heading, and a turn ±1/b of the rest of the path about q. To first order, along the nominal path.
-/// Source: the noise model of Chong & Kleeman, ICRA 1997.
+/// Source: the noise model of Chong & Kleeman, ICRA 1997. Of two trucks with a link, that of the front one.
 pub(crate) fn end_covariance(track: &Track, drive: &DifferentialDrive) -> Matrix3<f64> {
+    if let Some(convoy) = track.convoy() {
+        return trucks::gathered(convoy, drive, 0..convoy.steps().len());
+    }
     let displaced =
         |pose: Pose2, travel: &WheelTravel, share: f64| pose.moved(&drive.displacement(&travel.scaled(share)));
     let end = track.travel().iter().fold(Pose2::IDENTITY, |pose, travel| displaced(pose, travel, 1.0));

@@ -13,6 +13,7 @@ use super::robot_file::{parse_robot, read_robot};
 use super::sheet::Rows;
 use super::text::{read_text, unreadable};
 use super::tick_log::parse_tick_log;
+use crate::drive::Kind;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -185,10 +186,19 @@ fn add_optiodom_run(assembly: &mut Assembly, folder: &Path, run: &optiodom::RunF
     let name = file.display().to_string();
     let text = read_text(&file)?;
     let named = Named { number: Some(run.number), ..Named::default() };
+    let tricycle = assembly.robot().filter(|robot| robot.drive.kind() == Kind::Ackermann);
     let Some(track) = &run.track else {
-        let recording = optiodom::parse_run(&name, &text)?;
+        let recording = match tricycle {
+            Some(robot) => optiodom::parse_tricycle_run(&name, &text, robot)?,
+            None => optiodom::parse_run(&name, &text)?,
+        };
         return assembly.add_log(recording, None, &stem(&file), named, EndPose::Last);
     };
+    if tricycle.is_some() {
+        let (key, value) = ("type".into(), "\"tricyc\"".into());
+        let remedy = "of tricycles, runs are read whose two clocks were brought together (*_run-NN.csv)".into();
+        return Err(DatasetError::NotYet { file: name, line: 1, key, value, remedy });
+    }
     let recording = optiodom::parse_odometry(&name, &text)?;
     let tracked = read_track(&folder.join(track), &mut assembly.warnings)?;
     assembly.add_log(recording, Some(tracked), &stem(&file), named, EndPose::Last)

@@ -142,6 +142,18 @@ fn damaged_optiodom_files() {
     let metadata = "type,diff,,\nngear,43.7,,\nencRes,64,,\nLi,0.2,,\nDi,0.084,0.085,\nL,0.75,,\n";
     survive(metadata, 6, |text| optiodom::parse_metadata("file", "set", text).is_ok());
     let run = "0,0,0,0,0,0\n0.05,-5.3e-05,-3e-05,-0.0003,12,7\n0.1,0.002,0.004,0.02,-12,700\n";
+    let tricycle = "type,tricyc,\nngear,1,\nencRes,1600,\nLi,0.15,\nDi,0.065,\nThi,0.01,\n";
+    survive(tricycle, 6, |text| optiodom::parse_metadata("file", "set", text).is_ok());
+    let robot = optiodom::parse_metadata("file", "set", tricycle).unwrap().0;
+    let steered = "0,0,0,0,0,0\n0.05,-5.3e-05,-3e-05,-0.0003,12,0.1\n0.1,0.002,0.004,0.02,-12,-0.2\n";
+    survive(steered, 8, |text| {
+        let log = optiodom::parse_tricycle_run("file", text, &robot)
+            .and_then(|recording| recording.into_log(Some(&robot), None, &mut Vec::new()));
+        log.is_ok_and(|log| {
+            assert!(log.left.iter().chain(&log.right).chain(&log.time).all(|value| value.is_finite()));
+            true
+        })
+    });
     survive(run, 7, |text| optiodom::parse_run("file", text).is_ok_and(|recording| finished(recording, None)));
 }
 

@@ -5,17 +5,26 @@
 //! cycle, right wheel before left. Metadata: `Li` wheelbase \[m\], `Di` right and left wheel diameter \[m\], `ngear` times
 //! `encRes` ticks per revolution, `L` the side of the square \[m\] where the path is one. The authors compare the last row
 //! of each run, so the return error is taken there and reproduces their published numbers.
+//!
+//! Of a tricycle (`tricyc`), whose front wheel is driven and steered: `Li` the distance of that wheel from the rear axle \[m\], `Di` its
+//! diameter \[m\], `Thi` what is added to its angle \[rad\]; rows end with its ticks of this cycle and its angle \[rad\]. An
+//! [`AckermannDrive`] counts on the rear axle, so a row's ticks n count as n cos δ there. Its track width stands nowhere and is taken to be
+//! `Li`: nothing but the size of wheel noise depends on it.
 
 use super::ReferencePose;
 use super::columns::headless;
 use super::error::DatasetError;
 use super::recording::Recording;
 use super::sheet::{Rows, split};
-use crate::drive::{DifferentialDrive, Encoder, Robot};
+use crate::drive::{AckermannDrive, DifferentialDrive, Drive, Encoder, Robot};
+use crate::geometry::wrap;
 use crate::path::{Path, SQUARE, SpeedProfile};
 use std::collections::{BTreeMap, BTreeSet};
 
 const METADATA: &str = "_metadata.csv";
+const TRICYCLE: &str = "tricyc";
+/// Counts a revolution in which steering angles, radians in the files, are kept.
+const STEERING: f64 = 1e6;
 
 /// Whether a file name is that of metadata, and of which set.
 pub(super) fn set_of_metadata(name: &str) -> Option<&str> {
@@ -59,9 +68,13 @@ pub(super) fn runs(names: &[String], set: &str) -> Vec<RunFiles> {
 /// The robot and the path of a metadata file; the encoder's rate is left open.
 pub(super) fn parse_metadata(file: &str, set: &str, text: &str) -> Result<(Robot, Option<Path>), DatasetError> {
     let metadata = Metadata { file, text };
-    if let Some((line, kind)) = metadata.find("type").filter(|(_, kind)| *kind != "diff") {
+    let kind = metadata.find("type");
+    if kind.is_some_and(|(_, kind)| kind == TRICYCLE) {
+        return Ok((tricycle(&metadata, set)?, None));
+    }
+    if let Some((line, kind)) = kind.filter(|(_, kind)| *kind != "diff") {
         let value = super::error::quoted(kind);
-        let remedy = "only differential drives (\"diff\") are read so far".into();
+        let remedy = "only differential drives (\"diff\") and tricycles (\"tricyc\") are read so far".into();
         return Err(DatasetError::NotYet { file: file.to_owned(), line, key: "type".into(), value, remedy });
     }
     let ticks = metadata.positive("ngear", 0)? * metadata.positive("encRes", 0)?;
@@ -78,6 +91,18 @@ pub(super) fn parse_metadata(file: &str, set: &str, text: &str) -> Result<(Robot
         _ => None,
     };
     Ok((Robot { name: format!("OptiOdom {set}"), drive: drive.into(), encoder }, path))
+}
+
+/// The tricycle of a metadata file.
+fn tricycle(metadata: &Metadata, set: &str) -> Result<Robot, DatasetError> {
+    let ticks = metadata.positive("ngear", 0)? * metadata.positive("encRes", 0)?;
+    let (distance, diameter) = (metadata.positive("Li", 0)?, metadata.positive("Di", 0)?);
+    let zero = metadata.number_or("Thi", 0.0)?;
+    let impossible = |error: &dyn std::fmt::Display| metadata.missing("robot", &error.to_string());
+    let drive =
+        AckermannDrive::new(distance, distance, diameter, STEERING, zero).map_err(|error| impossible(&error))?;
+    let encoder = Encoder::new(ticks, None, None).map_err(|error| impossible(&error))?;
+    Ok(Robot { name: format!("OptiOdom {set}"), drive: drive.into(), encoder })
 }
 
 struct Metadata<'a> {
@@ -108,6 +133,19 @@ impl<'a> Metadata<'a> {
             key: key.to_owned(),
             value: super::error::quoted(cell),
             allowed: "a positive number".into(),
+            remedy: "".into(),
+        })
+    }
+
+    /// A number, where a cell has one.
+    fn number_or(&self, key: &str, otherwise: f64) -> Result<f64, DatasetError> {
+        let Some((line, cell)) = self.find(key).filter(|(_, cell)| !cell.is_empty()) else { return Ok(otherwise) };
+        cell.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| DatasetError::Value {
+            file: self.file.to_owned(),
+            line,
+            key: key.to_owned(),
+            value: super::error::quoted(cell),
+            allowed: "a number, or nothing".into(),
             remedy: "".into(),
         })
     }
@@ -153,6 +191,29 @@ pub(super) fn parse_run(file: &str, text: &str) -> Result<Recording, DatasetErro
         recording.time.push(time);
         recording.counts[0].push(left);
         recording.counts[1].push(right);
+        recording.reference.push(ReferencePose { sample, x, y, heading: Some(heading) });
+    })?;
+    Ok(recording)
+}
+
+/// The rows of a tricycle's run.
+pub(super) fn parse_tricycle_run(file: &str, text: &str, robot: &Robot) -> Result<Recording, DatasetError> {
+    let names = ["time (1st)", "x (2nd)", "y (3rd)", "theta (4th)", "odoWh (5th)", "ThWh (6th)"];
+    let mut recording = Recording {
+        file: file.to_owned(),
+        columns: [names[0], names[4], names[5]].map(str::to_owned),
+        ..Recording::default()
+    };
+    let zero = if let Drive::Ackermann(drive) = &robot.drive { drive.steering_zero() } else { 0.0 };
+    let mut driven = 0.0;
+    headless(file, text, &names, |line, cells| {
+        let [time, x, y, heading, ticks, angle] = *cells;
+        let sample = recording.time.len();
+        driven += ticks * libm::cos(angle + zero);
+        recording.lines.push(line);
+        recording.time.push(time);
+        recording.counts[0].push(driven);
+        recording.counts[1].push(wrap(angle) * STEERING / std::f64::consts::TAU);
         recording.reference.push(ReferencePose { sample, x, y, heading: Some(heading) });
     })?;
     Ok(recording)

@@ -24,7 +24,7 @@ pub(super) fn parse_tick_log(
     kind: Kind,
     warnings: &mut Vec<String>,
 ) -> Result<Recording, DatasetError> {
-    if !kind.has_one_axle() {
+    if !kind.has_tick_logs() {
         let (file, value) = (file.to_owned(), format!("\"{}\"", kind.name()));
         let remedy = "logs of its two trucks are not read; give its returns in returns.csv".into();
         return Err(DatasetError::NotYet { file, line: 1, key: "drive".into(), value, remedy });

@@ -1,7 +1,7 @@
 //! The effects that a model may be missing, and what each would do to the poses that it predicts.
 
-use crate::effect::{Entry, Model, ModelError, of_drive};
-use crate::geometry::{Dual, Pose2};
+use crate::effect::{Chain, Changes, Entry, Model, ModelError, Number, of_drive};
+use crate::geometry::{Dual, LANES, Pose2, seeded};
 use crate::parameter::Parameter;
 use crate::replay::Track;
 use rayon::prelude::*;
@@ -32,46 +32,55 @@ pub fn candidates(model: &Model, tracks: &[Track]) -> Result<Vec<Candidate>, Mod
 /// [`candidates`] with tracks cut as finely as a model needs them: `tracks(true)` for one that varies along the way.
 pub(crate) fn of_tracks<'a>(
     model: &Model,
-    tracks: impl Fn(bool) -> Vec<&'a Track> + Sync,
-) -> Result<Vec<Candidate>, ModelError> {
-    let missing: Vec<&'static Entry> = of_drive(model.robot().drive.kind())
-        .filter(|entry| model.parts().iter().all(|part| part.effect != *entry))
-        .collect();
-    let found: Vec<Candidate> =
-        missing.into_par_iter().map(|effect| of_effect(effect, model, &tracks)).collect::<Result<_, _>>()?;
-    Ok(found.into_iter().filter(|candidate| !candidate.sizes.is_empty()).collect())
-}
-
-/// An effect with those of its sizes that move some pose.
-pub(crate) fn of_effect<'a>(
-    effect: &'static Entry,
-    model: &Model,
     tracks: impl Fn(bool) -> Vec<&'a Track>,
-) -> Result<Candidate, ModelError> {
-    let mut with = model.clone();
-    with.add(effect.about.name)?;
-    let tracks = tracks(with.may_vary());
-    let before = with.parts().iter().take_while(|part| part.effect != effect);
-    let first: usize = before.map(|part| part.values.len()).sum();
-    let moves = |p: &Pose2| p.x != 0.0 || p.y != 0.0 || p.heading != 0.0;
-    let size = |(index, parameter): (usize, &'static Parameter)| {
-        let columns = of_value(&with, first + index, &tracks);
-        columns.iter().flatten().any(moves).then_some(Size { parameter, columns })
+) -> Result<Vec<Candidate>, ModelError> {
+    let missing = of_drive(model.robot().drive.kind()).filter(|entry| {
+        entry.changes.include(Changes::MEAN) && model.parts().iter().all(|part| part.effect != **entry)
+    });
+    let mut asked: [Vec<(&'static Entry, &'static Parameter)>; 2] = Default::default();
+    for effect in missing.clone() {
+        let mut with = model.clone();
+        with.add(effect.about.name)?;
+        asked[usize::from(with.may_vary())].extend(effect.about.parameters.iter().map(|parameter| (effect, parameter)));
+    }
+    let mut sizes: Vec<(&'static Entry, Size)> = Vec::new();
+    for (varies, asked) in [(false, &asked[0]), (true, &asked[1])] {
+        let tracks = tracks(varies);
+        let number = |(effect, parameter): &(&'static Entry, &'static Parameter)| Number {
+            effect: effect.about.name,
+            parameter: parameter.name,
+            shape: None,
+        };
+        let derived = model.derived(&asked.iter().map(number).collect::<Vec<_>>())?;
+        let columns: Vec<_> = derived.par_iter().map(|d| slopes(&d.chain, d.numbers.len(), &tracks)).collect();
+        for (number, columns) in derived.iter().zip(columns).flat_map(|(d, columns)| d.numbers.iter().zip(columns)) {
+            let (effect, parameter) = asked[*number];
+            sizes.push((effect, Size { parameter, columns }));
+        }
+    }
+    let moves = |size: &Size| size.columns.iter().flatten().any(|p| p.x != 0.0 || p.y != 0.0 || p.heading != 0.0);
+    sizes.retain(|(_, size)| moves(size));
+    let candidate = |effect: &'static Entry| {
+        let own = |parameter: &'static Parameter| {
+            let found = sizes.iter().find(|(e, size)| *e == effect && size.parameter.name == parameter.name);
+            found.map(|(_, size)| size.clone())
+        };
+        Candidate { effect, sizes: effect.about.parameters.iter().filter_map(own).collect() }
     };
-    Ok(Candidate { effect, sizes: effect.about.parameters.iter().enumerate().filter_map(size).collect() })
+    Ok(missing.map(candidate).filter(|candidate| !candidate.sizes.is_empty()).collect())
 }
 
-/// Derivatives of all observed poses by one value of a model, in the order of [`Model::values`], run by run.
-pub fn columns(model: &Model, value: usize, tracks: &[Track]) -> Vec<Vec<Pose2>> {
-    of_value(model, value, &tracks.iter().collect::<Vec<_>>())
+/// Derivatives of all observed poses by some values of a model, in the order of [`Model::values`]: value by value, run by run.
+pub fn columns(model: &Model, values: &[usize], tracks: &[&Track]) -> Vec<Vec<Vec<Pose2>>> {
+    let of_some = |places: &[usize]| slopes(&model.chain_with(&seeded(model.values(), places)), places.len(), tracks);
+    values.chunks(LANES).flat_map(of_some).collect()
 }
 
-pub(crate) fn of_value(model: &Model, value: usize, tracks: &[&Track]) -> Vec<Vec<Pose2>> {
-    let seeded = model.values().enumerate();
-    let values: Vec<Dual> = seeded.map(|(i, v)| Dual::new(v, f64::from(u8::from(i == value)))).collect();
-    let chain = model.chain_with(&values);
-    let derivative = |pose: &Pose2<Dual>| Pose2::new(pose.x.eps, pose.y.eps, pose.heading.eps);
-    tracks.iter().map(|track| track.poses(&chain).iter().map(derivative).collect()).collect()
+/// What the first `count` lanes of a chain carry: lane by lane, run by run.
+fn slopes(chain: &Chain<Dual>, count: usize, tracks: &[&Track]) -> Vec<Vec<Vec<Pose2>>> {
+    let poses: Vec<Vec<Pose2<Dual>>> = tracks.iter().map(|track| track.poses(chain)).collect();
+    let of_lane = |lane: usize| poses.iter().map(|run| run.iter().map(|pose| pose.slope(lane)).collect()).collect();
+    (0..count).map(of_lane).collect()
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ pub(super) mod design;
 
 use super::ends::{Asked, Ends, Fitted};
 use super::{DiagnoseError, Experiment, Suspect};
-use crate::effect::{Entry, Model, find};
+use crate::effect::{Entry, Model, Number, find};
 use crate::parameter::Parameter;
 use crate::stats::normal_quantile;
 use design::{Design, Noise, designs, todays};
@@ -182,15 +182,17 @@ impl Columns {
     fn of(design: &Design, fitted: &Fitted, sizes: &[SizeOf], noise: &Noise) -> Result<Columns, DiagnoseError> {
         let model = &fitted.model;
         let stages = design.stages(model.robot(), noise);
-        let base = fitted.free.iter().map(|index| design.column(model, *index, &stages)).collect();
-        let of_size = |(effect, parameter): &SizeOf| -> Result<DVector<f64>, DiagnoseError> {
-            let mut with = model.clone();
-            with.add(effect.about.name)?;
-            let names = super::ends::names(&with);
-            let index = names.iter().position(|n| *n == (effect.about.name, parameter.name)).unwrap_or(0);
-            Ok(design.column(&with, index, &stages))
-        };
-        Ok(Columns { base, sizes: sizes.iter().map(of_size).collect::<Result<_, _>>()? })
+        let names = super::ends::names(model);
+        let own = fitted.free.iter().map(|index| names[*index]);
+        let asked = own.chain(sizes.iter().map(|(effect, parameter)| (effect.about.name, parameter.name)));
+        let numbers: Vec<Number> = asked.map(|(effect, parameter)| Number { effect, parameter, shape: None }).collect();
+        let mut columns = vec![DVector::zeros(0); numbers.len()];
+        for derived in model.derived(&numbers)? {
+            let made = design.columns(&derived, &stages);
+            derived.numbers.iter().zip(made).for_each(|(number, column)| columns[*number] = column);
+        }
+        let sizes = columns.split_off(fitted.free.len());
+        Ok(Columns { base: columns, sizes })
     }
 
     /// Both experiments together.

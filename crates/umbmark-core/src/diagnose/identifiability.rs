@@ -86,12 +86,10 @@ fn of_tracks(
         asked.extend(part.effect.parameters().iter().map(|p| (part.free, part.effect.name(), p.name)));
     }
     let (mut shares, mut columns): (Vec<Share>, Vec<DVector<f64>>) = Default::default();
-    for (index, (free, effect, parameter)) in asked.into_iter().enumerate() {
-        if !free {
-            continue;
-        }
-        let of_tracks: Vec<Pose2> =
-            candidates::of_value(&nominal, index, tracks).iter().filter_map(|poses| poses.last().copied()).collect();
+    let free: Vec<usize> = asked.iter().enumerate().filter(|(_, (free, ..))| *free).map(|(index, _)| index).collect();
+    for (index, by_run) in free.iter().zip(candidates::columns(&nominal, &free, tracks)) {
+        let (_, effect, parameter) = asked[*index];
+        let of_tracks: Vec<Pose2> = by_run.iter().filter_map(|poses| poses.last().copied()).collect();
         let poses: Vec<Pose2> = runs.iter().map(|(_, track)| of_tracks[*track]).collect();
         let position = poses.iter().map(|p| libm::hypot(p.x, p.y)).fold(0.0, f64::max);
         let heading = poses.iter().map(|p| p.heading.abs()).fold(0.0, f64::max);

@@ -24,9 +24,6 @@ pub struct Theory {
 impl Theory {
     /// That of a study, all drawn parameters in their middle.
     pub fn of(study: &Study) -> Result<Theory, StudyError> {
-        if !study.robot().drive.kind().has_one_axle() {
-            return Ok(Theory { exact: None, first_order: None });
-        }
         let [cw, ccw] = study.noise_free()?;
         let middle = |effect: &str, parameter: &str| {
             let drawn = study.draws.iter().find(|d| d.effect() == effect && d.parameter().name == parameter);
@@ -84,11 +81,12 @@ fn effects(study: &Study) -> Value {
         let name = part.effect.name();
         let mut entry = Map::from_iter([("name".to_owned(), json!(name))]);
         for (parameter, value) in part.effect.parameters().iter().zip(&part.values) {
-            let draw = drawn(name, parameter.name);
-            entry.insert(
-                parameter.name.to_owned(),
-                draw.map_or(json!(value), |draw| distribution(&draw.distribution())),
-            );
+            let value = match (drawn(name, parameter.name), parameter.choices.get(*value as usize)) {
+                (Some(draw), _) => distribution(&draw.distribution()),
+                (None, Some(word)) => json!(word),
+                (None, None) => json!(value),
+            };
+            entry.insert(parameter.name.to_owned(), value);
         }
         Value::Object(entry)
     });

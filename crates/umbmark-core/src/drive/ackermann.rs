@@ -46,6 +46,11 @@ impl AckermannDrive {
         Ok(AckermannDrive { axle, axle_distance, steering_ticks, steering_zero })
     }
 
+    /// Angle of the steered wheel where its counter shows 0 \[rad\].
+    pub fn steering_zero(&self) -> f64 {
+        self.steering_zero
+    }
+
     /// Metres per count of the drive, radians per count of the steering.
     fn per_count(&self, encoder: &Encoder) -> [f64; 2] {
         [PI * self.axle.wheel_diameter_left() / encoder.ticks_per_revolution(), TAU / self.steering_ticks]

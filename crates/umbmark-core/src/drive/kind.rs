@@ -32,8 +32,7 @@ struct Facts {
     name: &'static str,
     counters: [&'static str; 2],
     parameters: &'static [Parameter],
-    first_effects: [&'static str; 3],
-    has_one_axle: bool,
+    has_tick_logs: bool,
     from_values: fn(&[f64]) -> Result<Drive, DriveError>,
 }
 
@@ -43,8 +42,7 @@ impl Facts {
             name: D::NAME,
             counters: D::COUNTERS,
             parameters: D::PARAMETERS,
-            first_effects: D::FIRST_EFFECTS,
-            has_one_axle: D::HAS_ONE_AXLE,
+            has_tick_logs: D::HAS_TICK_LOGS,
             from_values: |values| D::from_values(values).map(Into::into),
         }
     }
@@ -67,16 +65,10 @@ impl Kind {
         self.facts().parameters
     }
 
-    /// The effects that are fitted before anything is asked: what bends a leg, what changes a turn, and what lengthens the
-    /// way. On a square driven both ways, the first shows as Type B of the paper's companion and the second as Type A.
-    pub fn first_effects(self) -> [&'static str; 3] {
-        self.facts().first_effects
-    }
-
-    /// Whether its motion is that of one axle, so that a model of effects predicts where it ends; not where a link corrects its
-    /// parts as they drive.
-    pub fn has_one_axle(self) -> bool {
-        self.facts().has_one_axle
+    /// Whether its two counters say all that its odometry knows, so that there are tick logs of it; not where a link corrects two
+    /// trucks, each with counters of its own.
+    pub fn has_tick_logs(self) -> bool {
+        self.facts().has_tick_logs
     }
 
     /// A drive from the numbers that the kind [lists](Kind::parameters), in that order.
@@ -92,18 +84,6 @@ pub struct Kinds(u8);
 impl Kinds {
     /// Every drive.
     pub const ALL: Kinds = Kinds((1 << Kind::ALL.len()) - 1);
-
-    /// Those whose motion is that of one axle.
-    pub const OF_ONE_AXLE: Kinds = {
-        let (mut kinds, mut i) = (Kinds(0), 0);
-        while i < Kind::ALL.len() {
-            if Kind::ALL[i].facts().has_one_axle {
-                kinds = kinds.and(Kind::ALL[i]);
-            }
-            i += 1;
-        }
-        kinds
-    };
 
     /// One kind.
     pub const fn of(kind: Kind) -> Kinds {

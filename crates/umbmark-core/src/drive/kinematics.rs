@@ -15,11 +15,16 @@ pub(super) trait Kinematics: Sized {
     /// The numbers of its nominal robot beside those of the encoder.
     const PARAMETERS: &'static [Parameter];
 
-    /// See [`Kind::first_effects`](super::Kind::first_effects).
+    /// See [`Drive::first_effects`](super::Drive::first_effects); those of all robots of the kind, unless it says otherwise.
     const FIRST_EFFECTS: [&'static str; 3] = ["wheel_diameter_ratio", "wheelbase", "scale"];
 
-    /// See [`Kind::has_one_axle`](super::Kind::has_one_axle).
-    const HAS_ONE_AXLE: bool = true;
+    /// See [`Kind::has_tick_logs`](super::Kind::has_tick_logs).
+    const HAS_TICK_LOGS: bool = true;
+
+    /// See [`Drive::first_effects`](super::Drive::first_effects).
+    fn first_effects(&self) -> [&'static str; 3] {
+        Self::FIRST_EFFECTS
+    }
 
     /// A drive from the values of [`Kinematics::PARAMETERS`].
     fn from_values(values: &[f64]) -> Result<Self, DriveError>;

@@ -36,7 +36,7 @@ impl Effect for CarpetNap {
         source: "the carpet-drift vector of vacuum robots (patents of iRobot, US 9,223,312 and family); size assumed",
     };
 
-    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
+    const DRIVES: Kinds = Kinds::ALL;
 
     const CHANGES: Changes = Changes::BODY;
 

@@ -3,7 +3,7 @@
 /// What an effect changes: the methods of [`Effect`](super::Effect) that it overrides, so that the others need not be
 /// called for every piece of every run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Changes(u8);
+pub struct Changes(u16);
 
 impl Changes {
     /// [`Effect::wheels`](super::Effect::wheels).
@@ -22,8 +22,13 @@ impl Changes {
     pub const START_SCATTER: Changes = Changes(1 << 6);
     /// [`Effect::measured`](super::Effect::measured).
     pub const MEASURED: Changes = Changes(1 << 7);
+    /// [`Effect::link`](super::Effect::link).
+    pub const LINK: Changes = Changes(1 << 8);
+    /// What moves the mean of what is observed.
+    pub const MEAN: Changes =
+        Changes::WHEELS.and(Changes::BODY).and(Changes::SEEN).and(Changes::START).and(Changes::LINK);
     /// All of these: always right, if slower.
-    pub const ALL: Changes = Changes(u8::MAX);
+    pub const ALL: Changes = Changes(u16::MAX);
 
     /// These and others.
     pub const fn and(self, others: Changes) -> Changes {

@@ -44,6 +44,8 @@ pub struct Context<T = f64> {
     /// Heading that the odometry believes at the beginning of the piece \[rad\], 0 at START; of a synchro drive, how far its wheels
     /// are steered from there.
     pub believed_heading: f64,
+    /// Which of two trucks: 0 for the front one, whose pose is measured, and for a robot that is one body; 1 for the rear one.
+    pub truck: f64,
     /// Distance of the steered wheel from the axle \[m\]; see [`Drive::axle_distance`](crate::drive::Drive::axle_distance).
     pub axle_distance: f64,
     /// Number of the run in the session, from 0.
@@ -76,6 +78,7 @@ impl Context {
             length: self.length,
             last_turn: self.last_turn,
             believed_heading: self.believed_heading,
+            truck: self.truck,
             axle_distance: self.axle_distance,
             run: self.run,
             direction: self.direction,

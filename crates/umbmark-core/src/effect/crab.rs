@@ -32,7 +32,7 @@ impl Effect for Crab {
         source: "geometry; first-order theory of side-periodic errors on closed paths; size assumed",
     };
 
-    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
+    const DRIVES: Kinds = Kinds::ALL;
 
     const CHANGES: Changes = Changes::BODY;
 

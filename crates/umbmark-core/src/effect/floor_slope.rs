@@ -57,7 +57,7 @@ impl Effect for FloorSlope {
                  against the slip whatever its size, 1 mm per radian assumed",
     };
 
-    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
+    const DRIVES: Kinds = Kinds::ALL;
 
     const CHANGES: Changes = Changes::BODY;
 

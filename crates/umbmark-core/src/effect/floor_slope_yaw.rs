@@ -42,7 +42,7 @@ impl Effect for FloorSlopeYaw {
         source: "load transfer on a slope; 1 mrad per metre is assumed",
     };
 
-    const DRIVES: Kinds = Kinds::OF_ONE_AXLE;
+    const DRIVES: Kinds = Kinds::ALL;
 
     const CHANGES: Changes = Changes::BODY;
 

@@ -22,7 +22,7 @@ mod variable;
 use super::name::lasting;
 use super::{CATALOGUE, Context, MAX_PARAMETERS};
 use crate::drive::WheelTravel;
-use crate::geometry::{Displacement2, Dual, Real};
+use crate::geometry::{Displacement2, Dual, LANES, Real};
 use crate::parameter::{DefaultValue, Parameter};
 use program::{Op, Program};
 use std::fmt;
@@ -212,24 +212,21 @@ impl Formula {
         if self.is_idle(at.length) {
             return Ok(());
         }
-        // Heading after the parameters.
-        let seeds = values.len() + usize::from(self.turns);
-        for seed in 0..seeds.max(1) {
-            let seeded = |(i, v): (usize, &f64)| Dual::new(*v, f64::from(u8::from(i == seed)));
-            let mut duals = [Dual::from(0.0); MAX_PARAMETERS];
-            duals.iter_mut().zip(values.iter().enumerate().map(seeded)).for_each(|(to, from)| *to = from);
-            let heading = Dual::new(at.heading, f64::from(u8::from(seed == values.len())));
-            let mut first = None;
-            self.program.watched(&duals, &at.headed(heading), heading, |i, value| {
-                if !(value.re.is_finite() && value.eps.is_finite()) && first.is_none() {
-                    first = Some(i);
-                }
-            });
-            if let Some(op) = first {
-                return Err(self.singular(op, values, at));
-            }
+        // Heading after the parameters: a lane for each.
+        const { assert!(MAX_PARAMETERS < LANES) };
+        let mut duals = [Dual::from(0.0); MAX_PARAMETERS + 1];
+        for (lane, (dual, value)) in duals.iter_mut().zip(values.iter().chain([&at.heading])).enumerate() {
+            *dual = Dual::from(*value);
+            dual.eps[lane] = if lane < values.len() || self.turns { 1.0 } else { 0.0 };
         }
-        Ok(())
+        let heading = duals[values.len()];
+        let mut first = None;
+        self.program.watched(&duals, &at.headed(heading), heading, |i, value| {
+            if !(value.re.is_finite() && value.eps.iter().all(|e| e.is_finite())) && first.is_none() {
+                first = Some(i);
+            }
+        });
+        first.map_or(Ok(()), |op| Err(self.singular(op, values, at)))
     }
 
     fn singular(&self, op: usize, values: &[f64], at: &Context) -> Singular {

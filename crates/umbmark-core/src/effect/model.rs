@@ -1,7 +1,7 @@
 //! A model: a choice of effects with values.
 
 use super::{Changes, Context, Entry, Evaluate, Formula, Law, MAX_PARAMETERS, Mean, Sight, find};
-use crate::drive::{DifferentialDrive, Kind, Kinds, Robot, WheelTravel};
+use crate::drive::{DifferentialDrive, Kinds, LinkReading, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
 use crate::parameter::{DefaultValue, Parameter, ParameterError, nearest};
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 #[non_exhaustive]
 pub enum ModelError {
     /// An effect that the catalogue does not hold.
-    #[error("there is no effect \"{name}\"{}", did_you_mean(*nearest))]
+    #[error("there is no effect \"{name}\"{}", did_you_mean(*nearest).unwrap_or_else(listed))]
     UnknownEffect {
         /// What was asked for.
         name: String,
@@ -19,7 +19,7 @@ pub enum ModelError {
         nearest: Option<&'static str>,
     },
     /// A parameter that the effect does not have.
-    #[error("{effect} has no parameter \"{name}\"{}", did_you_mean(*nearest))]
+    #[error("{effect} has no parameter \"{name}\"{}", did_you_mean(*nearest).unwrap_or_default())]
     UnknownParameter {
         /// The effect.
         effect: &'static str,
@@ -44,15 +44,6 @@ pub enum ModelError {
         /// The drives that may have it.
         drives: Kinds,
         /// The robot's.
-        drive: &'static str,
-    },
-    /// A drive whose poses no model of one axle predicts.
-    #[error(
-        "drive = \"{drive}\" is not supported here: its returns are corrected by its link as it drives, and are not predicted by a \
-         model of effects; `umbmark mc`, `score` and `paper` take it"
-    )]
-    NotPredicted {
-        /// The kind of the drive.
         drive: &'static str,
     },
     /// A second effect of the same name.
@@ -90,8 +81,12 @@ pub enum ModelError {
     },
 }
 
-fn did_you_mean(nearest: Option<&str>) -> String {
-    nearest.map(|n| format!("; did you mean \"{n}\"?")).unwrap_or_default()
+fn did_you_mean(nearest: Option<&str>) -> Option<String> {
+    nearest.map(|n| format!("; did you mean \"{n}\"?"))
+}
+
+fn listed() -> String {
+    "; `umbmark effects` lists them".to_owned()
 }
 
 /// One effect of a model.
@@ -120,11 +115,6 @@ pub struct Part {
 pub struct Model {
     robot: Robot,
     parts: Vec<Part>,
-}
-
-/// That a model of effects predicts where robots with this drive end.
-pub(crate) fn check_predicted(kind: Kind) -> Result<(), ModelError> {
-    if kind.has_one_axle() { Ok(()) } else { Err(ModelError::NotPredicted { drive: kind.name() }) }
 }
 
 impl Model {
@@ -363,8 +353,8 @@ impl Model {
     }
 }
 
-/// Whether a parameter shapes what others do.
-fn is_shape(parameter: &Parameter) -> bool {
+/// Whether a parameter of an effect shapes what its others do.
+pub(crate) fn is_shape(parameter: &Parameter) -> bool {
     !matches!(parameter.default, DefaultValue::Value(value) if value == 0.0 || value == 1.0)
 }
 
@@ -421,10 +411,27 @@ impl<T: Evaluate> Chain<T> {
     /// True wheel travel for a believed one.
     #[inline]
     pub fn wheel_travel(&self, at: &Context<T>, believed: &WheelTravel) -> WheelTravel<T> {
-        let mut travel = [WheelTravel { left: T::from(believed.left), right: T::from(believed.right) }];
+        self.rolled(at, WheelTravel { left: T::from(believed.left), right: T::from(believed.right) })
+    }
+
+    /// The same of a believed travel that has itself a derivative: that of a robot which steers by what the effects change.
+    #[inline]
+    pub fn rolled(&self, at: &Context<T>, believed: WheelTravel<T>) -> WheelTravel<T> {
+        let mut travel = [believed];
         self.change_wheels(at, &mut travel);
         let [travel] = travel;
         travel
+    }
+
+    /// What the encoders of a link show of it.
+    #[inline]
+    pub fn link(&self, reading: LinkReading<T>) -> LinkReading<T> {
+        self.links(Changes::LINK).fold(reading, |mut shown, link| {
+            if let Work::Entry(mean) = &link.work {
+                (mean.link)(&link.values, &mut shown);
+            }
+            shown
+        })
     }
 
     /// Makes true wheel travels of believed ones, all in one place: link after link, so that no travel waits for another.
@@ -494,7 +501,7 @@ impl<T: Evaluate> Chain<T> {
 mod tests {
     use super::*;
     use crate::effect::CATALOGUE;
-    use crate::geometry::Dual;
+    use crate::geometry::seeded;
 
     #[test]
     fn effects_stand_in_the_order_of_the_catalogue_however_they_were_added() {
@@ -540,8 +547,7 @@ mod tests {
         let believed = WheelTravel { left: 0.9, right: 1.1 };
         let values: Vec<f64> = model.values().collect();
         for i in 0..3 {
-            let duals: Vec<Dual> =
-                values.iter().enumerate().map(|(j, v)| Dual::new(*v, f64::from(u8::from(i == j)))).collect();
+            let duals = seeded(values.iter().copied(), &[0, 1, 2]);
             let exact = model.chain_with(&duals).displacement(&Context::default().headed(duals[0]), &believed);
             let at = |step: f64| {
                 let mut v = values.clone();
@@ -549,8 +555,8 @@ mod tests {
                 model.chain_with(&v).displacement(&Context::default(), &believed)
             };
             let (h, l) = (at(1e-6), at(-1e-6));
-            assert!((exact.forward.eps - (h.forward - l.forward) / 2e-6).abs() < 1e-8);
-            assert!((exact.rotation.eps - (h.rotation - l.rotation) / 2e-6).abs() < 1e-8);
+            assert!((exact.forward.eps[i] - (h.forward - l.forward) / 2e-6).abs() < 1e-8);
+            assert!((exact.rotation.eps[i] - (h.rotation - l.rotation) / 2e-6).abs() < 1e-8);
         }
     }
 }

@@ -29,7 +29,15 @@ impl Effect for Scale {
                   0.5 % is what a tape leaves.",
         signature: "Legs are longer than believed, which a closed square does not show; turns are larger by the same share, \
                     which looks like E_b. A square determines only E_b/E_s.",
-        confused_with: &["wheelbase", "turn_slip", "turn_slip_rate", "speed_slip", "bumps"],
+        confused_with: &[
+            "wheelbase",
+            "turn_slip",
+            "turn_slip_rate",
+            "speed_slip",
+            "link_length",
+            "rear_truck",
+            "bumps",
+        ],
         separated_by: "the length of one straight leg by tape, or the pose at a stop",
         source: "Borenstein & Feng (1995), section 2",
     };

@@ -50,7 +50,7 @@ impl Effect for StartPose {
         physics: "The robot is pushed to a mark on the floor, and its odometry set to zero whether it stands there or not.",
         signature: "A heading error δ turns the whole path about START: invisible at the end of a closed path but for the \
                     heading itself. A position error shifts the return by as much.",
-        confused_with: &["floor_slope", "carpet_nap", "placed_bumps", "reference_noise"],
+        confused_with: &["floor_slope", "carpet_nap", "placed_bumps", "rotary_zero_mean", "reference_noise"],
         separated_by: "measuring START in every run",
         source: "Borenstein & Feng (1995), section 3.4, step 1",
     };

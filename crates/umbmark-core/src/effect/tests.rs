@@ -1,8 +1,10 @@
 //! What holds for every effect, and the paths that single effects are tested on.
 
 use super::*;
-use crate::drive::Robot;
+use crate::drive::{LinkReading, Robot};
+use crate::geometry::{LANES, seeded};
 use crate::path::{CIRCLE, Path, SQUARE, SpeedProfile};
+use crate::preset::Preset;
 use crate::replay::Track;
 
 /// An effect's parameter and its value.
@@ -32,6 +34,25 @@ pub(super) fn stops_with(settings: &[Setting], direction: Direction) -> Vec<Pose
 
 pub(super) fn circle_end_with(settings: &[Setting], direction: Direction) -> Pose2 {
     Track::in_pieces(&circle(), direction, &Robot::labmate()).end(&model_with(settings).chain())
+}
+
+/// The paper's CLAPPER.
+fn clapper() -> Robot {
+    Preset::find("clapper").unwrap().robot()
+}
+
+/// The poses seen after each leg and each corner of the CLAPPER's rectangle, less those that a robot without errors would have.
+pub(super) fn clapper_stops_with(settings: &[Setting], direction: Direction) -> Vec<Pose2> {
+    let track = Track::with_stops(&Preset::find("clapper").unwrap().path(), direction, &clapper());
+    let off =
+        |(seen, told): (&Pose2, &Pose2)| Pose2::new(seen.x - told.x, seen.y - told.y, seen.heading - told.heading);
+    let (seen, told) = (track.poses(&model_with(settings).chain()), track.poses(&model_with(&[]).chain()));
+    seen.iter().zip(&told).map(off).collect()
+}
+
+/// The return error of the CLAPPER on its rectangle.
+pub(super) fn clapper_returned_with(settings: &[Setting], direction: Direction) -> Pose2 {
+    clapper_stops_with(settings, direction).pop().unwrap()
 }
 
 /// A path watched all along, and the poses seen.
@@ -64,7 +85,7 @@ pub(super) fn circle_speeds(direction: Direction) -> [f64; 2] {
     if direction == Direction::Ccw { [inner, 0.2] } else { [0.2, inner] }
 }
 
-/// Tracks on which every deterministic effect shows: a small square and a circle, both ways.
+/// Tracks on which every deterministic effect of one axle shows: a small square and a circle, both ways.
 pub(super) fn probes() -> Vec<Track> {
     let robot = Robot::labmate();
     let square = Path::new(&SQUARE, &[0.5], SpeedProfile::default()).unwrap();
@@ -74,6 +95,15 @@ pub(super) fn probes() -> Vec<Track> {
         tracks.push(Track::watched(&circle(), direction, &robot));
     }
     tracks
+}
+
+/// Tracks on which an effect shows: of its own drive, where it has only that.
+fn probes_of(entry: &Entry) -> Vec<Track> {
+    if entry.drives != Kinds::of(Kind::Clapper) {
+        return probes();
+    }
+    let square = Path::new(&SQUARE, &[1.0], SpeedProfile::default()).unwrap();
+    vec![Track::with_stops(&square, Direction::Ccw, &clapper())]
 }
 
 /// Everything that is seen on the probes.
@@ -98,9 +128,7 @@ fn neutral(p: &Parameter, robot: &Robot) -> f64 {
 
 /// The derivative of everything seen by parameter `i`, by duals.
 pub(super) fn column(model: &Model, i: usize, probes: &[Track]) -> Vec<f64> {
-    let seeded: Vec<Dual> =
-        model.values().enumerate().map(|(j, v)| Dual::new(v, f64::from(u8::from(i == j)))).collect();
-    seen(model, &seeded, probes).iter().map(|d| d.eps).collect()
+    seen(model, &seeded(model.values(), &[i]), probes).iter().map(|d| d.eps[0]).collect()
 }
 
 fn stepped(model: &Model, i: usize, step: f64, probes: &[Track]) -> Vec<f64> {
@@ -140,7 +168,8 @@ fn every_effect_that_files_may_name_is_there() {
                  diameter_drift centripetal_load missed_counts bumps placed_bumps wheel_noise encoder_skew \
                  encoder_resolution encoder_sampling reference_delay reference_clock_rate reference_noise \
                  marker_offset marker_yaw start_pose drive_scale steer_scale steer_coupling contact_trail base_yaw axle_distance \
-                 steering_zero steering_gain understeer";
+                 steering_zero steering_gain understeer rear_truck link_length rotary_zero_difference rotary_zero_mean \
+                 rotary_gain";
     for name in names.split_whitespace() {
         find(name).unwrap();
     }
@@ -166,9 +195,9 @@ fn a_misspelt_effect_is_told_its_neighbour() {
 
 #[test]
 fn an_effect_with_its_default_values_does_nothing_to_the_last_bit() {
-    let probes = probes();
-    let nothing = seen::<f64>(&Model::new(&Robot::labmate()), &[], &probes);
     for entry in CATALOGUE {
+        let probes = probes_of(entry);
+        let nothing = seen::<f64>(&Model::new(&Robot::labmate()), &[], &probes);
         let model = alone(entry, neutral);
         let values: Vec<f64> = model.values().collect();
         assert!(seen(&model, &values, &probes) == nothing, "{}", entry.about.name);
@@ -177,9 +206,9 @@ fn an_effect_with_its_default_values_does_nothing_to_the_last_bit() {
 
 #[test]
 fn each_number_but_those_of_chance_shows_and_its_derivative_is_that_of_finite_differences() {
-    let probes = probes();
     let mut silent = Vec::new();
     for entry in CATALOGUE {
+        let probes = probes_of(entry);
         let model = alone(entry, Parameter::usual);
         for (i, p) in entry.about.parameters.iter().enumerate() {
             let exact = column(&model, i, &probes);
@@ -206,10 +235,49 @@ fn each_number_but_those_of_chance_shows_and_its_derivative_is_that_of_finite_di
     assert_eq!(silent, chance);
 }
 
+/// Everything that the catalogue offers to a model with two effects of its own and a formula: side by side in few chains, and each
+/// alone with its effect.
+#[test]
+fn derivatives_taken_together_are_those_of_each_number_alone_to_the_last_bit() {
+    let probes = probes();
+    let mut model = model_with(&[("wheelbase", "e_b", 1.02), ("caster_kick", "kick_rad", 0.01)]);
+    let nap = Formula::new("nap", Target::HeadingPerMetre, "k * sin(heading - h0)", &["k", "h0"]).unwrap();
+    model.add_formula(nap, &[0.02, 0.5]).unwrap();
+    let own =
+        [("wheelbase", "e_b"), ("caster_kick", "kick_rad"), ("caster_kick", "trail_m"), ("nap", "k"), ("nap", "h0")];
+    let listed = of_drive(Kind::Differential).filter(|entry| entry.about.name != "caster_kick");
+    let listed = listed.flat_map(|entry| entry.about.parameters.iter().map(move |p| (entry.about.name, p.name)));
+    let number = |(effect, parameter)| Number { effect, parameter, shape: None };
+    let mut numbers: Vec<Number> = own.into_iter().chain(listed).map(number).collect();
+    let trail = |value| Number { effect: "leg_kick", parameter: "kick_rad", shape: Some(("trail_m", value)) };
+    numbers.extend([trail(0.1), trail(0.2)]);
+    let derived = model.derived(&numbers).unwrap();
+    assert!(derived.len() <= numbers.len().div_ceil(LANES) + 2, "{} chains", derived.len());
+    let mut told = 0;
+    for Derived { chain, numbers: places } in &derived {
+        let together: Vec<Pose2<Dual>> = probes.iter().flat_map(|track| track.poses(chain)).collect();
+        for (lane, place) in places.iter().enumerate() {
+            let Number { effect, parameter, shape } = numbers[*place];
+            let mut with = model.clone();
+            with.add(effect).unwrap();
+            if let Some((name, value)) = shape {
+                with.set(effect, name, value).unwrap();
+            }
+            let alone = with.chain_with(&seeded(with.values(), &[with.place_of(effect, parameter).unwrap()]));
+            let alone = probes.iter().flat_map(|track| track.poses(&alone));
+            for (pose, alone) in together.iter().zip(alone) {
+                assert_eq!((pose.value(), pose.slope(lane)), (alone.value(), alone.slope(0)), "{effect} {parameter}");
+            }
+            told += 1;
+        }
+    }
+    assert_eq!(told, numbers.len());
+}
+
 #[test]
 fn each_number_acts_linearly_where_the_effect_does_nothing() {
-    let probes = probes();
     for entry in CATALOGUE {
+        let probes = probes_of(entry);
         let model = alone(entry, neutral);
         for (i, p) in entry.about.parameters.iter().enumerate() {
             let exact = column(&model, i, &probes);
@@ -247,6 +315,7 @@ fn contexts() -> [Context; 2] {
         length: 0.02,
         last_turn: -1.0,
         believed_heading: 0.9,
+        truck: 1.0,
         axle_distance: 0.5,
         run: 2.0,
         direction: 1.0,
@@ -273,7 +342,7 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
     let motion = Displacement2 { forward: 0.4, sideways: 0.1, rotation: 0.2 };
     let pose = Pose2::new(1.0, 2.0, 0.5);
     let sight = Sight { time: 30.0, speed: 0.2, turn_rate: 0.3 };
-    let Mean { start, wheels, body, seen } = entry.values;
+    let Mean { start, wheels, body, link, seen } = entry.values;
     let Scatter { diffusion, bumps, start_scatter, measured } = entry.scatter;
     let mut stream = Stream::new(1, 2, 3);
     let (mut rolled, mut moved, mut shown, mut found) = ([travel; 2], [motion; 2], pose, pose);
@@ -282,6 +351,9 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
         body(values, at, moved);
     }
     seen(values, &sight, &mut shown);
+    let reading = LinkReading { length: 1.0, angles: [0.1, -0.2] };
+    let mut read = reading;
+    link(values, &mut read);
     measured(values, &mut stream, &mut found);
     let mut met = Vec::new();
     let long = WheelTravel { left: 300.0, right: 500.0 };
@@ -291,6 +363,7 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
         (Changes::WHEELS, rolled != [travel; 2]),
         (Changes::BODY, moved != [motion; 2]),
         (Changes::SEEN, shown != pose),
+        (Changes::LINK, read != reading),
         (Changes::MEASURED, found != pose),
         (Changes::BUMPS, !met.is_empty()),
         (Changes::DIFFUSION, diffusion(values, &travel) != WheelVariance::default()),

@@ -133,7 +133,9 @@ impl MidHeading<f64> {
             Letter::Right => [0, step[1]],
             Letter::Joint => step,
         };
-        MidHeading::arc(geometry.distance(counts), geometry.heading(counts))
+        // The angles of both ticks, each rounded by itself, so that both together err as they do one after the other.
+        let rotation = geometry.heading([counts[0], 0]) + geometry.heading([0, counts[1]]);
+        MidHeading::arc(geometry.distance(counts), rotation)
     }
 
     /// The same arc driven backward, if `backward`.

@@ -1,6 +1,6 @@
 //! Rigid motions of the plane and their logarithms.
 
-use super::{Real, wrap};
+use super::{Dual, Real, wrap};
 
 /// A pose of a body in the plane, `world_from_body`.
 ///
@@ -58,7 +58,7 @@ impl Pose2 {
         }
     }
 
-    /// This pose with derivative zero, as a [`Real`] of another kind.
+    /// This pose with derivatives of zero, as a [`Real`] of another kind.
     pub fn lift<T: Real>(&self) -> Pose2<T> {
         Pose2 { x: T::from(self.x), y: T::from(self.y), heading: T::from(self.heading) }
     }
@@ -127,9 +127,16 @@ impl<T: Real> Pose2<T> {
         }
     }
 
-    /// The pose without its derivative.
+    /// The pose without its derivatives.
     pub fn value(&self) -> Pose2 {
         Pose2 { x: self.x.value(), y: self.y.value(), heading: self.heading.value() }
+    }
+}
+
+impl Pose2<Dual> {
+    /// The derivative that a lane carries: of x, y and heading.
+    pub fn slope(&self, lane: usize) -> Pose2 {
+        Pose2 { x: self.x.eps[lane], y: self.y.eps[lane], heading: self.heading.eps[lane] }
     }
 }
 

@@ -1,20 +1,75 @@
-//! The scalars of the plane: `f64` for values, [`Dual`] for values with an exact derivative.
+//! The scalars of the plane: `f64` for values, [`Dual`] for values with exact derivatives.
 
-use num_dual::{Dual64, DualNum};
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A number carrying one directional derivative; a Jacobian column is one evaluation with this type.
-pub type Dual = Dual64;
+/// How many derivatives a [`Dual`] carries.
+pub const LANES: usize = 8;
+
+/// A number carrying derivatives in several directions at once; so many columns of a Jacobian are one evaluation with this type.
+///
+/// Value, trigonometry and branches are shared by all directions, and each direction's derivative is computed as if it were alone.
+///
+/// ```
+/// use umbmark_core::geometry::{Dual, Real, seeded};
+/// // By x in the first lane, by y in the second.
+/// let xy = seeded([2.0, 3.0], &[0, 1]);
+/// let product = xy[0] * xy[1];
+/// assert_eq!((product.re, product.eps[0], product.eps[1]), (6.0, 3.0, 2.0));
+/// assert_eq!(Dual::from(5.0).recip().eps[0], 0.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual {
+    /// The value.
+    pub re: f64,
+    /// Its derivatives.
+    pub eps: [f64; LANES],
+}
+
+/// Numbers of which those at `places` carry a derivative by themselves: place k in lane k.
+pub fn seeded(values: impl IntoIterator<Item = f64>, places: &[usize]) -> Vec<Dual> {
+    debug_assert!(places.len() <= LANES);
+    let mut duals: Vec<Dual> = values.into_iter().map(Dual::from).collect();
+    places.iter().enumerate().for_each(|(lane, place)| duals[*place].eps[lane] = 1.0);
+    duals
+}
 
 /// What the geometry computes with. Implemented by `f64` and [`Dual`] only.
 ///
 /// Trigonometry goes through [`Real::sinc_cos`], whose polynomials use only additions and multiplications: the same
 /// bits on every machine, where the system's mathematics library promises none.
-pub trait Real: DualNum<Primitive = f64> + Copy + Send + Sync {
+pub trait Real:
+    Copy
+    + std::fmt::Debug
+    + PartialEq
+    + Send
+    + Sync
+    + From<f64>
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+    + AddAssign<f64>
+    + SubAssign<f64>
+    + MulAssign<f64>
+    + DivAssign<f64>
+{
     /// (sin x / x, cos x), with sinc 0 = 1; absolute error below 3e-16 for |x| up to 1e5.
     fn sinc_cos(self) -> (Self, Self);
 
-    /// The value without its derivative.
+    /// The value without its derivatives.
     fn value(self) -> f64;
+
+    /// 1/x.
+    fn recip(self) -> Self;
 
     /// (sin x, cos x).
     #[inline(always)]
@@ -48,6 +103,11 @@ impl Real for f64 {
     }
 
     #[inline]
+    fn recip(self) -> f64 {
+        1.0 / self
+    }
+
+    #[inline]
     fn sine_cosine(self) -> (f64, f64) {
         if self.abs() <= std::f64::consts::FRAC_PI_4 {
             let (sinc, cosine) = sinc_cos_near_zero(self);
@@ -68,6 +128,126 @@ impl Real for f64 {
     }
 }
 
+impl Dual {
+    /// A number with this value, and this of each derivative.
+    #[inline(always)]
+    fn with(self, re: f64, eps: impl Fn(f64) -> f64) -> Dual {
+        Dual { re, eps: self.eps.map(eps) }
+    }
+
+    /// A number with this value, and this of each pair of derivatives.
+    #[inline(always)]
+    fn joined(self, other: Dual, re: f64, eps: impl Fn(f64, f64) -> f64) -> Dual {
+        Dual { re, eps: std::array::from_fn(|lane| eps(self.eps[lane], other.eps[lane])) }
+    }
+}
+
+impl From<f64> for Dual {
+    #[inline]
+    fn from(re: f64) -> Dual {
+        Dual { re, eps: [0.0; LANES] }
+    }
+}
+
+impl Neg for Dual {
+    type Output = Dual;
+
+    #[inline]
+    fn neg(self) -> Dual {
+        self.with(-self.re, |e| -e)
+    }
+}
+
+impl Add for Dual {
+    type Output = Dual;
+
+    #[inline]
+    fn add(self, other: Dual) -> Dual {
+        self.joined(other, self.re + other.re, |e, o| e + o)
+    }
+}
+
+impl Sub for Dual {
+    type Output = Dual;
+
+    #[inline]
+    fn sub(self, other: Dual) -> Dual {
+        self.joined(other, self.re - other.re, |e, o| e - o)
+    }
+}
+
+impl Mul for Dual {
+    type Output = Dual;
+
+    #[inline]
+    #[allow(clippy::suspicious_arithmetic_impl, reason = "the rule of products is a sum")]
+    fn mul(self, other: Dual) -> Dual {
+        self.joined(other, self.re * other.re, |e, o| e * other.re + o * self.re)
+    }
+}
+
+impl Div for Dual {
+    type Output = Dual;
+
+    #[inline]
+    fn div(self, other: Dual) -> Dual {
+        let inverse = 1.0 / other.re;
+        self.joined(other, self.re * inverse, |e, o| (e * other.re - o * self.re) * inverse * inverse)
+    }
+}
+
+impl Add<f64> for Dual {
+    type Output = Dual;
+
+    #[inline]
+    fn add(self, other: f64) -> Dual {
+        Dual { re: self.re + other, ..self }
+    }
+}
+
+impl Sub<f64> for Dual {
+    type Output = Dual;
+
+    #[inline]
+    fn sub(self, other: f64) -> Dual {
+        Dual { re: self.re - other, ..self }
+    }
+}
+
+impl Mul<f64> for Dual {
+    type Output = Dual;
+
+    #[inline]
+    fn mul(self, other: f64) -> Dual {
+        self.with(self.re * other, |e| e * other)
+    }
+}
+
+impl Div<f64> for Dual {
+    type Output = Dual;
+
+    #[inline]
+    fn div(self, other: f64) -> Dual {
+        self.with(self.re / other, |e| e / other)
+    }
+}
+
+macro_rules! assign {
+    ($assign:ident, $method:ident, $operator:tt, $($other:ty),*) => {$(
+        impl $assign<$other> for Dual {
+            #[inline]
+            fn $method(&mut self, other: $other) {
+                *self = *self $operator other;
+            }
+        }
+    )*};
+}
+
+assign!(AddAssign, add_assign, +, Dual, f64);
+assign!(SubAssign, sub_assign, -, Dual, f64);
+assign!(MulAssign, mul_assign, *, Dual, f64);
+assign!(DivAssign, div_assign, /, Dual, f64);
+
 impl Real for Dual {
     /// Always inlined: mostly one of the two is not wanted.
     #[inline(always)]
@@ -81,7 +261,8 @@ impl Real for Dual {
         } else {
             (cosine - sinc) / x
         };
-        (Dual::new(sinc, slope * self.eps), Dual::new(cosine, -sinc * x * self.eps))
+        let fall = -sinc * x;
+        (self.with(sinc, |e| slope * e), self.with(cosine, |e| fall * e))
     }
 
     #[inline]
@@ -90,15 +271,30 @@ impl Real for Dual {
     }
 
     #[inline]
+    fn recip(self) -> Dual {
+        let value = 1.0 / self.re;
+        let slope = -value * value;
+        self.with(value, |e| slope * e)
+    }
+
+    #[inline]
     fn exponential(self) -> Dual {
         let value = libm::exp(self.re);
-        Dual::new(value, value * self.eps)
+        self.with(value, |e| value * e)
     }
 
     #[inline]
     fn mapped(self, value: f64, slope: f64) -> Dual {
-        Dual::new(value, if self.eps == 0.0 { 0.0 } else { slope * self.eps })
+        self.with(value, |e| if e == 0.0 { 0.0 } else { slope * e })
     }
+}
+
+/// The angle of (x, y) from the x axis \[rad\], in (-π, π]: atan2 by `libm`, with its exact derivative.
+#[inline]
+pub fn direction<T: Real>(y: T, x: T) -> T {
+    let (across, along) = (y.value(), x.value());
+    // The second term is 0, and its derivative that of the angle.
+    (y * along - x * across) / (along * along + across * across) + libm::atan2(across, along)
 }
 
 /// Coefficients of z, z², ... z⁶ in sinc x = 1 + ..., with z = x² and |x| <= π/4.
@@ -163,7 +359,8 @@ pub(crate) fn sin_cos_reduced(x: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use num_dual::first_derivative;
+    use crate::random::Stream;
+    use num_dual::{Dual64, DualNum};
 
     #[test]
     fn sine_and_cosine_agree_with_libm_in_every_quadrant_and_both_signs() {
@@ -183,7 +380,7 @@ mod tests {
     fn sinc_is_smooth_through_zero_and_its_derivative_is_exact_on_both_sides_of_the_series() {
         assert_eq!(0.0_f64.sinc_cos(), (1.0, 1.0));
         for x in [-9.0, -0.41, -0.39, -1e-3, 0.0, 1e-9, 0.2, 0.399, 0.401, 0.78, 0.79, 3.0] {
-            let (_, slope) = first_derivative(|d: Dual| d.sinc_cos().0, x);
+            let slope = seeded([x], &[0])[0].sinc_cos().0.eps[0];
             // Oracle: a central difference of libm's sin(x)/x in a step where its rounding is 1e-10.
             let h = 1e-4;
             let sinc = |v: f64| if v == 0.0 { 1.0 } else { libm::sin(v) / v };
@@ -191,6 +388,44 @@ mod tests {
             assert!((slope - numeric).abs() < 1e-10, "{x}: {slope} {numeric}");
         }
     }
+
+    #[test]
+    fn a_direction_has_the_value_of_libm_and_the_derivative_of_differences_all_round() {
+        for k in 0..24 {
+            let (sine, cosine) = libm::sincos(f64::from(k) * 0.27 - 3.1);
+            let (x, y) = (2.0 * cosine, 2.0 * sine);
+            assert_eq!(direction(y, x), libm::atan2(y, x));
+            let own = |re: f64, eps: f64| Dual { re, eps: [eps; LANES] };
+            let exact = direction(own(y, 0.3), own(x, -0.7));
+            let h = 1e-6;
+            let numeric = (libm::atan2(y + 0.3 * h, x - 0.7 * h) - libm::atan2(y - 0.3 * h, x + 0.7 * h)) / (2.0 * h);
+            assert!((exact.eps[0] - numeric).abs() < 1e-8 && exact.re == libm::atan2(y, x), "{k}: {exact:?} {numeric}");
+        }
+    }
+
+    /// Oracle: num-dual's number with one derivative. 1000 pairs of numbers, a derivative of its own in each lane.
+    #[test]
+    fn each_lane_has_the_bits_of_a_number_with_that_derivative_alone() {
+        let mut stream = Stream::new(4, 0, 0);
+        let mut drawn = || Dual { re: stream.normal(), eps: std::array::from_fn(|_| stream.normal()) };
+        for _ in 0..1000 {
+            let (a, b, c) = (drawn(), drawn(), drawn().re);
+            let own = [-a, a + b, a - b, a * b, a / b, a + c, a - c, a * c, a / c, a.recip(), a.exponential()];
+            for lane in 0..LANES {
+                let [x, y] = [a, b].map(|d| Dual64::new(d.re, d.eps[lane]));
+                let exponential = Dual64::new(libm::exp(x.re), libm::exp(x.re) * x.eps);
+                let alone = [-x, x + y, x - y, x * y, x / y, x + c, x - c, x * c, x / c, x.recip(), exponential];
+                for (operation, (own, alone)) in own.iter().zip(alone).enumerate() {
+                    assert_eq!((own.re, own.eps[lane]), (alone.re, alone.eps), "{operation}: {x} {y} {c}");
+                }
+                let (own, system) = (a.sine_cosine(), x.sin_cos());
+                for (own, system) in [(own.0, system.0), (own.1, system.1)] {
+                    assert!((own.eps[lane] - system.eps).abs() < 1e-12 * (1.0 + system.eps.abs()), "{x}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn the_exponential_is_its_power_series_and_its_own_derivative() {
         for x in [-20.0_f64, -1.5, -1e-9, 0.0, 0.3, 2.0] {
@@ -202,7 +437,8 @@ mod tests {
                 sum += term;
             }
             let oracle = (0..6).fold(sum, |power, _| power * power);
-            let (value, slope) = first_derivative(|d: Dual| d.exponential(), x);
+            let grown = seeded([x], &[0])[0].exponential();
+            let (value, slope) = (grown.re, grown.eps[0]);
             assert_eq!(value, x.exponential());
             assert!((value / oracle - 1.0).abs() < 1e-13 && slope == value, "{x}: {value} {oracle} {slope}");
         }

@@ -10,7 +10,7 @@ use crate::path::{Direction, Path};
 use crate::replay::Track;
 use crate::score::summarise;
 
-/// A robot calibrated by its [first effects](crate::drive::Kind::first_effects), whatever its drive.
+/// A robot calibrated by its [first effects](crate::drive::Drive::first_effects), whatever its drive.
 #[derive(Clone, Debug)]
 pub struct GearCalibration {
     /// What was fitted.
@@ -56,7 +56,7 @@ pub fn calibrate_gears(data: &Dataset) -> Result<GearCalibration, GearError> {
     let asked = first_model(data)?;
     let Fit { model, estimates, .. } = fit(data, &asked)?;
     let shown = |effect: &str| estimates.iter().any(|e| e.effect == effect);
-    let first = robot.drive.kind().first_effects();
+    let first = robot.drive.first_effects();
     let mut all = model.clone();
     let mut values = [0.0; 3];
     for (value, effect) in values.iter_mut().zip(first) {

@@ -16,7 +16,7 @@ pub(super) fn learn(
 ) -> Result<Learnt, DiagnoseError> {
     let mut model = Model::new(&observed.robot);
     let mut steps = vec![step(plainly(observed, &model)?, None)];
-    let first = observed.robot.drive.kind().first_effects();
+    let first = observed.robot.drive.first_effects();
     let mut add = |model: &mut Model, effect: &'static str, fitted: Fitted| {
         *model = fitted.model.clone();
         steps.push(step(fitted, Some((effect, vec![effect], None))));

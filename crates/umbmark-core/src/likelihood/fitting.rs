@@ -4,11 +4,13 @@ use super::noise::Noise;
 use super::observed::{Observed, ObservedRun};
 use super::outliers::Outlier;
 use super::products::{ABSORBED, gram, share_left};
-use crate::effect::{Chain, Model, ModelError, find};
+use crate::effect::{Derived, Model, ModelError, Number, find};
 use crate::fit::{Options, Problem, least_squares};
-use crate::geometry::{Dual, Pose2};
+use crate::geometry::{LANES, seeded};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use std::cell::RefCell;
+use std::sync::Arc;
 
 /// One (x, y, heading) a block.
 pub type Column = Vec<[f64; 3]>;
@@ -65,19 +67,42 @@ pub struct Fitted {
     pub weighing: Weighing,
     /// Where runs were disturbed; what happened there is left out.
     pub outliers: Vec<Outlier>,
+    pub(crate) slopes: Slopes,
+}
+
+/// Derivatives of the predicted poses by free values of a model, run by run and one column a value: worked out once for each model.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Slopes {
+    values: Vec<f64>,
+    free: Vec<usize>,
+    columns: Arc<Vec<Vec<Column>>>,
+}
+
+impl Slopes {
+    fn of(observed: &Observed, model: &Model, free: &[usize]) -> Slopes {
+        let columns = Arc::new(observed.columns(model, free));
+        Slopes { values: model.values().collect(), free: free.to_vec(), columns }
+    }
+
+    /// Whether they are those by these values of a model of the same effects.
+    fn fit(&self, model: &Model, free: &[usize]) -> bool {
+        self.free == free && !self.columns.is_empty() && self.values.iter().copied().eq(model.values())
+    }
 }
 
 /// Outliers are looked for so many times.
 const ROUNDS: usize = 3;
 /// Stops where a step changes no parameter by more than a millionth.
-const STOP: Options = Options { iterations: 12, step_tolerance: 1e-7, decrease_tolerance: 1e-9 };
+const STOP: Options = Options { iterations: 12, step_tolerance: 1e-7, decrease_tolerance: 1e-9, cautious: true };
+/// From values that were fitted already.
+const AGAIN: Options = Options { cautious: false, ..STOP };
 
 impl Observed {
     /// Fits all free values of a model but those `held`, and the noise.
     pub fn fit(&self, model: &Model, from: &Noise, held: &[usize]) -> Result<Fitted, ModelError> {
         let mut fitted = self.whole().unfitted(model, from);
         fitted.free.retain(|value| !held.contains(value));
-        fitted.settle()?;
+        fitted.settle(&STOP)?;
         // An outlier may hide a smaller one, so it is looked for again.
         for _ in 0..ROUNDS {
             let found = fitted.beyond_noise();
@@ -88,9 +113,9 @@ impl Observed {
                 fitted.outliers.push(fitted.outlier((run, block), f64::from_bits(deviations)));
                 fitted.observed.runs[run].start_afresh(block, &fitted.model.chain());
             }
-            fitted.settle()?;
+            fitted.settle(&AGAIN)?;
         }
-        fitted.refit()?;
+        fitted.refit_by(&AGAIN)?;
         Ok(fitted)
     }
 
@@ -106,6 +131,7 @@ impl Observed {
             covariance: None,
             weighing: Weighing::Increments,
             outliers: Vec::new(),
+            slopes: Slopes::default(),
         }
     }
 
@@ -120,38 +146,55 @@ impl Observed {
 
     /// Derivatives of the predicted poses by some of the values of a model: run by run, one column a value.
     pub fn columns(&self, model: &Model, values: &[usize]) -> Vec<Vec<Column>> {
-        let chains: Vec<_> = values.iter().map(|value| seeded(model, *value)).collect();
-        self.runs.par_iter().map(|run| chains.iter().map(|chain| run.derivatives(chain)).collect()).collect()
+        let chain = |places: &[usize]| (model.chain_with(&seeded(model.values(), places)), places.len());
+        let chains: Vec<_> = values.chunks(LANES).map(chain).collect();
+        let of_run = |run: &ObservedRun| chains.iter().flat_map(|(chain, count)| run.columns(chain, *count)).collect();
+        self.runs.par_iter().map(of_run).collect()
+    }
+
+    /// Derivatives of the predicted poses by numbers that a model has or may have: run by run, one column a number.
+    pub fn columns_of(&self, model: &Model, numbers: &[Number]) -> Result<Vec<Vec<Column>>, ModelError> {
+        let derived = model.derived(numbers)?;
+        Ok(self.runs.par_iter().map(|run| run.columns_of(&derived, numbers.len())).collect())
     }
 }
 
-/// The chain of a model that carries derivatives by one of its values.
-pub(crate) fn seeded(model: &Model, value: usize) -> Chain<Dual> {
-    let seed = |(i, v)| Dual::new(v, f64::from(u8::from(i == value)));
-    model.chain_with(&model.values().enumerate().map(seed).collect::<Vec<_>>())
-}
-
 impl ObservedRun {
-    /// Derivatives of the predicted poses, block by block.
-    pub(crate) fn derivatives(&self, chain: &Chain<Dual>) -> Column {
-        self.column(chain, |pose| Pose2::new(pose.x.eps, pose.y.eps, pose.heading.eps))
+    /// One column for each of `count` numbers.
+    pub(crate) fn columns_of(&self, derived: &[Derived], count: usize) -> Vec<Column> {
+        let mut columns = vec![Column::new(); count];
+        for Derived { chain, numbers } in derived {
+            let own = self.columns(chain, numbers.len());
+            numbers.iter().zip(own).for_each(|(number, column)| columns[*number] = column);
+        }
+        columns
     }
 }
 
 impl Fitted {
-    /// Fits values and noise in turn.
-    fn settle(&mut self) -> Result<(), ModelError> {
-        for _ in 0..2 {
-            self.refit()?;
-            let mut columns = self.observed.columns(&self.model, &self.free);
-            let chain = self.model.chain();
-            for ((run, columns), reference) in self.observed.runs.iter().zip(&mut columns).zip(&self.reference) {
-                columns.extend(reference.iter().cloned());
-                columns.push(run.residuals(&chain));
-            }
+    /// Fits values and noise in turn, the values first by `options`.
+    fn settle(&mut self, options: &Options) -> Result<(), ModelError> {
+        for options in [options, &AGAIN] {
+            self.refit_by(options)?;
+            let (chain, columns) = (self.model.chain(), self.all_columns());
             self.noise = Noise::estimate(&self.observed, &chain, &columns, &self.noise);
         }
         Ok(())
+    }
+
+    /// Derivatives of the predicted poses by the free values: run by run, one column a value.
+    pub fn columns(&self) -> Arc<Vec<Vec<Column>>> {
+        if self.slopes.fit(&self.model, &self.free) {
+            return Arc::clone(&self.slopes.columns);
+        }
+        Slopes::of(&self.observed, &self.model, &self.free).columns
+    }
+
+    /// The same, those of the effects of the reference that are fitted along, and the residuals.
+    pub fn all_columns(&self) -> Vec<Vec<Column>> {
+        let (chain, own) = (self.model.chain(), self.columns());
+        let runs = self.observed.runs.par_iter().zip(own.par_iter()).zip(&self.reference);
+        runs.map(|((run, own), reference)| [&own[..], reference, &[run.residuals(&chain)]].concat()).collect()
     }
 
     /// Fits the free values under the noise as it is, and the effects of the reference with them.
@@ -159,11 +202,20 @@ impl Fitted {
     /// A yaw of 6 mrad of the markers that is not fitted along moves E_d by 1 %: the reference's course over a leg says where the
     /// robot went, its heading where it looked.
     pub fn refit(&mut self) -> Result<(), ModelError> {
+        self.refit_by(&STOP)
+    }
+
+    fn refit_by(&mut self, options: &Options) -> Result<(), ModelError> {
+        if !self.slopes.fit(&self.model, &self.free) {
+            self.slopes = Slopes::of(&self.observed, &self.model, &self.free);
+        }
         self.reference = self.reference_columns()?;
         let start: Vec<f64> = self.model.values().collect();
         let mut start: Vec<f64> = self.free.iter().map(|i| start[*i]).collect();
         start.resize(self.free.len() + self.reference.first().map_or(0, Vec::len), 0.0);
-        let fit = least_squares(&Tracks(self), &start, &STOP);
+        let tracks = Tracks { fitted: self, slopes: RefCell::new(self.slopes.clone()) };
+        let fit = least_squares(&tracks, &start, options);
+        self.slopes = tracks.slopes.into_inner();
         let own = self.free.len();
         self.covariance = fit.covariance().map(|all| all.view((0, 0), (own, own)).into_owned());
         self.model = self.model.with_values(&self.free, &fit.values[..own])?;
@@ -183,9 +235,8 @@ impl Fitted {
             let parameters = find(name)?.about.parameters;
             own.extend(parameters.iter().filter_map(|parameter| with.place_of(name, parameter.name)));
         }
-        let free = self.observed.columns(&self.model, &self.free);
         let mut columns = self.observed.columns(&with, &own);
-        let both: Vec<Vec<Column>> = free.iter().zip(&columns).map(|(a, b)| [&a[..], b].concat()).collect();
+        let both: Vec<Vec<Column>> = self.columns().iter().zip(&columns).map(|(a, b)| [&a[..], b].concat()).collect();
         let stacked = self.stacked(&both);
         let products = gram(stacked.transpose().as_slice(), stacked.ncols());
         let mut base: Vec<usize> = (0..self.free.len()).collect();
@@ -218,11 +269,15 @@ impl Fitted {
 }
 
 /// The free values of a model, and behind them the sizes of the effects of the reference.
-struct Tracks<'a>(&'a Fitted);
+struct Tracks<'a> {
+    fitted: &'a Fitted,
+    /// Those of the last Jacobian.
+    slopes: RefCell<Slopes>,
+}
 
 impl Tracks<'_> {
     fn model(&self, parameters: &[f64]) -> Result<Model, ModelError> {
-        self.0.model.with_values(&self.0.free, &parameters[..self.0.free.len()])
+        self.fitted.model.with_values(&self.fitted.free, &parameters[..self.fitted.free.len()])
     }
 }
 
@@ -231,7 +286,8 @@ impl Problem for Tracks<'_> {
         let Ok(model) = self.model(parameters) else {
             return DVector::from_element(1, f64::INFINITY);
         };
-        let (chain, sizes) = (model.chain(), &parameters[self.0.free.len()..]);
+        let Tracks { fitted, .. } = self;
+        let (chain, sizes) = (model.chain(), &parameters[fitted.free.len()..]);
         let left = |(run, reference): (&ObservedRun, &Vec<Column>)| {
             let mut left = run.residuals(&chain);
             for (column, size) in reference.iter().zip(sizes) {
@@ -239,16 +295,46 @@ impl Problem for Tracks<'_> {
             }
             vec![left]
         };
-        let residuals: Vec<Vec<Column>> = self.0.observed.runs.par_iter().zip(&self.0.reference).map(left).collect();
-        DVector::from_column_slice(self.0.stacked(&residuals).as_slice())
+        let residuals: Vec<Vec<Column>> = fitted.observed.runs.par_iter().zip(&fitted.reference).map(left).collect();
+        DVector::from_column_slice(fitted.stacked(&residuals).as_slice())
     }
 
     fn jacobian(&self, parameters: &[f64]) -> DMatrix<f64> {
         let Ok(model) = self.model(parameters) else {
             return DMatrix::zeros(1, parameters.len());
         };
-        let mut columns = self.0.observed.columns(&model, &self.0.free);
-        columns.iter_mut().zip(&self.0.reference).for_each(|(own, more)| own.extend(more.iter().cloned()));
-        -self.0.stacked(&columns)
+        let Tracks { fitted, slopes } = self;
+        if !slopes.borrow().fit(&model, &fitted.free) {
+            slopes.replace(Slopes::of(&fitted.observed, &model, &fitted.free));
+        }
+        let own = Arc::clone(&slopes.borrow().columns);
+        let columns: Vec<_> = own.iter().zip(&fitted.reference).map(|(own, more)| [&own[..], more].concat()).collect();
+        -fitted.stacked(&columns)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::watched::watched;
+    use super::*;
+    use crate::diagnose::first_model;
+    use crate::drive::Robot;
+
+    #[test]
+    fn columns_kept_from_the_fit_are_those_of_the_fitted_model_and_of_no_other() {
+        let robot = Robot::labmate();
+        let mut model = Model::new(&robot);
+        for (effect, parameter, value) in [("wheelbase", "e_b", 0.99), ("wheel_noise", "k_sqrt_m", 4e-4)] {
+            model.set(effect, parameter, value).unwrap();
+        }
+        let data = watched(&model, 1, 3);
+        let observed = Observed::new(&data, &robot).unwrap();
+        let mut fitted = observed.fit(&first_model(&data).unwrap(), &Noise::default(), &[]).unwrap();
+        assert!(fitted.slopes.fit(&fitted.model, &fitted.free));
+        assert_eq!(*fitted.columns(), observed.columns(&fitted.model, &fitted.free));
+        fitted.model.set("wheelbase", "e_b", 1.5).unwrap();
+        assert_eq!(*fitted.columns(), observed.columns(&fitted.model, &fitted.free));
+        fitted.free.pop();
+        assert_eq!(*fitted.columns(), observed.columns(&fitted.model, &fitted.free));
     }
 }

@@ -1,9 +1,10 @@
 //! Recorded runs with the poses that were measured on the way, gathered into blocks.
 
+use super::fitting::Column;
 use crate::dataset::{Dataset, Run};
 use crate::drive::Robot;
-use crate::effect::{Chain, Evaluate, Model, Place, TestKind};
-use crate::geometry::{Pose2, wrap};
+use crate::effect::{Chain, Model, Place, TestKind};
+use crate::geometry::{Dual, LANES, Pose2, wrap};
 use crate::path::{Direction, Path};
 use crate::replay::{ReplayError, Track};
 use rayon::prelude::*;
@@ -185,22 +186,21 @@ impl ObservedRun {
 
     /// Measured minus predicted poses, block by block.
     pub fn residuals(&self, chain: &Chain<f64>) -> Vec<[f64; 3]> {
-        let mut sums = Sums::new(self);
+        let mut sums = Sums::<1>::new(self);
         self.track.replay(chain, |i, pose| {
             let (x, y, heading) = self.seen[i];
-            sums.add(i, [x - pose.x, y - pose.y], heading.map(|h| wrap(h - pose.heading)));
+            sums.add(i, [[x - pose.x], [y - pose.y]], heading.map(|h| [wrap(h - pose.heading)]));
         });
-        sums.means
+        sums.of_lane(0)
     }
 
-    /// Derivatives of the predicted poses, block by block; `derivative` takes them out of a pose.
-    pub fn column<T: Evaluate>(&self, chain: &Chain<T>, derivative: impl Fn(&Pose2<T>) -> Pose2) -> Vec<[f64; 3]> {
-        let mut sums = Sums::new(self);
+    /// Derivatives of the predicted poses, block by block: those in the first `count` lanes.
+    pub fn columns(&self, chain: &Chain<Dual>, count: usize) -> Vec<Column> {
+        let mut sums = Sums::<LANES>::new(self);
         self.track.replay(chain, |i, pose| {
-            let d = derivative(pose);
-            sums.add(i, [d.x, d.y], self.seen[i].2.map(|_| d.heading));
+            sums.add(i, [pose.x.eps, pose.y.eps], self.seen[i].2.map(|_| pose.heading.eps));
         });
-        sums.means
+        (0..count).map(|lane| sums.of_lane(lane)).collect()
     }
 
     /// Mean squared difference of successive residuals within blocks, halved: variance of one reference pose (position
@@ -225,29 +225,34 @@ impl ObservedRun {
     }
 }
 
-/// Means over blocks, gathered in the order of the observations.
-struct Sums<'a> {
+/// Means over blocks of several numbers at once, gathered in the order of the observations.
+struct Sums<'a, const N: usize> {
     run: &'a ObservedRun,
     block: usize,
-    means: Vec<[f64; 3]>,
+    means: Vec<[[f64; N]; 3]>,
 }
 
-impl<'a> Sums<'a> {
-    fn new(run: &'a ObservedRun) -> Sums<'a> {
-        Sums { run, block: 0, means: vec![[0.0; 3]; run.blocks.len()] }
+impl<'a, const N: usize> Sums<'a, N> {
+    fn new(run: &'a ObservedRun) -> Sums<'a, N> {
+        Sums { run, block: 0, means: vec![[[0.0; N]; 3]; run.blocks.len()] }
     }
 
-    fn add(&mut self, observation: usize, position: [f64; 2], heading: Option<f64>) {
+    fn of_lane(&self, lane: usize) -> Column {
+        self.means.iter().map(|mean| mean.map(|lanes| lanes[lane])).collect()
+    }
+
+    fn add(&mut self, observation: usize, [x, y]: [[f64; N]; 2], heading: Option<[f64; N]>) {
         let blocks = &self.run.blocks;
         while observation >= blocks[self.block].first + blocks[self.block].count {
             self.block += 1;
         }
         let block = &blocks[self.block];
         let mean = &mut self.means[self.block];
-        mean[0] += position[0] / block.count as f64;
-        mean[1] += position[1] / block.count as f64;
+        let (count, headings) = (block.count as f64, block.headings as f64);
+        mean[0].iter_mut().zip(x).for_each(|(mean, x)| *mean += x / count);
+        mean[1].iter_mut().zip(y).for_each(|(mean, y)| *mean += y / count);
         if let Some(heading) = heading {
-            mean[2] += heading / block.headings as f64;
+            mean[2].iter_mut().zip(heading).for_each(|(mean, heading)| *mean += heading / headings);
         }
     }
 }

@@ -7,6 +7,7 @@
 
 use super::fitting::Fitted;
 use super::observed::ObservedRun;
+use rayon::prelude::*;
 use std::collections::BTreeSet;
 
 /// So many standard deviations are no noise, unless the noise itself has heavy tails: Gaussian noise has it once in 1e21 blocks.
@@ -47,7 +48,7 @@ impl Fitted {
     /// Blocks beyond noise that do not start anew yet.
     pub(super) fn beyond_noise(&self) -> BTreeSet<(Place, u64)> {
         let wheelbase = self.observed.robot.drive.wheelbase();
-        let runs: Vec<Vec<f64>> = self.observed.runs.iter().map(|run| self.deviations(run)).collect();
+        let runs: Vec<Vec<f64>> = self.observed.runs.par_iter().map(|run| self.deviations(run)).collect();
         let ways: Vec<Vec<f64>> = self.observed.runs.iter().map(|run| ways(run, wheelbase)).collect();
         let shared = |run: usize, way: f64| {
             let there = |other: usize| {

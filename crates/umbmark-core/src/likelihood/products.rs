@@ -1,5 +1,9 @@
 //! Products of whitened columns, and what follows from them.
 
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+use crate::engine::Instructions;
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
 /// A column with less than this share of its square left is absorbed by the base: a collinearity index above 20, the rule of
@@ -9,8 +13,21 @@ pub(crate) const ABSORBED: f64 = 1.0 / 400.0;
 /// Rows that are taken at once: the sums are read and written once for all of them.
 const TOGETHER: usize = 8;
 
-/// XᵀX of a matrix stored row by row.
+/// XᵀX of a matrix stored row by row: the same bits whatever the machine can do at once.
 pub(crate) fn gram(values: &[f64], columns: usize) -> DMatrix<f64> {
+    #[cfg(target_arch = "x86_64")]
+    match Instructions::best() {
+        // SAFETY: the machine was found to have them.
+        Instructions::Avx512 => return unsafe { x86::gram_by_eight(values, columns) },
+        // SAFETY: as above.
+        Instructions::Avx2 => return unsafe { x86::gram_by_four(values, columns) },
+        Instructions::Portable => {}
+    }
+    gram_of(values, columns)
+}
+
+#[inline(always)]
+fn gram_of(values: &[f64], columns: usize) -> DMatrix<f64> {
     let mut sum = DMatrix::zeros(columns, columns);
     let columns = columns.max(1);
     let whole = values.chunks_exact(TOGETHER * columns);
@@ -88,4 +105,22 @@ pub(crate) fn scaled_cholesky(matrix: &DMatrix<f64>) -> Option<ScaledCholesky> {
         scaled[(i, i)] += 1e-12;
     }
     Some(ScaledCholesky { factor: scaled.cholesky()?, lengths })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Stream;
+
+    #[test]
+    fn products_are_the_same_bits_with_and_without_wide_registers() {
+        let mut stream = Stream::new(6, 0, 0);
+        for (rows, columns) in [(0, 3), (7, 1), (8, 13), (53, 29)] {
+            let values: Vec<f64> = (0..rows * columns).map(|_| stream.normal()).collect();
+            let plain = gram_of(&values, columns);
+            assert_eq!(gram(&values, columns), plain);
+            let matrix = DMatrix::from_row_slice(rows, columns, &values);
+            assert!((plain - matrix.tr_mul(&matrix)).amax() < 1e-12);
+        }
+    }
 }

@@ -1,8 +1,12 @@
 //! Residuals and Jacobian columns of a run, made independent by a Kalman filter along it.
 
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
 use super::fitting::Column;
 use super::noise::Noise;
 use super::observed::{Block, ObservedRun};
+use crate::engine::Instructions;
 use nalgebra::{Matrix3, Vector3};
 
 /// Standard deviation of a START that is not taken on trust \[m, rad\]: beyond all misplacement, so that it costs one pose.
@@ -32,6 +36,7 @@ impl Whitened {
 
     /// Takes the last column z for the response to a number that the whole run shares, of standard deviation `sd`, and makes the
     /// others independent of it: x ← (1 + sd² z zᵀ)^(-1/2) x.
+    #[inline(always)]
     fn less_a_common(&mut self, sd: f64) {
         let width = self.columns;
         let mut products = vec![0.0; width];
@@ -41,11 +46,14 @@ impl Whitened {
         let length = products[width - 1];
         let grown = 1.0 + sd * sd * length;
         let share = if length > 0.0 { (1.0 / grown.sqrt() - 1.0) / length } else { 0.0 };
-        let rows = self.values.chunks_exact(width).flat_map(|row| {
-            let common = share * row[width - 1];
-            row[..width - 1].iter().zip(&products).map(move |(value, product)| value + common * product)
-        });
-        self.values = rows.collect();
+        let mut less = vec![0.0; self.values.len() / width * (width - 1)];
+        if width > 1 {
+            for (to, row) in less.chunks_exact_mut(width - 1).zip(self.values.chunks_exact(width)) {
+                let common = share * row[width - 1];
+                to.iter_mut().zip(row).zip(&products).for_each(|((to, value), p)| *to = value + common * p);
+            }
+        }
+        self.values = less;
         self.columns = width - 1;
         self.log_scale += 0.5 * libm::log(grown);
     }
@@ -59,6 +67,19 @@ impl Noise {
     /// in the error coordinates of [`Growth`](super::Growth). The same gains serve all columns, so linear relations between
     /// columns are kept.
     pub fn whiten(&self, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> Whitened {
+        #[cfg(target_arch = "x86_64")]
+        match Instructions::best() {
+            // SAFETY: the machine was found to have them.
+            Instructions::Avx512 => return unsafe { x86::whiten_by_eight(self, run, columns) },
+            // SAFETY: as above.
+            Instructions::Avx2 => return unsafe { x86::whiten_by_four(self, run, columns) },
+            Instructions::Portable => {}
+        }
+        self.whiten_plainly(run, columns)
+    }
+
+    #[inline(always)]
+    fn whiten_plainly(&self, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> Whitened {
         let late: Column = run.blocks.iter().map(|block| block.velocity).collect();
         let columns = &[columns, &[&late]].concat();
         let mut out = Whitened {
@@ -67,8 +88,8 @@ impl Noise {
             block: Vec::with_capacity(3 * run.blocks.len()),
             log_scale: 0.0,
         };
-        let mut states = vec![[0.0; 3]; columns.len()];
-        let mut p = self.start(run.start_seen);
+        let mut states = States::new(columns.len());
+        let (mut p, mut scale) = (self.start(run.start_seen), 1.0);
         for (index, block) in run.blocks.iter().enumerate() {
             p += self.growth(&block.growth);
             if block.afresh {
@@ -78,16 +99,20 @@ impl Noise {
             let rows = if block.headings > 0 { 3 } else { 2 };
             let first = out.values.len();
             out.values.resize(first + rows * columns.len(), 0.0);
-            for (c, (column, state)) in columns.iter().zip(&mut states).enumerate() {
-                let white = stage.whitened(&column[index], state);
-                for (r, value) in white.iter().take(rows).enumerate() {
-                    out.values[first + r * columns.len() + c] = *value;
-                }
+            states.take_in(&stage, columns.iter().map(|column| column[index]));
+            for (row, new) in out.values[first..].chunks_exact_mut(columns.len()).zip(&states.new) {
+                row.copy_from_slice(new);
             }
             out.block.extend(std::iter::repeat_n(index, rows));
-            out.log_scale += libm::log(stage.diagonal[..rows].iter().product());
+            scale *= stage.diagonal[..rows].iter().product::<f64>();
+            // One logarithm of many factors.
+            if !(1e-200..1e200).contains(&scale) {
+                out.log_scale += libm::log(scale);
+                scale = 1.0;
+            }
             p -= stage.taken();
         }
+        out.log_scale += libm::log(scale);
         out.less_a_common(self.reference_delay);
         out
     }
@@ -144,25 +169,48 @@ impl Stage {
     }
 
     /// L⁻¹ v.
+    #[inline(always)]
     fn solved(&self, v: [f64; 3]) -> [f64; 3] {
         let a = v[0] / self.diagonal[0];
         let b = (v[1] - self.below[0] * a) / self.diagonal[1];
         [a, b, (v[2] - self.below[1] * a - self.below[2] * b) / self.diagonal[2]]
     }
 
-    /// L⁻¹ (y - H s); the state takes in what is new.
-    fn whitened(&self, column: &[f64; 3], state: &mut [f64; 3]) -> [f64; 3] {
-        let [s0, s1, s2] = *state;
-        let white = self.solved([column[0] - s0 + self.y * s2, column[1] - s1 - self.x * s2, column[2] - s2]);
-        for (k, value) in state.iter_mut().enumerate() {
-            *value += self.w[0][k] * white[0] + self.w[1][k] * white[1] + self.w[2][k] * white[2];
-        }
-        white
-    }
-
     /// Wᵀ W.
     fn taken(&self) -> Matrix3<f64> {
         Matrix3::from_fn(|i, j| self.w.iter().map(|row| row[i] * row[j]).sum())
+    }
+}
+
+/// The states s of all columns, side by side so that a step is the same arithmetic on neighbours.
+struct States {
+    states: [Vec<f64>; 3],
+    /// L⁻¹ (y - H s) of the last block.
+    new: [Vec<f64>; 3],
+}
+
+impl States {
+    fn new(columns: usize) -> States {
+        let zeros = || std::array::from_fn(|_| vec![0.0; columns]);
+        States { states: zeros(), new: zeros() }
+    }
+
+    /// What is new in a block of every column; the states take it in.
+    #[inline(always)]
+    fn take_in(&mut self, stage: &Stage, block: impl Iterator<Item = [f64; 3]>) {
+        let [v0, v1, v2] = self.new.each_mut().map(Vec::as_mut_slice);
+        for (((v0, v1), v2), y) in v0.iter_mut().zip(&mut *v1).zip(&mut *v2).zip(block) {
+            [*v0, *v1, *v2] = y;
+        }
+        let [s0, s1, s2] = self.states.each_mut().map(Vec::as_mut_slice);
+        let new = v0.iter_mut().zip(v1).zip(v2);
+        for (((v0, v1), v2), ((s0, s1), s2)) in new.zip(s0.iter_mut().zip(s1).zip(s2)) {
+            let white = stage.solved([*v0 - *s0 + stage.y * *s2, *v1 - *s1 - stage.x * *s2, *v2 - *s2]);
+            for (k, state) in [s0, s1, s2].into_iter().enumerate() {
+                *state += stage.w[0][k] * white[0] + stage.w[1][k] * white[1] + stage.w[2][k] * white[2];
+            }
+            [*v0, *v1, *v2] = white;
+        }
     }
 }
 
@@ -264,6 +312,7 @@ mod tests {
             let columns: [Vec<[f64; 3]>; 2] =
                 std::array::from_fn(|_| run.blocks.iter().map(|_| std::array::from_fn(|_| stream.normal())).collect());
             let white = noise.whiten(&run, &[&columns[0], &columns[1]]);
+            assert_eq!(white, noise.whiten_plainly(&run, &[&columns[0], &columns[1]]));
             let sigma = dense(&noise, &run);
             let flat = |c: usize| {
                 let kept = run.blocks.iter().zip(&columns[c]);

@@ -19,18 +19,20 @@ pub struct Statistics {
     sketch: DDSketch,
 }
 
-/// The statistics as they stand in a file: integers of more than 64 bits as text.
+/// The statistics as they stand in a file: integers of more than 64 bits as text, and no sketch of nothing, whose ends are
+/// infinite.
 #[derive(Clone, Serialize, Deserialize)]
 struct Written {
     count: u64,
     sum: String,
     squares: String,
-    sketch: DDSketch,
+    sketch: Option<DDSketch>,
 }
 
 impl From<Statistics> for Written {
     fn from(s: Statistics) -> Written {
-        Written { count: s.count, sum: s.sum.to_string(), squares: s.squares.to_string(), sketch: s.sketch }
+        let sketch = (s.count > 0).then_some(s.sketch);
+        Written { count: s.count, sum: s.sum.to_string(), squares: s.squares.to_string(), sketch }
     }
 }
 
@@ -40,10 +42,11 @@ impl TryFrom<Written> for Statistics {
     fn try_from(written: Written) -> Result<Statistics, String> {
         let whole = |text: &str| text.parse().map_err(|_| format!("a sum must be a whole number, got \"{text}\""));
         let (sum, squares) = (whole(&written.sum)?, whole(&written.squares)?);
-        if written.sketch.count() as u64 != written.count {
-            return Err(format!("{} numbers in the sketch, {} in the sums", written.sketch.count(), written.count));
+        let sketch = written.sketch.unwrap_or_else(|| Statistics::new().sketch);
+        if sketch.count() as u64 != written.count {
+            return Err(format!("{} numbers in the sketch, {} in the sums", sketch.count(), written.count));
         }
-        Ok(Statistics { count: written.count, sum, squares, sketch: written.sketch })
+        Ok(Statistics { count: written.count, sum, squares, sketch })
     }
 }
 

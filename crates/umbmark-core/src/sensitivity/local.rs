@@ -83,7 +83,7 @@ mod tests {
     use super::*;
     use crate::drive::Robot;
     use crate::effect::Model;
-    use crate::geometry::Dual;
+    use crate::geometry::seeded;
     use crate::monte_carlo::{Distribution, Metric, Quantity, Study};
     use crate::path::{Direction, Path};
     use crate::replay::Track;
@@ -103,15 +103,14 @@ mod tests {
         let model = &tests.study().model;
         let track = Track::from_path(&Path::umbmark(), Direction::Cw, model.robot());
         for (input, (quantity, _)) in varied.iter().enumerate() {
-            let seed = |(i, value): (usize, f64)| Dual::new(value, f64::from(u8::from(i == input)));
-            let duals: Vec<Dual> = model.values().enumerate().map(seed).collect();
-            let end = track.end(&model.chain_with(&duals));
+            let end = track.end(&model.chain_with(&seeded(model.values(), &[input])));
+            let [x, y, heading] = [end.x, end.y, end.heading].map(|d| d.eps[0]);
             // The cw runs end farther off: E_max,sys is their distance.
             let distance = libm::hypot(end.x.re, end.y.re);
             let exact = [
-                (Metric::EMaxSys, (end.x.re * end.x.eps + end.y.re * end.y.eps) / distance),
-                (Metric::CentroidCwX, end.x.eps),
-                (Metric::ReturnHeadingCw, end.heading.eps),
+                (Metric::EMaxSys, (end.x.re * x + end.y.re * y) / distance),
+                (Metric::CentroidCwX, x),
+                (Metric::ReturnHeadingCw, heading),
             ];
             for (metric, exact) in exact {
                 let output = tests.metrics().iter().position(|m| *m == metric).unwrap();

@@ -58,10 +58,10 @@ impl Simulator {
                 return Err(SimulateError::Rate { what, value });
             }
         }
-        if self.convoy.is_some() {
+        if self.convoys.is_some() {
             return Err(SimulateError::Unsupported {
                 drive: self.robot().drive.kind().name(),
-                what: "tick logs; `umbmark mc` simulates it",
+                what: "tick logs: each of its trucks has counters of its own; its returns are simulated",
             });
         }
         truth.start(direction);

@@ -16,7 +16,8 @@ pub fn is_extended(model: &Model) -> bool {
 }
 
 /// Drives tests of as many runs \[cw, ccw\] each and writes them down: ticks at the robot's encoder rate, or at 100 Hz, and
-/// absolute poses `reference_rate` times a second; at 0 Hz only the last one. Its random numbers are those of a trial of a seed.
+/// absolute poses `reference_rate` times a second; at 0 Hz only the last one. Of a drive without [tick
+/// logs](crate::drive::Kind::has_tick_logs), returns alone. Its random numbers are those of a trial of a seed.
 ///
 /// ```
 /// use umbmark_core::{drive::Robot, effect::{Model, TestKind}, path::Path, simulate::record_test};
@@ -45,20 +46,25 @@ pub fn record_test(
     for &test in tests {
         for (direction, count) in Direction::BOTH.into_iter().zip(runs) {
             for number in 1..=count as u32 {
-                let rates = [rate, if at_end { rate } else { reference_rate }];
-                let mut recording = simulator.record(&mut truth, direction, test, rates)?;
-                if at_end {
-                    let last = recording.log.reference.len() - 1;
-                    recording.log.reference.drain(..last);
-                }
+                let (log, returned) = if robot.drive.kind().has_tick_logs() {
+                    let rates = [rate, if at_end { rate } else { reference_rate }];
+                    let mut recording = simulator.record(&mut truth, direction, test, rates)?;
+                    if at_end {
+                        let last = recording.log.reference.len() - 1;
+                        recording.log.reference.drain(..last);
+                    }
+                    (Some(recording.log), recording.returned)
+                } else {
+                    (None, simulator.run(&mut truth, direction, test))
+                };
                 let prefix = if test == TestKind::Bumps { "bumps_" } else { "" };
                 recorded.push(Run {
                     name: format!("{prefix}{}_{number:02}", direction.name()),
                     number,
                     direction: Some(direction),
                     test,
-                    log: Some(recording.log),
-                    returned: Some(recording.returned),
+                    log,
+                    returned: Some(returned),
                 });
             }
         }

@@ -39,6 +39,11 @@ impl Rolls {
         self.kind.push(kind);
     }
 
+    /// How many that wait are no bumps.
+    pub(super) fn stretches(&self) -> usize {
+        self.kind.iter().filter(|kind| !matches!(kind, Roll::Bump(_))).count()
+    }
+
     /// Makes true travel and motion of all that wait.
     pub(super) fn work_out(&mut self, chain: &Chain<f64>, at: &Context) {
         chain.change_wheels(at, &mut self.travel);

@@ -5,7 +5,7 @@ use super::diffusion::{Diffusion, normals};
 use super::pieces::{Noise, Piece, Pieces};
 use super::rolls::{Roll, Rolls};
 use super::way::Way;
-use crate::drive::{Drive, WheelTravel};
+use crate::drive::{Drive, LinkReading, WheelTravel};
 use crate::effect::{Bump, Chain, Changes, Context, Law, Model, Scatter, Sight, Stretch, WheelVariance};
 use crate::engine::Instructions;
 use crate::geometry::{Displacement2, Pose2, Real};
@@ -31,6 +31,8 @@ pub struct Truth {
     varies: bool,
     way: Way,
     noise: Stream,
+    /// Three normal draws for each piece of travel that waits.
+    draws: Vec<[f64; 3]>,
     /// Where effects are asked that do not vary along the way.
     anywhere: Context,
     rolls: Rolls,
@@ -42,6 +44,9 @@ pub struct Truth {
     /// Bumps of the stretch that lie ahead, the nearest last.
     ahead: Vec<Bump>,
     done: f64,
+    /// Number of runs, and way, that two trucks have driven in this session.
+    trucks_run: f64,
+    trucks_drove: f64,
     whole: Vec<(WheelTravel, Diffusion)>,
 }
 
@@ -94,6 +99,7 @@ impl Truth {
             varies: false,
             way: Way::new(model.robot()),
             noise: Stream::new(0, 0, 0),
+            draws: Vec::new(),
             anywhere: Context::default(),
             rolls: Rolls::default(),
             pieces: Pieces::new(Instructions::best()),
@@ -101,6 +107,8 @@ impl Truth {
             commanded: WheelTravel::default(),
             ahead: Vec::new(),
             done: 1.0,
+            trucks_run: 0.0,
+            trucks_drove: 0.0,
             whole: Vec::new(),
         };
         truth.refresh();
@@ -138,6 +146,7 @@ impl Truth {
     /// Opens the random streams of a trial; its runs make one session.
     pub fn open(&mut self, seed: u64, trial: u64) {
         self.way.open();
+        (self.trucks_run, self.trucks_drove) = (0.0, 0.0);
         self.noise = Stream::new(seed, WHEEL_NOISE, trial);
         for part in &mut self.random {
             part.stream = Stream::new(seed, part.purpose, trial);
@@ -163,14 +172,31 @@ impl Truth {
         })
     }
 
-    /// The bumps of the stretch that was begun, taken away from its own way.
-    pub(super) fn take_bumps(&mut self) -> Vec<Bump> {
+    /// The bumps that the front one of two trucks meets in a stretch.
+    pub(super) fn bumps_of(&mut self, stretch: Stretch, leg: &Leg) -> Vec<Bump> {
+        self.begin(stretch, leg);
         std::mem::take(&mut self.ahead)
     }
 
-    /// True motion for a small believed travel, of which one wheel or both lose some at bumps; wheel noise included.
-    pub(super) fn rolled(&mut self, believed: &WheelTravel, lost: &WheelTravel) -> Displacement2 {
-        let mut travel = self.chain.wheel_travel(&self.anywhere, believed);
+    /// True motion of one of two trucks for a small believed travel, of which one wheel or both lose some at bumps; wheel noise
+    /// included.
+    #[inline]
+    pub(super) fn rolled(
+        &mut self,
+        at: &Context,
+        heading: f64,
+        believed: &WheelTravel,
+        lost: &WheelTravel,
+    ) -> Displacement2 {
+        let here;
+        let at = if self.varies {
+            let session_distance = self.trucks_drove + at.session_distance;
+            here = Context { run: self.trucks_run, session_distance, ..at.headed(heading) };
+            &here
+        } else {
+            &self.anywhere
+        };
+        let mut travel = self.chain.wheel_travel(at, believed);
         if self.noisy {
             let variance = variance(&self.random, &travel);
             travel.left += variance.left.sqrt() * self.noise.normal();
@@ -178,12 +204,24 @@ impl Truth {
         }
         travel.left += lost.left;
         travel.right += lost.right;
-        self.chain.body(&self.anywhere, &travel)
+        self.chain.body(at, &travel)
     }
 
-    /// A true pose at rest as an absolute measurement shows it.
-    pub(super) fn measured_at_rest(&mut self, pose: &Pose2) -> Pose2 {
-        measured(&self.chain, &mut self.random, &Sight::default(), pose)
+    /// What the encoders of a link show of it.
+    #[inline]
+    pub(super) fn link(&self, reading: LinkReading) -> LinkReading {
+        self.chain.link(reading)
+    }
+
+    /// Two trucks have driven a run of this length.
+    pub(super) fn end_of_trucks(&mut self, length: f64) {
+        self.trucks_run += 1.0;
+        self.trucks_drove += length;
+    }
+
+    /// A true pose as an absolute measurement at this moment shows it.
+    pub(super) fn measured_of_trucks(&mut self, at: &Sight, pose: &Pose2) -> Pose2 {
+        measured(&self.chain, &mut self.random, at, pose)
     }
 
     /// Begins one more run at START; where those before it end can still be asked for.
@@ -256,13 +294,17 @@ impl Truth {
     /// Makes pieces of motion of all travel that waits.
     fn make_pieces(&mut self) {
         self.rolls.work_out(&self.chain, &self.anywhere);
+        self.draws.resize(if self.noisy { self.rolls.stretches() } else { 0 }, [0.0; 3]);
+        self.noise.normals(self.draws.as_flattened_mut());
+        let mut draws = self.draws.iter();
         for (kind, travel, motion) in self.rolls.all() {
-            let noise = match kind {
-                Roll::Whole(known) => Noise::Moves(self.whole[known].1.scatter(normals(&mut self.noise))),
-                Roll::Part if self.noisy => {
-                    Noise::Draws { variance: variance(&self.random, travel), normals: normals(&mut self.noise) }
+            let draws = if matches!(kind, Roll::Bump(_)) { None } else { draws.next() };
+            let noise = match (kind, draws) {
+                (Roll::Whole(known), Some(normals)) => Noise::Moves(self.whole[known].1.scatter(*normals)),
+                (Roll::Part, Some(normals)) => {
+                    Noise::Draws { variance: variance(&self.random, travel), normals: *normals }
                 }
-                Roll::Part | Roll::Bump(_) => Noise::None,
+                _ => Noise::None,
             };
             self.pieces.push(&Piece { motion, noise });
         }

@@ -1,7 +1,9 @@
 //! The numbers behind a figure.
 
+use serde::{Deserialize, Serialize};
+
 /// Rows of words and numbers.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Table {
     /// Above the columns.
     pub header: Vec<String>,

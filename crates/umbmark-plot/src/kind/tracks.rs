@@ -91,7 +91,8 @@ fn panel(paths: &Paths, direction: Option<Direction>, runs: &[&RunPath], scale: 
             continue;
         }
         let mark = if dense { Mark::Line } else { Mark::Dots };
-        layers.push(lines("measured", tone, mark, &own, seen));
+        let name = direction.map_or("measured".into(), |direction| format!("{} measured", direction.name()));
+        layers.push(lines(&name, tone, mark, &own, seen));
     }
     if let Some(direction) = direction {
         layers = layers.into_iter().map(|layer| layer.of(direction)).collect();

@@ -45,7 +45,7 @@
     return copy;
   };
 
-  const layoutOf = (figure) => {
+  const layoutOf = (figure, width) => {
     const style = getComputedStyle(root);
     const [ink, grid, soft, raised] = ["--ink", "--grid", "--soft", "--raised"].map((name) => style.getPropertyValue(name).trim());
     const size = Math.max(11, 0.78 * parseFloat(style.fontSize));
@@ -54,6 +54,10 @@
     const grown = size / figure.layout.font.size;
     layout.height *= grown;
     layout.margin = Object.fromEntries(Object.entries(layout.margin).map(([side, room]) => [side, room * grown]));
+    // In narrow figures there is no room for a title beside the buttons.
+    const above = width < 480 && layout.annotations.length ? 2 * size : 0;
+    layout.height += above;
+    layout.margin.t += above;
     for (const axis of Object.keys(layout).filter((key) => /^[xy]axis/.test(key))) {
       layout[axis] = { ...layout[axis], gridcolor: grid, linecolor: soft };
     }
@@ -72,7 +76,7 @@
 
   const draw = (plot) => {
     const figure = figures[plot.id];
-    const layout = layoutOf(figure);
+    const layout = layoutOf(figure, plot.clientWidth);
     plot.style.height = `${layout.height}px`;
     const traces = figure.data.map((trace) => coloured(filtered(named(trace, figure.study), figure.study)));
     return Plotly.react(plot, traces, layout, config).then(() => { plot.dataset.drawn = "1"; });

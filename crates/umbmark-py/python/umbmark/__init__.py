@@ -7,14 +7,18 @@ Units are SI throughout: m, rad and s, with headings counter-clockwise positive.
 carries a unit (``sigma_m``), that is its unit. What the command does, this package does:
 
 =================================  ===========================================================
+``init``                           files to fill in, for a new robot
 ``load_dataset``, ``inspect``      read measurements, and look at them
 ``score``, ``calibrate``           E_max,sys and the rest; E_d, E_b and E_s
 ``calibrate_gears``                the same for drives other than the differential one
 ``compare``, ``diagnose``          what models explain, and what they are missing
 ``fit``, ``learn``                 fit a model; add what is missing until nothing is
+``report``, ``plot``               everything on one page; one figure of it
 ``simulate``, ``monte_carlo``      one test, recorded; thousands of tests
+``merge``                          shards and checkpoints of studies put together
 ``sensitivity``, ``sweep``         which parameter drives which metric; what its values do
 ``tolerance``                      the cheapest tolerances with which enough robots are good
+``paper``                          the experiments of the paper, beside its numbers
 ``plan``, ``separate``             how many runs, and which experiment, before any is driven
 ``Robot``, ``Path``, ``Model``     what all of it is about; ``effects`` lists what there is
 ``umbmark.distributed``            Monte Carlo and sensitivity past one machine, on Dask
@@ -33,8 +37,10 @@ from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
 from umbmark._effects import Effect, effects
 from umbmark._formula import formula_of
 from umbmark._inspection import Inspection, inspect
-from umbmark._monte_carlo import MonteCarlo, monte_carlo
+from umbmark._monte_carlo import MonteCarlo, merge, monte_carlo
+from umbmark._paper import Paper, paper
 from umbmark._plan import Plan, Separation, plan, separate
+from umbmark._report import Report, figures, plot, report
 from umbmark._scores import Score, score
 from umbmark._sensitivity import Sensitivity, sensitivity
 from umbmark._simulation import simulate
@@ -43,12 +49,14 @@ from umbmark._tolerance import Tolerance, tolerance
 from umbmark._umbmark import (
     Dataset,
     Ensemble,
+    Figure,
     Model,
     Path,
     Robot,
     Run,
     Study,
     __version__,
+    init,
     load_dataset,
     presets,
 )
@@ -61,14 +69,17 @@ __all__ = [
     "Diagnosis",
     "Effect",
     "Ensemble",
+    "Figure",
     "Fitted",
     "GearCalibration",
     "Inspection",
     "Learnt",
     "Model",
     "MonteCarlo",
+    "Paper",
     "Path",
     "Plan",
+    "Report",
     "Robot",
     "Run",
     "Score",
@@ -84,14 +95,20 @@ __all__ = [
     "compare",
     "diagnose",
     "effects",
+    "figures",
     "fit",
     "formula_of",
+    "init",
     "inspect",
     "learn",
     "load_dataset",
+    "merge",
     "monte_carlo",
+    "paper",
     "plan",
+    "plot",
     "presets",
+    "report",
     "score",
     "sensitivity",
     "separate",

@@ -9,6 +9,7 @@ import msgspec
 
 from umbmark import _umbmark
 from umbmark._comparison import Contrast, OnCircle
+from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Interval, Record, Result, Row
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Model
@@ -393,6 +394,7 @@ def learn(
     seed: int = 1,
     return_poses: bool = False,
     threads: int = 0,
+    progress: Progress = None,
 ) -> Learnt:
     """Learn a model: fit, diagnose, add, until nothing is missing.
 
@@ -406,6 +408,8 @@ def learn(
         Probability with which an effect is added to a complete model.
     draws, seed, return_poses, threads
         As of ``diagnose``.
+    progress : bool or callable, optional
+        True for a bar of tqdm; or a function of the steps done and of all, in thousandths.
 
     Raises
     ------
@@ -421,5 +425,8 @@ def learn(
     ([None, 'wheel_diameter_ratio', 'wheelbase'], 'explained')
     """
     options = (size, draws, seed)
-    document, learnt = _umbmark.learn(data_of(data), model, options, return_poses, threads)
+    with Bar(progress, 1000, "per mille") as bar:
+        document, learnt = _umbmark.learn(
+            data_of(data), model, options, return_poses, threads, bar.at
+        )
     return Learnt._of(document, model=learnt)

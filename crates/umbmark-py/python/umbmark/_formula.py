@@ -2,12 +2,14 @@
 
 A function is called once, with symbols in place of numbers, and what it does to them is written
 down as a formula. So it runs where formulas run: on every thread, with exact derivatives, in fits
-and in files. What has no formula (a branch on a value, a table) is refused.
+and in files. ``np.where``, ``np.clip``, ``np.interp`` and comparisons are written with signs and
+extremes; an ``if`` on a value cannot be seen and is refused.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -90,14 +92,29 @@ class Symbol:
 
     def __bool__(self) -> bool:
         raise TypeError(
-            "a formula cannot branch on a value: write it with np.sign, np.minimum, np.maximum"
-            " or np.tanh"
+            "a formula cannot branch on a value: write it with np.where, or with np.sign,"
+            " np.minimum, np.maximum or np.tanh"
         )
 
-    def _compared(self, _: Any) -> bool:
-        return bool(self)
+    def __gt__(self, other: Any) -> Condition:
+        return _positive(self - other)
 
-    __lt__ = __le__ = __gt__ = __ge__ = _compared
+    def __lt__(self, other: Any) -> Condition:
+        return _positive(_symbol(other) - self)
+
+    def __ge__(self, other: Any) -> Condition:
+        return _positive(_symbol(other) - self).__invert__()
+
+    def __le__(self, other: Any) -> Condition:
+        return _positive(self - other).__invert__()
+
+    def __ne__(self, other: object) -> Condition:  # type: ignore[override]
+        return Condition(f"abs(sign({(self - other).text}))")
+
+    def __eq__(self, other: object) -> Condition:  # type: ignore[override]
+        return self.__ne__(other).__invert__()
+
+    __hash__ = None  # type: ignore[assignment]
 
     def __float__(self) -> float:
         raise TypeError("a formula is made of NumPy's functions; one of another module was called")
@@ -114,10 +131,114 @@ class Symbol:
             first = _symbol(inputs[0])
             made = first**2 if name == "square" else getattr(first, of[name])(*inputs[1:])
             return made if isinstance(made, Symbol) else _symbol(made)
+        if method == "__call__" and name in _COMPARISONS:
+            compare: Condition = getattr(_symbol(inputs[0]), _COMPARISONS[name])(*inputs[1:])
+            return compare
         if method == "__call__" and name in _FUNCTIONS:
             return Symbol(_FUNCTIONS[name].format(*(_symbol(item).text for item in inputs)))
-        known = ", ".join(sorted(_FUNCTIONS))
-        raise TypeError(f"a formula has no np.{name}; it has + - * / **, {known}")
+        raise _unknown(name)
+
+    def __array_function__(
+        self, function: Callable[..., Any], _: Any, inputs: tuple[Any, ...], keys: dict[str, Any]
+    ) -> Symbol:
+        """Write down what a function of NumPy that is no ``ufunc`` would do."""
+        written = _PIECEWISE.get(function.__name__)
+        if written is None:
+            raise _unknown(function.__name__)
+        return written(*inputs, **keys)
+
+
+class Condition(Symbol):
+    """What holds or does not: 1 or 0, as NumPy has it."""
+
+    __slots__ = ("_opposite",)
+
+    def __init__(self, text: str, tight: int = _ATOM, opposite: Condition | None = None) -> None:
+        """Write a condition; ``opposite`` is what it was made of by ``~``."""
+        super().__init__(text, tight)
+        self._opposite = opposite
+
+    def __and__(self, other: Any) -> Condition:
+        return Condition((self * _condition(other)).text, _PRODUCT)
+
+    __rand__ = __and__
+
+    def __or__(self, other: Any) -> Condition:
+        return Condition(f"max({self.text}, {_condition(other).text})")
+
+    __ror__ = __or__
+
+    def __invert__(self) -> Condition:
+        if self._opposite is not None:
+            return self._opposite
+        return Condition((1 - Symbol(self.text, self._tight)).text, _SUM, self)
+
+
+def _unknown(name: str) -> TypeError:
+    known = ", ".join(sorted([*_FUNCTIONS, *_PIECEWISE]))
+    return TypeError(f"a formula has no np.{name}; it has + - * / **, comparisons, {known}")
+
+
+def _positive(difference: Symbol) -> Condition:
+    return Condition(f"max(sign({difference.text}), 0.0)")
+
+
+def _condition(thing: Any) -> Condition:
+    if isinstance(thing, Condition):
+        return thing
+    return _symbol(thing) != 0
+
+
+def _where(condition: Any, holds: Any, fails: Any) -> Symbol:
+    """Write ``np.where``: each side times 1 or 0, so that it is itself to the last bit."""
+    condition = _condition(condition)
+    sides: list[Symbol] = []
+    for side, switch in ((holds, condition), (fails, ~condition)):
+        if isinstance(side, Symbol) or float(side) != 0.0:
+            sides.append(_symbol(side) * switch)
+    return sides[0] + sides[1] if len(sides) == 2 else (sides or [_symbol(0.0)])[0]
+
+
+def _clip(thing: Any, low: Any = None, high: Any = None) -> Symbol:
+    """Write ``np.clip``."""
+    made = _symbol(thing)
+    if low is not None:
+        made = Symbol(f"max({made.text}, {_symbol(low).text})")
+    if high is not None:
+        made = Symbol(f"min({made.text}, {_symbol(high).text})")
+    return made
+
+
+def _interp(at: Any, places: Any, values: Any) -> Symbol:
+    """Write ``np.interp``: a table as the sum of its slopes, flat beyond its ends."""
+    places = [float(place) for place in places]
+    values = [*values]
+    if len(places) != len(values) or not places:
+        raise TypeError("np.interp needs as many places as values, one at least")
+    if any(here >= there for here, there in pairwise(places)):
+        raise TypeError("np.interp needs places that increase")
+    made = _symbol(values[0])
+    for (here, there), (low, high) in zip(pairwise(places), pairwise(values), strict=True):
+        within = _clip(at, here, there) - here
+        made = made + (high - low) / (there - here) * within
+    return made
+
+
+_PIECEWISE: dict[str, Callable[..., Symbol]] = {"where": _where, "clip": _clip, "interp": _interp}
+_COMPARISONS = {
+    "greater": "__gt__",
+    "greater_equal": "__ge__",
+    "less": "__lt__",
+    "less_equal": "__le__",
+    "equal": "__eq__",
+    "not_equal": "__ne__",
+    "logical_and": "__and__",
+    "bitwise_and": "__and__",
+    "logical_or": "__or__",
+    "bitwise_or": "__or__",
+    "logical_not": "__invert__",
+    "invert": "__invert__",
+}
 
 
 def _symbol(thing: Any) -> Symbol:

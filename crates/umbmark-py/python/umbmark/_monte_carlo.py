@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from os import PathLike
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from umbmark import _umbmark
 from umbmark._result import Record, Result, Row
 from umbmark._umbmark import Ensemble, Model, Path, Study
 
@@ -100,6 +102,18 @@ class MonteCarlo(Result, frozen=True):
     ensemble: Ensemble
     trials: Mapping[str, NDArray[np.float64]] | None
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, MonteCarlo):
+            return NotImplemented
+        mine, theirs = self.trials or {}, other.trials or {}
+        return (
+            (self.to_dict(), self.ensemble) == (other.to_dict(), other.ensemble)
+            and (self.trials is None, [*mine]) == (other.trials is None, [*theirs])
+            and all(np.array_equal(mine[name], theirs[name]) for name in mine)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
     def table(self) -> list[Row]:
         """Give the statistics of each metric, one dict a row."""
         return [
@@ -127,6 +141,9 @@ def monte_carlo(
     update: str = "arc",
     phase: str = "random",
     keep: bool = False,
+    checkpoint: str | PathLike[str] | None = None,
+    resume: bool = False,
+    replace: bool = False,
     threads: int = 0,
     progress: Progress = None,
 ) -> MonteCarlo:
@@ -151,6 +168,11 @@ def monte_carlo(
         As of ``Study``.
     keep : bool, default False
         Whether to keep the metrics of every trial.
+    checkpoint : path-like, optional
+        Write what is done to this file every two seconds and at the end, Ctrl-C included: the file
+        of ``umbmark mc --checkpoint``.
+    resume, replace : bool, default False
+        Where that file is there: go on with its study, or begin anew. Else it is refused.
     threads : int, default 0
         Threads to use; 0 for all processors.
     progress : bool or callable, optional
@@ -163,7 +185,8 @@ def monte_carlo(
     Raises
     ------
     ValueError
-        If the test cannot be driven, or a number is out of range.
+        If the test cannot be driven, a number is out of range, or the checkpoint is of another
+        study.
 
     Examples
     --------
@@ -179,12 +202,61 @@ def monte_carlo(
         model, path, n=n, runs=runs, seed=seed, odometry=odometry, update=update, phase=phase
     )
     with Bar(progress, n, "trials") as bar:
-        ensemble, trials, seconds = study.run(
-            threads=threads, until_std_error_m=until_std_error_m, keep=keep, progress=bar.at
+        ensemble, trials, trials_per_s = study.run(
+            checkpoint=checkpoint,
+            resume=resume,
+            replace=replace,
+            threads=threads,
+            until_std_error_m=until_std_error_m,
+            keep=keep,
+            progress=bar.at,
         )
     precise = is_precise(ensemble, until_std_error_m)
     partial = ensemble.trials < n and not precise
-    return result_of(study, ensemble, partial, ensemble.trials / max(seconds, 1e-9), trials)
+    return result_of(study, ensemble, partial, trials_per_s, trials)
+
+
+def merge(
+    *files: str | PathLike[str],
+    output: str | PathLike[str] | None = None,
+    replace: bool = False,
+) -> MonteCarlo:
+    """Put shards or checkpoints of one study together, in any order, to the bits of one run.
+
+    Parameters
+    ----------
+    *files : path-like
+        Files of ``umbmark mc --checkpoint``, ``monte_carlo(checkpoint=...)`` or ``Study.run``.
+    output : path-like, optional
+        Write the merged checkpoint to this file.
+    replace : bool, default False
+        Whether that file is replaced where it is there.
+
+    Returns
+    -------
+    MonteCarlo
+        ``partial`` where trials are missing; ``ensemble.missing`` says which.
+
+    Raises
+    ------
+    ValueError
+        If a file is no checkpoint, they are of different studies, or have trials in common.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile, umbmark
+    >>> model = umbmark.Model().add("wheel_noise", k_sqrt_m=0.001)
+    >>> study = umbmark.Study(model, n=1000)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     files = [pathlib.Path(folder) / f"{index}.json" for index in range(2)]
+    ...     for index, file in enumerate(files):
+    ...         _ = study.run((index, 2), checkpoint=file)
+    ...     merged = umbmark.merge(*files)
+    >>> merged.n, merged.partial, merged.metrics == umbmark.monte_carlo(model, n=1000).metrics
+    (1000, False, True)
+    """
+    document, ensemble = _umbmark.merge([*files], output, replace)
+    return MonteCarlo._of(document, ensemble=ensemble, trials=None)
 
 
 def is_precise(ensemble: Ensemble, until_std_error_m: float | None) -> bool:

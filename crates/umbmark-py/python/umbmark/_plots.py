@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from umbmark._diagnosis import Diagnosis, Fitted, Learnt
     from umbmark._inspection import Inspection
     from umbmark._monte_carlo import MonteCarlo
+    from umbmark._paper import Paper
     from umbmark._plan import Plan, Separation
     from umbmark._scores import Score
     from umbmark._sensitivity import Sensitivity
@@ -303,5 +304,30 @@ def separation(result: Separation, ax: Axes | None) -> Axes:
     ax.axvline(3.24, color="tab:red", linestyle="--", label="told in nine cases of ten")
     ax.invert_yaxis()
     ax.set(xlabel="standard deviations apart", title=" or ".join(result.separates))
+    ax.legend()
+    return ax
+
+
+def paper(result: Paper, ax: Axes | None, quantity: str | None) -> Axes:
+    """Draw a quantity as it was found, where simulated tests lie, and as it was published."""
+    wanted = quantity or str(result.table()[0]["quantity"])
+    rows = [row for row in result.table() if row["quantity"] == wanted]
+    if not rows:
+        known = ", ".join(sorted({str(row["quantity"]) for row in result.table()}))
+        raise ValueError(f"there is no quantity {wanted!r}; there are {known}")
+    scale, unit = (MM, "mm") if wanted.endswith("_m") else (180 / np.pi, "deg")
+    ax = _axes(ax)
+    places = np.arange(len(rows))
+    found = scale * np.array([row["value"] for row in rows])
+    ends = [[row[end] for row in rows] for end in ("low", "high")]
+    if None not in ends[0]:
+        low, high = scale * np.array(ends)
+        ax.hlines(places, low, high, linewidth=6, alpha=0.3, label="middle 95 % of simulated tests")
+        published = scale * np.array([row["published"] for row in rows])
+        ax.plot(published, places, "o", color="tab:red", label="published")
+    ax.plot(found, places, "|", markersize=12, label="found")
+    ax.set_yticks(places, [f"{row['experiment']}: {row['what']}" for row in rows])
+    ax.invert_yaxis()
+    ax.set(xlabel=f"{wanted.rsplit('_', 1)[0]} [{unit}]")
     ax.legend()
     return ax

@@ -10,6 +10,7 @@ import msgspec
 if TYPE_CHECKING:
     import pandas as pd
     import polars as pl
+    import pyarrow as pa
 
 Interval: TypeAlias = tuple[float, float]
 Row: TypeAlias = dict[str, Any]
@@ -45,17 +46,26 @@ class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         """Give its main numbers, one dict a row."""
         raise NotImplementedError
 
-    def to_pandas(self) -> pd.DataFrame:
-        """Give its ``table`` as a pandas DataFrame."""
-        import pandas as pd
+    def to_arrow(self) -> pa.Table:
+        """Give its ``table`` as an Arrow table."""
+        import pyarrow as pa
 
-        return pd.DataFrame(self.table())
+        return pa.Table.from_pylist(self.table())
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """Give its ``table`` to whatever reads Arrow: ``pyarrow.table``, polars, DuckDB."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Give its ``table`` as a pandas DataFrame, through Arrow."""
+        frame: pd.DataFrame = self.to_arrow().to_pandas()
+        return frame
 
     def to_polars(self) -> pl.DataFrame:
-        """Give its ``table`` as a polars DataFrame."""
+        """Give its ``table`` as a polars DataFrame, through Arrow."""
         import polars as pl
 
-        return pl.DataFrame(self.table())
+        return pl.DataFrame(self.to_arrow())
 
     def __repr__(self) -> str:
         shown = [

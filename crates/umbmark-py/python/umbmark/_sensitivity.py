@@ -132,6 +132,9 @@ def sensitivity(
     parameters: Parameters | None = None,
     correlations: Correlations | None = None,
     seed: int = 1,
+    odometry: str = "robot",
+    update: str = "arc",
+    phase: str = "random",
     threads: int = 0,
     progress: Progress = None,
 ) -> Sensitivity:
@@ -159,7 +162,7 @@ def sensitivity(
         What ``umbmark mc`` has a flag with a number for can be varied.
     correlations : dict of (str, str) to float, optional
         Correlations of the normal scores of two of them.
-    seed, threads, progress
+    seed, odometry, update, phase, threads, progress
         As of ``monte_carlo``.
 
     Raises
@@ -178,7 +181,16 @@ def sensitivity(
     """
     if method in EFFORT:
         effort = effort or EFFORT[method]
-    study = Study(model, path, n=effort or 1, runs=runs, seed=seed)
+    study = Study(
+        model,
+        path,
+        n=effort or 1,
+        runs=runs,
+        seed=seed,
+        odometry=odometry,
+        update=update,
+        phase=phase,
+    )
     keys = None if parameters is None else keys_of(parameters, correlations)
     with Bar(progress, 1000, "per mille") as bar:
         document = _umbmark.sensitivity(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from os import PathLike
 from typing import TYPE_CHECKING
 
 from umbmark import _umbmark
@@ -90,6 +91,12 @@ def sweep(
     n: int = 1000,
     runs: int | tuple[int, int] = 5,
     seed: int = 1,
+    odometry: str = "robot",
+    update: str = "arc",
+    phase: str = "random",
+    checkpoint: str | PathLike[str] | None = None,
+    resume: bool = False,
+    replace: bool = False,
     threads: int = 0,
     progress: Progress = None,
 ) -> Sweep:
@@ -107,7 +114,7 @@ def sweep(
     n : int, default 1000
         Trials of each point. Trial i has the same noise at every point, so that differences between
         points are smoother than either.
-    runs, seed, threads, progress
+    runs, seed, odometry, update, phase, checkpoint, resume, replace, threads, progress
         As of ``monte_carlo``.
 
     Returns
@@ -126,11 +133,14 @@ def sweep(
     >>> [f"{p.metrics['e_max_sys_m'].mean:.2f} m" for p in found.points]
     ['0.18 m', '0.00 m', '0.18 m']
     """
-    study = Study(model, path, n=n, runs=runs, seed=seed)
+    study = Study(
+        model, path, n=n, runs=runs, seed=seed, odometry=odometry, update=update, phase=phase
+    )
     given = [
         (name, float(first), float(last), count) for name, (first, last, count) in axes.items()
     ]
     points = math.prod(count for *_, count in given)
     with Bar(progress, points, "points") as bar:
-        document = _umbmark.sweep(study, given, threads, bar.at)
+        written = None if checkpoint is None else (checkpoint, resume, replace)
+        document = _umbmark.sweep(study, given, written, threads, bar.at)
     return Sweep._of(document)

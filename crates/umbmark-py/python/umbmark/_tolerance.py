@@ -132,6 +132,9 @@ def tolerance(
     correlations: Correlations | None = None,
     runs: int | tuple[int, int] = 5,
     seed: int = 1,
+    odometry: str = "robot",
+    update: str = "arc",
+    phase: str = "random",
     threads: int = 0,
     progress: Progress = None,
 ) -> Tolerance:
@@ -159,7 +162,7 @@ def tolerance(
         Judge what a whole test with its noise shows of each robot, not the robot itself.
     correlations : dict of (str, str) to float, optional
         Correlations of the normal scores of two parameters.
-    runs, seed, threads, progress
+    runs, seed, odometry, update, phase, threads, progress
         As of ``monte_carlo``.
 
     Returns
@@ -179,7 +182,16 @@ def tolerance(
     >>> found.now.share_within.value < 0.5, found.cheapest.cost
     (True, 8.0)
     """
-    study = Study(Model() if model is None else model, path, n=1, runs=runs, seed=seed)
+    study = Study(
+        Model() if model is None else model,
+        path,
+        n=1,
+        runs=runs,
+        seed=seed,
+        odometry=odometry,
+        update=update,
+        phase=phase,
+    )
     keys = keys_of(parameters, correlations)
     with Bar(progress, 1000, "per mille") as bar:
         document, sizes = _umbmark.tolerance(

@@ -1,5 +1,6 @@
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
+from pathlib import Path as PathlibPath
 from typing import Any, Self, TypeAlias, final
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 __all__ = [
     "Dataset",
     "Ensemble",
+    "Figure",
     "Model",
     "Path",
     "Robot",
@@ -22,12 +24,18 @@ __all__ = [
     "diagnose",
     "effects",
     "export",
+    "figure",
     "fit",
+    "init",
     "inspect",
+    "kinds",
     "learn",
     "load_dataset",
+    "merge",
+    "paper",
     "plan",
     "presets",
+    "report",
     "score_arrays",
     "score_dataset",
     "sensitivity",
@@ -35,6 +43,7 @@ __all__ = [
     "simulate",
     "sweep",
     "tolerance",
+    "write",
 ]
 
 __version__: str
@@ -201,6 +210,9 @@ class Study:
         shard: tuple[int, int] = ...,
         *,
         known: Ensemble | None = None,
+        checkpoint: Place | None = None,
+        resume: bool = False,
+        replace: bool = False,
         threads: int = 0,
         until_std_error_m: float | None = None,
         keep: bool = False,
@@ -223,10 +235,65 @@ class Ensemble:
     def std_error(self, metric: str) -> float: ...
     def quantile(self, metric: str, shares: Floats) -> Floats: ...
     def share_below(self, metric: str, values: Floats) -> Floats: ...
+    __hash__: None  # type: ignore[assignment]
+    def __eq__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     @staticmethod
     def _unpacked(packed: bytes) -> Ensemble: ...
 
+@final
+class Figure:
+    @property
+    def kind(self) -> str: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def shows(self) -> str: ...
+    @property
+    def good(self) -> str: ...
+    @property
+    def says(self) -> str: ...
+    def table(self) -> list[dict[str, str]]: ...
+    def to_svg(self, *, width_mm: float = 88.0) -> str: ...
+    def to_png(self, *, width_mm: float = 88.0, dpi: int = 300) -> bytes: ...
+    def to_pdf(self, *, width_mm: float = 88.0) -> bytes: ...
+    def to_plotly(self) -> dict[str, Any]: ...
+    def save(
+        self, place: Place, *, width_mm: float = 88.0, dpi: int = 300, replace: bool = False
+    ) -> None: ...
+    def _repr_svg_(self) -> str: ...
+    __hash__: None  # type: ignore[assignment]
+    def __eq__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+    @staticmethod
+    def _from_json(text: str) -> Figure: ...
+
+def init(folder: Place = ..., *, replace: bool = False) -> tuple[PathlibPath, PathlibPath]: ...
+def merge(files: Sequence[Place], output: Place | None, replace: bool) -> tuple[str, Ensemble]: ...
+def paper(
+    names: Sequence[str],
+    trials: int,
+    seed: int,
+    threads: int,
+    progress: Callable[[int], object] | None,
+) -> str: ...
+def kinds() -> dict[str, str]: ...
+def figure(
+    kind: str,
+    asked: tuple[str, Dataset, tuple[str, Model] | None],
+    how: tuple[tuple[float, int, int], bool, int],
+    threads: int,
+    progress: Callable[[int], object] | None,
+) -> Figure: ...
+def report(
+    asked: Sequence[tuple[str, Dataset, tuple[str, Model] | None]],
+    how: tuple[tuple[float, int, int], bool, int],
+    call: str,
+    places: Sequence[Place],
+    threads: int,
+    progress: Callable[[int], object] | None,
+) -> tuple[str, str]: ...
+def write(place: Place, bytes: bytes, replace: bool) -> None: ...
 def load_dataset(
     place: Place, *, ticks: str | None = None, reference: str | None = None
 ) -> Dataset: ...
@@ -271,6 +338,7 @@ class Sobol:
 def sweep(
     study: Study,
     axes: Sequence[tuple[str, float, float, int]],
+    checkpoint: tuple[Place, bool, bool] | None,
     threads: int,
     progress: Callable[[int], object] | None,
 ) -> str: ...
@@ -336,6 +404,7 @@ def learn(
     options: tuple[float, int, int],
     return_poses: bool,
     threads: int,
+    progress: Callable[[int], object] | None,
 ) -> tuple[str, Model]: ...
 def simulate(
     model: Model,

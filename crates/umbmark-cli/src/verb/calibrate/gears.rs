@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
         Pending::write_whole(file, arguments.force, &text).context("the corrected robot was not written")?;
     }
     if session.json() {
-        session.print_json(&document::gears(robot, &calibration, arguments.level, &data.warnings))?;
+        session.print_json(&document::gears(robot, &calibration, arguments.intervals.level, &data.warnings))?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &data.warnings {
@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
             &format!("{effect} is not determined: this data does not show it, or not apart from the rest"),
         );
     }
-    write!(session.out(), "{}", text(&calibration, robot, arguments.level))?;
+    write!(session.out(), "{}", text(&calibration, robot, arguments.intervals.level))?;
     if let Some(file) = &arguments.export_toml {
         writeln!(session.out(), "wrote {}", file.display())?;
     }

@@ -1,13 +1,14 @@
 //! What a dataset can say of the robot.
 //!
 //! To first order a pose measured somewhere on a path tells a few linear combinations of the departures of E_d, E_b and
-//! E_s from one. A quantity can be determined where the measured combinations single it out: where its column of the
+//! E_s from one, or of what a robot of another drive has in their place. A quantity can be determined where the measured combinations single it out: where its column of the
 //! Jacobian is not a combination of the others. A path that is not known is taken to be the paper's square.
 
 use super::{Coverage, Group, LogFacts};
 use crate::drive::Robot;
-use crate::effect::{Context, Model, TestKind};
-use crate::geometry::{Dual, Pose2};
+use crate::effect::{Chain, Model, Place, Progress, TestKind};
+use crate::engine::{Convoy, Predicted};
+use crate::geometry::{Dual, Pose2, seeded};
 use crate::path::{Direction, Path};
 use nalgebra::DMatrix;
 use std::collections::BTreeSet;
@@ -23,13 +24,13 @@ pub struct Determined {
     pub because: &'static str,
 }
 
-/// The effects asked about, in the order of the Jacobian's columns.
-const ASKED: [(&str, &str); 3] = [("wheel_diameter_ratio", "e_d"), ("wheelbase", "e_b"), ("scale", "e_s")];
+/// What is asked for of a differential drive; of others, their first effects by name.
+const OF_WHEELS: [&str; 3] = ["E_d", "E_b (if E_s = 1)", "E_s"];
 const NOTHING: &str = "there is no return error and no absolute pose; measure where the robot stands";
 /// A track sees each move in so many places.
 const PIECES: usize = 8;
-/// Combinations weaker than this \[m or rad per unit of the ratio\], or this share of the strongest, are rounding.
-const WEAKEST: f64 = 1e-9;
+/// Combinations weaker than this \[m or rad per unit of the ratio\], or this share of the strongest, show nothing that could be measured.
+const WEAKEST: f64 = 1e-4;
 
 /// The answers, and how many combinations of the three ratios are shown.
 pub(super) fn determine(
@@ -55,8 +56,13 @@ pub(super) fn determine(
         let poses = jacobian(&robot, &path, direction.unwrap_or(Direction::Ccw));
         seen.extend(poses.iter().flat_map(|pose| rows(pose, headings)));
     }
-    let mut answers =
-        vec![ratio("E_d", &seen, 0, tracked), ratio("E_b (if E_s = 1)", &seen, 1, tracked), scale(&seen, tracked)];
+    let first = robot.drive.first_effects();
+    let [bends, turns, lengthens] = if first == Robot::labmate().drive.first_effects() { OF_WHEELS } else { first };
+    let mut answers = vec![
+        ratio(bends, &seen, 0, tracked),
+        ratio(turns, &seen, 1, tracked),
+        scale(lengthens, &seen, tracked, lengthens == OF_WHEELS[2]),
+    ];
     answers.extend(other_answers(groups));
     (answers, rank(&seen, &[0, 1, 2]))
 }
@@ -64,30 +70,51 @@ pub(super) fn determine(
 /// Derivatives of the pose by each quantity, along the path.
 fn jacobian(robot: &Robot, path: &Path, direction: Direction) -> Vec<[Pose2; 3]> {
     let mut model = Model::new(robot);
-    for (effect, parameter) in ASKED {
-        // The value that does nothing is always allowed.
-        let _ = model.set(effect, parameter, 1.0);
+    let first = robot.drive.first_effects();
+    // Every drive's first effects stand in the catalogue.
+    first.iter().for_each(|effect| drop(model.add(effect)));
+    let place = |effect: &str| -> usize {
+        model.parts().iter().take_while(|part| part.effect.name() != effect).map(|part| part.values.len()).sum()
+    };
+    let chain = model.chain_with(&seeded(model.values(), &first.map(place)));
+    match Convoy::new(robot, path, direction) {
+        Some(convoy) => along_with_trucks(&convoy, &chain),
+        None => along(robot, path, direction, &chain),
     }
-    let values: Vec<f64> = model.values().collect();
-    let columns = [0, 1, 2].map(|column| {
-        let seeded = values.iter().enumerate();
-        let duals: Vec<Dual> = seeded.map(|(i, v)| Dual::new(*v, f64::from(u8::from(i == column)))).collect();
-        let chain = model.chain_with(&duals);
-        let mut pose: Pose2<Dual> = Pose2::IDENTITY.lift();
-        let mut poses = Vec::new();
-        for m in path.moves(direction) {
-            let motion = chain.displacement(
-                &Context::default().headed(pose.heading),
-                &m.wheel_travel(&robot.drive).scaled(1.0 / PIECES as f64),
-            );
-            for _ in 0..PIECES {
-                pose = pose.moved(&motion);
-                poses.push(Pose2::new(pose.x.eps, pose.y.eps, pose.heading.eps));
-            }
+}
+
+/// The derivative of the pose in some places of each move.
+fn along(robot: &Robot, path: &Path, direction: Direction, chain: &Chain<Dual>) -> Vec<[Pose2; 3]> {
+    let place = Place { direction: Some(direction), ..Place::default() };
+    let mut progress = Progress::new(robot, place, false);
+    let mut pose: Pose2<Dual> = Pose2::IDENTITY.lift();
+    let mut poses = Vec::new();
+    for m in path.moves(direction) {
+        let travel = m.wheel_travel(&robot.drive).scaled(1.0 / PIECES as f64);
+        for _ in 0..PIECES {
+            let speeds = [travel.left, travel.right];
+            let at = progress.piece(&travel, 1.0, speeds, speeds);
+            pose = pose.moved(&chain.displacement(&at.headed(pose.heading), &travel));
+            poses.push([0, 1, 2].map(|lane| pose.slope(lane)));
         }
-        poses
-    });
-    (0..columns[0].len()).map(|i| [columns[0][i], columns[1][i], columns[2][i]]).collect()
+    }
+    poses
+}
+
+/// The derivative of the front truck's return error after each move.
+fn along_with_trucks(convoy: &Convoy, chain: &Chain<Dual>) -> Vec<[Pose2; 3]> {
+    let mut floor = Predicted::by(chain);
+    let mut trucks = convoy.at_start(chain.start(), &mut floor);
+    let (mut made, mut poses) = (0, Vec::new());
+    for stop in convoy.stops() {
+        convoy.steps()[made..*stop].iter().for_each(|step| convoy.step(step, &mut trucks, &mut floor));
+        made = *stop;
+        poses.push([0, 1, 2].map(|lane| {
+            let [real, believed] = [&trucks.real[0], &trucks.believed[0]].map(|pose| pose.slope(lane));
+            Pose2::new(real.x - believed.x, real.y - believed.y, real.heading - believed.heading)
+        }));
+    }
+    poses
 }
 
 /// What a measured pose adds to the Jacobian.
@@ -117,21 +144,22 @@ fn ratio(quantity: &'static str, rows: &[[f64; 3]], column: usize, tracked: bool
         true if tracked => "absolute poses on the way show it",
         true => "the returns show it",
         false if rank(rows, &[column]) == 0 => "this path does not show it; drive a square both ways",
-        false => "one direction gives one combination of E_d and E_b; drive the other direction as well",
+        false => "one direction gives one combination of both; drive the other direction as well",
     };
     Determined { quantity, yes, because }
 }
 
-/// E_s, both others being free.
-fn scale(rows: &[[f64; 3]], tracked: bool) -> Determined {
+/// E_s, or what lengthens the way of another drive, both others being free.
+fn scale(quantity: &'static str, rows: &[[f64; 3]], tracked: bool, of_wheels: bool) -> Determined {
     let yes = rank(rows, &[0, 1, 2]) > rank(rows, &[0, 1]);
     let because = match yes {
         _ if rows.is_empty() => NOTHING,
         true if tracked => "absolute poses on the way measure distances",
         true => "the path is open: its end measures a distance",
-        false => "these returns give E_b/E_s only; measure the pose at a stop on the way, or a straight",
+        false if of_wheels => "these returns give E_b/E_s only; measure the pose at a stop on the way, or a straight",
+        false => "these returns do not tell it from the others; measure the pose at a stop on the way, or a straight",
     };
-    Determined { quantity: "E_s", yes, because }
+    Determined { quantity, yes, because }
 }
 
 fn other_answers(groups: &[Group]) -> [Determined; 3] {

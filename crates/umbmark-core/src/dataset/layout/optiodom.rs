@@ -3,7 +3,7 @@
 use super::super::error::DatasetError;
 use super::super::save::{Existing, put};
 use super::super::{Dataset, TickLog};
-use crate::drive::Robot;
+use crate::drive::{Kind, Robot};
 use crate::effect::TestKind;
 use crate::path::{Path as DrivenPath, SQUARE};
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,6 +12,11 @@ use std::path::{Path, PathBuf};
 
 pub(super) fn write(data: &Dataset, folder: &Path, existing: Existing) -> Result<Vec<String>, DatasetError> {
     let robot = data.nominal_robot()?;
+    let kind = robot.drive.kind();
+    if kind != Kind::Differential {
+        let reason = format!("a robot with drive = \"{}\" is not written as a set of OptiOdom", kind.name());
+        return Err(DatasetError::Unwritable { file: folder.display().to_string(), reason });
+    }
     let set = set_name(&robot.name, folder);
     let (numbers, renumbered) = numbers(data);
     let mut files = BTreeMap::new();

@@ -5,7 +5,7 @@ use super::fitted::names;
 use super::moments::{Moments, Whitened};
 use super::{Ends, Fitted, mirrored};
 use crate::diagnose::{DiagnoseError, Likeness, Size, Unseen, Why, candidates, classes};
-use crate::drive::WheelTravel;
+use crate::drive::{LinkReading, WheelTravel};
 use crate::effect::{Context, Entry, Model, Sight, of_drive};
 use crate::fit::RANK_TOLERANCE;
 use crate::geometry::Pose2;
@@ -335,6 +335,7 @@ fn moves_means(entry: &'static Entry, model: &Model) -> bool {
         length: 0.03,
         last_turn: 1.0,
         believed_heading: 0.6,
+        truck: 1.0,
         axle_distance: model.robot().drive.axle_distance(),
         run: 2.0,
         direction: 1.0,
@@ -344,7 +345,8 @@ fn moves_means(entry: &'static Entry, model: &Model) -> bool {
     let all = |model: &Model| {
         let chain = model.chain();
         let travel = WheelTravel { left: 0.02, right: 0.04 };
-        (chain.start(), chain.displacement(&at, &travel), chain.seen(&sight, &Pose2::new(1.0, 2.0, 0.5)))
+        let link = chain.link(LinkReading { length: 1.0, angles: [0.1, -0.2] });
+        (chain.start(), chain.displacement(&at, &travel), link, chain.seen(&sight, &Pose2::new(1.0, 2.0, 0.5)))
     };
     all(&plain) != all(&with)
 }

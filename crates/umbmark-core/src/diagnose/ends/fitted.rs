@@ -8,14 +8,15 @@ use super::{Ends, mirrored};
 use crate::diagnose::{DiagnoseError, Estimate};
 use crate::effect::Model;
 use crate::fit::{self, Problem, RANK_TOLERANCE, null_directions};
-use crate::geometry::{Dual, Pose2};
+use crate::geometry::{Dual, LANES, Pose2, seeded};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// A component of a null direction below this is rounding.
 const INVOLVED: f64 = 0.01;
 
 /// When a fit has settled: predictions over thousands of small pieces are good to some 1e-13.
-const SETTLED: fit::Options = fit::Options { iterations: 100, step_tolerance: 1e-10, decrease_tolerance: 1e-12 };
+const SETTLED: fit::Options =
+    fit::Options { iterations: 100, step_tolerance: 1e-10, decrease_tolerance: 1e-12, cautious: true };
 
 /// A model fitted to return poses.
 #[derive(Clone, Debug)]
@@ -135,21 +136,29 @@ fn with_values(model: &Model, values: &[f64]) -> Result<Model, DiagnoseError> {
 /// Derivatives of the predicted poses in the mirrored frame, run by run.
 fn slopes(ends: &Ends, model: &Model, free: &[usize]) -> Vec<DMatrix<f64>> {
     let mut jacobian = vec![DMatrix::zeros(3, free.len()); ends.runs.len()];
-    for (j, index) in free.iter().enumerate() {
-        let poses = ends.predict::<Dual>(model, &seeded(model.values(), *index));
+    let values: Vec<f64> = model.values().collect();
+    for (j, poses) in ends.slopes(model, &values, free).iter().enumerate() {
         for ((run, pose), slope) in ends.runs.iter().zip(poses).zip(&mut jacobian) {
-            slope.set_column(j, &mirrored(run.direction, &derivative(&pose)));
+            slope.set_column(j, &mirrored(run.direction, pose));
         }
     }
     jacobian
 }
 
-fn seeded(values: impl Iterator<Item = f64>, index: usize) -> Vec<Dual> {
-    values.enumerate().map(|(i, v)| Dual::new(v, f64::from(u8::from(i == index)))).collect()
+impl Ends {
+    /// Derivatives of the predicted poses by the `places` of some values of a model: place by place, run by run.
+    fn slopes(&self, model: &Model, values: &[f64], places: &[usize]) -> Vec<Vec<Vector3<f64>>> {
+        let together = |places: &[usize]| {
+            let poses = self.predict::<Dual>(model, &seeded(values.iter().copied(), places));
+            let of_lane = |lane: usize| poses.iter().map(|pose| vector(&pose.slope(lane))).collect();
+            (0..places.len()).map(of_lane).collect::<Vec<_>>()
+        };
+        places.chunks(LANES).flat_map(together).collect()
+    }
 }
 
-fn derivative(pose: &Pose2<Dual>) -> Vector3<f64> {
-    Vector3::new(pose.x.eps, pose.y.eps, pose.heading.eps)
+fn vector(pose: &Pose2) -> Vector3<f64> {
+    Vector3::new(pose.x, pose.y, pose.heading)
 }
 
 /// Values that are to be fitted and show, and those that do not: E_d and E_b are asked first, then one after the other. All at the
@@ -158,17 +167,18 @@ fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     let flags = model.parts().iter().flat_map(|part| part.values.iter().map(|_| part.free));
     let names = names(model);
     let nominal = model.at_rest();
-    let mut asked: Vec<usize> =
-        flags.enumerate().filter(|(i, free)| *free && is_size(ends, &nominal, *i)).map(|(i, _)| i).collect();
-    // What others share with these counts as theirs.
-    let first = &model.robot().drive.kind().first_effects()[..2];
-    asked.sort_by_key(|i| !first.contains(&names[*i].0));
     let start: Vec<f64> = nominal.values().collect();
-    let column = |index: usize| {
-        let problem = Returns { ends, model: &nominal, start: &start, free: &[index] };
-        problem.jacobian(&[start[index]]).column(0).into_owned()
-    };
-    let columns: Vec<DVector<f64>> = asked.iter().map(|i| column(*i)).collect();
+    let free: Vec<usize> = flags.enumerate().filter(|(_, free)| *free).map(|(i, _)| i).collect();
+    // A length, threshold, scatter or choice moves nothing where its effect does nothing yet.
+    let moves = |poses: &Vec<Vector3<f64>>| poses.iter().any(|pose| *pose != Vector3::zeros());
+    let slopes = ends.slopes(&nominal, &start, &free);
+    let mut asked: Vec<usize> = free.iter().zip(&slopes).filter(|(_, s)| moves(s)).map(|(i, _)| *i).collect();
+    // What others share with these counts as theirs.
+    let first = &model.robot().drive.first_effects()[..2];
+    asked.sort_by_key(|i| !first.contains(&names[*i].0));
+    let problem = Returns { ends, model: &nominal, start: &start, free: &asked };
+    let jacobian = problem.jacobian(&asked.iter().map(|i| start[*i]).collect::<Vec<_>>());
+    let columns: Vec<DVector<f64>> = jacobian.column_iter().map(|column| column.into_owned()).collect();
     let shows = |kept: &[usize]| {
         let matrix = DMatrix::from_columns(&kept.iter().map(|k| columns[*k].clone()).collect::<Vec<_>>());
         null_directions(&matrix, RANK_TOLERANCE)
@@ -194,12 +204,6 @@ fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     free.sort_unstable();
     let open = asked.into_iter().filter(|i| !free.contains(i)).collect();
     (free, open)
-}
-
-/// Whether a value moves the end poses where its effect does nothing yet: not a length, threshold, scatter or choice.
-fn is_size(ends: &Ends, nominal: &Model, value: usize) -> bool {
-    let poses = ends.predict::<Dual>(nominal, &seeded(nominal.values(), value));
-    poses.iter().any(|pose| derivative(pose) != Vector3::zeros())
 }
 
 struct Returns<'a> {
@@ -237,10 +241,9 @@ impl Problem for Returns<'_> {
     fn jacobian(&self, parameters: &[f64]) -> DMatrix<f64> {
         let values = self.all(parameters);
         let mut rows = Vec::with_capacity(self.rows() * self.free.len());
-        for index in self.free {
-            let poses = self.ends.predict::<Dual>(self.model, &seeded(values.iter().copied(), *index));
+        for poses in self.ends.slopes(self.model, &values, self.free) {
             for (run, pose) in self.ends.runs.iter().zip(poses) {
-                let slope = run.weight * -derivative(&pose);
+                let slope = run.weight * -pose;
                 rows.extend_from_slice(&slope.as_slice()[..self.ends.coordinates()]);
             }
         }

@@ -1,8 +1,9 @@
 //! Experiments that people with a tape measure can do, and how their poses scatter.
 
+use crate::calibrate::noise_shape::trucks;
 use crate::diagnose::ends::{Ends, Fitted};
-use crate::drive::Robot;
-use crate::effect::{Evaluate, Model};
+use crate::drive::{Drive, Robot};
+use crate::effect::{Chain, Derived, Evaluate};
 use crate::geometry::{Dual, Pose2};
 use crate::path::{CIRCLE, Direction, Path, SPIN, SQUARE, STRAIGHT, Shape, SpeedProfile};
 use crate::replay::Track;
@@ -70,16 +71,20 @@ impl Design {
         self.legs.iter().map(|leg| leg.stages(robot, noise)).collect()
     }
 
-    /// What a value of a model does to all observations, in standard deviations: at each, what is new, given those before.
-    pub fn column(&self, model: &Model, value: usize, stages: &[Vec<Stage>]) -> DVector<f64> {
-        let duals: Vec<Dual> =
-            model.values().enumerate().map(|(i, v)| Dual::new(v, f64::from(u8::from(i == value)))).collect();
+    /// What some numbers do to all observations, in standard deviations: at each, what is new, given those before.
+    pub fn columns(&self, derived: &Derived, stages: &[Vec<Stage>]) -> Vec<DVector<f64>> {
+        let poses: Vec<Vec<Pose2<Dual>>> = self.legs.iter().map(|leg| leg.poses(&derived.chain)).collect();
+        (0..derived.numbers.len()).map(|lane| self.column(&poses, lane, stages)).collect()
+    }
+
+    fn column(&self, poses: &[Vec<Pose2<Dual>>], lane: usize, stages: &[Vec<Stage>]) -> DVector<f64> {
         let mut rows = Vec::new();
-        for (leg, stages) in self.legs.iter().zip(stages) {
+        for ((leg, poses), stages) in self.legs.iter().zip(poses).zip(stages) {
             let mut known = Vector3::zeros();
-            for (pose, stage) in leg.poses(model, &duals).iter().zip(stages) {
+            for (pose, stage) in poses.iter().zip(stages) {
                 known = stage.carried * known;
-                let seen = Vector3::new(pose.x.eps, pose.y.eps, pose.heading.eps);
+                let slope = pose.slope(lane);
+                let seen = Vector3::new(slope.x, slope.y, slope.heading);
                 let new = (seen - known).rows(0, stage.factor.nrows()).into_owned();
                 known += &stage.gain * &new;
                 let whitened = stage.factor.solve_lower_triangular(&new).unwrap_or(new);
@@ -92,22 +97,8 @@ impl Design {
 
 impl Leg {
     /// Observed poses in the frame of START, wherever that looks in the room.
-    fn poses<T: Evaluate>(&self, model: &Model, values: &[T]) -> Vec<Pose2<T>> {
-        let chain = model.chain_with(values);
-        if self.turned == 0.0 {
-            return self.track.poses(&chain);
-        }
-        let room_from_start: Pose2<T> = Pose2::new(0.0, 0.0, self.turned).lift();
-        let mut pose = room_from_start.compose(&chain.start());
-        let (mut made, mut poses) = (0, Vec::new());
-        for (after, sight) in self.track.seen_after().iter().zip(self.track.sights()) {
-            for (travel, at) in self.track.travel()[made..*after].iter().zip(&self.track.contexts()[made..*after]) {
-                pose = pose.moved(&chain.displacement(&at.headed(pose.heading), travel));
-            }
-            made = *after;
-            poses.push(room_from_start.inverse().compose(&chain.seen(sight, &pose)));
-        }
-        poses
+    fn poses<T: Evaluate>(&self, chain: &Chain<T>) -> Vec<Pose2<T>> {
+        if self.turned == 0.0 { self.track.poses(chain) } else { self.track.poses_turned(chain, self.turned) }
     }
 
     /// How noise grows and is seen along the run: a Kalman filter, whose gains depend on no observation.
@@ -133,8 +124,13 @@ impl Leg {
         stages
     }
 
-    /// Covariance that wheel noise of unit variance a metre gathers over some pieces, and the nominal pose after them.
+    /// Covariance that wheel noise of unit variance a metre gathers over some pieces, and the nominal pose after them. Of two trucks
+    /// what is new to the front one; what is carried on within the pair is left out.
     fn gathered(&self, robot: &Robot, from: Pose2, pieces: std::ops::Range<usize>) -> (Matrix3<f64>, Pose2) {
+        if let Some(convoy) = self.track.convoy() {
+            let end = convoy.meant(pieces.end)[0];
+            return (trucks::gathered(convoy, &robot.drive, pieces), end);
+        }
         let travel = &self.track.travel()[pieces];
         let end = travel.iter().fold(from, |pose, t| pose.moved(&robot.drive.displacement(t)));
         let turn = 1.0 / robot.drive.wheelbase();
@@ -185,6 +181,12 @@ pub(super) fn designs(ends: &Ends) -> Vec<Design> {
         let quarter = std::f64::consts::FRAC_PI_2;
         offered.push(again(path, robot, "the pose taped at every stop", true, 0.0));
         offered.push(again(path, robot, "START turned by 90 deg in the room", false, quarter));
+        if let Drive::Clapper(drive) = robot.drive
+            && drive.corrects()
+        {
+            let plain = Robot { drive: Drive::Clapper(drive.with_correction(false)), ..robot.clone() };
+            offered.push(again(path, &plain, "the correction by the link switched off", false, 0.0));
+        }
         let double = of(path.shape(), path.values(), faster);
         offered.push(plain("the same path at double speed, 3 runs each way", double, robot, 3, true));
         if std::ptr::eq(path.shape(), &SQUARE) {

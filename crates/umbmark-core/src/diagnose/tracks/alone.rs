@@ -6,6 +6,7 @@ use super::system::{Projected, System};
 use crate::effect::ModelError;
 use crate::likelihood::{Column, Fitted, Noise, Weighing};
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 /// Steps of Gauss and Newton that fit whole tracks, from the fit of increments.
 const STEPS: usize = 8;
@@ -23,13 +24,7 @@ pub(crate) struct Alone {
 impl Alone {
     /// A model as it was fitted.
     pub fn new(fitted: Fitted) -> Alone {
-        let observed = &fitted.observed;
-        let mut columns = observed.columns(&fitted.model, &fitted.free);
-        let chain = fitted.model.chain();
-        for ((all, run), reference) in columns.iter_mut().zip(&observed.runs).zip(&fitted.reference) {
-            all.extend(reference.iter().cloned());
-            all.push(run.residuals(&chain));
-        }
+        let (observed, columns) = (&fitted.observed, fitted.all_columns());
         let system = System::new(observed, &fitted.noise, &columns);
         let errors = Errors::new(observed, &system, &columns, (0..system.width).collect());
         Alone { fitted, columns, system, errors }
@@ -81,11 +76,12 @@ impl Alone {
     /// AICc, BIC and the root mean square of the whitened residuals, the effects of the reference fitted out.
     pub fn criteria(&self) -> (f64, f64, f64) {
         let residual = self.system.residual();
-        let runs = self.fitted.observed.runs.iter().zip(&self.columns);
+        let runs = self.fitted.observed.runs.par_iter().zip(&self.columns);
         let scales = runs.map(|(run, columns)| self.fitted.noise.whiten(run, &[&columns[residual]]).log_scale);
+        let scales: Vec<f64> = scales.collect();
         let reference: Vec<usize> = (self.fitted.free.len()..residual).collect();
         let squares = Projected::new(&self.system.whole, &reference).products[(residual, residual)];
-        let deviance = 2.0 * scales.sum::<f64>() + squares;
+        let deviance = 2.0 * scales.iter().sum::<f64>() + squares;
         let (n, k) = (self.system.rows as f64, (residual + Noise::SIZES) as f64);
         let aicc = deviance + 2.0 * k * n / (n - k - 1.0).max(1.0);
         (aicc, deviance + k * libm::log(n), (squares / n).sqrt())

@@ -30,7 +30,7 @@ fn fall(now: f64, then: f64) -> f64 {
 }
 
 /// Products of residuals and columns in metres and radians, run by run, START taken from the first pose where it was measured.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Errors {
     /// The columns of the system that are in it, the residual last.
     which: Vec<usize>,
@@ -51,20 +51,23 @@ impl Errors {
     /// The errors of all runs; `columns` holds all columns run by run, `which` says which may be used, the residual last.
     pub fn new(observed: &Observed, system: &System, columns: &[Vec<Column>], which: Vec<usize>) -> Errors {
         let of_run = |run: usize| {
-            let sum = |i: usize, j: usize| system.of_run(run).map(|u| u.white[(which[i], which[j])]).sum();
-            let rows = system.of_run(run).map(|unit| unit.rows).sum();
-            (DMatrix::from_fn(which.len(), which.len(), sum), rows)
+            let (mut sum, mut rows) = (DMatrix::zeros(which.len(), which.len()), 0);
+            for unit in system.of_run(run) {
+                sum += DMatrix::from_fn(which.len(), which.len(), |i, j| unit.white[(which[i], which[j])]);
+                rows += unit.rows;
+            }
+            (sum, rows)
         };
-        let white = (0..observed.runs.len()).map(of_run).collect();
+        let white = (0..observed.runs.len()).into_par_iter().map(of_run).collect();
         let runs = observed.runs.par_iter().zip(columns).map(|(run, columns)| Run::new(run, columns, &which)).collect();
         Errors { which, runs, white }
     }
 
     /// Errors that are left when each run is predicted with values of its own, `of_run`: pairs of columns and values.
-    pub fn misses(&self, of_run: impl Fn(usize) -> (Vec<usize>, DVector<f64>)) -> Misses {
+    pub fn misses(&self, of_run: impl Fn(usize) -> (Vec<usize>, DVector<f64>) + Send + Sync) -> Misses {
         let (mut squares, mut counts) = ([0.0; 3], [0; 3]);
-        for (index, (run, white)) in self.runs.iter().zip(&self.white).enumerate() {
-            let (columns, values) = of_run(index);
+        let fitted: Vec<_> = (0..self.runs.len()).into_par_iter().map(of_run).collect();
+        for ((run, white), (columns, values)) in self.runs.iter().zip(&self.white).zip(fitted) {
             let mut weights = DVector::zeros(self.which.len());
             weights[self.which.len() - 1] = 1.0;
             for (column, value) in columns.iter().zip(values.iter()) {

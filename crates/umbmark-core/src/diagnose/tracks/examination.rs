@@ -4,8 +4,9 @@ use super::errors::Errors;
 use super::errors::Misses;
 use super::smooth::{self, Covariate, Motion, smooth_columns};
 use super::system::{Projected, System};
-use crate::effect::{Entry, Model, ModelError, of_drive};
-use crate::likelihood::{ABSORBED, Column, Fitted, NUISANCE, Noise, Observed, share_left};
+use crate::diagnose::ends::names;
+use crate::effect::{Changes, Entry, Model, ModelError, Number, is_shape, of_drive};
+use crate::likelihood::{ABSORBED, Column, Fitted, NUISANCE, Noise, share_left};
 use crate::parameter::Parameter;
 use nalgebra::{DMatrix, DVector};
 
@@ -77,6 +78,8 @@ pub struct Examination {
     pub free: Vec<usize>,
     /// Errors in metres and radians, by the columns of the model and of the catalogue's effects.
     pub errors: Errors,
+    /// What the columns of the model and of the catalogue's effects are derivatives by.
+    numbers: Vec<Number>,
     columns: Vec<Vec<Column>>,
 }
 
@@ -84,21 +87,35 @@ impl Examination {
     /// Asks a fitted model about every effect of the catalogue that it lacks, and every smooth.
     pub fn new(fitted: Fitted) -> Result<Examination, ModelError> {
         let observed = &fitted.observed;
-        let mut columns = observed.columns(&fitted.model, &fitted.free);
-        let free: Vec<usize> = (0..fitted.free.len()).collect();
-        let mut asked = Vec::new();
-        let mut width = free.len();
-        for candidate in candidates(observed, &fitted)? {
-            let WithColumns { effect, shape, sizes } = candidate;
-            let parameters = sizes.iter().map(|(parameter, _)| *parameter).collect();
-            let own = (width..width + sizes.len()).collect();
-            width += sizes.len();
-            for (_, by_run) in sizes {
-                columns.iter_mut().zip(by_run).for_each(|(all, column)| all.push(column));
+        let own = names(&fitted.model);
+        let own = fitted.free.iter().map(|value| own[*value]);
+        let mut numbers: Vec<Number> =
+            own.map(|(effect, parameter)| Number { effect, parameter, shape: None }).collect();
+        let free: Vec<usize> = (0..numbers.len()).collect();
+        let offers = offers(&fitted.model);
+        numbers.extend(offers.iter().flat_map(Offer::numbers));
+        let mut columns = observed.columns_of(&fitted.model, &numbers)?;
+        let shows = |number: usize| columns.iter().any(|run| run[number].iter().any(|c| *c != [0.0; 3]));
+        let (mut asked, mut kept, mut next, mut silent) = (Vec::new(), free.clone(), free.len(), None);
+        for Offer { effect, shape, sizes } in offers {
+            let (first, own) = (kept.len(), next..next + sizes.len());
+            next = own.end;
+            let shown = sizes.into_iter().zip(own).filter(|(_, number)| silent != Some(effect) && shows(*number));
+            let (parameters, shown): (Vec<_>, Vec<_>) = shown.unzip();
+            if parameters.is_empty() {
+                silent = Some(effect);
+                continue;
             }
+            kept.extend(shown);
             let nuisance = NUISANCE.contains(&effect.about.name);
-            asked.push(Asked { question: Question::Effect(effect, parameters), columns: own, shape, nuisance });
+            let columns = (first..kept.len()).collect();
+            asked.push(Asked { question: Question::Effect(effect, parameters), columns, shape, nuisance });
         }
+        let numbers: Vec<Number> = kept.iter().map(|number| numbers[*number]).collect();
+        for run in &mut columns {
+            *run = kept.iter().map(|number| std::mem::take(&mut run[*number])).collect();
+        }
+        let width = numbers.len();
         for (all, smooths) in columns.iter_mut().zip(smooth_columns(observed, &fitted.model)) {
             all.extend(smooths);
         }
@@ -112,19 +129,16 @@ impl Examination {
             all.push(run.residuals(&chain));
         }
         let system = System::new(observed, &fitted.noise, &columns);
-        let errors = Errors::new(observed, &system, &columns, (0..width).chain([system.residual()]).collect());
-        let mut examination = Examination { fitted, system, asked, free, errors, columns };
-        if examination.clean() {
-            let which = (0..width).chain([examination.system.residual()]).collect();
-            let Examination { fitted, system, columns, .. } = &examination;
-            examination.errors = Errors::new(&fitted.observed, system, columns, which);
-        }
+        let mut examination = Examination { fitted, system, asked, free, errors: Errors::default(), numbers, columns };
+        examination.clean();
+        let which = (0..width).chain([examination.system.residual()]).collect();
+        let Examination { fitted, system, columns, .. } = &examination;
+        examination.errors = Errors::new(&fitted.observed, system, columns, which);
         Ok(examination)
     }
 
-    /// Estimates the noise anew with what is most evidently missing fitted out, so that it is noise alone. Says whether anything
-    /// was.
-    fn clean(&mut self) -> bool {
+    /// Estimates the noise anew with what is most evidently missing fitted out, so that it is noise alone.
+    fn clean(&mut self) {
         let mut out = self.base(None);
         let mut added = 0;
         while added < CLEANED {
@@ -139,14 +153,13 @@ impl Examination {
             added += 1;
         }
         if added == 0 {
-            return false;
+            return;
         }
         out.push(self.system.residual());
         let few = self.some_columns(&out);
         let chain = self.fitted.model.chain();
         self.fitted.noise = Noise::estimate(&self.fitted.observed, &chain, &few, &self.fitted.noise);
         self.system = System::new(&self.fitted.observed, &self.fitted.noise, &self.columns);
-        true
     }
 
     /// Some columns, run by run.
@@ -174,38 +187,12 @@ impl Examination {
 
     /// The effect that a column belongs to.
     pub fn name(&self, column: usize) -> Option<&'static str> {
-        let asked = self.asked.iter().find(|asked| asked.columns.contains(&column));
-        let own = self.fitted.free.get(column).and_then(|value| {
-            let mut rest = *value;
-            self.fitted.model.parts().iter().find_map(|part| {
-                let inside = rest < part.values.len();
-                rest -= if inside { 0 } else { part.values.len() };
-                inside.then_some(part.effect.name())
-            })
-        });
-        own.or_else(|| asked.and_then(Asked::effect).map(|effect| effect.about.name))
+        self.number(column).map(|number| number.effect)
     }
 
-    /// What a column is a derivative by: a model that holds it, its effect and its parameter.
-    pub fn number(&self, column: usize) -> Result<(Model, &'static str, &'static str), ModelError> {
-        let mut model = self.fitted.model.clone();
-        if let Some(value) = self.fitted.free.get(column) {
-            let (effect, parameter) = crate::diagnose::ends::names(&model)[*value];
-            return Ok((model, effect, parameter));
-        }
-        let of_effect = |asked: &&Asked| asked.effect().is_some() && asked.columns.contains(&column);
-        let Some(Asked { question: Question::Effect(effect, parameters), columns, shape, .. }) =
-            self.asked.iter().find(of_effect)
-        else {
-            return Err(ModelError::UnknownEffect { name: format!("column {column}"), nearest: None });
-        };
-        let name = effect.about.name;
-        model.add(name)?;
-        if let Some((parameter, value)) = shape {
-            model.set(name, parameter.name, *value)?;
-        }
-        let which = columns.iter().position(|own| *own == column).unwrap_or(0);
-        Ok((model, name, parameters[which].name))
+    /// What a column is a derivative by; `None` for one of a smooth.
+    pub fn number(&self, column: usize) -> Option<Number> {
+        self.numbers.get(column).copied()
     }
 
     /// Errors of runs left out, with the model's own values and the columns `found` fitted to the others.
@@ -214,7 +201,11 @@ impl Examination {
     }
 
     /// The same with one more group, picked anew from the products of the others.
-    pub fn left_out_with(&self, found: &[usize], pick: impl Fn(&DMatrix<f64>) -> Option<Answer>) -> Misses {
+    pub fn left_out_with(
+        &self,
+        found: &[usize],
+        pick: impl Fn(&DMatrix<f64>) -> Option<Answer> + Send + Sync,
+    ) -> Misses {
         self.errors.misses(|run| {
             let products = self.system.without(run);
             let mut columns = [&self.free[..], found].concat();
@@ -298,58 +289,34 @@ pub fn worth_of(drop: f64, numbers: usize) -> f64 {
 /// A shape is tried at its usual value and at these multiples of it.
 const TRIED: [f64; 4] = [1.0, 0.5, 2.0, 4.0];
 
-/// An effect with, for each of its sizes, the columns by run.
-struct WithColumns {
+/// An effect of the catalogue that a model lacks, with one value of its shape.
+struct Offer {
     effect: &'static Entry,
     shape: Option<(&'static Parameter, f64)>,
-    sizes: Vec<(&'static Parameter, Vec<Column>)>,
+    sizes: Vec<&'static Parameter>,
 }
 
-/// Every effect of the catalogue that the model lacks and that moves some observation, with its columns by run.
-fn candidates(observed: &Observed, fitted: &Fitted) -> Result<Vec<WithColumns>, ModelError> {
-    let model = &fitted.model;
-    let missing =
-        of_drive(model.robot().drive.kind()).filter(|entry| model.parts().iter().all(|part| part.effect != *entry));
-    let mut found = Vec::new();
+impl Offer {
+    fn numbers(&self) -> impl Iterator<Item = Number> + '_ {
+        let shape = self.shape.map(|(parameter, value)| (parameter.name, value));
+        self.sizes.iter().map(move |size| Number { effect: self.effect.about.name, parameter: size.name, shape })
+    }
+}
+
+/// Every effect of the catalogue that the model lacks and that may move some observation, with each value of its shape.
+fn offers(model: &Model) -> Vec<Offer> {
+    let missing = of_drive(model.robot().drive.kind()).filter(|entry| {
+        entry.changes.include(Changes::MEAN) && model.parts().iter().all(|part| part.effect != **entry)
+    });
+    let mut offers = Vec::new();
     for effect in missing {
-        let mut plain = model.clone();
-        plain.add(effect.about.name)?;
-        let before = plain.parts().iter().take_while(|part| part.effect != effect);
-        let first: usize = before.map(|part| part.values.len()).sum();
-        let shapes = plain.shapes();
-        let shape = effect.about.parameters.iter().enumerate().find(|(k, _)| shapes.contains(&(first + k)));
-        let tried = if shape.is_some() { &TRIED[..] } else { &TRIED[..1] };
+        let parameters = effect.about.parameters.iter();
+        let (shapes, sizes): (Vec<&Parameter>, Vec<&Parameter>) = parameters.partition(|parameter| is_shape(parameter));
+        let tried = if shapes.is_empty() { &TRIED[..1] } else { &TRIED[..] };
         for factor in tried {
-            let shape = shape.map(|(_, p)| (p, factor * p.default.resolve(model.robot())));
-            let mut with = plain.clone();
-            if let Some((parameter, value)) = shape {
-                with.set(effect.about.name, parameter.name, value)?;
-            }
-            let sizes = columns_of(observed, &with, first, effect);
-            if sizes.is_empty() {
-                break;
-            }
-            found.push(WithColumns { effect, shape, sizes });
+            let shape = shapes.first().map(|shape| (*shape, factor * shape.default.resolve(model.robot())));
+            offers.push(Offer { effect, shape, sizes: sizes.clone() });
         }
     }
-    Ok(found)
-}
-
-/// The sizes of an effect whose values begin at `first`, with their columns by run.
-fn columns_of(
-    observed: &Observed,
-    with: &Model,
-    first: usize,
-    effect: &'static Entry,
-) -> Vec<(&'static Parameter, Vec<Column>)> {
-    let places: Vec<usize> = (first..first + effect.about.parameters.len()).collect();
-    let columns = observed.columns(with, &places);
-    let mut sizes = Vec::new();
-    for (index, parameter) in effect.about.parameters.iter().enumerate() {
-        let by_run: Vec<Column> = columns.iter().map(|run| run[index].clone()).collect();
-        if by_run.iter().flatten().any(|c| *c != [0.0; 3]) {
-            sizes.push((parameter, by_run));
-        }
-    }
-    sizes
+    offers
 }

@@ -10,8 +10,8 @@ use super::system::Projected;
 use crate::diagnose::experiments::design::{MINUTES_A_RUN, minutes};
 use crate::diagnose::experiments::{best, worth};
 use crate::diagnose::{DiagnoseError, Experiment, Unseen, Why};
-use crate::effect::{Model, ModelError};
-use crate::likelihood::{Noise, ObservedRun, gram, seeded};
+use crate::effect::{Model, ModelError, Number};
+use crate::likelihood::{Noise, ObservedRun, gram};
 use crate::parameter::Parameter;
 use crate::path::{CIRCLE, Direction, FIGURE_EIGHT, Path, SPIN, SQUARE, STRAIGHT, Shape, SpeedProfile, WAYPOINTS};
 use crate::replay::Track;
@@ -183,16 +183,11 @@ impl Drive {
         direction: Direction,
     ) -> Result<DMatrix<f64>, ModelError> {
         let headings = exam.fitted.observed.runs.iter().any(|run| run.blocks.iter().any(|block| block.headings > 0));
-        let run = ObservedRun::planned(track, direction, headings, &self.at_start(&exam.fitted.model)?);
+        let model = self.at_start(&exam.fitted.model)?;
+        let run = ObservedRun::planned(track, direction, headings, &model);
         let noise: &Noise = &exam.fitted.noise;
-        let mut made = Vec::with_capacity(columns.len());
-        for column in columns {
-            let (model, effect, parameter) = exam.number(*column)?;
-            let model = self.at_start(&model)?;
-            let names = crate::diagnose::ends::names(&model);
-            let value = names.iter().position(|name| *name == (effect, parameter)).unwrap_or(0);
-            made.push(run.derivatives(&seeded(&model, value)));
-        }
+        let numbers: Vec<Number> = columns.iter().filter_map(|column| exam.number(*column)).collect();
+        let made = run.columns_of(&model.derived(&numbers)?, numbers.len());
         let white = noise.whiten(&run, &made.iter().map(Vec::as_slice).collect::<Vec<_>>());
         Ok(gram(&white.values, white.columns))
     }

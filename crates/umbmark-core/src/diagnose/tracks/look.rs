@@ -1,10 +1,11 @@
 //! Every group asked beside a fitted model: how much it explains, and how sure that is.
 
 use super::examination::{ALIKE, Answer, Examination, Question, worth};
-use super::flips::{Scores, family_wise};
+use super::flips::{Family, Scores};
 use super::system::Projected;
 use crate::diagnose::{Estimate, Options, Suspect};
 use crate::stats::f_upper_tail;
+use std::cell::OnceCell;
 use std::sync::Arc;
 
 /// Runs that carry a certificate on their own; with fewer, quarters of runs do.
@@ -88,11 +89,15 @@ fn certify(exam: &Examination, findings: &mut [Finding], options: &Options) {
     let by_run = all(few);
     let by_quarter = if by_run.iter().all(|own| own.carrying() >= ENOUGH_CARRYING) { Vec::new() } else { all(true) };
     let asked = findings.len() as f64;
+    // Most data accuses nothing, and then no flips are taken.
+    let families: [OnceCell<Family>; 2] = Default::default();
     for (index, finding) in findings.iter_mut().enumerate() {
-        let scores = if by_run[index].carrying() < ENOUGH_CARRYING { &by_quarter } else { &by_run };
+        let quarters = by_run[index].carrying() < ENOUGH_CARRYING;
+        let scores = if quarters { &by_quarter } else { &by_run };
         finding.p_f = (asked * finding.p.max(scores[index].p_by_units(&finding.answer.step))).min(1.0);
         if finding.p_f <= options.size {
-            finding.p_flips = family_wise(&scores[index], scores, options.seed);
+            let family = families[usize::from(quarters)].get_or_init(|| Family::new(scores, options.seed));
+            finding.p_flips = family.p(&scores[index]);
         }
     }
 }

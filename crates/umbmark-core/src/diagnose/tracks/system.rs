@@ -37,17 +37,14 @@ impl System {
         let units = observed.runs.par_iter().zip(columns).enumerate().flat_map_iter(|(index, (run, columns))| {
             let columns: Vec<&[[f64; 3]]> = columns.iter().map(Vec::as_slice).collect();
             let white = noise.whiten(run, &columns);
-            let mut quarters: Vec<Vec<f64>> = Vec::new();
-            for (row, block) in white.rows().zip(&white.block) {
-                let unit = run.blocks[*block].unit;
-                quarters.resize_with(quarters.len().max(unit + 1), Vec::new);
-                quarters[unit].extend_from_slice(row);
-            }
-            quarters.into_iter().filter(|values| !values.is_empty()).map(move |values| Unit {
-                run: index,
-                rows: values.len() / width,
-                white: gram(&values, width),
-            })
+            let mut rest = &white.values[..];
+            let quarters = white.block.chunk_by(|a, b| run.blocks[*a].unit == run.blocks[*b].unit);
+            let unit = |quarter: &[usize]| {
+                let values;
+                (values, rest) = rest.split_at(quarter.len() * width);
+                Unit { run: index, rows: quarter.len(), white: gram(values, width) }
+            };
+            quarters.map(unit).collect::<Vec<_>>()
         });
         let units: Vec<Unit> = units.collect();
         let mut whole = DMatrix::zeros(width, width);

@@ -2,6 +2,7 @@ use super::*;
 use crate::drive::Robot;
 use crate::effect::tests::{column, model_with, probes, seen};
 use crate::effect::{Model, ModelError};
+use crate::geometry::{LANES, seeded};
 use crate::random::Stream;
 use program::Function;
 use variable::Variable;
@@ -226,11 +227,11 @@ fn a_formula_has_the_value_of_the_tree_that_it_was_written_from() {
     let mut compared = 0;
     for (tree, text, program) in trees(1) {
         let (mut largest, mut steepest) = (0.0_f64, 0.0_f64);
-        let heading = Dual::new(0.4, 1.0);
-        program.watched(&[Dual::new(0.7, 1.0)], &Context::default().headed(heading), heading, |_, part| {
+        let [k, heading] = [0.7, 0.4].map(|value| Dual { eps: [1.0; LANES], re: value });
+        program.watched(&[k], &Context::default().headed(heading), heading, |_, part| {
             // Sums keep what is no number.
             largest += part.re.abs();
-            steepest += part.eps.abs();
+            steepest += part.eps[0].abs();
         });
         let (value, expected) = (program.evaluate(&[0.7], &Context::default(), 0.4), tree.value());
         // Where a part is huge or steep, rounding decides: nothing is compared.
@@ -251,7 +252,7 @@ fn derivatives_are_those_of_finite_differences() {
         program.watched(&[0.7], &Context::default(), 0.4, |_, part: f64| tame &= part.abs() < 1e6);
         let at = |k: f64| program.evaluate(&[k], &Context::default(), 0.4);
         let still = Dual::from(0.4);
-        let dual = program.evaluate(&[Dual::new(0.7, 1.0)], &Context::default().headed(still), still);
+        let dual = program.evaluate(&seeded([0.7], &[0]), &Context::default().headed(still), still);
         assert!(!tame || (dual.re - at(0.7)).abs() <= 1e-7 * (1.0 + at(0.7).abs()), "{text}: {} {}", dual.re, at(0.7));
         let numeric = |h: f64| (at(0.7 + h) - at(0.7 - h)) / (2.0 * h);
         let (fine, coarse) = (numeric(1e-5), numeric(2e-5));
@@ -262,7 +263,7 @@ fn derivatives_are_those_of_finite_differences() {
             && fine.abs().max(at(0.7).abs()) < 1e4
         {
             compared += 1;
-            assert!((dual.eps - fine).abs() < 1e-5 * (1.0 + fine.abs()), "{text}: {} {fine}", dual.eps);
+            assert!((dual.eps[0] - fine).abs() < 1e-5 * (1.0 + fine.abs()), "{text}: {} {fine}", dual.eps[0]);
         }
     }
     assert!(compared > 5_000, "{compared}");

@@ -51,18 +51,18 @@ fn patterns_of_almost_whole_turns_lose_no_digits() {
     }
 }
 
-/// With equal tick lengths the half rotations of the two letters are exact opposites and their rounding cancels. With
-/// unequal ones it adds up along the way like a miscalibration by 1e-16: 1e7 ticks are 2.4 km.
+/// 1e7 ticks are 2.4 km. With equal tick lengths the half rotations of the two letters are exact opposites and their rounding
+/// cancels; with unequal ones it adds up along the way, and is taken off.
 #[test]
 #[ignore = "a minute; to be run after a change of the kernels"]
 fn ten_million_ticks_stay_within_their_bound() {
     let mut source = Source(4);
     for _ in 0..40 {
         let line = source.line(10_000_000);
-        for (geometry, bound) in [(nominal(), 2e-11), (commensurate(), 2e-11), (calibrated(), 2e-10)] {
+        for geometry in [nominal(), commensurate(), calibrated()] {
             let (position, rotation) = errors(&geometry, &line);
             println!("{position:.1e} m, {rotation:.1e} rad, {:?} ticks", line.counts());
-            assert!(position <= bound && rotation <= 2e-11, "{line:?}: {position:e} m, {rotation:e} rad");
+            assert!(position <= 2e-11 && rotation <= 2e-11, "{line:?}: {position:e} m, {rotation:e} rad");
         }
     }
 }

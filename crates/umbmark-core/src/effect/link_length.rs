@@ -1,0 +1,69 @@
+//! The length of the link between two trucks.
+
+use super::words::{either, percent};
+use super::{About, ActsOn, Changes, Effect};
+use crate::drive::{Kind, Kinds, LinkReading, Robot};
+use crate::geometry::Real;
+use crate::parameter::{DefaultValue, Parameter};
+
+/// The ratio of the true distance of the trucks to the one that the linear encoder shows.
+pub struct LinkLength;
+
+impl Effect for LinkLength {
+    const ABOUT: About = About {
+        name: "link_length",
+        title: "length of the link",
+        acts_on: ActsOn::Odometry,
+        parameters: &[Parameter {
+            name: "ratio",
+            flag: "link-length",
+            unit: "",
+            default: DefaultValue::Value(1.0),
+            typical: 2e-3,
+            bounds: (0.5, 2.0),
+            meaning: "true distance of the trucks' centres over the one that the linear encoder shows",
+            choices: &[],
+        }],
+        equation: "shown length ← length / ratio",
+        physics: "The distance of the two pivots was not measured well, or the linear encoder counts more or fewer millimetres \
+                  than there are.",
+        signature: "In a corner the trucks drive round the middle of a link that is longer than believed, so they turn it less: \
+                    opposite in ccw and cw, as with E_b of a differential drive. Nothing on legs.",
+        confused_with: &["scale", "rear_truck"],
+        separated_by: "the length of one leg by tape, which shows the scale and not the link",
+        source: "kinematics of the corner; the paper (section 4.5) names errors of this kind and gives no size",
+    };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Clapper);
+
+    const CHANGES: Changes = Changes::LINK;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        let word = either(p[0] - 1.0, "longer", "shorter");
+        format!("The link is {} {word} than its encoder shows.", percent(p[0] - 1.0))
+    }
+
+    fn link<T: Real>(p: &[T], shown: &mut LinkReading<T>) {
+        shown.length /= p[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, clapper_returned_with};
+    use std::f64::consts::TAU;
+
+    /// Oracle: an arc of so many metres turns a link that is longer by a share by that share less, in all by 2π (1/r - 1).
+    #[test]
+    fn a_longer_link_turns_less_in_every_corner_and_more_scale_makes_up_for_it() {
+        for ratio in [1.004, 0.996] {
+            for (direction, sign) in ccw_and_cw() {
+                let turned = clapper_returned_with(&[("link_length", "ratio", ratio)], direction).heading;
+                let expected = sign * TAU * (1.0 / ratio - 1.0);
+                assert!((turned / expected - 1.0).abs() < 0.02, "{turned} {expected}");
+                let both = [("link_length", "ratio", ratio), ("scale", "e_s", ratio)];
+                assert!(clapper_returned_with(&both, direction).heading.abs() < 0.01 * expected.abs());
+            }
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! Derivatives of what a model predicts, by numbers that it has or may have.
+
+use super::{Chain, Model, ModelError};
+use crate::geometry::{Dual, LANES, seeded};
+
+/// A number by which predictions are differentiated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Number {
+    /// Its effect. Where a model lacks it, it is there at its default values and does nothing.
+    pub effect: &'static str,
+    /// The number.
+    pub parameter: &'static str,
+    /// Another number of an effect that the model lacks (a length, a threshold), and its value.
+    pub shape: Option<(&'static str, f64)>,
+}
+
+/// A chain that carries derivatives by some of a list of numbers.
+#[derive(Clone, Debug)]
+pub struct Derived {
+    /// The chain: lane k carries the derivative by the k-th of `numbers`.
+    pub chain: Chain<Dual>,
+    /// Places in the list.
+    pub numbers: Vec<usize>,
+}
+
+impl Model {
+    /// Chains that carry derivatives by all of a list of numbers, [`LANES`] at a time. Effects that the model lacks are side by side in
+    /// one chain: at their defaults, none changes anything for the others.
+    pub fn derived(&self, numbers: &[Number]) -> Result<Vec<Derived>, ModelError> {
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for (index, number) in numbers.iter().enumerate() {
+            let agrees =
+                |other: &usize| numbers[*other].effect != number.effect || numbers[*other].shape == number.shape;
+            match groups.iter_mut().find(|group| group.len() < LANES && group.iter().all(agrees)) {
+                Some(group) => group.push(index),
+                None => groups.push(vec![index]),
+            }
+        }
+        groups.into_iter().map(|group| self.derived_together(numbers, group)).collect()
+    }
+
+    fn derived_together(&self, list: &[Number], numbers: Vec<usize>) -> Result<Derived, ModelError> {
+        let mut with = self.clone();
+        for Number { effect, shape, .. } in numbers.iter().map(|index| list[*index]) {
+            with.add(effect)?;
+            if let Some((parameter, value)) = shape {
+                with.set(effect, parameter, value)?;
+            }
+        }
+        let place = |index: &usize| {
+            let Number { effect, parameter, .. } = list[*index];
+            let unknown = || ModelError::UnknownParameter { effect, name: parameter.to_owned(), nearest: None };
+            with.place_of(effect, parameter).ok_or_else(unknown)
+        };
+        let places: Vec<usize> = numbers.iter().map(place).collect::<Result<_, _>>()?;
+        Ok(Derived { chain: with.chain_with(&seeded(with.values(), &places)), numbers })
+    }
+}

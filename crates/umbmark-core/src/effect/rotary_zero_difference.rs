@@ -1,0 +1,65 @@
+//! Zeros of a link's two rotary encoders that differ.
+
+use super::words::{deg, side};
+use super::{About, ActsOn, Changes, Effect};
+use crate::drive::{Drive, Kind, Kinds, LinkReading, Robot};
+use crate::geometry::Real;
+use crate::parameter::Parameter;
+
+/// What the front angle shows more than the rear one where trucks and link are in line.
+pub struct RotaryZeroDifference;
+
+impl Effect for RotaryZeroDifference {
+    const ABOUT: About = About {
+        name: "rotary_zero_difference",
+        title: "difference of the rotary encoders' zeros",
+        acts_on: ActsOn::Odometry,
+        parameters: &[Parameter::size(
+            "angle_rad",
+            "rotary-zero-difference",
+            "rad",
+            2e-4,
+            (-0.5, 0.5),
+            "what the front angle shows more than the rear one where trucks and link are in line",
+        )],
+        equation: "shown front ← angle + d/2,  shown rear ← angle - d/2",
+        physics: "The encoders were set to zero by eye, or each truck's axle is not square to its pivot. Each reading sets a \
+                  heading, so the trucks truly drive apart by d where they believe to drive in line.",
+        signature: "The line of trucks turns by d over its length a metre: legs bend the same way in ccw and cw, as with E_d of a \
+                    differential drive. A tenth of a milliradian leaves as much of a 7 x 4 m rectangle as is published.",
+        confused_with: &["rear_truck"],
+        separated_by: "a straight with the correction on and off; sighting along both trucks while they stand in line",
+        source: "kinematics of two trucks; the paper (section 4.5) names errors of this kind and gives no size",
+    };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Clapper);
+
+    const CHANGES: Changes = Changes::LINK;
+
+    fn means(p: &[f64], robot: &Robot) -> String {
+        let link = if let Drive::Clapper(drive) = robot.drive { drive.link() } else { 1.0 };
+        format!("Each metre ahead turns the line of trucks by {} to the {}.", deg(p[0] / link), side(p[0]))
+    }
+
+    fn link<T: Real>(p: &[T], shown: &mut LinkReading<T>) {
+        let half = p[0] * 0.5;
+        shown.angles[0] += half;
+        shown.angles[1] -= half;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, clapper_returned_with};
+
+    /// Oracle: d over the link's length, 1 m, for each metre of leg; in corners the trucks stand across and neither turns it.
+    #[test]
+    fn legs_bend_the_same_way_in_both_directions_by_the_difference_over_the_link() {
+        for difference in [5e-4, -5e-4] {
+            for (direction, _) in ccw_and_cw() {
+                let turned = clapper_returned_with(&[("rotary_zero_difference", "angle_rad", difference)], direction);
+                assert!((turned.heading / (22.0 * difference) - 1.0).abs() < 0.05, "{turned:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! Zeros of a link's two rotary encoders that are off alike.
+
+use super::words::{deg, side};
+use super::{About, ActsOn, Changes, Effect};
+use crate::drive::{Kind, Kinds, LinkReading, Robot};
+use crate::geometry::Real;
+use crate::parameter::Parameter;
+
+/// What both angles show where trucks and link are in line.
+pub struct RotaryZeroMean;
+
+impl Effect for RotaryZeroMean {
+    const ABOUT: About = About {
+        name: "rotary_zero_mean",
+        title: "mean of the rotary encoders' zeros",
+        acts_on: ActsOn::Odometry,
+        parameters: &[Parameter::size(
+            "angle_rad",
+            "rotary-zero-mean",
+            "rad",
+            2e-3,
+            (-0.5, 0.5),
+            "what both angles show where trucks and link are in line",
+        )],
+        equation: "shown angle ← angle + a, of both trucks",
+        physics: "The link is bent, or both encoders are turned in their seats the same way.",
+        signature: "Both trucks truly head a to the left of where they believe, so the whole path is turned about START and \
+                    closes: the return heading alone is off, by a, the same in ccw and cw.",
+        confused_with: &["start_pose"],
+        separated_by: "the heading after the first leg beside its course; turning START about by hand changes nothing of it",
+        source: "kinematics of two trucks; the paper (section 4.5) names errors of this kind and gives no size",
+    };
+
+    const DRIVES: Kinds = Kinds::of(Kind::Clapper);
+
+    const CHANGES: Changes = Changes::LINK;
+
+    fn means(p: &[f64], _robot: &Robot) -> String {
+        format!("Both trucks head {} to the {} of where they believe.", deg(p[0]), side(p[0]))
+    }
+
+    fn link<T: Real>(p: &[T], shown: &mut LinkReading<T>) {
+        shown.angles.iter_mut().for_each(|angle| *angle += p[0]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::tests::{ccw_and_cw, clapper_returned_with};
+
+    #[test]
+    fn the_return_heading_is_off_by_it_and_the_place_by_hardly_anything() {
+        for zero in [3e-3, -3e-3] {
+            for (direction, _) in ccw_and_cw() {
+                let returned = clapper_returned_with(&[("rotary_zero_mean", "angle_rad", zero)], direction);
+                assert!((returned.heading / zero - 1.0).abs() < 0.15, "{returned:?}");
+                assert!(returned.x.hypot(returned.y) < 1.0 * zero.abs(), "{returned:?}");
+            }
+        }
+    }
+}

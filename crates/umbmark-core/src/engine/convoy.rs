@@ -1,0 +1,366 @@
+//! A CLAPPER under way: two trucks that steer by their odometry, and the link that corrects it.
+//!
+//! On legs the trucks drive one behind the other; in a corner both turn across the link, drive it round about its middle, and
+//! turn back. The rule of the correction (our reconstruction of Borenstein's internal position error correction): a bump turns a truck
+//! at once, while its position goes wrong only slowly, as it drives on. So the direction from truck to truck, by both
+//! odometries, is good for the next moment, and each truck's heading is that direction less the angle at which its rotary
+//! encoder sees the link. What is left of a heading error δ is the sideways step δ · (way of a period)/2, seen over the link.
+//!
+//! The link's length, by its linear encoder, sets both odometries as far apart as the trucks are. Without it a believed length
+//! that is wrong by a share a (a bump makes it so) would turn the believed direction by a · φ in a corner of φ: 2πa a round.
+//!
+//! The same loop simulates (values, noise, bumps, whole counts) and predicts (values or derivatives, nothing by chance): what
+//! differs is the [`Floor`] that the trucks meet.
+
+use crate::drive::{ClapperDrive, Drive, LinkReading, Robot, WheelTravel};
+use crate::effect::{Chain, Context, Evaluate, Place, Progress};
+use crate::geometry::{Displacement2, Pose2, Real, direction, wrap};
+use crate::path::{Direction, Move, Path, SpeedProfile, Trapezoid};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// How often odometry and link are read where the robot does not say \[Hz\].
+const RATE: f64 = 25.0;
+/// Share of a heading error that is steered away in a period.
+const HEADING_GAIN: f64 = 0.2;
+/// A truck beside its way heads for it as if it were so far ahead \[m\].
+const LOOK_AHEAD: f64 = 0.5;
+
+/// What both trucks, the front one first, are to do in a period.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// Number of the move of the path.
+    pub index: usize,
+    /// Share of that move's own way done before and at the end of it.
+    pub shares: [f64; 2],
+    /// Time since START at its end \[s\].
+    pub time: f64,
+    /// Where and how each truck is meant to drive.
+    pub contexts: [Context; 2],
+    /// What each truck is meant to roll.
+    pub travel: [WheelTravel; 2],
+    /// Speeds of each truck's wheels at its end \[m/s\].
+    pub speeds: [[f64; 2]; 2],
+    motion: [Displacement2; 2],
+    /// Where they are to be at its end.
+    target: [Pose2; 2],
+}
+
+/// Where both trucks are believed to be, and where they are.
+#[derive(Clone, Copy, Debug)]
+pub struct Trucks<T = f64> {
+    /// By their own odometry.
+    pub believed: [Pose2<T>; 2],
+    /// Really.
+    pub real: [Pose2<T>; 2],
+}
+
+/// What makes true motion of believed travel, and readings of the link.
+pub trait Floor<T: Real> {
+    /// True motion of a truck that believes to roll so and truly heads so \[rad\].
+    fn moved(&mut self, step: &Step, truck: usize, believed: WheelTravel<T>, heading: T) -> Displacement2<T>;
+
+    /// What the link's encoders show of it.
+    fn shown(&mut self, link: LinkReading<T>) -> LinkReading<T>;
+}
+
+/// The floor by prediction: what a model, nothing of it by chance, makes of the travel of trucks and of their link.
+#[derive(Debug)]
+pub struct Predicted<'a, T: Evaluate> {
+    chain: &'a Chain<T>,
+}
+
+impl<'a, T: Evaluate> Predicted<'a, T> {
+    /// By the model of this chain.
+    pub fn by(chain: &'a Chain<T>) -> Predicted<'a, T> {
+        Predicted { chain }
+    }
+}
+
+impl<T: Evaluate> Floor<T> for Predicted<'_, T> {
+    #[inline]
+    fn moved(&mut self, step: &Step, truck: usize, believed: WheelTravel<T>, heading: T) -> Displacement2<T> {
+        let at = step.contexts[truck].headed(heading);
+        self.chain.body(&at, &self.chain.rolled(&at, believed))
+    }
+
+    #[inline]
+    fn shown(&mut self, link: LinkReading<T>) -> LinkReading<T> {
+        self.chain.link(link)
+    }
+}
+
+/// The plan of one direction of driving.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Convoy {
+    drive: ClapperDrive,
+    steps: Vec<Step>,
+    /// How many steps are made when each move of the path is done.
+    stops: Vec<usize>,
+}
+
+impl Convoy {
+    /// The plan of a CLAPPER; `None` for other drives, and for paths with arcs.
+    pub fn new(robot: &Robot, path: &Path, direction: Direction) -> Option<Convoy> {
+        let Drive::Clapper(drive) = robot.drive else { return None };
+        let place = Place { direction: Some(direction), ..Place::default() };
+        let mut planner = Planner {
+            drive,
+            speed: path.speed,
+            period: 1.0 / robot.encoder.rate().unwrap_or(RATE),
+            progress: [0, 1].map(|_| Progress::new(robot, place, false)),
+            target: at_start(drive.link()),
+            steps: Vec::new(),
+        };
+        let mut stops = Vec::new();
+        for (index, one) in path.moves(direction).into_iter().enumerate() {
+            for motion in maneuvers(one, drive.link())? {
+                planner.cut(index, motion);
+            }
+            planner.rest();
+            stops.push(planner.steps.len());
+        }
+        Some(Convoy { drive, steps: planner.steps, stops })
+    }
+
+    /// What the trucks do, period by period.
+    pub fn steps(&self) -> &[Step] {
+        &self.steps
+    }
+
+    /// How many steps are made when each move of the path is done.
+    pub fn stops(&self) -> &[usize] {
+        &self.stops
+    }
+
+    /// Where both trucks are to be after so many steps.
+    pub fn meant(&self, made: usize) -> [Pose2; 2] {
+        made.checked_sub(1).map_or_else(|| at_start(self.drive.link()), |last| self.steps[last].target)
+    }
+
+    /// Whether the link corrects the headings.
+    pub fn corrects(&self) -> bool {
+        self.drive.corrects()
+    }
+
+    /// Both trucks at START, of which the front one truly stands where `start` says, the rear one as far behind as the link is
+    /// truly long: a length of which the linear encoder shows the nominal one.
+    pub fn at_start<T: Real>(&self, start: Pose2<T>, floor: &mut impl Floor<T>) -> Trucks<T> {
+        let link = T::from(self.drive.link());
+        let shown = floor.shown(LinkReading { length: link, angles: [T::from(0.0); 2] }).length;
+        let rear = Pose2::new(-(link * link / shown), T::from(0.0), T::from(0.0));
+        let believed = at_start(self.drive.link()).map(|pose| pose.lift());
+        Trucks { believed, real: [start, start.compose(&rear)] }
+    }
+
+    /// Drives a period.
+    #[inline]
+    pub fn step<T: Real>(&self, step: &Step, trucks: &mut Trucks<T>, floor: &mut impl Floor<T>) {
+        self.roll(step, trucks, floor);
+        if self.drive.corrects() {
+            self.correct(trucks, floor);
+        }
+    }
+
+    /// Both trucks roll, each by its own odometry.
+    #[inline]
+    pub(crate) fn roll<T: Real>(&self, step: &Step, trucks: &mut Trucks<T>, floor: &mut impl Floor<T>) {
+        for truck in 0..2 {
+            let (motion, travel) = self.steered(&trucks.believed[truck], step, truck);
+            let moved = floor.moved(step, truck, travel, trucks.real[truck].heading);
+            trucks.real[truck] = trucks.real[truck].moved(&moved);
+            trucks.believed[truck] = trucks.believed[truck].moved(&motion);
+        }
+    }
+
+    /// The motion that a truck gives itself, what is planned and back towards the plan, and the wheel travel that makes it.
+    #[inline]
+    fn steered<T: Real>(&self, believed: &Pose2<T>, step: &Step, truck: usize) -> (Displacement2<T>, WheelTravel<T>) {
+        let (planned, target) = (&step.motion[truck], &step.target[truck].lift());
+        let ahead = believed.between(target);
+        let (mut forward, mut off) = (T::from(0.0), wrapped(ahead.heading - planned.rotation));
+        if planned.forward != 0.0 {
+            forward = ahead.x;
+            off += ahead.y * (planned.forward.signum() / LOOK_AHEAD);
+        }
+        let rotation = off * HEADING_GAIN + planned.rotation;
+        let half = rotation * (0.5 * self.drive.truck().wheelbase());
+        let motion = Displacement2 { forward, sideways: T::from(0.0), rotation };
+        (motion, WheelTravel { left: forward - half, right: forward + half })
+    }
+
+    /// Sets the trucks as far apart as the link is seen to be long, half of the difference each, and gives each the heading at
+    /// which it would see the other there.
+    #[inline]
+    pub(crate) fn correct<T: Real>(&self, trucks: &mut Trucks<T>, floor: &mut impl Floor<T>) {
+        let (along, across) = from_rear(&trucks.real);
+        let there = direction(across, along);
+        let link = LinkReading {
+            length: root(along * along + across * across),
+            angles: trucks.real.map(|truck| wrapped(there - truck.heading)),
+        };
+        let seen = self.drive.reckoned(floor.shown(link));
+        let (along, across) = from_rear(&trucks.believed);
+        let expected = direction(across, along);
+        let share = (-(seen.length / root(along * along + across * across)) + 1.0) * 0.5;
+        let [front, rear] = &mut trucks.believed;
+        front.x -= along * share;
+        front.y -= across * share;
+        rear.x += along * share;
+        rear.y += across * share;
+        for (truck, angle) in trucks.believed.iter_mut().zip(seen.angles) {
+            truck.heading += wrapped(expected - angle - truck.heading);
+        }
+    }
+}
+
+/// The root of a number above 0.
+#[inline]
+fn root<T: Real>(square: T) -> T {
+    let value = square.value().sqrt();
+    square.mapped(value, 0.5 / value)
+}
+
+/// An angle with a whole number of turns taken off, so that it lies within half a turn of zero.
+#[inline]
+fn wrapped<T: Real>(angle: T) -> T {
+    let value = angle.value();
+    if value.abs() <= PI { angle } else { angle - ((value - wrap(value)) / TAU).round() * TAU }
+}
+
+/// The front truck's place as seen from the rear one's, in the axes of the room.
+#[inline]
+fn from_rear<T: Real>([front, rear]: &[Pose2<T>; 2]) -> (T, T) {
+    (front.x - rear.x, front.y - rear.y)
+}
+
+/// Both trucks at START, the front one at the origin.
+fn at_start(link: f64) -> [Pose2; 2] {
+    [Pose2::IDENTITY, Pose2::new(-link, 0.0, 0.0)]
+}
+
+/// What both trucks do for a move of the vehicle, one after the other; `None` for arcs.
+fn maneuvers(one: Move, link: f64) -> Option<Vec<[Displacement2; 2]>> {
+    let motion = |forward: f64, rotation: f64| Displacement2 { forward, sideways: 0.0, rotation };
+    match one {
+        Move::Straight { length } => Some(vec![[motion(length, 0.0); 2]]),
+        Move::Turn { angle } => {
+            let across = FRAC_PI_2.copysign(angle);
+            let round = motion(0.5 * link * angle.abs(), angle);
+            Some(vec![
+                [motion(0.0, across), motion(0.0, -across)],
+                [round; 2],
+                [motion(0.0, -across), motion(0.0, across)],
+            ])
+        }
+        Move::Arc { .. } => None,
+    }
+}
+
+/// A plan as it is made.
+struct Planner {
+    drive: ClapperDrive,
+    speed: SpeedProfile,
+    period: f64,
+    progress: [Progress; 2],
+    target: [Pose2; 2],
+    steps: Vec<Step>,
+}
+
+impl Planner {
+    /// Cuts a maneuver into periods, from rest to rest.
+    fn cut(&mut self, index: usize, motion: [Displacement2; 2]) {
+        let whole = motion.map(|m| self.drive.truck().wheel_travel(m.forward, m.rotation));
+        let most = whole.iter().map(|travel| travel.left.abs().max(travel.right.abs())).fold(0.0, f64::max);
+        let profile = self.speed.over(most);
+        let periods = (profile.duration() / self.period).ceil().max(1.0) as usize;
+        let mut done = 0.0;
+        for k in 1..=periods {
+            let share = if k == periods { 1.0 } else { profile.fraction(k as f64 * self.period) };
+            self.step(index, [done, share], motion, whole, &profile, k);
+            done = share;
+        }
+    }
+
+    fn step(
+        &mut self,
+        index: usize,
+        shares: [f64; 2],
+        motion: [Displacement2; 2],
+        whole: [WheelTravel; 2],
+        profile: &Trapezoid,
+        k: usize,
+    ) {
+        let part = shares[1] - shares[0];
+        let motion =
+            motion.map(|m| Displacement2 { forward: m.forward * part, sideways: 0.0, rotation: m.rotation * part });
+        self.target = [0, 1].map(|truck| self.target[truck].moved(&motion[truck]));
+        let travel = whole.map(|travel| travel.scaled(part));
+        let [from, to] = [k - 1, k].map(|k| {
+            let rate = profile.rate(k as f64 * self.period);
+            whole.map(|travel| [travel.left * rate, travel.right * rate])
+        });
+        let contexts = [0, 1].map(|truck| {
+            let at = self.progress[truck].piece(&travel[truck], self.period, from[truck], to[truck]);
+            Context { truck: truck as f64, ..at }
+        });
+        let time = self.progress[0].time();
+        self.steps.push(Step { index, shares, time, contexts, travel, speeds: to, motion, target: self.target });
+    }
+
+    /// The pause after a move.
+    fn rest(&mut self) {
+        for progress in &mut self.progress {
+            progress.piece(&WheelTravel::default(), self.speed.pause(), [0.0; 2], [0.0; 2]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::{DifferentialDrive, Encoder};
+    use crate::path::{CIRCLE, RECTANGLE};
+
+    fn clapper(correction: bool) -> Robot {
+        let truck = DifferentialDrive::new(0.34, 0.15, 0.15).unwrap();
+        let drive = ClapperDrive::new(truck, 1.0, 1e9, correction).unwrap();
+        let encoder = Encoder::new(2000.0, Some(25.0), None).unwrap();
+        Robot { name: "CLAPPER".into(), drive: Drive::Clapper(drive), encoder }
+    }
+
+    fn path() -> Path {
+        Path::new(&RECTANGLE, &[7.0, 4.0], SpeedProfile::new(0.45, 0.45, 0.0).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn the_plan_closes_and_keeps_the_link_straight_on_legs_and_at_its_length_in_corners() {
+        for direction in Direction::BOTH {
+            let convoy = Convoy::new(&clapper(true), &path(), direction).unwrap();
+            let [front, rear] = convoy.steps.last().unwrap().target;
+            assert!(front.x.abs() < 1e-9 && front.y.abs() < 1e-9 && (rear.x + 1.0).abs() < 1e-9 && rear.y.abs() < 1e-9);
+            for step in &convoy.steps {
+                let (along, across) = from_rear(&step.target);
+                assert!((libm::hypot(along, across) - 1.0).abs() < 1e-9, "{step:?}");
+            }
+            assert_eq!(convoy.stops.len(), 8);
+            assert!((convoy.meant(convoy.stops[0])[0].x - 7.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn arcs_and_other_drives_have_no_plan() {
+        let circle = Path::new(&CIRCLE, &[2.0, 1.0], SpeedProfile::default()).unwrap();
+        assert!(Convoy::new(&clapper(true), &circle, Direction::Ccw).is_none() && !circle.suits(&clapper(true)));
+        assert!(Convoy::new(&Robot::labmate(), &path(), Direction::Ccw).is_none() && path().suits(&clapper(true)));
+    }
+
+    #[test]
+    fn a_turn_more_or_less_is_taken_off_and_the_rest_stays() {
+        for turns in -3..=3 {
+            for angle in [-3.0, -0.1, 0.0, 0.1, 3.0] {
+                let there = wrapped(angle + f64::from(turns) * TAU);
+                assert!((there - angle).abs() < 1e-12, "{turns} {angle}: {there}");
+            }
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! The same filter compiled for wider registers.
+
+use super::{Noise, ObservedRun, Whitened};
+
+#[target_feature(enable = "avx512f,avx512dq")]
+pub(super) fn whiten_by_eight(noise: &Noise, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> Whitened {
+    noise.whiten_plainly(run, columns)
+}
+
+#[target_feature(enable = "avx2")]
+pub(super) fn whiten_by_four(noise: &Noise, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> Whitened {
+    noise.whiten_plainly(run, columns)
+}
