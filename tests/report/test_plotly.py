@@ -5,7 +5,7 @@ import re
 import subprocess
 from pathlib import Path
 
-import plotly.graph_objects as go  # type: ignore[import-untyped]
+import plotly.graph_objects as go
 import pytest
 from conftest import COMMAND, DATA, umbmark
 
