@@ -1,5 +1,7 @@
 //! Numbers as they stand behind flags.
 
+use std::ops::RangeInclusive;
+
 /// A number written with a decimal point.
 pub fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| {
@@ -12,6 +14,14 @@ pub fn number(text: &str) -> Result<f64, String> {
 pub fn whole(text: &str) -> Result<u64, String> {
     let short = || text.parse().ok().filter(|n: &f64| n.fract() == 0.0 && (0.0..=9e15).contains(n)).map(|n| n as u64);
     text.parse().ok().or_else(short).ok_or_else(|| "must be a whole number, 0 or more".to_owned())
+}
+
+/// A whole number from a range; 1e6 is one too.
+pub fn whole_in<N: TryFrom<u64>>(range: RangeInclusive<u64>) -> impl Fn(&str) -> Result<N, String> + Clone {
+    move |text| {
+        let within = whole(text).ok().filter(|n| range.contains(n)).and_then(|n| n.try_into().ok());
+        within.ok_or_else(|| format!("must be a whole number between {} and {}", range.start(), range.end()))
+    }
 }
 
 /// A probability between 0 and 1, both excluded.

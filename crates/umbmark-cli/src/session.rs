@@ -26,7 +26,7 @@ pub struct Options {
     pub seed: u64,
 
     /// Threads to use; the results do not depend on it [default: all processors]
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, global = true, value_name = "N", value_parser = crate::numbers::whole_in::<u16>(1..=1024))]
     pub threads: Option<u16>,
 
     /// No progress bars

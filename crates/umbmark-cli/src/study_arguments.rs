@@ -15,7 +15,7 @@ pub struct StudyArguments {
     test: TestArguments,
 
     /// Simulated tests of the model
-    #[arg(short = 'n', long, default_value_t = 1000, value_name = "N", value_parser = clap::value_parser!(u64).range(100..))]
+    #[arg(short = 'n', long, default_value_t = 1000, value_name = "N", value_parser = crate::numbers::whole_in::<u64>(100..=1_000_000_000))]
     trials: u64,
 }
 

@@ -12,7 +12,7 @@ pub struct TestArguments {
     return_poses: bool,
 
     /// Simulated tests for p-values that have no closed form
-    #[arg(long, default_value_t = 999, value_name = "N", value_parser = clap::value_parser!(u32).range(99..=99_999))]
+    #[arg(long, default_value_t = 999, value_name = "N", value_parser = crate::numbers::whole_in::<u32>(99..=99_999))]
     draws: u32,
 
     /// Probability with which a complete model is accused all the same

@@ -50,6 +50,8 @@ mod trigonometry;
 mod wheel_line;
 mod word;
 
+#[cfg(test)]
+pub(crate) use convoy::tests as convoy_tests;
 pub use convoy::{Convoy, Floor, Predicted, Step, Trucks};
 pub use instructions::Instructions;
 pub use integrator::{Integrator, Method, Segment};

@@ -70,6 +70,18 @@ impl Parameter {
         Parameter { name, flag, unit, default: DefaultValue::Value(0.0), typical, bounds, meaning, choices: &[] }
     }
 
+    /// A number that every robot of a kind has, with that of a usual one.
+    pub const fn of_robot(
+        name: &'static str,
+        unit: &'static str,
+        usual: f64,
+        bounds: (f64, f64),
+        meaning: &'static str,
+    ) -> Parameter {
+        let default = DefaultValue::Value(usual);
+        Parameter { name, flag: "", unit, default, typical: usual, bounds, meaning, choices: &[] }
+    }
+
     /// A value at which it does something: the typical departure from 0 or 1 where that does nothing, else the default.
     pub fn usual(&self, robot: &Robot) -> f64 {
         match self.default.resolve(robot) {
@@ -104,12 +116,16 @@ impl Parameter {
     }
 }
 
-/// The member of `names` that `word` was probably meant to be, if one is near.
+/// The member of `names` that `word` was probably meant to be, if one is near or begins with it.
 pub fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word = word.to_lowercase();
     names
         .into_iter()
-        .map(|name| (edit_distance(&word, &name.to_lowercase()), name))
+        .map(|name| {
+            let lower = name.to_lowercase();
+            let begun = word.len() >= 3 && lower.starts_with(&word);
+            (if begun { 1 } else { edit_distance(&word, &lower) }, name)
+        })
         .filter(|(distance, name)| *distance <= 2.max(name.len() / 3))
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, name)| name)
@@ -158,6 +174,7 @@ mod tests {
         let names = ["wheelbase", "wheel_noise", "scale"];
         assert_eq!(nearest("wheelbsae", names), Some("wheelbase"));
         assert_eq!(nearest("Wheel_nose", names), Some("wheel_noise"));
+        assert_eq!(nearest("whe", names), Some("wheelbase"));
         assert_eq!(nearest("zzz", names), None);
     }
 }

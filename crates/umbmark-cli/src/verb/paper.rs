@@ -48,7 +48,7 @@ pub struct Arguments {
     experiment: Experiment,
 
     /// Simulated tests of each robot, for the tables
-    #[arg(short = 'n', long, default_value_t = 2000, value_name = "N", value_parser = clap::value_parser!(u64).range(10..=10_000_000))]
+    #[arg(short = 'n', long, default_value_t = 2000, value_name = "N", value_parser = crate::numbers::whole_in::<u64>(10..=10_000_000))]
     trials: u64,
 }
 

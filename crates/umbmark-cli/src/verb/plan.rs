@@ -71,7 +71,7 @@ pub struct Arguments {
     size: f64,
 
     /// Runs in each direction that are planned
-    #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u16).range(3..=1000))]
+    #[arg(long, default_value_t = 5, value_name = "N", value_parser = crate::numbers::whole_in::<u16>(3..=1000))]
     runs: u16,
 
     /// Return headings are not measured
@@ -79,7 +79,7 @@ pub struct Arguments {
     no_heading: bool,
 
     /// Simulated tests behind every figure that has no closed form
-    #[arg(long, default_value_t = 999, value_name = "N", value_parser = clap::value_parser!(u32).range(99..=99_999))]
+    #[arg(long, default_value_t = 999, value_name = "N", value_parser = crate::numbers::whole_in::<u32>(99..=99_999))]
     draws: u32,
 
     /// Write the sheet to drive by: steps and the empty table, as text (.md) or to print on one page (.html)

@@ -62,7 +62,7 @@ pub struct Arguments {
     width: f64,
 
     /// Dots per inch of a PNG
-    #[arg(long, default_value_t = 300, value_name = "DPI", value_parser = clap::value_parser!(u32).range(30..=1200))]
+    #[arg(long, default_value_t = 300, value_name = "DPI", value_parser = crate::numbers::whole_in::<u32>(30..=1200))]
     dpi: u32,
 
     /// Replace a file that exists

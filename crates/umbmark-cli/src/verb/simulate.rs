@@ -22,7 +22,7 @@ pub struct Arguments {
     output: OutputArguments,
 
     /// Runs in each direction [default: 5, and 1 for NAME.mcap]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", value_parser = crate::numbers::whole_in::<u32>(1..=10_000))]
     runs: Option<u32>,
 
     /// How often the absolute pose is measured on the way; 0 for the end pose alone

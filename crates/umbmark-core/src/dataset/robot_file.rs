@@ -8,29 +8,26 @@ use crate::parameter::{DefaultValue, Parameter};
 use crate::path::{Path, PathError, SHAPES, Shape, SpeedProfile, WAYPOINTS};
 
 const WHEELBASE: Parameter =
-    key("wheelbase_m", "m", 0.340, (1e-3, 100.0), "distance of the two wheels' contact points");
-const DIAMETER: Parameter = key("wheel_diameter_m", "m", 0.150, (1e-3, 10.0), "diameter of both wheels");
-const RADIUS: Parameter = key("wheel_radius_m", "m", 0.075, (5e-4, 5.0), "radius of both wheels");
+    Parameter::of_robot("wheelbase_m", "m", 0.340, (1e-3, 100.0), "distance of the two wheels' contact points");
+const DIAMETER: Parameter =
+    Parameter::of_robot("wheel_diameter_m", "m", 0.150, (1e-3, 10.0), "diameter of both wheels");
+const RADIUS: Parameter = Parameter::of_robot("wheel_radius_m", "m", 0.075, (5e-4, 5.0), "radius of both wheels");
 const DIAMETER_LEFT: Parameter = Parameter { name: "wheel_diameter_left_m", ..DIAMETER };
 const DIAMETER_RIGHT: Parameter = Parameter { name: "wheel_diameter_right_m", ..DIAMETER };
-const TICKS: Parameter =
-    key("ticks_per_revolution", "", 2000.0, (1.0, 1e9), "counts per wheel revolution, after gearing and quadrature");
-const RATE: Parameter = key("encoder_rate_hz", "Hz", 100.0, (1e-3, 1e6), "how often the counts are read");
+const TICKS: Parameter = Parameter::of_robot(
+    "ticks_per_revolution",
+    "",
+    2000.0,
+    (1.0, 1e9),
+    "counts per wheel revolution, after gearing and quadrature",
+);
+const RATE: Parameter =
+    Parameter::of_robot("encoder_rate_hz", "Hz", 100.0, (1e-3, 1e6), "how often the counts are read");
 const BITS: Parameter =
-    key("counter_bits", "", 16.0, (1.0, MAX_COUNTER_BITS as f64), "width of a counter that rolls over");
+    Parameter::of_robot("counter_bits", "", 16.0, (1.0, MAX_COUNTER_BITS as f64), "width of a counter that rolls over");
 const WHEELBASE_NAMES: [&str; 3] = [WHEELBASE.name, "wheel_separation_m", "track_width_m"];
 const EVERY_TICK: &str = "every tick";
 const POINTS: &str = "points_m";
-
-const fn key(
-    name: &'static str,
-    unit: &'static str,
-    typical: f64,
-    bounds: (f64, f64),
-    meaning: &'static str,
-) -> Parameter {
-    Parameter { name, flag: "", unit, default: DefaultValue::Value(typical), typical, bounds, meaning, choices: &[] }
-}
 
 /// The robot of a `robot.toml`, and its path where the file says one.
 pub fn read_robot(file: impl AsRef<std::path::Path>) -> Result<(Robot, Option<Path>), DatasetError> {

@@ -2,16 +2,11 @@
 
 use super::kinematics::Kinematics;
 use super::{Counting, DifferentialDrive, DriveError, Encoder, WheelTravel, positive};
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 use std::f64::consts::{PI, TAU};
 
 /// No wheel is steered farther than this \[rad\]: at a right angle the robot would turn about its own axle.
 const MOST_STEERING: f64 = 1.4;
-
-const fn length(name: &'static str, typical: f64, meaning: &'static str) -> Parameter {
-    let default = DefaultValue::Value(typical);
-    Parameter { name, flag: "", unit: "m", default, typical, bounds: (1e-3, 100.0), meaning, choices: &[] }
-}
 
 /// The nominal kinematics of a car or a tricycle, about the middle of its rear axle.
 ///
@@ -80,19 +75,28 @@ impl Kinematics for AckermannDrive {
     const COUNTERS: [&'static str; 2] = ["drive", "steering"];
 
     const PARAMETERS: &'static [Parameter] = &[
-        length("axle_distance_m", 0.5, "distance of the steered wheel from the rear axle"),
-        length("track_width_m", 0.4, "distance of the rear wheels' contact points"),
-        length("wheel_diameter_m", 0.15, "diameter of the wheels that the drive encoder counts, on the rear axle"),
-        Parameter {
-            name: "steering_ticks_per_revolution",
-            flag: "",
-            unit: "",
-            default: DefaultValue::Value(20_000.0),
-            typical: 20_000.0,
-            bounds: (1.0, 1e9),
-            meaning: "counts of the steering per revolution of the steered wheel about the vertical",
-            choices: &[],
-        },
+        Parameter::of_robot(
+            "axle_distance_m",
+            "m",
+            0.5,
+            (1e-3, 100.0),
+            "distance of the steered wheel from the rear axle",
+        ),
+        Parameter::of_robot("track_width_m", "m", 0.4, (1e-3, 100.0), "distance of the rear wheels' contact points"),
+        Parameter::of_robot(
+            "wheel_diameter_m",
+            "m",
+            0.15,
+            (1e-3, 100.0),
+            "diameter of the wheels that the drive encoder counts, on the rear axle",
+        ),
+        Parameter::of_robot(
+            "steering_ticks_per_revolution",
+            "",
+            20_000.0,
+            (1.0, 1e9),
+            "counts of the steering per revolution of the steered wheel about the vertical",
+        ),
         Parameter::size(
             "steering_zero_rad",
             "",

@@ -3,17 +3,7 @@
 use super::kinematics::Kinematics;
 use super::{Counting, DifferentialDrive, DriveError, Encoder, positive};
 use crate::geometry::Real;
-use crate::parameter::{DefaultValue, Parameter};
-
-const fn number(
-    name: &'static str,
-    unit: &'static str,
-    typical: f64,
-    bounds: (f64, f64),
-    meaning: &'static str,
-) -> Parameter {
-    Parameter { name, flag: "", unit, default: DefaultValue::Value(typical), typical, bounds, meaning, choices: &[] }
-}
+use crate::parameter::Parameter;
 
 /// What the encoders of a link show: its length, and the angle at each truck.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -84,13 +74,31 @@ impl Kinematics for ClapperDrive {
     const NAME: &'static str = "clapper";
 
     const PARAMETERS: &'static [Parameter] = &[
-        number("wheelbase_m", "m", 0.340, (1e-3, 100.0), "distance of the wheels' contact points, of both trucks"),
-        number("wheel_diameter_m", "m", 0.150, (1e-3, 10.0), "mean diameter of all wheels"),
-        number("link_m", "m", 1.0, (1e-2, 100.0), "distance of the trucks' centres"),
-        number("rotary_ticks_per_revolution", "", 8192.0, (4.0, 1e9), "counts of the link's two angles per revolution"),
+        Parameter::of_robot(
+            "wheelbase_m",
+            "m",
+            0.340,
+            (1e-3, 100.0),
+            "distance of the wheels' contact points, of both trucks",
+        ),
+        Parameter::of_robot("wheel_diameter_m", "m", 0.150, (1e-3, 10.0), "mean diameter of all wheels"),
+        Parameter::of_robot("link_m", "m", 1.0, (1e-2, 100.0), "distance of the trucks' centres"),
+        Parameter::of_robot(
+            "rotary_ticks_per_revolution",
+            "",
+            8192.0,
+            (4.0, 1e9),
+            "counts of the link's two angles per revolution",
+        ),
         Parameter {
             choices: &["off", "on"],
-            ..number("correction", "", 1.0, (0.0, 1.0), "whether the link's angles correct the trucks' headings")
+            ..Parameter::of_robot(
+                "correction",
+                "",
+                1.0,
+                (0.0, 1.0),
+                "whether the link's angles correct the trucks' headings",
+            )
         },
         Parameter::size(
             "rotary_zero_difference_rad",

@@ -3,12 +3,7 @@
 use super::kinematics::Kinematics;
 use super::{DriveError, Encoder, positive};
 use crate::geometry::{Displacement2, Real};
-use crate::parameter::{DefaultValue, Parameter};
-
-const fn length(name: &'static str, typical: f64, bounds: (f64, f64), meaning: &'static str) -> Parameter {
-    let default = DefaultValue::Value(typical);
-    Parameter { name, flag: "", unit: "m", default, typical, bounds, meaning, choices: &[] }
-}
+use crate::parameter::Parameter;
 
 /// Distance rolled by each wheel \[m\], forward positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -93,9 +88,9 @@ impl Kinematics for DifferentialDrive {
     const NAME: &'static str = "differential";
 
     const PARAMETERS: &'static [Parameter] = &[
-        length("wheelbase_m", 0.340, (1e-3, 100.0), "distance of the two wheels' contact points"),
-        length("wheel_diameter_left_m", 0.150, (1e-3, 10.0), "diameter of the left wheel"),
-        length("wheel_diameter_right_m", 0.150, (1e-3, 10.0), "diameter of the right wheel"),
+        Parameter::of_robot("wheelbase_m", "m", 0.340, (1e-3, 100.0), "distance of the two wheels' contact points"),
+        Parameter::of_robot("wheel_diameter_left_m", "m", 0.150, (1e-3, 10.0), "diameter of the left wheel"),
+        Parameter::of_robot("wheel_diameter_right_m", "m", 0.150, (1e-3, 10.0), "diameter of the right wheel"),
     ];
 
     fn from_values(values: &[f64]) -> Result<Self, DriveError> {

@@ -5,13 +5,8 @@
 
 use super::kinematics::Kinematics;
 use super::{Counting, DifferentialDrive, DriveError, Encoder, Wheel, WheelTravel, positive};
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 use std::f64::consts::{PI, TAU};
-
-const fn length(name: &'static str, typical: f64, meaning: &'static str) -> Parameter {
-    let default = DefaultValue::Value(typical);
-    Parameter { name, flag: "", unit: "m", default, typical, bounds: (1e-3, 100.0), meaning, choices: &[] }
-}
 
 /// The nominal kinematics of a synchro drive of three wheels, 120 degrees apart, one straight ahead of the centre at START.
 ///
@@ -56,18 +51,21 @@ impl Kinematics for SynchroDrive {
     const COUNTERS: [&'static str; 2] = ["drive", "steering"];
 
     const PARAMETERS: &'static [Parameter] = &[
-        length("wheel_circle_m", 0.5, "diameter of the circle that the wheels stand on"),
-        length("wheel_diameter_m", 0.25, "diameter of the wheels"),
-        Parameter {
-            name: "steering_ticks_per_revolution",
-            flag: "",
-            unit: "",
-            default: DefaultValue::Value(10_000.0),
-            typical: 10_000.0,
-            bounds: (1.0, 1e9),
-            meaning: "counts of the steering per revolution of the wheels about the vertical",
-            choices: &[],
-        },
+        Parameter::of_robot(
+            "wheel_circle_m",
+            "m",
+            0.5,
+            (1e-3, 100.0),
+            "diameter of the circle that the wheels stand on",
+        ),
+        Parameter::of_robot("wheel_diameter_m", "m", 0.25, (1e-3, 100.0), "diameter of the wheels"),
+        Parameter::of_robot(
+            "steering_ticks_per_revolution",
+            "",
+            10_000.0,
+            (1.0, 1e9),
+            "counts of the steering per revolution of the wheels about the vertical",
+        ),
         Parameter::size(
             "coupling_rad_per_m",
             "",

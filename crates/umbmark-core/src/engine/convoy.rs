@@ -316,19 +316,21 @@ impl Planner {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::drive::{DifferentialDrive, Encoder};
     use crate::path::{CIRCLE, RECTANGLE};
 
-    fn clapper(correction: bool) -> Robot {
+    /// The CLAPPER with exact angles.
+    pub(crate) fn clapper(correction: bool) -> Robot {
         let truck = DifferentialDrive::new(0.34, 0.15, 0.15).unwrap();
         let drive = ClapperDrive::new(truck, 1.0, 1e9, correction).unwrap();
         let encoder = Encoder::new(2000.0, Some(25.0), None).unwrap();
         Robot { name: "CLAPPER".into(), drive: Drive::Clapper(drive), encoder }
     }
 
-    fn path() -> Path {
+    /// The way that it was tested on.
+    pub(crate) fn path() -> Path {
         Path::new(&RECTANGLE, &[7.0, 4.0], SpeedProfile::new(0.45, 0.45, 0.0).unwrap()).unwrap()
     }
 

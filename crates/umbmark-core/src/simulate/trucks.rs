@@ -79,21 +79,9 @@ fn lost_between(bumps: &[Bump], [from, to]: [f64; 2]) -> WheelTravel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drive::{DifferentialDrive, Encoder};
     use crate::effect::Model;
-    use crate::path::{RECTANGLE, SpeedProfile};
+    use crate::engine::convoy_tests::{clapper, path};
     use crate::simulate::{Odometry, Phase, Simulator};
-
-    fn clapper(correction: bool) -> Robot {
-        let truck = DifferentialDrive::new(0.34, 0.15, 0.15).unwrap();
-        let drive = ClapperDrive::new(truck, 1.0, 1e9, correction).unwrap();
-        let encoder = Encoder::new(2000.0, Some(25.0), None).unwrap();
-        Robot { name: "CLAPPER".into(), drive: Drive::Clapper(drive), encoder }
-    }
-
-    fn path() -> Path {
-        Path::new(&RECTANGLE, &[7.0, 4.0], SpeedProfile::new(0.45, 0.45, 0.0).unwrap()).unwrap()
-    }
 
     fn returned(robot: &Robot, values: &[(&str, &str, f64)], direction: Direction, test: TestKind) -> ReturnError {
         let mut model = Model::new(robot);

@@ -6,11 +6,12 @@
 //! 76 x 76 rigid motions, and these are worked out once for each pair of rates.
 //!
 //! With equal tick lengths every heading is a whole multiple of δ/b. Its cosine and sine come from a second table, and
-//! what remains for eight readings is one complex product and an integer sum: no rounding is carried along.
+//! what remains for eight readings is one complex product and an integer sum: no rounding is carried along. The four products
+//! of real numbers in it are summed each for itself and put together at the end.
 
 use super::carries::{Carries, OneByOne, WORD};
 use super::constant_rate::{EqualPieces, Step};
-use super::directions::{Directions, sum, turned};
+use super::directions::Directions;
 use super::{TickGeometry, Update};
 use crate::engine::Instructions;
 
@@ -97,8 +98,25 @@ struct Motions {
     rates: Rates,
     /// By left carry + 2 right carry.
     single: [Step; 4],
-    /// Translation \[m\] by place of the left word + 76 times place of the right one.
-    eight: Vec<[f64; 2]>,
+    /// By place of the left word + 76 times place of the right one.
+    eight: Vec<Factors>,
+}
+
+/// What the cosine, sine, cosine and sine of a heading are multiplied by to turn a translation \[m\]: x, -y, y, x.
+type Factors = [f64; 4];
+
+/// Sums of these products \[m\].
+type Products = [f64; 4];
+
+#[inline(always)]
+fn factors(x: f64, y: f64) -> Factors {
+    [x, -y, y, x]
+}
+
+/// The sums and one more translation, turned into a direction.
+#[inline(always)]
+fn and_turned(sums: Products, [cosine, sine]: [f64; 2], [a, b, c, d]: Factors) -> Products {
+    [sums[0] + cosine * a, sums[1] + sine * b, sums[2] + cosine * c, sums[3] + sine * d]
 }
 
 impl Motions {
@@ -118,7 +136,7 @@ impl Motions {
             .map(|(left, right)| {
                 let motion =
                     half_words[(left & 15) + 16 * (right & 15)].then(&half_words[(left >> 4) + 16 * (right >> 4)]);
-                [motion.x, motion.y]
+                factors(motion.x, motion.y)
             })
             .collect();
         Motions { rates: Rates { whole: pieces.whole, sign: pieces.sign }, single, eight }
@@ -130,7 +148,7 @@ struct Walk<'a> {
     left: &'a [Rank; 256],
     right: &'a [Rank; 256],
     /// As of [`Motions::eight`].
-    motions: &'a [[f64; 2]],
+    motions: &'a [Factors],
     directions: &'a [[f64; 2]],
     /// Place of heading 0 among the directions.
     origin: i64,
@@ -141,30 +159,30 @@ struct Walk<'a> {
 /// Where a way has led.
 struct Reached {
     /// By the words in even and in odd places: two sums, so that one addition need not wait for the other.
-    ends: [[f64; 2]; 2],
+    ends: [Products; 2],
     /// Place of the heading among the directions.
     heading: i64,
 }
 
 impl Walk<'_> {
     #[inline(always)]
-    fn take(&self, heading: &mut i64, left: u8, right: u8) -> [f64; 2] {
+    fn take(&self, sums: Products, heading: &mut i64, left: u8, right: u8) -> Products {
         let rank = self.left[usize::from(left)] + self.right[usize::from(right)];
-        let moved = turned(self.directions[*heading as usize], self.motions[rank as u32 as usize]);
+        let sums = and_turned(sums, self.directions[*heading as usize], self.motions[rank as u32 as usize]);
         *heading += self.whole + (rank >> 32);
-        moved
+        sums
     }
 
     /// Takes so many words of each wheel.
     #[inline(always)]
     fn along<C: Carries>(&self, [mut left, mut right]: [C; 2], words: u32) -> Reached {
-        let (mut even, mut odd, mut heading) = ([0.0; 2], [0.0; 2], self.origin);
+        let (mut even, mut odd, mut heading) = ([0.0; 4], [0.0; 4], self.origin);
         for _ in 0..words / 2 {
-            even = sum(even, self.take(&mut heading, left.word(), right.word()));
-            odd = sum(odd, self.take(&mut heading, left.word(), right.word()));
+            even = self.take(even, &mut heading, left.word(), right.word());
+            odd = self.take(odd, &mut heading, left.word(), right.word());
         }
         if words % 2 == 1 {
-            even = sum(even, self.take(&mut heading, left.word(), right.word()));
+            even = self.take(even, &mut heading, left.word(), right.word());
         }
         Reached { ends: [even, odd], heading }
     }
@@ -231,11 +249,10 @@ impl Blocks {
             }
             let [left, right] = carries;
             let step = &motions.single[usize::from(left) + 2 * usize::from(right)];
-            odd = sum(odd, turned(directions[heading as usize], [step.x, step.y]));
+            odd = and_turned(odd, directions[heading as usize], factors(step.x, step.y));
             heading += whole + right_sign * i64::from(right) - left_sign * i64::from(left);
         }
-        let [x, y] = sum(even, odd);
-        (x, y)
+        ((even[0] + odd[0]) + (even[1] + odd[1]), (even[2] + odd[2]) + (even[3] + odd[3]))
     }
 
     /// The place of the motions at these rates among those kept.
