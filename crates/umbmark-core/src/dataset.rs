@@ -23,6 +23,7 @@ mod folder;
 mod inspect;
 mod label;
 mod layout;
+mod lines;
 mod mcap;
 mod model_file;
 mod model_text;

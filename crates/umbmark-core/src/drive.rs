@@ -276,9 +276,9 @@ impl Robot {
     }
 
     /// Ticks of the axle's wheels since START, as logs hold them, for readings of the drive's own counters.
-    pub fn axle_ticks(&self, counters: &[Vec<f64>; 2]) -> [Vec<f64>; 2] {
+    pub fn axle_ticks(&self, counters: [Vec<f64>; 2]) -> [Vec<f64>; 2] {
         if self.drive.kind().counters() == Kind::Differential.counters() {
-            return counters.clone();
+            return counters;
         }
         let per_tick = self.metres_per_tick();
         let mut ticks = [Vec::new(), Vec::new()];

@@ -1,6 +1,6 @@
 //! Runs put together from return rows and logs.
 
-use super::dead_reckoning::{EndPose, computed_poses, return_error};
+use super::dead_reckoning::{EndPose, computed_end, return_error};
 use super::error::DatasetError;
 use super::label::{self, Named};
 use super::recording::Recording;
@@ -99,9 +99,8 @@ impl Assembly {
             drop_stale(&file, &mut log, robot, &mut self.warnings);
         }
         move_to_start(&file, &mut log, &mut self.warnings)?;
-        let computed = self.robot.as_ref().map(|robot| computed_poses(&log, robot)).unwrap_or_default();
-        let returned = return_error(&log, &computed, end);
-        let turned = computed.last().map_or(0.0, |pose| pose.heading);
+        let (computed, turned) = self.robot.as_ref().map_or((None, 0.0), |robot| computed_end(&log, robot));
+        let returned = computed.and_then(|computed| return_error(&log, &computed, end));
         let direction = self.direction(&file, named, turned);
         if let Some(row) = self.row_of(named, direction) {
             return self.attach(row, log, stem, &file);

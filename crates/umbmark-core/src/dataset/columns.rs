@@ -2,7 +2,7 @@
 
 use super::decimal::Decimal;
 use super::error::{DatasetError, did_you_mean, quoted};
-use super::sheet::{Row, Sheet};
+use super::sheet::{Cell, Row, Sheet};
 use std::collections::BTreeSet;
 
 /// What a column measures.
@@ -58,6 +58,17 @@ pub(super) struct Column {
     pub name: String,
     index: usize,
     unit: Option<Unit>,
+}
+
+impl Column {
+    /// The largest number believed, as it is written.
+    fn largest(&self) -> f64 {
+        self.unit.map_or(LARGEST_COUNT, |unit| unit.largest)
+    }
+
+    fn in_si(&self, value: f64) -> f64 {
+        self.unit.map_or(value, |unit| value / unit.per_si)
+    }
 }
 
 /// The columns of a sheet while they are looked up.
@@ -192,30 +203,33 @@ impl<'s> Columns<'s> {
 impl Row<'_> {
     /// The text of a cell.
     pub fn text(&self, column: &Column) -> &str {
-        self.cells[column.index]
+        self.cells[column.index].text
     }
 
     /// The number in a cell, in SI units.
+    #[inline]
     pub fn number(&self, column: &Column) -> Result<f64, DatasetError> {
-        self.number_or(column).and_then(|number| {
-            number.ok_or_else(|| self.wrong(column, &allowed(column), "fill it in, or leave out the row"))
-        })
+        match self.number_or(column)? {
+            Some(number) => Ok(number),
+            None => Err(self.wrong(column, &allowed(column), "fill it in, or leave out the row")),
+        }
     }
 
     /// The number in a cell, in SI units, where it is not empty.
+    #[inline]
     pub fn number_or(&self, column: &Column) -> Result<Option<f64>, DatasetError> {
-        let text = self.cells[column.index];
-        if text.is_empty() {
-            return Ok(None);
+        let Cell { text, value } = self.cells[column.index];
+        if value.abs() <= column.largest() {
+            return Ok(Some(column.in_si(value)));
         }
-        let largest = column.unit.map_or(LARGEST_COUNT, |unit| unit.largest);
-        let in_si = |value: f64| column.unit.map_or(value, |unit| value / unit.per_si);
-        match self.decimals.get(column.index) {
-            Some(value) if value.abs() <= largest => return Ok(Some(in_si(*value))),
-            _ => {}
-        }
+        if text.is_empty() { Ok(None) } else { self.unusual_number(column).map(Some) }
+    }
+
+    /// The number in a cell that is no [`Decimal`], or not believed.
+    fn unusual_number(&self, column: &Column) -> Result<f64, DatasetError> {
+        let (text, largest) = (self.text(column), column.largest());
         match text.parse::<f64>() {
-            Ok(value) if value.abs() <= largest => Ok(Some(in_si(value))),
+            Ok(value) if value.abs() <= largest => Ok(column.in_si(value)),
             Ok(value) if !value.is_finite() => {
                 Err(self.wrong(column, &allowed(column), "measure again, or leave out the row"))
             }
@@ -229,7 +243,7 @@ impl Row<'_> {
 
     /// One of a few words, in upper or lower case.
     pub fn word<T: Copy>(&self, column: &Column, words: &[(&str, T)]) -> Result<T, DatasetError> {
-        let text = self.cells[column.index].to_lowercase();
+        let text = self.text(column).to_lowercase();
         if let Some((_, meaning)) = words.iter().find(|(word, _)| *word == text) {
             return Ok(*meaning);
         }
@@ -242,7 +256,7 @@ impl Row<'_> {
 
     /// The error of a cell that is not what is allowed.
     pub fn wrong(&self, column: &Column, allowed: &str, remedy: &str) -> DatasetError {
-        let value = self.cells[column.index];
+        let value = self.text(column);
         DatasetError::Cell {
             file: self.file.to_owned(),
             line: self.line,
@@ -257,8 +271,8 @@ impl Row<'_> {
 /// The number in a cell of a layout that has its own names, in the units of the layout.
 pub(super) fn number_in(file: &str, line: usize, name: &str, cell: &str) -> Result<f64, DatasetError> {
     let Decimal { value, length } = Decimal::at_start_of(cell.as_bytes());
-    let decimal = if length == cell.len() { value } else { f64::NAN };
-    let row = Row { file, line, cells: &[cell], decimals: &[decimal] };
+    let value = if length == cell.len() { value } else { f64::NAN };
+    let row = Row { file, line, cells: &[Cell { text: cell, value }] };
     row.number(&Column { name: name.to_owned(), index: 0, unit: None })
 }
 

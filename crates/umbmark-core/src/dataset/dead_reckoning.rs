@@ -16,21 +16,39 @@ pub(super) enum EndPose {
 
 /// Pose after each sample, every step an exact circular arc.
 pub(super) fn computed_poses(log: &TickLog, robot: &Robot) -> Vec<Pose2> {
-    let per_tick = robot.metres_per_tick();
-    let mut pose = Pose2::IDENTITY;
     let mut poses = Vec::with_capacity(log.time.len());
-    let (mut left, mut right) = (0.0, 0.0);
-    for (l, r) in log.left.iter().zip(&log.right) {
-        let travel = WheelTravel { left: (l - left) * per_tick.left, right: (r - right) * per_tick.right };
-        pose = pose.moved(&robot.drive.displacement(&travel));
-        (left, right) = (*l, *r);
-        poses.push(pose);
-    }
+    for_each_pose(log, robot, |pose| poses.push(*pose));
     poses
 }
 
+/// The computed pose at the end of the track, if it has one, and how much the robot has turned by the end of the log
+/// \[rad\].
+pub(super) fn computed_end(log: &TickLog, robot: &Robot) -> (Option<Pose2>, f64) {
+    let last = log.reference.last().map(|last| last.sample);
+    let (mut sample, mut computed, mut turned) = (0, None, 0.0);
+    for_each_pose(log, robot, |pose| {
+        if Some(sample) == last {
+            computed = Some(*pose);
+        }
+        (sample, turned) = (sample + 1, pose.heading);
+    });
+    (computed, turned)
+}
+
+#[inline]
+fn for_each_pose(log: &TickLog, robot: &Robot, mut visit: impl FnMut(&Pose2)) {
+    let (per_tick, drive) = (robot.metres_per_tick(), &robot.drive);
+    let (mut pose, mut left, mut right) = (Pose2::IDENTITY, 0.0, 0.0);
+    for (l, r) in log.left.iter().zip(&log.right) {
+        let travel = WheelTravel { left: (l - left) * per_tick.left, right: (r - right) * per_tick.right };
+        pose = pose.moved(&drive.displacement(&travel));
+        (left, right) = (*l, *r);
+        visit(&pose);
+    }
+}
+
 /// Absolute minus computed pose at the end of the track, if it has one.
-pub(super) fn return_error(log: &TickLog, computed: &[Pose2], end: EndPose) -> Option<ReturnError> {
+pub(super) fn return_error(log: &TickLog, computed: &Pose2, end: EndPose) -> Option<ReturnError> {
     let last = log.reference.last()?;
     let absolute = match end {
         EndPose::Last => *last,
@@ -39,7 +57,6 @@ pub(super) fn return_error(log: &TickLog, computed: &[Pose2], end: EndPose) -> O
             mean_pose(&standing[standing.len() / 2..]).unwrap_or(*last)
         }
     };
-    let computed = computed.get(last.sample)?;
     Some(ReturnError {
         x: absolute.x - computed.x,
         y: absolute.y - computed.y,

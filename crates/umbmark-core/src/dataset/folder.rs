@@ -11,10 +11,11 @@ use super::reference_file::parse_reference;
 use super::returns::parse_returns;
 use super::robot_file::{parse_robot, read_robot};
 use super::sheet::Rows;
-use super::text::{read_text, unreadable};
-use super::tick_log::parse_tick_log;
+use super::text::{Pieces, read_text, unreadable};
+use super::tick_log::{parse_tick_log, tick_log_in_pieces};
 use crate::drive::Kind;
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 pub(super) const ROBOT: &str = "robot.toml";
@@ -23,6 +24,8 @@ pub(super) const RUNS: &str = "runs";
 pub(super) const REFERENCE: &str = "reference";
 /// Endings of files with poses that have a clock of their own.
 const TRACKS: [&str; 3] = ["csv", "tum", "txt"];
+/// How much of a log is read at a time \[bytes\]: what the processor keeps close to itself.
+const PIECE: usize = 1 << 18;
 const EXPECTED: &str =
     "a dataset has robot.toml with returns.csv, runs/*.csv or runs/*.mcap (`umbmark init FOLDER` writes a start)";
 
@@ -121,7 +124,12 @@ fn tracks_beside(runs: &Path) -> Result<BTreeMap<String, PathBuf>, DatasetError>
 
 fn add_log(assembly: &mut Assembly, file: &Path, track: Option<PathBuf>) -> Result<(), DatasetError> {
     let name = file.display().to_string();
-    let recording = parse_tick_log(&name, &read_text(file)?, assembly.kind(), &mut assembly.warnings)?;
+    let (kind, warnings) = (assembly.kind(), &mut assembly.warnings);
+    let pieces = File::open(file).ok().map(|file| Pieces::of(file, PIECE));
+    let recording = match pieces.and_then(|pieces| tick_log_in_pieces(&name, pieces, kind, warnings)) {
+        Some(recording) => recording,
+        None => parse_tick_log(&name, &read_text(file)?, kind, warnings)?,
+    };
     let tracked = track.map(|track| read_track(&track, &mut assembly.warnings)).transpose()?;
     let stem = stem(file);
     assembly.add_log(recording, tracked, &stem, label::parse(&stem), EndPose::Standing)

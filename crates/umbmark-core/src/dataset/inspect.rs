@@ -7,7 +7,7 @@ mod log_facts;
 mod moves;
 mod wheels;
 
-use super::dead_reckoning::{EndPose, computed_poses, return_error};
+use super::dead_reckoning::{EndPose, computed_end, return_error};
 use super::{Alignment, Dataset, Measured, Mended, ReturnError, Run};
 use crate::drive::Robot;
 use crate::effect::TestKind;
@@ -305,7 +305,7 @@ fn reference_checks(logs: &[LogFacts]) -> Vec<Check> {
 fn sheet_check(runs: &[Run], robot: &Robot) -> Option<Check> {
     let differences = runs.iter().filter_map(|run| {
         let log = run.log.as_ref()?;
-        let (computed, returned) = (computed_poses(log, robot), run.returned?);
+        let (computed, returned) = (computed_end(log, robot).0?, run.returned?);
         let [standing, last] = [EndPose::Standing, EndPose::Last].map(|end| return_error(log, &computed, end));
         let ReturnError { x, y, .. } = standing.filter(|_| ![standing, last].contains(&run.returned))?;
         Some(libm::hypot(x - returned.x, y - returned.y))

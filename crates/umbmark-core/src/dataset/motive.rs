@@ -49,10 +49,10 @@ pub(super) fn parse_motive(file: &str, text: &str, warnings: &mut Vec<String>) -
     let layout = Layout::read(file, &mut lines)?;
     let mut rows = TrackRows { file: file.to_owned(), column: "Time (Seconds)".into(), ..TrackRows::default() };
     let mut found: Vec<(Vector3<f64>, Matrix3<f64>)> = Vec::new();
-    let (mut cells, mut decimals) = (Vec::new(), Vec::new());
+    let mut cells = Vec::new();
     for (line, row) in lines {
-        split(row, &mut cells, &mut decimals);
-        let cell = |column: usize| cells.get(column).copied().unwrap_or("");
+        split(row, &mut cells);
+        let cell = |column: usize| cells.get(column).map_or("", |cell| cell.text);
         let columns = || layout.position.into_iter().chain(layout.rotation.into_iter().flatten());
         if columns().all(|column| cell(column).is_empty()) {
             rows.lost += 1;
@@ -98,10 +98,10 @@ impl Layout {
         let (mut types, mut names, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
         let (mut per_metre, mut rotation_type) = (1.0, String::from("XYZ"));
         for (line, row) in lines.by_ref() {
-            split(row, &mut cells, &mut Vec::new());
-            let owned = || cells.iter().map(|cell| (*cell).to_owned()).collect::<Vec<String>>();
-            let after = |key: &str| Some(cells[cells.iter().position(|cell| *cell == key)? + 1..].first()?.to_owned());
-            match (cells[0], cells.get(1).copied().unwrap_or("")) {
+            split(row, &mut cells);
+            let owned = || cells.iter().map(|cell| cell.text.to_owned()).collect::<Vec<String>>();
+            let after = |key: &str| Some(cells.get(cells.iter().position(|cell| cell.text == key)? + 1)?.text);
+            match (cells[0].text, cells.get(1).map_or("", |cell| cell.text)) {
                 (FORMAT, _) => {
                     per_metre = per_metre_of(file, line, after("Length Units").unwrap_or("Meters"))?;
                     rotation_type = after("Rotation Type").unwrap_or("XYZ").to_uppercase();

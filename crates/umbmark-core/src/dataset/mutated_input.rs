@@ -8,6 +8,7 @@ use super::place::place;
 use super::recording::Recording;
 use super::reference_track::{PoseRow, ReferenceTrack};
 use super::robot_file::parse_robot;
+use super::sheet::{Cell, Rows, Sheet, split};
 use super::stale::drop_stale;
 use super::start_frame::move_to_start;
 use super::synchronise::synchronise;
@@ -114,6 +115,49 @@ fn damaged_tick_logs() {
                 .is_ok_and(|recording| finished(recording, bits))
         });
     }
+}
+
+#[test]
+fn rows_taken_at_once_have_the_cells_of_rows_cut_at_their_commas() {
+    let good = "0.00,65530,3,0.001,0,0\n0.01,65534,65533,,,\n\n,,,,,\n0.02,3,65530,0.002,0.01,\r\n0.03,9,65500,-0.002,.01,-6.2";
+    let bits =
+        |cells: &[Cell]| cells.iter().map(|cell| (cell.text.to_owned(), cell.value.to_bits())).collect::<Vec<_>>();
+    survive(good, 16, |text| {
+        let (mut cells, mut taken) = (Vec::new(), Vec::new());
+        let cut = Rows::of(text).map(|(line, row)| {
+            split(row, &mut cells);
+            (line, bits(&cells))
+        });
+        let sheet = Sheet::headless("file", text, 6);
+        let read = sheet.for_each_of(sheet.body(), |row| {
+            taken.push((row.line, bits(row.cells)));
+            Ok(())
+        });
+        let cut: Vec<_> = cut.take(if read.is_ok() { usize::MAX } else { taken.len() }).collect();
+        assert_eq!(taken, cut, "{text:?}");
+        read.is_ok()
+    });
+}
+
+#[test]
+fn a_log_in_pieces_of_any_size_is_the_same_as_in_one_or_is_left_to_be_refused() {
+    let good = "\u{feff}t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad\n0.00,5,3,0.001,0,0\n0.01,7,6,,,\r\n\
+                # Monday\n0.02,9,65530,0.002,0.01,\n\n0.03,9,65500,0.002,0.01,-6.2\n";
+    let mut stream = Stream::new(7, 15, 0);
+    let (kind, mut same) = (crate::drive::Kind::Differential, 0);
+    for round in 0..rounds() {
+        let bytes = damage(good.as_bytes(), &mut stream);
+        let [mut noticed, mut noticed_in_pieces] = [Vec::new(), Vec::new()];
+        let whole = text::decode("file", bytes.clone())
+            .and_then(|text| tick_log::parse_tick_log("file", &text, kind, &mut noticed));
+        let size = 60 + (round % 200) as usize;
+        let pieces = text::Pieces::of(&bytes[..], size);
+        if let Some(recording) = tick_log::tick_log_in_pieces("file", pieces, kind, &mut noticed_in_pieces) {
+            assert_eq!((Ok(recording), noticed_in_pieces), (whole.map_err(|error| error.to_string()), noticed));
+            same += 1;
+        }
+    }
+    assert!(same > rounds() / 100, "{same}");
 }
 
 #[test]

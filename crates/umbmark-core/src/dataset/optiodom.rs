@@ -114,8 +114,8 @@ impl<'a> Metadata<'a> {
     fn cells(&self, key: &str) -> Option<(usize, Vec<&'a str>)> {
         let mut cells = Vec::new();
         Rows::of(self.text).find_map(|(line, text)| {
-            split(text, &mut cells, &mut Vec::new());
-            (cells[0] == key).then(|| (line, cells[1..].to_vec()))
+            split(text, &mut cells);
+            (cells[0].text == key).then(|| (line, cells[1..].iter().map(|cell| cell.text).collect()))
         })
     }
 

@@ -3,6 +3,7 @@
 mod order;
 
 use super::error::DatasetError;
+use super::lines::Lines;
 use super::{Mended, ReferencePose, TickLog};
 use crate::drive::{Kind, Robot, roll_over};
 
@@ -15,13 +16,13 @@ const AFTER_RESET: f64 = 2.0;
 const BEFORE_RESET: f64 = 20.0;
 
 /// The rows of one log, before anything is mended.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Recording {
     pub file: String,
     /// Names of the time, left and right columns.
     pub columns: [String; 3],
     /// Line of each row.
-    pub lines: Vec<usize>,
+    pub lines: Lines,
     /// \[s\]
     pub time: Vec<f64>,
     /// Readings of the left and the right counter.
@@ -46,7 +47,7 @@ impl Recording {
         }
         let mut reset_rows = Vec::new();
         let mut unroll = |wheel| self.unroll(wheel, robot, bits, &mut mended.roll_overs, &mut reset_rows);
-        let (left, right) = (unroll(0)?, unroll(1)?);
+        let ticks = [unroll(0)?, unroll(1)?];
         if let (Some(bits), 1..) = (bits, mended.roll_overs) {
             warnings.push(format!("{}: {} roll-overs of the {bits}-bit counters undone", self.file, mended.roll_overs));
         }
@@ -56,10 +57,13 @@ impl Recording {
         if let [first, ..] = reset_rows[..] {
             warnings.push(format!(
                 "{}:{}: {} counter resets: counted on from zero; what the wheels turned between the rows around each is lost",
-                self.file, self.lines[first], mended.resets
+                self.file, self.lines.of(first), mended.resets
             ));
         }
-        let [left, right] = robot.map_or([left.clone(), right.clone()], |robot| robot.axle_ticks(&[left, right]));
+        let [left, right] = match robot {
+            Some(robot) => robot.axle_ticks(ticks),
+            None => ticks,
+        };
         Ok(TickLog { time: self.time, left, right, reference: self.reference, mended, bumps: Vec::new() })
     }
 
@@ -73,99 +77,115 @@ impl Recording {
         }
     }
 
-    /// Cumulative ticks of a wheel from its first reading; counts roll-overs and lists the rows before which it was reset.
+    /// Takes the readings of a wheel and makes cumulative ticks of them, from the first on; counts roll-overs and lists the
+    /// rows before which it was reset.
     fn unroll(
-        &self,
+        &mut self,
         wheel: usize,
         robot: Option<&Robot>,
         bits: Option<u32>,
         roll_overs: &mut usize,
         reset_rows: &mut Vec<usize>,
     ) -> Result<Vec<f64>, DatasetError> {
-        let readings = &self.counts[wheel];
+        let usual = self.usual_rate(wheel);
+        let mut readings = std::mem::take(&mut self.counts[wheel]);
         if wheel == 1 && robot.is_some_and(|robot| robot.drive.kind() == Kind::Ackermann) {
             // An angle, and no sum of steps.
-            let signed = |reading: &f64| bits.map_or(*reading, |bits| roll_over(0, *reading as i64, bits) as f64);
-            return Ok(readings.iter().map(signed).collect());
+            let signed = |reading: f64| bits.map_or(reading, |bits| roll_over(0, reading as i64, bits) as f64);
+            return Ok(readings.into_iter().map(signed).collect());
         }
-        if let Some(at) = bits.and(readings.iter().position(|reading| reading.fract() != 0.0)) {
-            return Err(self.fractional(wheel, at));
+        if bits.is_some()
+            && let Some(at) = readings.iter().position(|reading| reading.fract() != 0.0)
+        {
+            return Err(self.fractional(wheel, at, readings[at]));
         }
-        let usual = self.usual_rate(wheel);
         // A steering counter has no speed over ground.
         let robot = robot.filter(|robot| wheel == 0 || robot.drive.kind() == Kind::Differential);
         let fastest = robot.map_or(f64::INFINITY, |robot| FASTEST / metres_per_tick(robot, wheel));
-        let (mut total, mut before_reset, mut origin) = (0.0, 0.0, readings.first().copied().unwrap_or(0.0));
-        let mut ticks = vec![0.0; readings.len()];
-        for (i, pair) in readings.windows(2).enumerate() {
-            let seconds = self.time[i + 1] - self.time[i];
+        let mut before = readings.first().copied().unwrap_or(0.0);
+        let (mut total, mut before_reset, mut origin) = (0.0, 0.0, before);
+        for (at, reading) in readings.iter_mut().enumerate() {
+            let after = *reading;
+            let seconds = self.time[at] - self.time[at.saturating_sub(1)];
             let expected = (usual * seconds).max(1.0);
-            let plain = pair[1] - pair[0];
-            let mut step = bits.map_or(plain, |bits| roll_over(pair[0] as i64, pair[1] as i64, bits) as f64);
-            if was_reset(pair[0], pair[1], expected, bits) {
-                reset_rows.push(i + 1);
-                (before_reset, origin, step) = (total, 0.0, pair[1]);
+            let plain = after - before;
+            let mut step = bits.map_or(plain, |bits| roll_over(before as i64, after as i64, bits) as f64);
+            if was_reset(before, after, expected, bits) {
+                reset_rows.push(at);
+                (before_reset, origin, step) = (total, 0.0, after);
             } else {
                 *roll_overs += usize::from(step != plain);
             }
             if let (None, Some(bits)) = (bits, rolled_bits(step.abs(), expected)) {
-                return Err(self.rolled_over(wheel, i, bits));
+                return Err(self.rolled_over(wheel, at, [before, after], bits));
             }
             if let Some(robot) = robot.filter(|_| step.abs() > fastest * seconds) {
-                return Err(self.jump(wheel, i, step.abs() * metres_per_tick(robot, wheel) / seconds, bits));
+                let speed = step.abs() * metres_per_tick(robot, wheel) / seconds;
+                return Err(self.jump(wheel, at, [before, after], speed, bits));
             }
             // Sums of whole numbers are exact; of others, the difference from the first reading is.
-            total = if bits.is_some() { total + step } else { before_reset + (pair[1] - origin) };
-            ticks[i + 1] = total;
+            total = if bits.is_some() { total + step } else { before_reset + (after - origin) };
+            (*reading, before) = (total, after);
         }
-        Ok(ticks)
+        Ok(readings)
     }
 
-    /// The rate of a wheel that all but one step in a hundred stay below \[ticks/s\].
+    /// The rate of a wheel that all but one step in a hundred stay below \[ticks/s\]: the least of the largest hundredth, and
+    /// no more than twice as many rates are kept at a time.
     fn usual_rate(&self, wheel: usize) -> f64 {
-        let steps = self.counts[wheel].windows(2).zip(self.time.windows(2));
-        let mut rates: Vec<f64> =
-            steps.map(|(count, time)| (count[1] - count[0]).abs() / (time[1] - time[0])).collect();
-        if rates.is_empty() {
-            return 0.0;
+        let Some(last) = self.counts[wheel].len().checked_sub(2) else { return 0.0 };
+        let hundredth = last + 1 - last * 99 / 100;
+        let cut = |rates: &mut Vec<f64>| {
+            let least = *rates.select_nth_unstable_by(hundredth - 1, |a, b| b.total_cmp(a)).1;
+            rates.truncate(hundredth);
+            least
+        };
+        let (mut largest, mut least) = (Vec::with_capacity(2 * hundredth), f64::NEG_INFINITY);
+        for (count, time) in self.counts[wheel].windows(2).zip(self.time.windows(2)) {
+            let rate = (count[1] - count[0]).abs() / (time[1] - time[0]);
+            if !(rate <= least) {
+                largest.push(rate);
+                if largest.len() == 2 * hundredth {
+                    least = cut(&mut largest);
+                }
+            }
         }
-        let place = (rates.len() - 1) * 99 / 100;
-        *rates.select_nth_unstable_by(place, f64::total_cmp).1
+        cut(&mut largest)
     }
 
-    fn fractional(&self, wheel: usize, at: usize) -> DatasetError {
+    fn fractional(&self, wheel: usize, at: usize, reading: f64) -> DatasetError {
         DatasetError::Cell {
             file: self.file.clone(),
-            line: self.lines[at],
+            line: self.lines.of(at),
             column: self.columns[wheel + 1].clone(),
-            value: self.counts[wheel][at].to_string(),
+            value: reading.to_string(),
             allowed: "a whole number of ticks where the robot has counter_bits".into(),
             remedy: "".into(),
         }
     }
 
-    fn rolled_over(&self, wheel: usize, at: usize, bits: u32) -> DatasetError {
+    fn rolled_over(&self, wheel: usize, at: usize, [before, after]: [f64; 2], bits: u32) -> DatasetError {
         DatasetError::RolledOver {
             file: self.file.clone(),
-            line: self.lines[at + 1],
+            line: self.lines.of(at),
             column: self.columns[wheel + 1].clone(),
-            before: self.counts[wheel][at],
-            after: self.counts[wheel][at + 1],
+            before,
+            after,
             bits,
         }
     }
 
-    fn jump(&self, wheel: usize, at: usize, speed: f64, bits: Option<u32>) -> DatasetError {
+    fn jump(&self, wheel: usize, at: usize, [before, after]: [f64; 2], speed: f64, bits: Option<u32>) -> DatasetError {
         let cause = bits.map_or("rolled over (say counter_bits in robot.toml)".to_owned(), |bits| {
             format!("has another width than {bits} bits")
         });
         DatasetError::Jump {
             file: self.file.clone(),
-            line: self.lines[at + 1],
+            line: self.lines.of(at),
             column: self.columns[wheel + 1].clone(),
-            before: self.counts[wheel][at],
-            after: self.counts[wheel][at + 1],
-            seconds: ((self.time[at + 1] - self.time[at]) * 1e9).round() / 1e9,
+            before,
+            after,
+            seconds: ((self.time[at] - self.time[at - 1]) * 1e9).round() / 1e9,
             speed: speed.round(),
             limit: FASTEST,
             remedy: format!("look whether the counter was set back or {cause}, or rows are missing").into(),
@@ -194,14 +214,14 @@ fn rolled_bits(size: f64, expected: f64) -> Option<u32> {
 pub(super) fn time_error(
     file: &str,
     column: &str,
-    lines: &[usize],
+    lines: &Lines,
     time: &[f64],
     at: usize,
     remedy: &str,
 ) -> DatasetError {
     DatasetError::Time {
         file: file.to_owned(),
-        line: lines[at],
+        line: lines.of(at),
         column: column.to_owned(),
         before: time[at.saturating_sub(1)],
         after: time[at],
@@ -212,4 +232,24 @@ pub(super) fn time_error(
 fn metres_per_tick(robot: &Robot, wheel: usize) -> f64 {
     let per_tick = robot.metres_per_tick();
     [per_tick.left, per_tick.right][wheel]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Stream;
+
+    #[test]
+    fn the_usual_rate_is_the_one_that_a_sorted_list_has_at_ninety_nine_per_cent() {
+        let mut stream = Stream::new(5, 1, 0);
+        for rows in [0, 1, 2, 3, 100, 101, 102, 103, 202, 5000] {
+            let counts: Vec<f64> = (0..rows).map(|_| (stream.uniform() * 50.0).floor()).collect();
+            let time = (0..rows).map(f64::from).collect();
+            let mut rates: Vec<f64> = counts.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+            rates.sort_by(f64::total_cmp);
+            let expected = if rates.is_empty() { 0.0 } else { rates[(rates.len() - 1) * 99 / 100] };
+            let recording = Recording { time, counts: [counts, Vec::new()], ..Recording::default() };
+            assert_eq!(recording.usual_rate(0), expected, "{rows}");
+        }
+    }
 }

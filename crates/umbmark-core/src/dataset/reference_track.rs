@@ -1,6 +1,7 @@
 //! Absolute poses with a clock of their own, as a tracking system writes them.
 
 use super::error::DatasetError;
+use super::lines::Lines;
 use super::recording::time_error;
 use std::f64::consts::TAU;
 
@@ -26,7 +27,7 @@ pub(super) struct TrackRows {
     pub file: String,
     /// Name of the time column.
     pub column: String,
-    pub lines: Vec<usize>,
+    pub lines: Lines,
     pub time: Vec<f64>,
     pub poses: Vec<PoseRow>,
     /// Rows where the body was not seen.
@@ -63,7 +64,7 @@ impl TrackRows {
         note(late.len(), "rows out of order were put where their time stamps say");
         note(rows - order.len(), "rows that repeat a time stamp were left out");
         note(self.lost, "frames without a pose (the body was not seen) are gaps");
-        self.lines = order.iter().map(|i| self.lines[*i]).collect();
+        self.lines = order.iter().map(|i| self.lines.of(*i)).collect();
         self.time = order.iter().map(|i| self.time[*i]).collect();
         self.poses = order.iter().map(|i| self.poses[*i]).collect();
         Ok(())

@@ -19,22 +19,58 @@ pub(super) struct Sheet<'a> {
 pub(super) struct Row<'r> {
     pub file: &'r str,
     pub line: usize,
-    pub cells: &'r [&'r str],
-    /// Of each cell that is a [`Decimal`], its value; NaN of others.
-    pub decimals: &'r [f64],
+    pub cells: &'r [Cell<'r>],
+}
+
+/// What stands between two commas.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell<'a> {
+    /// Without the spaces and quotation marks round it.
+    pub text: &'a str,
+    /// Its value where it is a [`Decimal`]; else NaN.
+    pub value: f64,
 }
 
 /// The lines of a text that hold something, with their numbers.
 #[derive(Clone)]
 pub(super) struct Rows<'a> {
-    lines: std::str::Split<'a, char>,
+    rest: &'a str,
+    end: char,
+    /// How many lines were taken.
     line: usize,
 }
 
 impl<'a> Rows<'a> {
     pub fn of(text: &'a str) -> Rows<'a> {
         let end = if text.contains('\n') { '\n' } else { '\r' };
-        Rows { lines: text.split(end), line: 0 }
+        Rows { rest: text, end, line: 0 }
+    }
+
+    /// Takes the next line if every cell is a number or empty, as nearly all are in a log, and there are as many as asked for.
+    fn take_plain(&mut self, cells: &mut [Cell<'a>]) -> bool {
+        let bytes = self.rest.as_bytes();
+        let mut at = 0;
+        for (column, cell) in cells.iter_mut().enumerate() {
+            if column > 0 {
+                if bytes.get(at) != Some(&b',') {
+                    return false;
+                }
+                at += 1;
+            }
+            let Decimal { value, length } = Decimal::at_start_of(&bytes[at..]);
+            *cell = Cell { text: &self.rest[at..at + length], value };
+            at += length;
+        }
+        let nothing_but_commas = at < cells.len();
+        let end = match bytes[at..] {
+            _ if nothing_but_commas => return false,
+            [] => at,
+            [b'\n', ..] => at + 1,
+            [b'\r', b'\n', ..] => at + 2,
+            _ => return false,
+        };
+        (self.rest, self.line) = (&self.rest[end..], self.line + 1);
+        true
     }
 }
 
@@ -42,8 +78,9 @@ impl<'a> Iterator for Rows<'a> {
     type Item = (usize, &'a str);
 
     fn next(&mut self) -> Option<(usize, &'a str)> {
-        for line in self.lines.by_ref() {
-            self.line += 1;
+        while !self.rest.is_empty() {
+            let (line, rest) = self.rest.split_once(self.end).unwrap_or((self.rest, ""));
+            (self.rest, self.line) = (rest, self.line + 1);
             let line = trimmed(line);
             if !line.starts_with('#') && line.bytes().any(|byte| byte != b',' && !byte.is_ascii_whitespace()) {
                 return Some((self.line, line));
@@ -64,12 +101,13 @@ impl<'a> Sheet<'a> {
         };
         check_separator(file, header_line, header)?;
         let mut cells = Vec::new();
-        split(header, &mut cells, &mut Vec::new());
-        if cells[0].parse::<f64>().is_ok() {
-            return Err(DatasetError::NoHeader { file: file.to_owned(), line: header_line, value: quoted(cells[0]) });
+        split(header, &mut cells);
+        let first = cells[0].text;
+        if first.parse::<f64>().is_ok() {
+            return Err(DatasetError::NoHeader { file: file.to_owned(), line: header_line, value: quoted(first) });
         }
-        let used = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
-        let header = cells[..used].iter().map(|cell| cell.to_lowercase()).collect();
+        let used = cells.iter().rposition(|cell| !cell.text.is_empty()).map_or(0, |last| last + 1);
+        let header = cells[..used].iter().map(|cell| cell.text.to_lowercase()).collect();
         Ok(Sheet { file, header, header_line, body })
     }
 
@@ -80,15 +118,11 @@ impl<'a> Sheet<'a> {
 
     /// Visits every row; there must be one.
     pub fn for_each(&self, mut visit: impl FnMut(&Row) -> Result<(), DatasetError>) -> Result<(), DatasetError> {
-        let mut cells = Vec::with_capacity(self.header.len());
-        let mut decimals = Vec::with_capacity(self.header.len());
         let mut any = false;
-        for (line, text) in self.body.clone() {
-            split(text, &mut cells, &mut decimals);
-            self.check_width(line, text, &cells)?;
-            visit(&Row { file: self.file, line, cells: &cells, decimals: &decimals })?;
+        self.for_each_of(self.body(), |row| {
             any = true;
-        }
+            visit(row)
+        })?;
         if any {
             return Ok(());
         }
@@ -96,9 +130,37 @@ impl<'a> Sheet<'a> {
         Err(DatasetError::NoRows { file, found, remedy: "add the measurements, one a line".into() })
     }
 
-    fn check_width(&self, line: usize, text: &str, cells: &[&str]) -> Result<(), DatasetError> {
+    /// The rows below the header.
+    pub fn body(&self) -> Rows<'a> {
+        self.body.clone()
+    }
+
+    /// The rows of another text that goes on after so many lines.
+    pub fn body_after<'b>(&self, line: usize, text: &'b str) -> Rows<'b> {
+        Rows { rest: text, end: self.body.end, line }
+    }
+
+    /// Visits some rows, and says how many lines there were by then.
+    pub fn for_each_of(
+        &self,
+        mut rows: Rows,
+        mut visit: impl FnMut(&Row) -> Result<(), DatasetError>,
+    ) -> Result<usize, DatasetError> {
+        let mut cells = Vec::new();
+        loop {
+            cells.resize(self.header.len(), Cell { text: "", value: f64::NAN });
+            if !rows.take_plain(&mut cells) {
+                let Some((line, text)) = rows.next() else { return Ok(rows.line) };
+                split(text, &mut cells);
+                self.check_width(line, text, &cells)?;
+            }
+            visit(&Row { file: self.file, line: rows.line, cells: &cells })?;
+        }
+    }
+
+    fn check_width(&self, line: usize, text: &str, cells: &[Cell]) -> Result<(), DatasetError> {
         let expected = self.header.len();
-        if cells.len() >= expected && cells[expected..].iter().all(|cell| cell.is_empty()) {
+        if cells.len() >= expected && cells[expected..].iter().all(|cell| cell.text.is_empty()) {
             return Ok(());
         }
         if cells.len() == 1 {
@@ -124,22 +186,19 @@ fn check_separator(file: &str, line: usize, text: &str) -> Result<(), DatasetErr
     Err(DatasetError::Separator { file: file.to_owned(), line, found })
 }
 
-/// Cuts a line at its commas, but not at those in quotation marks. A cell that is a [`Decimal`] is read on the way.
-pub(super) fn split<'a>(line: &'a str, cells: &mut Vec<&'a str>, decimals: &mut Vec<f64>) {
+/// Cuts a line at its commas, but not at those in quotation marks.
+pub(super) fn split<'a>(line: &'a str, cells: &mut Vec<Cell<'a>>) {
     cells.clear();
-    decimals.clear();
     let bytes = line.as_bytes();
     let mut start = 0;
     loop {
         let Decimal { value, length } = Decimal::at_start_of(&bytes[start..]);
         let mut end = start + length;
         if bytes.get(end).is_none_or(|byte| *byte == b',') {
-            cells.push(&line[start..end]);
-            decimals.push(value);
+            cells.push(Cell { text: &line[start..end], value });
         } else {
             end += text_length(&bytes[end..]);
-            cells.push(tidy(&line[start..end]));
-            decimals.push(f64::NAN);
+            cells.push(Cell { text: tidy(&line[start..end]), value: f64::NAN });
         }
         if end == bytes.len() {
             return;

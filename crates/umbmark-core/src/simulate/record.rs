@@ -25,7 +25,7 @@ impl Recording {
     /// Turns readings of a drive's own counters into those of its axle's wheels, and computes the poses from these.
     fn reckon(&mut self, robot: &Robot) {
         let log = &mut self.log;
-        [log.left, log.right] = robot.axle_ticks(&[std::mem::take(&mut log.left), std::mem::take(&mut log.right)]);
+        [log.left, log.right] = robot.axle_ticks([std::mem::take(&mut log.left), std::mem::take(&mut log.right)]);
         let (per_tick, mut before, mut pose) = (robot.metres_per_tick(), [0.0; 2], Pose2::IDENTITY);
         for (computed, (left, right)) in self.computed.iter_mut().zip(log.left.iter().zip(&log.right)) {
             let [l, r] = before;

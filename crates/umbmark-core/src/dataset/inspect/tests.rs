@@ -36,7 +36,7 @@ fn drive(direction: Direction, every: usize, wheels: impl Fn(f64, f64) -> (f64, 
         }
     }
     (0..50).for_each(|_| write(&pose, wheels(left, right)));
-    let returned = return_error(&log, &computed_poses(&log, &robot), EndPose::Standing);
+    let returned = return_error(&log, &computed_end(&log, &robot).0.unwrap(), EndPose::Standing);
     let (name, test) = (direction.name().to_owned(), TestKind::Systematic);
     Run { name, number: 1, direction: Some(direction), test, log: Some(log), returned }
 }

@@ -113,6 +113,6 @@ fn rearrange(recording: &mut Recording, order: &[usize]) {
     recording.reference = references;
     let pick = |values: &[f64]| order.iter().map(|row| values[*row]).collect::<Vec<f64>>();
     recording.counts = [pick(&recording.counts[0]), pick(&recording.counts[1])];
-    recording.lines = order.iter().map(|row| recording.lines[*row]).collect();
+    recording.lines = order.iter().map(|row| recording.lines.of(*row)).collect();
     recording.time = pick(&recording.time);
 }
