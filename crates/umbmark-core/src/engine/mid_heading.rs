@@ -212,6 +212,19 @@ mod tests {
     }
 
     #[test]
+    fn no_zero_of_an_end_has_a_minus_sign() {
+        let signs = [0.0, -0.0];
+        for (half, s) in signs.iter().flat_map(|half| signs.map(|s| (*half, s))) {
+            for (x, y) in signs.iter().flat_map(|x| signs.map(|y| (*x, y))) {
+                let end = MidHeading { half, c: 1.0, s, x, y }.end();
+                assert_eq!(end.map(f64::to_bits), [0.0, 0.0, 1.0, 0.0_f64].map(f64::to_bits), "{half} {s} {x} {y}");
+            }
+            let across = MidHeading { half, c: s, s: 1.0, x: half, y: half }.end();
+            assert!(across.iter().all(|v| *v != 0.0 || v.is_sign_positive()), "{across:?}");
+        }
+    }
+
+    #[test]
     fn a_tick_turns_the_robot_about_the_other_wheel() {
         let geometry = TickGeometry::new(0.002, 0.003, 0.5).unwrap();
         for (letter, backward, side) in [(Letter::Left, false, -0.25), (Letter::Right, true, 0.25)] {
