@@ -372,18 +372,21 @@ mod tests {
         libm::hypot(a.x - b.x, a.y - b.y).max(wrap(a.heading - b.heading).abs())
     }
 
+    /// Round a corner each truck steers along the chords of its arc, a fraction of a millimetre inside.
     #[test]
-    fn on_an_even_floor_both_trucks_are_where_the_plan_says_after_every_step() {
+    fn on_an_even_floor_both_trucks_are_where_they_believe_and_where_the_plan_says() {
         for (correction, direction) in [(true, Direction::Ccw), (true, Direction::Cw), (false, Direction::Ccw)] {
             let convoy = Convoy::new(&clapper(correction), &path(), direction).unwrap();
+            assert_eq!(convoy.corrects(), correction);
             let mut trucks = convoy.at_start(Pose2::IDENTITY, &mut Even);
             for (made, step) in convoy.steps().iter().enumerate() {
                 convoy.step(step, &mut trucks, &mut Even);
-                for (meant, at) in convoy.meant(made + 1).iter().zip(trucks.believed.iter().zip(&trucks.real)) {
-                    assert!(
-                        gap(meant, at.0) < 1e-9 && gap(meant, at.1) < 1e-9,
-                        "{correction} {made}: {meant:?} {at:?}"
-                    );
+                let most = if made < convoy.stops()[0] { 1e-9 } else { 2e-3 };
+                for (meant, (believed, real)) in
+                    convoy.meant(made + 1).iter().zip(trucks.believed.iter().zip(&trucks.real))
+                {
+                    assert!(gap(believed, real) < 1e-9, "{correction} {made}: {believed:?} {real:?}");
+                    assert!(gap(meant, real) < most, "{correction} {made}: {meant:?} {real:?}");
                 }
             }
         }

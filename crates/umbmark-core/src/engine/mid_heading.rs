@@ -60,7 +60,7 @@ impl<T: Lane> MidHeading<T> {
         [
             self.c * self.x - self.s * self.y + zero,
             self.s * self.x + self.c * self.y + zero,
-            self.c * self.c - self.s * self.s + zero,
+            self.c * self.c - self.s * self.s,
             self.half.splat(2.0) * self.c * self.s + zero,
         ]
     }

@@ -61,7 +61,7 @@ impl Motion {
 
     /// A motion that ends at (x, y) \[m\] with the heading of these changes of the counters (left, right).
     pub(super) fn with_counts(x: f64, y: f64, counts: [i64; 2], geometry: &TickGeometry) -> Motion {
-        Motion::from(Pose2 { x: x + 0.0, y: y + 0.0, heading: geometry.heading(counts) + 0.0 })
+        Motion::from(Pose2 { x: x + 0.0, y: y + 0.0, heading: geometry.heading(counts) })
     }
 
     /// This motion, then `next` in the frame where this one ends.
