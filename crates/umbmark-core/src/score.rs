@@ -313,13 +313,29 @@ mod tests {
     #[test]
     fn nothing_to_score_and_impossible_numbers_are_errors_with_the_value() {
         assert_eq!(score(&[], 0.95), Err(ScoreError::NothingReturned { runs: 0 }));
-        assert_eq!(score(&both(), 1.0), Err(ScoreError::Level { value: 1.0 }));
-        let broken = runs(TestKind::Systematic, Direction::Cw, &[(f64::NAN, 0.0, 0.0)]);
-        assert!(
-            score(&broken, 0.95)
-                .unwrap_err()
-                .to_string()
-                .starts_with("return error of run cw_1 must be finite, got (NaN")
-        );
+        let bumps: [&[ReturnError]; 2] =
+            [&[ReturnError { x: 0.1, y: 0.0, heading: None }; 2], &[ReturnError::from([0.0; 3])]];
+        assert_eq!(score_returns([&[], &[]], bumps, 0.95), Err(ScoreError::NothingReturned { runs: 3 }));
+        for value in [1.0, 0.0, -0.5] {
+            assert_eq!(score(&both(), value), Err(ScoreError::Level { value }));
+        }
+        let mut broken = runs(TestKind::Systematic, Direction::Cw, &[(f64::NAN, 0.0, 0.5)]);
+        let message = |runs: &[Run]| score(runs, 0.95).unwrap_err().to_string();
+        let told = "return error of run cw_1 must be finite, got (NaN, 0) m";
+        assert_eq!(message(&broken), format!("{told}, 0.5 rad; correct or remove the run"));
+        broken[0].returned.as_mut().unwrap().heading = None;
+        assert_eq!(message(&broken), format!("{told}; correct or remove the run"));
+    }
+
+    #[test]
+    fn chance_is_told_of_both_directions_and_of_one_alone_which_is_missing() {
+        let s = score(&both(), 0.9).unwrap();
+        assert_eq!(s.noise_band, Some(noise_band(s.summary.sigma_axis().unwrap(), 3, 3, 0.9)));
+        for (driven, missing) in [(Direction::Ccw, "no clockwise (cw)"), (Direction::Cw, "no counter-clockwise (ccw)")]
+        {
+            let alone: Vec<Run> = both().into_iter().filter(|run| run.direction == Some(driven)).collect();
+            let s = score(&alone, 0.9).unwrap();
+            assert!(s.noise_band.is_none() && s.warnings[0].contains(missing), "{s:?}");
+        }
     }
 }

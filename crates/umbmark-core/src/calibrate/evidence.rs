@@ -168,3 +168,53 @@ fn mean_distance(drives: &[Drive]) -> f64 {
     let squares: Vec<f64> = drives.iter().flat_map(|d| &d.seen).map(|s| s.x * s.x + s.y * s.y).collect();
     (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::ReturnError;
+    use crate::path::{CIRCLE, Path, SQUARE, SpeedProfile};
+    use crate::preset::Preset;
+
+    /// Two runs each way that return a little off.
+    fn returned(robot: &Robot, path: Path, heading: Option<f64>) -> Dataset {
+        let run = |number: u32| Run {
+            name: format!("run {number}"),
+            number,
+            direction: Some(Direction::BOTH[number as usize % 2]),
+            test: TestKind::Systematic,
+            log: None,
+            returned: Some(ReturnError { x: 0.01 * f64::from(number), y: 0.0, heading }),
+        };
+        let runs = (0..4).map(run).collect();
+        Dataset { robot: Some(robot.clone()), path: Some(path), runs, ..Dataset::default() }
+    }
+
+    #[test]
+    fn the_weights_make_the_scatter_of_every_run_round_and_alike() {
+        let robot = Robot::labmate();
+        for heading in [Some(0.01), None] {
+            let drives = end_poses(&returned(&robot, Path::umbmark(), heading), &robot).unwrap();
+            assert_eq!(drives.len(), 4);
+            for drive in drives {
+                let scatter =
+                    drive.weight * noise_shape::end_covariance(&drive.track, &robot.drive) * drive.weight.transpose();
+                let measured = if heading.is_some() { 3 } else { 2 };
+                let round = Matrix3::identity();
+                let gap = (scatter - round).view((0, 0), (measured, measured)).abs().max();
+                assert!(gap < 1e-12, "{:?}: {scatter}", drive.direction);
+            }
+        }
+    }
+
+    #[test]
+    fn a_path_with_arcs_is_refused_of_two_trucks_with_a_link_and_of_no_other_robot() {
+        let trucks = Preset::find("clapper").unwrap().robot();
+        let square = || Path::new(&SQUARE, &[4.0], SpeedProfile::default()).unwrap();
+        let circle = || Path::new(&CIRCLE, &[2.0, 1.0], SpeedProfile::default()).unwrap();
+        let ends = |robot: &Robot, path| end_poses(&returned(robot, path, None), robot).map(|drives| drives.len());
+        assert_eq!(ends(&trucks, circle()), Err(CalibrateError::Path { drive: "clapper", shape: "circle" }));
+        assert_eq!(ends(&trucks, square()), Ok(4));
+        assert_eq!(ends(&Robot::labmate(), circle()), Ok(4));
+    }
+}

@@ -170,6 +170,15 @@ mod tests {
     }
 
     #[test]
+    fn every_file_says_first_what_wrote_it_and_which_ratios_are_in_it() {
+        let robot = Robot::labmate();
+        let line = format!("umbmark {VERSION} calibrate: E_d 1.00121, E_b 0.991764706, E_s 1.0");
+        assert!(ros2_control(&robot, &CORRECTION, "base").starts_with(&format!("# {line}\n")));
+        assert!(robot_toml(&robot, None, &CORRECTION).unwrap().starts_with(&format!("# {line}\n")));
+        assert!(c_header(&robot, &CORRECTION).unwrap().starts_with(&format!("/* {line} */\n")));
+    }
+
+    #[test]
     fn whole_numbers_keep_a_decimal_point_and_fractions_their_digits() {
         assert_eq!([1.0, 0.25, 1e-9, 2796.8, -3.0].map(decimal), ["1.0", "0.25", "0.000000001", "2796.8", "-3.0"]);
     }

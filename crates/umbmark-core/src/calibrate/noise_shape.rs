@@ -43,7 +43,7 @@ pub(crate) fn end_covariance(track: &Track, drive: &DifferentialDrive) -> Matrix
 mod tests {
     use super::*;
     use crate::drive::Robot;
-    use crate::path::{Direction, Path, SQUARE, STRAIGHT, SpeedProfile};
+    use crate::path::{Direction, Path, SQUARE, STRAIGHT, SpeedProfile, WAYPOINTS};
     use crate::random::Stream;
 
     /// Oracle: integrals by hand for a straight line of length s. Heading 2s/b², sideways 2s³/(3b²), their covariance
@@ -63,6 +63,43 @@ mod tests {
         ];
         for (at, value) in expected {
             assert!((sigma[at] - value).abs() < 1e-3 * value.max(1e-6), "{at:?}: {} {value}", sigma[at]);
+        }
+    }
+
+    /// Oracle: differences of the end where one wheel rolls a little more in one slice of the way after the other.
+    #[test]
+    fn a_path_that_ends_elsewhere_scatters_as_the_influence_of_every_slice_says() {
+        let robot = Robot::labmate();
+        let path = Path::new(&WAYPOINTS, &[1.0, 0.0, 1.5, 1.0, 0.2, 1.4], SpeedProfile::default()).unwrap();
+        let track = Track::from_path(&path, Direction::Ccw, &robot);
+        let slices: Vec<WheelTravel> =
+            track.travel().iter().flat_map(|travel| (0..100).map(|_| travel.scaled(0.01))).collect();
+        let end = |slices: &[WheelTravel]| {
+            let end = slices.iter().fold(Pose2::IDENTITY, |pose, s| pose.moved(&robot.drive.displacement(s)));
+            Vector3::new(end.x, end.y, end.heading)
+        };
+        let (mut sum, h) = (Matrix3::zeros(), 1e-5);
+        for i in 0..slices.len() {
+            for (by, rolled) in [
+                (WheelTravel { left: h, right: 0.0 }, slices[i].left),
+                (WheelTravel { left: 0.0, right: h }, slices[i].right),
+            ] {
+                let at = |sign: f64| {
+                    let mut changed = slices.clone();
+                    changed[i].left += sign * by.left;
+                    changed[i].right += sign * by.right;
+                    end(&changed)
+                };
+                let slope = (at(1.0) - at(-1.0)) / (2.0 * h);
+                sum += slope * slope.transpose() * rolled.abs();
+            }
+        }
+        let expected = end_covariance(&track, &robot.drive);
+        for i in 0..3 {
+            for j in 0..3 {
+                let scale = (sum[(i, i)] * sum[(j, j)]).sqrt();
+                assert!((sum[(i, j)] - expected[(i, j)]).abs() < 2e-3 * scale, "{sum} {expected}");
+            }
         }
     }
 

@@ -1,5 +1,6 @@
 use super::*;
 use crate::dataset::Run;
+use crate::drive::DifferentialDrive;
 use crate::effect::{Model, TestKind};
 use crate::geometry::{Displacement2, Pose2, seeded};
 use crate::path::{Direction, RECTANGLE, SPIN, STRAIGHT, SpeedProfile, WAYPOINTS};
@@ -101,21 +102,33 @@ fn the_exact_fit_of_noise_free_returns_leaves_nothing() {
         assert!((1e3 * x.e_max_sys_after.unwrap() - driven).abs() < 1e-6);
         assert_eq!((exact.ratio(Ratio::Scale), exact.covariance), (None, None));
         assert!(calibration.warnings.iter().any(|w| w.starts_with("E_s is not determined")));
+        assert!(calibration.warnings.iter().any(|w| w.starts_with("Few runs: 1 cw and 1 ccw.")));
+        assert!(
+            exact.termination.unwrap().converged()
+                && !calibration.warnings.iter().any(|w| w.starts_with("The exact fit"))
+        );
+        assert_eq!((calibration.level, calibration.heading_arm), (Level::Ends, None));
     }
 }
 
 /// Section 3.1 of the paper; E_d as the share 1 % by which the wheels differ.
 #[test]
 fn the_closed_forms_are_warned_of_where_a_skid_steered_robot_is_out_of_their_depth() {
-    let warned = |e_b: f64| {
+    let warned = |e_b: f64, size: f64| {
         let truth = Correction { e_d: 1.003, e_b, e_s: 1.0 };
-        let calibration = calibrate(&noise_free(&truth), &Options::default()).unwrap();
+        let drive = DifferentialDrive::new(0.34 * size, 0.15 * size, 0.15 * size).unwrap();
+        let robot = Robot { drive: drive.into(), ..Robot::labmate() };
+        let path = Path::new(&SQUARE, &[4.0 * size], SpeedProfile::default()).unwrap();
+        let error = |d| (d, drive_again(&robot, &path, d, &truth, &Correction::NONE).unwrap());
+        let calibration = calibrate(&dataset(&robot, &path, &Direction::BOTH.map(error)), &Options::default()).unwrap();
         let exact = calibration.estimate(Method::Exact).unwrap().correction;
         assert!((exact.e_b / e_b - 1.0).abs() < 1e-9, "{exact:?}");
         calibration.warnings.iter().any(|w| w.starts_with("The closed forms are of first order"))
     };
-    assert!(warned(1.5) && warned(1.875));
-    assert!(!warned(1.01) && !warned(0.97));
+    for size in [0.1, 1.0, 5.0] {
+        assert!(warned(1.5, size) && warned(1.875, size));
+        assert!(!warned(1.01, size) && !warned(0.97, size));
+    }
 }
 
 #[test]
@@ -152,7 +165,10 @@ fn one_direction_shows_one_combination_only_and_is_told_so() {
     let calibration = calibrate(&data, &Options::default()).unwrap();
     assert!(calibration.estimates.is_empty());
     assert!(
-        calibration.warnings.iter().any(|w| w.contains("E_d and E_b are not determined")),
+        calibration
+            .warnings
+            .iter()
+            .any(|w| w.contains("E_d and E_b are not determined") && w.contains("other direction too")),
         "{:?}",
         calibration.warnings
     );
@@ -217,10 +233,12 @@ fn an_open_path_shows_the_scale_and_a_spin_the_wheelbase() {
     let line = straight.estimate(Method::Exact).unwrap();
     assert_eq!(line.shown, [true, false, true]);
     assert!((line.correction.e_s - 1.01).abs() < 1e-4, "{line:?}");
-    assert!(straight.warnings.iter().any(|w| w.contains("E_b is not determined")));
+    assert!(straight.warnings.iter().any(|w| w.contains("E_b is not determined") && w.contains("a square both ways")));
+    assert_eq!((line.e_max_sys_after, line.std_error(Ratio::Wheelbase)), (None, None));
     let spin = only(&SPIN, 5.0);
     let turned = spin.estimate(Method::Exact).unwrap();
-    assert!(turned.shown[1] && !turned.shown[2], "{:?}", turned.shown);
+    assert_eq!(turned.shown, [false, true, false]);
+    assert!(spin.warnings.iter().any(|w| w.starts_with("E_d is not determined")), "{:?}", spin.warnings);
     assert!((turned.correction.e_b - 0.98 / 1.01).abs() < 1e-3, "{:?}", turned.correction);
 }
 
@@ -272,9 +290,22 @@ fn impossible_angles_data_and_options_are_refused_with_the_reason() {
     assert_eq!(calibrate(&data, &Options::default()).unwrap_err(), CalibrateError::NothingObserved { runs: 2 });
     data.robot = None;
     assert_eq!(calibrate(&data, &Options::default()).unwrap_err(), CalibrateError::NoRobot);
-    let options = Options { heading_arm: Some(-1.0), ..Options::default() };
-    let message = calibrate(&noise_free(&PLAIN), &options).unwrap_err().to_string();
-    assert_eq!(message, "the heading arm must be positive and finite, got -1 m");
+    for (arm, told) in [(-1.0, "-1"), (0.0, "0"), (f64::INFINITY, "inf")] {
+        let options = Options { heading_arm: Some(arm), ..Options::default() };
+        let message = calibrate(&noise_free(&PLAIN), &options).unwrap_err().to_string();
+        assert_eq!(message, format!("the heading arm must be positive and finite, got {told} m"));
+    }
+}
+
+#[test]
+fn a_quarter_turn_lost_and_a_leg_curved_about_a_wheel_belong_to_no_robot() {
+    let drive = DifferentialDrive::new(4.0, 0.15, 0.15).unwrap();
+    let correction = |alpha: f64, beta: f64| Angles { alpha, beta }.correction(4.0, &drive, RadiusWheelbase::Nominal);
+    let quarter = std::f64::consts::FRAC_PI_2;
+    for (alpha, beta) in [(quarter, 0.0), (1.1 * quarter, 0.0), (0.0, 2.0 * quarter), (0.0, -2.0 * quarter)] {
+        assert_eq!(correction(alpha, beta), None);
+    }
+    assert!(correction(0.9 * quarter, 1.8 * quarter).is_some());
 }
 
 /// A path that ends 2 % of its length from START: E_s moves the end a little, but no one should trust it.
@@ -301,55 +332,117 @@ fn what_the_kinematics_do_not_explain_stays_in_the_forecast() {
     let calibration = calibrate(&data, &Options::default()).unwrap();
     let exact = calibration.estimate(Method::Exact).unwrap();
     let explained = drive_back(&exact.correction, &Correction::NONE);
-    let left = [(cw, explained[0]), (ccw, explained[1])].map(|(e, f)| libm::hypot(e.x - f.x, e.y - f.y));
-    assert!((exact.e_max_sys_after.unwrap() - left[0].max(left[1])).abs() < 1e-12);
+    for estimate in &calibration.estimates {
+        let again = drive_back(&exact.correction, &estimate.correction);
+        let left = [cw, ccw].into_iter().zip(explained).zip(again);
+        let left = left.map(|((e, f), g)| libm::hypot(e.x - f.x + g.x, e.y - f.y + g.y)).fold(0.0, f64::max);
+        assert!((estimate.e_max_sys_after.unwrap() - left).abs() < 1e-12, "{:?}", estimate.method);
+    }
     assert!(exact.e_max_sys_after.unwrap() > 4e-3);
 }
 
-/// Oracle: derivatives of the estimate by each run's return error, from fitting again, with the scatter of the runs.
-#[test]
-fn the_covariance_of_the_exact_fit_is_that_of_its_influence_on_each_run() {
-    let [cw, ccw] = drive_back(&PLAIN, &Correction::NONE);
-    // Strongly correlated between x, y and heading, and not of the shape of wheel noise.
+/// Three runs each way whose scatter is strongly correlated between x, y and heading, and not of the shape of wheel noise.
+fn scattered() -> Vec<(Direction, ReturnError)> {
     let scatter = [(9e-3, 8e-3, 2e-3), (-4e-3, -6e-3, -3e-3), (-5e-3, -2e-3, 1e-3)];
-    let moved = |e: &ReturnError, s: f64, (x, y, h): (f64, f64, f64)| ReturnError {
-        x: e.x + x,
-        y: e.y + s * y,
-        heading: e.heading.map(|heading| heading + s * h),
-    };
-    let errors: Vec<(Direction, ReturnError)> = [(Direction::Cw, cw), (Direction::Ccw, ccw)]
-        .iter()
-        .flat_map(|(d, e)| scatter.map(|by| (*d, moved(e, d.sign(), by))))
-        .collect();
-    let fitted = |errors: &[(Direction, ReturnError)]| {
-        let data = dataset(&Robot::labmate(), &Path::umbmark(), errors);
-        calibrate(&data, &Options::default()).unwrap().estimate(Method::Exact).unwrap().clone()
-    };
+    let both = Direction::BOTH.into_iter().zip(drive_back(&PLAIN, &Correction::NONE));
+    both.flat_map(|(d, e)| scatter.map(|(x, y, h)| (d, moved(&e, (x, d.sign() * y, d.sign() * h))))).collect()
+}
+
+fn moved(e: &ReturnError, (x, y, h): (f64, f64, f64)) -> ReturnError {
+    ReturnError { x: e.x + x, y: e.y + y, heading: e.heading.map(|heading| heading + h) }
+}
+
+fn calibrated(errors: &[(Direction, ReturnError)]) -> Calibration {
+    calibrate(&dataset(&Robot::labmate(), &Path::umbmark(), errors), &Options::default()).unwrap()
+}
+
+/// Oracle: derivatives of the estimate by each run's return error, from calibrating again, with the scatter of the runs.
+#[test]
+fn the_covariance_of_every_method_is_that_of_its_influence_on_each_run() {
+    let errors = scattered();
     let of = |d| errors.iter().filter(move |(e, _)| *e == d).map(|(_, e)| *e).collect::<Vec<_>>();
     let pooled = Scatter::pooled(&of(Direction::Cw), &of(Direction::Ccw)).unwrap();
-    let (mut expected, h) = (Matrix2::zeros(), 1e-6);
+    let calibration = calibrated(&errors);
+    let mut expected = vec![Matrix2::zeros(); calibration.estimates.len()];
+    let h = 1e-6;
     for i in 0..errors.len() {
-        let slope = |by: (f64, f64, f64)| {
-            let at = |s: f64| {
-                let mut changed = errors.clone();
-                changed[i].1 = moved(&errors[i].1, 1.0, (s * by.0, s * by.1, s * by.2));
-                let c = fitted(&changed).correction;
-                nalgebra::Vector2::new(c.e_d, c.e_b)
-            };
-            (at(h) - at(-h)) / (2.0 * h)
+        let at = |by: (f64, f64, f64)| {
+            let mut changed = errors.clone();
+            changed[i].1 = moved(&errors[i].1, by);
+            calibrated(&changed).estimates
         };
-        let influence = nalgebra::Matrix2x3::from_columns(&[
-            slope((1.0, 0.0, 0.0)),
-            slope((0.0, 1.0, 0.0)),
-            slope((0.0, 0.0, 1.0)),
-        ]);
-        expected += influence * pooled.of(errors[i].0) * influence.transpose();
-    }
-    let covariance = fitted(&errors).covariance.unwrap();
-    for i in 0..2 {
-        for j in 0..2 {
-            let scale = (expected[(i, i)] * expected[(j, j)]).sqrt();
-            assert!((covariance[(i, j)] - expected[(i, j)]).abs() < 0.01 * scale, "{covariance} {expected}");
+        let slopes =
+            [(h, 0.0, 0.0), (0.0, h, 0.0), (0.0, 0.0, h)].map(|(x, y, by)| (at((x, y, by)), at((-x, -y, -by))));
+        for (method, sum) in expected.iter_mut().enumerate() {
+            let influence = nalgebra::Matrix2x3::from_columns(&slopes.each_ref().map(|(above, below)| {
+                let [a, b] = [above, below].map(|estimates| estimates[method].correction);
+                nalgebra::Vector2::new(a.e_d - b.e_d, a.e_b - b.e_b) / (2.0 * h)
+            }));
+            *sum += influence * pooled.of(errors[i].0) * influence.transpose();
         }
+    }
+    assert_eq!(calibration.estimates.iter().map(|e| e.method).collect::<Vec<_>>(), Method::ALL);
+    for (estimate, expected) in calibration.estimates.iter().zip(expected) {
+        let covariance = estimate.covariance.unwrap();
+        for i in 0..2 {
+            for j in 0..2 {
+                let scale = (expected[(i, i)] * expected[(j, j)]).sqrt();
+                assert!(
+                    (covariance[(i, j)] - expected[(i, j)]).abs() < 0.01 * scale,
+                    "{:?} {covariance} {expected}",
+                    estimate.method
+                );
+            }
+        }
+    }
+}
+
+/// Oracle: tables of Student's t with 4 degrees of freedom, 2.776 at 97.5 % and 2.132 at 95 %.
+#[test]
+fn an_interval_is_students_about_the_ratio_and_a_missing_heading_costs_those_of_the_heading_form() {
+    let mut errors = scattered();
+    let calibration = calibrated(&errors);
+    assert!(!calibration.warnings.iter().any(|w| w.starts_with("Few runs")));
+    for estimate in &calibration.estimates {
+        for (i, ratio) in [Ratio::Diameters, Ratio::Wheelbase].into_iter().enumerate() {
+            let (value, variance) = (estimate.correction.values()[i], estimate.covariance.unwrap()[(i, i)]);
+            for (level, t) in [(0.95, 2.776_45), (0.90, 2.131_85)] {
+                let interval = estimate.interval(ratio, level).unwrap();
+                assert!((0.5 * (interval.low + interval.high) - value).abs() < 1e-12);
+                assert!((0.5 * (interval.high - interval.low) / (t * variance.sqrt()) - 1.0).abs() < 1e-5);
+            }
+            assert_eq!(estimate.ratio(ratio), Some(value));
+        }
+    }
+    errors[0].1.heading = None;
+    let calibration = calibrated(&errors);
+    for estimate in &calibration.estimates {
+        let is_heading = estimate.method == Method::ClosedForm(ClosedForm::Heading);
+        assert_eq!(estimate.covariance.is_none(), is_heading, "{:?}", estimate.method);
+    }
+}
+
+#[test]
+fn lengths_are_those_of_the_corrected_robot_as_far_as_the_ratios_show() {
+    let drive = DifferentialDrive::new(0.34, 0.151, 0.149).unwrap();
+    let robot = Robot { drive: drive.into(), ..Robot::labmate() };
+    let correction = Correction { e_d: 1.02, e_b: 0.97, e_s: 1.03 };
+    let corrected = correction.apply(&robot).unwrap().drive;
+    let wheels = [corrected.wheel_diameter_left(), corrected.wheel_diameter_right()];
+    for (shown, wheelbase_shows, wheels_show) in [
+        ([true, true, false], true, true),
+        ([false, true, false], true, false),
+        ([true, false, false], false, true),
+        ([false, false, true], false, true),
+    ] {
+        let estimate = Estimate { shown, ..Estimate::new(Method::Exact, correction, 0.0) };
+        let lengths = estimate.lengths(&robot);
+        let close = |a: Option<f64>, b: Option<f64>| match (a, b) {
+            (Some(a), Some(b)) => (a - b).abs() < 1e-15,
+            (a, b) => a == b,
+        };
+        assert!(close(lengths.wheelbase, wheelbase_shows.then_some(corrected.wheelbase())), "{lengths:?}");
+        let [left, right] = wheels.map(|length| wheels_show.then_some(length));
+        assert!(close(lengths.left, left) && close(lengths.right, right), "{shown:?} {lengths:?}");
     }
 }

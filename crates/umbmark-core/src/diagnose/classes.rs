@@ -65,6 +65,14 @@ mod tests {
     }
 
     #[test]
+    fn likeness_is_the_cosine_of_the_angle_whatever_the_lengths_and_the_sign() {
+        for (long, short) in [(1.0, 1.0), (30.0, 0.2), (0.5, -0.1)] {
+            let (a, b) = (DVector::from_vec(vec![long, 0.0]), DVector::from_vec(vec![short, short * 3f64.sqrt()]));
+            assert!((likeness(&a, &b) - 0.5).abs() < 1e-15 && (likeness(&b, &b) - 1.0).abs() < 1e-15);
+        }
+    }
+
+    #[test]
     fn a_column_of_zeros_is_like_nothing() {
         let zero = DVector::zeros(2);
         assert_eq!(likeness(&zero, &zero), 0.0);

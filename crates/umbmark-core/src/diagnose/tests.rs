@@ -204,6 +204,21 @@ fn two_runs_a_direction_or_runs_without_scatter_are_not_tested() {
 }
 
 #[test]
+fn of_every_parameter_the_least_size_is_told_effect_by_effect_in_the_order_asked() {
+    let mut diagnosis = diagnose(&one_set(2), &base(), &Options::default()).unwrap();
+    let size = |effect, parameter, size| Detectable { effect, parameter, size };
+    diagnosis.minimum_detectable = vec![
+        size("bumps", "height_m", 3.0),
+        size("backlash", "left_m", 2.0),
+        size("bumps", "height_m", 1.0),
+        size("bumps", "height_m", 4.0),
+        size("bumps", "count", 5.0),
+    ];
+    let told: Vec<Vec<f64>> = diagnosis.least_sizes().iter().map(|own| own.iter().map(|d| d.size).collect()).collect();
+    assert_eq!(told, [vec![1.0, 5.0], vec![2.0]]);
+}
+
+#[test]
 fn the_same_seed_gives_the_same_bits_for_any_number_of_threads() {
     let data = one_set(5);
     let on = |threads: usize| {

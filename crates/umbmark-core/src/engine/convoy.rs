@@ -356,6 +356,104 @@ pub(crate) mod tests {
         assert!(Convoy::new(&Robot::labmate(), &path(), Direction::Ccw).is_none() && path().suits(&clapper(true)));
     }
 
+    /// A floor on which everything is as believed.
+    struct Even;
+
+    impl Floor<f64> for Even {
+        fn moved(&mut self, _: &Step, _: usize, believed: WheelTravel, _: f64) -> Displacement2 {
+            let truck = DifferentialDrive::new(0.34, 0.15, 0.15).unwrap();
+            truck.displacement(&believed)
+        }
+
+        fn shown(&mut self, link: LinkReading) -> LinkReading {
+            link
+        }
+    }
+
+    fn gap(a: &Pose2, b: &Pose2) -> f64 {
+        libm::hypot(a.x - b.x, a.y - b.y).max(wrap(a.heading - b.heading).abs())
+    }
+
+    /// Round a corner each truck steers along the chords of its arc, a fraction of a millimetre inside.
+    #[test]
+    fn on_an_even_floor_both_trucks_are_where_they_believe_and_where_the_plan_says() {
+        for (correction, direction) in [(true, Direction::Ccw), (true, Direction::Cw), (false, Direction::Ccw)] {
+            let convoy = Convoy::new(&clapper(correction), &path(), direction).unwrap();
+            assert_eq!(convoy.corrects(), correction);
+            let mut trucks = convoy.at_start(Pose2::IDENTITY, &mut Even);
+            for (made, step) in convoy.steps().iter().enumerate() {
+                convoy.step(step, &mut trucks, &mut Even);
+                let most = if made < convoy.stops()[0] { 1e-9 } else { 2e-3 };
+                for (meant, (believed, real)) in
+                    convoy.meant(made + 1).iter().zip(trucks.believed.iter().zip(&trucks.real))
+                {
+                    assert!(gap(believed, real) < 1e-9, "{correction} {made}: {believed:?} {real:?}");
+                    assert!(gap(meant, real) < most, "{correction} {made}: {meant:?} {real:?}");
+                }
+            }
+        }
+    }
+
+    /// Oracle: beside its way a truck heads for it half a metre ahead, so its distance falls by e in as much.
+    #[test]
+    fn a_truck_beside_its_way_comes_back_to_it_within_metres_and_a_wrong_heading_in_periods() {
+        let convoy = Convoy::new(&clapper(false), &path(), Direction::Ccw).unwrap();
+        for (sideways, heading) in [(0.05, 0.0), (-0.05, 0.0), (0.0, 0.1), (0.02, -0.1)] {
+            let mut trucks = convoy.at_start(Pose2::IDENTITY, &mut Even);
+            for truck in 0..2 {
+                trucks.believed[truck].y += sideways;
+                trucks.believed[truck].heading += heading;
+                trucks.real[truck] = trucks.believed[truck];
+            }
+            let leg = convoy.stops()[0];
+            let mut worst = [0.0_f64; 2];
+            for (made, step) in convoy.steps()[..leg].iter().enumerate() {
+                convoy.step(step, &mut trucks, &mut Even);
+                for (meant, believed) in convoy.meant(made + 1).iter().zip(&trucks.believed) {
+                    let way = meant.x - convoy.meant(0)[0].x;
+                    worst[usize::from(way > 3.0)] = worst[usize::from(way > 3.0)].max((believed.y - meant.y).abs());
+                }
+            }
+            assert!(worst[0] < 0.07 && worst[1] < 0.05 * worst[0], "{sideways} {heading}: {worst:?}");
+            for (meant, believed) in convoy.meant(leg).iter().zip(&trucks.believed) {
+                assert!(gap(meant, believed) < 1e-3, "{sideways} {heading}: {meant:?} {believed:?}");
+            }
+        }
+    }
+
+    /// What the link shows of two trucks, by trigonometry.
+    fn seen([front, rear]: &[Pose2; 2]) -> (f64, [f64; 2]) {
+        let (along, across) = (front.x - rear.x, front.y - rear.y);
+        let there = libm::atan2(across, along);
+        (libm::hypot(along, across), [front, rear].map(|truck| wrap(there - truck.heading)))
+    }
+
+    #[test]
+    fn the_correction_believes_what_the_link_shows_about_the_middle_and_the_direction_believed_before() {
+        let convoy = Convoy::new(&clapper(true), &path(), Direction::Ccw).unwrap();
+        for [x, y, front, rear, turn] in
+            [[0.02, 0.3, 0.1, -0.2, 0.0], [-0.04, -0.7, 3.0, 2.0, 1.0], [0.0, 0.1, -2.0, 0.4, 40.0]]
+        {
+            let believed = [Pose2::new(1.0 + x, 2.0 + y, front + turn), Pose2::new(x, 1.7, rear + turn)];
+            let real = [Pose2::new(1.1, 2.0 - y, front - 0.3), Pose2::new(0.1, 1.8, rear + 0.2)];
+            let mut trucks = Trucks { believed, real };
+            convoy.correct(&mut trucks, &mut Even);
+            let ((length, angles), (shown, shown_angles)) = (seen(&trucks.believed), seen(&real));
+            assert!((length - shown).abs() < 1e-12, "{length} {shown}");
+            assert!(
+                angles.iter().zip(shown_angles).all(|(a, b)| wrap(a - b).abs() < 1e-12),
+                "{angles:?} {shown_angles:?}"
+            );
+            let middle = |[a, b]: &[Pose2; 2]| [0.5 * (a.x + b.x), 0.5 * (a.y + b.y)];
+            let there = |[a, b]: &[Pose2; 2]| libm::atan2(a.y - b.y, a.x - b.x);
+            assert!(middle(&believed).iter().zip(middle(&trucks.believed)).all(|(a, b)| (a - b).abs() < 1e-12));
+            assert!(wrap(there(&believed) - there(&trucks.believed)).abs() < 1e-12);
+            // Headings count turns on: none jumps by more than half of one.
+            assert!(trucks.believed.iter().zip(&believed).all(|(a, b)| (a.heading - b.heading).abs() <= PI));
+            assert_eq!((trucks.real[0], trucks.real[1]), (real[0], real[1]));
+        }
+    }
+
     #[test]
     fn a_turn_more_or_less_is_taken_off_and_the_rest_stays() {
         for turns in -3..=3 {

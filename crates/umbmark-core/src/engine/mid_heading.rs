@@ -60,7 +60,7 @@ impl<T: Lane> MidHeading<T> {
         [
             self.c * self.x - self.s * self.y + zero,
             self.s * self.x + self.c * self.y + zero,
-            self.c * self.c - self.s * self.s + zero,
+            self.c * self.c - self.s * self.s,
             self.half.splat(2.0) * self.c * self.s + zero,
         ]
     }
@@ -208,6 +208,19 @@ mod tests {
                 assert!((power.half - product.half).abs() < 1e-12);
                 product = product.then(&bent);
             }
+        }
+    }
+
+    #[test]
+    fn no_zero_of_an_end_has_a_minus_sign() {
+        let signs = [0.0, -0.0];
+        for (half, s) in signs.iter().flat_map(|half| signs.map(|s| (*half, s))) {
+            for (x, y) in signs.iter().flat_map(|x| signs.map(|y| (*x, y))) {
+                let end = MidHeading { half, c: 1.0, s, x, y }.end();
+                assert_eq!(end.map(f64::to_bits), [0.0, 0.0, 1.0, 0.0_f64].map(f64::to_bits), "{half} {s} {x} {y}");
+            }
+            let across = MidHeading { half, c: s, s: 1.0, x: half, y: half }.end();
+            assert!(across.iter().all(|v| *v != 0.0 || v.is_sign_positive()), "{across:?}");
         }
     }
 

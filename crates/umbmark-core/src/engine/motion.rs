@@ -61,7 +61,7 @@ impl Motion {
 
     /// A motion that ends at (x, y) \[m\] with the heading of these changes of the counters (left, right).
     pub(super) fn with_counts(x: f64, y: f64, counts: [i64; 2], geometry: &TickGeometry) -> Motion {
-        Motion::from(Pose2 { x: x + 0.0, y: y + 0.0, heading: geometry.heading(counts) + 0.0 })
+        Motion::from(Pose2 { x: x + 0.0, y: y + 0.0, heading: geometry.heading(counts) })
     }
 
     /// This motion, then `next` in the frame where this one ends.
@@ -90,6 +90,19 @@ impl Motion {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_constant_twist_ends_at_its_exponential_and_faces_along_its_rotation() {
+        for rotation in [-7.0, -std::f64::consts::PI, -0.7, -1e-9, 0.0, 0.3, 2.0, std::f64::consts::TAU] {
+            for (forward, sideways) in [(2.0, 0.1), (-0.5, 0.0), (0.0, -3.0), (0.0, 0.0)] {
+                let twist = Displacement2 { forward, sideways, rotation };
+                let (motion, pose) = (Motion::exp(&twist), Pose2::exp(&twist));
+                let gap = [motion.pose.x - pose.x, motion.pose.y - pose.y, motion.pose.heading - pose.heading];
+                let turn = [motion.cosine - libm::cos(rotation), motion.sine - libm::sin(rotation)];
+                assert!(gap.iter().chain(&turn).all(|d| d.abs() < 2e-15), "{twist:?}: {motion:?} {pose:?}");
+            }
+        }
+    }
 
     #[test]
     fn a_chain_of_motions_is_the_composition_of_their_poses() {

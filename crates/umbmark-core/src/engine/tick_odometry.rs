@@ -75,7 +75,7 @@ impl TickOdometry {
             Letter::Joint => MidHeading::of_letter(&self.geometry, letter, backward),
         });
         let [x, y, cosine, sine] = product.end();
-        let heading = self.geometry.heading(line.counts()) + 0.0;
+        let heading = self.geometry.heading(line.counts());
         let motion = Motion { pose: Pose2 { x, y, heading }, cosine, sine };
         if lanes::fits(line) { motion } else { self.less_rounding(line.counts(), motion) }
     }

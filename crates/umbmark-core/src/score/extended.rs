@@ -250,6 +250,30 @@ mod tests {
         assert!((0.94..0.975).contains(&coverage), "{coverage}");
     }
 
+    /// Oracle: tables of Student's t, 97.5 %: 12.706 with 1 degree of freedom, 4.303 with 2, 2.306 with 8.
+    #[test]
+    fn the_interval_is_students_where_one_group_scatters_and_counts_all_four_where_they_scatter_alike() {
+        let around = |mean: f64, by: &[f64]| runs(&by.iter().map(|d| mean + d).collect::<Vec<_>>());
+        let half_width = |scatter: [&[f64]; 4]| {
+            let [cw, ccw] = [around(-6.0, scatter[0]), around(7.0, scatter[1])];
+            let regular = [around(0.5, scatter[2]), around(-0.5, scatter[3])];
+            let extended = Extended::new([&cw, &ccw], [&regular[0], &regular[1]], 0.95).unwrap();
+            assert!((extended.orientation(Convention::Sum).to_degrees() - 14.0).abs() < 1e-9);
+            let interval = extended.interval(Convention::Sum).unwrap();
+            0.5 * (interval.high - interval.low).to_degrees()
+        };
+        let (still, two, three) = ([0.0; 3], [-1.0, 1.0], [-1.0, 0.0, 1.0]);
+        for group in 0..4 {
+            for (scatter, variance, t) in [(&two[..], 2.0 / 2.0, 12.7062), (&three[..], 1.0 / 3.0, 4.30265)] {
+                let mut groups = [&still[..]; 4];
+                groups[group] = scatter;
+                let half = half_width(groups);
+                assert!((half - t * f64::sqrt(variance)).abs() < 1e-4, "{group} {scatter:?}: {half}");
+            }
+        }
+        assert!((half_width([&three[..]; 4]) - 2.306_004 * f64::sqrt(4.0 / 3.0)).abs() < 1e-5);
+    }
+
     #[test]
     fn a_direction_without_headings_has_no_orientation_error() {
         let blind = [ReturnError { x: 0.1, y: 0.0, heading: None }];

@@ -183,13 +183,9 @@ impl Region {
         Region { centre: Vector2::new(cluster.x, cluster.y), spread: Matrix2::new(a, 0.0, b, c) }
     }
 
-    /// T² of START: infinite for a centroid off START without scatter.
+    /// T² of START: infinite for a centroid without scatter.
     fn hotelling(&self) -> f64 {
-        match self.spread.solve_lower_triangular(&self.centre) {
-            Some(z) => z.norm_squared(),
-            None if self.centre.norm() == 0.0 => 0.0,
-            None => f64::INFINITY,
-        }
+        self.spread.solve_lower_triangular(&self.centre).map_or(f64::INFINITY, |z| z.norm_squared())
     }
 
     fn farthest(&self, reach: f64) -> f64 {

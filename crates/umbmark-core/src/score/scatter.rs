@@ -77,7 +77,20 @@ mod tests {
     #[test]
     fn single_runs_have_no_scatter_and_a_missing_heading_leaves_headings_out() {
         assert_eq!(Scatter::pooled(&[at(0.0, 0.0, 0.0)], &[at(1.0, 0.0, 0.0)]), None);
-        let s = Scatter::pooled(&[], &[at(0.0, 0.0, 0.5), ReturnError { x: 1.0, y: 0.0, heading: None }]).unwrap();
-        assert!(!s.with_heading && s.covariance[(2, 2)] == 0.0 && s.covariance[(0, 0)] == 0.5);
+        let missing = ReturnError { x: 2.0, y: 0.0, heading: None };
+        let s = Scatter::pooled(&[], &[at(0.0, 0.0, 0.5), at(1.0, 0.0, 0.1), missing]).unwrap();
+        assert!(!s.with_heading && s.covariance[(2, 2)] == 0.0 && s.covariance[(0, 0)] == 1.0);
+    }
+
+    /// Oracle: sums by hand.
+    #[test]
+    fn headings_scatter_about_their_mean_with_the_position_and_across_the_cut() {
+        let s = Scatter::pooled(&[], &[at(0.1, 0.3, 0.02), at(0.2, 0.1, 0.05), at(-0.1, 0.0, -0.01)]).unwrap();
+        for (at, sum) in [((2, 2), 0.0018), ((0, 2), 0.009), ((1, 2), 0.003)] {
+            assert!((s.covariance[at] - sum / 2.0).abs() < 1e-15, "{at:?}: {}", s.covariance);
+        }
+        let half = std::f64::consts::PI;
+        let astride = Scatter::pooled(&[at(0.0, 0.0, half - 0.01), at(0.0, 0.0, 0.01 - half)], &[]).unwrap();
+        assert!((astride.covariance[(2, 2)] - 2e-4).abs() < 1e-12);
     }
 }

@@ -116,8 +116,9 @@ fn end_poses_of_tick_logs_give_the_same_ratios_as_return_errors() {
     let mut simulator = Simulator::new(&robot, &path, Odometry::EveryTick, Phase::Random).unwrap();
     let mut data = recorded(&mut simulator, &mut Truth::new(&noisy_labmate(5e-4)), 3, 0, &path);
     for log in data.runs.iter_mut().filter_map(|run| run.log.as_mut()) {
+        // A pose at START says nothing.
         let last = log.reference.len() - 1;
-        log.reference.drain(..last);
+        log.reference.drain(1..last);
     }
     let with_ticks = calibrate(&data, &Options::default()).unwrap();
     assert_eq!(with_ticks.level, Level::Ends);
@@ -131,6 +132,30 @@ fn end_poses_of_tick_logs_give_the_same_ratios_as_return_errors() {
     assert_eq!(b.replayed_before, None);
 }
 
+/// Oracle for the heading arm: the root mean square distance from START of all poses recorded.
+#[test]
+fn a_track_without_noise_gives_all_three_ratios_back_and_is_told_of_none_that_is_missing() {
+    let (robot, path) = (Robot::labmate(), one_metre_square());
+    let true_values = Correction { e_s: 1.004, ..TAPED };
+    let mut simulator = Simulator::new(&robot, &path, Odometry::EveryTick, Phase::Random).unwrap();
+    let mut truth = Truth::new(&true_values.model(&robot).unwrap());
+    let data = recorded(&mut simulator, &mut truth, 2, 0, &path);
+    let calibration = calibrate(&data, &Options::default()).unwrap();
+    let exact = calibration.estimate(Method::Exact).unwrap();
+    assert_eq!((calibration.level, exact.shown, exact.degrees_of_freedom), (Level::Tracks, [true; 3], 3.0));
+    for (found, value) in exact.correction.values().into_iter().zip(true_values.values()) {
+        assert!((found - value).abs() < 1e-4, "{:?}", exact.correction);
+    }
+    assert!(!calibration.warnings.iter().any(|w| w.contains("not determined")), "{:?}", calibration.warnings);
+    let poses = || data.runs.iter().flat_map(|run| &run.log.as_ref().unwrap().reference);
+    let squares: f64 = poses().map(|pose| libm::hypot(pose.x, pose.y).powi(2)).sum();
+    let arm = calibration.heading_arm.unwrap();
+    assert!((arm - (squares / poses().count() as f64).sqrt()).abs() < 1e-12, "{arm}");
+    // Both ends of both directions, computed again.
+    let (before, after) = (exact.replayed_before.unwrap(), exact.replayed_after.unwrap());
+    assert!(after.largest < 1e-3 && before.largest > 0.05 && before.e_max_sys.unwrap() <= before.largest);
+}
+
 /// A robot that turns on the spot hardly changes its place: only the headings of its track show E_b.
 #[test]
 fn the_headings_of_a_track_count() {
@@ -141,7 +166,7 @@ fn the_headings_of_a_track_count() {
     let data = recorded(&mut simulator, &mut truth, 2, 0, &path);
     let options = Options { heading_arm: Some(1.0), ..Options::default() };
     let calibration = calibrate(&data, &options).unwrap();
-    assert_eq!(calibration.level, Level::Tracks);
+    assert_eq!((calibration.level, calibration.heading_arm), (Level::Tracks, options.heading_arm));
     let exact = calibration.estimate(Method::Exact).unwrap();
     assert!(exact.shown[1] && (exact.correction.e_b - 0.98).abs() < 1e-3, "{exact:?}");
 }

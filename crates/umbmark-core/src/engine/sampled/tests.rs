@@ -87,6 +87,30 @@ fn a_profile_of_equal_fractions_is_a_constant_rate() {
 }
 
 #[test]
+fn readings_along_a_profile_are_those_taken_one_by_one_whether_few_or_many_and_slow_or_fast() {
+    let mut source = Source(15);
+    for geometry in geometries() {
+        for instructions in [Instructions::Portable, Instructions::Avx2, Instructions::Avx512] {
+            for update in UPDATES {
+                let mut odometry = SampledOdometry::new(geometry, update).limited_to(instructions);
+                for (i, reach) in (0..cases(120)).zip([8.0, 100.0, 900.0, 20_000.0].into_iter().cycle()) {
+                    let start = [source.unit(), source.unit()];
+                    let travel = [0, 1].map(|_| (2.0 * source.unit() - 1.0) * reach);
+                    let line = WheelLine::from_ticks(start, travel).unwrap();
+                    let readings = if i % 3 == 0 { 5 } else { 70 };
+                    let shares = || (1..=readings).map(|k| (f64::from(k) / f64::from(readings)).powi(1 + i as i32 % 2));
+                    let profile = Profile::new(shares());
+                    assert_eq!(profile.readings(), readings as usize);
+                    let (along, expected) = (odometry.along(&line, &profile), odometry.with_profile(&line, shares()));
+                    assert!(distance(&along, &expected) < 1e-12, "{line:?} {update:?} {readings}");
+                    assert_eq!(along.pose.heading, expected.pose.heading);
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn the_updates_differ_as_their_formulas_say() {
     let geometry = TickGeometry::new(0.01, 0.01, 0.5).unwrap();
     let [arc, midpoint, euler] = UPDATES.map(|update| {

@@ -51,6 +51,16 @@ fn patterns_of_almost_whole_turns_lose_no_digits() {
     }
 }
 
+/// Almost straight, through a part of a turn, and round about; forward and backward. Left in, the rounding of the ticks would be 1e-11 m.
+#[test]
+fn what_the_rounded_ticks_of_a_long_line_add_up_to_is_taken_off() {
+    for [left, right] in [[2.0e6, 2.0e6 / 1.0012], [2.0e6, 1.9988e6], [-2.0e6, -1.994e6]] {
+        let line = WheelLine::from_ticks([0.3, 0.6], [left, right]).unwrap();
+        let (position, rotation) = errors(&calibrated(), &line);
+        assert!(position <= 1e-12 && rotation <= 1e-12, "{left} {right}: {position:e} m, {rotation:e} rad");
+    }
+}
+
 /// 1e7 ticks are 2.4 km. With equal tick lengths the half rotations of the two letters are exact opposites and their rounding
 /// cancels; with unequal ones it adds up along the way, and is taken off.
 #[test]

@@ -169,3 +169,76 @@ fn runs_without_scatter_have_intervals_without_width() {
     assert!((interval.low - 0.5).abs() < 1e-15 && (interval.high - 0.5).abs() < 1e-15);
     assert!(sigma_interval(&Scatter::pooled(&cw, &ccw).unwrap(), 0.95).high < 1e-15);
 }
+
+/// Three runs round a centre whose pooled scatter, with the same for the other direction, has variance `s²` along every axis.
+fn round_about(centre: [f64; 2], s: f64) -> Vec<ReturnError> {
+    let radius = s / 0.75_f64.sqrt();
+    let corner = |k: i32| libm::sincos(f64::from(k) * std::f64::consts::TAU / 3.0);
+    let at = |(y, x): (f64, f64)| ReturnError { x: centre[0] + radius * x, y: centre[1] + radius * y, heading: None };
+    (0..3).map(|k| at(corner(k))).collect()
+}
+
+/// Oracle: tables of Student's t with 4 degrees of freedom, 2.776 at 97.5 % and 3.495 at 98.75 %. T² of two coordinates stays below
+/// ν (q^(-2/(ν - 1)) - 1) but for a probability q, here of 1.25 %.
+#[test]
+fn a_round_scatter_widens_e_max_sys_by_students_t_and_keeps_its_low_end_at_zero_until_start_is_refuted() {
+    let (error, n) = (0.01, 3.0_f64);
+    let told = (4.0 * (0.0125_f64.powf(-2.0 / 3.0) - 1.0) / n).sqrt() * error;
+    for (farther, nearer) in [(0.3, 0.2), (1.001 * told, 0.0), (0.999 * told, 0.0), (0.0, 0.0)] {
+        let refuted = farther > told;
+        for [cw, ccw] in [[farther, nearer], [nearer, farther]] {
+            let interval = exact(&round_about([0.6 * cw, 0.8 * cw], error), &round_about([0.0, -ccw], error));
+            let low = if refuted { farther - 3.4954 * error / n.sqrt() } else { 0.0 };
+            let high = farther + 2.776_45 * error / n.sqrt();
+            assert!((interval.low - low).abs() < 1e-6, "{cw} {ccw}: {interval:?} {low}");
+            assert!((interval.high - high).abs() < 1e-6, "{cw} {ccw}: {interval:?} {high}");
+        }
+    }
+}
+
+/// Oracle: every hundredth of a degree of the two ellipses, far from START, beside it and about it; T² by the inverse.
+#[test]
+fn the_ends_of_e_max_sys_are_the_farthest_and_the_nearest_points_of_the_ellipses() {
+    let mut stream = Stream::new(13, 0, 0);
+    let far = [([20.0, 5.0], [0.0, 0.0]), ([3.0, -4.0], [-30.0, 40.0])];
+    for (cw, ccw) in far.into_iter().chain([([0.3, 0.2], [-0.1, 0.4]); 10]) {
+        let mirrored = [LONG[0], LONG[1].map(|v| -v)];
+        let (cw, ccw) = (draw(&mut stream, 5, cw, mirrored), draw(&mut stream, 5, ccw, LONG));
+        let scatter = Scatter::pooled(&cw, &ccw).unwrap();
+        let (mut low, mut high) = (0.0_f64, 0.0_f64);
+        for (runs, direction) in [(&cw, Direction::Cw), (&ccw, Direction::Ccw)] {
+            let cluster = Cluster::of(runs).unwrap();
+            let centre = Vector2::new(cluster.x, cluster.y);
+            let covariance = position(&scatter, direction) / 5.0;
+            let axes = covariance.symmetric_eigen();
+            let distances = |reach: f64| {
+                (0..36_000).map(move |i| libm::sincos((0.01 * f64::from(i)).to_radians())).map(move |(sine, cosine)| {
+                    let on = Vector2::new(cosine, sine).component_mul(&axes.eigenvalues.map(f64::sqrt));
+                    (centre + axes.eigenvectors * on * reach).norm()
+                })
+            };
+            high = distances(2.306_004).fold(high, f64::max);
+            if centre.dot(&(covariance.try_inverse().unwrap() * centre)) > 8.0 * (0.0125_f64.powf(-2.0 / 7.0) - 1.0) {
+                low = low.max(distances(2.751_524).fold(f64::INFINITY, f64::min));
+            }
+        }
+        let interval = exact(&cw, &ccw);
+        assert!((interval.low - low).abs() < 1e-5 && (interval.high - high).abs() < 1e-5, "{interval:?} {low} {high}");
+    }
+}
+
+/// Oracle: tables of chi-squared: 2.180 and 17.535 with 8 degrees of freedom, 0.4844 and 11.143 with 4.
+#[test]
+fn sigma_counts_both_axes_of_a_round_scatter_and_one_of_a_line() {
+    let line = [-1.0, 0.0, 1.0].map(|x| ReturnError { x: 0.02 * x, y: 0.01 * x, heading: None });
+    let mirrored = line.map(|e| ReturnError { y: -e.y, ..e });
+    let round = round_about([0.1, 0.0], 0.01);
+    for (cw, ccw, sigma, freedom, [few, many]) in [
+        (&round[..], &round[..], 0.01, 8.0, [2.179_73, 17.534_5]),
+        (&mirrored[..], &line[..], f64::sqrt(0.5 * 5e-4), 4.0, [0.484_419, 11.143_3]),
+    ] {
+        let interval = sigma_interval(&Scatter::pooled(cw, ccw).unwrap(), 0.95);
+        assert!((interval.low - sigma * f64::sqrt(freedom / many)).abs() < 1e-6, "{interval:?}");
+        assert!((interval.high - sigma * f64::sqrt(freedom / few)).abs() < 1e-6, "{interval:?}");
+    }
+}
