@@ -34,7 +34,6 @@ mod convoy;
 mod digital_line;
 #[cfg(test)]
 mod double_double;
-mod instructions;
 mod integrator;
 mod lane;
 mod mid_heading;
@@ -50,8 +49,8 @@ mod trigonometry;
 mod wheel_line;
 mod word;
 
+pub use crate::geometry::Instructions;
 pub use convoy::{Convoy, Floor, Predicted, Step, Trucks};
-pub use instructions::Instructions;
 pub use integrator::{Integrator, Method, Segment};
 pub use monoid::Monoid;
 pub use motion::Motion;
