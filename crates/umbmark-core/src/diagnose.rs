@@ -418,16 +418,12 @@ pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diag
     // Where return poses tell of the same runs, what they alone would have said stands beside it.
     if let Ok(returns) = ends::Ends::new(data)
         .map_err(DiagnoseError::from)
-        .and_then(|ends| ends::diagnose(&ends, &base_model(model.robot())?, options))
+        .and_then(|ends| ends::Beside::new(&ends, &base_model(model.robot())?, options))
     {
         diagnosis.contrasts = returns.contrasts;
         diagnosis.circle = returns.circle;
-        diagnosis.goodness_of_fit.extend(
-            returns
-                .goodness_of_fit
-                .into_iter()
-                .map(|test| GoodnessOfFit { name: "E_d and E_b for the return poses alone", ..test }),
-        );
+        let renamed = |test| GoodnessOfFit { name: "E_d and E_b for the return poses alone", ..test };
+        diagnosis.goodness_of_fit.extend(returns.goodness_of_fit.map(renamed));
     }
     Ok(diagnosis)
 }

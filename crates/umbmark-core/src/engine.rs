@@ -34,7 +34,6 @@ mod convoy;
 mod digital_line;
 #[cfg(test)]
 mod double_double;
-mod instructions;
 mod integrator;
 mod lane;
 mod mid_heading;
@@ -52,8 +51,8 @@ mod word;
 
 #[cfg(test)]
 pub(crate) use convoy::tests as convoy_tests;
+pub use crate::geometry::Instructions;
 pub use convoy::{Convoy, Floor, Predicted, Step, Trucks};
-pub use instructions::Instructions;
 pub use integrator::{Integrator, Method, Segment};
 pub use monoid::Monoid;
 pub use motion::Motion;

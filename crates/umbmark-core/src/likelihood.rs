@@ -8,12 +8,13 @@
 //! Source: error growth along a path, Chong & Kleeman (1997) and Kelly (2004); innovations as whitened residuals, Kailath (1968);
 //! REML, Patterson & Thompson (1971).
 
+mod descent;
+mod eight;
 mod fitting;
 mod noise;
 mod observed;
 mod outliers;
 mod products;
-mod simplex;
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 pub(crate) mod watched;

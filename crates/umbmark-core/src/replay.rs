@@ -307,7 +307,11 @@ impl Track {
     #[inline]
     fn drive<T: Evaluate>(&self, chain: &Chain<T>, from: Pose2<T>, pieces: std::ops::Range<usize>) -> Pose2<T> {
         let pieces = self.travel[pieces.clone()].iter().zip(&self.contexts[pieces]);
-        pieces.fold(from, |pose, (travel, at)| pose.moved(&chain.displacement(&at.headed(pose.heading), travel)))
+        let mut pose = from;
+        for (travel, at) in pieces {
+            pose.advance(&chain.displacement(&at.headed(pose.heading), travel));
+        }
+        pose
     }
 
     /// The pose predicted for the end of the travel.

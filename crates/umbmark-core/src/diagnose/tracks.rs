@@ -66,8 +66,8 @@ pub(crate) struct Missing {
 
 /// Looks for what is missing.
 fn missing(exam: &Examination, options: &Options) -> Missing {
-    let findings = look::look(exam, false, options);
-    let smooth = look::look(exam, true, options).into_iter().find(|s| s.certified(options));
+    let findings = look::effects(exam, options);
+    let smooth = look::smooths(exam, options).iter().find(|s| s.certified(options)).cloned();
     let enough = exam.fitted.observed.runs.len() >= FEWEST;
     let best = if enough { first_with_gain(exam, &findings, options) } else { None };
     let unexplained = smooth.filter(|smooth| !explains(exam, best, smooth) && smooth_gains(exam, smooth));
@@ -169,7 +169,7 @@ impl Search {
 /// Whether a smooth that an effect seemed not to explain is there after that effect was fitted. What one linear step
 /// leaves of a large effect is gone then; what is not in the catalogue is not.
 fn speaks_on(exam: &Examination, smooth: &Finding, options: &Options) -> bool {
-    let mut now = look::look(exam, true, options).into_iter().filter(|finding| finding.certified(options));
+    let mut now = look::smooths(exam, options).iter().filter(|finding| finding.certified(options));
     now.any(|finding| finding.answer.drop > (1.0 - EXPLAINED) * smooth.answer.drop)
 }
 
@@ -380,8 +380,8 @@ fn absorbing(
 
 /// Tests of the model as a whole: errors that repeat themselves along the way, and innovations that remember.
 fn whole_model(exam: &Examination, options: &Options) -> Vec<GoodnessOfFit> {
-    let mut tests: Vec<GoodnessOfFit> = look::look(exam, true, options)
-        .into_iter()
+    let mut tests: Vec<GoodnessOfFit> = look::smooths(exam, options)
+        .iter()
         .filter_map(|finding| {
             let name = match &exam.asked[finding.answer.asked].question {
                 Question::Smooth(covariate, motion) if covariate.name == smooth::ALONG_THE_WAY => match motion {

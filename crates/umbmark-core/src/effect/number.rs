@@ -24,6 +24,11 @@ pub struct Derived {
 }
 
 impl Model {
+    /// Chains that carry derivatives by some of the [values](Model::values), [`LANES`] at a time, and how many each carries.
+    pub fn chains<'a>(&'a self, values: &'a [usize]) -> impl Iterator<Item = (Chain<Dual>, usize)> + 'a {
+        values.chunks(LANES).map(|places| (self.chain_with(&seeded(self.values(), places)), places.len()))
+    }
+
     /// Chains that carry derivatives by all of a list of numbers, [`LANES`] at a time. Effects that the model lacks are side by side in
     /// one chain: at their defaults, none changes anything for the others.
     pub fn derived(&self, numbers: &[Number]) -> Result<Vec<Derived>, ModelError> {

@@ -1,5 +1,8 @@
 //! Rigid motions of the plane and their logarithms.
 
+#[cfg(target_arch = "x86_64")]
+pub(super) mod x86;
+
 use super::{Dual, Real, wrap};
 
 /// A pose of a body in the plane, `world_from_body`.
@@ -116,15 +119,26 @@ impl<T: Real> Pose2<T> {
     /// This pose moved by a constant-twist motion in its own frame.
     #[inline]
     pub fn moved(&self, displacement: &Displacement2<T>) -> Pose2<T> {
+        let mut pose = *self;
+        pose.advance(displacement);
+        pose
+    }
+
+    /// Moves this pose by a constant-twist motion in its own frame.
+    #[inline]
+    pub fn advance(&mut self, displacement: &Displacement2<T>) {
+        T::advance(self, displacement);
+    }
+
+    #[inline(always)]
+    pub(super) fn advance_plainly(&mut self, displacement: &Displacement2<T>) {
         let half = displacement.rotation * 0.5;
         let (sinc, _) = half.sinc_cos();
         let (sine, cosine) = (self.heading + half).sine_cosine();
         let (forward, sideways) = (sinc * displacement.forward, sinc * displacement.sideways);
-        Pose2 {
-            x: self.x + cosine * forward - sine * sideways,
-            y: self.y + sine * forward + cosine * sideways,
-            heading: self.heading + displacement.rotation,
-        }
+        self.x = self.x + cosine * forward - sine * sideways;
+        self.y = self.y + sine * forward + cosine * sideways;
+        self.heading = self.heading + displacement.rotation;
     }
 
     /// The pose without its derivatives.
@@ -212,6 +226,25 @@ mod tests {
                 let moved = matrix(&p.moved(&b)) * Vector3::new(0.7, -0.4, 1.0);
                 assert!((moved - mp * mq * Vector3::new(0.7, -0.4, 1.0)).abs().max() < 2e-14);
             }
+        }
+    }
+
+    #[test]
+    fn derivatives_are_carried_with_the_same_bits_whatever_the_machine_can_do_at_once() {
+        let number = |value: f64, k: usize| Dual {
+            re: value,
+            eps: std::array::from_fn(|lane| libm::sin((9 * lane + k) as f64)),
+        };
+        for (k, d) in displacements().enumerate() {
+            let mut pose = Pose2 { x: number(0.3, k), y: number(-2.0, k + 1), heading: number(0.7 * k as f64, k + 2) };
+            let by = Displacement2 {
+                forward: number(d.forward, k + 3),
+                sideways: number(d.sideways, k + 4),
+                rotation: number(d.rotation, k + 5),
+            };
+            let moved = pose.moved(&by);
+            pose.advance_plainly(&by);
+            assert_eq!(moved, pose);
         }
     }
 

@@ -1,5 +1,10 @@
 //! The scalars of the plane: `f64` for values, [`Dual`] for values with exact derivatives.
 
+#[cfg(target_arch = "x86_64")]
+use super::Instructions;
+#[cfg(target_arch = "x86_64")]
+use super::pose::x86;
+use super::{Displacement2, Pose2};
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// How many derivatives a [`Dual`] carries.
@@ -80,6 +85,12 @@ pub trait Real:
 
     /// e^x by `libm`, the same bits on every machine.
     fn exponential(self) -> Self;
+
+    /// [`Pose2::advance`], by the widest registers that the machine has.
+    #[inline]
+    fn advance(pose: &mut Pose2<Self>, by: &Displacement2<Self>) {
+        pose.advance_plainly(by);
+    }
 
     /// Any other function of this number, from its value and its slope here. Where this number does not change, the slope
     /// need not be finite.
@@ -281,6 +292,19 @@ impl Real for Dual {
     fn exponential(self) -> Dual {
         let value = libm::exp(self.re);
         self.with(value, |e| value * e)
+    }
+
+    #[inline]
+    fn advance(pose: &mut Pose2<Dual>, by: &Displacement2<Dual>) {
+        #[cfg(target_arch = "x86_64")]
+        match Instructions::best() {
+            // SAFETY: the machine was found to have them.
+            Instructions::Avx512 => return unsafe { x86::advance_by_eight(pose, by) },
+            // SAFETY: as above.
+            Instructions::Avx2 => return unsafe { x86::advance_by_four(pose, by) },
+            Instructions::Portable => {}
+        }
+        pose.advance_plainly(by);
     }
 
     #[inline]

@@ -6,7 +6,6 @@ use super::outliers::Outlier;
 use super::products::{ABSORBED, gram, share_left};
 use crate::effect::{Derived, Model, ModelError, Number, find};
 use crate::fit::{Options, Problem, least_squares};
-use crate::geometry::{LANES, seeded};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::cell::RefCell;
@@ -71,7 +70,7 @@ pub struct Fitted {
 }
 
 /// Derivatives of the predicted poses by free values of a model, run by run and one column a value: worked out once for each model.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Slopes {
     values: Vec<f64>,
     free: Vec<usize>,
@@ -93,7 +92,8 @@ impl Slopes {
 /// Outliers are looked for so many times.
 const ROUNDS: usize = 3;
 /// Stops where a step changes no parameter by more than a millionth.
-const STOP: Options = Options { iterations: 12, step_tolerance: 1e-7, decrease_tolerance: 1e-9, cautious: true };
+const STOP: Options =
+    Options { iterations: 12, step_tolerance: 1e-7, decrease_tolerance: 1e-9, cautious: true, agreement: 1e-2 };
 /// From values that were fitted already.
 const AGAIN: Options = Options { cautious: false, ..STOP };
 
@@ -121,33 +121,42 @@ impl Observed {
 
     /// A model as it is, ready to be fitted.
     pub fn unfitted(&self, model: &Model, noise: &Noise) -> Fitted {
-        let free = self.free_values(model);
+        let slopes = self.moving(model);
         Fitted {
             observed: self.along(model),
             model: model.clone(),
             noise: *noise,
             reference: vec![Vec::new(); self.runs.len()],
-            free,
+            free: slopes.free.clone(),
             covariance: None,
             weighing: Weighing::Increments,
             outliers: Vec::new(),
-            slopes: Slopes::default(),
+            slopes,
         }
     }
 
     /// Values of the free parts of a model that move some observed pose.
     pub fn free_values(&self, model: &Model) -> Vec<usize> {
+        self.moving(model).free
+    }
+
+    /// The same values, and how they move the poses.
+    fn moving(&self, model: &Model) -> Slopes {
         let parts = model.parts().iter().flat_map(|part| part.values.iter().map(|_| part.free));
         let free: Vec<usize> = parts.enumerate().filter_map(|(i, free)| free.then_some(i)).collect();
-        let columns = self.columns(model, &free);
+        let mut columns = self.columns(model, &free);
         let moves = |k: &usize| columns.iter().any(|run| run[*k].iter().any(|c| *c != [0.0; 3]));
-        (0..free.len()).filter(moves).map(|k| free[k]).collect()
+        let moving: Vec<usize> = (0..free.len()).filter(moves).collect();
+        for run in &mut columns {
+            *run = moving.iter().map(|k| std::mem::take(&mut run[*k])).collect();
+        }
+        let free = moving.iter().map(|k| free[*k]).collect();
+        Slopes { values: model.values().collect(), free, columns: Arc::new(columns) }
     }
 
     /// Derivatives of the predicted poses by some of the values of a model: run by run, one column a value.
     pub fn columns(&self, model: &Model, values: &[usize]) -> Vec<Vec<Column>> {
-        let chain = |places: &[usize]| (model.chain_with(&seeded(model.values(), places)), places.len());
-        let chains: Vec<_> = values.chunks(LANES).map(chain).collect();
+        let chains: Vec<_> = model.chains(values).collect();
         let of_run = |run: &ObservedRun| chains.iter().flat_map(|(chain, count)| run.columns(chain, *count)).collect();
         self.runs.par_iter().map(of_run).collect()
     }
@@ -194,7 +203,7 @@ impl Fitted {
     pub fn all_columns(&self) -> Vec<Vec<Column>> {
         let (chain, own) = (self.model.chain(), self.columns());
         let runs = self.observed.runs.par_iter().zip(own.par_iter()).zip(&self.reference);
-        runs.map(|((run, own), reference)| [&own[..], reference, &[run.residuals(&chain)]].concat()).collect()
+        runs.map(|((run, own), reference)| [&own[..], reference, &[run.residuals_along(&chain)]].concat()).collect()
     }
 
     /// Fits the free values under the noise as it is, and the effects of the reference with them.
@@ -235,7 +244,11 @@ impl Fitted {
             let parameters = find(name)?.about.parameters;
             own.extend(parameters.iter().filter_map(|parameter| with.place_of(name, parameter.name)));
         }
-        let mut columns = self.observed.columns(&with, &own);
+        let chains: Vec<_> = with.chains(&own).collect();
+        let of_run = |run: &ObservedRun| {
+            chains.iter().flat_map(|(chain, count)| run.columns_of_sight(chain, *count)).collect::<Vec<Column>>()
+        };
+        let mut columns: Vec<Vec<Column>> = self.observed.runs.par_iter().map(of_run).collect();
         let both: Vec<Vec<Column>> = self.columns().iter().zip(&columns).map(|(a, b)| [&a[..], b].concat()).collect();
         let stacked = self.stacked(&both);
         let products = gram(stacked.transpose().as_slice(), stacked.ncols());

@@ -1,39 +1,39 @@
 //! The sizes of the noise, and how they are found.
 
+use super::descent;
+use super::eight::{EIGHT, Eight, Scalar};
 use super::observed::{Growth, Observed, ObservedRun};
-use super::products::gram;
-use super::simplex;
 use crate::effect::Chain;
-use nalgebra::{DMatrix, Matrix3};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// Standard deviations of everything random in a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Noise {
+pub struct Noise<T = f64> {
     /// Heading noise per square root of way \[rad/√m\].
-    pub heading_per_metre: f64,
+    pub heading_per_metre: T,
     /// Heading noise per square root of rotation \[rad/√rad\].
-    pub heading_per_radian: f64,
+    pub heading_per_radian: T,
     /// Noise of the way forward per square root of way \[m/√m\].
-    pub forward_per_metre: f64,
+    pub forward_per_metre: T,
     /// Noise to the side per square root of way \[m/√m\].
-    pub sideways_per_metre: f64,
+    pub sideways_per_metre: T,
     /// Reference noise that a block of poses shares, each coordinate \[m\].
-    pub reference_position: f64,
+    pub reference_position: T,
     /// The same of the heading \[rad\].
-    pub reference_heading: f64,
+    pub reference_heading: T,
     /// Scatter of the moments at which the reference was taken \[s\]: it shows while the robot moves and not where it rests.
-    pub reference_time: f64,
+    pub reference_time: T,
     /// Scatter of the delay of the reference from run to run \[s\].
-    pub reference_delay: f64,
+    pub reference_delay: T,
     /// Reference noise from pose to pose within a block, each coordinate \[m\].
-    pub within_position: f64,
+    pub within_position: T,
     /// The same of the heading \[rad\].
-    pub within_heading: f64,
+    pub within_heading: T,
     /// Scatter of START where it was not measured, each coordinate \[m\].
-    pub start_position: f64,
+    pub start_position: T,
     /// The same of the heading \[rad\].
-    pub start_heading: f64,
+    pub start_heading: T,
 }
 
 impl Default for Noise {
@@ -58,12 +58,6 @@ impl Default for Noise {
 
 /// No size falls below this share of its usual value, or rises above its inverse.
 const RANGE: f64 = 1e-2;
-/// Edge of the first simplex, in logarithms of sizes: from usual sizes, and from sizes that were estimated before.
-const FIRST_EDGE: f64 = 0.7;
-const LATER_EDGE: f64 = 0.2;
-/// Evaluations of the likelihood.
-const EVALUATIONS: usize = 150;
-
 impl Noise {
     /// How many sizes are estimated.
     pub const SIZES: usize = 8;
@@ -76,7 +70,7 @@ impl Noise {
     /// and last the residuals.
     pub fn estimate(observed: &Observed, chain: &Chain<f64>, columns: &[Vec<Vec<[f64; 3]>>], from: &Noise) -> Noise {
         let mut start = *from;
-        let scatter: Vec<_> = observed.runs.iter().map(|run| run.scatter_within_blocks(chain)).collect();
+        let scatter: Vec<_> = observed.runs.par_iter().map(|run| run.scatter_within_blocks(chain)).collect();
         let pooled = |which: usize| {
             let (sum, count) = scatter.iter().fold((0.0, 0), |(s, n), run| (s + run[which].0, n + run[which].1));
             if count > 0 { (sum / count as f64).sqrt() } else { 0.0 }
@@ -108,72 +102,100 @@ impl Noise {
             libm::log(from.reference_time / usual.reference_time),
             libm::log(from.reference_delay / usual.reference_delay),
         ];
-        let cost = |x: &[f64; Noise::SIZES]| {
+        let cost = |points: &[[f64; Noise::SIZES]; EIGHT]| {
+            let deviances = Noise::deviances(&points.map(|x| sizes(&x)), &observed.runs, columns);
             // A faint preference for usual sizes keeps what the data does not show where it is.
-            let pull: f64 = x.iter().map(|v| 0.02 * v * v).sum();
-            sizes(x).deviance(&observed.runs, columns) + pull
+            let pull = |x: &[f64; Noise::SIZES]| x.iter().map(|v| 0.02 * v * v).sum::<f64>();
+            std::array::from_fn(|lane| deviances[lane] + pull(&points[lane]))
         };
-        let edge = if *from == usual { FIRST_EDGE } else { LATER_EDGE };
-        sizes(&simplex::minimise(first, edge, EVALUATIONS, cost))
+        sizes(&descent::minimise(first, cost))
     }
 
-    /// -2 log of the restricted likelihood, up to a constant. The last column of each run is its residuals.
-    pub fn deviance(&self, runs: &[ObservedRun], columns: &[Vec<Vec<[f64; 3]>>]) -> f64 {
-        let parts: Vec<(DMatrix<f64>, f64)> = runs
-            .par_iter()
-            .zip(columns)
-            .map(|(run, columns)| {
-                let all: Vec<&[[f64; 3]]> = columns.iter().map(Vec::as_slice).collect();
-                let white = self.whiten(run, &all);
-                (gram(&white.values, white.columns), white.log_scale)
-            })
-            .collect();
+    /// -2 log of the restricted likelihood under each of some sizes, up to a constant. The last column of each run is its residuals.
+    pub fn deviances(noises: &[Noise; EIGHT], runs: &[ObservedRun], columns: &[Vec<Vec<[f64; 3]>>]) -> [f64; EIGHT] {
+        let noise = Noise::side_by_side(noises);
+        let of_run = |(run, columns): (&ObservedRun, &Vec<Vec<[f64; 3]>>)| {
+            noise.products(run, &columns.iter().map(Vec::as_slice).collect::<Vec<_>>())
+        };
+        let parts: Vec<(Vec<Eight>, Eight)> = runs.par_iter().zip(columns).map(of_run).collect();
         let width = columns.first().map_or(0, Vec::len);
-        let mut sum = DMatrix::zeros(width, width);
-        let mut deviance = 0.0;
-        for (gram, log_scale) in &parts {
-            sum += gram;
-            deviance += 2.0 * log_scale;
-        }
-        let p = width - 1;
-        let cross = sum.view((0, p), (p, 1)).into_owned();
-        let mut rest = sum[(p, p)];
-        let mut information = sum.view((0, 0), (p, p)).into_owned();
-        let lengths: Vec<f64> = (0..p).map(|i| information[(i, i)].sqrt().max(f64::MIN_POSITIVE)).collect();
-        for i in 0..p {
-            for j in 0..p {
-                information[(i, j)] /= lengths[i] * lengths[j];
+        std::array::from_fn(|lane| {
+            let mut sum = DMatrix::zeros(width, width);
+            let mut log_scale = 0.0;
+            for (products, scale) in &parts {
+                for (index, product) in products.iter().enumerate() {
+                    sum[(index / width, index % width)] += product.0[lane];
+                }
+                log_scale += scale.0[lane];
             }
-            information[(i, i)] += 1e-12;
-            deviance += 2.0 * libm::log(lengths[i]);
-        }
-        if let Some(factor) = information.cholesky() {
-            let scaled = DMatrix::from_fn(p, 1, |i, _| cross[i] / lengths[i]);
-            rest -= scaled.dot(&factor.solve(&scaled));
-            deviance += 2.0 * (0..p).map(|i| libm::log(factor.l_dirty()[(i, i)])).sum::<f64>();
-        }
-        deviance + rest
+            deviance(&sum, log_scale)
+        })
     }
+}
 
+/// -2 log of the restricted likelihood, up to a constant, by products of whitened columns, the last of them the residuals, and the
+/// logarithm of what they were divided by.
+fn deviance(products: &DMatrix<f64>, log_scale: f64) -> f64 {
+    let p = products.nrows() - 1;
+    let mut deviance = 2.0 * log_scale;
+    let cross = products.view((0, p), (p, 1)).into_owned();
+    let mut rest = products[(p, p)];
+    let mut information = products.view((0, 0), (p, p)).into_owned();
+    let lengths: Vec<f64> = (0..p).map(|i| information[(i, i)].sqrt().max(f64::MIN_POSITIVE)).collect();
+    for i in 0..p {
+        for j in 0..p {
+            information[(i, j)] /= lengths[i] * lengths[j];
+        }
+        information[(i, i)] += 1e-12;
+        deviance += 2.0 * libm::log(lengths[i]);
+    }
+    if let Some(factor) = information.cholesky() {
+        let scaled = DMatrix::from_fn(p, 1, |i, _| cross[i] / lengths[i]);
+        rest -= scaled.dot(&factor.solve(&scaled));
+        deviance += 2.0 * (0..p).map(|i| libm::log(factor.l_dirty()[(i, i)])).sum::<f64>();
+    }
+    deviance + rest
+}
+
+impl Noise<Eight> {
+    /// Eight noises as one.
+    pub(super) fn side_by_side(noises: &[Noise; EIGHT]) -> Noise<Eight> {
+        let of = |size: fn(&Noise) -> f64| Eight(std::array::from_fn(|lane| size(&noises[lane])));
+        Noise {
+            heading_per_metre: of(|noise| noise.heading_per_metre),
+            heading_per_radian: of(|noise| noise.heading_per_radian),
+            forward_per_metre: of(|noise| noise.forward_per_metre),
+            sideways_per_metre: of(|noise| noise.sideways_per_metre),
+            reference_position: of(|noise| noise.reference_position),
+            reference_heading: of(|noise| noise.reference_heading),
+            reference_time: of(|noise| noise.reference_time),
+            reference_delay: of(|noise| noise.reference_delay),
+            within_position: of(|noise| noise.within_position),
+            within_heading: of(|noise| noise.within_heading),
+            start_position: of(|noise| noise.start_position),
+            start_heading: of(|noise| noise.start_heading),
+        }
+    }
+}
+
+impl<T: Scalar> Noise<T> {
     /// Covariance added from one block to the next, in error coordinates.
-    pub(super) fn growth(&self, growth: &Growth) -> Matrix3<f64> {
-        let (metre, radian) = (self.heading_per_metre.powi(2), self.heading_per_radian.powi(2));
-        let at = |k: usize| metre * growth.heading_per_metre[k] + radian * growth.heading_per_radian[k];
-        let sideways = self.sideways_per_metre.powi(2);
-        let along = self.forward_per_metre.powi(2) - sideways;
-        let [xx, xy, yy] = growth.forward.map(|sum| along * sum);
-        let across = sideways * growth.way;
-        Matrix3::new(
-            at(0) + xx + across,
-            at(1) + xy,
-            at(3),
-            at(1) + xy,
-            at(2) + yy + across,
-            at(4),
-            at(3),
-            at(4),
-            at(5),
-        )
+    #[inline(always)]
+    pub(super) fn growth(&self, growth: &Growth) -> [[T; 3]; 3] {
+        let metre = self.heading_per_metre * self.heading_per_metre;
+        let radian = self.heading_per_radian * self.heading_per_radian;
+        let sideways = self.sideways_per_metre * self.sideways_per_metre;
+        let along = self.forward_per_metre * self.forward_per_metre - sideways;
+        let mut turned = [T::from(0.0); 6];
+        for (k, sum) in turned.iter_mut().enumerate() {
+            *sum = metre * T::from(growth.heading_per_metre[k]) + radian * T::from(growth.heading_per_radian[k]);
+        }
+        let [xx, xy, yy, x, y, own] = turned;
+        let [forward_xx, forward_xy, forward_yy] = growth.forward;
+        let across = sideways * T::from(growth.way);
+        let xy = xy + along * T::from(forward_xy);
+        let (xx, yy) = (xx + along * T::from(forward_xx) + across, yy + along * T::from(forward_yy) + across);
+        [[xx, xy, x], [xy, yy, y], [x, y, own]]
     }
 }
 

@@ -3,7 +3,7 @@
 use super::fitting::Column;
 use crate::dataset::{Dataset, Run};
 use crate::drive::Robot;
-use crate::effect::{Chain, Model, Place, TestKind};
+use crate::effect::{Chain, Evaluate, Model, Place, TestKind};
 use crate::geometry::{Dual, LANES, Pose2, wrap};
 use crate::path::{Direction, Path};
 use crate::replay::{ReplayError, Track};
@@ -67,6 +67,8 @@ pub struct ObservedRun {
     pub measured: Arc<[(f64, f64, Option<f64>)]>,
     /// The same, laid on the prediction where the run starts anew.
     pub seen: Arc<[(f64, f64, Option<f64>)]>,
+    /// True poses at the observations, by the model that the run is laid along.
+    pub places: Arc<[Pose2]>,
     /// The poses in blocks.
     pub blocks: Vec<Block>,
     /// Whether the pose at START was measured, so that the frame is not taken on trust.
@@ -136,7 +138,8 @@ impl ObservedRun {
         let blocks = blocks(&track, &seen, &chain);
         let (name, direction, track) = (run.name.clone(), run.direction, Arc::new(track));
         let measured = Arc::clone(&seen);
-        let mut observed = ObservedRun { name, direction, track, measured, seen, blocks, start_seen };
+        let mut observed =
+            ObservedRun { name, direction, track, measured, seen, places: [].into(), blocks, start_seen };
         observed.lay_along(&chain);
         Ok((observed.blocks.len() >= 3).then_some(observed))
     }
@@ -148,7 +151,8 @@ impl ObservedRun {
         let blocks = blocks(&track, &seen, &chain);
         let (name, direction, track) = (String::new(), Some(direction), Arc::new(track));
         let measured = Arc::clone(&seen);
-        let mut planned = ObservedRun { name, direction, track, measured, seen, blocks, start_seen: true };
+        let mut planned =
+            ObservedRun { name, direction, track, measured, seen, places: [].into(), blocks, start_seen: true };
         planned.lay_along(&chain);
         planned
     }
@@ -156,7 +160,7 @@ impl ObservedRun {
     /// Starts anew at a block: what was measured from there on is laid on what the model predicts there, since turned by degrees
     /// it would be off by more than a small rotation moves it.
     pub(super) fn start_afresh(&mut self, block: usize, chain: &Chain<f64>) {
-        let [dx, dy, turned] = self.residuals(chain)[block];
+        let [dx, dy, turned] = self.residuals_along(chain)[block];
         let Block { first, place, .. } = self.blocks[block];
         let (sine, cosine) = libm::sincos(-turned);
         let laid = |(x, y, heading): (f64, f64, Option<f64>)| {
@@ -172,6 +176,7 @@ impl ObservedRun {
     /// Places the blocks, and the growth of the error between them, along the poses that a model predicts.
     fn lay_along(&mut self, chain: &Chain<f64>) {
         let walk = Walk::new(&self.track, chain);
+        self.places = self.track.seen_after().iter().map(|made| walk.places[*made]).collect();
         let mut before = 0;
         for block in &mut self.blocks {
             let own = &self.track.seen_after()[block.first..block.first + block.count];
@@ -185,9 +190,18 @@ impl ObservedRun {
     }
 
     /// Measured minus predicted poses, block by block.
-    pub fn residuals(&self, chain: &Chain<f64>) -> Vec<[f64; 3]> {
+    pub fn residuals(&self, chain: &Chain<f64>) -> Column {
+        self.less(|seen| self.track.replay(chain, seen))
+    }
+
+    /// The same by the model that the run is laid along, whose chain is given: nothing is replayed.
+    pub fn residuals_along(&self, chain: &Chain<f64>) -> Column {
+        self.less(|seen| self.sighted(chain, seen))
+    }
+
+    fn less(&self, predicted: impl FnOnce(&mut dyn FnMut(usize, &Pose2))) -> Column {
         let mut sums = Sums::<1>::new(self);
-        self.track.replay(chain, |i, pose| {
+        predicted(&mut |i, pose| {
             let (x, y, heading) = self.seen[i];
             sums.add(i, [[x - pose.x], [y - pose.y]], heading.map(|h| [wrap(h - pose.heading)]));
         });
@@ -196,18 +210,35 @@ impl ObservedRun {
 
     /// Derivatives of the predicted poses, block by block: those in the first `count` lanes.
     pub fn columns(&self, chain: &Chain<Dual>, count: usize) -> Vec<Column> {
+        self.slopes(count, |seen| self.track.replay(chain, seen))
+    }
+
+    /// The same by numbers that change nothing but the measurement, beside the model that the run is laid along.
+    pub fn columns_of_sight(&self, chain: &Chain<Dual>, count: usize) -> Vec<Column> {
+        self.slopes(count, |seen| self.sighted(chain, seen))
+    }
+
+    fn slopes(&self, count: usize, predicted: impl FnOnce(&mut dyn FnMut(usize, &Pose2<Dual>))) -> Vec<Column> {
         let mut sums = Sums::<LANES>::new(self);
-        self.track.replay(chain, |i, pose| {
+        predicted(&mut |i, pose| {
             sums.add(i, [pose.x.eps, pose.y.eps], self.seen[i].2.map(|_| pose.heading.eps));
         });
         (0..count).map(|lane| sums.of_lane(lane)).collect()
     }
 
+    /// Calls `seen` with what is measured of each place.
+    fn sighted<T: Evaluate>(&self, chain: &Chain<T>, seen: &mut dyn FnMut(usize, &Pose2<T>)) {
+        for (index, (place, sight)) in self.places.iter().zip(self.track.sights()).enumerate() {
+            seen(index, &chain.seen(sight, &place.lift()));
+        }
+    }
+
     /// Mean squared difference of successive residuals within blocks, halved: variance of one reference pose (position
-    /// per coordinate \[m²\], heading \[rad²\]) and how many differences it was taken from.
+    /// per coordinate \[m²\], heading \[rad²\]) and how many differences it was taken from. The chain is that of the model that the run
+    /// is laid along.
     pub fn scatter_within_blocks(&self, chain: &Chain<f64>) -> [(f64, usize); 2] {
         let mut raw = Vec::with_capacity(self.seen.len());
-        self.track.replay(chain, |i, pose| {
+        self.sighted(chain, &mut |i, pose| {
             let (x, y, heading) = self.seen[i];
             raw.push((x - pose.x, y - pose.y, heading.map(|h| wrap(h - pose.heading))));
         });
@@ -299,7 +330,7 @@ impl Walk {
         let mut walk = Walk { places: vec![pose], way: vec![way], turned: vec![turned] };
         for (travel, at) in track.travel().iter().zip(track.contexts()) {
             let motion = chain.displacement(&at.headed(pose.heading), travel);
-            pose = pose.moved(&motion);
+            pose.advance(&motion);
             way += motion.forward.abs();
             turned += motion.rotation.abs();
             walk.places.push(pose);

@@ -70,7 +70,7 @@ impl Fitted {
 
     /// How far what is new in each block is from nothing, in standard deviations of this run.
     fn deviations(&self, run: &ObservedRun) -> Vec<f64> {
-        let white = self.noise.whiten(run, &[&run.residuals(&self.model.chain())]);
+        let white = self.noise.whiten(run, &[&run.residuals_along(&self.model.chain())]);
         let (mut squares, mut rows) = (vec![0.0; run.blocks.len()], vec![0.0; run.blocks.len()]);
         for (value, block) in white.values.iter().zip(&white.block) {
             squares[*block] += value * value;
@@ -87,7 +87,7 @@ impl Fitted {
     /// A disturbed place, for people.
     pub(super) fn outlier(&self, (run, block): Place, deviations: f64) -> Outlier {
         let run = &self.observed.runs[run];
-        let residuals = run.residuals(&self.model.chain());
+        let residuals = run.residuals_along(&self.model.chain());
         let [dx, dy, turned] = [0, 1, 2].map(|k| residuals[block][k] - residuals[block - 1][k]);
         let measured = run.blocks[block].headings > 0 && run.blocks[block - 1].headings > 0;
         Outlier {

@@ -35,10 +35,12 @@ fn gram_of(values: &[f64], columns: usize) -> DMatrix<f64> {
     for rows in whole {
         let rows: [&[f64]; TOGETHER] = std::array::from_fn(|k| &rows[k * columns..(k + 1) * columns]);
         for (j, mut own) in sum.column_iter_mut().enumerate() {
-            let own = &mut own.as_mut_slice()[..=j];
+            // Whole registers: what is below the diagonal is overwritten at the end.
+            let end = (j + TOGETHER - j % TOGETHER).min(columns);
+            let own = &mut own.as_mut_slice()[..end];
             let weights = rows.map(|row| row[j]);
-            let rows = rows.map(|row| &row[..=j]);
-            for i in 0..=j {
+            let rows = rows.map(|row| &row[..end]);
+            for i in 0..end {
                 let mut added = 0.0;
                 for k in 0..TOGETHER {
                     added += weights[k] * rows[k][i];

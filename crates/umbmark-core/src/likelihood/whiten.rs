@@ -3,11 +3,10 @@
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-use super::fitting::Column;
+use super::eight::{Eight, Scalar};
 use super::noise::Noise;
 use super::observed::{Block, ObservedRun};
 use crate::engine::Instructions;
-use nalgebra::{Matrix3, Vector3};
 
 /// Standard deviation of a START that is not taken on trust \[m, rad\]: beyond all misplacement, so that it costs one pose.
 const FREE_START: f64 = 1.0;
@@ -80,127 +79,245 @@ impl Noise {
 
     #[inline(always)]
     fn whiten_plainly(&self, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> Whitened {
-        let late: Column = run.blocks.iter().map(|block| block.velocity).collect();
-        let columns = &[columns, &[&late]].concat();
         let mut out = Whitened {
-            columns: columns.len(),
-            values: Vec::with_capacity(3 * columns.len() * run.blocks.len()),
+            columns: columns.len() + 1,
+            values: Vec::with_capacity(3 * (columns.len() + 1) * run.blocks.len()),
             block: Vec::with_capacity(3 * run.blocks.len()),
             log_scale: 0.0,
         };
-        let mut states = States::new(columns.len());
-        let (mut p, mut scale) = (self.start(run.start_seen), 1.0);
-        for (index, block) in run.blocks.iter().enumerate() {
-            p += self.growth(&block.growth);
-            if block.afresh {
-                p += self.start(true);
-            }
-            let Some(stage) = Stage::new(block, &p, &self.measurement(block)) else { continue };
-            let rows = if block.headings > 0 { 3 } else { 2 };
-            let first = out.values.len();
-            out.values.resize(first + rows * columns.len(), 0.0);
-            states.take_in(&stage, columns.iter().map(|column| column[index]));
-            for (row, new) in out.values[first..].chunks_exact_mut(columns.len()).zip(&states.new) {
-                row.copy_from_slice(new);
+        let mut filter = Filter::new(self, run, columns);
+        for index in 0..run.blocks.len() {
+            let rows = filter.take_in(index);
+            for row in &filter.states.new[..rows] {
+                out.values.extend_from_slice(row);
             }
             out.block.extend(std::iter::repeat_n(index, rows));
-            scale *= stage.diagonal[..rows].iter().product::<f64>();
-            // One logarithm of many factors.
-            if !(1e-200..1e200).contains(&scale) {
-                out.log_scale += libm::log(scale);
-                scale = 1.0;
-            }
-            p -= stage.taken();
         }
-        out.log_scale += libm::log(scale);
+        out.log_scale = filter.log_scale();
         out.less_a_common(self.reference_delay);
         out
     }
+}
 
+impl Noise<Eight> {
+    /// Products of the whitened columns, one row of the matrix after the other, and the logarithm of what was divided by.
+    pub(super) fn products(&self, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> (Vec<Eight>, Eight) {
+        #[cfg(target_arch = "x86_64")]
+        match Instructions::best() {
+            // SAFETY: the machine was found to have them.
+            Instructions::Avx512 => return unsafe { x86::products_by_eight(self, run, columns) },
+            // SAFETY: as above.
+            Instructions::Avx2 => return unsafe { x86::products_by_four(self, run, columns) },
+            Instructions::Portable => {}
+        }
+        self.products_plainly(run, columns)
+    }
+
+    #[inline(always)]
+    fn products_plainly(&self, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> (Vec<Eight>, Eight) {
+        let width = columns.len() + 1;
+        let mut sums = vec![Eight::from(0.0); width * width];
+        let mut filter = Filter::new(self, run, columns);
+        for index in 0..run.blocks.len() {
+            let rows = filter.take_in(index);
+            for row in &filter.states.new[..rows] {
+                for (i, sums) in sums.chunks_exact_mut(width).enumerate() {
+                    let own = row[i];
+                    for (sum, other) in sums[..=i].iter_mut().zip(row) {
+                        *sum += own * *other;
+                    }
+                }
+            }
+        }
+        // What the delay of the whole run takes: its column is the last.
+        let sum = |i: usize, j: usize| sums[i.max(j) * width + i.min(j)];
+        let variance = self.reference_delay * self.reference_delay;
+        let grown = Eight::from(1.0) + variance * sum(width - 1, width - 1);
+        let share = variance / grown;
+        let less = |i: usize, j: usize| sum(i, j) - share * sum(i, width - 1) * sum(j, width - 1);
+        let products = (0..width - 1).flat_map(|i| (0..width - 1).map(move |j| (i, j))).map(|(i, j)| less(i, j));
+        (products.collect(), filter.log_scale() + Eight::from(0.5) * grown.logarithm())
+    }
+}
+
+/// The filter on its way along a run.
+struct Filter<'a, T> {
+    noise: &'a Noise<T>,
+    run: &'a ObservedRun,
+    columns: &'a [&'a [[f64; 3]]],
+    states: States<T>,
+    /// P.
+    p: [[T; 3]; 3],
+    /// Product of the last standard deviations that were divided by, and Σ log of those before.
+    scale: T,
+    log_scale: T,
+}
+
+impl<'a, T: Scalar> Filter<'a, T> {
+    /// At START. Behind the columns there is one more, the velocities of the blocks.
+    #[inline(always)]
+    fn new(noise: &'a Noise<T>, run: &'a ObservedRun, columns: &'a [&'a [[f64; 3]]]) -> Filter<'a, T> {
+        let (states, p) = (States::new(columns.len() + 1), noise.start(run.start_seen));
+        Filter { noise, run, columns, states, p, scale: T::from(1.0), log_scale: T::from(0.0) }
+    }
+
+    /// Takes the next block in; gives how many rows are new.
+    #[inline(always)]
+    fn take_in(&mut self, index: usize) -> usize {
+        let (block, noise) = (&self.run.blocks[index], self.noise);
+        add(&mut self.p, &noise.growth(&block.growth));
+        if block.afresh {
+            add(&mut self.p, &noise.start(true));
+        }
+        let Some(stage) = Stage::new(block, &self.p, &noise.measurement(block)) else { return 0 };
+        let rows = if block.headings > 0 { 3 } else { 2 };
+        self.states.take_in(&stage, self.columns.iter().map(|column| &column[index]).chain([&block.velocity]));
+        for diagonal in &stage.diagonal[..rows] {
+            self.scale *= *diagonal;
+        }
+        // One logarithm of many factors.
+        if !self.scale.lies_in(1e-200..1e200) {
+            self.log_scale += self.scale.logarithm();
+            self.scale = T::from(1.0);
+        }
+        stage.take(&mut self.p);
+        rows
+    }
+
+    /// Σ log of the standard deviations that were divided by.
+    fn log_scale(&self) -> T {
+        self.log_scale + self.scale.logarithm()
+    }
+}
+
+impl<T: Scalar> Noise<T> {
     /// Covariance of the error at START.
-    fn start(&self, seen: bool) -> Matrix3<f64> {
-        let sd = if seen { [FREE_START; 3] } else { [self.start_position, self.start_position, self.start_heading] };
-        Matrix3::from_diagonal(&Vector3::from(sd.map(|s| s * s)))
+    #[inline(always)]
+    fn start(&self, seen: bool) -> [[T; 3]; 3] {
+        let (position, heading) =
+            if seen { (T::from(FREE_START), T::from(FREE_START)) } else { (self.start_position, self.start_heading) };
+        diagonal([position * position, position * position, heading * heading])
     }
 
     /// Variance of a block's mean.
-    fn measurement(&self, block: &Block) -> Matrix3<f64> {
-        let position = self.reference_position.powi(2) + self.within_position.powi(2) / block.count as f64;
+    #[inline(always)]
+    fn measurement(&self, block: &Block) -> [[T; 3]; 3] {
+        let (shared, within) = (self.reference_position, self.within_position);
+        let position = shared * shared + within * within / T::from(block.count as f64);
+        let (shared, within) = (self.reference_heading, self.within_heading);
         let heading = match block.headings {
-            0 => NOT_MEASURED * NOT_MEASURED,
-            count => self.reference_heading.powi(2) + self.within_heading.powi(2) / count as f64,
+            0 => T::from(NOT_MEASURED * NOT_MEASURED),
+            count => shared * shared + within * within / T::from(count as f64),
         };
-        let late = Vector3::from(block.velocity) * self.reference_time;
-        Matrix3::from_diagonal(&Vector3::new(position, position, heading)) + late * late.transpose()
+        let [x, y, turn] = block.velocity;
+        let (x, y, turn) =
+            (self.reference_time * T::from(x), self.reference_time * T::from(y), self.reference_time * T::from(turn));
+        [
+            [position + x * x, x * y, x * turn],
+            [y * x, position + y * y, y * turn],
+            [turn * x, turn * y, heading + turn * turn],
+        ]
+    }
+}
+
+#[inline(always)]
+fn diagonal<T: Scalar>(values: [T; 3]) -> [[T; 3]; 3] {
+    let ([x, y, heading], none) = (values, T::from(0.0));
+    [[x, none, none], [none, y, none], [none, none, heading]]
+}
+
+#[inline(always)]
+fn add<T: Scalar>(sum: &mut [[T; 3]; 3], more: &[[T; 3]; 3]) {
+    for i in 0..3 {
+        for j in 0..3 {
+            sum[i][j] += more[i][j];
+        }
     }
 }
 
 /// One step of the filter, by hand: H is three ones and a place.
-struct Stage {
+struct Stage<T> {
     /// The block's place.
-    x: f64,
-    y: f64,
-    /// The diagonal of L, and what is below it.
-    diagonal: [f64; 3],
-    below: [f64; 3],
+    x: T,
+    y: T,
+    /// The diagonal of L, its inverse, and what is below it.
+    diagonal: [T; 3],
+    inverse: [T; 3],
+    below: [T; 3],
     /// W, row by row.
-    w: [[f64; 3]; 3],
+    w: [[T; 3]; 3],
 }
 
-impl Stage {
+impl<T: Scalar> Stage<T> {
     /// `None` where S is no covariance.
-    fn new(block: &Block, p: &Matrix3<f64>, measurement: &Matrix3<f64>) -> Option<Stage> {
-        let (x, y) = (block.place.x, block.place.y);
-        let row = |k: usize| [p[(k, 0)], p[(k, 1)], p[(k, 2)]];
-        let with = |a: [f64; 3], t: f64, b: [f64; 3]| [a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]];
-        let hp = [with(row(0), -y, row(2)), with(row(1), x, row(2)), row(2)];
-        let s = |i: usize| [hp[i][0] - y * hp[i][2], hp[i][1] + x * hp[i][2], hp[i][2]];
-        let (first, second, third) = (s(0), s(1), s(2));
-        let root = |square: f64| (square > 0.0).then(|| square.sqrt());
-        let d0 = root(first[0] + measurement[(0, 0)])?;
-        let (l10, l20) = ((second[0] + measurement[(1, 0)]) / d0, (third[0] + measurement[(2, 0)]) / d0);
-        let d1 = root(second[1] + measurement[(1, 1)] - l10 * l10)?;
-        let l21 = (third[1] + measurement[(2, 1)] - l20 * l10) / d1;
-        let d2 = root(third[2] + measurement[(2, 2)] - l20 * l20 - l21 * l21)?;
-        let mut stage = Stage { x, y, diagonal: [d0, d1, d2], below: [l10, l20, l21], w: [[0.0; 3]; 3] };
-        let columns: [[f64; 3]; 3] = std::array::from_fn(|k| stage.solved(hp.map(|row| row[k])));
-        stage.w = std::array::from_fn(|row| columns.map(|column| column[row]));
+    #[inline(always)]
+    fn new(block: &Block, p: &[[T; 3]; 3], measurement: &[[T; 3]; 3]) -> Option<Stage<T>> {
+        let (x, y) = (T::from(block.place.x), T::from(block.place.y));
+        // H P, and of H P Hᵀ the lower triangle.
+        let mut hp = [[T::from(0.0); 3]; 3];
+        for k in 0..3 {
+            hp[0][k] = p[0][k] - y * p[2][k];
+            hp[1][k] = p[1][k] + x * p[2][k];
+            hp[2][k] = p[2][k];
+        }
+        let [first, second, third] = hp;
+        let (s00, s10, s20) = (first[0] - y * first[2], second[0] - y * second[2], third[0] - y * third[2]);
+        let (s11, s21, s22) = (second[1] + x * second[2], third[1] + x * third[2], third[2]);
+        let one = T::from(1.0);
+        let d0 = (s00 + measurement[0][0]).root()?;
+        let i0 = one / d0;
+        let (l10, l20) = ((s10 + measurement[1][0]) * i0, (s20 + measurement[2][0]) * i0);
+        let d1 = (s11 + measurement[1][1] - l10 * l10).root()?;
+        let i1 = one / d1;
+        let l21 = (s21 + measurement[2][1] - l20 * l10) * i1;
+        let d2 = (s22 + measurement[2][2] - l20 * l20 - l21 * l21).root()?;
+        let (diagonal, inverse) = ([d0, d1, d2], [i0, i1, one / d2]);
+        let mut stage = Stage { x, y, diagonal, inverse, below: [l10, l20, l21], w: hp };
+        for k in 0..3 {
+            [stage.w[0][k], stage.w[1][k], stage.w[2][k]] = stage.solved([first[k], second[k], third[k]]);
+        }
         Some(stage)
     }
 
     /// L⁻¹ v.
     #[inline(always)]
-    fn solved(&self, v: [f64; 3]) -> [f64; 3] {
-        let a = v[0] / self.diagonal[0];
-        let b = (v[1] - self.below[0] * a) / self.diagonal[1];
-        [a, b, (v[2] - self.below[1] * a - self.below[2] * b) / self.diagonal[2]]
+    fn solved(&self, v: [T; 3]) -> [T; 3] {
+        let a = v[0] * self.inverse[0];
+        let b = (v[1] - self.below[0] * a) * self.inverse[1];
+        [a, b, (v[2] - self.below[1] * a - self.below[2] * b) * self.inverse[2]]
     }
 
-    /// Wᵀ W.
-    fn taken(&self) -> Matrix3<f64> {
-        Matrix3::from_fn(|i, j| self.w.iter().map(|row| row[i] * row[j]).sum())
+    /// P - Wᵀ W.
+    #[inline(always)]
+    fn take(&self, p: &mut [[T; 3]; 3]) {
+        let [a, b, c] = &self.w;
+        for i in 0..3 {
+            for j in 0..3 {
+                p[i][j] -= a[i] * a[j] + b[i] * b[j] + c[i] * c[j];
+            }
+        }
     }
 }
 
 /// The states s of all columns, side by side so that a step is the same arithmetic on neighbours.
-struct States {
-    states: [Vec<f64>; 3],
+struct States<T> {
+    states: [Vec<T>; 3],
     /// L⁻¹ (y - H s) of the last block.
-    new: [Vec<f64>; 3],
+    new: [Vec<T>; 3],
 }
 
-impl States {
-    fn new(columns: usize) -> States {
-        let zeros = || std::array::from_fn(|_| vec![0.0; columns]);
+impl<T: Scalar> States<T> {
+    fn new(columns: usize) -> States<T> {
+        let zeros = || std::array::from_fn(|_| vec![T::from(0.0); columns]);
         States { states: zeros(), new: zeros() }
     }
 
     /// What is new in a block of every column; the states take it in.
     #[inline(always)]
-    fn take_in(&mut self, stage: &Stage, block: impl Iterator<Item = [f64; 3]>) {
+    fn take_in<'b>(&mut self, stage: &Stage<T>, block: impl Iterator<Item = &'b [f64; 3]>) {
         let [v0, v1, v2] = self.new.each_mut().map(Vec::as_mut_slice);
         for (((v0, v1), v2), y) in v0.iter_mut().zip(&mut *v1).zip(&mut *v2).zip(block) {
-            [*v0, *v1, *v2] = y;
+            (*v0, *v1, *v2) = (T::from(y[0]), T::from(y[1]), T::from(y[2]));
         }
         let [s0, s1, s2] = self.states.each_mut().map(Vec::as_mut_slice);
         let new = v0.iter_mut().zip(v1).zip(v2);
@@ -219,11 +336,11 @@ mod tests {
     use super::*;
     use crate::drive::Robot;
     use crate::geometry::Pose2;
-    use crate::likelihood::Growth;
+    use crate::likelihood::{Growth, gram};
     use crate::path::{Direction, Path};
     use crate::random::Stream;
     use crate::replay::Track;
-    use nalgebra::{DMatrix, DVector};
+    use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
     /// A run of a few blocks here and there; one of them without headings.
     fn run(start_seen: bool) -> ObservedRun {
@@ -259,6 +376,7 @@ mod tests {
             track: track.into(),
             measured: [].into(),
             seen: [].into(),
+            places: [].into(),
             blocks,
             start_seen,
         }
@@ -282,9 +400,10 @@ mod tests {
 
     /// The covariance of all residuals by its definition.
     fn dense(noise: &Noise, run: &ObservedRun) -> DMatrix<f64> {
-        let mut grown = vec![noise.start(run.start_seen)];
+        let matrix = |rows: [[f64; 3]; 3]| Matrix3::from_fn(|i, j| rows[i][j]);
+        let mut grown = vec![matrix(noise.start(run.start_seen))];
         for block in &run.blocks {
-            grown.push(grown[grown.len() - 1] + noise.growth(&block.growth));
+            grown.push(grown[grown.len() - 1] + matrix(noise.growth(&block.growth)));
         }
         let n = run.blocks.len();
         let mut whole = DMatrix::zeros(3 * n, 3 * n);
@@ -293,7 +412,7 @@ mod tests {
                 let mut shared =
                     observation(&run.blocks[i]) * grown[1 + i.min(j)] * observation(&run.blocks[j]).transpose();
                 if i == j {
-                    shared += noise.measurement(&run.blocks[i]);
+                    shared += matrix(noise.measurement(&run.blocks[i]));
                 }
                 let late = [i, j].map(|k| Vector3::from(run.blocks[k].velocity) * noise.reference_delay);
                 shared += late[0] * late[1].transpose();
@@ -313,6 +432,15 @@ mod tests {
                 std::array::from_fn(|_| run.blocks.iter().map(|_| std::array::from_fn(|_| stream.normal())).collect());
             let white = noise.whiten(&run, &[&columns[0], &columns[1]]);
             assert_eq!(white, noise.whiten_plainly(&run, &[&columns[0], &columns[1]]));
+            let noises = std::array::from_fn(|lane| Noise { heading_per_metre: 0.01 * (lane + 1) as f64, ..noise });
+            let (products, log_scale) = Noise::side_by_side(&noises).products(&run, &[&columns[0], &columns[1]]);
+            for (lane, noise) in noises.iter().enumerate() {
+                let white = noise.whiten(&run, &[&columns[0], &columns[1]]);
+                for (product, expected) in products.iter().zip(&gram(&white.values, 2)) {
+                    assert!((product.0[lane] / expected - 1.0).abs() < 1e-9, "{lane}: {product:?} {expected}");
+                }
+                assert!((log_scale.0[lane] - white.log_scale).abs() < 1e-9);
+            }
             let sigma = dense(&noise, &run);
             let flat = |c: usize| {
                 let kept = run.blocks.iter().zip(&columns[c]);

@@ -74,9 +74,14 @@ impl Asked {
         Ok(Some(asked))
     }
 
+    /// The whole model alone, beside no effect.
+    pub fn nothing(ends: &Ends, fitted: &Fitted) -> Option<Asked> {
+        Asked::residuals(ends, fitted).map(|(asked, _)| asked)
+    }
+
     /// p of the test of the whole model by Wilks' Λ, where it applies.
     pub fn wilks_p(ends: &Ends, fitted: &Fitted) -> Option<f64> {
-        let (asked, _) = Asked::residuals(ends, fitted)?;
+        let asked = Asked::nothing(ends, fitted)?;
         let (f, freedom) = wilks(&asked.moments).filter(|_| asked.base.is_empty())?;
         Some(f_upper_tail(f, freedom))
     }

@@ -4,7 +4,7 @@ use super::asked::{Asked, Unit};
 use super::family::Family;
 use super::flips::certificate;
 use super::moments::Whitened;
-use super::{Ends, FEWEST_RUNS, Fitted, circle, contrasts};
+use super::{Contrast, Ends, FEWEST_RUNS, Fitted, circle, contrasts};
 use crate::diagnose::experiments::next_experiments;
 use crate::diagnose::identifiability::of_ends;
 use crate::diagnose::likeness::correlations;
@@ -63,6 +63,27 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
     judge(&mut diagnosis, &asked, &family, options);
     diagnosis.next_experiments = next_experiments(ends, &fitted, &asked, &diagnosis.ranking)?;
     Ok(diagnosis)
+}
+
+/// What the return poses of runs that were observed on the way say of the model by themselves.
+pub(crate) struct Beside {
+    pub contrasts: Vec<Contrast>,
+    pub circle: Vec<OnCircle>,
+    pub goodness_of_fit: Option<GoodnessOfFit>,
+}
+
+impl Beside {
+    /// Of a model that is fitted to them.
+    pub fn new(ends: &Ends, model: &Model, options: &Options) -> Result<Beside, DiagnoseError> {
+        let fitted = Fitted::new(ends, model)?;
+        let asked = if ends.enough() { Asked::nothing(ends, &fitted) } else { None };
+        let family = asked.and_then(|asked| Family::new(&asked, options));
+        Ok(Beside {
+            contrasts: contrasts(ends, &fitted, 1.0 - options.size),
+            circle: circle(ends, &fitted, 1.0 - options.size),
+            goodness_of_fit: family.as_ref().map(goodness_of_fit),
+        })
+    }
 }
 
 /// The effect that a diagnosis without any gate would add: the one by which the misfit falls most.

@@ -2,6 +2,7 @@
 
 use super::errors::Errors;
 use super::errors::Misses;
+use super::look::Finding;
 use super::smooth::{self, Covariate, Motion, smooth_columns};
 use super::system::{Projected, System};
 use crate::diagnose::ends::names;
@@ -9,6 +10,7 @@ use crate::effect::{Changes, Entry, Model, ModelError, Number, is_shape, of_driv
 use crate::likelihood::{ABSORBED, Column, Fitted, NUISANCE, Noise, share_left};
 use crate::parameter::Parameter;
 use nalgebra::{DMatrix, DVector};
+use std::sync::OnceLock;
 
 /// At its usual size a candidate must move the observations by so many standard deviations to be asked about.
 const VISIBLE: f64 = 0.3;
@@ -81,6 +83,8 @@ pub struct Examination {
     /// What the columns of the model and of the catalogue's effects are derivatives by.
     numbers: Vec<Number>,
     columns: Vec<Vec<Column>>,
+    /// What was found of the smooths, once they were looked at.
+    pub smooths: OnceLock<Vec<Finding>>,
 }
 
 impl Examination {
@@ -126,10 +130,11 @@ impl Examination {
         }
         let chain = fitted.model.chain();
         for (all, run) in columns.iter_mut().zip(&observed.runs) {
-            all.push(run.residuals(&chain));
+            all.push(run.residuals_along(&chain));
         }
         let system = System::new(observed, &fitted.noise, &columns);
-        let mut examination = Examination { fitted, system, asked, free, errors: Errors::default(), numbers, columns };
+        let (errors, smooths) = (Errors::default(), OnceLock::new());
+        let mut examination = Examination { fitted, system, asked, free, errors, numbers, columns, smooths };
         examination.clean();
         let which = (0..width).chain([examination.system.residual()]).collect();
         let Examination { fitted, system, columns, .. } = &examination;

@@ -57,25 +57,53 @@ impl Scores {
     }
 
     /// How far the flipped sum is from zero, as a standard normal's quantile (Wilson & Hilferty 1931).
-    fn distance(&self, flips: &[bool]) -> f64 {
+    fn distance(&self, flips: &[bool], flipped: &mut Flipped) -> f64 {
         let terms = self.information.nrows();
-        let mut sum = DVector::<f64>::zeros(terms);
-        let mut held = DMatrix::<f64>::zeros(self.held.first().map_or(0, DMatrix::nrows), terms);
+        let height = self.held.first().map_or(0, DMatrix::nrows);
+        let Flipped { sum, held, root } = flipped;
+        for (of, length) in [(&mut *sum, terms), (&mut *held, height * terms), (&mut *root, terms * terms)] {
+            of.clear();
+            of.resize(length, 0.0);
+        }
         for ((unit, own), flip) in self.units.iter().zip(&self.held).zip(flips) {
             let sign = if *flip { -1.0 } else { 1.0 };
             sum.iter_mut().zip(unit.as_slice()).for_each(|(sum, unit)| *sum += sign * unit);
-            held.as_mut_slice().iter_mut().zip(own.as_slice()).for_each(|(held, own)| *held += sign * own);
+            held.iter_mut().zip(own.as_slice()).for_each(|(held, own)| *held += sign * own);
         }
-        let mut covariance = &self.information - held.tr_mul(&held);
+        // |L⁻¹ sum|², with L Lᵀ the covariance.
+        let mut square = 0.0;
         for i in 0..terms {
-            covariance[(i, i)] = covariance[(i, i)].max(0.0) + LEAST * self.information[(i, i)];
+            for j in 0..=i {
+                let both = held[i * height..][..height].iter().zip(&held[j * height..][..height]);
+                let mut rest = self.information[(i, j)] - both.map(|(a, b)| a * b).sum::<f64>();
+                if i == j {
+                    rest = rest.max(0.0) + LEAST * self.information[(i, i)];
+                }
+                let before = root[i * terms..][..j].iter().zip(&root[j * terms..][..j]);
+                rest -= before.map(|(a, b)| a * b).sum::<f64>();
+                if i == j && !(rest > 0.0) {
+                    return f64::NEG_INFINITY;
+                }
+                root[i * terms + j] = if i == j { rest.sqrt() } else { rest / root[j * terms + j] };
+            }
+            let before = root[i * terms..][..i].iter().zip(&sum[..i]);
+            sum[i] = (sum[i] - before.map(|(a, b)| a * b).sum::<f64>()) / root[i * terms + i];
+            square += sum[i] * sum[i];
         }
-        let Some(factor) = covariance.cholesky() else { return f64::NEG_INFINITY };
         let terms = terms as f64;
-        let share = (sum.dot(&factor.solve(&sum)) / terms).cbrt();
+        let share = (square / terms).cbrt();
         let spread = 2.0 / (9.0 * terms);
         (share - (1.0 - spread)) / spread.sqrt()
     }
+}
+
+/// Room for what is worked out of a group under a flip, one group after the other.
+#[derive(Default)]
+struct Flipped {
+    sum: Vec<f64>,
+    held: Vec<f64>,
+    /// L, row by row.
+    root: Vec<f64>,
 }
 
 /// Groups of columns under every flip of the signs of their units.
@@ -92,14 +120,17 @@ impl Family {
     /// All groups, with the same units.
     pub fn new(groups: &[Scores], seed: u64) -> Family {
         let patterns = patterns(groups.first().map_or(0, |group| group.units.len()), seed);
-        let farthest =
-            |flips: &Vec<bool>| groups.iter().map(|group| group.distance(flips)).fold(f64::NEG_INFINITY, f64::max);
+        let farthest = |flips: &Vec<bool>| {
+            let mut flipped = Flipped::default();
+            let distances = groups.iter().map(|group| group.distance(flips, &mut flipped));
+            distances.fold(f64::NEG_INFINITY, f64::max)
+        };
         Family { farthest: patterns[1..].par_iter().map(farthest).collect() }
     }
 
     /// The share of flips under which some group is farther from zero than `observed`, one of them, is as it is.
     pub fn p(&self, observed: &Scores) -> f64 {
-        let distance = observed.distance(&vec![false; observed.units.len()]) * (1.0 - 1e-12);
+        let distance = observed.distance(&vec![false; observed.units.len()], &mut Flipped::default()) * (1.0 - 1e-12);
         let count = 1 + self.farthest.iter().filter(|farthest| **farthest >= distance).count();
         count as f64 / (1 + self.farthest.len()) as f64
     }

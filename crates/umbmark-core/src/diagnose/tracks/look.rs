@@ -49,8 +49,18 @@ impl Finding {
     }
 }
 
+/// All effects, the worthiest first, beside the model.
+pub fn effects(exam: &Examination, options: &Options) -> Vec<Finding> {
+    look(exam, false, options)
+}
+
+/// The same of the smooths.
+pub fn smooths<'a>(exam: &'a Examination, options: &Options) -> &'a [Finding] {
+    exam.smooths.get_or_init(|| look(exam, true, options))
+}
+
 /// All groups of one kind, the worthiest first, beside the model.
-pub fn look(exam: &Examination, smooths: bool, options: &Options) -> Vec<Finding> {
+fn look(exam: &Examination, smooths: bool, options: &Options) -> Vec<Finding> {
     let products = &exam.system.whole;
     let rows = exam.system.rows;
     let plain = Arc::new(Projected::new(products, &exam.base(None)));

@@ -255,9 +255,11 @@ fn with_its_size(x: f64, out: &mut [f64]) {
 
 /// cos x, sin x, cos 2x ...
 fn cyclic(x: f64, out: &mut [f64]) {
-    for (k, pair) in out.chunks_exact_mut(2).enumerate() {
-        let (sine, cosine) = libm::sincos((k + 1) as f64 * x);
-        (pair[0], pair[1]) = (cosine, sine);
+    let (sine, cosine) = libm::sincos(x);
+    let (mut real, mut imaginary) = (1.0, 0.0);
+    for pair in out.chunks_exact_mut(2) {
+        (real, imaginary) = (real * cosine - imaginary * sine, imaginary * cosine + real * sine);
+        (pair[0], pair[1]) = (real, imaginary);
     }
 }
 
@@ -278,7 +280,8 @@ fn of_run(run: &ObservedRun, chain: &Chain<f64>, scales: &Scales) -> Vec<Column>
     let terms: usize = COVARIATES.iter().map(|c| c.terms).sum();
     let track = &run.track;
     let way = track.length().max(f64::MIN_POSITIVE);
-    let mut states = vec![[0.0; 3]; 3 * terms];
+    // By motion and coordinate.
+    let mut states: [[Vec<f64>; 3]; 3] = std::array::from_fn(|_| std::array::from_fn(|_| vec![0.0; terms]));
     let mut columns = vec![vec![[0.0; 3]; run.blocks.len()]; 3 * terms];
     let mut basis = vec![0.0; terms];
     let (mut pose, mut made) = (chain.start(), 0);
@@ -303,29 +306,27 @@ fn of_run(run: &ObservedRun, chain: &Chain<f64>, scales: &Scales) -> Vec<Column>
             }
             let (sine, cosine) = libm::sincos(middle.heading);
             let added = [[cosine, sine, 0.0], [-sine, cosine, 0.0], [middle.y, -middle.x, 1.0]];
-            for (state, (motion, value)) in states.iter_mut().zip(by_motion(&basis)) {
-                for k in 0..3 {
-                    state[k] += value * added[motion][k];
+            for (states, added) in states.iter_mut().zip(added) {
+                for (state, added) in states.iter_mut().zip(added) {
+                    state.iter_mut().zip(&basis).for_each(|(state, value)| *state += value * added);
                 }
             }
             pose = pose.moved(&motion);
         }
         made = until;
-        for (column, s) in columns.iter_mut().zip(&states) {
-            column[index] = [s[0] - block.place.y * s[2], s[1] + block.place.x * s[2], s[2]];
+        let (mut column, mut first) = (columns.iter_mut(), 0);
+        for covariate in &COVARIATES {
+            for [x, y, turned] in &states {
+                for term in first..first + covariate.terms {
+                    let Some(column) = column.next() else { continue };
+                    let turned = turned[term];
+                    column[index] = [x[term] - block.place.y * turned, y[term] + block.place.x * turned, turned];
+                }
+            }
+            first += covariate.terms;
         }
     }
     columns
-}
-
-/// Every term of the basis for every motion, in the order of the columns.
-fn by_motion(basis: &[f64]) -> impl Iterator<Item = (usize, f64)> + '_ {
-    let mut first = 0;
-    COVARIATES.iter().flat_map(move |covariate| {
-        let own = &basis[first..first + covariate.terms];
-        first += covariate.terms;
-        (0..3).flat_map(move |motion| own.iter().map(move |value| (motion, *value)))
-    })
 }
 
 /// The groups of columns, in the order of [`smooth_columns`]: covariate, motion, first column and number.

@@ -1,6 +1,6 @@
 //! What the machine can do at once.
 
-/// The widest registers the engine may use. Results are the same bits on all of them.
+/// The widest registers that may be used. Results are the same bits on all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Instructions {
