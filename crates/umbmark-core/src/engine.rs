@@ -49,9 +49,9 @@ mod trigonometry;
 mod wheel_line;
 mod word;
 
+pub use crate::geometry::Instructions;
 #[cfg(test)]
 pub(crate) use convoy::tests as convoy_tests;
-pub use crate::geometry::Instructions;
 pub use convoy::{Convoy, Floor, Predicted, Step, Trucks};
 pub use integrator::{Integrator, Method, Segment};
 pub use monoid::Monoid;
