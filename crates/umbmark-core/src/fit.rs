@@ -1,8 +1,7 @@
 //! Weighted non-linear least squares: minimise Σ r_i(p)², with residuals r = (observed - predicted)/standard deviation.
 //!
 //! Levenberg (1944) and Marquardt (1963): Gauss-Newton steps damped in units of the Jacobian's column lengths, each solved
-//! by an orthogonal factorisation of \[J; √λ D\], never by normal equations. Where the sum of squares falls as the Jacobian foretold,
-//! the damping may go at once and the Jacobian stay (Shamanskii 1967), which [`Options::agreement`] decides. A parameter, or a combination of parameters, that
+//! by an orthogonal factorisation of \[J; √λ D\], never by normal equations. A parameter, or a combination of parameters, that
 //! the data does not show stays where it started and is named by [`null_directions`]. A fit that stops early is a [`Fit`] that
 //! says so, not an error.
 
@@ -39,15 +38,12 @@ pub struct Options {
     pub decrease_tolerance: f64,
     /// Whether the first steps are damped: needed where the start may be far from the end.
     pub cautious: bool,
-    /// Steps that lower the sum of squares by what the Jacobian foretold, but for less than this share, are followed by undamped ones
-    /// with the same Jacobian: for Jacobians that cost more than residuals.
-    pub agreement: f64,
 }
 
 impl Default for Options {
-    /// 100 steps, 1e-14, 1e-15: to the last digits, and from afar, each step with a Jacobian of its own.
+    /// 100 steps, 1e-14, 1e-15: to the last digits, and from afar.
     fn default() -> Self {
-        Options { iterations: 100, step_tolerance: 1e-14, decrease_tolerance: 1e-15, cautious: true, agreement: 0.0 }
+        Options { iterations: 100, step_tolerance: 1e-14, decrease_tolerance: 1e-15, cautious: true }
     }
 }
 
@@ -153,8 +149,6 @@ pub fn least_squares(problem: &impl Problem, start: &[f64], options: &Options) -
     let mut lengths = vec![0.0_f64; start.len()];
     let mut damping = if options.cautious { FIRST_DAMPING } else { LEAST_DAMPING };
     let mut jacobian = problem.jacobian(&at.values);
-    // Whether it is that of a point before.
-    let mut kept = false;
     for iteration in 1..=options.iterations {
         for (length, now) in lengths.iter_mut().zip(covariance::column_lengths(&jacobian)) {
             *length = length.max(now);
@@ -166,8 +160,6 @@ pub fn least_squares(problem: &impl Problem, start: &[f64], options: &Options) -
         // Sums that agree to the last digits cannot tell which point is better; the step can, so it is taken.
         let negligible = decrease.abs() <= options.decrease_tolerance * at.cost;
         let better = decrease > 0.0 || negligible;
-        let foretold = at.cost - (&jacobian * &step + &at.residuals).norm_squared();
-        let agreed = better && (decrease - foretold).abs() < options.agreement * foretold;
         if better {
             at = next;
         }
@@ -177,12 +169,11 @@ pub fn least_squares(problem: &impl Problem, start: &[f64], options: &Options) -
         if (negligible && damping <= LEAST_DAMPING) || damping >= MOST_DAMPING {
             return at.stopped(problem, iteration, Termination::SmallDecrease);
         }
-        if if better { !agreed } else { kept } {
+        if better {
             jacobian = problem.jacobian(&at.values);
         }
-        kept = agreed;
         // The last steps are undamped: a damped one may lower the sum too little to matter and yet be far from the end.
-        damping = match (negligible || agreed, better) {
+        damping = match (negligible, better) {
             (true, _) => LEAST_DAMPING,
             (false, true) => (0.1 * damping).max(LEAST_DAMPING),
             (false, false) if damping <= LEAST_DAMPING => FIRST_DAMPING,

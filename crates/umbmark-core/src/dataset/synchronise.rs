@@ -168,8 +168,7 @@ pub fn synchronise(log: &TickLog, track: &ReferenceTrack, robot: &Robot) -> Resu
 }
 
 fn refine(mut windows: Windows, guess: &coarse::Guess) -> Result<Alignment, SynchroniseError> {
-    let options =
-        Options { iterations: 40, step_tolerance: 1e-9, decrease_tolerance: 1e-9, cautious: true, agreement: 0.0 };
+    let options = Options { iterations: 40, step_tolerance: 1e-9, decrease_tolerance: 1e-9, cautious: true };
     let start = windows.start(guess);
     let first = least_squares(&windows, &start, &options);
     let all = windows.len();

@@ -138,7 +138,7 @@ impl<T: Real> Pose2<T> {
         let (forward, sideways) = (sinc * displacement.forward, sinc * displacement.sideways);
         self.x = self.x + cosine * forward - sine * sideways;
         self.y = self.y + sine * forward + cosine * sideways;
-        self.heading = self.heading + displacement.rotation;
+        self.heading += displacement.rotation;
     }
 
     /// The pose without its derivatives.

@@ -64,9 +64,7 @@ macro_rules! arithmetic {
 
             #[inline(always)]
             fn $method(mut self, other: Eight) -> Eight {
-                for lane in 0..EIGHT {
-                    self.0[lane] = self.0[lane] $sign other.0[lane];
-                }
+                self $sign other;
                 self
             }
         }
@@ -74,17 +72,19 @@ macro_rules! arithmetic {
         impl $assign for Eight {
             #[inline(always)]
             fn $assigned(&mut self, other: Eight) {
-                *self = *self $sign other;
+                for lane in 0..EIGHT {
+                    self.0[lane] $sign other.0[lane];
+                }
             }
         }
     )*};
 }
 
 arithmetic!(
-    Add add AddAssign add_assign +,
-    Sub sub SubAssign sub_assign -,
-    Mul mul MulAssign mul_assign *,
-    Div div DivAssign div_assign /
+    Add add AddAssign add_assign +=,
+    Sub sub SubAssign sub_assign -=,
+    Mul mul MulAssign mul_assign *=,
+    Div div DivAssign div_assign /=
 );
 
 impl Scalar for Eight {

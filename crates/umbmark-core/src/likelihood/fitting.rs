@@ -92,8 +92,7 @@ impl Slopes {
 /// Outliers are looked for so many times.
 const ROUNDS: usize = 3;
 /// Stops where a step changes no parameter by more than a millionth.
-const STOP: Options =
-    Options { iterations: 12, step_tolerance: 1e-7, decrease_tolerance: 1e-9, cautious: true, agreement: 1e-2 };
+const STOP: Options = Options { iterations: 12, step_tolerance: 1e-7, decrease_tolerance: 1e-9, cautious: true };
 /// From values that were fitted already.
 const AGAIN: Options = Options { cautious: false, ..STOP };
 
