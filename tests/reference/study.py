@@ -1,0 +1,156 @@
+"""What `umbmark learn` finds on tracks: every hidden case, and sets with nothing hidden.
+
+Makes the data, runs the command on each set as a user would, holds its answer against the sealed
+one and prints the tables of docs/diagnosis.md:
+`python tests/reference/study.py --seeds 7 8 --nulls 500`.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path as File
+from typing import Any
+
+from cases import CASES, RETURNS, UNLISTED
+from generate import main as generate
+from measure import NOISE_MODELS
+
+ROOT = File(__file__).parents[2]
+COMMANDS = [ROOT / "target" / build / "umbmark" for build in ("release", "debug")]
+ADDED = ("physics", "nuisance")
+"""Kinds of causes that a finder adds to the model."""
+FITTED = {"wheel_diameter_ratio", "wheelbase", "scale", "start_pose"}
+"""What every fit has, so that nothing like it is added."""
+FIRST_NULL = 1001
+
+
+@dataclass
+class Answer:
+    """What was learnt of one set, beside what is in it."""
+
+    case: str
+    seed: int
+    verdict: str
+    classes: list[set[str]]
+    hidden: list[set[str]]
+    before_m: float
+    after_m: float
+    outliers: int
+
+    @property
+    def right(self) -> bool:
+        """Whether each cause is in a class of its own that was added, and nothing else was."""
+        left = list(self.classes)
+        for acceptable in self.hidden:
+            found = next((one for one in left if one & acceptable), None)
+            if found is None:
+                return False
+            left.remove(found)
+        return not left
+
+    @property
+    def found(self) -> bool:
+        """Whether each cause is in a class that was added."""
+        return all(any(one & acceptable for one in self.classes) for acceptable in self.hidden)
+
+
+def learn(command: File, case: str, seed: int, noise: str = "gaussian") -> Answer:
+    """Make one set and learn from it."""
+    with tempfile.TemporaryDirectory() as place:
+        folder = File(place) / "data"
+        generate([case, str(folder), "--seed", str(seed), "--noise", noise])
+        words = [str(command), "learn", str(folder), "--json", "--threads", "1"]
+        done = subprocess.run(words, capture_output=True, check=True, text=True)
+        sealed = json.loads(folder.with_name("data.truth.json").read_text())
+    answer: dict[str, Any] = json.loads(done.stdout)
+    steps = answer["steps"]
+    added = [step for step in steps if step["p_adjusted"] is not None]
+    first = len(steps) - len(added) - 1
+    causes = [set(one["acceptable"]) for one in sealed["causes"] if one["kind"] in ADDED]
+    return Answer(
+        case,
+        seed,
+        answer["verdict"],
+        [set(step["class"]) for step in added],
+        [names for names in causes if not names & FITTED],
+        steps[first]["heldout_rmse_m"],
+        steps[-1]["heldout_rmse_m"],
+        len(answer.get("outliers", [])),
+    )
+
+
+def hidden(command: File, seeds: list[int], threads: int) -> Iterator[str]:
+    """A line for each case and seed, and what they come to."""
+    names = [name for name in CASES if name not in RETURNS]
+    work = [(name, seed) for name in names for seed in seeds]
+    with ThreadPoolExecutor(threads) as pool:
+        answers = list(pool.map(lambda one: learn(command, *one), work))
+    yield "| case | seed | added | verdict | left out [mm] | |\n|---|---|---|---|---|---|"
+    for answer in answers:
+        classes = ", ".join(" or ".join(sorted(one)) for one in answer.classes) or "nothing"
+        if answer.case in UNLISTED:
+            judged = "unlisted" if answer.verdict == "unlisted_effect" else "not called unlisted"
+        else:
+            judged = "right" if answer.right else "found, and more" if answer.found else "not found"
+        yield (
+            f"| {answer.case} | {answer.seed} | {classes} | {answer.verdict} "
+            f"| {1e3 * answer.before_m:.1f} to {1e3 * answer.after_m:.1f} | {judged} |"
+        )
+    with_cause = [one for one in answers if one.hidden and one.case not in UNLISTED]
+    without = [one for one in answers if not one.hidden and one.case not in UNLISTED]
+    outside = [one for one in answers if one.case in UNLISTED]
+    certified = [one for one in with_cause if one.classes]
+    yield (
+        f"\nhidden: {sum(one.found for one in with_cause)} of {len(with_cause)} found; of "
+        f"{len(certified)} where something was added, the right class in "
+        f"{sum(one.found for one in certified)}, and nothing else in "
+        f"{sum(one.right for one in certified)}\n"
+        f"nothing hidden: something added in {sum(bool(one.classes) for one in without)} of "
+        f"{len(without)}\n"
+        f"outside the catalogue: called unlisted in "
+        f"{sum(one.verdict == 'unlisted_effect' for one in outside)} of {len(outside)}"
+    )
+
+
+def nulls(command: File, sets: int, threads: int) -> Iterator[str]:
+    """A line for each model of the noise, of so many sets in all."""
+    yield "| noise | sets | something added | called unlisted | an outlier named |"
+    yield "|---|---|---|---|---|"
+    with ThreadPoolExecutor(threads) as pool:
+        for index, noise in enumerate(NOISE_MODELS):
+            each = sets // len(NOISE_MODELS) + (index < sets % len(NOISE_MODELS))
+            seeds = range(FIRST_NULL, FIRST_NULL + each)
+            answers = list(pool.map(partial(learn, command, "none", noise=noise), seeds))
+            yield (
+                f"| {noise} | {each} | {sum(bool(one.classes) for one in answers)} "
+                f"| {sum(one.verdict == 'unlisted_effect' for one in answers)} "
+                f"| {sum(one.outliers > 0 for one in answers)} |"
+            )
+
+
+def main() -> None:
+    """Do what the command line says."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, nargs="*", default=[7], help="of the hidden cases")
+    parser.add_argument("--nulls", type=int, default=500, metavar="N", help="sets in all")
+    parser.add_argument("--threads", type=int, default=2)
+    chosen = parser.parse_args()
+    command = next((one for one in COMMANDS if one.exists()), None)
+    if command is None:
+        sys.exit("the command is not built: cargo build --release")
+    if chosen.seeds:
+        for line in hidden(command, chosen.seeds, chosen.threads):
+            print(line, flush=True)
+    if chosen.nulls:
+        for line in nulls(command, chosen.nulls, chosen.threads):
+            print(line, flush=True)
+
+
+if __name__ == "__main__":
+    main()
