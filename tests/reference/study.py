@@ -26,7 +26,7 @@ COMMANDS = [ROOT / "target" / build / "umbmark" for build in ("release", "debug"
 ADDED = ("physics", "nuisance")
 """Kinds of causes that a finder adds to the model."""
 FITTED = {"wheel_diameter_ratio", "wheelbase", "scale", "start_pose"}
-"""What every fit has, so that nothing like it is added."""
+"""What every fit has: what looks like it need not be added."""
 FIRST_NULL = 1001
 
 
@@ -45,19 +45,24 @@ class Answer:
 
     @property
     def right(self) -> bool:
-        """Whether each cause is in a class of its own that was added, and nothing else was."""
-        left = list(self.classes)
-        for acceptable in self.hidden:
-            found = next((one for one in left if one & acceptable), None)
-            if found is None:
-                return False
-            left.remove(found)
-        return not left
+        """Whether each cause is in a class that was added, and nothing else was."""
+        named = all(any(one & acceptable for acceptable in self.hidden) for one in self.classes)
+        return self.found and named and len(self.classes) <= len(self.hidden)
 
     @property
     def found(self) -> bool:
         """Whether each cause is in a class that was added."""
-        return all(any(one & acceptable for one in self.classes) for acceptable in self.hidden)
+        return all(
+            acceptable & FITTED or any(one & acceptable for one in self.classes)
+            for acceptable in self.hidden
+        )
+
+    @property
+    def asked(self) -> bool:
+        """Whether something is hidden that no fit has, or something like it was added."""
+        return any(not acceptable & FITTED for acceptable in self.hidden) or (
+            bool(self.hidden) and self.right and bool(self.classes)
+        )
 
 
 def learn(command: File, case: str, seed: int, noise: str = "gaussian") -> Answer:
@@ -78,7 +83,7 @@ def learn(command: File, case: str, seed: int, noise: str = "gaussian") -> Answe
         seed,
         answer["verdict"],
         [set(step["class"]) for step in added],
-        [names for names in causes if not names & FITTED],
+        causes,
         steps[first]["heldout_rmse_m"],
         steps[-1]["heldout_rmse_m"],
         len(answer.get("outliers", [])),
@@ -102,8 +107,8 @@ def hidden(command: File, seeds: list[int], threads: int) -> Iterator[str]:
             f"| {answer.case} | {answer.seed} | {classes} | {answer.verdict} "
             f"| {1e3 * answer.before_m:.1f} to {1e3 * answer.after_m:.1f} | {judged} |"
         )
-    with_cause = [one for one in answers if one.hidden and one.case not in UNLISTED]
-    without = [one for one in answers if not one.hidden and one.case not in UNLISTED]
+    with_cause = [one for one in answers if one.asked and one.case not in UNLISTED]
+    without = [one for one in answers if not one.asked and one.case not in UNLISTED]
     outside = [one for one in answers if one.case in UNLISTED]
     certified = [one for one in with_cause if one.classes]
     yield (

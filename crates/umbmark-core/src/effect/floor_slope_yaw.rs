@@ -1,4 +1,4 @@
-//! A sloping floor that turns the robot as it drives across.
+//! A sloping floor that turns the robot as it drives across and as it turns.
 
 use super::words::deg;
 use super::{About, ActsOn, Changes, Context, Effect, at_work};
@@ -6,7 +6,7 @@ use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
-/// A rate of turn per metre that depends on the heading in the room.
+/// A turn per metre, and per radian turned, that depends on the heading in the room.
 pub struct FloorSlopeYaw;
 
 impl Effect for FloorSlopeYaw {
@@ -31,15 +31,33 @@ impl Effect for FloorSlopeYaw {
                 (-1.0, 1.0),
                 "turn per metre while heading to the left of START; opposite on the way back",
             ),
+            Parameter::size(
+                "turning_cosine",
+                "slope-turning-cosine",
+                "",
+                5e-3,
+                (-0.5, 0.5),
+                "turn to the left per radian turned either way while heading as at START",
+            ),
+            Parameter::size(
+                "turning_sine",
+                "slope-turning-sine",
+                "",
+                5e-3,
+                (-0.5, 0.5),
+                "turn to the left per radian turned either way while heading to the left of START",
+            ),
         ],
-        equation: "Δθ ← Δθ + (c cos h + s sin h) · length,  h the mean heading in the room",
+        equation: "Δθ ← Δθ + (c cos h + s sin h) · length + (p cos h + q sin h) · |rotation|,  h the mean heading in the room",
         physics: "Across the slope the lower wheel carries more load and is compressed, and the casters are pushed downhill: \
-                  the robot turns, the more the steeper it is across its way.",
+                  the robot turns, the more the steeper it is across its way. In a turn on the spot its tyres scrub and hold \
+                  nothing across: gravity swings the side of its centre of mass downhill, with the turn or against it.",
         signature: "Opposite sides bend opposite ways: the heading comes right again and the position does not, off to one \
                     side in ccw and to the other in cw. Bumps on one leg leave nearly the same.",
         confused_with: &["placed_bumps", "base_yaw"],
-        separated_by: "starting the square turned by 90 or 180 degrees; a heading at each corner",
-        source: "load transfer on a slope; 1 mrad per metre is assumed",
+        separated_by: "starting the square turned by 90 or 180 degrees; a heading at each corner; way from turning, a straight leg \
+                       or a turn alone",
+        source: "load transfer on a slope, 1 mrad per metre assumed; Coulomb friction of scrubbing tyres, 5 mrad per radian assumed",
     };
 
     const DRIVES: Kinds = Kinds::ALL;
@@ -47,11 +65,21 @@ impl Effect for FloorSlopeYaw {
     const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
-        format!(
-            "The floor turns the robot by up to {} on each metre: most to the left where it heads {} degrees from its heading at START.",
-            deg(libm::hypot(p[0], p[1])),
-            libm::round(libm::atan2(p[1], p[0]).to_degrees())
-        )
+        let most =
+            |cosine: f64, sine: f64| (libm::hypot(cosine, sine), libm::round(libm::atan2(sine, cosine).to_degrees()));
+        let ((way, heading), (turn, there)) = (most(p[0], p[1]), most(p[2], p[3]));
+        let on_its_way = format!(
+            "The floor turns the robot by up to {} on each metre: most to the left where it heads {heading} degrees from its \
+             heading at START",
+            deg(way)
+        );
+        match turn > 0.0 {
+            true => format!(
+                "{on_its_way}; and by up to {} on each radian that it turns, most at {there} degrees.",
+                deg(turn)
+            ),
+            false => format!("{on_its_way}."),
+        }
     }
 
     fn varies(p: &[f64]) -> bool {
@@ -60,7 +88,8 @@ impl Effect for FloorSlopeYaw {
 
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         let (sine, cosine) = (at.heading + motion.rotation * 0.5).sine_cosine();
-        motion.rotation += (p[0] * cosine + p[1] * sine) * at.length;
+        let turned = (at.turn_rate * at.duration).abs();
+        motion.rotation += (p[0] * cosine + p[1] * sine) * at.length + (p[2] * cosine + p[3] * sine) * turned;
     }
 }
 
@@ -83,6 +112,32 @@ mod tests {
                 }
                 // Leg 1 bends by 4k and leg 3 back, 8k aside and 8k back; leg 2 between them is 4k off over 4 m.
                 assert!((cosine[7].x + sign * 16.0 * k).abs() < 1e-5, "{:?}", cosine[7]);
+            }
+        }
+    }
+
+    /// Oracle: ∫ (p cos h + q sin h) |dh| over a quarter turn from h.
+    #[test]
+    fn each_turn_on_the_spot_is_off_by_its_headings_alike_in_both_senses_and_legs_are_not() {
+        for k in [1e-4, -1e-4] {
+            for (direction, sign) in ccw_and_cw() {
+                for (name, integral) in
+                    [("turning_cosine", (|h: f64| h.sin()) as fn(f64) -> f64), ("turning_sine", |h: f64| -h.cos())]
+                {
+                    let stops = stops_with(&[("floor_slope_yaw", name, k)], direction);
+                    for turn in 0..4 {
+                        let (from, to) = (stops[2 * turn].heading, stops[2 * turn + 1].heading);
+                        let quarter = |turns: usize| sign * TAU / 4.0 * turns as f64;
+                        let expected = k * sign * (integral(quarter(turn + 1)) - integral(quarter(turn)));
+                        assert!(
+                            (to - from - quarter(1) - expected).abs() < 1e-3 * k.abs(),
+                            "{name} {turn} {direction:?}"
+                        );
+                        if turn > 0 {
+                            assert_eq!(from, stops[2 * turn - 1].heading);
+                        }
+                    }
+                }
             }
         }
     }
