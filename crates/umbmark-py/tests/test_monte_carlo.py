@@ -237,7 +237,9 @@ def test_a_progress_function_that_fails_stops_the_study() -> None:
     [
         lambda: umbmark.monte_carlo(MODEL, n=100_000_000),
         lambda: umbmark.compare(
-            umbmark.simulate(MODEL, reference_rate_hz=0), MODEL.remove("wheelbase"), draws=99_999
+            umbmark.simulate(MODEL, runs=30, reference_rate_hz=0),
+            MODEL.remove("wheelbase"),
+            draws=99_999,
         ),
     ],
 )
@@ -245,7 +247,7 @@ def test_ctrl_c_is_heard_at_once(work: object) -> None:
     assert callable(work)
     # A process that was started in the background ignores the signal.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    timer = threading.Timer(1.0, _thread.interrupt_main)
+    timer = threading.Timer(0.5, _thread.interrupt_main)
     timer.start()
     began = time.perf_counter()
     try:
