@@ -414,12 +414,12 @@ pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diag
     if options.evidence(data) == Level::Ends {
         return ends::diagnose(&ends::Ends::new(data)?, model, options);
     }
-    let mut diagnosis = tracks::diagnose(tracks::fit(&tracks_of(data)?, model)?, options)?;
+    let of_tracks = || tracks::diagnose(tracks::fit(&tracks_of(data)?, model)?, options);
     // Where return poses tell of the same runs, what they alone would have said stands beside it.
-    if let Ok(returns) = ends::Ends::new(data)
-        .map_err(DiagnoseError::from)
-        .and_then(|ends| ends::Beside::new(&ends, &base_model(model.robot())?, options))
-    {
+    let of_returns = || ends::Beside::new(&ends::Ends::new(data)?, &base_model(model.robot())?, options);
+    let (diagnosis, returns) = rayon::join(of_tracks, of_returns);
+    let mut diagnosis = diagnosis?;
+    if let Ok(returns) = returns {
         diagnosis.contrasts = returns.contrasts;
         diagnosis.circle = returns.circle;
         let renamed = |test| GoodnessOfFit { name: "E_d and E_b for the return poses alone", ..test };

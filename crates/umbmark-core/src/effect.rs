@@ -69,6 +69,8 @@ mod wheel_eccentricity_right;
 mod wheel_noise;
 mod wheelbase;
 mod words;
+#[cfg(target_arch = "x86_64")]
+mod x86;
 
 use crate::drive::{Kind, Kinds, LinkReading, Robot, Wheel, WheelTravel};
 use crate::geometry::{Displacement2, Dual, Pose2, Real};
@@ -275,7 +277,8 @@ pub struct WheelVariance {
 
 /// A physical cause of odometry error. `p` are its parameters, in the order of [`About::parameters`].
 ///
-/// Each method that is not overridden changes nothing.
+/// Each method that is not overridden changes nothing. [`wheels`](Effect::wheels) and [`body`](Effect::body), and what they call, are best
+/// marked `#[inline(always)]`: then derivatives are worked out in registers as wide as the machine has.
 pub trait Effect {
     /// What people should know of it.
     const ABOUT: About;
@@ -351,6 +354,18 @@ pub struct Mean<T: Real> {
     pub seen: fn(&[T], &Sight, &mut Pose2<T>),
 }
 
+impl Mean<Dual> {
+    const fn of_duals<E: Effect>() -> Mean<Dual> {
+        Mean {
+            start: E::start::<Dual>,
+            wheels: E::wheels::<Dual>,
+            body: E::body::<Dual>,
+            link: E::link::<Dual>,
+            seen: E::seen::<Dual>,
+        }
+    }
+}
+
 /// The random part of an effect.
 #[derive(Clone, Copy, Debug)]
 pub struct Scatter {
@@ -419,7 +434,9 @@ pub struct Entry {
     /// See [`Effect::varies`].
     pub varies: fn(&[f64]) -> bool,
     pub(crate) values: Mean<f64>,
-    pub(crate) duals: Mean<Dual>,
+    duals: Mean<Dual>,
+    #[cfg(target_arch = "x86_64")]
+    wide: x86::Wide,
     pub(crate) scatter: Scatter,
 }
 
@@ -440,13 +457,9 @@ impl Entry {
                 link: E::link::<f64>,
                 seen: E::seen::<f64>,
             },
-            duals: Mean {
-                start: E::start::<Dual>,
-                wheels: E::wheels::<Dual>,
-                body: E::body::<Dual>,
-                link: E::link::<Dual>,
-                seen: E::seen::<Dual>,
-            },
+            duals: Mean::of_duals::<E>(),
+            #[cfg(target_arch = "x86_64")]
+            wide: x86::Wide::of::<E>(),
             scatter: Scatter {
                 diffusion: E::diffusion,
                 bumps: E::bumps,
@@ -486,6 +499,10 @@ impl Evaluate for f64 {
 
 impl Evaluate for Dual {
     fn mean(entry: &Entry) -> &Mean<Dual> {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(wide) = entry.wide.best() {
+            return wide;
+        }
         &entry.duals
     }
 }

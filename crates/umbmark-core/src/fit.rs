@@ -17,6 +17,8 @@ pub const RANK_TOLERANCE: f64 = 1e-3;
 const FIRST_DAMPING: f64 = 1e-3;
 const LEAST_DAMPING: f64 = 1e-12;
 const MOST_DAMPING: f64 = 1e12;
+/// A step learns from so many changes before it at most.
+const REMEMBERED: usize = 4;
 
 /// Residuals to be made small.
 pub trait Problem {
@@ -25,6 +27,11 @@ pub trait Problem {
 
     /// ∂r_i/∂p_j, one row a residual.
     fn jacobian(&self, parameters: &[f64]) -> DMatrix<f64>;
+
+    /// Both, where one calculation gives them for less than two would.
+    fn both(&self, parameters: &[f64]) -> (DVector<f64>, DMatrix<f64>) {
+        (self.residuals(parameters), self.jacobian(parameters))
+    }
 }
 
 /// When to stop.
@@ -38,12 +45,15 @@ pub struct Options {
     pub decrease_tolerance: f64,
     /// Whether the first steps are damped: needed where the start may be far from the end.
     pub cautious: bool,
+    /// Whether points are dear: steps learn from those before them, and one that would lower the sum of squares too little to matter is
+    /// not taken.
+    pub frugal: bool,
 }
 
 impl Default for Options {
     /// 100 steps, 1e-14, 1e-15: to the last digits, and from afar.
     fn default() -> Self {
-        Options { iterations: 100, step_tolerance: 1e-14, decrease_tolerance: 1e-15, cautious: true }
+        Options { iterations: 100, step_tolerance: 1e-14, decrease_tolerance: 1e-15, cautious: true, frugal: false }
     }
 }
 
@@ -141,38 +151,51 @@ impl Fit {
 pub fn least_squares(problem: &impl Problem, start: &[f64], options: &Options) -> Fit {
     let mut at = Point::new(problem, start.to_vec());
     if !at.cost.is_finite() {
-        return at.stopped(problem, 0, Termination::NotFinite);
+        return at.stopped(0, Termination::NotFinite);
     }
     if start.is_empty() {
-        return at.stopped(problem, 0, Termination::SmallStep);
+        return at.stopped(0, Termination::SmallStep);
     }
     let mut lengths = vec![0.0_f64; start.len()];
     let mut damping = if options.cautious { FIRST_DAMPING } else { LEAST_DAMPING };
-    let mut jacobian = problem.jacobian(&at.values);
+    let (mut before, mut refused) = (Memory::default(), false);
     for iteration in 1..=options.iterations {
-        for (length, now) in lengths.iter_mut().zip(covariance::column_lengths(&jacobian)) {
+        for (length, now) in lengths.iter_mut().zip(covariance::column_lengths(&at.jacobian)) {
             *length = length.max(now);
         }
-        let step = damped_step(&jacobian, &at.residuals, &lengths, damping);
+        let plain = damped_step(&at.jacobian, &at.residuals, &lengths, damping);
+        let moved = &at.jacobian * &plain;
+        let expected = -moved.dot(&(&moved + 2.0 * &at.residuals));
+        if options.frugal && !refused && expected <= options.decrease_tolerance * at.cost {
+            if damping <= LEAST_DAMPING {
+                return at.stopped(iteration, Termination::SmallDecrease);
+            }
+            // A damped step may lower the sum too little to matter and yet be far from the end.
+            damping = LEAST_DAMPING;
+            continue;
+        }
+        let learnt = if options.frugal { before.learn(&at, &plain) } else { None };
+        let step = learnt.as_ref().unwrap_or(&plain);
         let next = Point::new(problem, at.values.iter().zip(step.iter()).map(|(p, d)| p + d).collect());
         let small = step.iter().zip(&at.values).all(|(d, p)| d.abs() <= options.step_tolerance * p.abs().max(1e-300));
         let decrease = at.cost - next.cost;
         // Sums that agree to the last digits cannot tell which point is better; the step can, so it is taken.
         let negligible = decrease.abs() <= options.decrease_tolerance * at.cost;
         let better = decrease > 0.0 || negligible;
+        refused = !better;
         if better {
             at = next;
         }
         if small {
-            return at.stopped(problem, iteration, Termination::SmallStep);
+            return at.stopped(iteration, Termination::SmallStep);
         }
         if (negligible && damping <= LEAST_DAMPING) || damping >= MOST_DAMPING {
-            return at.stopped(problem, iteration, Termination::SmallDecrease);
+            return at.stopped(iteration, Termination::SmallDecrease);
         }
-        if better {
-            jacobian = problem.jacobian(&at.values);
+        if !better && learnt.is_some() {
+            before = Memory::default();
+            continue;
         }
-        // The last steps are undamped: a damped one may lower the sum too little to matter and yet be far from the end.
         damping = match (negligible, better) {
             (true, _) => LEAST_DAMPING,
             (false, true) => (0.1 * damping).max(LEAST_DAMPING),
@@ -180,25 +203,59 @@ pub fn least_squares(problem: &impl Problem, start: &[f64], options: &Options) -
             (false, false) => 10.0 * damping,
         };
     }
-    at.stopped(problem, options.iterations, Termination::IterationLimit)
+    at.stopped(options.iterations, Termination::IterationLimit)
 }
 
 struct Point {
     values: Vec<f64>,
     residuals: DVector<f64>,
+    jacobian: DMatrix<f64>,
     cost: f64,
 }
 
 impl Point {
     fn new(problem: &impl Problem, values: Vec<f64>) -> Point {
-        let residuals = problem.residuals(&values);
+        let (residuals, jacobian) = problem.both(&values);
         let cost = residuals.norm_squared();
-        Point { values, residuals, cost }
+        Point { values, residuals, jacobian, cost }
     }
 
-    fn stopped(self, problem: &impl Problem, iterations: usize, termination: Termination) -> Fit {
-        let jacobian = problem.jacobian(&self.values);
-        Fit { values: self.values, residuals: self.residuals, jacobian, iterations, termination }
+    fn stopped(self, iterations: usize, termination: Termination) -> Fit {
+        Fit { values: self.values, residuals: self.residuals, jacobian: self.jacobian, iterations, termination }
+    }
+}
+
+/// Points of a fit, and the steps that Gauss and Newton take from there, the last one last.
+#[derive(Default)]
+struct Memory {
+    values: Vec<DVector<f64>>,
+    steps: Vec<DVector<f64>>,
+}
+
+impl Memory {
+    /// The step to where, by how steps changed from point to point, there would be none (Anderson 1965): with the combination of
+    /// changes that leaves the least of the last step, in units of what it does to the residuals. Where much is left of these, steps of
+    /// Gauss and Newton alone shrink by the same share each time. `None` without a change to go by.
+    fn learn(&mut self, at: &Point, step: &DVector<f64>) -> Option<DVector<f64>> {
+        let values = DVector::from_column_slice(&at.values);
+        if self.values.last() != Some(&values) {
+            self.values.push(values);
+            self.steps.push(step.clone());
+        }
+        let changes = (self.values.len() - 1).min(REMEMBERED).min(step.len());
+        if changes == 0 {
+            return None;
+        }
+        let change = |of: &[DVector<f64>]| {
+            let last = &of[of.len() - changes - 1..];
+            DMatrix::from_columns(&last.windows(2).map(|pair| &pair[1] - &pair[0]).collect::<Vec<_>>())
+        };
+        let (moved, turned) = (change(&self.values), change(&self.steps));
+        let information = at.jacobian.tr_mul(&at.jacobian);
+        let products = turned.tr_mul(&(&information * &turned));
+        let least = RANK_TOLERANCE * RANK_TOLERANCE * products.trace();
+        let share = products.svd(true, true).solve(&turned.tr_mul(&(&information * step)), least).ok()?;
+        Some(step - (moved + turned) * share)
     }
 }
 

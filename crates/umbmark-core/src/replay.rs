@@ -11,11 +11,15 @@
 //! sample is an exact arc.
 
 mod pace;
+#[cfg(target_arch = "x86_64")]
+mod x86;
 
 use crate::dataset::TickLog;
 use crate::drive::{Robot, WheelTravel};
 use crate::effect::{Chain, Context, Evaluate, Model, ModelError, Place, Progress, Sight};
 use crate::engine::{Convoy, Predicted};
+#[cfg(target_arch = "x86_64")]
+use crate::geometry::Instructions;
 use crate::geometry::Pose2;
 use crate::path::{Direction, Path, Pieces, SpeedProfile};
 use std::sync::Arc;
@@ -306,6 +310,19 @@ impl Track {
 
     #[inline]
     fn drive<T: Evaluate>(&self, chain: &Chain<T>, from: Pose2<T>, pieces: std::ops::Range<usize>) -> Pose2<T> {
+        #[cfg(target_arch = "x86_64")]
+        match Instructions::best() {
+            // SAFETY: the machine was found to have them.
+            Instructions::Avx512 if T::WIDE => return unsafe { x86::drive_by_eight(self, chain, from, pieces) },
+            // SAFETY: as above.
+            Instructions::Avx2 if T::WIDE => return unsafe { x86::drive_by_four(self, chain, from, pieces) },
+            _ => {}
+        }
+        self.drive_plainly(chain, from, pieces)
+    }
+
+    #[inline(always)]
+    fn drive_plainly<T: Evaluate>(&self, chain: &Chain<T>, from: Pose2<T>, pieces: std::ops::Range<usize>) -> Pose2<T> {
         let pieces = self.travel[pieces.clone()].iter().zip(&self.contexts[pieces]);
         let mut pose = from;
         for (travel, at) in pieces {
@@ -467,6 +484,22 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_replay_of_duals_has_the_same_bits_in_registers_of_every_width() {
+        let robot = Robot::labmate();
+        let mut model = Model::new(&robot);
+        for effect in ["wheel_diameter_ratio", "wheel_eccentricity_left", "crab", "caster_kick", "floor_slope_yaw"] {
+            model.add(effect).unwrap();
+        }
+        let chain = model.chains(&[0, 1, 2, 3, 4, 5, 6, 7]).next().unwrap().0;
+        for direction in Direction::BOTH {
+            let track = Track::in_pieces(&Path::umbmark(), direction, &robot);
+            let all = || (chain.start(), 0..track.travel.len());
+            let ((from, pieces), (start, same)) = (all(), all());
+            assert_eq!(track.drive(&chain, from, pieces), track.drive_plainly(&chain, start, same));
         }
     }
 

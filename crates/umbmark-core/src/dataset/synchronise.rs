@@ -168,7 +168,8 @@ pub fn synchronise(log: &TickLog, track: &ReferenceTrack, robot: &Robot) -> Resu
 }
 
 fn refine(mut windows: Windows, guess: &coarse::Guess) -> Result<Alignment, SynchroniseError> {
-    let options = Options { iterations: 40, step_tolerance: 1e-9, decrease_tolerance: 1e-9, cautious: true };
+    let options =
+        Options { iterations: 40, step_tolerance: 1e-9, decrease_tolerance: 1e-9, cautious: true, frugal: false };
     let start = windows.start(guess);
     let first = least_squares(&windows, &start, &options);
     let all = windows.len();

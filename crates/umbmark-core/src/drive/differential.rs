@@ -67,7 +67,7 @@ impl DifferentialDrive {
     }
 
     /// Body motion of the axle's centre for given wheel travels, at constant ratio of the wheel speeds.
-    #[inline]
+    #[inline(always)]
     pub fn displacement<T: Real>(&self, travel: &WheelTravel<T>) -> Displacement2<T> {
         Displacement2 {
             forward: (travel.right + travel.left) * 0.5,

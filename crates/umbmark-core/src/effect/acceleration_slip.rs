@@ -45,6 +45,7 @@ impl Effect for AccelerationSlip {
         at_work(p)
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= -p[0] * gain(at, 0) + 1.0;
         travel.right *= -p[0] * gain(at, 1) + 1.0;

@@ -45,6 +45,7 @@ impl Effect for Backlash {
         at_work(p)
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left -= p[0] * at.reversed[0];
         travel.right -= p[0] * at.reversed[1];

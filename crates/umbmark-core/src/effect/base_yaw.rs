@@ -60,6 +60,7 @@ impl Effect for BaseYaw {
         at_work(p)
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         let (sine, cosine) = (motion.rotation * 0.5 + at.believed_heading).sine_cosine();
         motion.rotation += (p[0] * cosine + p[1] * sine) * motion.forward;

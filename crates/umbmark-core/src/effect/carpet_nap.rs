@@ -48,6 +48,7 @@ impl Effect for CarpetNap {
         at_work(p)
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         drift(p, at, motion);
     }

@@ -54,6 +54,7 @@ impl Effect for CasterKick {
         p[0] != 0.0
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation += p[0] * faded(at, p[1]) * at.last_turn;
     }
@@ -71,6 +72,7 @@ pub(super) const TRAIL: Parameter = Parameter {
 };
 
 /// The share of a kick that is made within a piece: e^(-d₀/λ) - e^(-d₁/λ).
+#[inline(always)]
 pub(super) fn faded<T: Real>(at: &Context<T>, trail: T) -> T {
     let rate = -trail.recip();
     (rate * at.since_turn).exponential() - (rate * (at.since_turn + at.length)).exponential()

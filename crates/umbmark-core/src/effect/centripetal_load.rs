@@ -45,6 +45,7 @@ impl Effect for CentripetalLoad {
         at_work(p)
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         let half = p[0] * (0.5 * at.speed * at.turn_rate);
         travel.left *= half + 1.0;

@@ -45,6 +45,7 @@ impl Effect for ContactTrail {
         )
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.forward += p[0] * motion.rotation;
     }

@@ -58,7 +58,7 @@ pub struct Context<T = f64> {
 
 impl Context {
     /// The same piece with another heading, value or dual.
-    #[inline]
+    #[inline(always)]
     pub fn headed<T: Real>(&self, heading: T) -> Context<T> {
         Context {
             heading,

@@ -45,12 +45,14 @@ impl Effect for Crab {
         )
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         turn_course(motion, p[0]);
     }
 }
 
 /// Turns the course of a motion to the left, the rotation unchanged.
+#[inline(always)]
 pub(super) fn turn_course<T: Real>(motion: &mut Displacement2<T>, angle: T) {
     let (sine, cosine) = angle.sine_cosine();
     let Displacement2 { forward, sideways, .. } = *motion;

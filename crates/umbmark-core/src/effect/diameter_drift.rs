@@ -58,6 +58,7 @@ impl Effect for DiameterDrift {
         at_work(p)
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         let half = 0.5 * at.length;
         let d = p[0] * (at.distance + half) + p[1] * (at.session_distance + half);

@@ -47,6 +47,7 @@ impl Effect for DirectionDependentWheelbase {
         at_work(p)
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if at.turn_rate != 0.0 {
             motion.rotation /= p[0] * (0.5 * at.turn_rate.signum()) + 1.0;

@@ -42,6 +42,7 @@ impl Effect for DriveScale {
         format!("A metre by odometry is {} too {} on the floor.", mm(off), either(off, "long", "short"))
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.forward *= p[0];
     }

@@ -48,6 +48,7 @@ impl Effect for EncoderSampling {
         p[0] != 0.0
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if !at.recorded {
             turn_course(motion, p[0] * (0.5 * at.turn_rate));

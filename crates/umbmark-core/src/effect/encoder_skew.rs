@@ -47,6 +47,7 @@ impl Effect for EncoderSkew {
         at_work(p)
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.right -= p[0] * at.speed_change[1];
     }

@@ -73,6 +73,7 @@ impl Effect for FloorSlope {
         at_work(p)
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         drift(p, at, motion);
         let turned = (at.turn_rate * at.duration).abs();
@@ -99,12 +100,14 @@ pub(super) const DRIFT_X: Parameter = Parameter::size("drift_x", "", "m/m", 3e-3
 pub(super) const DRIFT_Y: Parameter = Parameter::size("drift_y", "", "m/m", 3e-3, (-1.0, 1.0), "");
 
 /// Adds a drift that is fixed in the room, (p₀, p₁) per metre driven.
+#[inline(always)]
 pub(super) fn drift<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
     let (sine, cosine) = mean_heading(at, motion).sine_cosine();
     motion.forward += (cosine * p[0] + sine * p[1]) * at.length;
     motion.sideways += (cosine * p[1] - sine * p[0]) * at.length;
 }
 
+#[inline(always)]
 fn mean_heading<T: Real>(at: &Context<T>, motion: &Displacement2<T>) -> T {
     at.heading + motion.rotation * 0.5
 }

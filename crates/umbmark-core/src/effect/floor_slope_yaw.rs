@@ -86,6 +86,7 @@ impl Effect for FloorSlopeYaw {
         at_work(p)
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         let (sine, cosine) = (at.heading + motion.rotation * 0.5).sine_cosine();
         let turned = (at.turn_rate * at.duration).abs();

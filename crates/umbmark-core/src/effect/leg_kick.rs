@@ -55,6 +55,7 @@ impl Effect for LegKick {
         p[0] != 0.0
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation += p[0] * faded(at, p[1]);
     }

@@ -68,6 +68,7 @@ impl Effect for MissedCounts {
         p[0] != 0.0 || p[1] != 0.0
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= p[0] * above(at.wheel_speed[0], p[2]) + 1.0;
         travel.right *= p[1] * above(at.wheel_speed[1], p[2]) + 1.0;
@@ -75,6 +76,7 @@ impl Effect for MissedCounts {
 }
 
 /// By how much a wheel is faster than the threshold \[m/s\].
+#[inline(always)]
 fn above<T: Real>(speed: f64, threshold: T) -> T {
     let over = -threshold + speed.abs();
     if over.value() > 0.0 { over } else { T::from(0.0) }

@@ -381,7 +381,7 @@ enum Work<T: Evaluate> {
 
 impl<T: Evaluate> Chain<T> {
     /// Its links that change this.
-    #[inline]
+    #[inline(always)]
     fn links(&self, change: Changes) -> impl Iterator<Item = &Link<T>> {
         self.links.iter().filter(move |link| link.changes.include(change))
     }
@@ -409,13 +409,13 @@ impl<T: Evaluate> Chain<T> {
     }
 
     /// True wheel travel for a believed one.
-    #[inline]
+    #[inline(always)]
     pub fn wheel_travel(&self, at: &Context<T>, believed: &WheelTravel) -> WheelTravel<T> {
         self.rolled(at, WheelTravel { left: T::from(believed.left), right: T::from(believed.right) })
     }
 
     /// The same of a believed travel that has itself a derivative: that of a robot which steers by what the effects change.
-    #[inline]
+    #[inline(always)]
     pub fn rolled(&self, at: &Context<T>, believed: WheelTravel<T>) -> WheelTravel<T> {
         let mut travel = [believed];
         self.change_wheels(at, &mut travel);
@@ -435,7 +435,7 @@ impl<T: Evaluate> Chain<T> {
     }
 
     /// Makes true wheel travels of believed ones, all in one place: link after link, so that no travel waits for another.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn change_wheels(&self, at: &Context<T>, travels: &mut [WheelTravel<T>]) {
         for link in self.links(Changes::WHEELS) {
             for travel in &mut *travels {
@@ -451,7 +451,7 @@ impl<T: Evaluate> Chain<T> {
     }
 
     /// Body motion that a true wheel travel makes.
-    #[inline]
+    #[inline(always)]
     pub fn body(&self, at: &Context<T>, travel: &WheelTravel<T>) -> Displacement2<T> {
         let mut motion = [self.drive.displacement(travel)];
         self.change_bodies(at, &mut motion);
@@ -466,7 +466,7 @@ impl<T: Evaluate> Chain<T> {
         self.change_bodies(at, motions);
     }
 
-    #[inline]
+    #[inline(always)]
     fn change_bodies(&self, at: &Context<T>, motions: &mut [Displacement2<T>]) {
         for link in self.links(Changes::BODY) {
             for motion in &mut *motions {
@@ -479,7 +479,7 @@ impl<T: Evaluate> Chain<T> {
     }
 
     /// Body motion for a believed wheel travel at constant ratio of the wheel speeds.
-    #[inline]
+    #[inline(always)]
     pub fn displacement(&self, at: &Context<T>, believed: &WheelTravel) -> Displacement2<T> {
         self.body(at, &self.wheel_travel(at, believed))
     }

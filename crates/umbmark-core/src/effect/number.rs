@@ -1,6 +1,6 @@
 //! Derivatives of what a model predicts, by numbers that it has or may have.
 
-use super::{Chain, Model, ModelError};
+use super::{Chain, Changes, Model, ModelError, find};
 use crate::geometry::{Dual, LANES, seeded};
 
 /// A number by which predictions are differentiated.
@@ -21,6 +21,15 @@ pub struct Derived {
     pub chain: Chain<Dual>,
     /// Places in the list.
     pub numbers: Vec<usize>,
+    /// Whether they change nothing but the measurement, so that no motion need be replayed.
+    pub seen_only: bool,
+}
+
+impl Number {
+    /// Whether it changes nothing but the measurement.
+    fn seen_only(&self) -> bool {
+        find(self.effect).is_ok_and(|entry| !entry.changes.include(Changes::MOTION))
+    }
 }
 
 impl Model {
@@ -34,8 +43,11 @@ impl Model {
     pub fn derived(&self, numbers: &[Number]) -> Result<Vec<Derived>, ModelError> {
         let mut groups: Vec<Vec<usize>> = Vec::new();
         for (index, number) in numbers.iter().enumerate() {
-            let agrees =
-                |other: &usize| numbers[*other].effect != number.effect || numbers[*other].shape == number.shape;
+            let agrees = |other: &usize| {
+                let other = &numbers[*other];
+                (other.effect != number.effect || other.shape == number.shape)
+                    && other.seen_only() == number.seen_only()
+            };
             match groups.iter_mut().find(|group| group.len() < LANES && group.iter().all(agrees)) {
                 Some(group) => group.push(index),
                 None => groups.push(vec![index]),
@@ -58,6 +70,7 @@ impl Model {
             with.place_of(effect, parameter).ok_or_else(unknown)
         };
         let places: Vec<usize> = numbers.iter().map(place).collect::<Result<_, _>>()?;
-        Ok(Derived { chain: with.chain_with(&seeded(with.values(), &places)), numbers })
+        let seen_only = numbers.iter().all(|index| list[*index].seen_only());
+        Ok(Derived { chain: with.chain_with(&seeded(with.values(), &places)), numbers, seen_only })
     }
 }

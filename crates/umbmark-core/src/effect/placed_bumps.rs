@@ -79,6 +79,7 @@ impl Effect for PlacedBumps {
         p[4] != 0.0
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         if at.last_turn != 0.0 || at.turns_on_the_spot() {
             return;

@@ -52,6 +52,7 @@ impl Effect for RearTruck {
         p.iter().any(|ratio| *ratio != 1.0)
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         if at.truck > 0.0 {
             let left = p[2] * 2.0 / (p[0] + 1.0);
@@ -60,6 +61,7 @@ impl Effect for RearTruck {
         }
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if at.truck > 0.0 {
             motion.rotation /= p[1];

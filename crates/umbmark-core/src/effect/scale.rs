@@ -51,6 +51,7 @@ impl Effect for Scale {
         format!("A metre by odometry is {} too {word} on the floor.", mm(off))
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= p[0];
         travel.right *= p[0];

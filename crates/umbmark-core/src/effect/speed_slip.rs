@@ -37,6 +37,7 @@ impl Effect for SpeedSlip {
         at_work(p)
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= kept(p[0], at.wheel_speed[0]);
         travel.right *= kept(p[0], at.wheel_speed[1]);
@@ -54,6 +55,7 @@ pub(super) fn creeps(k: f64, who: &str) -> String {
 pub(super) const PER_SPEED: Parameter = Parameter::size("s_per_m", "", "s/m", 0.015, (-1.0, 1.0), "");
 
 /// The share of a wheel's travel that is left at its speed \[m/s\].
+#[inline(always)]
 pub(super) fn kept<T: Real>(s_per_m: T, speed: f64) -> T {
     -s_per_m * speed.abs() + 1.0
 }

@@ -37,6 +37,7 @@ impl Effect for SpeedSlipLeft {
         at_work(p)
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= kept(p[0], at.wheel_speed[0]);
     }

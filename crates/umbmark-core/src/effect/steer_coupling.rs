@@ -39,6 +39,7 @@ impl Effect for SteerCoupling {
         format!("Each metre ahead turns the course by {} to the {}, whatever is steered.", deg(p[0]), side(p[0]))
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation += p[0] * motion.forward;
     }

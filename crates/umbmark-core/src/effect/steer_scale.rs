@@ -42,6 +42,7 @@ impl Effect for SteerScale {
         format!("Where the steering counts 90 degrees the course turns by {}.", deg(p[0] * FRAC_PI_2))
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation *= p[0];
     }

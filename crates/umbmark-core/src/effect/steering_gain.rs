@@ -51,6 +51,7 @@ impl Effect for SteeringGain {
         at_work(p)
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if let Some(tangent) = steered(at, motion) {
             let t = tangent.value();

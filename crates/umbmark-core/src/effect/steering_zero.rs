@@ -42,6 +42,7 @@ impl Effect for SteeringZero {
         at_work(p)
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if let Some(tangent) = steered(at, motion) {
             steer_on(at, motion, tangent, p[0]);
@@ -54,6 +55,7 @@ const MOST: f64 = 5.8;
 
 /// The tangent of the steering angle that a motion is made with; `None` on the spot, and where it is not known how the robot is
 /// steered.
+#[inline(always)]
 pub(super) fn steered<T: Real>(at: &Context<T>, motion: &Displacement2<T>) -> Option<T> {
     let across = motion.rotation * at.axle_distance;
     let drives = at.axle_distance > 0.0 && across.value().abs() < MOST * motion.forward.value().abs();
@@ -61,6 +63,7 @@ pub(super) fn steered<T: Real>(at: &Context<T>, motion: &Displacement2<T>) -> Op
 }
 
 /// Turns the wheel, steered by an angle of this tangent, farther to the left: tan(δ + ε) = t + (1 + t²) tan ε/(1 - t tan ε).
+#[inline(always)]
 pub(super) fn steer_on<T: Real>(at: &Context<T>, motion: &mut Displacement2<T>, tangent: T, farther: T) {
     let (sine, cosine) = farther.sine_cosine();
     let added = (tangent * tangent + 1.0) * sine / (cosine - tangent * sine);

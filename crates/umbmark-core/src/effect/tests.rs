@@ -254,7 +254,7 @@ fn derivatives_taken_together_are_those_of_each_number_alone_to_the_last_bit() {
     let derived = model.derived(&numbers).unwrap();
     assert!(derived.len() <= numbers.len().div_ceil(LANES) + 2, "{} chains", derived.len());
     let mut told = 0;
-    for Derived { chain, numbers: places } in &derived {
+    for Derived { chain, numbers: places, .. } in &derived {
         let together: Vec<Pose2<Dual>> = probes.iter().flat_map(|track| track.poses(chain)).collect();
         for (lane, place) in places.iter().enumerate() {
             let Number { effect, parameter, shape } = numbers[*place];
@@ -272,6 +272,30 @@ fn derivatives_taken_together_are_those_of_each_number_alone_to_the_last_bit() {
         }
     }
     assert_eq!(told, numbers.len());
+}
+
+#[test]
+fn derivatives_of_every_effect_have_the_same_bits_in_registers_of_every_width() {
+    let number = |re: f64, k: usize| Dual { re, eps: std::array::from_fn(|lane| libm::sin((9 * lane + k) as f64)) };
+    for entry in CATALOGUE {
+        let values: Vec<Dual> =
+            entry.about.parameters.iter().enumerate().map(|(k, p)| number(p.usual(&Robot::labmate()), k)).collect();
+        for (k, at) in contexts().iter().enumerate() {
+            let at = at.headed(number(0.7, k));
+            let acted = |mean: &Mean<Dual>| {
+                let mut travel = WheelTravel { left: number(0.01, k + 1), right: number(-0.02, k + 2) };
+                let mut motion = Displacement2 {
+                    forward: number(0.02, k + 3),
+                    sideways: number(1e-4, k + 4),
+                    rotation: number(-0.03, k + 5),
+                };
+                (mean.wheels)(&values, &at, &mut travel);
+                (mean.body)(&values, &at, &mut motion);
+                (travel, motion)
+            };
+            assert_eq!(acted(Dual::mean(entry)), acted(&entry.duals), "{}", entry.about.name);
+        }
+    }
 }
 
 #[test]

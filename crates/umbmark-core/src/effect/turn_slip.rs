@@ -46,6 +46,7 @@ impl Effect for TurnSlip {
         at_work(p)
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if at.turns_on_the_spot() {
             motion.rotation *= -p[0] + 1.0;

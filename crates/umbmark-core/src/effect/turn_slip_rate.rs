@@ -44,6 +44,7 @@ impl Effect for TurnSlipRate {
         at_work(p)
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation *= -p[0] * at.turn_rate.abs() + 1.0;
     }

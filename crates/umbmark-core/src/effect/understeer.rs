@@ -44,6 +44,7 @@ impl Effect for Understeer {
         at_work(p)
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if let Some(tangent) = steered(at, motion) {
             let acceleration = tangent * (at.speed * at.speed / at.axle_distance);

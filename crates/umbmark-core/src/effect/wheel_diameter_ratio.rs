@@ -57,6 +57,7 @@ impl Effect for WheelDiameterRatio {
         )
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
         let left = (p[0] + 1.0).recip() * 2.0;
         travel.left *= left;

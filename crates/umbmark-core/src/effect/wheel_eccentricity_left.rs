@@ -46,6 +46,7 @@ impl Effect for WheelEccentricityLeft {
         at_work(p)
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left += wave(p, at, 0);
     }
@@ -69,11 +70,11 @@ pub(super) const COSINE: Parameter = Parameter::size("cosine_m", "", "m", 3e-4, 
 pub(super) const SINE: Parameter = Parameter::size("sine_m", "", "m", 3e-4, (-0.1, 0.1), "");
 
 /// c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀) over a piece \[m\].
+#[inline(always)]
 pub(super) fn wave<T: Real>(p: &[T], at: &Context<T>, wheel: usize) -> T {
-    let from = at.wheel_angle[wheel];
-    let (sine_from, cosine_from) = from.sine_cosine();
-    let (sine_to, cosine_to) = (from + at.wheel_rotation[wheel]).sine_cosine();
-    p[0] * (cosine_to - cosine_from) + p[1] * (sine_to - sine_from)
+    let half = 0.5 * at.wheel_rotation[wheel];
+    let (sine, cosine) = (at.wheel_angle[wheel] + half).sine_cosine();
+    (p[1] * cosine - p[0] * sine) * (2.0 * half.sine_cosine().0)
 }
 
 #[cfg(test)]

@@ -45,6 +45,7 @@ impl Effect for WheelEccentricityRight {
         at_work(p)
     }
 
+    #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.right += wave(p, at, 1);
     }

@@ -48,6 +48,7 @@ impl Effect for Wheelbase {
         )
     }
 
+    #[inline(always)]
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation /= p[0];
     }

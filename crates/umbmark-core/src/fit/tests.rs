@@ -1,5 +1,6 @@
 use super::*;
 use crate::random::Stream;
+use std::cell::Cell;
 use std::ops::Range;
 
 /// Rosenbrock's valley as residuals (1 - x, 10 (y - x²)): the classic that undamped steps overshoot.
@@ -55,6 +56,50 @@ fn a_weighted_line_has_the_estimates_and_covariance_of_the_textbook() {
     let expected = DMatrix::from_row_slice(2, 2, &[sxx, -sx, -sx, s]) / determinant;
     assert!((covariance - expected).abs().max() < 1e-14);
     assert!((fit.residual_variance().unwrap() - fit.cost() / 2.0).abs() < 1e-15);
+}
+
+/// A circle through points that are nowhere near one: much is left of the residuals at the best, and they are curved.
+struct Circle {
+    evaluated: Cell<usize>,
+}
+
+impl Circle {
+    const POINTS: [[f64; 2]; 6] = [[0.0, 0.0], [3.0, 0.5], [1.0, 2.0], [-1.0, 1.5], [0.4, -1.5], [2.0, -0.6]];
+
+    /// What points of a fit by these options were worked out, and where it ended.
+    fn fitted(options: &Options) -> (usize, Fit) {
+        let circle = Circle { evaluated: Cell::new(0) };
+        let fit = least_squares(&circle, &[1.0, 0.2, 1.5], options);
+        (circle.evaluated.get(), fit)
+    }
+}
+
+impl Problem for Circle {
+    fn residuals(&self, p: &[f64]) -> DVector<f64> {
+        self.evaluated.update(|count| count + 1);
+        DVector::from_fn(6, |i, _| (Self::POINTS[i][0] - p[0]).hypot(Self::POINTS[i][1] - p[1]) - p[2])
+    }
+
+    fn jacobian(&self, p: &[f64]) -> DMatrix<f64> {
+        DMatrix::from_fn(6, 3, |i, j| {
+            let away = [Self::POINTS[i][0] - p[0], Self::POINTS[i][1] - p[1]];
+            if j == 2 { -1.0 } else { -away[j] / away[0].hypot(away[1]) }
+        })
+    }
+}
+
+#[test]
+fn a_frugal_fit_ends_at_the_same_place_after_fewer_points() {
+    let tolerance = Options { decrease_tolerance: 1e-12, ..Options::default() };
+    let (plainly, all) = Circle::fitted(&tolerance);
+    let (frugally, few) = Circle::fitted(&Options { frugal: true, ..tolerance });
+    assert!(all.termination.converged() && few.termination.converged());
+    for (a, b) in all.values.iter().zip(&few.values) {
+        assert!((a - b).abs() < 1e-5, "{:?} {:?}", all.values, few.values);
+    }
+    assert!(4 * frugally <= 3 * plainly, "{frugally} of {plainly}");
+    let valley = least_squares(&Valley, &[-1.2, 1.0], &Options { frugal: true, ..Options::default() });
+    assert!((valley.values[0] - 1.0).abs() < 1e-6 && (valley.values[1] - 1.0).abs() < 1e-6, "{:?}", valley.values);
 }
 
 #[test]

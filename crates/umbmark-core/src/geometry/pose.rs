@@ -1,8 +1,5 @@
 //! Rigid motions of the plane and their logarithms.
 
-#[cfg(target_arch = "x86_64")]
-pub(super) mod x86;
-
 use super::{Dual, Real, wrap};
 
 /// A pose of a body in the plane, `world_from_body`.
@@ -125,13 +122,8 @@ impl<T: Real> Pose2<T> {
     }
 
     /// Moves this pose by a constant-twist motion in its own frame.
-    #[inline]
-    pub fn advance(&mut self, displacement: &Displacement2<T>) {
-        T::advance(self, displacement);
-    }
-
     #[inline(always)]
-    pub(super) fn advance_plainly(&mut self, displacement: &Displacement2<T>) {
+    pub fn advance(&mut self, displacement: &Displacement2<T>) {
         let half = displacement.rotation * 0.5;
         let (sinc, _) = half.sinc_cos();
         let (sine, cosine) = (self.heading + half).sine_cosine();
@@ -226,25 +218,6 @@ mod tests {
                 let moved = matrix(&p.moved(&b)) * Vector3::new(0.7, -0.4, 1.0);
                 assert!((moved - mp * mq * Vector3::new(0.7, -0.4, 1.0)).abs().max() < 2e-14);
             }
-        }
-    }
-
-    #[test]
-    fn derivatives_are_carried_with_the_same_bits_whatever_the_machine_can_do_at_once() {
-        let number = |value: f64, k: usize| Dual {
-            re: value,
-            eps: std::array::from_fn(|lane| libm::sin((9 * lane + k) as f64)),
-        };
-        for (k, d) in displacements().enumerate() {
-            let mut pose = Pose2 { x: number(0.3, k), y: number(-2.0, k + 1), heading: number(0.7 * k as f64, k + 2) };
-            let by = Displacement2 {
-                forward: number(d.forward, k + 3),
-                sideways: number(d.sideways, k + 4),
-                rotation: number(d.rotation, k + 5),
-            };
-            let moved = pose.moved(&by);
-            pose.advance_plainly(&by);
-            assert_eq!(moved, pose);
         }
     }
 

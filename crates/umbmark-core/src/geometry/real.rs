@@ -1,10 +1,5 @@
 //! The scalars of the plane: `f64` for values, [`Dual`] for values with exact derivatives.
 
-#[cfg(target_arch = "x86_64")]
-use super::Instructions;
-#[cfg(target_arch = "x86_64")]
-use super::pose::x86;
-use super::{Displacement2, Pose2};
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// How many derivatives a [`Dual`] carries.
@@ -86,11 +81,8 @@ pub trait Real:
     /// e^x by `libm`, the same bits on every machine.
     fn exponential(self) -> Self;
 
-    /// [`Pose2::advance`], by the widest registers that the machine has.
-    #[inline]
-    fn advance(pose: &mut Pose2<Self>, by: &Displacement2<Self>) {
-        pose.advance_plainly(by);
-    }
+    /// Whether it is several numbers side by side, so that wide registers are worth while.
+    const WIDE: bool;
 
     /// Any other function of this number, from its value and its slope here. Where this number does not change, the slope
     /// need not be finite.
@@ -98,6 +90,8 @@ pub trait Real:
 }
 
 impl Real for f64 {
+    const WIDE: bool = false;
+
     #[inline]
     fn sinc_cos(self) -> (f64, f64) {
         if self.abs() <= std::f64::consts::FRAC_PI_4 {
@@ -260,6 +254,8 @@ assign!(MulAssign, mul_assign, *, Dual, f64);
 assign!(DivAssign, div_assign, /, Dual, f64);
 
 impl Real for Dual {
+    const WIDE: bool = true;
+
     /// Always inlined: mostly one of the two is not wanted.
     #[inline(always)]
     fn sinc_cos(self) -> (Dual, Dual) {
@@ -292,19 +288,6 @@ impl Real for Dual {
     fn exponential(self) -> Dual {
         let value = libm::exp(self.re);
         self.with(value, |e| value * e)
-    }
-
-    #[inline]
-    fn advance(pose: &mut Pose2<Dual>, by: &Displacement2<Dual>) {
-        #[cfg(target_arch = "x86_64")]
-        match Instructions::best() {
-            // SAFETY: the machine was found to have them.
-            Instructions::Avx512 => return unsafe { x86::advance_by_eight(pose, by) },
-            // SAFETY: as above.
-            Instructions::Avx2 => return unsafe { x86::advance_by_four(pose, by) },
-            Instructions::Portable => {}
-        }
-        pose.advance_plainly(by);
     }
 
     #[inline]

@@ -16,47 +16,68 @@ const STEPS: usize = 40;
 /// No curvature is taken for less.
 const FLATTEST: f64 = 0.04;
 
-/// Minimises `cost`, of a point for each of its lanes, from `start` by the method of Broyden, Fletcher, Goldfarb and Shanno (1970); the
-/// first curvatures are those along the coordinates.
-pub(super) fn minimise(start: [f64; EIGHT], cost: impl Fn(&[[f64; EIGHT]; EIGHT]) -> [f64; EIGHT]) -> [f64; EIGHT] {
-    let mut at = Point::from(start);
-    let around = |at: &Point, by: f64| {
-        let points = std::array::from_fn(|i| {
-            let mut point = *at;
-            point[i] += by;
-            point.into()
-        });
-        Point::from(cost(&points))
-    };
-    let here = Point::from(cost(&[start; EIGHT]));
-    let (above, below) = (around(&at, NEAR), around(&at, -NEAR));
-    let mut least = here[0];
-    let mut slope = (above - below) / (2.0 * NEAR);
-    let curvature = (above + below - 2.0 * here) / (NEAR * NEAR);
-    // Far from the least value the slope says more of how far it is than the curvature does.
-    let mut inverse = SMatrix::from_diagonal(&curvature.zip_map(&slope, |c, s| 1.0 / c.max(s.abs()).max(FLATTEST)));
-    for _ in 0..STEPS {
-        let step: Point = -inverse * slope;
-        let points = LENGTHS.map(|length| at + step * length);
-        let costs = cost(&points.map(Into::into));
-        let best = (0..EIGHT).filter(|k| costs[*k] < least).min_by(|a, b| costs[*a].total_cmp(&costs[*b]));
-        let Some(best) = best else { break };
-        let gain = least - costs[best];
-        let moved = points[best] - at;
-        (at, least) = (points[best], costs[best]);
-        if gain < ENOUGH {
-            break;
-        }
-        let now = (around(&at, NEAR) - Point::repeat(least)) / NEAR;
-        let turned = now - slope;
-        slope = now;
-        let along = moved.dot(&turned);
-        if along > 0.0 {
-            let across = SMatrix::identity() - moved * turned.transpose() / along;
-            inverse = across * inverse * across.transpose() + moved * moved.transpose() / along;
-        }
+/// A search for the least value by the method of Broyden, Fletcher, Goldfarb and Shanno (1970).
+pub(super) struct Descent {
+    at: Point,
+    /// The inverse of the curvatures as they were met; `None` before the first step.
+    inverse: Option<SMatrix<f64, EIGHT, EIGHT>>,
+}
+
+impl Descent {
+    /// From a point; the first curvatures are those along the coordinates.
+    pub fn from(start: [f64; EIGHT]) -> Descent {
+        Descent { at: Point::from(start), inverse: None }
     }
-    at.into()
+
+    /// Where it is.
+    pub fn here(&self) -> [f64; EIGHT] {
+        self.at.into()
+    }
+
+    /// Goes on to the least value of `cost`, of a point for each of its lanes. What is known of the curvatures stays for another cost that
+    /// is much like this one.
+    pub fn descend(&mut self, cost: impl Fn(&[[f64; EIGHT]; EIGHT]) -> [f64; EIGHT]) {
+        let around = |at: &Point, by: f64| {
+            let points = std::array::from_fn(|i| {
+                let mut point = *at;
+                point[i] += by;
+                point.into()
+            });
+            Point::from(cost(&points))
+        };
+        let mut least = cost(&[self.here(); EIGHT])[0];
+        let above = around(&self.at, NEAR);
+        let mut slope = (above - Point::repeat(least)) / NEAR;
+        let mut inverse = self.inverse.unwrap_or_else(|| {
+            let below = around(&self.at, -NEAR);
+            slope = (above - below) / (2.0 * NEAR);
+            let curvature = (above + below - Point::repeat(2.0 * least)) / (NEAR * NEAR);
+            // Far from the least value the slope says more of how far it is than the curvature does.
+            SMatrix::from_diagonal(&curvature.zip_map(&slope, |c, s| 1.0 / c.max(s.abs()).max(FLATTEST)))
+        });
+        for _ in 0..STEPS {
+            let step: Point = -inverse * slope;
+            let points = LENGTHS.map(|length| self.at + step * length);
+            let costs = cost(&points.map(Into::into));
+            let best = (0..EIGHT).filter(|k| costs[*k] < least).min_by(|a, b| costs[*a].total_cmp(&costs[*b]));
+            let Some(best) = best else { break };
+            let gain = least - costs[best];
+            let moved = points[best] - self.at;
+            (self.at, least) = (points[best], costs[best]);
+            if gain < ENOUGH {
+                break;
+            }
+            let now = (around(&self.at, NEAR) - Point::repeat(least)) / NEAR;
+            let turned = now - slope;
+            slope = now;
+            let along = moved.dot(&turned);
+            if along > 0.0 {
+                let across = SMatrix::identity() - moved * turned.transpose() / along;
+                inverse = across * inverse * across.transpose() + moved * moved.transpose() / along;
+            }
+        }
+        self.inverse = Some(inverse);
+    }
 }
 
 #[cfg(test)]
@@ -76,7 +97,8 @@ mod tests {
             };
             x.chunks_exact(2).map(of).sum::<f64>()
         };
-        let best = minimise([-1.2, 1.0, 1.5, 0.5, 0.0, 0.0, 2.5, 1.0], |points| points.map(|x| 1e3 * valley(&x)));
-        assert!(valley(&best) < 0.1, "{best:?}");
+        let mut descent = Descent::from([-1.2, 1.0, 1.5, 0.5, 0.0, 0.0, 2.5, 1.0]);
+        descent.descend(|points| points.map(|x| 1e3 * valley(&x)));
+        assert!(valley(&descent.here()) < 0.1, "{:?}", descent.here());
     }
 }

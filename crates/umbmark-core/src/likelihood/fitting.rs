@@ -92,16 +92,20 @@ impl Slopes {
 /// Outliers are looked for so many times.
 const ROUNDS: usize = 3;
 /// Stops where a step changes no parameter by more than a millionth.
-const STOP: Options = Options { iterations: 12, step_tolerance: 1e-7, decrease_tolerance: 1e-9, cautious: true };
+const STOP: Options =
+    Options { iterations: 12, step_tolerance: 1e-7, decrease_tolerance: 1e-8, cautious: true, frugal: true };
+/// Enough for an estimate of the noise, from which what the free values can still do is fitted out.
+const NEARLY: Options = Options { decrease_tolerance: 1e-5, ..STOP };
 /// From values that were fitted already.
 const AGAIN: Options = Options { cautious: false, ..STOP };
+const NEARLY_AGAIN: Options = Options { cautious: false, ..NEARLY };
 
 impl Observed {
     /// Fits all free values of a model but those `held`, and the noise.
     pub fn fit(&self, model: &Model, from: &Noise, held: &[usize]) -> Result<Fitted, ModelError> {
         let mut fitted = self.whole().unfitted(model, from);
         fitted.free.retain(|value| !held.contains(value));
-        fitted.settle(&STOP)?;
+        fitted.settle(&NEARLY)?;
         // An outlier may hide a smaller one, so it is looked for again.
         for _ in 0..ROUNDS {
             let found = fitted.beyond_noise();
@@ -112,7 +116,7 @@ impl Observed {
                 fitted.outliers.push(fitted.outlier((run, block), f64::from_bits(deviations)));
                 fitted.observed.runs[run].start_afresh(block, &fitted.model.chain());
             }
-            fitted.settle(&AGAIN)?;
+            fitted.settle(&NEARLY_AGAIN)?;
         }
         fitted.refit_by(&AGAIN)?;
         Ok(fitted)
@@ -160,7 +164,22 @@ impl Observed {
         self.runs.par_iter().map(of_run).collect()
     }
 
-    /// Derivatives of the predicted poses by numbers that a model has or may have: run by run, one column a number.
+    /// The same, and the residuals of the model.
+    fn columns_and_residuals(&self, model: &Model, values: &[usize]) -> (Vec<Vec<Column>>, Vec<Column>) {
+        let chains: Vec<_> = model.chains(values).collect();
+        let of_run = |run: &ObservedRun| match &chains[..] {
+            [] => (Vec::new(), run.residuals(&model.chain())),
+            [(first, count), others @ ..] => {
+                let (mut columns, residuals) = run.columns_and_residuals(first, *count);
+                columns.extend(others.iter().flat_map(|(chain, count)| run.columns(chain, *count)));
+                (columns, residuals)
+            }
+        };
+        self.runs.par_iter().map(of_run).unzip()
+    }
+
+    /// Derivatives of the predicted poses by numbers that the model that the runs are laid along has or may have: run by run, one column
+    /// a number.
     pub fn columns_of(&self, model: &Model, numbers: &[Number]) -> Result<Vec<Vec<Column>>, ModelError> {
         let derived = model.derived(numbers)?;
         Ok(self.runs.par_iter().map(|run| run.columns_of(&derived, numbers.len())).collect())
@@ -168,11 +187,12 @@ impl Observed {
 }
 
 impl ObservedRun {
-    /// One column for each of `count` numbers.
+    /// One column for each of `count` numbers, beside the model that the run is laid along.
     pub(crate) fn columns_of(&self, derived: &[Derived], count: usize) -> Vec<Column> {
         let mut columns = vec![Column::new(); count];
-        for Derived { chain, numbers } in derived {
-            let own = self.columns(chain, numbers.len());
+        for Derived { chain, numbers, seen_only } in derived {
+            let count = numbers.len();
+            let own = if *seen_only { self.columns_of_sight(chain, count) } else { self.columns(chain, count) };
             numbers.iter().zip(own).for_each(|(number, column)| columns[*number] = column);
         }
         columns
@@ -182,7 +202,7 @@ impl ObservedRun {
 impl Fitted {
     /// Fits values and noise in turn, the values first by `options`.
     fn settle(&mut self, options: &Options) -> Result<(), ModelError> {
-        for options in [options, &AGAIN] {
+        for options in [options, &NEARLY_AGAIN] {
             self.refit_by(options)?;
             let (chain, columns) = (self.model.chain(), self.all_columns());
             self.noise = Noise::estimate(&self.observed, &chain, &columns, &self.noise);
@@ -295,33 +315,40 @@ impl Tracks<'_> {
 
 impl Problem for Tracks<'_> {
     fn residuals(&self, parameters: &[f64]) -> DVector<f64> {
-        let Ok(model) = self.model(parameters) else {
-            return DVector::from_element(1, f64::INFINITY);
-        };
-        let Tracks { fitted, .. } = self;
-        let (chain, sizes) = (model.chain(), &parameters[fitted.free.len()..]);
-        let left = |(run, reference): (&ObservedRun, &Vec<Column>)| {
-            let mut left = run.residuals(&chain);
-            for (column, size) in reference.iter().zip(sizes) {
-                left.iter_mut().zip(column).for_each(|(l, c)| (0..3).for_each(|k| l[k] -= size * c[k]));
-            }
-            vec![left]
-        };
-        let residuals: Vec<Vec<Column>> = fitted.observed.runs.par_iter().zip(&fitted.reference).map(left).collect();
-        DVector::from_column_slice(fitted.stacked(&residuals).as_slice())
+        self.both(parameters).0
     }
 
     fn jacobian(&self, parameters: &[f64]) -> DMatrix<f64> {
-        let Ok(model) = self.model(parameters) else {
-            return DMatrix::zeros(1, parameters.len());
-        };
+        self.both(parameters).1
+    }
+
+    fn both(&self, parameters: &[f64]) -> (DVector<f64>, DMatrix<f64>) {
         let Tracks { fitted, slopes } = self;
-        if !slopes.borrow().fit(&model, &fitted.free) {
-            slopes.replace(Slopes::of(&fitted.observed, &model, &fitted.free));
-        }
+        let Ok(model) = self.model(parameters) else {
+            return (DVector::from_element(1, f64::INFINITY), DMatrix::zeros(1, parameters.len()));
+        };
+        let (places, sizes) = (&fitted.free, &parameters[fitted.free.len()..]);
+        // Where a fit begins, both are known.
+        let begins = slopes.borrow().fit(&model, places) && model == fitted.model;
+        let residuals: Vec<Column> = if begins {
+            let chain = model.chain();
+            fitted.observed.runs.par_iter().map(|run| run.residuals_along(&chain)).collect()
+        } else {
+            let (columns, residuals) = fitted.observed.columns_and_residuals(&model, places);
+            let (values, free) = (model.values().collect(), places.clone());
+            slopes.replace(Slopes { values, free, columns: Arc::new(columns) });
+            residuals
+        };
         let own = Arc::clone(&slopes.borrow().columns);
-        let columns: Vec<_> = own.iter().zip(&fitted.reference).map(|(own, more)| [&own[..], more].concat()).collect();
-        -fitted.stacked(&columns)
+        let all = own.iter().zip(&fitted.reference).zip(residuals).map(|((own, reference), mut left)| {
+            for (column, size) in reference.iter().zip(sizes) {
+                left.iter_mut().zip(column).for_each(|(l, c)| (0..3).for_each(|k| l[k] -= size * c[k]));
+            }
+            [&own[..], reference, &[left]].concat()
+        });
+        let stacked = fitted.stacked(&all.collect::<Vec<_>>());
+        let width = parameters.len();
+        (stacked.column(width).into_owned(), -stacked.columns(0, width))
     }
 }
 

@@ -1,8 +1,10 @@
 //! The sizes of the noise, and how they are found.
 
-use super::descent;
+use super::descent::Descent;
 use super::eight::{EIGHT, Eight, Scalar};
+use super::fitting::Column;
 use super::observed::{Growth, Observed, ObservedRun};
+use super::products::{gram, solver};
 use crate::effect::Chain;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -58,6 +60,9 @@ impl Default for Noise {
 
 /// No size falls below this share of its usual value, or rises above its inverse.
 const RANGE: f64 = 1e-2;
+/// So often are the columns fitted out anew before they are fitted with every noise that is tried.
+const ROUNDS: usize = 2;
+
 impl Noise {
     /// How many sizes are estimated.
     pub const SIZES: usize = 8;
@@ -68,7 +73,7 @@ impl Noise {
     ///
     /// Noise within blocks is taken from successive differences. `columns` holds, run by run, the columns of the model
     /// and last the residuals.
-    pub fn estimate(observed: &Observed, chain: &Chain<f64>, columns: &[Vec<Vec<[f64; 3]>>], from: &Noise) -> Noise {
+    pub fn estimate(observed: &Observed, chain: &Chain<f64>, columns: &[Vec<Column>], from: &Noise) -> Noise {
         let mut start = *from;
         let scatter: Vec<_> = observed.runs.par_iter().map(|run| run.scatter_within_blocks(chain)).collect();
         let pooled = |which: usize| {
@@ -102,19 +107,47 @@ impl Noise {
             libm::log(from.reference_time / usual.reference_time),
             libm::log(from.reference_delay / usual.reference_delay),
         ];
-        let cost = |points: &[[f64; Noise::SIZES]; EIGHT]| {
+        let cost = |points: &[[f64; Noise::SIZES]; EIGHT], columns: &[Vec<Column>]| {
             let deviances = Noise::deviances(&points.map(|x| sizes(&x)), &observed.runs, columns);
             // A faint preference for usual sizes keeps what the data does not show where it is.
             let pull = |x: &[f64; Noise::SIZES]| x.iter().map(|v| 0.02 * v * v).sum::<f64>();
             std::array::from_fn(|lane| deviances[lane] + pull(&points[lane]))
         };
-        sizes(&descent::minimise(first, cost))
+        let mut descent = Descent::from(first);
+        // Most of the way with the columns fitted out beforehand: their values change little, and little changes with them.
+        for _ in 0..ROUNDS {
+            let left = sizes(&descent.here()).less_fitted(&observed.runs, columns);
+            descent.descend(|points| cost(points, &left));
+        }
+        descent.descend(|points| cost(points, columns));
+        sizes(&descent.here())
+    }
+
+    /// The last column of each run less what the others explain of it under this noise.
+    fn less_fitted(&self, runs: &[ObservedRun], columns: &[Vec<Column>]) -> Vec<Vec<Column>> {
+        let width = columns.first().map_or(0, Vec::len);
+        let of_run = |(run, columns): (&ObservedRun, &Vec<Column>)| {
+            gram(&self.whiten(run, &columns.iter().map(Vec::as_slice).collect::<Vec<_>>()).values, width)
+        };
+        let parts: Vec<DMatrix<f64>> = runs.par_iter().zip(columns).map(of_run).collect();
+        let products = parts.iter().fold(DMatrix::zeros(width, width), |sum, part| sum + part);
+        let others: Vec<usize> = (0..width - 1).collect();
+        let cross = products.view((0, width - 1), (width - 1, 1)).into_owned();
+        let values = solver(&products, &others).map(|solver| solver.solve(&cross));
+        let less = |columns: &Vec<Column>| {
+            let mut left = columns[width - 1].clone();
+            for (column, value) in columns.iter().zip(values.iter().flatten()) {
+                left.iter_mut().zip(column).for_each(|(l, c)| (0..3).for_each(|k| l[k] -= value * c[k]));
+            }
+            vec![left]
+        };
+        columns.iter().map(less).collect()
     }
 
     /// -2 log of the restricted likelihood under each of some sizes, up to a constant. The last column of each run is its residuals.
-    pub fn deviances(noises: &[Noise; EIGHT], runs: &[ObservedRun], columns: &[Vec<Vec<[f64; 3]>>]) -> [f64; EIGHT] {
+    pub fn deviances(noises: &[Noise; EIGHT], runs: &[ObservedRun], columns: &[Vec<Column>]) -> [f64; EIGHT] {
         let noise = Noise::side_by_side(noises);
-        let of_run = |(run, columns): (&ObservedRun, &Vec<Vec<[f64; 3]>>)| {
+        let of_run = |(run, columns): (&ObservedRun, &Vec<Column>)| {
             noise.products(run, &columns.iter().map(Vec::as_slice).collect::<Vec<_>>())
         };
         let parts: Vec<(Vec<Eight>, Eight)> = runs.par_iter().zip(columns).map(of_run).collect();
@@ -137,24 +170,10 @@ impl Noise {
 /// logarithm of what they were divided by.
 fn deviance(products: &DMatrix<f64>, log_scale: f64) -> f64 {
     let p = products.nrows() - 1;
-    let mut deviance = 2.0 * log_scale;
+    let deviance = 2.0 * log_scale + products[(p, p)];
+    let Some(solver) = solver(products, &(0..p).collect::<Vec<_>>()) else { return deviance };
     let cross = products.view((0, p), (p, 1)).into_owned();
-    let mut rest = products[(p, p)];
-    let mut information = products.view((0, 0), (p, p)).into_owned();
-    let lengths: Vec<f64> = (0..p).map(|i| information[(i, i)].sqrt().max(f64::MIN_POSITIVE)).collect();
-    for i in 0..p {
-        for j in 0..p {
-            information[(i, j)] /= lengths[i] * lengths[j];
-        }
-        information[(i, i)] += 1e-12;
-        deviance += 2.0 * libm::log(lengths[i]);
-    }
-    if let Some(factor) = information.cholesky() {
-        let scaled = DMatrix::from_fn(p, 1, |i, _| cross[i] / lengths[i]);
-        rest -= scaled.dot(&factor.solve(&scaled));
-        deviance += 2.0 * (0..p).map(|i| libm::log(factor.l_dirty()[(i, i)])).sum::<f64>();
-    }
-    deviance + rest
+    deviance + solver.log_determinant() - solver.half(&cross).norm_squared()
 }
 
 impl Noise<Eight> {

@@ -201,10 +201,7 @@ impl ObservedRun {
 
     fn less(&self, predicted: impl FnOnce(&mut dyn FnMut(usize, &Pose2))) -> Column {
         let mut sums = Sums::<1>::new(self);
-        predicted(&mut |i, pose| {
-            let (x, y, heading) = self.seen[i];
-            sums.add(i, [[x - pose.x], [y - pose.y]], heading.map(|h| [wrap(h - pose.heading)]));
-        });
+        predicted(&mut |i, pose| sums.add_residual(i, pose));
         sums.of_lane(0)
     }
 
@@ -213,16 +210,24 @@ impl ObservedRun {
         self.slopes(count, |seen| self.track.replay(chain, seen))
     }
 
-    /// The same by numbers that change nothing but the measurement, beside the model that the run is laid along.
+    /// The same, and measured minus predicted poses.
+    pub fn columns_and_residuals(&self, chain: &Chain<Dual>, count: usize) -> (Vec<Column>, Column) {
+        let (mut slopes, mut left) = (Sums::<LANES>::new(self), Sums::<1>::new(self));
+        self.track.replay(chain, |i, pose| {
+            slopes.add_slope(i, pose);
+            left.add_residual(i, &pose.value());
+        });
+        ((0..count).map(|lane| slopes.of_lane(lane)).collect(), left.of_lane(0))
+    }
+
+    /// The derivatives by numbers that change nothing but the measurement, beside the model that the run is laid along.
     pub fn columns_of_sight(&self, chain: &Chain<Dual>, count: usize) -> Vec<Column> {
         self.slopes(count, |seen| self.sighted(chain, seen))
     }
 
     fn slopes(&self, count: usize, predicted: impl FnOnce(&mut dyn FnMut(usize, &Pose2<Dual>))) -> Vec<Column> {
         let mut sums = Sums::<LANES>::new(self);
-        predicted(&mut |i, pose| {
-            sums.add(i, [pose.x.eps, pose.y.eps], self.seen[i].2.map(|_| pose.heading.eps));
-        });
+        predicted(&mut |i, pose| sums.add_slope(i, pose));
         (0..count).map(|lane| sums.of_lane(lane)).collect()
     }
 
@@ -285,6 +290,19 @@ impl<'a, const N: usize> Sums<'a, N> {
         if let Some(heading) = heading {
             mean[2].iter_mut().zip(heading).for_each(|(mean, heading)| *mean += heading / headings);
         }
+    }
+}
+
+impl Sums<'_, 1> {
+    fn add_residual(&mut self, observation: usize, pose: &Pose2) {
+        let (x, y, heading) = self.run.seen[observation];
+        self.add(observation, [[x - pose.x], [y - pose.y]], heading.map(|h| [wrap(h - pose.heading)]));
+    }
+}
+
+impl Sums<'_, LANES> {
+    fn add_slope(&mut self, observation: usize, pose: &Pose2<Dual>) {
+        self.add(observation, [pose.x.eps, pose.y.eps], self.run.seen[observation].2.map(|_| pose.heading.eps));
     }
 }
 

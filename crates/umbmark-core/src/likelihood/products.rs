@@ -88,6 +88,12 @@ impl ScaledCholesky {
         DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| solved[(i, j)] / self.lengths[i])
     }
 
+    /// The logarithm of the matrix's determinant.
+    pub(crate) fn log_determinant(&self) -> f64 {
+        let roots = self.lengths.iter().enumerate().map(|(i, length)| length * self.factor.l_dirty()[(i, i)]);
+        2.0 * roots.map(libm::log).sum::<f64>()
+    }
+
     /// L⁻¹ of some columns, with L Lᵀ the matrix.
     pub(crate) fn half(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
         let mut scaled = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| right[(i, j)] / self.lengths[i]);

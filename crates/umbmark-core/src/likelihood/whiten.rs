@@ -120,11 +120,20 @@ impl Noise<Eight> {
         let mut filter = Filter::new(self, run, columns);
         for index in 0..run.blocks.len() {
             let rows = filter.take_in(index);
-            for row in &filter.states.new[..rows] {
-                for (i, sums) in sums.chunks_exact_mut(width).enumerate() {
-                    let own = row[i];
-                    for (sum, other) in sums[..=i].iter_mut().zip(row) {
-                        *sum += own * *other;
+            if rows == 0 {
+                continue;
+            }
+            let [first, second, third] = filter.states.new.each_ref().map(|row| &row[..width]);
+            for (i, sums) in sums.chunks_exact_mut(width).enumerate() {
+                let (a, b, c) = (first[i], second[i], third[i]);
+                let others = first.iter().zip(second).zip(third);
+                if rows == 3 {
+                    for (sum, ((x, y), z)) in sums[..=i].iter_mut().zip(others) {
+                        *sum += a * *x + b * *y + c * *z;
+                    }
+                } else {
+                    for (sum, ((x, y), _)) in sums[..=i].iter_mut().zip(others) {
+                        *sum += a * *x + b * *y;
                     }
                 }
             }

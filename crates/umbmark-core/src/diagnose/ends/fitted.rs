@@ -16,7 +16,7 @@ const INVOLVED: f64 = 0.01;
 
 /// When a fit has settled: predictions over thousands of small pieces are good to some 1e-13.
 const SETTLED: fit::Options =
-    fit::Options { iterations: 100, step_tolerance: 1e-10, decrease_tolerance: 1e-12, cautious: true };
+    fit::Options { iterations: 100, step_tolerance: 1e-10, decrease_tolerance: 1e-12, cautious: true, frugal: false };
 
 /// A model fitted to return poses.
 #[derive(Clone, Debug)]

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 /// Steps of Gauss and Newton that fit whole tracks, from the fit of increments.
 const STEPS: usize = 8;
-/// Stops where no value changes by more.
-const SMALL: f64 = 1e-10;
+/// Stops where no value changes by more than this share of its standard error.
+const SMALL: f64 = 1e-3;
 
 /// A fitted model, its residuals, and the columns of its free values and of the effects of the reference that are fitted along.
 pub(crate) struct Alone {
@@ -93,7 +93,7 @@ impl Alone {
         if self.weighing() == Weighing::Increments {
             return Ok(self.fitted);
         }
-        let mut now = self;
+        let (mut now, mut covariance) = (self, None);
         for _ in 0..STEPS {
             let step = now.own(&now.errors.fit(&now.together(), None)).1;
             let values: Vec<f64> = now.fitted.model.values().collect();
@@ -101,11 +101,12 @@ impl Alone {
             let model = now.fitted.model.with_values(&now.fitted.free, &moved)?;
             let observed = now.fitted.observed.along(&model);
             now = Alone::new(Fitted { model, observed, weighing: Weighing::Tracks, ..now.fitted });
-            if step.iter().all(|step| step.abs() < SMALL) {
+            covariance = now.jackknife();
+            let variance = |k: usize| covariance.as_ref().map_or(0.0, |covariance| covariance[(k, k)]);
+            if step.iter().enumerate().all(|(k, step)| step * step <= SMALL * SMALL * variance(k)) {
                 break;
             }
         }
-        let covariance = now.jackknife();
         Ok(Fitted { covariance, ..now.fitted })
     }
 

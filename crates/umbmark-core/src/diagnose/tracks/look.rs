@@ -5,6 +5,7 @@ use super::flips::{Family, Scores};
 use super::system::Projected;
 use crate::diagnose::{Estimate, Options, Suspect};
 use crate::stats::f_upper_tail;
+use rayon::prelude::*;
 use std::cell::OnceCell;
 use std::sync::Arc;
 
@@ -95,7 +96,8 @@ fn look(exam: &Examination, smooths: bool, options: &Options) -> Vec<Finding> {
 /// The p-values of findings that come from the scores of runs, or of quarters of runs where too few runs show a group.
 fn certify(exam: &Examination, findings: &mut [Finding], options: &Options) {
     let few = exam.fitted.observed.runs.len() < ENOUGH_RUNS;
-    let all = |by_quarter: bool| findings.iter().map(|finding| scores(exam, finding, by_quarter)).collect::<Vec<_>>();
+    let all =
+        |by_quarter: bool| findings.par_iter().map(|finding| scores(exam, finding, by_quarter)).collect::<Vec<_>>();
     let by_run = all(few);
     let by_quarter = if by_run.iter().all(|own| own.carrying() >= ENOUGH_CARRYING) { Vec::new() } else { all(true) };
     let asked = findings.len() as f64;

@@ -280,8 +280,8 @@ fn of_run(run: &ObservedRun, chain: &Chain<f64>, scales: &Scales) -> Vec<Column>
     let terms: usize = COVARIATES.iter().map(|c| c.terms).sum();
     let track = &run.track;
     let way = track.length().max(f64::MIN_POSITIVE);
-    // By motion and coordinate.
-    let mut states: [[Vec<f64>; 3]; 3] = std::array::from_fn(|_| std::array::from_fn(|_| vec![0.0; terms]));
+    // Sums of each term times what turns a motion of the body into one of START's frame.
+    let mut states: [Vec<f64>; 5] = std::array::from_fn(|_| vec![0.0; terms]);
     let mut columns = vec![vec![[0.0; 3]; run.blocks.len()]; 3 * terms];
     let mut basis = vec![0.0; terms];
     let (mut pose, mut made) = (chain.start(), 0);
@@ -305,22 +305,23 @@ fn of_run(run: &ObservedRun, chain: &Chain<f64>, scales: &Scales) -> Vec<Column>
                 own.iter_mut().for_each(|value| *value *= exposure);
             }
             let (sine, cosine) = libm::sincos(middle.heading);
-            let added = [[cosine, sine, 0.0], [-sine, cosine, 0.0], [middle.y, -middle.x, 1.0]];
-            for (states, added) in states.iter_mut().zip(added) {
-                for (state, added) in states.iter_mut().zip(added) {
-                    state.iter_mut().zip(&basis).for_each(|(state, value)| *state += value * added);
-                }
+            for (state, added) in states.iter_mut().zip([cosine, sine, middle.x, middle.y, 1.0]) {
+                state.iter_mut().zip(&basis).for_each(|(state, value)| *state += value * added);
             }
             pose = pose.moved(&motion);
         }
         made = until;
         let (mut column, mut first) = (columns.iter_mut(), 0);
         for covariate in &COVARIATES {
-            for [x, y, turned] in &states {
+            for motion in Motion::ALL {
                 for term in first..first + covariate.terms {
                     let Some(column) = column.next() else { continue };
-                    let turned = turned[term];
-                    column[index] = [x[term] - block.place.y * turned, y[term] + block.place.x * turned, turned];
+                    let [cosine, sine, x, y, one] = states.each_ref().map(|state| state[term]);
+                    column[index] = match motion {
+                        Motion::Forward => [cosine, sine, 0.0],
+                        Motion::Sideways => [-sine, cosine, 0.0],
+                        Motion::Yaw => [y - block.place.y * one, block.place.x * one - x, one],
+                    };
                 }
             }
             first += covariate.terms;
