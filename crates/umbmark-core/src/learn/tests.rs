@@ -6,6 +6,7 @@ use crate::diagnose::ends::Ends;
 use crate::diagnose::tests::{margin, robot_with, simulated, trials};
 use crate::diagnose::{Options, base_model};
 use crate::drive::Robot;
+use crate::likelihood::watched::watched;
 use crate::path::Path;
 use std::io::Write;
 use std::sync::atomic::AtomicBool;
@@ -143,4 +144,46 @@ fn learning_that_is_stopped_ends_with_the_step_that_it_is_at_and_says_so() {
     let whole = learn(&data, &options).unwrap();
     assert!(part.partial && part.steps.len() == 3 && part.verdict != Verdict::Explained);
     assert!(!whole.partial && whole.steps.len() == 4 && whole.steps[..3] == part.steps);
+}
+
+/// Seed 61; 3 + 3 squares of 2 m, the model complete. Standard errors come from what is new from pose to pose, thousands of values,
+/// and Student's t from the runs, six of them: the intervals are wide rather than narrow.
+#[test]
+fn intervals_of_fits_to_tracks_hold_the_truth_in_at_least_nineteen_of_twenty() {
+    let trials = trials(60);
+    let robot = Robot::labmate();
+    let truth = [
+        ("wheel_diameter_ratio", "e_d", 1.003),
+        ("wheelbase", "e_b", 0.99),
+        ("scale", "e_s", 1.004),
+        ("wheel_eccentricity_left", "cosine_m", 4e-4),
+        ("wheel_eccentricity_left", "sine_m", -2e-4),
+        ("crab", "angle_rad", 2e-3),
+    ];
+    let noise = [
+        ("wheel_noise", "k_sqrt_m", 4e-4),
+        ("reference_noise", "position_sd_m", 8e-4),
+        ("reference_noise", "heading_sd_rad", 1e-3),
+    ];
+    let (mut model, mut asked) = (Model::new(&robot), Model::new(&robot));
+    for (effect, parameter, value) in truth.iter().chain(&noise) {
+        model.set(effect, parameter, *value).unwrap();
+    }
+    truth.iter().for_each(|(effect, ..)| asked.add(effect).unwrap().free = true);
+    let held = |trial: u64| {
+        let fit = fit(&watched(&model, 3, 61_000 + trial), &asked).unwrap();
+        truth.map(|(effect, parameter, value)| {
+            let own = fit.estimates.iter().find(|e| (e.effect, e.parameter) == (effect, parameter)).unwrap();
+            let interval = own.interval(0.95).unwrap();
+            let narrow = (own.value - value).abs() <= 1.96 * own.standard_error;
+            [(interval.low..=interval.high).contains(&value), narrow]
+        })
+    };
+    let held: Vec<_> = (0..trials).into_par_iter().map(held).collect();
+    for (which, (effect, parameter, _)) in truth.into_iter().enumerate() {
+        let share = |kind: usize| held.iter().filter(|held| held[which][kind]).count() as f64 / trials as f64;
+        let _ = writeln!(std::io::stderr(), "{effect} {parameter}: {} held, {} by 1.96", share(0), share(1));
+        assert!(share(0) >= 0.95 - margin(0.95, trials), "{effect} {parameter}: {}", share(0));
+        assert!(share(1) >= 0.95 - 2.0 * margin(0.95, trials), "{effect} {parameter}: {}", share(1));
+    }
 }
