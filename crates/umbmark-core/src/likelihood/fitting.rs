@@ -376,4 +376,36 @@ mod tests {
         fitted.free.pop();
         assert_eq!(*fitted.columns(), observed.columns(&fitted.model, &fitted.free));
     }
+
+    #[test]
+    fn columns_of_numbers_together_are_those_of_each_by_a_replay_of_its_own() {
+        let robot = Robot::labmate();
+        let mut model = Model::new(&robot);
+        for (effect, parameter, value) in [
+            ("wheelbase", "e_b", 0.99),
+            ("crab", "angle_rad", 0.01),
+            ("marker_yaw", "yaw_rad", 0.3),
+            ("reference_delay", "delay_s", 0.05),
+        ] {
+            model.set(effect, parameter, value).unwrap();
+        }
+        let observed = Observed::new(&watched(&model, 1, 3), &robot).unwrap().along(&model);
+        let of = |entry: &'static crate::effect::Entry| {
+            let parameters = entry.about.parameters.iter();
+            parameters.map(|p| Number { effect: entry.about.name, parameter: p.name, shape: None })
+        };
+        let numbers: Vec<Number> = crate::effect::of_drive(robot.drive.kind()).flat_map(of).collect();
+        let together = observed.columns_of(&model, &numbers).unwrap();
+        for (index, number) in numbers.iter().enumerate() {
+            let mut with = model.clone();
+            with.add(number.effect).unwrap();
+            let alone = observed.columns(&with, &[with.place_of(number.effect, number.parameter).unwrap()]);
+            for (together, alone) in together.iter().zip(&alone) {
+                let most = alone[0].iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
+                let pairs = together[index].iter().flatten().zip(alone[0].iter().flatten());
+                let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0_f64, f64::max);
+                assert!(off <= 1e-10 * most, "{number:?}: {off} of {most}");
+            }
+        }
+    }
 }
