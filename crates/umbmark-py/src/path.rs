@@ -17,7 +17,7 @@ pub const DIRECTIONS: [(&str, Direction); 2] = [("cw", Direction::Cw), ("ccw", D
 /// Parameters
 /// ----------
 /// shape : str, default "square"
-///     "square", "rectangle", "figure_eight", "circle", "straight", "spin" or "waypoints".
+///     "square", "rectangle", "rounded_rectangle", "figure_eight", "circle", "straight", "spin" or "waypoints".
 /// **keys
 ///     The other keys of ``[path]`` in a robot.toml: the sizes of the shape (``side_m`` of a square, ``points_m`` of
 ///     waypoints, shape (n, 2)) in m, and ``speed_m_s``, ``acceleration_m_s2`` and ``pause_s``.

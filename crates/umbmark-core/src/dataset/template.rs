@@ -4,6 +4,7 @@ use super::error::DatasetError;
 use super::folder::{RETURNS, ROBOT};
 use super::returns::HEADER;
 use super::save::{Existing, put};
+use crate::path::SHAPES;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -21,7 +22,7 @@ encoder_rate_hz = 100.0        # how often the counters are read; or "every tick
 
 # The path that the robot is told to drive, clockwise (cw) and counter-clockwise (ccw).
 [path]
-shape = "square"               # or rectangle, figure_eight, circle, straight, spin, waypoints
+shape = "square"               # or OTHERS
 side_m = 4.0                   # the paper's square
 speed_m_s = 0.2                # slow, so that wheels do not slip
 "#;
@@ -55,5 +56,6 @@ pub fn write_template(folder: impl AsRef<Path>, existing: Existing) -> Result<[P
 
 /// The texts of the two files: the robot and the returns.
 pub fn template() -> [String; 2] {
-    [ROBOT_TEXT.to_owned(), format!("{RETURNS_TEXT}{HEADER}\n")]
+    let others: Vec<&str> = SHAPES[1..].iter().map(|shape| shape.name).collect();
+    [ROBOT_TEXT.replace("OTHERS", &others.join(", ")), format!("{RETURNS_TEXT}{HEADER}\n")]
 }
