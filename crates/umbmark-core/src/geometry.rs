@@ -8,11 +8,13 @@
 //! Everything is generic over [`Real`], so that the same code gives values (`f64`) and exact derivatives ([`Dual`]).
 
 mod angle;
+mod eight;
 mod instructions;
 mod pose;
 mod real;
 
 pub use angle::{mean_angle, wrap};
+pub(crate) use eight::{EIGHT, Eight, Scalar};
 pub use instructions::Instructions;
 pub use pose::{Displacement2, Pose2};
 pub(crate) use real::{COSINE_SERIES, HALF_PI, SINC_SERIES, sinc_cos_near_zero};

@@ -9,7 +9,6 @@
 //! REML, Patterson & Thompson (1971).
 
 mod descent;
-mod eight;
 mod fitting;
 mod noise;
 mod observed;

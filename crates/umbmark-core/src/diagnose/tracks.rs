@@ -17,6 +17,7 @@ mod experiments;
 mod flips;
 pub(crate) mod growth;
 mod look;
+mod responses;
 mod smooth;
 mod suggestion;
 mod system;
@@ -29,7 +30,7 @@ use crate::diagnose::likeness::correlations;
 use crate::likelihood::{Fitted, Observed};
 use crate::stats::{chi_squared_upper_tail, normal_quantile};
 use crate::watch::Watch;
-use examination::Question;
+use responses::{Asked, Question};
 use smooth::Motion;
 use system::Projected;
 
@@ -98,7 +99,7 @@ fn first_with_gain<'a>(exam: &Examination, findings: &'a [Finding], options: &Op
         let own = findings.iter().filter(|f| nuisance(f) == of_reference && f.certified(options));
         let own = own.filter(|f| look::possible(exam, f));
         for finding in own.take(TRIES) {
-            let wanted = |asked: &examination::Asked| {
+            let wanted = |asked: &Asked| {
                 let name = asked.effect().map_or("", |effect| effect.about.name);
                 asked.nuisance == of_reference && !passed.contains(&name)
             };
@@ -148,7 +149,7 @@ pub(crate) fn search(fitted: Fitted, options: &Options, most: usize, watch: &Wat
     let goes_on = |search: &Search| search.added.len() < most && !watch.is_stopped();
     while let Some((finding, suspect)) = search.left.effect.clone().filter(|_| goes_on(&search)) {
         (watch.progress)((search.added.len() + 1) as f64 / (most + 1) as f64);
-        let exam = Examination::new(growth::grown(search.last(), &suspect)?)?;
+        let exam = search.last().of_grown(growth::grown(search.last(), &suspect)?)?;
         if search.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&exam, smooth, options)) {
             break;
         }

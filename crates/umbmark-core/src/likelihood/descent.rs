@@ -1,6 +1,6 @@
 //! The least value of a smooth function that is cheap at eight points at once.
 
-use super::eight::EIGHT;
+use crate::geometry::EIGHT;
 use nalgebra::{SMatrix, SVector};
 
 type Point = SVector<f64, EIGHT>;

@@ -1,11 +1,11 @@
 //! The sizes of the noise, and how they are found.
 
 use super::descent::Descent;
-use super::eight::{EIGHT, Eight, Scalar};
 use super::fitting::Column;
 use super::observed::{Growth, Observed, ObservedRun};
 use super::products::{gram, solver};
 use crate::effect::Chain;
+use crate::geometry::{EIGHT, Eight, Scalar};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 

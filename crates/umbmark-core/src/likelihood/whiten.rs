@@ -3,10 +3,10 @@
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-use super::eight::{Eight, Scalar};
 use super::noise::Noise;
 use super::observed::{Block, ObservedRun};
 use crate::engine::Instructions;
+use crate::geometry::{Eight, Scalar};
 
 /// Standard deviation of a START that is not taken on trust \[m, rad\]: beyond all misplacement, so that it costs one pose.
 const FREE_START: f64 = 1.0;
@@ -116,7 +116,8 @@ impl Noise<Eight> {
     #[inline(always)]
     fn products_plainly(&self, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> (Vec<Eight>, Eight) {
         let width = columns.len() + 1;
-        let mut sums = vec![Eight::from(0.0); width * width];
+        let pairs: Vec<(usize, usize)> = (0..width).flat_map(|i| (0..=i).map(move |j| (i, j))).collect();
+        let mut sums = vec![Eight::from(0.0); pairs.len()];
         let mut filter = Filter::new(self, run, columns);
         for index in 0..run.blocks.len() {
             let rows = filter.take_in(index);
@@ -124,22 +125,13 @@ impl Noise<Eight> {
                 continue;
             }
             let [first, second, third] = filter.states.new.each_ref().map(|row| &row[..width]);
-            for (i, sums) in sums.chunks_exact_mut(width).enumerate() {
-                let (a, b, c) = (first[i], second[i], third[i]);
-                let others = first.iter().zip(second).zip(third);
-                if rows == 3 {
-                    for (sum, ((x, y), z)) in sums[..=i].iter_mut().zip(others) {
-                        *sum += a * *x + b * *y + c * *z;
-                    }
-                } else {
-                    for (sum, ((x, y), _)) in sums[..=i].iter_mut().zip(others) {
-                        *sum += a * *x + b * *y;
-                    }
-                }
+            for (sum, (i, j)) in sums.iter_mut().zip(&pairs) {
+                let plane = first[*i] * first[*j] + second[*i] * second[*j];
+                *sum += if rows == 3 { plane + third[*i] * third[*j] } else { plane };
             }
         }
         // What the delay of the whole run takes: its column is the last.
-        let sum = |i: usize, j: usize| sums[i.max(j) * width + i.min(j)];
+        let sum = |i: usize, j: usize| sums[i.max(j) * (i.max(j) + 1) / 2 + i.min(j)];
         let variance = self.reference_delay * self.reference_delay;
         let grown = Eight::from(1.0) + variance * sum(width - 1, width - 1);
         let share = variance / grown;

@@ -3,14 +3,14 @@
 use super::errors::Errors;
 use super::errors::Misses;
 use super::look::Finding;
-use super::smooth::{self, Covariate, Motion, smooth_columns};
+use super::responses::{self, Asked, Question, Responses};
 use super::system::{Projected, System};
 use crate::diagnose::ends::names;
-use crate::effect::{Changes, Entry, Model, ModelError, Number, is_shape, of_drive};
-use crate::likelihood::{ABSORBED, Column, Fitted, NUISANCE, Noise, share_left};
-use crate::parameter::Parameter;
+use crate::effect::{Entry, Model, ModelError, Number};
+use crate::geometry::Pose2;
+use crate::likelihood::{ABSORBED, Column, Fitted, Noise, share_left};
 use nalgebra::{DMatrix, DVector};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// At its usual size a candidate must move the observations by so many standard deviations to be asked about.
 const VISIBLE: f64 = 0.3;
@@ -19,38 +19,6 @@ pub const ALIKE: f64 = 0.95;
 /// Groups that are fitted out for a clean estimate of the noise, and the drop that each must bring a column.
 const CLEANED: usize = 6;
 const WORTH_CLEANING: f64 = 15.0;
-
-/// What is asked about.
-#[derive(Clone, Debug)]
-pub enum Question {
-    /// An effect of the catalogue, with the parameters that its columns stand for.
-    Effect(&'static Entry, Vec<&'static Parameter>),
-    /// A smooth of a covariate.
-    Smooth(&'static Covariate, Motion),
-}
-
-/// A group of columns that may be missing from the model.
-#[derive(Clone, Debug)]
-pub struct Asked {
-    /// What it is.
-    pub question: Question,
-    /// Its columns in the system.
-    pub columns: Vec<usize>,
-    /// Its shape, where it has one and another value than the usual is tried.
-    pub shape: Option<(&'static Parameter, f64)>,
-    /// Whether it is an effect of the reference, fitted out for the others.
-    pub nuisance: bool,
-}
-
-impl Asked {
-    /// The effect, if it is one.
-    pub fn effect(&self) -> Option<&'static Entry> {
-        match self.question {
-            Question::Effect(entry, _) => Some(entry),
-            Question::Smooth(..) => None,
-        }
-    }
-}
 
 /// A group after one step from zero.
 #[derive(Clone, Debug)]
@@ -83,6 +51,8 @@ pub struct Examination {
     /// What the columns of the model and of the catalogue's effects are derivatives by.
     numbers: Vec<Number>,
     columns: Vec<Vec<Column>>,
+    /// The true poses along which the columns of what is asked about were taken, run by run.
+    pub along: Vec<Arc<[Pose2]>>,
     /// What was found of the smooths, once they were looked at.
     pub smooths: OnceLock<Vec<Finding>>,
 }
@@ -90,56 +60,53 @@ pub struct Examination {
 impl Examination {
     /// Asks a fitted model about every effect of the catalogue that it lacks, and every smooth.
     pub fn new(fitted: Fitted) -> Result<Examination, ModelError> {
-        let observed = &fitted.observed;
-        let own = names(&fitted.model);
-        let own = fitted.free.iter().map(|value| own[*value]);
-        let mut numbers: Vec<Number> =
-            own.map(|(effect, parameter)| Number { effect, parameter, shape: None }).collect();
-        let free: Vec<usize> = (0..numbers.len()).collect();
-        let offers = offers(&fitted.model);
-        numbers.extend(offers.iter().flat_map(Offer::numbers));
-        let mut columns = observed.columns_of(&fitted.model, &numbers)?;
-        let shows = |number: usize| columns.iter().any(|run| run[number].iter().any(|c| *c != [0.0; 3]));
-        let (mut asked, mut kept, mut next, mut silent) = (Vec::new(), free.clone(), free.len(), None);
-        for Offer { effect, shape, sizes } in offers {
-            let (first, own) = (kept.len(), next..next + sizes.len());
-            next = own.end;
-            let shown = sizes.into_iter().zip(own).filter(|(_, number)| silent != Some(effect) && shows(*number));
-            let (parameters, shown): (Vec<_>, Vec<_>) = shown.unzip();
-            if parameters.is_empty() {
-                silent = Some(effect);
-                continue;
-            }
-            kept.extend(shown);
-            let nuisance = NUISANCE.contains(&effect.about.name);
-            let columns = (first..kept.len()).collect();
-            asked.push(Asked { question: Question::Effect(effect, parameters), columns, shape, nuisance });
+        let responses = Responses::new(&fitted)?;
+        Ok(Examination::by(fitted, responses))
+    }
+
+    /// The same of a model that has grown from that of this one.
+    pub fn of_grown(&self, fitted: Fitted) -> Result<Examination, ModelError> {
+        let hold = responses::hold(&self.along, &fitted.observed);
+        let responses = if hold { self.lacked_by(&fitted.model) } else { Responses::new(&fitted)? };
+        Ok(Examination::by(fitted, responses))
+    }
+
+    /// What a grown model still lacks of what was asked about.
+    fn lacked_by(&self, model: &Model) -> Responses {
+        let known = |effect: &Entry| model.parts().iter().any(|part| part.effect == *effect);
+        let (mut asked, mut kept) = (Vec::new(), Vec::new());
+        for group in self.asked.iter().filter(|group| !group.effect().is_some_and(known)) {
+            let first = kept.len();
+            kept.extend(&group.columns);
+            asked.push(Asked { columns: (first..kept.len()).collect(), ..group.clone() });
         }
-        let numbers: Vec<Number> = kept.iter().map(|number| numbers[*number]).collect();
-        for run in &mut columns {
-            *run = kept.iter().map(|number| std::mem::take(&mut run[*number])).collect();
+        let numbers = kept.iter().filter_map(|column| self.number(*column)).collect();
+        Responses { asked, numbers, columns: self.some_columns(&kept), along: self.along.clone() }
+    }
+
+    fn by(fitted: Fitted, responses: Responses) -> Examination {
+        let names = names(&fitted.model);
+        let own = fitted.free.iter().map(|value| names[*value]);
+        let own = own.map(|(effect, parameter)| Number { effect, parameter, shape: None });
+        let free: Vec<usize> = (0..fitted.free.len()).collect();
+        let Responses { mut asked, numbers, columns, along } = responses;
+        for column in asked.iter_mut().flat_map(|group| &mut group.columns) {
+            *column += free.len();
         }
-        let width = numbers.len();
-        for (all, smooths) in columns.iter_mut().zip(smooth_columns(observed, &fitted.model)) {
-            all.extend(smooths);
-        }
-        for (covariate, motion, first, terms) in smooth::groups() {
-            let own = (width + first..width + first + terms).collect();
-            let question = Question::Smooth(covariate, motion);
-            asked.push(Asked { question, columns: own, shape: None, nuisance: false });
-        }
+        let numbers: Vec<Number> = own.chain(numbers).collect();
         let chain = fitted.model.chain();
-        for (all, run) in columns.iter_mut().zip(&observed.runs) {
-            all.push(run.residuals_along(&chain));
-        }
-        let system = System::new(observed, &fitted.noise, &columns);
+        let slopes = fitted.columns();
+        let runs = fitted.observed.runs.iter().zip(slopes.iter()).zip(columns);
+        let columns: Vec<Vec<Column>> =
+            runs.map(|((run, own), columns)| [own, &columns[..], &[run.residuals_along(&chain)]].concat()).collect();
+        let system = System::new(&fitted.observed, &fitted.noise, &columns);
         let (errors, smooths) = (Errors::default(), OnceLock::new());
-        let mut examination = Examination { fitted, system, asked, free, errors, numbers, columns, smooths };
+        let which = (0..numbers.len()).chain([system.residual()]).collect();
+        let mut examination = Examination { fitted, system, asked, free, errors, numbers, columns, along, smooths };
         examination.clean();
-        let which = (0..width).chain([examination.system.residual()]).collect();
         let Examination { fitted, system, columns, .. } = &examination;
         examination.errors = Errors::new(&fitted.observed, system, columns, which);
-        Ok(examination)
+        examination
     }
 
     /// Estimates the noise anew with what is most evidently missing fitted out, so that it is noise alone.
@@ -289,39 +256,4 @@ pub fn worth(answer: &Answer) -> f64 {
 /// What a drop by so many numbers is worth.
 pub fn worth_of(drop: f64, numbers: usize) -> f64 {
     drop - 3.0 * numbers as f64
-}
-
-/// A shape is tried at its usual value and at these multiples of it.
-const TRIED: [f64; 4] = [1.0, 0.5, 2.0, 4.0];
-
-/// An effect of the catalogue that a model lacks, with one value of its shape.
-struct Offer {
-    effect: &'static Entry,
-    shape: Option<(&'static Parameter, f64)>,
-    sizes: Vec<&'static Parameter>,
-}
-
-impl Offer {
-    fn numbers(&self) -> impl Iterator<Item = Number> + '_ {
-        let shape = self.shape.map(|(parameter, value)| (parameter.name, value));
-        self.sizes.iter().map(move |size| Number { effect: self.effect.about.name, parameter: size.name, shape })
-    }
-}
-
-/// Every effect of the catalogue that the model lacks and that may move some observation, with each value of its shape.
-fn offers(model: &Model) -> Vec<Offer> {
-    let missing = of_drive(model.robot().drive.kind()).filter(|entry| {
-        entry.changes.include(Changes::MEAN) && model.parts().iter().all(|part| part.effect != **entry)
-    });
-    let mut offers = Vec::new();
-    for effect in missing {
-        let parameters = effect.about.parameters.iter();
-        let (shapes, sizes): (Vec<&Parameter>, Vec<&Parameter>) = parameters.partition(|parameter| is_shape(parameter));
-        let tried = if shapes.is_empty() { &TRIED[..1] } else { &TRIED[..] };
-        for factor in tried {
-            let shape = shapes.first().map(|shape| (*shape, factor * shape.default.resolve(model.robot())));
-            offers.push(Offer { effect, shape, sizes: sizes.clone() });
-        }
-    }
-    offers
 }

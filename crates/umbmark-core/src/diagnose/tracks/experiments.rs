@@ -4,8 +4,9 @@
 //! deviations "the truth is j" would lie from all that the model with k in its place can predict, by old and new data together. Tracks
 //! that are yet to be driven are whitened with the noise of this robot as fitted, so their products simply add to today's.
 
-use super::examination::{Answer, Asked, Examination, Question};
+use super::examination::{Answer, Examination};
 use super::look::{Finding, rivals};
+use super::responses::{Asked, Question};
 use super::system::Projected;
 use crate::diagnose::experiments::design::{MINUTES_A_RUN, minutes};
 use crate::diagnose::experiments::{best, worth};

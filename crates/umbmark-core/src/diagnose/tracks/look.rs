@@ -1,7 +1,8 @@
 //! Every group asked beside a fitted model: how much it explains, and how sure that is.
 
-use super::examination::{ALIKE, Answer, Examination, Question, worth};
+use super::examination::{ALIKE, Answer, Examination, worth};
 use super::flips::{Family, Scores};
+use super::responses::Question;
 use super::system::Projected;
 use crate::diagnose::{Estimate, Options, Suspect};
 use crate::stats::f_upper_tail;

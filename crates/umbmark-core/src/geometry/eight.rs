@@ -1,11 +1,11 @@
-//! Numbers of the filter: one, or eight side by side.
+//! Numbers: one, or eight side by side.
 
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Sub, SubAssign};
 
 /// How many numbers an [`Eight`] holds.
-pub(super) const EIGHT: usize = 8;
+pub(crate) const EIGHT: usize = 8;
 
-/// What the filter computes with: `f64` for one noise, [`Eight`] for so many at once.
+/// What is computed with: `f64` for one case, [`Eight`] for so many at once.
 pub trait Scalar:
     Copy
     + From<f64>
@@ -86,6 +86,26 @@ arithmetic!(
     Mul mul MulAssign mul_assign *=,
     Div div DivAssign div_assign /=
 );
+
+impl Eight {
+    /// The greater of each number and a bound.
+    #[inline(always)]
+    pub fn at_least(mut self, bound: f64) -> Eight {
+        for value in &mut self.0 {
+            *value = if *value > bound { *value } else { bound };
+        }
+        self
+    }
+
+    /// √x; NaN where x is not positive.
+    #[inline(always)]
+    pub fn positive_root(mut self) -> Eight {
+        for value in &mut self.0 {
+            *value = if *value > 0.0 { value.sqrt() } else { f64::NAN };
+        }
+        self
+    }
+}
 
 impl Scalar for Eight {
     #[inline(always)]

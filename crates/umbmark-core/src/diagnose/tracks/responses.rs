@@ -1,0 +1,142 @@
+//! What the effects and smooths that a model lacks would do to the poses of its runs.
+
+use super::smooth::{self, Covariate, Motion, smooth_columns};
+use crate::effect::{Changes, Entry, Model, ModelError, Number, is_shape, of_drive};
+use crate::geometry::{Pose2, wrap};
+use crate::likelihood::{Column, Fitted, NUISANCE, Observed};
+use crate::parameter::Parameter;
+use std::sync::Arc;
+
+/// What is asked about.
+#[derive(Clone, Debug)]
+pub enum Question {
+    /// An effect of the catalogue, with the parameters that its columns stand for.
+    Effect(&'static Entry, Vec<&'static Parameter>),
+    /// A smooth of a covariate.
+    Smooth(&'static Covariate, Motion),
+}
+
+/// A group of columns that may be missing from the model.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    /// What it is.
+    pub question: Question,
+    /// Its columns.
+    pub columns: Vec<usize>,
+    /// Its shape, where it has one and another value than the usual is tried.
+    pub shape: Option<(&'static Parameter, f64)>,
+    /// Whether it is an effect of the reference, fitted out for the others.
+    pub nuisance: bool,
+}
+
+impl Asked {
+    /// The effect, if it is one.
+    pub fn effect(&self) -> Option<&'static Entry> {
+        match self.question {
+            Question::Effect(entry, _) => Some(entry),
+            Question::Smooth(..) => None,
+        }
+    }
+}
+
+/// All that is asked about, with derivatives of the poses along a model.
+#[derive(Clone, Debug)]
+pub struct Responses {
+    /// The groups.
+    pub asked: Vec<Asked>,
+    /// What the columns of the catalogue's effects are derivatives by; those of the smooths stand behind them.
+    pub numbers: Vec<Number>,
+    /// Run by run.
+    pub columns: Vec<Vec<Column>>,
+    /// The true poses, run by run, by the model that the derivatives were taken along.
+    pub along: Vec<Arc<[Pose2]>>,
+}
+
+impl Responses {
+    /// Of every effect of the catalogue that a model lacks and that shows in its runs, and of every smooth.
+    pub fn new(fitted: &Fitted) -> Result<Responses, ModelError> {
+        let (observed, model) = (&fitted.observed, &fitted.model);
+        let offers = offers(model);
+        let numbers: Vec<Number> = offers.iter().flat_map(Offer::numbers).collect();
+        let mut columns = observed.columns_of(model, &numbers)?;
+        let shows = |number: usize| columns.iter().any(|run| run[number].iter().any(|c| *c != [0.0; 3]));
+        let (mut asked, mut kept, mut next, mut silent) = (Vec::new(), Vec::new(), 0, None);
+        for Offer { effect, shape, sizes } in offers {
+            let (first, own) = (kept.len(), next..next + sizes.len());
+            next = own.end;
+            let shown = sizes.into_iter().zip(own).filter(|(_, number)| silent != Some(effect) && shows(*number));
+            let (parameters, shown): (Vec<_>, Vec<_>) = shown.unzip();
+            if parameters.is_empty() {
+                silent = Some(effect);
+                continue;
+            }
+            kept.extend(shown);
+            let nuisance = NUISANCE.contains(&effect.about.name);
+            let columns = (first..kept.len()).collect();
+            asked.push(Asked { question: Question::Effect(effect, parameters), columns, shape, nuisance });
+        }
+        for (run, smooths) in columns.iter_mut().zip(smooth_columns(observed, model)) {
+            *run = kept.iter().map(|number| std::mem::take(&mut run[*number])).chain(smooths).collect();
+        }
+        for (covariate, motion, first, terms) in smooth::groups() {
+            let columns = (kept.len() + first..kept.len() + first + terms).collect();
+            asked.push(Asked { question: Question::Smooth(covariate, motion), columns, shape: None, nuisance: false });
+        }
+        let numbers = kept.into_iter().map(|number| numbers[number]).collect();
+        Ok(Responses { asked, numbers, columns, along: places(observed) })
+    }
+}
+
+fn places(observed: &Observed) -> Vec<Arc<[Pose2]>> {
+    observed.runs.iter().map(|run| Arc::clone(&run.places)).collect()
+}
+
+/// Derivatives are kept while no pose has moved by more than this share of the farthest one's distance from START, and no heading by
+/// more than so many radians: they are off by as small a share. A test may ask in any direction; this one is no farther
+/// from that in which an effect moves the poses.
+const STILL: f64 = 0.02;
+
+/// Whether responses along these poses are those along the runs as they are laid now.
+pub fn hold(along: &[Arc<[Pose2]>], observed: &Observed) -> bool {
+    along.iter().zip(places(observed)).all(|(then, now)| {
+        let far = then.iter().map(|pose| pose.x.hypot(pose.y)).fold(0.0, f64::max);
+        then.iter().zip(now.iter()).all(|(then, now)| {
+            (now.x - then.x).hypot(now.y - then.y) <= STILL * far && wrap(now.heading - then.heading).abs() <= STILL
+        })
+    })
+}
+
+/// A shape is tried at its usual value and at these multiples of it.
+const TRIED: [f64; 4] = [1.0, 0.5, 2.0, 4.0];
+
+/// An effect of the catalogue that a model lacks, with one value of its shape.
+struct Offer {
+    effect: &'static Entry,
+    shape: Option<(&'static Parameter, f64)>,
+    sizes: Vec<&'static Parameter>,
+}
+
+impl Offer {
+    fn numbers(&self) -> impl Iterator<Item = Number> + '_ {
+        let shape = self.shape.map(|(parameter, value)| (parameter.name, value));
+        self.sizes.iter().map(move |size| Number { effect: self.effect.about.name, parameter: size.name, shape })
+    }
+}
+
+/// Every effect of the catalogue that the model lacks and that may move some observation, with each value of its shape.
+fn offers(model: &Model) -> Vec<Offer> {
+    let missing = of_drive(model.robot().drive.kind()).filter(|entry| {
+        entry.changes.include(Changes::MEAN) && model.parts().iter().all(|part| part.effect != **entry)
+    });
+    let mut offers = Vec::new();
+    for effect in missing {
+        let parameters = effect.about.parameters.iter();
+        let (shapes, sizes): (Vec<&Parameter>, Vec<&Parameter>) = parameters.partition(|parameter| is_shape(parameter));
+        let tried = if shapes.is_empty() { &TRIED[..1] } else { &TRIED[..] };
+        for factor in tried {
+            let shape = shapes.first().map(|shape| (*shape, factor * shape.default.resolve(model.robot())));
+            offers.push(Offer { effect, shape, sizes: sizes.clone() });
+        }
+    }
+    offers
+}
