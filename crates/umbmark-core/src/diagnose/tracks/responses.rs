@@ -140,3 +140,70 @@ fn offers(model: &Model) -> Vec<Offer> {
     }
     offers
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Examination, growth};
+    use super::*;
+    use crate::diagnose::{Options, first_model};
+    use crate::drive::Robot;
+    use crate::likelihood::watched::watched;
+    use crate::path::{Direction, Path};
+    use crate::replay::Track;
+
+    /// Six and six squares, seed 4: a kick, and the castor's trail is yet to be found.
+    #[test]
+    fn responses_kept_while_a_model_grows_are_nearly_those_along_the_grown_one() {
+        let robot = Robot::labmate();
+        let mut truth = Model::new(&robot);
+        truth.set("wheelbase", "e_b", 1.004).unwrap();
+        truth.set("caster_kick", "kick_rad", 0.004).unwrap();
+        truth.set("reference_noise", "position_sd_m", 5e-4).unwrap();
+        truth.set("reference_noise", "heading_sd_rad", 5e-4).unwrap();
+        let data = watched(&truth, 6, 4);
+        let fitted = super::super::fit(&Observed::new(&data, &robot).unwrap(), &first_model(&data).unwrap()).unwrap();
+        let exam = Examination::new(fitted).unwrap();
+        let findings = super::super::look::effects(&exam, &Options::default());
+        let suspect = super::super::look::suspect(&exam, &findings[0]).unwrap();
+        assert!(suspect.class.contains(&"caster_kick"), "{:?}", suspect.class);
+        let grown = growth::grown(&exam, &suspect).unwrap();
+        assert!(hold(&exam.along, &grown.observed));
+        let (kept, anew) = (exam.of_grown(grown.clone()).unwrap(), Examination::new(grown).unwrap());
+        assert!(Arc::ptr_eq(&kept.along[0], &exam.along[0]) && !Arc::ptr_eq(&anew.along[0], &exam.along[0]));
+        let names =
+            |exam: &Examination| exam.asked.iter().map(|a| format!("{:?} {:?}", a.question, a.columns)).collect();
+        let (kept_names, anew_names): (Vec<String>, Vec<String>) = (names(&kept), names(&anew));
+        assert_eq!(kept_names, anew_names);
+        for column in 0..kept.system.residual() {
+            let length = |sum: f64, value: &f64| sum + value * value;
+            let runs = kept.some_columns(&[column]).into_iter().zip(anew.some_columns(&[column]));
+            let (mut off, mut whole) = (0.0, 0.0);
+            for (kept, anew) in runs {
+                for (kept, anew) in kept[0].iter().zip(&anew[0]) {
+                    off = [0, 1, 2].map(|k| kept[k] - anew[k]).iter().fold(off, length);
+                    whole = anew.iter().fold(whole, length);
+                }
+            }
+            assert!(off <= (STILL * STILL) * whole, "{:?}: {}", kept.number(column), (off / whole).sqrt());
+        }
+    }
+
+    #[test]
+    fn responses_hold_no_longer_where_a_heading_or_a_place_has_moved() {
+        let robot = Robot::labmate();
+        let track = || Track::with_stops(&Path::umbmark(), Direction::Ccw, &robot);
+        let model = |e_b: f64, e_s: f64| {
+            let mut model = Model::new(&robot);
+            model.set("wheelbase", "e_b", e_b).unwrap();
+            model.set("scale", "e_s", e_s).unwrap();
+            model
+        };
+        let of = |model: &Model| {
+            let run = crate::likelihood::ObservedRun::planned(track(), Direction::Ccw, true, model);
+            Observed { robot: robot.clone(), runs: vec![run], path: None }
+        };
+        let along = places(&of(&model(1.0, 1.0)));
+        assert!(hold(&along, &of(&model(1.0, 1.0))) && hold(&along, &of(&model(1.002, 1.004))));
+        assert!(!hold(&along, &of(&model(1.004, 1.0))) && !hold(&along, &of(&model(1.0, 1.021))));
+    }
+}
