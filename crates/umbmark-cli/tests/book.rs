@@ -1,4 +1,4 @@
-//! The pages of the book that are made of the command itself: its help, and the catalogue of effects.
+//! The pages of the book that are made of the code: the help of the command, effects, drives and paths.
 //!
 //! `SNAPSHOTS=overwrite cargo test -p umbmark-cli --test book` writes them anew.
 
@@ -8,7 +8,10 @@ use serde_json::Value;
 use snapbox::{Data, assert_data_eq};
 use std::path::Path;
 use std::process::Command;
-use umbmark_core::effect::ActsOn;
+use umbmark_core::drive::{Drive, Kind, Robot};
+use umbmark_core::effect::{ActsOn, of_drive};
+use umbmark_core::parameter::{DefaultValue, Parameter};
+use umbmark_core::path::SHAPES;
 
 fn umbmark(arguments: &[&str]) -> String {
     let mut command = Command::new(env!("CARGO_BIN_EXE_umbmark"));
@@ -57,6 +60,64 @@ fn the_page_of_the_catalogue_has_every_effect() {
         }
     }
     assert_data_eq!(text, page("catalogue.md").raw());
+}
+
+#[test]
+fn the_page_of_the_drives_has_every_kind_and_its_keys() {
+    let mut text = String::from(
+        "# Drives\n\nWhat `drive` in `[robot]` of a [robot.toml](files.md#robottoml) may be, and the keys beside it. Those of a\n\
+         differential drive have other names too.\n",
+    );
+    for kind in Kind::ALL {
+        let drive = kind.usual();
+        text += &format!("\n## {}\n\n{}\n\n", kind.name(), kind.about());
+        text += "| key | allowed | where it is left out | meaning |\n|---|---|---|---|\n";
+        for p in kind.parameters() {
+            let left_out = if let DefaultValue::Value(0.0) = p.default { "0" } else { "refused" };
+            text += &format!("| `{}` | {} | {left_out} | {} |\n", p.name, p.allowed(), p.meaning);
+        }
+        let counters = kind.counters().map(|counter| format!("`ticks_{counter}`"));
+        let columns =
+            if kind.has_tick_logs() { listed(counters) } else { "none, it is known by its returns".to_owned() };
+        let paths = SHAPES.iter().filter(|shape| shape.usual().suits(&robot(drive))).map(|shape| shape.name);
+        text += &format!("\n- **Columns of its logs**: {columns}\n");
+        text += &format!("- **Paths that it can drive**: {}\n", listed(paths));
+        text += &format!("- **Effects that are fitted first**: {}\n", listed(drive.first_effects().map(effect_link)));
+        text += &format!("- **Effects**: {}\n", listed(of_drive(*kind).map(|entry| effect_link(entry.about.name))));
+    }
+    assert_data_eq!(text, page("drives.md").raw());
+}
+
+#[test]
+fn the_page_of_the_paths_has_every_shape_and_its_keys() {
+    let mut text = String::from(
+        "# Paths\n\nWhat `shape` in `[path]` of a [robot.toml](files.md#robottoml) may be, and the sizes beside it. Those that go round end\n\
+         at START after whole turns, waypoints where their last point lies.\n\n\
+         | shape | is | ends at START | drives that can make it |\n|---|---|---|---|\n",
+    );
+    for shape in SHAPES {
+        let drives = Kind::ALL.iter().filter(|kind| shape.usual().suits(&robot(kind.usual()))).map(|kind| kind.name());
+        let ends = if shape.closed { "yes" } else { "no" };
+        text += &format!("| `{}` | {} | {ends} | {} |\n", shape.name, shape.about, listed(drives));
+    }
+    text += "\n| shape | key | flag | allowed | usual | meaning |\n|---|---|---|---|---|---|\n";
+    for (shape, p) in SHAPES.iter().flat_map(|shape| shape.parameters.iter().map(move |p| (shape, p))) {
+        let Parameter { name, flag, typical, meaning, .. } = p;
+        text += &format!("| `{}` | `{name}` | `--{flag}` | {} | {typical} | {meaning} |\n", shape.name, p.allowed());
+    }
+    assert_data_eq!(text, page("paths.md").raw());
+}
+
+fn robot(drive: Drive) -> Robot {
+    Robot { drive, ..Robot::labmate() }
+}
+
+fn listed<T: ToString>(words: impl IntoIterator<Item = T>) -> String {
+    words.into_iter().map(|word| word.to_string()).collect::<Vec<_>>().join(", ")
+}
+
+fn effect_link(name: &str) -> String {
+    format!("[`{name}`](catalogue.md#{name})")
 }
 
 fn word<'a>(effect: &'a Value, key: &str) -> &'a str {

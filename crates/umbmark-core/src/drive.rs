@@ -4,18 +4,18 @@
 //! is that of the axle's wheels, whatever the drive, so what predicts, simulates, fits and tests is written once. A drive's own
 //! file says how its two counters become travel of the axle, and back; [`Encoder`] is what they count with.
 
-/// Hands every drive to a macro: its kind, and the type in its file.
+/// Hands every drive to a macro: what it is, its kind, its file and the type in it.
 macro_rules! every_drive {
     ($make:ident) => {
         $make! {
             /// Two driven wheels on one axle.
-            Differential(DifferentialDrive),
+            Differential(differential::DifferentialDrive),
             /// Wheels that are driven together and steered together.
-            Synchro(SynchroDrive),
+            Synchro(synchro::SynchroDrive),
             /// Two differential trucks and a link that corrects their headings; its axle is that of a truck.
-            Clapper(ClapperDrive),
+            Clapper(clapper::ClapperDrive),
             /// A driven axle and a steered wheel, or two, before it: cars and tricycles.
-            Ackermann(AckermannDrive),
+            Ackermann(ackermann::AckermannDrive),
         }
     };
 }
@@ -28,12 +28,10 @@ mod kind;
 mod kinematics;
 mod synchro;
 
-pub use ackermann::AckermannDrive;
-pub use clapper::{ClapperDrive, LinkReading};
-pub use differential::{DifferentialDrive, WheelTravel};
+pub use clapper::LinkReading;
+pub use differential::WheelTravel;
 pub use encoder::{Encoder, MAX_COUNTER_BITS, roll_over};
 pub use kind::{Kind, Kinds};
-pub use synchro::SynchroDrive;
 
 use kinematics::Kinematics;
 use std::ops::Deref;
@@ -102,9 +100,11 @@ fn positive(quantity: &'static str, value: f64, unit: &'static str) -> Result<f6
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err(DriveError::NotPositive { quantity, value, unit }) }
 }
 
-/// Makes the type of all drives from the list of them.
+/// Exports the types in the files of drives, and makes the type of all of them.
 macro_rules! drives {
-    ($($(#[$about:meta])* $kind:ident($drive:ident),)+) => {
+    ($($(#[$about:meta])* $kind:ident($file:ident::$drive:ident),)+) => {
+        $(pub use $file::$drive;)+
+
         /// A drive: its axle, and what its counters count.
         ///
         /// It [derefs](Deref) to the axle, real or virtual.
@@ -324,5 +324,43 @@ impl Robot {
     /// Travel of each wheel of the axle per encoder tick \[m\]: π D / (ticks per revolution).
     pub fn metres_per_tick(&self) -> WheelTravel {
         self.drive.metres_per_tick(&self.encoder)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_counts_of_every_drive_mean_the_motion_that_made_them() {
+        let encoder = Robot::labmate().encoder;
+        for drive in Kind::ALL.iter().map(|kind| kind.usual()) {
+            for (forward, rotation) in [(4.0, 0.0), (-0.3, 0.0), (0.0, 1.5), (0.0, -1.5), (3.0, 1.0), (3.0, -1.0)] {
+                let Some(Counting { per_count: [first, second], gain, held }) =
+                    drive.counting(&encoder, forward, rotation)
+                else {
+                    continue;
+                };
+                let before = [7.0, held as f64];
+                let after = [before[0] + gain[0], before[1] + gain[1]];
+                let travel = drive.travel(&encoder, before, after);
+                let left = first.left * gain[0] + second.left * gain[1];
+                let right = first.right * gain[0] + second.right * gain[1];
+                let (what, moved) = (drive.kind().name(), drive.displacement(&travel));
+                assert!((travel.left - left).abs() + (travel.right - right).abs() < 1e-12, "{what} {travel:?}");
+                // An angle that is held stands at a whole count.
+                assert!((moved.forward - forward).abs() + (moved.rotation - rotation).abs() < 1e-3, "{what} {moved:?}");
+                let read = drive.reading(&encoder, before, &travel);
+                assert!((read[0] - after[0]).abs() + (read[1] - after[1]).abs() < 1e-6, "{what} {read:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_drive_is_made_of_its_values() {
+        for kind in Kind::ALL {
+            let drive = kind.usual();
+            assert_eq!((drive.kind(), Drive::from_values(*kind, &drive.values())), (*kind, Ok(drive)));
+        }
     }
 }

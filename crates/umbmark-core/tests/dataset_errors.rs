@@ -50,19 +50,16 @@ fn the_tables_in_the_documentation_are_those_of_the_cases() {
     let mut text = String::from(
         "# Bad input\n\nWhat cannot be used, and what is said of it. The tables are made of the cases that the tests run.\n",
     );
+    let (of_text, of_logs) = (cases(), sentences(include_str!("bad_input/mcap_cases.txt")));
+    let of_text = of_text.iter().map(|case| (&*case.name, &*case.says)).collect();
     let files = [
-        ("Text files", "cases.txt", "which holds the input too", include_str!("bad_input/cases.txt")),
-        (
-            "MCAP logs",
-            "mcap_cases.txt",
-            "whose input `mcap_bad_input.rs` makes",
-            include_str!("bad_input/mcap_cases.txt"),
-        ),
+        ("Text files", "cases.txt", "which holds the input too", of_text),
+        ("MCAP logs", "mcap_cases.txt", "whose input `mcap_bad_input.rs` makes", of_logs),
     ];
-    for (heading, name, input, cases) in files {
+    for (heading, name, input, sentences) in files {
         let link = format!("[`{name}`](../crates/umbmark-core/tests/bad_input/{name})");
         text += &format!("\n## {heading}\n\n{link}, {input}.\n\n| what is wrong | what is said |\n|---|---|\n");
-        for (wrong, says) in sentences(cases) {
+        for (wrong, says) in sentences {
             text += &format!("| {} | {} |\n", shown(wrong), shown(says));
         }
     }

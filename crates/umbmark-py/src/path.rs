@@ -1,10 +1,10 @@
 //! `umbmark.Path`.
 
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 use toml::{Table, Value};
 use umbmark_core::dataset::{parse_robot, robot_text};
-use umbmark_core::path::Direction;
+use umbmark_core::path::{Direction, SHAPES};
 use umbmark_core::{document, drive, path};
 
 use crate::{as_python, choice, keys};
@@ -17,7 +17,7 @@ pub const DIRECTIONS: [(&str, Direction); 2] = [("cw", Direction::Cw), ("ccw", D
 /// Parameters
 /// ----------
 /// shape : str, default "square"
-///     "square", "rectangle", "rounded_rectangle", "figure_eight", "circle", "straight", "spin" or "waypoints".
+///     One of `Path.shapes()`.
 /// **keys
 ///     The other keys of ``[path]`` in a robot.toml: the sizes of the shape (``side_m`` of a square, ``points_m`` of
 ///     waypoints, shape (n, 2)) in m, and ``speed_m_s``, ``acceleration_m_s2`` and ``pause_s``.
@@ -61,6 +61,12 @@ impl Path {
     #[staticmethod]
     fn umbmark() -> Path {
         Path(path::Path::umbmark())
+    }
+
+    /// Give the names of all shapes, each with what it is.
+    #[staticmethod]
+    fn shapes(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        SHAPES.iter().map(|shape| (shape.name, shape.about)).into_py_dict(py)
     }
 
     /// Give shape, sizes in m and length in m, as documents of results have them.

@@ -1,7 +1,7 @@
 //! `umbmark.Robot`.
 
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 use toml::{Table, Value};
 use umbmark_core::dataset::{parse_robot, read_robot, robot_text};
 use umbmark_core::{document, drive};
@@ -15,7 +15,8 @@ use crate::{as_python, keys, refused};
 /// **keys
 ///     The keys of ``[robot]`` in a robot.toml: ``wheelbase_m``, ``wheel_diameter_m`` (or ``wheel_diameter_left_m`` and
 ///     ``wheel_diameter_right_m``, or ``wheel_radius_m``) in m, ``ticks_per_revolution``, and where they are known
-///     ``name``, ``drive``, ``encoder_rate_hz`` in Hz and ``counter_bits``.
+///     ``name``, ``drive``, ``encoder_rate_hz`` in Hz and ``counter_bits``. A ``drive`` other than "differential", one of
+///     `Robot.drives()`, has lengths of its own.
 ///
 /// Raises
 /// ------
@@ -50,6 +51,12 @@ impl Robot {
     #[staticmethod]
     fn labmate() -> Robot {
         Robot(drive::Robot::labmate())
+    }
+
+    /// Give the names of all drives, each with what it is.
+    #[staticmethod]
+    fn drives(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        drive::Kind::ALL.iter().map(|kind| (kind.name(), kind.about())).into_py_dict(py)
     }
 
     /// Read the robot of a robot.toml.

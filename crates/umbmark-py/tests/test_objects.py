@@ -63,6 +63,17 @@ def test_paths_of_every_shape_are_made_of_keys() -> None:
         square.end("left")
 
 
+def test_the_words_for_drives_and_shapes_are_listed_with_what_they_are() -> None:
+    drives, shapes = umbmark.Robot.drives(), umbmark.Path.shapes()
+    assert next(iter(drives)) == "differential"
+    assert next(iter(shapes)) == "square"
+    assert all([*drives.values(), *shapes.values()])
+    with pytest.raises(ValueError, match=f"one of {', '.join(map(re.escape, shapes))}"):
+        umbmark.Path("sqare")
+    with pytest.raises(ValueError, match=f"one of {', '.join(map(re.escape, drives))}"):
+        umbmark.Robot(drive="diferential", **LABMATE)
+
+
 def test_models_are_changed_by_making_others() -> None:
     nominal = umbmark.Model()
     model = nominal.add("wheelbase", e_b=1.01, free=True)

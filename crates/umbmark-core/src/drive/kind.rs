@@ -1,16 +1,16 @@
 //! The kinds of drives: what is known of one before there is a robot.
 
 use super::kinematics::Kinematics;
-use super::{AckermannDrive, ClapperDrive, DifferentialDrive, Drive, DriveError, SynchroDrive};
+use super::{Drive, DriveError, Robot};
 use crate::parameter::Parameter;
 
 /// Makes the kinds from the list of drives.
 macro_rules! kinds {
-    ($($(#[$about:meta])* $kind:ident($drive:ident),)+) => {
+    ($(#[doc = $about:literal] $kind:ident($file:ident::$drive:ident),)+) => {
         /// A kind of drive.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Kind {
-            $($(#[$about])* $kind,)+
+            $(#[doc = $about] $kind,)+
         }
 
         impl Kind {
@@ -19,7 +19,7 @@ macro_rules! kinds {
 
             const fn facts(self) -> &'static Facts {
                 match self {
-                    $(Kind::$kind => const { &Facts::of::<$drive>() },)+
+                    $(Kind::$kind => const { &Facts::of::<super::$drive>($about) },)+
                 }
             }
         }
@@ -29,6 +29,7 @@ every_drive!(kinds);
 
 /// What a drive's file says of its kind.
 struct Facts {
+    about: &'static str,
     name: &'static str,
     counters: [&'static str; 2],
     parameters: &'static [Parameter],
@@ -37,8 +38,9 @@ struct Facts {
 }
 
 impl Facts {
-    const fn of<D: Kinematics + Into<Drive>>() -> Facts {
+    const fn of<D: Kinematics + Into<Drive>>(about: &'static str) -> Facts {
         Facts {
+            about: about.trim_ascii(),
             name: D::NAME,
             counters: D::COUNTERS,
             parameters: D::PARAMETERS,
@@ -52,6 +54,11 @@ impl Kind {
     /// As in files.
     pub fn name(self) -> &'static str {
         self.facts().name
+    }
+
+    /// What it is, in a sentence.
+    pub fn about(self) -> &'static str {
+        self.facts().about
     }
 
     /// What its two counters are called in files.
@@ -69,6 +76,12 @@ impl Kind {
     /// trucks, each with counters of its own.
     pub fn has_tick_logs(self) -> bool {
         self.facts().has_tick_logs
+    }
+
+    /// A drive of usual numbers.
+    pub fn usual(self) -> Drive {
+        let usual: Vec<f64> = self.parameters().iter().map(|p| p.default.resolve(&Robot::labmate())).collect();
+        self.drive(&usual).expect("usual numbers make a drive")
     }
 
     /// A drive from the numbers that the kind [lists](Kind::parameters), in that order.

@@ -58,7 +58,13 @@ impl Kinematics for SynchroDrive {
             (1e-3, 100.0),
             "diameter of the circle that the wheels stand on",
         ),
-        Parameter::of_robot("wheel_diameter_m", "m", 0.25, (1e-3, 100.0), "diameter of the wheels"),
+        Parameter::of_robot(
+            "wheel_diameter_m",
+            "m",
+            0.25,
+            (1e-3, 100.0),
+            "diameter of the wheels that the drive encoder counts",
+        ),
         Parameter::of_robot(
             "steering_ticks_per_revolution",
             "",

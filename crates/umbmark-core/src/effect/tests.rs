@@ -1,7 +1,7 @@
 //! What holds for every effect, and the paths that single effects are tested on.
 
 use super::*;
-use crate::drive::{LinkReading, Robot};
+use crate::drive::{Drive, LinkReading, Robot};
 use crate::geometry::{LANES, seeded};
 use crate::path::{CIRCLE, Path, SQUARE, SpeedProfile};
 use crate::preset::Preset;
@@ -174,6 +174,25 @@ fn every_effect_that_files_may_name_is_there() {
         find(name).unwrap();
     }
     assert_eq!(names.split_whitespace().count(), CATALOGUE.len());
+}
+
+/// A drive of usual numbers, and with each of the words that one of them may stand for.
+fn drives_of(kind: Kind) -> Vec<Drive> {
+    let words = kind.parameters().iter().flat_map(|p| (0..p.choices.len()).map(|word| (p.name, word as f64)));
+    let worded = words.map(|(name, word)| kind.usual().with(name, word).unwrap());
+    std::iter::once(kind.usual()).chain(worded).collect()
+}
+
+#[test]
+fn every_drive_may_have_its_first_effects_whose_default_values_correct_nothing() {
+    for drive in Kind::ALL.iter().flat_map(|kind| drives_of(*kind)) {
+        let first = drive.first_effects().map(|name| find(name).unwrap());
+        for entry in first {
+            assert!(entry.drives.contains(drive.kind()), "{} of {}", entry.about.name, drive.kind().name());
+        }
+        let nothing = first.map(|entry| neutral(&entry.about.parameters[0], &Robot { drive, ..Robot::labmate() }));
+        assert_eq!(drive.corrected(nothing), Ok(drive));
+    }
 }
 
 #[test]

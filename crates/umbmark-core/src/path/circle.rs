@@ -22,7 +22,8 @@ pub static CIRCLE: Shape = Shape {
         },
         TURNS,
     ],
-    moves: |values| vec![Move::Arc { radius: values[0], angle: TAU * values[1] }],
+    closed: true,
+    moves: |values| Ok(vec![Move::Arc { radius: values[0], angle: TAU * values[1] }]),
 };
 
 pub(super) const TURNS: Parameter = Parameter {

@@ -20,5 +20,6 @@ pub static FIGURE_EIGHT: Shape = Shape {
         meaning: "radius of each circle",
         choices: &[],
     }],
-    moves: |values| [TAU, -TAU].map(|angle| Move::Arc { radius: values[0], angle }).to_vec(),
+    closed: true,
+    moves: |values| Ok([TAU, -TAU].map(|angle| Move::Arc { radius: values[0], angle }).to_vec()),
 };

@@ -30,5 +30,6 @@ pub static RECTANGLE: Shape = Shape {
             choices: &[],
         },
     ],
-    moves: |values| sides(&[values[0], values[1], values[0], values[1]]),
+    closed: true,
+    moves: |values| Ok(sides(&[values[0], values[1], values[0], values[1]])),
 };

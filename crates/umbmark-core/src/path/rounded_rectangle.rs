@@ -1,7 +1,7 @@
 //! A rectangle with round corners, for robots that cannot turn on the spot.
 
 use super::square::SIDE_BOUNDS;
-use super::{Move, PathError, Shape};
+use super::{Move, Shape};
 use crate::parameter::{DefaultValue, Parameter, ParameterError};
 use std::f64::consts::FRAC_PI_2;
 
@@ -15,28 +15,24 @@ pub static ROUNDED_RECTANGLE: Shape = Shape {
         size("width_m", "width", 4.0, "length of the second side, corners included"),
         size("corner_radius_m", "corner-radius", 1.0, "radius of the corners"),
     ],
+    closed: true,
     moves: |values| {
         let [length, width, radius] = [values[0], values[1], values[2]];
+        let most = 0.5 * length.min(width);
+        if radius > most {
+            let allowed = format!("between {} and {most} m (half of the shorter side)", SIDE_BOUNDS.0);
+            return Err(ParameterError { name: "corner_radius_m", value: radius, allowed }.into());
+        }
         let side = |side: f64| {
             let straight = side - 2.0 * radius;
             let leg = (straight > 0.0).then_some(Move::Straight { length: straight });
             leg.into_iter().chain([Move::Arc { radius, angle: FRAC_PI_2 }])
         };
-        [length, width, length, width].into_iter().flat_map(side).collect()
+        Ok([length, width, length, width].into_iter().flat_map(side).collect())
     },
 };
 
 const fn size(name: &'static str, flag: &'static str, typical: f64, meaning: &'static str) -> Parameter {
     let default = DefaultValue::Value(typical);
     Parameter { name, flag, unit: "m", default, typical, bounds: SIDE_BOUNDS, meaning, choices: &[] }
-}
-
-/// Refuses corners that do not fit.
-pub(super) fn check(values: &[f64]) -> Result<(), PathError> {
-    let most = 0.5 * values[0].min(values[1]);
-    if values[2] <= most {
-        return Ok(());
-    }
-    let allowed = format!("between {} and {most} m (half of the shorter side)", SIDE_BOUNDS.0);
-    Err(ParameterError { name: "corner_radius_m", value: values[2], allowed }.into())
 }

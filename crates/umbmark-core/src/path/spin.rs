@@ -9,5 +9,6 @@ pub static SPIN: Shape = Shape {
     name: "spin",
     about: "one or more full turns on the spot",
     parameters: &[TURNS],
-    moves: |values| vec![Move::Turn { angle: TAU * values[0] }],
+    closed: true,
+    moves: |values| Ok(vec![Move::Turn { angle: TAU * values[0] }]),
 };

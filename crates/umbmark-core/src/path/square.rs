@@ -20,7 +20,8 @@ pub static SQUARE: Shape = Shape {
         meaning: "length of a side",
         choices: &[],
     }],
-    moves: |values| sides(&[values[0]; 4]),
+    closed: true,
+    moves: |values| Ok(sides(&[values[0]; 4])),
 };
 
 /// Legs of the given lengths \[m\], a quarter turn to the left after each.

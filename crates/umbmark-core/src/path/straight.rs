@@ -18,5 +18,6 @@ pub static STRAIGHT: Shape = Shape {
         meaning: "length of the leg",
         choices: &[],
     }],
-    moves: |values| vec![Move::Straight { length: values[0] }],
+    closed: false,
+    moves: |values| Ok(vec![Move::Straight { length: values[0] }]),
 };

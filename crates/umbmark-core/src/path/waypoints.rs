@@ -7,8 +7,9 @@ use crate::geometry::wrap;
 /// direction is the mirror image in the x axis.
 pub static WAYPOINTS: Shape = Shape {
     name: "waypoints",
-    about: "straight legs from START through a list of points, turning on the spot at each",
+    about: "straight legs from START through a list of points, `points_m = [[x, y], ..]`, turning on the spot at each",
     parameters: &[],
+    closed: false,
     moves,
 };
 
@@ -16,7 +17,7 @@ pub static WAYPOINTS: Shape = Shape {
 const FARTHEST: f64 = 1e6;
 
 /// Points must be on a floor, and none the same as the one before.
-pub(super) fn check(values: &[f64]) -> Result<(), PathError> {
+fn check(values: &[f64]) -> Result<(), PathError> {
     let points = values.chunks_exact(2).map(|p| (p[0], p[1]));
     let mut before = (0.0, 0.0);
     for (i, (x, y)) in points.enumerate() {
@@ -31,7 +32,8 @@ pub(super) fn check(values: &[f64]) -> Result<(), PathError> {
     Ok(())
 }
 
-fn moves(values: &[f64]) -> Vec<Move> {
+fn moves(values: &[f64]) -> Result<Vec<Move>, PathError> {
+    check(values)?;
     let (mut x, mut y, mut heading) = (0.0, 0.0, 0.0);
     let mut moves = Vec::new();
     for point in values.chunks_exact(2) {
@@ -44,7 +46,7 @@ fn moves(values: &[f64]) -> Vec<Move> {
         moves.push(Move::Straight { length: libm::hypot(dx, dy) });
         (x, y, heading) = (point[0], point[1], towards);
     }
-    moves
+    Ok(moves)
 }
 
 #[cfg(test)]

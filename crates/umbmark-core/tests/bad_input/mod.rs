@@ -1,6 +1,8 @@
 //! Reader of `cases.txt`: input that cannot be used, and what is said of it.
 
 use std::path::Path;
+use umbmark_core::drive::Kind;
+use umbmark_core::path::SHAPES;
 
 const ROBOT: &str = "[robot]\nwheelbase_m = 0.340\nwheel_diameter_m = 0.150\nticks_per_revolution = 2000\n";
 const RETURNS: &str = "direction,run,ex_m,ey_m\ncw,1,0.1,0.2\n";
@@ -37,6 +39,7 @@ pub fn cases() -> Vec<Case> {
     let mut cases: Vec<Case> = Vec::new();
     for line in include_str!("cases.txt").lines() {
         if let Some(name) = line.strip_prefix("# ") {
+            assert!(cases.iter().all(|case| case.name != name), "{name} stands twice");
             cases.push(Case { name: name.to_owned(), ..Case::default() });
         }
         let Some(case) = cases.last_mut() else { continue };
@@ -50,11 +53,18 @@ pub fn cases() -> Vec<Case> {
                 bytes.push(b'\n');
             }
             "load" => case.load = rest.to_owned(),
-            "says" => case.says = rest.to_owned(),
+            "says" => case.says = with_lists(rest),
             _ => assert!(line.is_empty() || word == "#", "what is {line:?}?"),
         }
     }
     cases
+}
+
+/// What is said, with all names in place of what stands for them.
+fn with_lists(says: &str) -> String {
+    let shapes: Vec<&str> = SHAPES.iter().map(|shape| shape.name).collect();
+    let drives: Vec<&str> = Kind::ALL.iter().map(|kind| kind.name()).collect();
+    says.replace("{shapes}", &shapes.join(", ")).replace("{drives}", &drives.join(", "))
 }
 
 fn good(name: &str) -> (String, Vec<u8>) {
