@@ -383,7 +383,9 @@ fn a_track_beside_the_log_is_set_by_the_motion_in_every_format() {
             let turned = heading[i].sin().atan2(heading[i].cos()).to_degrees();
             format!("{i},{},{turned},0,0,{},95,{}\n", time[i], 1e3 * y[i], 1e3 * x[i])
         });
-    for (name, track) in [("ccw_01.csv", &columns), ("ccw_01.tum", &tum), ("ccw_01.csv", &motive)] {
+    let tabbed = tum.replace(' ', "\t");
+    let tracks = [("ccw_01.csv", &columns), ("ccw_01.tum", &tum), ("ccw_01.tsv", &tabbed), ("ccw_01.csv", &motive)];
+    for (name, track) in tracks {
         let files =
             [("robot.toml", ROBOT), ("runs/ccw_01.csv", &*counted), (&*format!("reference/{name}"), track.as_str())];
         for path in ["", "runs/ccw_01.csv"] {
@@ -395,4 +397,32 @@ fn a_track_beside_the_log_is_set_by_the_motion_in_every_format() {
             assert!(error.x.hypot(error.y) < 2e-3 && error.heading.unwrap().abs() < 1e-3, "{name}: {error:?}");
         }
     }
+}
+
+#[test]
+fn what_a_folder_holds_and_was_not_read_is_said() {
+    let sheet = "direction,run,ex_m,ey_m\ncw,1,0,0\n";
+    let ticks = "t_s,ticks_left,ticks_right\n0,0,0\n1,9,9\n";
+    let files = [
+        ("robot.toml", ROBOT),
+        ("notes.txt", "Monday"),
+        ("returns.csv.gz", sheet),
+        ("returns.xlsx", ""),
+        ("runs/cw_01.csv", ticks),
+        ("runs/cw_02.bag", ""),
+        ("reference/cw_01.tak", ""),
+        ("reference/cw_07.tum", ""),
+    ];
+    let data = load(&files, "").unwrap();
+    assert!(data.runs[0].returned.is_some());
+    let said: Vec<&str> = data.warnings.iter().map(|said| said.rsplit('/').next().unwrap()).collect();
+    assert_eq!(
+        said,
+        [
+            "cw_01.tak: is no track (.csv, .tum, .txt, .tsv) and was not read",
+            "cw_02.bag: is no log (.csv, .mcap) and was not read",
+            "cw_07.tum: belongs to no log of its name (.csv) and was not read",
+            "returns.xlsx: is no return sheet (returns.csv) and was not read",
+        ]
+    );
 }

@@ -261,6 +261,14 @@ pub enum DatasetError {
         /// Why, and what to do.
         reason: String,
     },
+    /// A second track of a log.
+    #[error("{file}: is a track of the same log as {first}; keep one of them")]
+    TwoTracks {
+        /// The file of the second one.
+        file: String,
+        /// That of the first.
+        first: String,
+    },
     /// A compressed file that cannot be unpacked.
     #[error("{file}: {reason}")]
     Packed {

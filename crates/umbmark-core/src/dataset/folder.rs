@@ -23,7 +23,7 @@ pub(super) const RETURNS: &str = "returns.csv";
 pub(super) const RUNS: &str = "runs";
 pub(super) const REFERENCE: &str = "reference";
 /// Endings of files with poses that have a clock of their own.
-const TRACKS: [&str; 3] = ["csv", "tum", "txt"];
+const TRACKS: [&str; 4] = ["csv", "tum", "txt", "tsv"];
 /// How much of a log is read at a time \[bytes\]: what the processor keeps close to itself.
 const PIECE: usize = 1 << 18;
 const EXPECTED: &str =
@@ -38,11 +38,12 @@ pub(super) fn load(path: &Path, topics: &Topics) -> Result<Dataset, DatasetError
 fn load_folder(folder: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
     let names = names_in(folder)?;
     let has = |name: &str| names.iter().any(|n| n == name);
+    let sheets = || names.iter().filter(|name| name.strip_suffix(".gz").unwrap_or(name) == RETURNS);
     if !has(ROBOT) {
         let sets: Vec<&str> = names.iter().filter_map(|name| optiodom::set_of_metadata(name)).collect();
         return match sets[..] {
             [set] => load_optiodom(folder, set, &names),
-            [] if has(RETURNS) || has(RUNS) => Err(not_a_dataset(folder, "it has no robot.toml".into())),
+            [] if sheets().count() > 0 || has(RUNS) => Err(not_a_dataset(folder, "it has no robot.toml".into())),
             [] => Err(not_a_dataset(folder, "it has neither robot.toml, nor returns.csv, nor runs".into())),
             _ => Err(DatasetError::NotADataset {
                 file: folder.display().to_string(),
@@ -53,15 +54,19 @@ fn load_folder(folder: &Path, topics: &Topics) -> Result<Dataset, DatasetError> 
     }
     let (robot, driven) = read_robot(folder.join(ROBOT))?;
     let mut assembly = Assembly::new(Some(robot), driven);
-    if has(RETURNS) {
-        add_returns(&mut assembly, &folder.join(RETURNS))?;
+    for sheet in sheets() {
+        add_returns(&mut assembly, &folder.join(sheet))?;
     }
     let mut logs = 0;
     if has(RUNS) {
         logs = add_logs(&mut assembly, &folder.join(RUNS), topics)?;
     }
-    if logs == 0 && !has(RETURNS) {
+    if logs == 0 && sheets().count() == 0 {
         return Err(not_a_dataset(folder, "it has a robot and no measurement".into()));
+    }
+    let named_alike = names.iter().map(|name| folder.join(name)).filter(|file| stem(file).to_lowercase() == "returns");
+    for file in named_alike.filter(|file| sheets().all(|sheet| *sheet != name_of(file))) {
+        assembly.warnings.push(format!("{}: is no return sheet ({RETURNS}) and was not read", file.display()));
     }
     Ok(assembly.finish())
 }
@@ -90,7 +95,7 @@ fn add_returns(assembly: &mut Assembly, file: &Path) -> Result<(), DatasetError>
 
 /// Adds every log of a folder, with its track where there is one beside it, and says how many.
 fn add_logs(assembly: &mut Assembly, folder: &Path, topics: &Topics) -> Result<usize, DatasetError> {
-    let mut tracks = tracks_beside(folder)?;
+    let mut tracks = tracks_beside(folder, &mut assembly.warnings)?;
     let mut logs = 0;
     for name in names_in(folder)? {
         let file = folder.join(&name);
@@ -107,19 +112,27 @@ fn add_logs(assembly: &mut Assembly, folder: &Path, topics: &Topics) -> Result<u
         }
     }
     for track in tracks.values() {
-        assembly.warnings.push(format!("{}: belongs to no log and was not read", track.display()));
+        assembly.warnings.push(format!("{}: belongs to no log of its name (.csv) and was not read", track.display()));
     }
     Ok(logs)
 }
 
 /// The tracks of logs in `runs`, by the name of the log: files of the folder `reference` beside it.
-fn tracks_beside(runs: &Path) -> Result<BTreeMap<String, PathBuf>, DatasetError> {
+fn tracks_beside(runs: &Path, warnings: &mut Vec<String>) -> Result<BTreeMap<String, PathBuf>, DatasetError> {
     let folder = runs.parent().unwrap_or(Path::new(".")).join(REFERENCE);
+    let mut tracks = BTreeMap::new();
     if !folder.is_dir() {
-        return Ok(BTreeMap::new());
+        return Ok(tracks);
     }
-    let files = names_in(&folder)?.into_iter().map(|name| folder.join(name));
-    Ok(files.filter(|file| TRACKS.contains(&extension(file).as_str())).map(|file| (stem(&file), file)).collect())
+    for file in names_in(&folder)?.into_iter().map(|name| folder.join(name)) {
+        let name = file.display().to_string();
+        if !TRACKS.contains(&extension(&file).as_str()) {
+            warnings.push(format!("{name}: is no track (.{}) and was not read", TRACKS.join(", .")));
+        } else if let Some(first) = tracks.insert(stem(&file), file) {
+            return Err(DatasetError::TwoTracks { file: name, first: first.display().to_string() });
+        }
+    }
+    Ok(tracks)
 }
 
 fn add_log(assembly: &mut Assembly, file: &Path, track: Option<PathBuf>) -> Result<(), DatasetError> {
@@ -237,7 +250,7 @@ fn load_file(file: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
     let is_log = Rows::of(&text).next().is_some_and(|(_, header)| header.to_lowercase().contains("ticks"));
     if is_log {
         let in_runs = folder.file_name().is_some_and(|name| name == RUNS);
-        let track = if in_runs { tracks_beside(folder)?.remove(&stem(file)) } else { None };
+        let track = if in_runs { tracks_beside(folder, &mut Vec::new())?.remove(&stem(file)) } else { None };
         add_log(&mut assembly, file, track)?
     } else {
         add_returns(&mut assembly, file)?
