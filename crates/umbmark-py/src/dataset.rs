@@ -134,7 +134,7 @@ impl Dataset {
     fn save(&self, py: Python<'_>, place: PathBuf, layout: Option<&str>, replace: bool) -> PyResult<Vec<String>> {
         let named = |layout: &'static Layout| (layout.name, layout);
         let layout = match layout {
-            Some(name) => choice("layout", name, &LAYOUTS.each_ref().map(named))?,
+            Some(name) => choice("layout", name, &LAYOUTS.iter().map(named).collect::<Vec<_>>())?,
             None => Layout::of_place(&place),
         };
         detached(py, || self.0.convert(layout, &place, existing(replace)))?.map_err(unwritten)

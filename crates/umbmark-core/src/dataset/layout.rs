@@ -26,7 +26,7 @@ pub struct Layout {
 type Write = fn(&Dataset, &Path, Existing) -> Result<Vec<String>, DatasetError>;
 
 /// All of them.
-pub static LAYOUTS: [Layout; 5] = [
+pub static LAYOUTS: &[Layout] = &[
     Layout { name: "csv", about: "robot.toml, returns.csv and runs/*.csv: holds everything", write: csv },
     Layout { name: "mcap", about: "the same with logs of ROS 2, runs/*.mcap; one run as NAME.mcap", write: mcap },
     Layout { name: "optiodom", about: "a set of OptiOdom: *_metadata.csv and *_run-NN.csv", write: optiodom::write },

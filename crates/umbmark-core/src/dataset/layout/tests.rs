@@ -47,13 +47,23 @@ fn round_trip(data: &Dataset, name: &str) -> (Dataset, Vec<String>) {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path().join("out");
     let lost = data.convert(layout(name), &folder, Existing::Keep).unwrap();
-    assert!(data.convert(layout(name), &folder, Existing::Keep).is_err(), "{name}: what is there is kept");
-    data.convert(layout(name), &folder, Existing::Replace).unwrap();
     (Dataset::load(&folder).unwrap_or_else(|error| panic!("{name}: {error}")), lost)
 }
 
 fn logs(data: &Dataset) -> Vec<&TickLog> {
     data.logs().map(|(_, log)| log).collect()
+}
+
+#[test]
+fn every_layout_keeps_what_is_there_unless_it_may_be_replaced() {
+    let data = dataset(1);
+    for layout in LAYOUTS {
+        let place = tempfile::tempdir().unwrap();
+        let convert = |existing| data.convert(layout, place.path().join("out"), existing);
+        convert(Existing::Keep).unwrap();
+        assert!(convert(Existing::Keep).is_err(), "{}", layout.name);
+        convert(Existing::Replace).unwrap();
+    }
 }
 
 #[test]
