@@ -120,12 +120,15 @@ impl Kinds {
 }
 
 impl std::fmt::Display for Kinds {
-    /// "synchro", "differential and ackermann", "all".
+    /// "synchro", "differential and ackermann", "differential, synchro and clapper", "all".
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         if *self == Kinds::ALL {
             return f.write_str("all");
         }
         let names: Vec<&str> = self.each().map(Kind::name).collect();
-        f.write_str(&names.join(" and "))
+        match names.split_last() {
+            Some((last, others)) if !others.is_empty() => write!(f, "{} and {last}", others.join(", ")),
+            _ => f.write_str(&names.concat()),
+        }
     }
 }
