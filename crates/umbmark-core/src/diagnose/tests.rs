@@ -4,6 +4,7 @@ use super::ends::{Asked, Ends, Family, Fitted, Moments};
 use super::*;
 use crate::calibrate::noise_shape;
 use crate::dataset::ReturnError;
+use crate::effect::Changes;
 use crate::geometry::wrap;
 use crate::path::{Direction, FIGURE_EIGHT, Path, SpeedProfile};
 use crate::random::Stream;
@@ -11,6 +12,7 @@ use crate::replay::Track;
 use crate::stats::chi_squared_upper_tail;
 use nalgebra::{DVector, Vector3};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::io::Write;
 
 /// A robot like the paper's, E_d and E_b of the size of the paper's, wheel noise of its scatter, and one more cause.
@@ -216,6 +218,51 @@ fn of_every_parameter_the_least_size_is_told_effect_by_effect_in_the_order_asked
     ];
     let told: Vec<Vec<f64>> = diagnosis.least_sizes().iter().map(|own| own.iter().map(|d| d.size).collect()).collect();
     assert_eq!(told, [vec![1.0, 5.0], vec![2.0]]);
+}
+
+/// Seed 5; a slope far beyond the scatter.
+pub(crate) fn steep() -> Dataset {
+    let mut truth = robot_with(&[("floor_slope", "drift_x", 2e-2)]);
+    truth.set("wheel_noise", "k_sqrt_m", 1e-4).unwrap();
+    simulated(&truth, &Path::umbmark(), 5, 5, 0..1).remove(0)
+}
+
+#[test]
+fn drives_are_offered_against_what_is_in_a_class_or_absorbs_an_effect() {
+    let diagnosis = diagnose(&steep(), &base(), &Options::default()).unwrap();
+    assert!(diagnosis.certified()[0].class.contains(&"floor_slope") && !diagnosis.next_experiments.is_empty());
+    for Experiment { separates: [first, second], .. } in &diagnosis.next_experiments {
+        let in_class = |suspect: &Suspect| suspect.best == *first && suspect.class.contains(second);
+        let absorbed = |unseen: &Unseen| unseen.effect == *second && unseen.why == Why::Absorbed(vec![*first]);
+        let told = diagnosis.ranking.iter().any(in_class) || diagnosis.invisible.iter().any(absorbed);
+        assert!(told, "{first} and {second}");
+    }
+}
+
+pub(crate) fn asked_of(data: &Dataset) -> Asked {
+    let ends = Ends::new(data).unwrap();
+    let fitted = Fitted::new(&ends, &base()).unwrap();
+    Asked::new(&ends, &fitted).unwrap().unwrap()
+}
+
+#[test]
+fn every_effect_that_moves_poses_is_asked_or_said_to_be_unseen_and_no_other_is() {
+    let asked = asked_of(&one_set(5));
+    let told = asked.units.iter().map(|unit| unit.effect.about.name).chain(asked.unseen.iter().map(|own| own.effect));
+    let of_drive = crate::effect::of_drive(Robot::labmate().drive.kind());
+    let moving = of_drive.filter(|entry| entry.changes.include(Changes::MEAN)).map(|entry| entry.about.name);
+    let own = ["wheel_diameter_ratio", "wheelbase"];
+    assert_eq!(told.collect::<BTreeSet<_>>(), moving.filter(|name| !own.contains(name)).collect());
+}
+
+#[test]
+fn the_misfit_falls_by_as_much_whatever_the_unit_of_a_size() {
+    let asked = asked_of(&one_set(5));
+    let mut other = asked.clone();
+    other.units.iter_mut().flat_map(|unit| &mut unit.columns).for_each(|column| *column *= -1e3);
+    for (drop, other) in asked.drops().iter().zip(other.drops()) {
+        assert!((drop - other).abs() < 1e-9 * (1.0 + drop), "{drop} {other}");
+    }
 }
 
 #[test]

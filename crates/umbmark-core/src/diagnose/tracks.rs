@@ -457,3 +457,6 @@ pub(crate) fn fit(observed: &Observed, model: &crate::effect::Model) -> Result<F
     }
     Ok(fitted)
 }
+
+#[cfg(test)]
+mod tests;

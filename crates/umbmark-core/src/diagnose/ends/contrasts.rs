@@ -183,4 +183,17 @@ mod tests {
         let other = seen([turned(0.1, 0.02), turned(0.1, 0.02)]);
         assert!((other.turned_less_heading.unwrap() + 0.02).abs() < 1e-12 && !other.explained());
     }
+
+    /// Textbook: two values 2 mm apart have a mean with a standard error of 1 mm, and t of 97.5 % with one degree of freedom is 12.706.
+    #[test]
+    fn the_distance_from_the_circle_is_that_outside_of_it_with_the_interval_of_its_mean() {
+        let out = |by: f64| {
+            let outward = by / std::f64::consts::SQRT_2;
+            Run { error: Vector3::new(-outward, -outward, 0.0), predicted: Vector3::zeros() }
+        };
+        let circle = on_circle(Direction::Cw, &[out(1e-3), out(3e-3)], 4.0, true, 0.95).unwrap();
+        assert!((circle.mean_off - 2e-3).abs() < 1e-12 && (circle.distance - 2e-3).abs() < 1e-12, "{circle:?}");
+        let Interval { low, high } = circle.off_interval;
+        assert!((low - 2e-3 + 12.706e-3).abs() < 1e-6 && (high - 2e-3 - 12.706e-3).abs() < 1e-6, "{low} {high}");
+    }
 }

@@ -170,3 +170,21 @@ impl Judge {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_smallest_p_of_a_test_is_that_of_its_most_striking_part() {
+        let whole = Judge::Simulated((0..100).map(f64::from).collect());
+        let judges = [Judge::Exact([1.0, 8.0]), Judge::Simulated((0..50).map(f64::from).collect()), Judge::Silent];
+        let of = |whole_of: f64, units: [f64; 3]| {
+            smallest(&Statistics { whole: whole_of, units: units.to_vec() }, &judges, &whole)
+        };
+        assert_eq!(of(0.0, [0.0; 3]), 1.0);
+        assert_eq!(of(99.0, [0.0; 3]), WHOLE / 100.0);
+        assert_eq!(of(0.0, [0.0, 49.0, 9.0]), 1.0 / 50.0);
+        assert_eq!(of(0.0, [100.0, 49.0, 0.0]), f_upper_tail(100.0, [1.0, 8.0]));
+    }
+}

@@ -63,6 +63,7 @@ fn patterns(runs: usize, seed: u64) -> Vec<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::tests::{asked_of, steep};
 
     #[test]
     fn ten_runs_have_512_patterns_and_many_runs_have_drawn_ones_with_the_observed_among_them() {
@@ -78,5 +79,12 @@ mod tests {
     fn equal_scores_are_as_striking_as_can_be() {
         assert!((statistic(&[2.0; 9], &[1.0; 9]) - 3.0).abs() < 1e-12);
         assert_eq!(statistic(&[0.0; 3], &[1.0; 3]), 0.0);
+    }
+
+    #[test]
+    fn runs_that_all_speak_for_an_effect_are_one_pattern_of_512() {
+        let mut asked = asked_of(&steep());
+        asked.units.retain(|unit| unit.effect.about.name == "floor_slope" && unit.parameter.name == "drift_x");
+        assert_eq!(certificate(&asked, 1), [1.0 / 512.0]);
     }
 }

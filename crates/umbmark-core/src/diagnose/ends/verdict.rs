@@ -260,3 +260,25 @@ pub(crate) fn contradiction(circle: &OnCircle) -> Option<String> {
         degrees.abs(),
     ))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::base_model;
+    use crate::diagnose::tests::{robot_with, simulated};
+    use crate::drive::Robot;
+    use crate::path::Path;
+
+    /// Ten runs about two means: t of 97.5 % with 8 degrees of freedom is 2.3060, z of 80 % is 0.8416.
+    #[test]
+    fn the_least_size_that_is_seen_stands_out_by_what_the_test_needs_and_its_power() {
+        let data = simulated(&robot_with(&[]), &Path::umbmark(), 5, 7, 0..1).remove(0);
+        let ends = Ends::new(&data).unwrap();
+        let fitted = Fitted::new(&ends, &base_model(&Robot::labmate()).unwrap()).unwrap();
+        let asked = Asked::new(&ends, &fitted).unwrap().unwrap();
+        for (told, unit) in detectable(&asked, 0.05).iter().zip(&asked.units) {
+            assert_eq!((told.effect, told.parameter), (unit.effect.about.name, unit.parameter.name));
+            assert!((told.size * unit.shift.norm() - 3.1476).abs() < 1e-4, "{told:?}");
+        }
+    }
+}

@@ -233,3 +233,60 @@ pub(crate) fn minutes(path: &Path, robot: &Robot) -> f64 {
         .sum();
     seconds / 60.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::WheelTravel;
+    use crate::effect::{Model, Number};
+
+    /// Poses at the stops, with the travel of one piece changed.
+    fn stops(track: &Track, robot: &Robot, changed: usize, by: WheelTravel) -> DVector<f64> {
+        let (mut poses, mut pose) = (vec![Pose2::IDENTITY], Pose2::IDENTITY);
+        for (piece, travel) in track.travel().iter().enumerate() {
+            let more = if piece == changed { by } else { WheelTravel::default() };
+            let travel = WheelTravel { left: travel.left + more.left, right: travel.right + more.right };
+            pose = pose.moved(&robot.drive.displacement(&travel));
+            poses.push(pose);
+        }
+        let seen = track.seen_after().iter().map(|made| poses[*made]);
+        DVector::from_vec(seen.flat_map(|pose| [pose.x, pose.y, pose.heading]).collect())
+    }
+
+    /// Oracle: generalised least squares with the covariance of all poses at once, its noise piece by piece by differences.
+    #[test]
+    fn what_is_new_at_each_stop_tells_as_much_as_all_poses_with_their_covariance() {
+        let robot = Robot::labmate();
+        let noise = Noise { variance: 1e-6, coordinates: 3 };
+        let track = Track::with_stops(&Path::umbmark(), Direction::Ccw, &robot);
+        let leg = Leg { track: track.clone(), runs: 3, turned: 0.0, minutes: 0.0 };
+        let design = Design { what: String::new(), legs: vec![leg] };
+        let number = |(effect, parameter)| Number { effect, parameter, shape: None };
+        let numbers = [("wheel_diameter_ratio", "e_d"), ("wheelbase", "e_b")].map(number);
+        let derived = Model::new(&robot).derived(&numbers).unwrap().remove(0);
+        let columns = design.columns(&derived, &design.stages(&robot, &noise));
+
+        let rows = 3 * track.seen_after().len();
+        let mut covariance = DMatrix::from_fn(rows, rows, |i, j| if i == j { TAPE[i % 3] * TAPE[i % 3] } else { 0.0 });
+        let step = 1e-6;
+        for (piece, travel) in track.travel().iter().enumerate() {
+            for (rolled, left, right) in [(travel.left, step, 0.0), (travel.right, 0.0, step)] {
+                let [more, less] =
+                    [1.0, -1.0].map(|sign| stops(&track, &robot, piece, WheelTravel { left, right }.scaled(sign)));
+                let slope = (more - less) / (2.0 * step);
+                covariance += &slope * slope.transpose() * (rolled.abs() * noise.variance);
+            }
+        }
+        let poses = track.poses(&derived.chain);
+        let slope = |lane: usize| {
+            let slopes = poses.iter().map(|pose| pose.slope(lane)).flat_map(|slope| [slope.x, slope.y, slope.heading]);
+            DVector::from_iterator(rows, slopes)
+        };
+        let factor = covariance.cholesky().unwrap();
+        for (i, j) in [(0, 0), (0, 1), (1, 1)] {
+            let expected = 3.0 * slope(i).dot(&factor.solve(&slope(j)));
+            let told = columns[i].dot(&columns[j]);
+            assert!((told / expected - 1.0).abs() < 1e-3, "{i} {j}: {told} {expected}");
+        }
+    }
+}

@@ -121,3 +121,36 @@ impl Alone {
         (runs > 1).then(|| sum * ((runs - 1) as f64 / runs as f64))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::fitted;
+    use super::*;
+
+    /// BIC - AICc = k ln n - 2kn/(n - k - 1), here solved for k: the model's values, those of the reference and the sizes of the noise.
+    #[test]
+    fn criteria_count_everything_that_was_fitted_and_a_right_model_leaves_residuals_of_one() {
+        let reference = |parameter| ("reference_noise", parameter, 2e-3);
+        let alone = Alone::new(fitted(&["position_sd_m", "heading_sd_rad"].map(reference)));
+        let (aicc, bic, residual) = alone.criteria();
+        let (n, numbers) = (alone.system.rows as f64, alone.fitted.free.len() + alone.fitted.reference[0].len());
+        let k = (numbers + Noise::SIZES) as f64;
+        assert!((bic - aicc - (k * n.ln() - 2.0 * k * n / (n - k - 1.0))).abs() < 1e-6 * n, "{aicc} {bic}");
+        assert!((residual - 1.0).abs() < 0.05, "{residual}");
+        // Minus twice the logarithm of the likelihood.
+        let runs = alone.fitted.observed.runs.iter().zip(&alone.columns);
+        let scales = runs.map(|(run, columns)| alone.fitted.noise.whiten(run, &[&columns[numbers]]).log_scale);
+        let deviance = 2.0 * scales.sum::<f64>() + n * residual * residual;
+        assert!((bic - k * n.ln() - deviance).abs() < 1e-6 * n, "{bic} {deviance}");
+    }
+
+    #[test]
+    fn whole_tracks_are_weighed_where_a_cause_is_missing_and_not_where_none_is() {
+        let complete = Alone::new(fitted(&[]));
+        assert_eq!(complete.weighing(), Weighing::Increments);
+        let bumpy = Alone::new(fitted(&[("floor_slope", "drift_x", 6e-3)]));
+        assert_eq!(bumpy.weighing(), Weighing::Tracks);
+        let [by_increments, by_tracks] = [Weighing::Increments, Weighing::Tracks].map(|by| bumpy.left_out(by).position);
+        assert!(by_tracks < 0.9 * by_increments, "{by_tracks} {by_increments}");
+    }
+}

@@ -64,3 +64,23 @@ fn range(exam: &Examination, covariate: &Covariate, scales: &Scales) -> (f64, f6
     }
     if low < high { (low, high) } else { (0.0, (covariate.scale)(scales)) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::smooth::COVARIATES;
+    use super::super::tests::complete;
+    use super::*;
+
+    #[test]
+    fn a_curve_is_told_over_all_that_the_runs_show() {
+        let exam = complete();
+        let scales = Scales::new(&exam.fitted.observed);
+        let of = |name: &str| places(exam, COVARIATES.iter().find(|c| c.name == name).unwrap(), &scales);
+        let ends = |name: &str| of(name)[..].iter().fold((f64::MAX, f64::MIN), |(a, b), at| (a.min(*at), b.max(*at)));
+        let near = |(low, high): (f64, f64), (from, to): (f64, f64)| (low - from).abs() + (high - to).abs() < 0.03;
+        assert!(near(ends("speed"), (0.0, scales.speed)) && of("speed").len() == POINTS, "{:?}", of("speed"));
+        assert!(near(ends("turn_rate"), (-scales.turn_rate, scales.turn_rate)), "{:?}", of("turn_rate"));
+        assert!(near(ends("since_turn"), (0.0, FAR_FROM_TURN)), "{:?}", of("since_turn"));
+        assert_eq!((of("direction"), ends("wheel_angle_left")), (vec![-1.0, 1.0], (0.0, TAU)));
+    }
+}

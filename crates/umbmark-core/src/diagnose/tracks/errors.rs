@@ -134,3 +134,73 @@ impl Run {
         Run { position: gram(&position, width), heading: gram(&heading, width), counts }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Stream;
+
+    const WHICH: [usize; 4] = [1, 3, 4, 7];
+
+    /// Rows of position and heading of three runs, four columns each, the residual last, and the errors made of them.
+    fn errors() -> (Vec<[DMatrix<f64>; 2]>, Errors) {
+        let mut stream = Stream::new(4, 0, 0);
+        let mut rows = |n: usize| DMatrix::from_fn(n, 4, |_, _| stream.normal());
+        let rows: Vec<_> = (0..3).map(|run| [rows(2 * (6 + run)), rows(5)]).collect();
+        let run = |(run, [position, heading]): (usize, &[DMatrix<f64>; 2])| Run {
+            position: position.tr_mul(position),
+            heading: heading.tr_mul(heading),
+            counts: [6 + run, 5],
+        };
+        let runs = rows.iter().enumerate().map(run).collect();
+        let white = rows.iter().map(|[position, _]| (4.0 * position.tr_mul(position), position.nrows())).collect();
+        (rows, Errors { which: WHICH.to_vec(), runs, white })
+    }
+
+    #[test]
+    fn misses_are_root_mean_squares_of_what_values_of_columns_leave() {
+        let (rows, errors) = errors();
+        let values = |run: usize| DVector::from_column_slice(&[0.3, -0.2 * run as f64]);
+        // The columns that are not kept are passed over.
+        let misses =
+            errors.misses(|run| (vec![3, 2, 1], DVector::from_column_slice(&[values(run)[0], 9.0, values(run)[1]])));
+        let left = |of: usize| -> f64 {
+            let one = |(run, rows): (usize, &[DMatrix<f64>; 2])| {
+                let (rows, values) = (&rows[of], values(run));
+                (rows.column(3) - rows.column(1) * values[0] - rows.column(0) * values[1]).norm_squared()
+            };
+            rows.iter().enumerate().map(one).sum()
+        };
+        assert!((misses.position - (left(0) / 21.0).sqrt()).abs() < 1e-12, "{misses:?}");
+        assert!((misses.heading.unwrap() - (left(1) / 15.0).sqrt()).abs() < 1e-12, "{misses:?}");
+        assert!((misses.white - (4.0 * left(0) / 42.0).sqrt()).abs() < 1e-12, "{misses:?}");
+    }
+
+    /// Oracle: least squares of all rows, those of headings in the unit in which both errors are as large.
+    #[test]
+    fn whole_tracks_are_fitted_with_positions_and_headings_alike_and_without_the_run_left_out() {
+        let (rows, errors) = errors();
+        for without in [None, Some(1)] {
+            let kept: Vec<_> = rows.iter().enumerate().filter(|(run, _)| Some(*run) != without).collect();
+            let far = |of: usize| kept.iter().map(|(_, rows)| rows[of].column(3).norm_squared()).sum::<f64>();
+            let unit = (far(0) / far(1)).sqrt();
+            let all = kept.iter().flat_map(|(_, [position, heading])| [position.clone(), heading * unit]);
+            let all: Vec<_> = all.flat_map(|m| m.row_iter().map(|row| row.into_owned()).collect::<Vec<_>>()).collect();
+            let all = DMatrix::from_rows(&all);
+            let columns = all.select_columns(&[2, 0]);
+            let expected = columns.svd(true, true).solve(&all.column(3).into_owned(), 1e-12).unwrap();
+            let values = errors.fit(&[4, 1], without);
+            assert!((values - expected).amax() < 1e-9, "{without:?}");
+        }
+    }
+
+    #[test]
+    fn a_gain_is_the_greatest_fall_of_three() {
+        let misses = |position, heading, white| Misses { position, heading, white };
+        let before = misses(2.0, Some(0.1), 1.0);
+        assert_eq!(misses(1.5, Some(0.1), 1.0).gain(&before), 0.25);
+        assert_eq!(misses(2.0, Some(0.05), 0.9).gain(&before), 0.5);
+        assert_eq!(misses(4.0, None, 0.75).gain(&before), 0.25);
+        assert_eq!(misses(0.0, None, 2.0).gain(&misses(0.0, None, 1.0)), 0.0);
+    }
+}

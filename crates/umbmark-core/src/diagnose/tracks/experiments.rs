@@ -246,3 +246,45 @@ fn one_way(drive: Drive) -> Drive {
     let what = drive.what.replace(&format!("{RUNS} runs each way"), &format!("{RUNS} runs"));
     Drive { what, directions: &[Direction::Ccw], ..drive }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::complete;
+    use super::*;
+    use crate::random::Stream;
+
+    /// Oracle: least squares of the truth's response by the columns of the others.
+    #[test]
+    fn a_truth_is_as_far_from_the_others_as_what_they_leave_of_its_response() {
+        let mut stream = Stream::new(6, 0, 0);
+        let mut rows = DMatrix::from_fn(20, 5, |_, _| stream.normal());
+        rows.column_mut(1).fill(0.0);
+        let values = DVector::from_column_slice(&[0.7, -2.0]);
+        let doubt =
+            Doubt { separates: ["a", "b"], truth: vec![13, 14], values: values.clone(), against: vec![10, 11, 12] };
+        let against = rows.select_columns(&[0, 2]);
+        let response = rows.select_columns(&[3, 4]) * values;
+        let left = &response - &against * against.clone().svd(true, true).solve(&response, 1e-12).unwrap();
+        let distance = doubt.distance(&rows.tr_mul(&rows), |column| column - 10);
+        assert!((distance - left.norm()).abs() < 1e-9, "{distance}");
+    }
+
+    #[test]
+    fn what_is_unseen_is_doubted_by_its_own_columns() {
+        let exam = complete();
+        let unseen = Unseen { effect: "turn_slip", why: Why::Absorbed(vec!["wheelbase"]) };
+        let doubts = of_unseen(exam, &unseen);
+        assert_eq!((doubts.len(), doubts[0].separates), (1, ["turn_slip", "wheelbase"]));
+        assert_eq!(exam.name(doubts[0].truth[0]), Some("turn_slip"));
+        assert!(!doubts[0].against.contains(&doubts[0].truth[0]));
+    }
+
+    #[test]
+    fn a_straight_is_offered_one_way() {
+        let speed = SpeedProfile::default();
+        let path = Path::new(&STRAIGHT, &[10.0], speed).unwrap();
+        let what = format!("a straight of 10 m, {RUNS} runs each way");
+        let drive = one_way(Drive { what, path, turned: 0.0, directions: &Direction::BOTH });
+        assert_eq!((&*drive.what, drive.directions), ("a straight of 10 m, 3 runs", &[Direction::Ccw][..]));
+    }
+}

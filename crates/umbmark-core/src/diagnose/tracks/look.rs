@@ -208,3 +208,42 @@ pub fn suspect(exam: &Examination, finding: &Finding) -> Option<Suspect> {
         expected_drop: finding.answer.drop,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::complete;
+    use super::*;
+    use crate::effect::find;
+    use nalgebra::{DMatrix, DVector};
+
+    #[test]
+    fn scores_of_runs_are_those_of_their_quarters_together() {
+        let exam = complete();
+        let runs = exam.fitted.observed.runs.len();
+        for finding in &effects(exam, &Options::default()) {
+            let (by_run, by_quarter) = (scores(exam, finding, false), scores(exam, finding, true));
+            assert_eq!((by_run.units.len(), by_quarter.units.len()), (runs, 4 * runs));
+            for (run, (score, part)) in by_run.units.iter().zip(&by_run.parts).enumerate() {
+                let own = 4 * run..4 * run + 4;
+                let sum: DVector<f64> = by_quarter.units[own.clone()].iter().sum();
+                let parts: DMatrix<f64> = by_quarter.parts[own].iter().sum();
+                assert!((sum - score).amax() <= 1e-9 * score.amax() && (&parts - part).amax() <= 1e-9 * part.amax());
+            }
+        }
+    }
+
+    #[test]
+    fn a_finding_is_possible_where_every_size_that_it_estimates_may_be() {
+        let exam = complete();
+        let may_be = |estimate: &Estimate| {
+            let about = &find(estimate.effect).unwrap().about;
+            let parameter = about.parameters.iter().find(|p| p.name == estimate.parameter).unwrap();
+            parameter.check(estimate.value).is_ok()
+        };
+        let findings = effects(exam, &Options::default());
+        let expected = findings.iter().map(|finding| suspect(exam, finding).unwrap().estimate.iter().all(may_be));
+        let expected: Vec<bool> = expected.collect();
+        assert_eq!(findings.iter().map(|finding| possible(exam, finding)).collect::<Vec<_>>(), expected);
+        assert!(expected.contains(&true) && expected.contains(&false), "{expected:?}");
+    }
+}

@@ -342,3 +342,89 @@ pub fn groups() -> Vec<(&'static Covariate, Motion, usize, usize)> {
     }
     groups
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::Robot;
+    use crate::effect::{Formula, Target};
+    use crate::likelihood::watched::watched;
+
+    /// What k does to the poses of each run, for laws that add k times these formulas.
+    fn by_formulas(observed: &Observed, laws: &[(Target, String)]) -> Vec<Column> {
+        let mut sums: Vec<Column> = observed.runs.iter().map(|run| vec![[0.0; 3]; run.blocks.len()]).collect();
+        for (target, text) in laws {
+            let mut model = Model::new(&observed.robot);
+            model.add_formula(Formula::new("own", *target, &format!("k * {text}"), &["k"]).unwrap(), &[0.0]).unwrap();
+            for (sum, own) in sums.iter_mut().zip(observed.columns(&model, &[0])) {
+                add(sum, &own[0], 1.0);
+            }
+        }
+        sums
+    }
+
+    fn add(sum: &mut Column, column: &Column, factor: f64) {
+        sum.iter_mut().flatten().zip(column.iter().flatten()).for_each(|(sum, value)| *sum += factor * value);
+    }
+
+    /// Oracle: exact derivatives of replays with formulas that do the same, on squares driven both ways. Both are of the poses in a
+    /// block, of their middle or of their mean, and so agree to what a block adds.
+    #[test]
+    fn a_smooth_moves_the_robot_as_a_formula_does_that_adds_the_same() {
+        use Motion::{Forward, Sideways, Yaw};
+        use Target::{ForwardScale, HeadingPerMetre, LeftWheelScale, RightWheelScale, SidewaysPerMetre, TurnScale};
+        let model = Model::new(&Robot::labmate());
+        let observed = Observed::new(&watched(&model, 1, 3), &Robot::labmate()).unwrap();
+        let smooths = smooth_columns(&observed, &model);
+        let Scales { speed, turn_rate, duration, wheelbase, .. } = Scales::new(&observed);
+        assert!((speed - 0.2).abs() < 1e-2 && (turn_rate - 0.4 / 0.34).abs() < 0.1, "{speed} {turn_rate}");
+        let wheel = 1.0 / wheelbase;
+        let rolls =
+            |wheel: &str, sense: &str| format!("cos(wheel_angle_{wheel}) * sign(speed {sense} 0.17 * turn_rate)");
+        let way = observed.runs[0].track.length();
+        let place = format!("sin(4 * pi * distance / {way})");
+        let laws: [(&[(&str, Motion, usize, f64)], &[(Target, String)]); 13] = [
+            (&[("speed", Yaw, 0, speed)], &[(HeadingPerMetre, "abs(speed)".into())]),
+            (&[("speed", Sideways, 1, speed * speed)], &[(SidewaysPerMetre, "speed^2".into())]),
+            (&[("speed", Forward, 0, speed)], &[(ForwardScale, "abs(speed)".into())]),
+            (&[("turn_rate", Yaw, 0, turn_rate)], &[(TurnScale, "abs(turn_rate)".into())]),
+            (&[("turn_rate", Yaw, 2, turn_rate)], &[(TurnScale, "turn_rate".into())]),
+            (&[("heading", Yaw, 3, 1.0)], &[(HeadingPerMetre, "sin(2 * heading)".into())]),
+            (&[("time", Sideways, 1, duration * duration)], &[(SidewaysPerMetre, "time^2".into())]),
+            (&[("since_turn", Yaw, 1, 0.15)], &[(HeadingPerMetre, "exp(-since_turn / 0.15)".into())]),
+            (
+                &[("since_turn * last_turn", Forward, 2, 0.5)],
+                &[(ForwardScale, "last_turn * exp(-since_turn / 0.5)".into())],
+            ),
+            (&[("direction", Yaw, 0, 1.0)], &[(HeadingPerMetre, "direction".into())]),
+            (
+                &[("wheel_angle_left", Forward, 0, 0.5), ("wheel_angle_left", Yaw, 0, -wheel)],
+                &[(LeftWheelScale, rolls("left", "-"))],
+            ),
+            (
+                &[("wheel_angle_right", Forward, 0, 0.5), ("wheel_angle_right", Yaw, 0, wheel)],
+                &[(RightWheelScale, rolls("right", "+"))],
+            ),
+            // One half of the terms is of either sense.
+            (
+                &[(ALONG_THE_WAY, Yaw, 3, 1.0), (ALONG_THE_WAY, Yaw, 9, 1.0)],
+                &[(HeadingPerMetre, place.clone()), (TurnScale, format!("sign(turn_rate) * 0.17 * {place}"))],
+            ),
+        ];
+        for (terms, formulas) in laws {
+            let expected = by_formulas(&observed, formulas);
+            for (run, (columns, expected)) in smooths.iter().zip(&expected).enumerate() {
+                let mut sum = vec![[0.0; 3]; expected.len()];
+                for (name, motion, term, factor) in terms {
+                    let own = groups().into_iter().find(|(c, m, ..)| c.name == *name && m == motion).unwrap();
+                    add(&mut sum, &columns[own.2 + term], *factor);
+                }
+                for k in 0..3 {
+                    let most = expected.iter().map(|error| error[k].abs()).fold(0.0, f64::max);
+                    let off = sum.iter().zip(expected).map(|(a, b)| (a[k] - b[k]).abs()).fold(0.0, f64::max);
+                    assert!(off <= 0.1 * most + 1e-9, "{terms:?} in run {run}, {k}: {off} of {most}");
+                }
+            }
+        }
+    }
+}

@@ -140,3 +140,17 @@ fn with_members(exam: &Examination, base: &[usize], members: &[(Member, Model)])
     columns.iter_mut().zip(residual).for_each(|(all, new)| all.extend(new));
     System::new(observed, &exam.fitted.noise, &columns)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::smooth::COVARIATES;
+    use super::*;
+
+    #[test]
+    fn thresholds_are_tried_at_every_tenth_of_the_greatest_value() {
+        let scales = Scales { speed: 0.2, turn_rate: 1.2, duration: 100.0, runs: 6.0, wheelbase: 0.34 };
+        let covariate = COVARIATES.iter().find(|covariate| covariate.name == "speed").unwrap();
+        let tried: Vec<f64> = family(covariate, &scales).iter().filter_map(|member| Some(member.shape?.1)).collect();
+        assert_eq!(tried, [0.02, 0.04, 0.06, 0.08, 0.1, 0.12, 0.14, 0.16, 0.18]);
+    }
+}

@@ -157,3 +157,121 @@ impl Projected {
         DMatrix::from_fn(group.len(), group.len(), |i, j| self.products[(group[i], group[j])])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Stream;
+
+    const BASE: [usize; 2] = [0, 1];
+    const GROUP: [usize; 3] = [2, 4, 5];
+    const OTHERS: [usize; 2] = [3, 5];
+    const RESIDUAL: usize = 6;
+
+    /// Four units of three runs: their rows, and the system of their products.
+    fn system() -> (Vec<DMatrix<f64>>, System) {
+        let mut stream = Stream::new(5, 0, 0);
+        let rows: Vec<_> = (0..4).map(|_| DMatrix::from_fn(10, 7, |_, k| (1.0 + k as f64) * stream.normal())).collect();
+        let unit = |(rows, run): (&DMatrix<f64>, usize)| Unit { run, white: rows.tr_mul(rows), rows: rows.nrows() };
+        let units: Vec<Unit> = rows.iter().zip([0, 1, 1, 2]).map(unit).collect();
+        let whole = units.iter().map(|unit| unit.white.clone()).sum();
+        (rows, System { rows: 40, units, width: 7, whole })
+    }
+
+    /// Rows one below the other.
+    fn stacked<'a>(rows: impl IntoIterator<Item = &'a DMatrix<f64>>) -> DMatrix<f64> {
+        let rows: Vec<_> = rows.into_iter().flat_map(|rows| rows.row_iter()).collect();
+        DMatrix::from_rows(&rows)
+    }
+
+    /// Coefficients of least squares, by singular values.
+    fn regressed(y: &DMatrix<f64>, by: &DMatrix<f64>) -> DMatrix<f64> {
+        by.clone().svd(true, true).solve(y, 1e-12).unwrap()
+    }
+
+    fn rest(y: &DMatrix<f64>, by: &DMatrix<f64>) -> DMatrix<f64> {
+        y - by * regressed(y, by)
+    }
+
+    fn near(a: &DMatrix<f64>, b: &DMatrix<f64>) -> bool {
+        a.shape() == b.shape() && (a - b).amax() < 1e-8 * (1.0 + b.amax())
+    }
+
+    #[test]
+    fn a_group_takes_off_what_fitting_it_beside_the_base_does() {
+        let (rows, system) = system();
+        let all = stacked(&rows);
+        let (base, group, y) = (all.select_columns(&BASE), all.select_columns(&GROUP), all.select_columns(&[RESIDUAL]));
+        let both = all.select_columns(&[&BASE[..], &GROUP].concat());
+        let (drop, step, covariance) = Projected::new(&system.whole, &BASE).drop(&GROUP).unwrap();
+        assert!((drop - (rest(&y, &base).norm_squared() - rest(&y, &both).norm_squared())).abs() < 1e-8);
+        assert!(near(
+            &DMatrix::from_column_slice(3, 1, step.as_slice()),
+            &regressed(&y, &both).rows(2, 3).into_owned()
+        ));
+        let left = rest(&group, &base);
+        assert!(near(&covariance, &left.tr_mul(&left).try_inverse().unwrap()));
+        let fitted = Projected::fit(&system.whole, &GROUP);
+        assert!(near(&DMatrix::from_column_slice(3, 1, fitted.as_slice()), &regressed(&y, &group)));
+    }
+
+    #[test]
+    fn units_have_their_share_of_scores_and_information_beside_what_all_of_them_fit() {
+        let (rows, system) = system();
+        let all = stacked(&rows);
+        let base = all.select_columns(&BASE);
+        let factor = base.tr_mul(&base).cholesky().unwrap();
+        let left = rest(&all, &base);
+        let projected = Projected::new(&system.whole, &BASE);
+        let mut sum = DVector::zeros(3);
+        for (index, unit) in system.units.iter().enumerate() {
+            let own = left.rows(10 * index, 10);
+            let (group, y) = (own.select_columns(&GROUP), own.select_columns(&[RESIDUAL]));
+            let (score, held) = projected.score(&unit.white, &GROUP);
+            assert!(near(&DMatrix::from_column_slice(3, 1, score.as_slice()), &group.tr_mul(&y)));
+            let shared = rows[index].select_columns(&BASE).tr_mul(&group);
+            // Whatever square root of the base's products is taken, the products of what is held are the same.
+            assert!(near(&held.tr_mul(&held), &shared.tr_mul(&factor.solve(&shared))));
+            assert!(near(&projected.information_of(&unit.white, &GROUP), &group.tr_mul(&group)));
+            sum += score;
+        }
+        assert!((sum - DVector::from_fn(3, |i, _| projected.products[(GROUP[i], RESIDUAL)])).amax() < 1e-8);
+    }
+
+    #[test]
+    fn likeness_is_the_cosine_between_a_response_and_the_nearest_of_others() {
+        let (rows, system) = system();
+        let all = stacked(&rows);
+        let left = rest(&all, &all.select_columns(&BASE));
+        let values = DVector::from_column_slice(&[1.0, -0.5, 0.2]);
+        let response = left.select_columns(&GROUP) * DMatrix::from_column_slice(3, 1, values.as_slice());
+        let other = &response - rest(&response, &left.select_columns(&OTHERS));
+        let likeness = Projected::new(&system.whole, &BASE).likeness(&GROUP, &values, &OTHERS);
+        assert!((likeness - other.norm() / response.norm()).abs() < 1e-9, "{likeness}");
+    }
+
+    #[test]
+    fn a_run_is_left_out_with_all_of_its_units() {
+        let (rows, system) = system();
+        for (run, kept) in [(0, [1, 2, 3].to_vec()), (1, [0, 3].to_vec()), (2, [0, 1, 2].to_vec())] {
+            let others = stacked(kept.iter().map(|unit| &rows[*unit]));
+            assert!(near(&system.without(run), &others.tr_mul(&others)));
+        }
+    }
+
+    #[test]
+    fn a_column_is_absorbed_by_one_that_is_nearly_the_same() {
+        let (mut rows, _) = system();
+        let alike = |rows: &mut DMatrix<f64>, off: f64| {
+            let column = rows.column(0) + rows.column(2) * off;
+            rows.set_column(3, &column);
+        };
+        // The columns' lengths differ by a factor of three, so a hundredth of the one is a thirtieth of the other.
+        for (off, absorbed) in [(0.01, true), (0.1, false)] {
+            rows.iter_mut().for_each(|rows| alike(rows, off));
+            let all = stacked(&rows);
+            let whole = all.tr_mul(&all);
+            assert_eq!(Projected::new(&whole, &BASE).absorbed(&whole, 3), absorbed, "{off}");
+        }
+    }
+}
