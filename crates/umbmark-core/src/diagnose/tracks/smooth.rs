@@ -350,8 +350,13 @@ mod tests {
     use crate::effect::{Formula, Target};
     use crate::likelihood::watched::watched;
 
+    /// A covariate, a motion, one of the terms, and what it is multiplied by.
+    type Term = (&'static str, Motion, usize, f64);
+    /// What a formula acts on, and its text.
+    type Law = (Target, String);
+
     /// What k does to the poses of each run, for laws that add k times these formulas.
-    fn by_formulas(observed: &Observed, laws: &[(Target, String)]) -> Vec<Column> {
+    fn by_formulas(observed: &Observed, laws: &[Law]) -> Vec<Column> {
         let mut sums: Vec<Column> = observed.runs.iter().map(|run| vec![[0.0; 3]; run.blocks.len()]).collect();
         for (target, text) in laws {
             let mut model = Model::new(&observed.robot);
@@ -383,7 +388,7 @@ mod tests {
             |wheel: &str, sense: &str| format!("cos(wheel_angle_{wheel}) * sign(speed {sense} 0.17 * turn_rate)");
         let way = observed.runs[0].track.length();
         let place = format!("sin(4 * pi * distance / {way})");
-        let laws: [(&[(&str, Motion, usize, f64)], &[(Target, String)]); 13] = [
+        let same: [(&[Term], &[Law]); 13] = [
             (&[("speed", Yaw, 0, speed)], &[(HeadingPerMetre, "abs(speed)".into())]),
             (&[("speed", Sideways, 1, speed * speed)], &[(SidewaysPerMetre, "speed^2".into())]),
             (&[("speed", Forward, 0, speed)], &[(ForwardScale, "abs(speed)".into())]),
@@ -411,7 +416,7 @@ mod tests {
                 &[(HeadingPerMetre, place.clone()), (TurnScale, format!("sign(turn_rate) * 0.17 * {place}"))],
             ),
         ];
-        for (terms, formulas) in laws {
+        for (terms, formulas) in same {
             let expected = by_formulas(&observed, formulas);
             for (run, (columns, expected)) in smooths.iter().zip(&expected).enumerate() {
                 let mut sum = vec![[0.0; 3]; expected.len()];
@@ -421,8 +426,8 @@ mod tests {
                 }
                 for k in 0..3 {
                     let most = expected.iter().map(|error| error[k].abs()).fold(0.0, f64::max);
-                    let off = sum.iter().zip(expected).map(|(a, b)| (a[k] - b[k]).abs()).fold(0.0, f64::max);
-                    assert!(off <= 0.1 * most + 1e-9, "{terms:?} in run {run}, {k}: {off} of {most}");
+                    let near = |(a, b): (&[f64; 3], &[f64; 3])| (a[k] - b[k]).abs() <= 0.1 * most + 1e-9;
+                    assert!(sum.iter().zip(expected).all(near), "{terms:?} in run {run}, {k}");
                 }
             }
         }

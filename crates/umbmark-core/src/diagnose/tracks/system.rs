@@ -194,7 +194,7 @@ mod tests {
     }
 
     fn near(a: &DMatrix<f64>, b: &DMatrix<f64>) -> bool {
-        a.shape() == b.shape() && (a - b).amax() < 1e-8 * (1.0 + b.amax())
+        a.shape() == b.shape() && (a - b).iter().all(|off| off.abs() < 1e-8 * (1.0 + b.amax()))
     }
 
     #[test]
