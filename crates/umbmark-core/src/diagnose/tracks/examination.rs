@@ -6,7 +6,7 @@ use super::look::Finding;
 use super::responses::{self, Asked, Question, Responses};
 use super::system::{Projected, System};
 use crate::diagnose::ends::names;
-use crate::effect::{Entry, Model, ModelError, Number};
+use crate::effect::{Changes, Entry, Law, Model, ModelError, Number};
 use crate::geometry::Pose2;
 use crate::likelihood::{ABSORBED, Column, Fitted, Noise, share_left};
 use nalgebra::{DMatrix, DVector};
@@ -66,7 +66,11 @@ impl Examination {
 
     /// The same of a model that has grown from that of this one.
     pub fn of_grown(&self, fitted: Fitted) -> Result<Examination, ModelError> {
-        let hold = responses::hold(&self.along, &fitted.observed);
+        // What moves all that is seen by centimetres wherever the robot starts or stops moves responses much from pose to pose.
+        let known = |effect: &Law| self.fitted.model.parts().iter().any(|part| part.effect == *effect);
+        let mut effects = fitted.model.parts().iter().map(|part| &part.effect);
+        let sees_alike = effects.all(|effect| known(effect) || !effect.changes().include(Changes::SEEN));
+        let hold = sees_alike && responses::hold(&self.along, &fitted.observed);
         let responses = if hold { self.lacked_by(&fitted.model) } else { Responses::new(&fitted)? };
         Ok(Examination::by(fitted, responses))
     }

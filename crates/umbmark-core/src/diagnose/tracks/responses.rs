@@ -174,6 +174,9 @@ mod tests {
             |exam: &Examination| exam.asked.iter().map(|a| format!("{:?} {:?}", a.question, a.columns)).collect();
         let (kept_names, anew_names): (Vec<String>, Vec<String>) = (names(&kept), names(&anew));
         assert_eq!(kept_names, anew_names);
+        let delay = crate::diagnose::Suspect { best: "reference_delay", estimate: Vec::new(), ..suspect };
+        let delayed = exam.of_grown(growth::grown(&exam, &delay).unwrap()).unwrap();
+        assert!(hold(&exam.along, &delayed.fitted.observed) && !Arc::ptr_eq(&delayed.along[0], &exam.along[0]));
         for column in 0..kept.system.residual() {
             let length = |sum: f64, value: &f64| sum + value * value;
             let runs = kept.some_columns(&[column]).into_iter().zip(anew.some_columns(&[column]));
