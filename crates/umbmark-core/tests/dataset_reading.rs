@@ -415,14 +415,15 @@ fn what_a_folder_holds_and_was_not_read_is_said() {
     ];
     let data = load(&files, "").unwrap();
     assert!(data.runs[0].returned.is_some());
-    let said: Vec<&str> = data.warnings.iter().map(|said| said.rsplit('/').next().unwrap()).collect();
+    let said = data.warnings.iter().map(|said| said.strip_suffix(") and was not read").unwrap());
+    let said: Vec<&str> = said.map(|said| said.rsplit('/').next().unwrap().split(" (").next().unwrap()).collect();
     assert_eq!(
         said,
         [
-            "cw_01.tak: is no track (.csv, .tum, .txt, .tsv) and was not read",
-            "cw_02.bag: is no log (.csv, .mcap) and was not read",
-            "cw_07.tum: belongs to no log of its name (.csv) and was not read",
-            "returns.xlsx: is no return sheet (returns.csv) and was not read",
+            "cw_01.tak: is no track",
+            "cw_02.bag: is no log",
+            "cw_07.tum: belongs to no log of its name",
+            "returns.xlsx: is no return sheet",
         ]
     );
 }

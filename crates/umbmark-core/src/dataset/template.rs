@@ -22,7 +22,8 @@ encoder_rate_hz = 100.0        # how often the counters are read; or "every tick
 
 # The path that the robot is told to drive, clockwise (cw) and counter-clockwise (ccw).
 [path]
-shape = "square"               # or OTHERS
+shape = "square"               # or one of these:
+OTHERS
 side_m = 4.0                   # the paper's square
 speed_m_s = 0.2                # slow, so that wheels do not slip
 "#;
@@ -57,5 +58,6 @@ pub fn write_template(folder: impl AsRef<Path>, existing: Existing) -> Result<[P
 /// The texts of the two files: the robot and the returns.
 pub fn template() -> [String; 2] {
     let others: Vec<&str> = SHAPES[1..].iter().map(|shape| shape.name).collect();
-    [ROBOT_TEXT.replace("OTHERS", &others.join(", ")), format!("{RETURNS_TEXT}{HEADER}\n")]
+    let lines: Vec<String> = others.chunks(4).map(|names| format!("#   {}", names.join(", "))).collect();
+    [ROBOT_TEXT.replace("OTHERS", &lines.join("\n")), format!("{RETURNS_TEXT}{HEADER}\n")]
 }
