@@ -66,7 +66,7 @@ impl Examination {
 
     /// The same of a model that has grown from that of this one.
     pub fn of_grown(&self, fitted: Fitted) -> Result<Examination, ModelError> {
-        // What moves all that is seen by centimetres wherever the robot starts or stops moves responses much from pose to pose.
+        // A delay makes what is seen jump wherever the robot starts or stops: from pose to pose, responses change much.
         let known = |effect: &Law| self.fitted.model.parts().iter().any(|part| part.effect == *effect);
         let mut effects = fitted.model.parts().iter().map(|part| &part.effect);
         let sees_alike = effects.all(|effect| known(effect) || !effect.changes().include(Changes::SEEN));
