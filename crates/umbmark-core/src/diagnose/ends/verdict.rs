@@ -200,8 +200,10 @@ fn judge(diagnosis: &mut Diagnosis, asked: &Asked, family: &Family, options: &Op
     let Some(unit) = unit else { return };
     let rest = asked.explaining(unit);
     let Some(further) = Family::new(&rest, options) else { return };
-    let striking = (0..rest.units.len()).min_by(|a, b| further.p_adjusted[*a].total_cmp(&further.p_adjusted[*b]));
-    match striking.filter(|i| further.p_adjusted[*i] < options.size) {
+    let drops = rest.drops();
+    let possible = (0..rest.units.len()).filter(|i| possible(&rest, &rest.units[*i]));
+    let striking = possible.filter(|i| further.p_adjusted[*i] < options.size);
+    match striking.max_by(|a, b| drops[*a].total_cmp(&drops[*b])) {
         Some(second) => {
             diagnosis.verdict = Verdict::SeveralMissing;
             let name = rest.units[second].effect.about.name;

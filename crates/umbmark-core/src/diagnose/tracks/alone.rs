@@ -144,6 +144,32 @@ mod tests {
         assert!((bic - k * n.ln() - deviance).abs() < 1e-6 * n, "{bic} {deviance}");
     }
 
+    /// Oracle: singular values of all whitened rows of the other runs, the columns of the reference beside the model's own.
+    #[test]
+    fn runs_left_out_are_predicted_by_values_that_were_fitted_together_with_those_of_the_reference() {
+        let alone = Alone::new(fitted(&[("reference_delay", "delay_s", 0.03), ("marker_offset", "left_m", 0.02)]));
+        let (residual, own) = (alone.system.residual(), alone.fitted.free.len());
+        assert!(residual > own);
+        let without = |left_out: usize| {
+            let (mut rows, mut heights) = (Vec::new(), Vec::new());
+            let runs = alone.fitted.observed.runs.iter().zip(&alone.columns).enumerate();
+            for (_, (run, columns)) in runs.filter(|(index, _)| *index != left_out) {
+                let columns: Vec<&[[f64; 3]]> = columns.iter().map(Vec::as_slice).collect();
+                for row in alone.fitted.noise.whiten(run, &columns).rows() {
+                    rows.extend_from_slice(&row[..residual]);
+                    heights.push(row[residual]);
+                }
+            }
+            let system = DMatrix::from_row_slice(heights.len(), residual, &rows);
+            let values = system.svd(true, true).solve(&DVector::from_vec(heights), 0.0).unwrap();
+            ((0..own).collect(), values.rows(0, own).into_owned())
+        };
+        let expected = alone.errors.misses(without);
+        let found = alone.left_out(Weighing::Increments);
+        assert!((found.position / expected.position - 1.0).abs() < 1e-6, "{found:?} {expected:?}");
+        assert!((found.white / expected.white - 1.0).abs() < 1e-6, "{found:?} {expected:?}");
+    }
+
     #[test]
     fn whole_tracks_are_weighed_where_they_predict_runs_left_out_better_by_a_tenth() {
         for effects in [&[][..], &[("floor_slope", "drift_x", 6e-3)]] {

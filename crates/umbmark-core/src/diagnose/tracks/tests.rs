@@ -50,13 +50,17 @@ fn of_a_complete_model_nothing_is_said_to_be_missing() {
     assert!(diagnosis.dependence.is_none() && diagnosis.ranking[0].p_adjusted > 0.05, "{:?}", diagnosis.ranking[0]);
 }
 
-/// A floor that turns the robot one way along two sides of the square and the other way along the others.
-#[test]
-fn what_no_effect_does_is_told_as_unlisted_with_its_curve_and_a_formula() {
+/// A robot on a floor that turns it one way along two sides of the square and the other way along the others.
+fn on_grain() -> Model {
     let mut truth = robot_with(&[]);
     let law = Formula::new("grain", Target::HeadingPerMetre, "k * cos(2 * heading)", &["k"]).unwrap();
     truth.add_formula(law, &[0.02]).unwrap();
-    let diagnosis = diagnose(fitted_to(&truth), &Options::default()).unwrap();
+    truth
+}
+
+#[test]
+fn what_no_effect_does_is_told_as_unlisted_with_its_curve_and_a_formula() {
+    let diagnosis = diagnose(fitted_to(&on_grain()), &Options::default()).unwrap();
     assert_eq!(diagnosis.verdict, Verdict::UnlistedEffect);
     let told = diagnosis.dependence.unwrap();
     assert_eq!((told.depends_on, told.acts_on, &*told.curve.unit), ("heading", "yaw", "rad/m"));
@@ -66,4 +70,43 @@ fn what_no_effect_does_is_told_as_unlisted_with_its_curve_and_a_formula() {
     }
     let suggestion = told.suggestion.unwrap();
     assert!((suggestion.model.get("unlisted", "a").unwrap() - 0.02).abs() < 1e-3 && suggestion.share > 0.9);
+}
+
+/// Oracle: by how much the residual sum of squares falls when both are fitted out.
+#[test]
+fn an_effect_explains_a_smooth_whose_fall_beside_the_same_it_reaches_to_85_percent() {
+    let options = Options::default();
+    let exam = Examination::new(fitted(&[("floor_slope", "drift_x", 6e-3)])).unwrap();
+    let (effects, smooths) = (look::effects(&exam, &options), look::smooths(&exam, &options));
+    let residual = exam.system.residual();
+    let left = |columns: &[usize]| Projected::new(&exam.system.whole, columns).products[(residual, residual)];
+    for smooth in smooths.iter().take(5) {
+        assert!(!explains(&exam, None, smooth));
+        for effect in &effects {
+            let with: Vec<usize> = effect.base().iter().chain(&smooth.answer.columns).copied().collect();
+            let fall = left(effect.base()) - left(&with);
+            for (share, expected) in [(0.84, false), (0.86, true)] {
+                let mut other = effect.clone();
+                other.answer.drop = share * fall;
+                assert_eq!(explains(&exam, Some(&other), smooth), expected, "{share} of {fall}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_smooth_speaks_on_while_some_certified_one_still_brings_more_than_15_percent_of_what_it_brought() {
+    let options = Options::default();
+    let exam = Examination::new(fitted_to(&on_grain())).unwrap();
+    let now = look::smooths(&exam, &options).iter().filter(|smooth| smooth.certified(&options));
+    let now = now.max_by(|a, b| a.answer.drop.total_cmp(&b.answer.drop)).unwrap();
+    for (times, expected) in [(1.0, true), (6.6, true), (6.7, false)] {
+        let mut before = now.clone();
+        before.answer.drop *= times;
+        assert_eq!(speaks_on(&exam, &before, &options), expected, "{times}");
+    }
+    // Of a complete model no smooth is certified, however little it once brought.
+    let mut faint = now.clone();
+    faint.answer.drop = 0.0;
+    assert!(!speaks_on(complete(), &faint, &options));
 }
