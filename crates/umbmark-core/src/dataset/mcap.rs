@@ -19,6 +19,7 @@ mod message_type;
 #[cfg(test)]
 mod mutated_log;
 mod odometer;
+mod parts;
 mod problem;
 mod protobuf;
 mod save;

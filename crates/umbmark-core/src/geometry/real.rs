@@ -18,11 +18,13 @@ pub const LANES: usize = 8;
 /// assert_eq!(Dual::from(5.0).recip().eps[0], 0.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+// The derivatives fill a line of the cache: none is stored into two of them.
+#[repr(C, align(64))]
 pub struct Dual {
-    /// The value.
-    pub re: f64,
     /// Its derivatives.
     pub eps: [f64; LANES],
+    /// The value.
+    pub re: f64,
 }
 
 /// Numbers of which those at `places` carry a derivative by themselves: place k in lane k.

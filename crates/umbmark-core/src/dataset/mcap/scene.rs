@@ -1,11 +1,11 @@
 //! What a viewer shows of a whole run: both paths and the error between them.
 //!
 //! `/scene/computed_path` and `/scene/true_path` are nav_msgs/Path, `/scene/errors` is a visualization_msgs/MarkerArray of lines from
-//! where the robot computed to be to where it was measured; `/scene/bumps` holds a ball where a simulated wheel met a bump. All are in the frame odom, which stands on START as the measured poses do,
-//! and stand at the begin of the log, so that a viewer has them at any time.
+//! where the robot computed to be to where it was measured; `/scene/bumps` holds a ball where a simulated wheel met a bump. All are in the
+//! frame odom, which stands on START as the measured poses do, and stand at the begin of the log, so that a viewer has them at any time.
 
 use super::super::{ReferencePose, TickLog};
-use super::write::{Cdr, header, numbers, orientation};
+use super::parts::{Cdr, header, numbers, orientation};
 use crate::geometry::Pose2;
 
 /// Poses of a path, at most.

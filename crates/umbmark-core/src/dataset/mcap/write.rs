@@ -9,6 +9,7 @@ use super::super::dead_reckoning::computed_poses;
 use super::super::robot_text::robot_text;
 use super::super::{ReferencePose, TickLog};
 use super::definitions::{Definition, JOINT_STATE, MARKER_ARRAY, ODOMETRY, PATH, POSE_STAMPED, TF};
+use super::parts::{Cdr, header, numbers, orientation};
 use super::scene;
 use super::survey::{METADATA, ROBOT};
 use crate::drive::Robot;
@@ -16,7 +17,6 @@ use crate::geometry::Pose2;
 use crate::path::Path;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, McapResult, WriteOptions, Writer};
-use re_cdr::{CdrWriter, LittleEndian};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::io::{Seek, Write};
@@ -100,8 +100,6 @@ struct Topic {
     message: Vec<u8>,
 }
 
-pub(super) type Cdr<'a> = CdrWriter<'a, LittleEndian>;
-
 impl Topic {
     fn add<W: Write + Seek>(writer: &mut Writer<W>, topic: &str, definition: &Definition) -> McapResult<Topic> {
         let schema = writer.add_schema(definition.name, "ros2msg", definition.text().as_bytes())?;
@@ -117,7 +115,7 @@ impl Topic {
     ) -> McapResult<()> {
         const LITTLE_ENDIAN: [u8; 4] = [0, 1, 0, 0];
         let mut body = Vec::new();
-        fill(&mut CdrWriter::new(&mut body));
+        fill(&mut Cdr::new(&mut body));
         self.message.clear();
         self.message.extend(LITTLE_ENDIAN);
         self.message.extend(&body);
@@ -126,23 +124,6 @@ impl Topic {
         let header = MessageHeader { channel_id, sequence, log_time: time, publish_time: time };
         writer.write_to_known_channel(&header, &self.message)
     }
-}
-
-pub(super) fn header(cdr: &mut Cdr, time: u64, frame: &str) {
-    cdr.write_i32((time / 1_000_000_000) as i32);
-    cdr.write_u32((time % 1_000_000_000) as u32);
-    cdr.write_string(frame);
-}
-
-pub(super) fn numbers<const N: usize>(cdr: &mut Cdr, numbers: [f64; N]) {
-    for number in numbers {
-        cdr.write_f64(number);
-    }
-}
-
-/// Rotation by a heading as a quaternion.
-pub(super) fn orientation(heading: f64) -> [f64; 4] {
-    [0.0, 0.0, libm::sin(0.5 * heading), libm::cos(0.5 * heading)]
 }
 
 fn joint_state(cdr: &mut Cdr, time: u64, positions: [f64; 2]) {
