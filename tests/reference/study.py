@@ -124,9 +124,10 @@ def hidden(command: File, seeds: list[int], threads: int) -> Iterator[str]:
 
 
 def nulls(command: File, sets: int, threads: int) -> Iterator[str]:
-    """A line for each model of the noise, of so many sets in all."""
+    """A line for each model of the noise, of so many sets in all, and one for each addition."""
     yield "| noise | sets | something added | called unlisted | an outlier named |"
     yield "|---|---|---|---|---|"
+    added: list[tuple[str, Answer]] = []
     with ThreadPoolExecutor(threads) as pool:
         for index, noise in enumerate(NOISE_MODELS):
             each = sets // len(NOISE_MODELS) + (index < sets % len(NOISE_MODELS))
@@ -137,6 +138,15 @@ def nulls(command: File, sets: int, threads: int) -> Iterator[str]:
                 f"| {sum(one.verdict == 'unlisted_effect' for one in answers)} "
                 f"| {sum(one.outliers > 0 for one in answers)} |"
             )
+            added.extend((noise, one) for one in answers if one.classes)
+    if added:
+        yield "\n| noise | seed | added | left out [mm] |\n|---|---|---|---|"
+    for noise, one in added:
+        classes = ", ".join(" or ".join(sorted(names)) for names in one.classes)
+        yield (
+            f"| {noise} | {one.seed} | {classes} "
+            f"| {1e3 * one.before_m:.1f} to {1e3 * one.after_m:.1f} |"
+        )
 
 
 def main() -> None:
