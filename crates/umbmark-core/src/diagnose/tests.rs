@@ -237,6 +237,8 @@ fn of_two_causes_both_are_certified_the_second_by_what_the_first_leaves() {
     for (suspect, cause) in diagnosis.certified().iter().zip(["floor_slope", "caster_kick"]) {
         assert!(suspect.class.contains(&cause) && suspect.p_adjusted < 0.05, "{suspect:?}");
     }
+    let second = &diagnosis.ranking[1];
+    assert!(diagnosis.ranking[2..].iter().all(|other| !second.class.contains(&other.best)), "{second:?}");
     let alone = diagnose(&steep(), &base(), &Options::default()).unwrap();
     assert_eq!((alone.verdict, alone.certified().len()), (Verdict::MissingEffect, 1));
 }

@@ -41,7 +41,7 @@ impl Effect for CarpetNap {
     const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
-        format!("{}.", carried(p))
+        format!("{}.", carried(p, "on each metre"))
     }
 
     fn varies(p: &[f64]) -> bool {

@@ -62,10 +62,14 @@ impl Effect for FloorSlope {
     const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
-        let slide = libm::hypot(p[2], p[3]);
-        match slide > 0.0 {
-            true => format!("{}, and {} on each radian of a turn.", carried(p), mm(slide)),
-            false => format!("{}.", carried(p)),
+        let (drift, slide) = (&p[..2], &p[2..]);
+        match (at_work(drift), at_work(slide)) {
+            (true, true) => {
+                let slide = mm(libm::hypot(slide[0], slide[1]));
+                format!("{}, and {slide} on each radian of a turn.", carried(drift, "on each metre"))
+            }
+            (false, true) => format!("{}.", carried(slide, "on each radian of a turn")),
+            _ => format!("{}.", carried(drift, "on each metre")),
         }
     }
 
@@ -87,9 +91,9 @@ pub(super) const DRIFT: &str =
     "(forward, sideways) ← (forward, sideways) + R(-h) (g_x, g_y) · length,  h the mean heading";
 
 /// What drift in the room means for the robot.
-pub(super) fn carried(p: &[f64]) -> String {
+pub(super) fn carried(p: &[f64], when: &str) -> String {
     format!(
-        "The floor carries the robot by {} on each metre, towards {} degrees from its heading at START",
+        "The floor carries the robot by {} {when}, towards {} degrees from its heading at START",
         mm(libm::hypot(p[0], p[1])),
         libm::round(libm::atan2(p[1], p[0]).to_degrees())
     )
@@ -117,6 +121,21 @@ mod tests {
     use crate::effect::tests::{ccw_and_cw, circle_end_with, model_with, stops_with};
     use crate::path::{Direction, Path, SQUARE, SpeedProfile};
     use crate::replay::Track;
+
+    #[test]
+    fn what_the_slope_means_tells_of_drift_and_slide_where_there_are_such() {
+        let said = |values: &[(&str, f64)]| {
+            let model: Vec<_> = values.iter().map(|(parameter, value)| ("floor_slope", *parameter, *value)).collect();
+            model_with(&model).meaning("floor_slope").unwrap()
+        };
+        let (drift, slide) = (("drift_y", -3e-3), ("slide_x_m_per_rad", 2e-3));
+        let carried = "The floor carries the robot by";
+        let from = "from its heading at START";
+        assert_eq!(said(&[drift]), format!("{carried} 3.00 mm on each metre, towards -90 degrees {from}."));
+        assert_eq!(said(&[slide]), format!("{carried} 2.00 mm on each radian of a turn, towards 0 degrees {from}."));
+        let both = "3.00 mm on each metre, towards -90 degrees from its heading at START, and 2.00 mm on each radian of a turn.";
+        assert_eq!(said(&[drift, slide]), format!("{carried} {both}"));
+    }
 
     #[test]
     fn the_robot_drifts_with_its_way_in_the_room_and_keeps_its_heading() {

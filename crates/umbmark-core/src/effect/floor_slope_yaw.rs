@@ -65,20 +65,27 @@ impl Effect for FloorSlopeYaw {
     const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
-        let most =
-            |cosine: f64, sine: f64| (libm::hypot(cosine, sine), libm::round(libm::atan2(sine, cosine).to_degrees()));
-        let ((way, heading), (turn, there)) = (most(p[0], p[1]), most(p[2], p[3]));
-        let on_its_way = format!(
-            "The floor turns the robot by up to {} on each metre: most to the left where it heads {heading} degrees from its \
-             heading at START",
-            deg(way)
-        );
-        match turn > 0.0 {
-            true => format!(
-                "{on_its_way}; and by up to {} on each radian that it turns, most at {there} degrees.",
-                deg(turn)
-            ),
-            false => format!("{on_its_way}."),
+        let turned = |p: &[f64], when: &str| {
+            let (most, heading) = (libm::hypot(p[0], p[1]), libm::round(libm::atan2(p[1], p[0]).to_degrees()));
+            format!(
+                "The floor turns the robot by up to {} on each {when}: most to the left where it heads {heading} degrees from its \
+                 heading at START",
+                deg(most)
+            )
+        };
+        let (way, turn) = (&p[..2], &p[2..]);
+        match (at_work(way), at_work(turn)) {
+            (true, true) => {
+                let (most, there) =
+                    (libm::hypot(turn[0], turn[1]), libm::round(libm::atan2(turn[1], turn[0]).to_degrees()));
+                let on_its_way = turned(way, "metre");
+                format!(
+                    "{on_its_way}; and by up to {} on each radian that it turns, most at {there} degrees.",
+                    deg(most)
+                )
+            }
+            (false, true) => format!("{}.", turned(turn, "radian that it turns")),
+            _ => format!("{}.", turned(way, "metre")),
         }
     }
 
@@ -96,8 +103,25 @@ impl Effect for FloorSlopeYaw {
 
 #[cfg(test)]
 mod tests {
-    use crate::effect::tests::{ccw_and_cw, stops_with};
+    use crate::effect::tests::{ccw_and_cw, model_with, stops_with};
     use std::f64::consts::TAU;
+
+    #[test]
+    fn what_it_means_tells_of_way_and_turns_where_they_matter() {
+        let said = |values: &[(&str, f64)]| {
+            let model: Vec<_> =
+                values.iter().map(|(parameter, value)| ("floor_slope_yaw", *parameter, *value)).collect();
+            model_with(&model).meaning("floor_slope_yaw").unwrap()
+        };
+        let (way, turn) = (("sine_rad_per_m", 0.02), ("turning_cosine", -0.01));
+        let turned = "The floor turns the robot by up to";
+        let most = "most to the left where it heads";
+        let from = "degrees from its heading at START";
+        assert_eq!(said(&[way]), format!("{turned} 1.15 deg on each metre: {most} 90 {from}."));
+        assert_eq!(said(&[turn]), format!("{turned} 0.573 deg on each radian that it turns: {most} 180 {from}."));
+        let both = "and by up to 0.573 deg on each radian that it turns, most at 180 degrees.";
+        assert_eq!(said(&[way, turn]), format!("{turned} 1.15 deg on each metre: {most} 90 {from}; {both}"));
+    }
 
     #[test]
     fn each_leg_turns_by_its_heading_in_the_room_and_the_sum_is_nothing() {

@@ -200,19 +200,14 @@ fn judge(diagnosis: &mut Diagnosis, asked: &Asked, family: &Family, options: &Op
     let Some(unit) = unit else { return };
     let rest = asked.explaining(unit);
     let Some(further) = Family::new(&rest, options) else { return };
-    let drops = rest.drops();
-    let possible = (0..rest.units.len()).filter(|i| possible(&rest, &rest.units[*i]));
-    let striking = possible.filter(|i| further.p_adjusted[*i] < options.size);
-    match striking.max_by(|a, b| drops[*a].total_cmp(&drops[*b])) {
+    let beside = ranking(&rest, &further, &certificate(&rest, options.seed), options.size);
+    match beside.into_iter().next().filter(|second| second.p_adjusted < options.size) {
         Some(second) => {
-            diagnosis.verdict = Verdict::SeveralMissing;
-            let name = rest.units[second].effect.about.name;
-            let place = diagnosis.ranking.iter().skip(1).position(|suspect| suspect.class.contains(&name));
-            if let Some(place) = place {
-                diagnosis.ranking[1..].swap(0, place);
-                diagnosis.ranking[1].p_adjusted = further.p_adjusted[second];
-                diagnosis.certified = 2;
-            }
+            (diagnosis.verdict, diagnosis.certified) = (Verdict::SeveralMissing, 2);
+            // It says what it cannot be told from beside the first, and these say no more for themselves.
+            let first = diagnosis.ranking.remove(0);
+            diagnosis.ranking.retain(|other| !second.class.contains(&other.best));
+            diagnosis.ranking.splice(0..0, [first, second]);
         }
         None if further.p_whole_adjusted < options.size => diagnosis.verdict = Verdict::SeveralMissing,
         None => {}
