@@ -1,16 +1,18 @@
 //! An effect of the user's own: a formula, compiled once.
 //!
 //! ```text
-//! heading_per_metre    Δθ ← Δθ + f · length                f [rad/m]
-//! sideways_per_metre   sideways ← sideways + f · length    f [m/m], to the left
-//! forward_scale        forward ← (1 + f) · forward         f [-]
-//! turn_scale           Δθ ← (1 + f) · Δθ                   f [-]
-//! left_wheel_scale     s_L ← (1 + f) · s_L                 f [-]
-//! right_wheel_scale    s_R ← (1 + f) · s_R                 f [-]
+//! heading_per_metre     Δθ ← Δθ + f · length                   f [rad/m]
+//! sideways_per_metre    sideways ← sideways + f · length       f [m/m], to the left
+//! forward_per_radian    forward ← forward + f · |rotation|     f [m/rad]
+//! sideways_per_radian   sideways ← sideways + f · |rotation|   f [m/rad], to the left
+//! forward_scale         forward ← (1 + f) · forward            f [-]
+//! turn_scale            Δθ ← (1 + f) · Δθ                      f [-]
+//! left_wheel_scale      s_L ← (1 + f) · s_L                    f [-]
+//! right_wheel_scale     s_R ← (1 + f) · s_R                    f [-]
 //! ```
 //!
-//! *length* is the path length of a piece, always positive; where it is 0, laws per metre do nothing. f is taken in the
-//! middle of the piece. So a formula that is 0 does nothing.
+//! *length* is the path length of a piece, always positive, and *rotation* how far it turns; where they are 0, laws per metre, or per
+//! radian, do nothing. f is taken in the middle of the piece. So a formula that is 0 does nothing.
 
 mod error;
 mod parser;
@@ -41,6 +43,10 @@ pub enum Target {
     TurnScale,
     /// Sideways motion per path length, to the left positive.
     SidewaysPerMetre,
+    /// Motion ahead per radian turned either way \[m/rad\].
+    ForwardPerRadian,
+    /// Sideways motion per radian turned either way \[m/rad\], to the left positive.
+    SidewaysPerRadian,
     /// Share by which the left wheel's travel grows.
     LeftWheelScale,
     /// Share by which the right wheel's travel grows.
@@ -49,11 +55,13 @@ pub enum Target {
 
 impl Target {
     /// All of them.
-    pub const ALL: [Target; 6] = [
+    pub const ALL: [Target; 8] = [
         Target::HeadingPerMetre,
         Target::ForwardScale,
         Target::TurnScale,
         Target::SidewaysPerMetre,
+        Target::ForwardPerRadian,
+        Target::SidewaysPerRadian,
         Target::LeftWheelScale,
         Target::RightWheelScale,
     ];
@@ -65,6 +73,8 @@ impl Target {
             Target::ForwardScale => "forward_scale",
             Target::TurnScale => "turn_scale",
             Target::SidewaysPerMetre => "sideways_per_metre",
+            Target::ForwardPerRadian => "forward_per_radian",
+            Target::SidewaysPerRadian => "sideways_per_radian",
             Target::LeftWheelScale => "left_wheel_scale",
             Target::RightWheelScale => "right_wheel_scale",
         }
@@ -73,12 +83,19 @@ impl Target {
     fn unit(self) -> Unit {
         match self {
             Target::HeadingPerMetre => Unit { metres: -1.0, seconds: 0.0 },
+            Target::ForwardPerRadian | Target::SidewaysPerRadian => Unit { metres: 1.0, seconds: 0.0 },
             _ => Unit::PLAIN,
         }
     }
 
-    fn per_metre(self) -> bool {
-        matches!(self, Target::HeadingPerMetre | Target::SidewaysPerMetre)
+    /// What the formula is multiplied by over a piece: its length, how far it turns either way, or 1 for a share.
+    #[inline]
+    fn exposure<T>(self, at: &Context<T>) -> f64 {
+        match self {
+            Target::HeadingPerMetre | Target::SidewaysPerMetre => at.length,
+            Target::ForwardPerRadian | Target::SidewaysPerRadian => (at.turn_rate * at.duration).abs(),
+            Target::ForwardScale | Target::TurnScale | Target::LeftWheelScale | Target::RightWheelScale => 1.0,
+        }
     }
 }
 
@@ -190,26 +207,23 @@ impl Formula {
     /// Changes the body motion that true wheel travel makes.
     #[inline]
     pub(super) fn body<T: Real>(&self, p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        if matches!(self.target, Target::LeftWheelScale | Target::RightWheelScale) || self.is_idle(at.length) {
+        let exposure = self.target.exposure(at);
+        if matches!(self.target, Target::LeftWheelScale | Target::RightWheelScale) || exposure == 0.0 {
             return;
         }
-        let f = self.program.evaluate(p, at, at.heading + motion.rotation * 0.5);
+        let f = self.program.evaluate(p, at, at.heading + motion.rotation * 0.5) * exposure;
         match self.target {
-            Target::HeadingPerMetre => motion.rotation += f * at.length,
-            Target::SidewaysPerMetre => motion.sideways += f * at.length,
+            Target::HeadingPerMetre => motion.rotation += f,
+            Target::SidewaysPerMetre | Target::SidewaysPerRadian => motion.sideways += f,
+            Target::ForwardPerRadian => motion.forward += f,
             Target::TurnScale => motion.rotation *= f + 1.0,
             _ => motion.forward *= f + 1.0,
         }
     }
 
-    /// Whether it does nothing over such a path length.
-    fn is_idle(&self, length: f64) -> bool {
-        self.target.per_metre() && length == 0.0
-    }
-
     /// Refuses a piece where the formula, or a derivative of it, is no finite number.
     pub(super) fn finite_at(&self, values: &[f64], at: &Context) -> Result<(), Singular> {
-        if self.is_idle(at.length) {
+        if self.target.exposure(at) == 0.0 {
             return Ok(());
         }
         // Heading after the parameters: a lane for each.

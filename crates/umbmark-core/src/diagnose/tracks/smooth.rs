@@ -377,7 +377,10 @@ mod tests {
     #[test]
     fn a_smooth_moves_the_robot_as_a_formula_does_that_adds_the_same() {
         use Motion::{Forward, Sideways, Yaw};
-        use Target::{ForwardScale, HeadingPerMetre, LeftWheelScale, RightWheelScale, SidewaysPerMetre, TurnScale};
+        use Target::{
+            ForwardPerRadian, ForwardScale, HeadingPerMetre, LeftWheelScale, RightWheelScale, SidewaysPerMetre,
+            SidewaysPerRadian, TurnScale,
+        };
         let model = Model::new(&Robot::labmate());
         let observed = Observed::new(&watched(&model, 1, 3), &Robot::labmate()).unwrap();
         let smooths = smooth_columns(&observed, &model);
@@ -388,12 +391,14 @@ mod tests {
             |wheel: &str, sense: &str| format!("cos(wheel_angle_{wheel}) * sign(speed {sense} 0.17 * turn_rate)");
         let way = observed.runs[0].track.length();
         let place = format!("sin(4 * pi * distance / {way})");
-        let same: [(&[Term], &[Law]); 13] = [
+        let same: [(&[Term], &[Law]); 15] = [
             (&[("speed", Yaw, 0, speed)], &[(HeadingPerMetre, "abs(speed)".into())]),
             (&[("speed", Sideways, 1, speed * speed)], &[(SidewaysPerMetre, "speed^2".into())]),
             (&[("speed", Forward, 0, speed)], &[(ForwardScale, "abs(speed)".into())]),
             (&[("turn_rate", Yaw, 0, turn_rate)], &[(TurnScale, "abs(turn_rate)".into())]),
             (&[("turn_rate", Yaw, 2, turn_rate)], &[(TurnScale, "turn_rate".into())]),
+            (&[("turn_rate", Forward, 2, turn_rate)], &[(ForwardPerRadian, "abs(turn_rate)".into())]),
+            (&[("turn_rate", Sideways, 0, turn_rate)], &[(SidewaysPerRadian, "turn_rate".into())]),
             (&[("heading", Yaw, 3, 1.0)], &[(HeadingPerMetre, "sin(2 * heading)".into())]),
             (&[("time", Sideways, 1, duration * duration)], &[(SidewaysPerMetre, "time^2".into())]),
             (&[("since_turn", Yaw, 1, 0.15)], &[(HeadingPerMetre, "exp(-since_turn / 0.15)".into())]),

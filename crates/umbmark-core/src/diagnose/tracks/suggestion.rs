@@ -68,6 +68,8 @@ fn targets(covariate: &Covariate, motion: Motion) -> Vec<Target> {
         (Exposure::WheelWay(0), _) => vec![Target::LeftWheelScale],
         (Exposure::WheelWay(_), _) => vec![Target::RightWheelScale],
         (Exposure::Rotation | Exposure::TimeInSense, Motion::Yaw) => vec![Target::TurnScale],
+        (Exposure::Rotation, Motion::Forward) => vec![Target::ForwardPerRadian],
+        (Exposure::Rotation, Motion::Sideways) => vec![Target::SidewaysPerRadian],
         (_, Motion::Yaw) => vec![Target::HeadingPerMetre],
         (_, Motion::Forward) => vec![Target::ForwardScale],
         (_, Motion::Sideways) => vec![Target::SidewaysPerMetre],
@@ -145,6 +147,18 @@ fn with_members(exam: &Examination, base: &[usize], members: &[(Member, Model)])
 mod tests {
     use super::super::smooth::COVARIATES;
     use super::*;
+
+    #[test]
+    fn a_formula_acts_on_what_the_smooth_is_in_proportion_to() {
+        let told =
+            |name: &str, motion| targets(COVARIATES.iter().find(|covariate| covariate.name == name).unwrap(), motion);
+        assert_eq!(told("turn_rate", Motion::Forward), [Target::ForwardPerRadian]);
+        assert_eq!(told("turn_rate", Motion::Sideways), [Target::SidewaysPerRadian]);
+        assert_eq!(told("turn_rate", Motion::Yaw), [Target::TurnScale]);
+        assert_eq!(told("speed", Motion::Forward), [Target::ForwardScale]);
+        assert_eq!(told("heading", Motion::Sideways), [Target::SidewaysPerMetre]);
+        assert_eq!(told("wheel_angle_right", Motion::Yaw), [Target::RightWheelScale]);
+    }
 
     #[test]
     fn thresholds_are_tried_at_every_tenth_of_the_greatest_value() {

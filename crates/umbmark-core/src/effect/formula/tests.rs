@@ -57,7 +57,7 @@ fn laws_of_the_catalogue_written_as_formulas_replay_the_same_with_the_same_deriv
 
 #[test]
 fn every_target_does_what_its_law_says() {
-    let at = Context { length: 0.5, ..Context::default() };
+    let at = Context { length: 0.5, turn_rate: -0.3, duration: 2.0, ..Context::default() };
     let believed = WheelTravel { left: 0.4, right: 0.6 };
     let plain = Model::new(&Robot::labmate()).chain().displacement(&at, &believed);
     let moved = |target| {
@@ -67,6 +67,9 @@ fn every_target_does_what_its_law_says() {
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-15, "{a} {b}");
     near(moved(Target::HeadingPerMetre).1.rotation, plain.rotation + 0.005);
     near(moved(Target::SidewaysPerMetre).1.sideways, plain.sideways + 0.005);
+    near(moved(Target::ForwardPerRadian).1.forward, plain.forward + 0.006);
+    near(moved(Target::SidewaysPerRadian).1.sideways, plain.sideways + 0.006);
+    near(moved(Target::TurnScale).1.rotation, 1.01 * plain.rotation);
     near(moved(Target::ForwardScale).1.forward, 1.01 * plain.forward);
     near(moved(Target::LeftWheelScale).0.left, 0.404);
     near(moved(Target::LeftWheelScale).0.right, 0.6);
