@@ -172,8 +172,8 @@ fn better_than_published(rows: &[(&str, &str, [Ends; 3])]) {
     let errors = |name: &str| rows.iter().find(|(days, way, _)| *days == "both" && *way == name).unwrap().2;
     let published = ["authors: UMBmark", "authors: Jung & Chung", "authors: OptiOdom"].map(errors);
     for (kind, what) in [(1, "circles"), (2, "straights and spins")] {
-        let [own, best] = [&[errors("E_d, E_b, E_s from tracks")][..], &published]
-            .map(|ways| ways.iter().map(|ends| ends[kind].rms()[0]).fold(f64::INFINITY, f64::min));
+        let own = errors("E_d, E_b, E_s from tracks")[kind].rms()[0];
+        let best = published.map(|ends| ends[kind].rms()[0]).into_iter().fold(f64::INFINITY, f64::min);
         assert!(own < best, "{what}: {own} mm, published {best} mm");
     }
     let best = published.map(|ends| together(&ends).rms()[0]).into_iter().fold(f64::INFINITY, f64::min);

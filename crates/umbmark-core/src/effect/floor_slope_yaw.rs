@@ -65,24 +65,19 @@ impl Effect for FloorSlopeYaw {
     const CHANGES: Changes = Changes::BODY;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
+        let most = |p: &[f64]| (deg(libm::hypot(p[0], p[1])), libm::round(libm::atan2(p[1], p[0]).to_degrees()));
         let turned = |p: &[f64], when: &str| {
-            let (most, heading) = (libm::hypot(p[0], p[1]), libm::round(libm::atan2(p[1], p[0]).to_degrees()));
+            let (size, heading) = most(p);
             format!(
-                "The floor turns the robot by up to {} on each {when}: most to the left where it heads {heading} degrees from its \
-                 heading at START",
-                deg(most)
+                "The floor turns the robot by up to {size} on each {when}: most to the left where it heads {heading} degrees from its \
+                 heading at START"
             )
         };
         let (way, turn) = (&p[..2], &p[2..]);
         match (at_work(way), at_work(turn)) {
             (true, true) => {
-                let (most, there) =
-                    (libm::hypot(turn[0], turn[1]), libm::round(libm::atan2(turn[1], turn[0]).to_degrees()));
-                let on_its_way = turned(way, "metre");
-                format!(
-                    "{on_its_way}; and by up to {} on each radian that it turns, most at {there} degrees.",
-                    deg(most)
-                )
+                let (on_its_way, (size, there)) = (turned(way, "metre"), most(turn));
+                format!("{on_its_way}; and by up to {size} on each radian that it turns, most at {there} degrees.")
             }
             (false, true) => format!("{}.", turned(turn, "radian that it turns")),
             _ => format!("{}.", turned(way, "metre")),
