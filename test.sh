@@ -108,12 +108,13 @@ begin 'Python: module'
 "$python" -m maturin develop --manifest-path "$package/Cargo.toml"
 
 begin 'Python: formatting and lints'
-"$python" -m ruff format --check --config "$package/pyproject.toml" "$package" tests/reference tests/report notebooks examples .ci
-"$python" -m ruff check --config "$package/pyproject.toml" "$package" tests/reference tests/report notebooks examples .ci
+"$python" -m ruff format --check --config "$package/pyproject.toml" "$package" tests/reference tests/worlds tests/report notebooks examples .ci
+"$python" -m ruff check --config "$package/pyproject.toml" "$package" tests/reference tests/worlds tests/report notebooks examples .ci
 
 begin 'Python: types'
 "$python" -m mypy --config-file "$package/pyproject.toml" "$package/python" "$package/tests" examples .ci
 "$python" -m mypy --config-file "$package/pyproject.toml" tests/reference
+"$python" -m mypy --config-file "$package/pyproject.toml" tests/worlds
 "$python" -m mypy --config-file "$package/pyproject.toml" tests/report
 "$python" -m mypy.stubtest --mypy-config-file "$package/pyproject.toml" \
     --allowlist "$package/stubtest-allowlist.txt" umbmark
@@ -121,6 +122,7 @@ begin 'Python: types'
 begin 'Python: tests'
 "$python" -m pytest "$package"
 "$python" -m pytest --config-file "$package/pyproject.toml" tests/reference
+"$python" -m pytest --config-file "$package/pyproject.toml" tests/worlds
 
 begin 'Python: notebooks'
 # Jupyter and matplotlib write into the home folder unless they are told otherwise.

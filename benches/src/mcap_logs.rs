@@ -42,8 +42,7 @@ pub fn write(file: &Path) {
         log: Some(log()),
         returned: None,
     };
-    let (robot, clocks, topics, warnings) = (Some(Robot::labmate()), Vec::new(), Vec::new(), Vec::new());
-    let data = Dataset { robot, path: None, runs: vec![run], clocks, topics, warnings };
+    let data = Dataset { robot: Some(Robot::labmate()), runs: vec![run], ..Dataset::default() };
     data.save_mcap(file, Existing::Replace).expect("a log that can be written");
 }
 
@@ -60,7 +59,7 @@ pub fn rewrite(from: &Path, to: &Path, topics: &[&str], compression: Option<mcap
     }
     writer.finish().expect("room");
     writer.into_inner().flush().expect("room");
-    let robot = umbmark_core::dataset::robot_text(&Robot::labmate(), None);
+    let robot = umbmark_core::dataset::RobotFile::new(Robot::labmate(), None).text();
     std::fs::write(to.with_file_name("robot.toml"), robot).expect("room");
 }
 

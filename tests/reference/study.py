@@ -76,7 +76,7 @@ def learn(command: File, case: str, seed: int, noise: str = "gaussian") -> Answe
     answer: dict[str, Any] = json.loads(done.stdout)
     steps = answer["steps"]
     added = [step for step in steps if step["p_adjusted"] is not None]
-    first = len(steps) - len(added) - 1
+    begun = [step for step in steps if step["p_adjusted"] is None]
     causes = [set(one["acceptable"]) for one in sealed["causes"] if one["kind"] in ADDED]
     return Answer(
         case,
@@ -84,7 +84,7 @@ def learn(command: File, case: str, seed: int, noise: str = "gaussian") -> Answe
         answer["verdict"],
         [set(step["class"]) for step in added],
         causes,
-        steps[first]["heldout_rmse_m"],
+        begun[-1]["heldout_rmse_m"],
         steps[-1]["heldout_rmse_m"],
         len(answer.get("outliers", [])),
     )

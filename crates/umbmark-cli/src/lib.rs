@@ -21,6 +21,7 @@ mod robot_flags;
 mod sensitivity_report;
 mod session;
 mod setup;
+mod setup_report;
 mod signature;
 mod study_arguments;
 mod study_flags;

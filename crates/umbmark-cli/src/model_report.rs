@@ -3,29 +3,36 @@
 use std::path::Path;
 
 use anyhow::Context;
-use umbmark_core::dataset::{Dataset, model_text, read_model};
+use umbmark_core::dataset::{Dataset, ModelFile};
 use umbmark_core::diagnose::{Contrast, Estimate, OnCircle, first_model};
 use umbmark_core::document::meanings;
 use umbmark_core::effect::{Model, find};
 use umbmark_core::likelihood::Outlier;
+use umbmark_core::setup::Setup;
 use umbmark_core::stats::Interval;
 
 use crate::files::Pending;
 use crate::prose::hanging;
+use crate::session::Session;
 use crate::table::{table, with_precision_of};
 
 /// The model of a file, or the one that is asked first.
-pub fn model_of(file: Option<&Path>, data: &Dataset) -> anyhow::Result<Model> {
-    let robot = data.nominal_robot()?;
-    match file {
-        Some(file) => Ok(read_model(file, robot)?.0),
-        None => Ok(first_model(data)?),
+pub fn model_of(file: Option<&Path>, data: &Dataset, session: &Session) -> anyhow::Result<Model> {
+    file.map_or_else(|| Ok(first_model(data)?), |file| read_model(file, data, session))
+}
+
+/// The model of a file for the robot of the data; says what was converted.
+pub fn read_model(file: &Path, data: &Dataset, session: &Session) -> anyhow::Result<Model> {
+    let read = ModelFile::read(file, Some(data.nominal_robot()?))?;
+    if let Some(conversion) = read.conversion {
+        session.message("note", &format!("{} {conversion}", file.display()));
     }
+    Ok(read.model)
 }
 
 /// Writes a `model.toml`.
 pub fn write_model(model: &Model, file: &Path, force: bool) -> anyhow::Result<()> {
-    Pending::write_whole(file, force, &model_text(model)).context("the model was not written")
+    Pending::write_whole(file, force, &ModelFile::new(model.clone()).text()).context("the model was not written")
 }
 
 /// The unit of a parameter, with a space before it.
@@ -55,8 +62,10 @@ pub fn meaning_text(estimates: &[Estimate], model: &Model) -> String {
 /// Disturbed places that are told one by one; --json has all.
 const OUTLIERS: usize = 5;
 
-/// Where runs were disturbed, a paragraph each.
-pub fn outliers_text(outliers: &[Outlier]) -> String {
+/// Where runs were disturbed by less than what was found before the fit, a paragraph each.
+pub fn outliers_text(outliers: &[Outlier], setup: &Setup) -> String {
+    let [jumps, _] = setup.disturbances();
+    let outliers = &outliers[jumps.min(outliers.len())..];
     let one = |o: &Outlier| {
         let turned = o.turned.map(|t| format!(" and {:.2} deg", t.abs().to_degrees())).unwrap_or_default();
         let jump =

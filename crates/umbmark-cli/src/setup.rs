@@ -2,7 +2,7 @@
 
 use std::path::{Path as FilePath, PathBuf};
 
-use umbmark_core::dataset::{read_model, read_robot};
+use umbmark_core::dataset::{ModelFile, RobotFile};
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::Model;
 use umbmark_core::monte_carlo::Draw;
@@ -118,7 +118,11 @@ impl SetupFlags {
         let path = self.robot_flags.path(path)?;
         let (mut sources, mut assumed) = (Vec::new(), Vec::new());
         let (mut model, mut draws) = match (&self.model, &origin) {
-            (Some(file), _) => read_model(file, &robot)?,
+            (Some(file), _) => {
+                let read = ModelFile::read(file, Some(&robot))?;
+                assumed.extend(read.conversion.map(|conversion| format!("{} {conversion}", file.display())));
+                (read.model, read.draws)
+            }
             (None, Origin::Preset(preset)) => (preset.model()?.of(&robot), Vec::new()),
             (None, _) => (Model::new(&robot), Vec::new()),
         };
@@ -149,7 +153,12 @@ impl SetupFlags {
     }
 
     fn robot(&self) -> anyhow::Result<(Robot, Path, Origin)> {
-        let Some(name) = &self.robot else { return Ok((Robot::labmate(), Path::umbmark(), Origin::Default)) };
+        let Some(name) = &self.robot else {
+            let model = self.model.as_ref().map(|file| ModelFile::read(file, None)).transpose()?;
+            let robot = model.map_or_else(Robot::labmate, |file| file.model.robot().clone());
+            let origin = if robot == Robot::labmate() { Origin::Default } else { Origin::File };
+            return Ok((robot, Path::umbmark(), origin));
+        };
         let near = match Preset::find(name) {
             Ok(preset) => return Ok((preset.robot(), preset.path(), Origin::Preset(preset))),
             Err(near) => near,
@@ -161,7 +170,7 @@ impl SetupFlags {
             let near = near.map(|near| format!("; did you mean \"{near}\"?")).unwrap_or_default();
             anyhow::bail!("there is no robot \"{name}\"{near}\n  give a robot.toml, or one of {}", names.join(", "));
         }
-        let (robot, path) = read_robot(file)?;
+        let RobotFile { robot, path, .. } = RobotFile::read(file)?;
         Ok((robot, path.unwrap_or_else(Path::umbmark), Origin::File))
     }
 }

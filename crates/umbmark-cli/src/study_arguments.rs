@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use umbmark_core::dataset::{Dataset, read_model};
+use umbmark_core::dataset::Dataset;
 use umbmark_plot::study::{Options, Study};
 
 use crate::Session;
+use crate::model_report::read_model;
 use crate::test_arguments::TestArguments;
 
 /// How a study is made.
@@ -24,7 +25,7 @@ impl StudyArguments {
     pub fn study(&self, name: &str, data: Dataset, model: Option<&Path>, session: &Session) -> anyhow::Result<Study> {
         let given = match model {
             None => None,
-            Some(file) => Some((file.display().to_string(), read_model(file, data.nominal_robot()?)?.0)),
+            Some(file) => Some((file.display().to_string(), read_model(file, &data, session)?)),
         };
         let options = Options { diagnose: self.test.options(session), trials: self.trials };
         Ok(Study::new(name, data, given, options))

@@ -7,6 +7,7 @@ use umbmark_core::stats::Interval;
 use crate::model_report::p_text;
 use crate::prose::hanging;
 use crate::residual_strips::{marks, strips};
+use crate::setup_report::{disturbances_text, faults_text, taken_text};
 use crate::table::table;
 
 /// Runs are listed up to this many; --json has all.
@@ -32,8 +33,10 @@ pub fn text(comparison: &TrackComparison, options: &Options, terminal: bool) -> 
     let legend = "along, end: root mean square error of all measured poses, and of the last of each run. p: the smallest of all \
                   tests below, times their number.";
     text += &hanging("", 0, legend);
+    text += &(faults_text(&comparison.setup) + &disturbances_text(&comparison.setup));
     for judged in &comparison.models {
         text += &format!("\n{}\n\n", judged.name);
+        text += &taken_text(&judged.taken);
         for sentence in &judged.sentences {
             text += &hanging("", 2, &format!("  {sentence}"));
         }

@@ -1,6 +1,6 @@
 //! What is missing and not in the catalogue: as a curve, and as a formula to try.
 
-use umbmark_core::dataset::model_text;
+use umbmark_core::dataset::effects_text;
 use umbmark_core::diagnose::{Curve, CurvePoint, Dependence};
 
 use crate::prose::hanging;
@@ -20,7 +20,7 @@ pub fn unlisted_text(unlisted: Option<&Dependence>, terminal: bool) -> String {
             let what = format!(
                 "a formula that explains {share:.0} % of it; save it as FILE and try `umbmark learn DATA --model FILE`"
             );
-            format!("\n{}\n{}", hanging("", 0, &what), model_text(&suggestion.model))
+            format!("\n{}\n{}", hanging("", 0, &what), effects_text(&suggestion.model))
         }
         None => format!("\n{}", hanging("", 0, "No formula of one variable that was tried explains half of it.")),
     };

@@ -157,8 +157,8 @@ fn the_model_file_of_an_explanation_is_one() {
         let text = said(&["effects", entry.about.name]);
         let model = text.split("in a model.toml\n").nth(1).unwrap();
         let robot = umbmark_core::drive::Robot::labmate();
-        let (model, _) = umbmark_core::dataset::parse_model("model.toml", model, &robot).unwrap();
-        assert_eq!(model.parts()[0].effect, entry);
+        let file = umbmark_core::dataset::ModelFile::parse("model.toml", model, Some(&robot)).unwrap();
+        assert_eq!(file.model.parts()[0].effect, entry);
     }
 }
 

@@ -18,20 +18,25 @@ mod lengths;
 pub(crate) mod noise_shape;
 mod outcome;
 
-use crate::dataset::{Dataset, ReturnError};
+use crate::dataset::{Dataset, ReturnError, Run};
 use crate::drive::{Kind, Robot};
+use crate::effect::TestKind;
 use crate::fit::Termination;
-use crate::path::{Path, SQUARE};
+use crate::likelihood::Taken;
+use crate::path::{Direction, Path, SQUARE};
 use crate::replay::ReplayError;
-use crate::score::{FEWEST_RUNS, Scatter, Summary, summarise};
+use crate::score::{FEWEST_RUNS, Scatter, Summary, sentence, summarise};
+use crate::setup::{Fault, Setup};
 use crate::stats::{Interval, student_t_quantile};
 use evidence::Evidence;
 use nalgebra::{Matrix2, Matrix3};
 use outcome::Forecast;
+use std::sync::Arc;
 
 pub use closed_form::{Angles, ClosedForm, RadiusWheelbase};
 pub use correction::{Correction, Ratio};
 pub use evidence::Level;
+pub(crate) use exact::{FAR_FIT, STARTS, is_possible};
 pub use lengths::Lengths;
 pub use outcome::{Replayed, drive_again};
 
@@ -74,6 +79,12 @@ pub enum CalibrateError {
         run: String,
         /// What is wrong.
         source: ReplayError,
+    },
+    /// Columns, units or frames that are not what they are called.
+    #[error("{}", Fault::refusal(.faults))]
+    Faulty {
+        /// Which.
+        faults: Vec<Fault>,
     },
     /// A weight that is none.
     #[error("the heading arm must be positive and finite, got {value} m")]
@@ -177,8 +188,14 @@ pub struct Calibration {
     pub level: Level,
     /// Metres that a radian of heading counted as, in a whole-track fit.
     pub heading_arm: Option<f64>,
-    /// What could not be determined, and why.
+    /// What could not be determined, and why. What was found of the data stands first.
     pub warnings: Vec<String>,
+    /// Why the lengths are not to be written to a robot, a sentence each; empty where nothing speaks against them.
+    pub doubts: Vec<String>,
+    /// What was found of the experiment before the fit.
+    pub setup: Arc<Setup>,
+    /// What of that was taken into the prediction of the poses.
+    pub taken: Vec<Taken>,
 }
 
 impl Calibration {
@@ -220,11 +237,21 @@ pub fn calibrate(data: &Dataset, options: &Options) -> Result<Calibration, Calib
     if robot.drive.kind() != Kind::Differential {
         return Err(CalibrateError::OtherDrive { drive: robot.drive.kind().name() });
     }
+    let setup = Setup::of(&data.runs, robot, data.path.as_ref());
+    let faults: Vec<Fault> = setup.all_faults().cloned().collect();
+    if !faults.is_empty() {
+        return Err(CalibrateError::Faulty { faults });
+    }
+    let (mended, lost) = evidence::mended(data, &setup);
+    let data = mended.as_ref();
     let evidence = Evidence::new(data, robot, options.heading_arm)?;
+    let evidence = setup.mounting.iter().fold(evidence, |evidence, mounting| evidence.beginning_with(mounting, robot));
     let (cw, ccw) = outcome::summary_of(data);
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<String> = setup.notices().iter().map(|notice| sentence(notice)).collect();
+    warnings.extend(lost);
+    let mut doubts = doubts_of_data(&setup, evidence.level);
     let square = Square::new(data.path.as_ref(), robot, &cw, &ccw, &mut warnings);
-    let fitted = exact_estimate(&evidence, robot, &mut warnings);
+    let fitted = exact_estimate(&evidence, robot, &mut warnings, &mut doubts);
     let mut estimates: Vec<Estimate> =
         square.map(|s| s.estimates(options.radius_wheelbase, &mut warnings)).unwrap_or_default();
     let truth = fitted.as_ref().filter(|e| e.shown[0] && e.shown[1]).map(|e| e.correction);
@@ -240,14 +267,65 @@ pub fn calibrate(data: &Dataset, options: &Options) -> Result<Calibration, Calib
     warn_of_large_errors(&estimates, &mut warnings);
     warn_of_few_runs(&cw, &ccw, &mut warnings);
     let heading_arm = (evidence.level == Level::Tracks).then_some(evidence.heading_arm);
-    Ok(Calibration { estimates, level: evidence.level, heading_arm, warnings })
+    let (level, taken, setup) = (evidence.level, evidence.taken, Arc::new(setup));
+    Ok(Calibration { estimates, level, heading_arm, warnings, doubts, setup, taken })
 }
 
-fn exact_estimate(evidence: &Evidence, robot: &Robot, warnings: &mut Vec<String>) -> Option<Estimate> {
+/// Why data itself is not to be believed: from return errors, those that are far from the others; from tracks, jumps without number.
+fn doubts_of_data(setup: &Setup, level: Level) -> Vec<String> {
+    let outlying = || setup.outlying().map(|run| sentence(&format!("{}; {}", run.sentence(), run.remedy())));
+    match level {
+        Level::Ends => outlying().collect(),
+        Level::Tracks => setup.many_jumps().iter().map(|reason| sentence(&reason.sentence())).collect(),
+    }
+}
+
+/// Return headings \[rad\], clockwise and counter-clockwise, that a robot has whose E_d and E_b explain the median return positions;
+/// `None` where these do not show both.
+pub(crate) fn by_positions(returns: &[Vec<ReturnError>; 2], robot: &Robot, path: &Path) -> Option<[f64; 2]> {
+    if robot.drive.kind() != Kind::Differential {
+        return None;
+    }
+    let median = |of: fn(&ReturnError) -> f64, own: &[ReturnError]| {
+        let mut values: Vec<f64> = own.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied()
+    };
+    let run = |direction: Direction| {
+        let own = &returns[direction as usize];
+        let returned = ReturnError { x: median(|e| e.x, own)?, y: median(|e| e.y, own)?, heading: None };
+        let (name, direction, test) = (direction.name().to_owned(), Some(direction), TestKind::Systematic);
+        Some(Run { name, number: 1, direction, test, log: None, returned: Some(returned) })
+    };
+    let runs = Direction::BOTH.map(run).into_iter().collect::<Option<Vec<_>>>()?;
+    let data = Dataset { robot: Some(robot.clone()), path: Some(path.clone()), runs, ..Dataset::default() };
+    let exact = exact::exact(&Evidence::new(&data, robot, None).ok()?, robot);
+    let headings = Direction::BOTH.map(|direction| {
+        drive_again(robot, path, direction, &exact.correction, &Correction::NONE).and_then(|returned| returned.heading)
+    });
+    (exact.shown[0] && exact.shown[1]).then_some(headings[0].zip(headings[1])?.into())
+}
+
+fn exact_estimate(
+    evidence: &Evidence,
+    robot: &Robot,
+    warnings: &mut Vec<String>,
+    doubts: &mut Vec<String>,
+) -> Option<Estimate> {
     let exact = exact::exact(evidence, robot);
+    if let Some(rival) = &exact.rival {
+        let [own, other] = [&exact.correction, rival].map(|c| format!("E_d {:.4}, E_b {:.4}", c.e_d, c.e_b));
+        let words = format!(
+            "Two robots fit these poses about equally well: {own}, and {other}. Measure the wheelbase by tape, and correct it in robot.toml."
+        );
+        warnings.push(words.clone());
+        doubts.push(words);
+    }
     warn_of_what_does_not_show(&exact.shown, evidence, warnings);
     if !exact.fit.termination.converged() {
-        warnings.push(format!("The exact fit {}: do not use it.", exact.fit.termination.name()));
+        let words = format!("The exact fit {}: do not use it.", exact.fit.termination.name());
+        warnings.push(words.clone());
+        doubts.push(words);
     }
     if let Err(error) = exact.correction.model(robot) {
         warnings.push(format!("No exact fit: it ran out of bounds ({error}). Are signs, units and directions right?"));

@@ -7,16 +7,44 @@ mod replicas;
 mod statistics;
 pub mod tracks;
 
+use crate::calibrate::CalibrateError;
 use crate::dataset::Dataset;
 use crate::diagnose::ends::{self, Asked, Ends, Fitted};
-use crate::diagnose::{Contrast, DiagnoseError, Level, OnCircle, Options, base_model, level};
+use crate::diagnose::{Contrast, DiagnoseError, Level, OnCircle, Options, base_model, first_model, level};
 use crate::effect::Model;
+use crate::learn::{Evidence, fit};
 use crate::path::Direction;
+use crate::setup::Setup;
 use replicas::Replicas;
+use std::sync::Arc;
 
 pub use replicas::NoiseSource;
 pub use statistics::Quantity;
 pub use tracks::compare_tracks;
+
+/// The models that are held against data where none is given: the nominal robot, and that with its first effects fitted, where
+/// nothing is wrong with the data. Each has a name.
+pub fn usual_models(data: &Dataset, level: Level) -> Result<Vec<(String, Model)>, DiagnoseError> {
+    let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
+    let mut models = vec![("nominal robot".to_owned(), Model::new(robot))];
+    match level {
+        Level::Ends => {
+            let ends = Ends::examined(data)?;
+            // What is wrong is told beside the nominal robot.
+            if ends.is_sound() {
+                let fitted = ends.fit(&base_model(robot)?)?.0;
+                models.push(("E_d and E_b, fitted to these runs".into(), fitted));
+            }
+        }
+        Level::Tracks => match fit(data, &first_model(data)?) {
+            Ok(fitted) => models.push(("E_d, E_b, E_s fitted".into(), fitted.model)),
+            // What is wrong is told beside the nominal robot.
+            Err(DiagnoseError::Faulty { .. }) => {}
+            Err(error) => return Err(error),
+        },
+    }
+    Ok(models)
+}
 
 /// A statistic of the measured test beside what a model predicts for it.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,6 +78,8 @@ pub struct Judged {
     pub heading_rmse: Option<f64>,
     /// What is explained and what not, a sentence each.
     pub sentences: Vec<String>,
+    /// Whether the return errors themselves are in doubt, by faults, outlying runs or jumps: then no model explains them.
+    pub in_doubt: bool,
 }
 
 /// Models side by side.
@@ -67,12 +97,14 @@ pub struct Comparison {
     pub circle: Vec<OnCircle>,
     /// What else should be said, a sentence each.
     pub remarks: Vec<String>,
+    /// What was found of the return errors before anything was compared.
+    pub setup: Arc<Setup>,
 }
 
 impl Judged {
     /// Whether nothing speaks against the model at this size of the whole test.
     pub fn explains(&self, size: f64) -> bool {
-        self.p >= size
+        self.p >= size && !self.in_doubt
     }
 }
 
@@ -87,7 +119,8 @@ impl Judged {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn compare(data: &Dataset, models: &[(String, Model)], options: &Options) -> Result<Comparison, DiagnoseError> {
-    let ends = Ends::new(data)?;
+    let ends = Ends::examined(data)?;
+    models.iter().try_for_each(|(_, model)| model.check_robot(&ends.robot))?;
     models.iter().try_for_each(|(_, model)| ends.check(model))?;
     let fitted = Fitted::new(&ends, &base_model(&ends.robot)?)?;
     let confidence = 1.0 - options.size;
@@ -105,7 +138,7 @@ pub fn compare(data: &Dataset, models: &[(String, Model)], options: &Options) ->
     }
     let models = models.iter().map(|(name, model)| judge(name, model, &ends, &fitted, options)).collect();
     let contrasts = ends::contrasts(&ends, &fitted, confidence);
-    Ok(Comparison { level: Level::Ends, runs: ends.counts(), models, contrasts, circle, remarks })
+    Ok(Comparison { level: Level::Ends, runs: ends.counts(), models, contrasts, circle, remarks, setup: ends.setup })
 }
 
 fn judge(name: &str, model: &Model, ends: &Ends, fitted: &Fitted, options: &Options) -> Judged {
@@ -113,11 +146,13 @@ fn judge(name: &str, model: &Model, ends: &Ends, fitted: &Fitted, options: &Opti
     let replicas = Replicas::new(model, ends, fitted, options);
     let (statistics, p) = replicas.judge(ends, model);
     let n = residuals.len().max(1) as f64;
+    let in_doubt = !ends.is_sound() || !ends.doubts.is_empty();
     let rms = |sum: f64| (sum / n).sqrt();
     Judged {
         name: name.to_owned(),
         noise: replicas.source,
-        sentences: sentences(&statistics, options.size),
+        sentences: sentences(&statistics, options.size, in_doubt),
+        in_doubt,
         statistics,
         p,
         rmse: rms(residuals.iter().map(|r| r.xy().norm_squared()).sum()),
@@ -126,13 +161,14 @@ fn judge(name: &str, model: &Model, ends: &Ends, fitted: &Fitted, options: &Opti
 }
 
 /// For each direction, what is explained and what not. A statistic alone counts at the size shared out among all (Bonferroni).
-fn sentences(statistics: &[Statistic], size: f64) -> Vec<String> {
+fn sentences(statistics: &[Statistic], size: f64, in_doubt: bool) -> Vec<String> {
     let least = size / statistics.len().max(1) as f64;
     let of = |direction: Direction| {
         let all: Vec<&Statistic> = statistics.iter().filter(|s| s.direction == direction).collect();
         let failing: Vec<String> = all.iter().filter(|s| s.p < least).map(|s| phrase(s)).collect();
         let verdict = match (all.is_empty(), failing.is_empty()) {
             (true, _) => return None,
+            (false, true) if in_doubt => "nothing can be said while the return errors are in doubt".to_owned(),
             (false, true) => {
                 "all is explained: means, spread and correlation are as simulated tests have them".to_owned()
             }

@@ -14,7 +14,6 @@
 
 mod assembly;
 mod columns;
-mod dead_reckoning;
 mod decimal;
 mod distribution_table;
 mod document;
@@ -36,6 +35,7 @@ mod parameter_file;
 mod place;
 mod recording;
 mod reference_file;
+mod reference_frame;
 mod reference_track;
 mod returns;
 mod robot_file;
@@ -52,108 +52,27 @@ mod tick_log;
 mod tum;
 
 pub use error::DatasetError;
-pub use inspect::{
-    Check, Coverage, Determined, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, Wheels, WheelsFound,
-};
+pub use inspect::{Check, Coverage, Determined, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, Wheels};
 pub(crate) use inspect::{Done, MoveDone, moves_of};
 pub use layout::{LAYOUTS, Layout};
 pub use mcap::{McapProblem, Topics};
-pub use model_file::{parse_model, read_model};
-pub use model_text::{model_text, model_text_with};
+pub use model_file::ModelFile;
+pub use model_text::effects_text;
 pub use parameter_file::{Grade, ParameterFile, Varied, parse_parameters, read_parameters};
+pub use reference_frame::ReferenceFrame;
 pub use reference_track::ReferenceTrack;
 pub use returns::HEADER as RETURNS_COLUMNS;
-pub use robot_file::{parse_robot, read_robot};
-pub use robot_text::robot_text;
+pub use robot_file::RobotFile;
 pub use save::Existing;
 pub use synchronise::{Alignment, BLOCKS, Measured, SynchroniseError, synchronise};
 pub use template::{template, write_template};
+
+pub use crate::run::{Mended, ReferencePose, ReturnError, Run, TickLog};
 
 use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::path::{Direction, Path};
 use serde::{Deserialize, Serialize};
-
-/// The error of one return to START: absolute minus computed end pose (Eq. 1 of the paper), in the frame of START.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ReturnError {
-    /// ε_x \[m\], along the START heading.
-    pub x: f64,
-    /// ε_y \[m\], to the left.
-    pub y: f64,
-    /// ε_θ \[rad\] in (-π, π], where the heading was measured.
-    pub heading: Option<f64>,
-}
-
-/// A row of an array: x, y \[m\] and heading \[rad\], NaN where it was not measured.
-impl From<[f64; 3]> for ReturnError {
-    fn from([x, y, heading]: [f64; 3]) -> ReturnError {
-        ReturnError { x, y, heading: Some(heading).filter(|heading| !heading.is_nan()) }
-    }
-}
-
-/// An absolute pose of the robot, in the frame of START.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ReferencePose {
-    /// Index of the tick sample it belongs to.
-    pub sample: usize,
-    /// \[m\]
-    pub x: f64,
-    /// \[m\]
-    pub y: f64,
-    /// \[rad\], where the heading was measured.
-    pub heading: Option<f64>,
-}
-
-/// The recorded wheel angles of one run, with the absolute poses measured on the way.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct TickLog {
-    /// Time of each sample \[s\], increasing.
-    pub time: Vec<f64>,
-    /// Left wheel angle \[ticks\], cumulative from START, roll-overs undone.
-    pub left: Vec<f64>,
-    /// Right wheel angle \[ticks\], cumulative from START, roll-overs undone.
-    pub right: Vec<f64>,
-    /// Absolute poses in the order of their samples: many, few, or none.
-    pub reference: Vec<ReferencePose>,
-    /// What was mended while it was read.
-    pub mended: Mended,
-    /// Where on the floor a wheel met a bump, seen from START \[m\]; known of simulated runs alone.
-    #[serde(default)]
-    pub bumps: Vec<[f64; 2]>,
-}
-
-/// What was mended in a log while it was read, counted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Mended {
-    /// Roll-overs of either counter that were undone.
-    pub roll_overs: usize,
-    /// Rows before which a counter was set back to zero.
-    pub resets: usize,
-    /// Rows out of order that were put where their time stamps say.
-    pub late: usize,
-    /// Rows that repeat a time stamp and were left out.
-    pub repeated: usize,
-    /// Poses that repeat the one before while the wheels turn and were left out.
-    pub stale: usize,
-}
-
-/// One drive round the path.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Run {
-    /// What it is called: file stem or row.
-    pub name: String,
-    /// Its number, unique within its direction and test.
-    pub number: u32,
-    /// Sense of driving; `None` for paths that have none.
-    pub direction: Option<Direction>,
-    /// Which test it belongs to.
-    pub test: TestKind,
-    /// Its ticks, where they were recorded.
-    pub log: Option<TickLog>,
-    /// Its return error, where one was measured or follows from the log.
-    pub returned: Option<ReturnError>,
-}
 
 /// How the clock of a track ran against that of a run's ticks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -184,6 +103,8 @@ pub struct Dataset {
     pub robot: Option<Robot>,
     /// The path that it was told to drive, where that is known.
     pub path: Option<Path>,
+    /// How the measured poses are counted in its files; those of `runs` are as they are meant to be.
+    pub reference_frame: ReferenceFrame,
     /// Its runs.
     pub runs: Vec<Run>,
     /// The clocks that were set while reading: one for each log whose poses came from a track with its own clock.
@@ -205,6 +126,11 @@ impl Dataset {
     /// Reads a dataset whose MCAP logs hold wheels and reference on the given topics.
     pub fn load_with(path: impl AsRef<std::path::Path>, topics: &Topics) -> Result<Dataset, DatasetError> {
         folder::load(path.as_ref(), topics)
+    }
+
+    /// What a `robot.toml` beside the same logs has to say, with `robot` in the place of the nominal one.
+    pub fn robot_file(&self, robot: Robot) -> RobotFile {
+        RobotFile { robot, path: self.path.clone(), reference: self.reference_frame }
     }
 
     /// The nominal robot, for questions that need one.

@@ -10,20 +10,24 @@ pub(crate) mod ends;
 pub(crate) mod experiments;
 mod identifiability;
 mod likeness;
+mod reason;
 pub(crate) mod tracks;
 
 use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, Run};
 use crate::drive::Robot;
 use crate::effect::{Model, ModelError, TestKind, find};
-use crate::likelihood::{Observed, Outlier};
+use crate::likelihood::{Observed, Outlier, Taken};
 use crate::replay::ReplayError;
+use crate::setup::{Fault, Setup};
 use crate::stats::{Interval, student_t_quantile};
+use std::sync::Arc;
 
 pub use candidates::{Candidate, Size, candidates, columns};
 pub use ends::{Contrast, OnCircle};
 pub use identifiability::{Identifiability, Share, identifiability};
 pub use likeness::Likeness;
+pub use reason::Reason;
 pub use tracks::Suggestion;
 
 /// What was observed of the runs.
@@ -48,6 +52,12 @@ pub enum DiagnoseError {
     /// A model that the catalogue or its bounds refuse.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// Columns, units or frames that are not what they are called.
+    #[error("{}", Fault::refusal(.faults))]
+    Faulty {
+        /// Which.
+        faults: Vec<Fault>,
+    },
     /// A fit that never settled.
     #[error("the fit of the model {how}; fix some of its parameters (free = false)")]
     NotConverged {
@@ -95,6 +105,8 @@ pub enum Verdict {
     UnlistedEffect,
     /// Too few runs, or of one direction only.
     NotEnoughData,
+    /// Nothing further is certified, and yet the model does not explain the data; the reasons say why.
+    NotExplained,
 }
 
 impl Verdict {
@@ -106,6 +118,7 @@ impl Verdict {
             Verdict::SeveralMissing => "several_missing",
             Verdict::UnlistedEffect => "unlisted_effect",
             Verdict::NotEnoughData => "not_enough_data",
+            Verdict::NotExplained => "not_explained",
         }
     }
 }
@@ -261,6 +274,12 @@ pub struct Diagnosis {
     pub dependence: Option<Dependence>,
     /// Where runs were disturbed, and what happened there left out; from tracks only.
     pub outliers: Vec<Outlier>,
+    /// What was found of the experiment before anything was fitted.
+    pub setup: Arc<Setup>,
+    /// What of that was taken into the model.
+    pub taken: Vec<Taken>,
+    /// Why the model is not called explained, or would not be.
+    pub reasons: Vec<Reason>,
     /// What else should be said, a sentence each.
     pub remarks: Vec<String>,
 }
@@ -309,6 +328,34 @@ pub struct CurvePoint {
 }
 
 impl Diagnosis {
+    /// What is said of an experiment whose columns are not what they are called: nothing of the robot.
+    pub(crate) fn of_faults(setup: &Arc<Setup>, model: &Model, level: Level) -> Diagnosis {
+        let faults = setup.all_faults().filter(|fault| level == Level::Ends || setup.faults.contains(fault));
+        Diagnosis {
+            level,
+            verdict: Verdict::NotExplained,
+            model: model.clone(),
+            fitted: Vec::new(),
+            correlations: Vec::new(),
+            goodness_of_fit: Vec::new(),
+            ranking: Vec::new(),
+            certified: 0,
+            invisible: Vec::new(),
+            likeness: Likeness::default(),
+            minimum_detectable: Vec::new(),
+            next_experiments: Vec::new(),
+            contrasts: Vec::new(),
+            circle: Vec::new(),
+            identifiability: Identifiability { shares: Vec::new(), rank: 0, hidden: Vec::new() },
+            dependence: None,
+            outliers: Vec::new(),
+            setup: Arc::clone(setup),
+            taken: Vec::new(),
+            reasons: faults.cloned().map(Reason::Fault).collect(),
+            remarks: Vec::new(),
+        }
+    }
+
     /// The suspects that are certified as missing.
     pub fn certified(&self) -> &[Suspect] {
         &self.ranking[..self.certified]
@@ -411,10 +458,21 @@ fn places(run: &Run) -> usize {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diagnosis, DiagnoseError> {
+    model.check_robot(data.robot.as_ref().ok_or(CalibrateError::NoRobot)?)?;
     if options.evidence(data) == Level::Ends {
-        return ends::diagnose(&ends::Ends::new(data)?, model, options);
+        let ends = ends::Ends::examined(data)?;
+        if !ends.is_sound() {
+            return Ok(Diagnosis::of_faults(&ends.setup, model, Level::Ends));
+        }
+        return ends::diagnose(&ends, model, options);
     }
-    let of_tracks = || tracks::diagnose(tracks::fit(&tracks_of(data)?, model)?, options);
+    let of_tracks = || {
+        let observed = tracks_of(data)?;
+        if !observed.setup.is_sound() {
+            return Ok(Diagnosis::of_faults(&observed.setup, model, Level::Tracks));
+        }
+        tracks::diagnose(tracks::fit(&observed, model)?, options)
+    };
     // Where return poses tell of the same runs, what they alone would have said stands beside it.
     let of_returns = || ends::Beside::new(&ends::Ends::new(data)?, &base_model(model.robot())?, options);
     let (diagnosis, returns) = rayon::join(of_tracks, of_returns);

@@ -30,7 +30,7 @@ mod synchro;
 
 pub use clapper::LinkReading;
 pub use differential::WheelTravel;
-pub use encoder::{Encoder, MAX_COUNTER_BITS, roll_over};
+pub use encoder::{Encoder, MAX_COUNTER_BITS, Wiring, roll_over};
 pub use kind::{Kind, Kinds};
 
 use kinematics::Kinematics;

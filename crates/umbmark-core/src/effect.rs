@@ -24,6 +24,7 @@ mod centripetal_load;
 mod changes;
 mod contact_trail;
 mod context;
+mod conversion;
 mod crab;
 mod diameter_drift;
 mod direction_dependent_wheelbase;
@@ -81,6 +82,8 @@ use crate::random::Stream;
 pub use bumps::extra_travel;
 pub use changes::Changes;
 pub use context::{Context, Place, Progress, Sight};
+pub(crate) use conversion::CONVERTED;
+pub use conversion::Conversion;
 pub use formula::{Formula, FormulaError, Target};
 pub use law::Law;
 pub(crate) use model::is_shape;
@@ -309,8 +312,11 @@ pub trait Effect {
     /// Changes what the encoders of a link between two trucks show of it.
     fn link<T: Real>(_p: &[T], _shown: &mut LinkReading<T>) {}
 
+    /// Adds by how much older than its stamp an absolute measurement is that is stamped `time` after the run began \[s\].
+    fn late<T: Real>(_p: &[T], _time: f64, _late: &mut T) {}
+
     /// Changes what an absolute measurement shows of a true pose, other than by chance.
-    fn seen<T: Real>(_p: &[T], _at: &Sight, _pose: &mut Pose2<T>) {}
+    fn seen<T: Real>(_p: &[T], _pose: &mut Pose2<T>) {}
 
     /// Variance that white noise on the wheels gathers over a true travel.
     fn diffusion(_p: &[f64], _travel: &WheelTravel) -> WheelVariance {
@@ -350,8 +356,10 @@ pub struct Mean<T: Real> {
     pub body: fn(&[T], &Context<T>, &mut Displacement2<T>),
     /// See [`Effect::link`].
     pub link: fn(&[T], &mut LinkReading<T>),
+    /// See [`Effect::late`].
+    pub late: fn(&[T], f64, &mut T),
     /// See [`Effect::seen`].
-    pub seen: fn(&[T], &Sight, &mut Pose2<T>),
+    pub seen: fn(&[T], &mut Pose2<T>),
 }
 
 impl Mean<Dual> {
@@ -361,6 +369,7 @@ impl Mean<Dual> {
             wheels: E::wheels::<Dual>,
             body: E::body::<Dual>,
             link: E::link::<Dual>,
+            late: E::late::<Dual>,
             seen: E::seen::<Dual>,
         }
     }
@@ -455,6 +464,7 @@ impl Entry {
                 wheels: E::wheels::<f64>,
                 body: E::body::<f64>,
                 link: E::link::<f64>,
+                late: E::late::<f64>,
                 seen: E::seen::<f64>,
             },
             duals: Mean::of_duals::<E>(),

@@ -13,9 +13,11 @@ pub use gears::{GearCalibration, GearError, calibrate_gears};
 
 use crate::calibrate::CalibrateError;
 use crate::dataset::Dataset;
+use crate::diagnose::ends::Ends;
 use crate::diagnose::{self, DiagnoseError, Diagnosis, Estimate, Level, Suspect, Verdict};
 use crate::effect::{Model, Part};
-use crate::likelihood::{Outlier, Weighing};
+use crate::likelihood::{Fitted, Outlier, Taken};
+use crate::setup::Setup;
 use crate::watch::Watch;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -157,10 +159,21 @@ pub fn learn_from(
     options: &diagnose::Options,
     watch: &Watch,
 ) -> Result<Learnt, DiagnoseError> {
+    start.check_robot(data.robot.as_ref().ok_or(CalibrateError::NoRobot)?)?;
     match options.evidence(data) {
-        Level::Ends => from_evidence(&diagnose::ends::Ends::new(data)?, start, options, watch),
+        Level::Ends => {
+            let ends = Ends::examined(data)?;
+            if ends.is_sound() { from_evidence(&ends, start, options, watch) } else { of_faults(&ends) }
+        }
         Level::Tracks => tracks::learn(&diagnose::tracks_of(data)?, start, options, watch),
     }
+}
+
+/// Of return errors whose columns are not what they are called nothing is learnt.
+fn of_faults(ends: &Ends) -> Result<Learnt, DiagnoseError> {
+    let Story { steps, model, .. } = Story::new(ends, ends.nominal())?;
+    let diagnosis = Diagnosis::of_faults(&ends.setup, &model, Level::Ends);
+    Ok(Learnt { steps, verdict: diagnosis.verdict, model, diagnosis, remarks: Vec::new(), partial: false })
 }
 
 /// A model with its free parameters fitted.
@@ -172,28 +185,37 @@ pub struct Fit {
     pub estimates: Vec<Estimate>,
     /// Where runs were disturbed, and what happened there left out; from tracks only.
     pub outliers: Vec<Outlier>,
-    /// What of the tracks was fitted; `None` for return poses.
-    pub weighing: Option<Weighing>,
+    /// Whether the values are those under noise of the usual sizes, as [`USUAL_NOISE`](crate::likelihood::USUAL_NOISE) says.
+    pub usual_noise: bool,
+    /// What was found of the experiment before the fit.
+    pub setup: Arc<Setup>,
+    /// What of that was taken into the model.
+    pub taken: Vec<Taken>,
 }
 
 /// Fits a model's free parameters to a dataset.
 pub fn fit(data: &Dataset, model: &Model) -> Result<Fit, DiagnoseError> {
+    model.check_robot(data.robot.as_ref().ok_or(CalibrateError::NoRobot)?)?;
     match diagnose::level(data) {
         Level::Ends => {
-            let (model, estimates) = fit_to_returns(data, model)?;
-            Ok(Fit { model, estimates, outliers: Vec::new(), weighing: None })
+            let ends = Ends::examined(data)?;
+            ends.check_columns()?;
+            let (model, estimates) = ends.fit(model)?;
+            Ok(Fit { model, estimates, outliers: Vec::new(), usual_noise: false, setup: ends.setup, taken: Vec::new() })
         }
         Level::Tracks => {
-            let fitted = diagnose::tracks::predicting(&diagnose::tracks_of(data)?, model)?;
+            let fitted = diagnose::tracks::fit(&diagnose::tracks_of(data)?, model)?;
+            let fitted = diagnose::tracks::trusted(fitted)?;
             let estimates = diagnose::tracks::estimates(&fitted);
-            Ok(Fit { model: fitted.model, estimates, outliers: fitted.outliers, weighing: Some(fitted.weighing) })
+            let Fitted { model, outliers, usual_noise, taken, observed, .. } = fitted;
+            Ok(Fit { model, estimates, outliers, usual_noise, setup: observed.setup, taken })
         }
     }
 }
 
 /// [`fit`] to the return poses alone, even where the runs were observed on the way.
 pub fn fit_to_returns(data: &Dataset, model: &Model) -> Result<(Model, Vec<Estimate>), DiagnoseError> {
-    diagnose::ends::Ends::new(data)?.fit(model)
+    Ends::new(data)?.fit(model)
 }
 
 /// The loop, whatever was observed.

@@ -8,6 +8,7 @@
 //! Source: error growth along a path, Chong & Kleeman (1997) and Kelly (2004); innovations as whitened residuals, Kailath (1968);
 //! REML, Patterson & Thompson (1971).
 
+mod beginning;
 mod descent;
 mod fitting;
 mod noise;
@@ -19,9 +20,11 @@ mod products;
 pub(crate) mod watched;
 mod whiten;
 
-pub use fitting::{Column, Fitted, NUISANCE, Weighing};
+pub use beginning::Taken;
+pub(crate) use beginning::{FAR, of_reference, ratios};
+pub use fitting::{Column, Fitted, NUISANCE, USUAL_NOISE};
 pub use noise::Noise;
-pub use observed::{Block, Growth, Observed, ObservedRun};
+pub use observed::{Block, Growth, Observed, ObservedRun, Stretch};
 pub use outliers::Outlier;
 pub(crate) use products::{ABSORBED, ScaledCholesky, gram, scaled_cholesky, share_left, solver};
 pub use whiten::Whitened;

@@ -10,6 +10,7 @@
 //! [`Dual`](crate::geometry::Dual) it gives poses and columns of their Jacobian, [`LANES`](crate::geometry::LANES) at once. Each
 //! sample is an exact arc.
 
+mod moment;
 mod pace;
 #[cfg(target_arch = "x86_64")]
 mod x86;
@@ -20,9 +21,13 @@ use crate::effect::{Chain, Context, Evaluate, Model, ModelError, Place, Progress
 use crate::engine::{Convoy, Predicted};
 #[cfg(target_arch = "x86_64")]
 use crate::geometry::Instructions;
-use crate::geometry::Pose2;
+use crate::geometry::{Displacement2, Pose2};
 use crate::path::{Direction, Path, Pieces, SpeedProfile};
 use std::sync::Arc;
+
+use moment::Moments;
+
+pub use moment::Moment;
 
 /// What makes a log impossible to replay.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -83,6 +88,12 @@ pub struct Track {
     /// How many pieces are made when each observation is taken, never decreasing.
     seen_after: Vec<usize>,
     sights: Vec<Sight>,
+    /// From the first sample of a log to the last \[s\].
+    duration: f64,
+    /// Where START lies in the room.
+    origin: Pose2,
+    /// Whether it begins at START, rather than somewhere on the way.
+    begins: bool,
     /// Of two trucks with a link, whose pieces are the periods of their odometry.
     convoy: Option<Arc<Convoy>>,
 }
@@ -97,12 +108,22 @@ impl Track {
 
     /// [`Track::from_log`] of a run with its place among others.
     pub fn from_log_at(log: &TickLog, robot: &Robot, place: Place) -> Result<Track, ReplayError> {
+        Track::from_log_seen(log, robot, place, log.reference.iter().map(|reference| reference.sample))
+    }
+
+    /// [`Track::from_log_at`], observed at some of its samples, in order.
+    pub fn from_log_seen(
+        log: &TickLog,
+        robot: &Robot,
+        place: Place,
+        samples: impl Iterator<Item = usize>,
+    ) -> Result<Track, ReplayError> {
         check(log)?;
         let per_tick = robot.metres_per_tick();
         let speeds = pace::wheel_speeds(log, &per_tick);
         let mut progress = Progress::new(robot, place, true);
         let mut track = Track::empty();
-        let mut due = log.reference.iter().map(|r| r.sample).peekable();
+        let mut due = samples.peekable();
         let (mut left, mut right) = (0.0, 0.0);
         for (sample, (l, r)) in log.left.iter().zip(&log.right).enumerate() {
             let before = sample.saturating_sub(1);
@@ -110,8 +131,9 @@ impl Track {
             let travel = WheelTravel { left: (l - left) * per_tick.left, right: (r - right) * per_tick.right };
             track.push(travel, progress.piece(&travel, duration, speeds[before], speeds[sample]));
             (left, right) = (*l, *r);
+            track.duration = log.time[sample] - log.time[0];
             while due.next_if_eq(&sample).is_some() {
-                track.observe(sight(log.time[sample] - log.time[0], speeds[sample], robot));
+                track.observe(sight(track.duration, speeds[sample], robot));
             }
         }
         Ok(track)
@@ -170,7 +192,9 @@ impl Track {
     }
 
     fn empty() -> Track {
-        Track { travel: Vec::new(), contexts: Vec::new(), seen_after: Vec::new(), sights: Vec::new(), convoy: None }
+        let (travel, contexts, seen_after, sights) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (duration, origin) = (f64::INFINITY, Pose2::IDENTITY);
+        Track { travel, contexts, seen_after, sights, duration, origin, begins: true, convoy: None }
     }
 
     /// The track of a front truck, one piece a period.
@@ -214,6 +238,37 @@ impl Track {
         self
     }
 
+    /// The same run with its START elsewhere in the room.
+    pub fn beginning_at(self, origin: Pose2) -> Track {
+        Track { origin, ..self }
+    }
+
+    /// Some of the observations, with the travel between them and what is driven within `margin` \[s\] before and after.
+    pub fn part(&self, observations: std::ops::Range<usize>, margin: f64) -> Track {
+        let sights = self.sights[observations.clone()].to_vec();
+        let [first, last] = [sights.first(), sights.last()].map(|sight| sight.map_or(0.0, |sight| sight.time));
+        let from = self.contexts.partition_point(|at| at.time + at.duration < first - margin);
+        let to = self.contexts.partition_point(|at| at.time <= last + margin).max(from);
+        let seen_after = self.seen_after[observations].iter().map(|after| after - from).collect();
+        Track {
+            travel: self.travel[from..to].to_vec(),
+            contexts: self.contexts[from..to].to_vec(),
+            seen_after,
+            sights,
+            duration: self.duration,
+            origin: self.origin,
+            begins: self.begins && from == 0,
+            convoy: None,
+        }
+    }
+
+    /// Where the robot stands at the beginning.
+    #[inline]
+    pub fn start<T: Evaluate>(&self, chain: &Chain<T>) -> Pose2<T> {
+        let start = if self.begins { chain.start() } else { Pose2::IDENTITY.lift() };
+        if self.origin == Pose2::IDENTITY { start } else { self.origin.lift().compose(&start) }
+    }
+
     /// Believed wheel travel of each piece \[m\].
     pub fn travel(&self) -> &[WheelTravel] {
         &self.travel
@@ -255,12 +310,46 @@ impl Track {
         if let Some(convoy) = &self.convoy {
             return self.replay_trucks(convoy, chain, &Pose2::IDENTITY.lift(), seen);
         }
-        let mut pose = chain.start();
+        if chain.has_clock() {
+            return self.replay_late(chain, self.start(chain), |observation, pose, sight| {
+                seen(observation, &chain.seen(sight, pose));
+            });
+        }
+        let mut pose = self.start(chain);
         let mut made = 0;
         for (observation, (after, sight)) in self.seen_after.iter().zip(&self.sights).enumerate() {
             pose = self.drive(chain, pose, made..*after);
             made = *after;
             seen(observation, &chain.seen(sight, &pose));
+        }
+    }
+
+    /// The same by a reference that is late: calls `seen` with the true pose at the moment that each measurement shows.
+    fn replay_late<T: Evaluate>(
+        &self,
+        chain: &Chain<T>,
+        from: Pose2<T>,
+        mut seen: impl FnMut(usize, &Pose2<T>, &Sight),
+    ) {
+        let (mut pose, mut made, mut moments) = (from, 0, Moments::new(self));
+        for (observation, sight) in self.sights.iter().enumerate() {
+            let moment = moments.next(sight, chain.late(sight.time).value());
+            // Beyond the end of a log its last piece goes on.
+            let whole = moment.made.max(made);
+            pose = self.drive(chain, pose, made..whole);
+            made = whole;
+            let mut there = pose;
+            if moment.share != 0.0 {
+                let (travel, at) = (&self.travel[moment.made], &self.contexts[moment.made]);
+                let motion = chain.displacement(&at.headed(pose.heading), travel);
+                let share = moment.share - (whole - moment.made) as f64;
+                there.advance(&Displacement2 {
+                    forward: motion.forward * share,
+                    sideways: motion.sideways * share,
+                    rotation: motion.rotation * share,
+                });
+            }
+            seen(observation, &there, &moment.sight);
         }
     }
 
@@ -270,6 +359,12 @@ impl Track {
         let mut poses = Vec::with_capacity(self.seen_after.len());
         if let Some(convoy) = &self.convoy {
             self.replay_trucks(convoy, chain, &room, |_, pose| poses.push(*pose));
+            return poses;
+        }
+        if chain.has_clock() {
+            self.replay_late(chain, room.compose(&chain.start()), |_, pose, sight| {
+                poses.push(room.inverse().compose(&chain.seen(sight, pose)));
+            });
             return poses;
         }
         let mut pose = room.compose(&chain.start());
@@ -336,7 +431,7 @@ impl Track {
         if self.convoy.is_some() {
             return self.poses(chain).pop().unwrap_or_else(|| chain.start());
         }
-        let end = self.drive(chain, chain.start(), 0..self.travel.len());
+        let end = self.drive(chain, self.start(chain), 0..self.travel.len());
         chain.seen(&self.sights.last().copied().unwrap_or_default(), &end)
     }
 
@@ -366,7 +461,7 @@ enum Observed {
 
 /// The moment at which the wheels have these speeds \[m/s\].
 fn sight(time: f64, [left, right]: [f64; 2], robot: &Robot) -> Sight {
-    Sight { time, speed: 0.5 * (left + right), turn_rate: (right - left) / robot.drive.wheelbase() }
+    Sight { time, late: 0.0, speed: 0.5 * (left + right), turn_rate: (right - left) / robot.drive.wheelbase() }
 }
 
 fn check(log: &TickLog) -> Result<(), ReplayError> {

@@ -16,9 +16,11 @@ mod interval;
 mod scatter;
 mod summary;
 
-use crate::dataset::{ReturnError, Run};
+use crate::dataset::{Dataset, ReturnError, Run};
 use crate::effect::TestKind;
 use crate::path::Direction;
+use crate::setup::Setup;
+use std::sync::Arc;
 
 pub use extended::{Convention, Extended, nonsystematic_orientation};
 pub use interval::{CentroidInterval, Ellipse, FEWEST_RUNS, Intervals, e_max_sys_interval, noise_band, sigma_interval};
@@ -112,6 +114,25 @@ pub struct Score {
     pub extended: Option<Extended>,
     /// What could not be computed and why, and what looks wrong.
     pub warnings: Vec<String>,
+    /// What was found of the runs before they were scored; nothing where only their return errors were given.
+    pub setup: Arc<Setup>,
+}
+
+/// [`score`] of a dataset. What its return errors and tracks say of faults, outlying runs and jumps stands first among the warnings;
+/// this needs the nominal robot.
+pub fn score_dataset(data: &Dataset, level: f64) -> Result<Score, ScoreError> {
+    let mut scored = score(&data.runs, level)?;
+    if let Some(robot) = &data.robot {
+        scored.setup = Arc::new(Setup::of(&data.runs, robot, data.path.as_ref()));
+        scored.warnings.splice(0..0, scored.setup.notices().iter().map(|notice| sentence(notice)));
+    }
+    Ok(scored)
+}
+
+/// Words as a sentence, with a capital letter and a full stop.
+pub(crate) fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 
 /// Scores a set of runs, with intervals that hold with probability `level`.
@@ -177,6 +198,7 @@ pub fn score_returns<E: Copy + Into<ReturnError>>(
         noise_band: chance.map(|sigma| noise_band(sigma, n_cw, n_ccw, level)),
         extended: score_extended(bumps, regular, level, &mut warnings),
         warnings,
+        setup: Arc::default(),
     })
 }
 

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use std::f64::consts::{FRAC_PI_2, PI};
-use umbmark_core::dataset::{Dataset, DatasetError, ReturnError, Run};
+use umbmark_core::dataset::{Dataset, DatasetError, Existing, ReturnError, RobotFile, Run};
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::Direction;
 
@@ -109,6 +109,48 @@ fn a_column_that_is_not_known_is_named_in_a_warning() {
 }
 
 #[test]
+fn columns_and_headings_that_are_not_what_they_are_called_are_mended_where_robot_toml_says_how() {
+    let track = "t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad\n0,0,0,0,0,0\n1,100,200,0.1,0.05,0.2\n2,100,200,0.1,0.05,0.2\n";
+    let robot = |keys: &str| ROBOT.to_owned() + keys;
+    let read = |keys: &str| load(&[("robot.toml", &robot(keys)), ("runs/ccw_01.csv", track)], "").unwrap();
+    let seen = |keys: &str| {
+        let log = read(keys).runs.remove(0).log.unwrap();
+        let pose = log.reference[1];
+        ([log.left[1], log.right[1]], (pose.y, pose.heading.unwrap()))
+    };
+    for (keys, ticks, pose) in [
+        ("", [100.0, 200.0], (0.05, 0.2)),
+        ("wheels_exchanged = true\n", [200.0, 100.0], (0.05, 0.2)),
+        ("left_counts_backward = true\n", [-100.0, 200.0], (0.05, 0.2)),
+        ("right_counts_backward = true\nwheels_exchanged = true\n", [-200.0, 100.0], (0.05, 0.2)),
+        ("left_counts_backward = true\ncounter_bits = 16\n", [-100.0, 200.0], (0.05, 0.2)),
+        ("left_counts_backward = false\n[reference]\ny_mirrored = true\n", [100.0, 200.0], (-0.05, 0.2)),
+        ("[reference]\nheading_clockwise = true\n", [100.0, 200.0], (0.05, -0.2)),
+    ] {
+        assert_eq!(seen(keys), (ticks, pose), "{keys}");
+        // What is saved reads back as it is meant, whatever its columns were.
+        let (data, folder) = (read(keys), tempfile::tempdir().unwrap());
+        for (place, mcap) in [("csv", false), ("mcap", true)] {
+            let place = folder.path().join(place);
+            if mcap {
+                data.save_mcap(&place, Existing::Keep).unwrap();
+            } else {
+                data.save(&place, Existing::Keep).unwrap();
+            }
+            let log = Dataset::load(&place).unwrap().runs.remove(0).log.unwrap();
+            assert_eq!(([log.left[1], log.right[1]], log.reference[1].y), (ticks, pose.0), "{keys}");
+        }
+        let file = data.robot_file(data.robot.clone().unwrap());
+        let again = RobotFile::parse("robot.toml", &file.text()).unwrap();
+        assert_eq!((again.robot, again.reference), (file.robot, file.reference), "{keys}");
+    }
+    let refused =
+        |keys: &str| load(&[("robot.toml", &robot(keys)), ("runs/ccw_01.csv", track)], "").unwrap_err().to_string();
+    assert!(refused("wheels_exchanged = 1\n").ends_with("robot.toml:5: wheels_exchanged must be true or false, got 1"));
+    assert!(refused("[reference]\nclockwise = true\n").contains("unknown key \"clockwise\" in [reference]"));
+}
+
+#[test]
 fn a_return_sheet_alone_needs_no_robot_until_one_is_asked_for() {
     let files = [("sheet.csv", "direction,run,ex_m,ey_m\ncw,1,0.1,0.2\n")];
     let data = load(&files, "sheet.csv").unwrap();
@@ -127,12 +169,12 @@ fn a_return_sheet_alone_needs_no_robot_until_one_is_asked_for() {
 fn wheels_and_wheelbase_go_by_several_names() {
     let read = |wheels: &str| {
         let text = format!("[robot]\n{wheels}\nticks_per_revolution = 1000\nencoder_rate_hz = \"every tick\"\n");
-        umbmark_core::dataset::parse_robot("robot.toml", &text).unwrap().0
+        RobotFile::parse("robot.toml", &text).unwrap().robot
     };
     let plain = read("wheelbase_m = 0.5\nwheel_diameter_m = 0.25");
     assert_eq!(plain.encoder.rate(), None);
     let hex = "[robot]\nwheelbase_m = 0.5\nwheel_diameter_m = 0.25\nticks_per_revolution = 0x3E8\n";
-    assert_eq!(umbmark_core::dataset::parse_robot("robot.toml", hex).unwrap().0.encoder.ticks_per_revolution(), 1000.0);
+    assert_eq!(RobotFile::parse("robot.toml", hex).unwrap().robot.encoder.ticks_per_revolution(), 1000.0);
     assert_eq!(read("track_width_m = 0.5\nwheel_radius_m = 0.125"), plain);
     assert_eq!(read("wheel_separation_m = 0.5\nwheel_diameter_left_m = 0.25\nwheel_diameter_right_m = 0.25"), plain);
     assert_eq!(
@@ -155,7 +197,7 @@ fn paths_of_every_shape_are_read() {
         ("shape = \"waypoints\"\npoints_m = [[1.0, 0.0], [1, 1], [0, 0]]", 2.0 + 2f64.sqrt()),
     ] {
         let text = format!("{ROBOT}[path]\n{lines}\nspeed_m_s = 0.5\npause_s = 0\n");
-        let path = umbmark_core::dataset::parse_robot("robot.toml", &text).unwrap().1.unwrap();
+        let path = RobotFile::parse("robot.toml", &text).unwrap().path.unwrap();
         assert!((path.length() - length).abs() < 1e-12, "{lines}");
         assert_eq!(path.speed.values(), [0.5, 0.2, 0.0]);
     }
@@ -271,7 +313,8 @@ fn a_gap_in_which_the_wheels_rolled_on_is_not_taken_for_a_roll_over() {
 fn the_model_in_the_documents_is_one() {
     let text = include_str!("../../../docs/files.md").split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
     let robot = umbmark_core::drive::Robot::labmate();
-    let (model, draws) = umbmark_core::dataset::parse_model("files.md", text, &robot).unwrap();
+    let umbmark_core::dataset::ModelFile { model, draws, .. } =
+        umbmark_core::dataset::ModelFile::parse("files.md", text, Some(&robot)).unwrap();
     assert_eq!((model.parts().len(), draws.len()), (3, 2));
 }
 

@@ -45,7 +45,10 @@ fn walk(stream: &mut Stream, fractions: bool) -> TickLog {
         log.time.push(time);
         log.left.push(left);
         log.right.push(right);
-        if sample > 0 && sample % 7 == 0 {
+        if sample == 0 {
+            // Where the robot stood; without it the reader infers START.
+            log.reference.push(ReferencePose { sample, x: 1e-3 * stream.normal(), y: -1e-3 / 3.0, heading: None });
+        } else if sample % 7 == 0 {
             let heading = (sample % 2 == 0).then(|| stream.normal());
             log.reference.push(ReferencePose { sample, x: stream.normal(), y: stream.normal(), heading });
         }
@@ -143,9 +146,9 @@ fn what_would_be_read_back_as_something_else_is_not_written() {
     assert!(refused(&|d| (d.runs[1].log, d.runs[1].returned) = (None, None)).contains("neither log nor return"));
     assert!(refused(&|d| first_log(d, &|log| log.time[5] = 0.0)).contains("must increase"));
     assert!(refused(&|d| first_log(d, &|log| log.left[5] = 0.5)).contains("whole number of ticks"));
-    assert!(refused(&|d| first_log(d, &|log| log.reference[1].sample = 7)).contains("would not be read back as it is"));
+    assert!(refused(&|d| first_log(d, &|log| log.reference[2].sample = 7)).contains("would not be read back as it is"));
     let misplaced = ReferencePose { sample: 0, x: 0.5, y: 0.0, heading: Some(0.0) };
-    let said = refused(&|d| first_log(d, &|log| log.reference.insert(0, misplaced)));
+    let said = refused(&|d| first_log(d, &|log| log.reference[0] = misplaced));
     assert!(said.contains("the reader says: the track starts 0.500 m and 0.0 deg from the origin"), "{said}");
 }
 

@@ -4,7 +4,7 @@
 
 use std::ops::ControlFlow;
 use umbmark_core::compare::compare;
-use umbmark_core::dataset::{Dataset, Run, model_text, parse_model};
+use umbmark_core::dataset::{Dataset, ModelFile, Run};
 use umbmark_core::diagnose::{Options, diagnose};
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::{Formula, Model, Target, TestKind};
@@ -59,7 +59,8 @@ fn a_fit_finds_size_and_shape_of_a_formula_from_nothing_on_tracks_and_on_return_
         }
         assert_eq!(estimates.len(), 2);
         // What was written is what was fitted, and fits as well.
-        let (read, _) = parse_model("model.toml", &model_text(&fitted), &Robot::labmate()).unwrap();
+        let text = ModelFile::new(fitted.clone()).text();
+        let read = ModelFile::parse("model.toml", &text, Some(&Robot::labmate())).unwrap().model;
         assert_eq!(read, fitted);
         let again = fit(&data, &read).unwrap().model;
         let moved = (again.get("nap", "k").unwrap() - found[0]) / estimates[0].standard_error;

@@ -98,7 +98,9 @@ fn the_exact_fit_finds_the_same_wheelbase_whatever_the_controller_believed() {
     let exact = |set: &str| -> (Robot, Estimate) {
         let (robot, calibration) = calibrated(&folder, set);
         assert_eq!(calibration.level, Level::Tracks);
-        assert!(calibration.warnings.is_empty(), "{:?}", calibration.warnings);
+        // The camera lost the heading for some poses of two runs.
+        let lost = |warning: &String| warning.starts_with("3 of 18") && warning.contains(" poses of run ");
+        assert!(calibration.warnings.iter().all(lost), "{:?}", calibration.warnings);
         (robot, calibration.estimate(Method::Exact).unwrap().clone())
     };
     let sets = ["230620202042", "230620202258", "230620202317"].map(exact);

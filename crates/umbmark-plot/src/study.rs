@@ -16,7 +16,7 @@ use umbmark_core::geometry::wrap;
 use umbmark_core::learn::{Learnt, learn_from};
 use umbmark_core::path::Direction;
 use umbmark_core::replay::Track;
-use umbmark_core::score::{Score, score};
+use umbmark_core::score::{Score, score_dataset};
 use umbmark_core::watch::Watch;
 
 pub use chance::Chance;
@@ -156,7 +156,7 @@ impl Study {
 
     /// The scores of the test.
     pub fn score(&self) -> Result<&Score, Absent> {
-        self.once(&self.score, || score(&self.data.runs, self.level()).map_err(Absent::because))
+        self.once(&self.score, || score_dataset(&self.data, self.level()).map_err(Absent::because))
     }
 
     /// The calibration.

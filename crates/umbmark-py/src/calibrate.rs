@@ -5,6 +5,7 @@ use std::sync::Arc;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_core::calibrate::{self as core, Correction, Options, RadiusWheelbase, export as texts};
+use umbmark_core::dataset::RobotFile;
 use umbmark_core::document;
 use umbmark_core::drive::Kind;
 use umbmark_core::learn;
@@ -45,7 +46,8 @@ pub fn calibrate(
         let why = calibration.warnings.join("\n");
         return Err(PyValueError::new_err(format!("nothing can be calibrated from these runs\n{why}")));
     }
-    calibration.warnings.splice(0..0, data.0.warnings.iter().cloned());
+    let noticed = calibration.setup.notices().len();
+    calibration.warnings.splice(noticed..noticed, data.0.warnings.iter().cloned());
     Ok(document::calibration(robot, &calibration, level).to_string())
 }
 
@@ -78,7 +80,10 @@ pub fn export(
     let correction = Correction { e_d, e_b, e_s: e_s.unwrap_or(1.0) };
     match choice("format", format, &["ros2_control", "robot_toml", "c_header"].map(|name| (name, name)))? {
         "ros2_control" => Ok(texts::ros2_control(&robot.0, &correction, controller)),
-        "robot_toml" => texts::robot_toml(&robot.0, path.map(|path| &path.0), &correction).map_err(refused),
+        "robot_toml" => {
+            texts::robot_toml(&RobotFile::new(robot.0.clone(), path.map(|path| path.0.clone())), &correction)
+                .map_err(refused)
+        }
         _ => texts::c_header(&robot.0, &correction).map_err(refused),
     }
 }

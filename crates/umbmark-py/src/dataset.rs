@@ -47,6 +47,7 @@ impl From<core::Dataset> for Dataset {
 /// What a pickled dataset holds beside robot and path.
 #[derive(Default, Serialize, Deserialize)]
 struct Rest {
+    reference_frame: core::ReferenceFrame,
     runs: Vec<core::Run>,
     clocks: Vec<RunClock>,
     topics: Vec<RunTopics>,
@@ -173,6 +174,7 @@ impl Dataset {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Pickled<'py>)> {
         let data = &slf.get().0;
         let rest = Rest {
+            reference_frame: data.reference_frame,
             runs: data.runs.clone(),
             clocks: data.clocks.clone(),
             topics: data.topics.clone(),
@@ -194,9 +196,9 @@ type Pickled<'py> = (Option<Robot>, Option<Path>, Bound<'py, PyBytes>);
 
 impl Rest {
     fn with(self, robot: Option<&Robot>, path: Option<&Path>) -> Dataset {
-        let Rest { runs, clocks, topics, warnings } = self;
+        let Rest { reference_frame, runs, clocks, topics, warnings } = self;
         let (robot, path) = (robot.map(|robot| robot.0.clone()), path.map(|path| path.0.clone()));
-        Dataset::from(core::Dataset { robot, path, runs, clocks, topics, warnings })
+        Dataset::from(core::Dataset { robot, path, reference_frame, runs, clocks, topics, warnings })
     }
 }
 

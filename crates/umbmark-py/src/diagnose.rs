@@ -5,8 +5,7 @@ use std::sync::Arc;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_core::compare as comparing;
-use umbmark_core::diagnose::{self as core, DiagnoseError, Level, Options, base_model, first_model};
-use umbmark_core::drive::Robot;
+use umbmark_core::diagnose::{self as core, DiagnoseError, Level, Options, first_model};
 use umbmark_core::{document, effect, learn as learning};
 
 use crate::dataset::Dataset;
@@ -29,21 +28,12 @@ pub fn compare(
 ) -> PyResult<String> {
     let options = options_of(options, return_poses)?;
     let shared = Arc::clone(&data.0);
-    let robot = shared.nominal_robot().map_err(refused)?.clone();
-    let given: Vec<_> = models.into_iter().map(|(name, model)| (name, model.model)).collect();
+    shared.nominal_robot().map_err(refused)?;
+    let given = models.into_iter().map(|(name, model)| Ok((name, model.of_data(py, &shared)?)));
+    let given: Vec<_> = given.collect::<PyResult<_>>()?;
     let document = watched(py, threads, None, move |_| -> Result<_, DiagnoseError> {
         let level = options.evidence(&shared);
-        let models = match (given.is_empty(), level) {
-            (false, _) => given,
-            (true, Level::Ends) => {
-                let (fitted, _) = learning::fit_to_returns(&shared, &base_model(&robot)?)?;
-                vec![nominal(&robot), ("E_d and E_b, fitted to these runs".into(), fitted)]
-            }
-            (true, Level::Tracks) => {
-                let fitted = learning::fit(&shared, &first_model(&shared)?)?.model;
-                vec![nominal(&robot), ("E_d, E_b, E_s fitted".into(), fitted)]
-            }
-        };
+        let models = if given.is_empty() { comparing::usual_models(&shared, level)? } else { given };
         Ok(match level {
             Level::Ends => document::comparison(&comparing::compare(&shared, &models, &options)?, &options),
             Level::Tracks => {
@@ -52,10 +42,6 @@ pub fn compare(
         })
     })?;
     Ok(document.map_err(refused)?.to_string())
-}
-
-fn nominal(robot: &Robot) -> (String, effect::Model) {
-    ("nominal robot".to_owned(), effect::Model::new(robot))
 }
 
 /// What a model is missing, and the model with its free parameters fitted.
@@ -69,7 +55,7 @@ pub fn diagnose(
     threads: usize,
 ) -> PyResult<(String, Model)> {
     let options = options_of(options, return_poses)?;
-    let model = asked(data, model)?;
+    let model = asked(py, data, model)?;
     let shared = Arc::clone(&data.0);
     let diagnosis = watched(py, threads, None, move |_| core::diagnose(&shared, &model, &options))?.map_err(refused)?;
     Ok((document::diagnosis(&diagnosis, &options).to_string(), diagnosis.model.into()))
@@ -85,7 +71,7 @@ pub fn fit(
     level: f64,
 ) -> PyResult<(String, Model)> {
     probability("level", level)?;
-    let mut model = asked(data, model)?;
+    let mut model = asked(py, data, model)?;
     for effect in &add {
         model.add(effect).map_err(refused)?.free = true;
     }
@@ -113,7 +99,7 @@ pub fn learn(
     let options = options_of(options, return_poses)?;
     let shared = Arc::clone(&data.0);
     let start = match start {
-        Some(start) => start.model.clone(),
+        Some(start) => start.of_data(py, &data.0)?,
         None => effect::Model::new(data.0.nominal_robot().map_err(refused)?),
     };
     let work = move |told: &Watch| told.work(|watch| learning::learn_from(&shared, &start, &options, watch));
@@ -122,10 +108,10 @@ pub fn learn(
 }
 
 /// The model that is asked about, the usual first one where none is given.
-fn asked(data: &Dataset, model: Option<&Model>) -> PyResult<effect::Model> {
+fn asked(py: Python<'_>, data: &Dataset, model: Option<&Model>) -> PyResult<effect::Model> {
     data.0.nominal_robot().map_err(refused)?;
     match model {
-        Some(model) => Ok(model.model.clone()),
+        Some(model) => model.of_data(py, &data.0),
         None => first_model(&data.0).map_err(refused),
     }
 }

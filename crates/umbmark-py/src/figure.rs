@@ -34,12 +34,13 @@ pub fn options((tests, return_poses, trials): ((f64, usize, u64), bool, u64)) ->
 }
 
 /// The study that was asked for.
-pub fn study((name, data, model): Asked, options: Options) -> PyResult<Study> {
+pub fn study(py: Python<'_>, (name, data, model): Asked, options: Options) -> PyResult<Study> {
     let data = Arc::clone(&data.get().0);
     if model.is_some() {
         data.nominal_robot().map_err(refused)?;
     }
-    Ok(Study::new(name, data, model.map(|(name, model)| (name, model.model)), options))
+    let model = model.map(|(name, model)| Ok::<_, PyErr>((name, model.of_data(py, &data)?))).transpose()?;
+    Ok(Study::new(name, data, model, options))
 }
 
 /// A figure of a report: numbers, axes and three sentences, drawn as SVG, PNG, PDF or by Plotly. Frozen.
@@ -191,7 +192,7 @@ pub fn figure(
     let known = || KINDS.map(|kind| kind.name).join(", ");
     let kind = find(kind)
         .ok_or_else(|| PyValueError::new_err(format!("there is no figure \"{kind}\"; there are {}", known())))?;
-    let study = study(asked, options(how)?)?;
+    let study = study(py, asked, options(how)?)?;
     let name = study.name.clone();
     let made = watched(py, threads, progress, move |told: &Watch| {
         let study = study.stopped_by(&told.stop);

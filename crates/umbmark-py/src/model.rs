@@ -1,12 +1,14 @@
 //! `umbmark.Model`.
 
-use pyo3::exceptions::PyValueError;
+use std::ffi::CString;
+
+use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use toml::{Table, Value};
-use umbmark_core::dataset::{model_text_with, parse_model, read_model};
+use umbmark_core::dataset::ModelFile;
 use umbmark_core::monte_carlo::Draw;
-use umbmark_core::{document, drive, effect};
+use umbmark_core::{dataset, document, drive, effect};
 
 use crate::robot::Robot;
 use crate::{as_python, keys, refused};
@@ -55,20 +57,22 @@ impl Model {
         effect::Model::new(&nominal(robot)).into()
     }
 
-    /// Read the text of a model.toml, for a robot or the paper's LabMate.
+    /// Read the text of a model.toml, for a robot, or for the one it names, or the paper's LabMate.
     #[staticmethod]
     #[pyo3(signature = (text, robot=None))]
-    fn from_toml(text: &str, robot: Option<&Robot>) -> PyResult<Model> {
-        let (model, draws) = parse_model("model.toml", text, &nominal(robot)).map_err(refused)?;
-        Ok(Model { model, draws })
+    fn from_toml(py: Python<'_>, text: &str, robot: Option<&Robot>) -> PyResult<Model> {
+        let file = ModelFile::parse("model.toml", text, robot.map(|robot| &robot.0)).map_err(refused)?;
+        Model::of_file(py, file, "model.toml")
     }
 
-    /// Read a model.toml, for a robot or the paper's LabMate.
+    /// Read a model.toml, for a robot, or for the one it names, or the paper's LabMate.
+    ///
+    /// A file that names another robot than the given one is converted, with a warning that says what changed.
     #[staticmethod]
     #[pyo3(signature = (file, robot=None))]
-    fn read(file: std::path::PathBuf, robot: Option<&Robot>) -> PyResult<Model> {
-        let (model, draws) = read_model(file, &nominal(robot)).map_err(refused)?;
-        Ok(Model { model, draws })
+    fn read(py: Python<'_>, file: std::path::PathBuf, robot: Option<&Robot>) -> PyResult<Model> {
+        let read = ModelFile::read(&file, robot.map(|robot| &robot.0)).map_err(refused)?;
+        Model::of_file(py, read, &file.display().to_string())
     }
 
     /// Add an effect of the catalogue, or one of your own, or change one that is there.
@@ -139,9 +143,10 @@ impl Model {
         self.model.parts().iter().map(|part| part.effect.name().to_owned()).collect()
     }
 
-    /// Write it as the text of a model.toml, which reads back to the last bit.
+    /// Write it as the text of a model.toml with its robot, which reads back to the last bit.
     fn to_toml(&self) -> String {
-        model_text_with(&self.model, &self.draws)
+        let (model, draws) = (self.model.clone(), self.draws.clone());
+        ModelFile { model, draws, conversion: None }.text()
     }
 
     /// Give its effects, as documents of results have them.
@@ -151,7 +156,7 @@ impl Model {
 
     fn __repr__(&self) -> String {
         let effects = self.to_toml().replace("[[effect]]\nname = ", "").replace("\n\n", "\0");
-        let lines = effects.split('\0').map(|effect| effect.trim().replace('\n', ", ").replacen('"', "", 2));
+        let lines = effects.split('\0').skip(1).map(|effect| effect.trim().replace('\n', ", ").replacen('"', "", 2));
         let lines: String = lines.filter(|line| !line.is_empty()).map(|line| format!("\n    {line}")).collect();
         format!("Model({}){lines}", self.model.robot().name)
     }
@@ -180,9 +185,28 @@ impl Model {
     fn with(&self, effects: Vec<Table>) -> PyResult<Model> {
         let effects = Value::Array(effects.into_iter().map(Value::Table).collect());
         let text = Table::from_iter([("effect".to_owned(), effects)]).to_string();
-        let (model, draws) =
-            parse_model("Model", &text, self.model.robot()).map_err(|error| keys::refused(&error, "Model"))?;
+        let file = ModelFile::parse("Model", &text, Some(self.model.robot()));
+        let ModelFile { model, draws, .. } = file.map_err(|error| keys::refused(&error, "Model"))?;
         Ok(Model { model, draws })
+    }
+
+    /// What was read, with a warning of what was converted.
+    fn of_file(py: Python<'_>, file: ModelFile, name: &str) -> PyResult<Model> {
+        let ModelFile { model, draws, conversion } = file;
+        if let Some(conversion) = conversion {
+            warn(py, &format!("{name} {conversion}"))?;
+        }
+        Ok(Model { model, draws })
+    }
+
+    /// The effects for the robot of a dataset, with a warning of what was converted.
+    pub fn of_data(&self, py: Python<'_>, data: &dataset::Dataset) -> PyResult<effect::Model> {
+        let Some(robot) = &data.robot else { return Ok(self.model.clone()) };
+        let (model, conversion) = self.model.converted(robot).map_err(refused)?;
+        if let Some(conversion) = conversion {
+            warn(py, &format!("the model {conversion}"))?;
+        }
+        Ok(model)
     }
 }
 
@@ -190,6 +214,11 @@ impl From<effect::Model> for Model {
     fn from(model: effect::Model) -> Model {
         Model { model, draws: Vec::new() }
     }
+}
+
+fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
+    let text = CString::new(text).map_err(refused)?;
+    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)
 }
 
 fn nominal(robot: Option<&Robot>) -> drive::Robot {

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use toml::{Table, Value};
-use umbmark_core::dataset::{parse_robot, robot_text};
+use umbmark_core::dataset::RobotFile;
 use umbmark_core::path::{Direction, SHAPES};
 use umbmark_core::{document, drive, path};
 
@@ -43,6 +43,13 @@ impl PartialEq for Path {
     }
 }
 
+impl Path {
+    /// A robot.toml with this path.
+    fn file(&self) -> String {
+        RobotFile::new(drive::Robot::labmate(), Some(self.0.clone())).text()
+    }
+}
+
 #[pymethods]
 impl Path {
     #[new]
@@ -51,10 +58,10 @@ impl Path {
         let mut path = Table::from_iter([("shape".to_owned(), Value::String(shape.to_owned()))]);
         path.extend(keys::table(keys)?);
         // A file has a robot; which one does not matter to the path.
-        let robot = robot_text(&drive::Robot::labmate(), None);
+        let robot = RobotFile::new(drive::Robot::labmate(), None).text();
         let file = format!("{}\n{robot}", Table::from_iter([("path".to_owned(), Value::Table(path))]));
-        let (_, path) = parse_robot("Path", &file).map_err(|error| keys::refused(&error, "Path"))?;
-        Ok(Path(path.unwrap_or_else(path::Path::umbmark)))
+        let file = RobotFile::parse("Path", &file).map_err(|error| keys::refused(&error, "Path"))?;
+        Ok(Path(file.path.unwrap_or_else(path::Path::umbmark)))
     }
 
     /// The paper's 4 x 4 m square at 0.2 m/s.
@@ -93,17 +100,17 @@ impl Path {
     }
 
     fn __repr__(&self) -> String {
-        let file = robot_text(&drive::Robot::labmate(), Some(&self.0));
+        let file = self.file();
         format!("Path({})", keys::written(file.split_once("[path]\n").map_or("", |(_, path)| path)))
     }
 
     fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<(Py<PyAny>, (String,))> {
-        Ok((slf.getattr("_from_toml")?.unbind(), (robot_text(&drive::Robot::labmate(), Some(&slf.get().0)),)))
+        Ok((slf.getattr("_from_toml")?.unbind(), (slf.get().file(),)))
     }
 
     #[staticmethod]
     fn _from_toml(text: &str) -> PyResult<Path> {
-        let (_, path) = parse_robot("robot.toml", text).map_err(crate::refused)?;
-        Ok(Path(path.unwrap_or_else(path::Path::umbmark)))
+        let file = RobotFile::parse("robot.toml", text).map_err(crate::refused)?;
+        Ok(Path(file.path.unwrap_or_else(path::Path::umbmark)))
     }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use pyo3::prelude::*;
 use serde_json::json;
 use umbmark_core::whole_file::WholeFile;
-use umbmark_plot::page::{Origin, Provenance, page, verdict};
+use umbmark_plot::page::{Origin, Provenance, notices, page, verdict};
 use umbmark_plot::study::Study;
 
 use crate::figure::{Asked, options, study};
@@ -24,7 +24,7 @@ pub fn report(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(String, String)> {
     let options = options(how)?;
-    let studies = asked.into_iter().map(|asked| study(asked, options)).collect::<PyResult<Vec<Study>>>()?;
+    let studies = asked.into_iter().map(|asked| study(py, asked, options)).collect::<PyResult<Vec<Study>>>()?;
     let files = places.iter().map(|place| Origin::of_dataset(place)).collect::<Result<Vec<_>, _>>();
     let files = files.map_err(refused)?.concat();
     let (version, seed) = (umbmark_core::VERSION.to_owned(), options.diagnose.seed);
@@ -36,7 +36,7 @@ pub fn report(
             let _ = told.work(|watch| study.learn(watch.progress).is_ok());
         }
         let html = page(&studies, &provenance, |_| ())?;
-        let said = |study: &Study| json!({ "name": study.name, "verdict": verdict(study) });
+        let said = |study: &Study| json!({ "name": study.name, "notices": notices(study), "verdict": verdict(study) });
         let document = json!({
             "bytes": html.len(),
             "studies": studies.iter().map(said).collect::<Vec<_>>(),

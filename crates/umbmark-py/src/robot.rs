@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use toml::{Table, Value};
-use umbmark_core::dataset::{parse_robot, read_robot, robot_text};
+use umbmark_core::dataset::RobotFile;
 use umbmark_core::{document, drive};
 
 use crate::{as_python, keys, refused};
@@ -43,8 +43,8 @@ impl Robot {
     #[pyo3(signature = (**keys))]
     fn new(keys: Option<&Bound<'_, PyDict>>) -> PyResult<Robot> {
         let file = Table::from_iter([("robot".to_owned(), Value::Table(keys::table(keys)?))]);
-        let (robot, _) = parse_robot("Robot", &file.to_string()).map_err(|error| keys::refused(&error, "Robot"))?;
-        Ok(Robot(robot))
+        let file = RobotFile::parse("Robot", &file.to_string()).map_err(|error| keys::refused(&error, "Robot"))?;
+        Ok(Robot(file.robot))
     }
 
     /// The TRC LabMate of the paper: wheelbase 0.340 m; wheels of 0.150 m and 2000 ticks per revolution are assumed.
@@ -62,18 +62,18 @@ impl Robot {
     /// Read the robot of a robot.toml.
     #[staticmethod]
     fn read(file: std::path::PathBuf) -> PyResult<Robot> {
-        read_robot(file).map(|(robot, _)| Robot(robot)).map_err(refused)
+        RobotFile::read(file).map(|file| Robot(file.robot)).map_err(refused)
     }
 
     /// Read the robot of the text of a robot.toml.
     #[staticmethod]
     fn from_toml(text: &str) -> PyResult<Robot> {
-        parse_robot("robot.toml", text).map(|(robot, _)| Robot(robot)).map_err(refused)
+        RobotFile::parse("robot.toml", text).map(|file| Robot(file.robot)).map_err(refused)
     }
 
     /// Write it as the text of a robot.toml, which reads back to the last bit.
     fn to_toml(&self) -> String {
-        robot_text(&self.0, None)
+        RobotFile::new(self.0.clone(), None).text()
     }
 
     /// Give its keys and values, as documents of results have them.

@@ -1,5 +1,7 @@
 //! `score`.
 
+use std::sync::Arc;
+
 use pyo3::prelude::*;
 use umbmark_core::dataset::ReturnError;
 use umbmark_core::document;
@@ -7,7 +9,7 @@ use umbmark_core::score::{self as core, Convention, ScoreError};
 
 use crate::arrays::ReturnErrors;
 use crate::dataset::Dataset;
-use crate::work::detached;
+use crate::work::{detached, watched};
 use crate::{choice, refused};
 
 const CONVENTIONS: [(&str, Convention); 2] = [("mean", Convention::Mean), ("sum", Convention::Sum)];
@@ -44,8 +46,10 @@ pub fn score_arrays(
 #[pyfunction]
 pub fn score_dataset(py: Python<'_>, data: &Dataset, level: f64, convention: &str) -> PyResult<String> {
     let convention = choice("convention", convention, &CONVENTIONS)?;
-    let mut score = detached(py, || core::score(&data.0.runs, level))?.map_err(refused)?;
-    score.warnings.splice(0..0, data.0.warnings.iter().cloned());
+    let shared = Arc::clone(&data.0);
+    let mut score = watched(py, 1, None, move |_| core::score_dataset(&shared, level))?.map_err(refused)?;
+    let noticed = score.setup.notices().len();
+    score.warnings.splice(noticed..noticed, data.0.warnings.iter().cloned());
     Ok(document::score(&score, convention).to_string())
 }
 

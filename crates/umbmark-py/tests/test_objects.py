@@ -82,13 +82,31 @@ def test_models_are_changed_by_making_others() -> None:
         "placed_bumps", profile="edge"
     )
     assert both.get("wheelbase", "e_b") == 1.02
-    assert both.to_toml().startswith('[[effect]]\nname = "wheelbase"\ne_b = { mean = 1.02, sd')
+    robot, effect = both.to_toml().split("\n\n")[:2]
+    assert robot.startswith('[robot]\nname = "TRC LabMate"\ndrive = "differential"\n')
+    assert effect.startswith('[[effect]]\nname = "wheelbase"\ne_b = { mean = 1.02, sd')
     assert "free = true" in both.to_toml()
     assert both == again(both) == umbmark.Model.from_toml(both.to_toml()) != model
     assert both.remove("placed_bumps").effects == ["wheelbase"]
     assert both.get("crab", "angle_rad") is None
     assert model.to_dict() == {"effect": [{"name": "wheelbase", "e_b": 1.01, "free": True}]}
     assert repr(model) == "Model(TRC LabMate)\n    wheelbase, e_b = 1.01, free = true"
+
+
+def test_a_model_of_another_robot_is_converted_with_a_warning(tmp_path: Path) -> None:
+    wide = umbmark.Robot(**(LABMATE | {"wheelbase_m": 0.68}))
+    text = umbmark.Model(wide).add("wheelbase", e_b=1.01).to_toml()
+    (tmp_path / "model.toml").write_text(text)
+    assert umbmark.Model.from_toml(text).robot == wide
+    labmate = umbmark.Robot.labmate()
+    words = r"model\.toml was made for a robot with wheelbase_m = 0\.68, which is 0\.34 here"
+    with pytest.warns(UserWarning, match=words):
+        of_text = umbmark.Model.from_toml(text, labmate)
+    with pytest.warns(UserWarning, match=words):
+        of_file = umbmark.Model.read(tmp_path / "model.toml", labmate)
+    for model in (of_text, of_file):
+        assert model.robot == labmate
+        assert model.get("wheelbase", "e_b") == pytest.approx(2.02)
 
 
 @pytest.mark.parametrize(

@@ -241,6 +241,43 @@ def test_a_calibration_is_put_to_use(data: umbmark.Dataset, folder: Path, tmp_pa
         found.export("c_header", method="best")
 
 
+def test_a_run_far_from_the_others_is_told_first_and_puts_the_lengths_in_doubt(
+    data: umbmark.Dataset, tmp_path: Path
+) -> None:
+    x, y, heading = data.returns("cw")[0]
+    typed = umbmark.Run("cw", 1, returned=(x + 1.0, y, heading))
+    odd = umbmark.Dataset(data.robot, data.path, [typed, *data.runs[1:]])
+    score, found = umbmark.score(odd), umbmark.calibrate(odd)
+    assert score.setup == found.setup
+    (outlying,) = score.setup.returns
+    assert (outlying.run, outlying.direction, outlying.others) == (typed.name, "cw", 5)
+    assert outlying.deviants[0].coordinate == "x"
+    assert outlying.moved_m == pytest.approx(1.0, abs=0.1)
+    for warnings in (score.warnings, found.warnings):
+        assert outlying.said[1:] in warnings[0]
+    (page,) = umbmark.report(odd, umbmark.Model(), n=100, draws=99).studies
+    assert any(outlying.said[1:] in notice for notice in page.notices)
+    assert outlying.said[1:] in found.doubts[0]
+    with pytest.raises(ValueError, match="the lengths are in doubt; force=True gives them"):
+        found.export("c_header")
+    assert "#define" in found.export("c_header", force=True)
+    assert umbmark.diagnose(odd, draws=99).reasons
+
+
+def test_what_is_taken_from_the_motion_is_told_with_its_size() -> None:
+    truth = umbmark.Model().add("wheel_noise", k_sqrt_m=3e-4)
+    truth = truth.add("marker_offset", forward_m=0.1)
+    data = umbmark.simulate(truth, umbmark.Path(side_m=SIDE), runs=3, reference_rate_hz=5)
+    found = umbmark.fit(data)
+    assert found.setup.reference is not None
+    ahead = found.setup.reference.ahead_m
+    assert ahead is not None
+    assert ahead.value == pytest.approx(0.1, abs=5e-3)
+    (taken,) = found.taken
+    assert (taken.effect, taken.p < 0.01) == ("marker_offset", True)
+    assert taken.parameters["forward_m"].value == pytest.approx(0.1, abs=5e-3)
+
+
 def test_a_robot_of_another_drive_is_calibrated_as_by_the_command(
     command: Path, tmp_path: Path
 ) -> None:

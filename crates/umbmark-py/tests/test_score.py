@@ -345,6 +345,7 @@ def test_the_repr_shows_what_is_known_with_six_digits() -> None:
         "    n_bumps_cw=0,\n"
         "    n_bumps_ccw=0,\n"
         "    level=0.95,\n"
+        "    setup=Setup(),\n"
         "    warnings=('No intervals: 3 or more runs a direction are needed, got 1 cw and 1 ccw. "
         "The paper drives 5.',),\n"
         f"    version='{umbmark.__version__}',\n"

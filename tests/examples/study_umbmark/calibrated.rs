@@ -116,9 +116,7 @@ fn calibrated([e_d, e_b, _]: [f64; 3], k_before: f64, k: f64, seed: u64, test: u
         robot: Some(model.robot().clone()),
         path: Some(Path::umbmark()),
         runs: Direction::BOTH.into_iter().flat_map(of).collect(),
-        warnings: vec![],
-        clocks: vec![],
-        topics: vec![],
+        ..Dataset::default()
     };
     let calibration = calibrate(&data, &Options::default()).unwrap();
     let Correction { e_d: found_d, e_b: found_b, .. } = calibration.estimate(Method::Exact).unwrap().correction;

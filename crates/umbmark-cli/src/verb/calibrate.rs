@@ -18,6 +18,7 @@ use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::files::Pending;
 use crate::level_argument::LevelArgument;
+use crate::setup_report::taken_text;
 use crate::table::{table, with_precision_of};
 
 /// The estimate that is exported.
@@ -77,7 +78,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = MethodKind::Exact, value_name = "METHOD", help_heading = "Export")]
     method: MethodKind,
 
-    /// Replace files that exist
+    /// Replace files that exist, and write lengths that are in doubt
     #[arg(long)]
     force: bool,
 }
@@ -106,11 +107,13 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if calibration.estimates.is_empty() {
         anyhow::bail!("nothing can be calibrated from these runs\n{}", calibration.warnings.join("\n"));
     }
-    calibration.warnings.splice(0..0, data.warnings.iter().cloned());
-    let written = export_files(&arguments, &data, robot, &calibration)?;
+    let noticed = calibration.setup.notices().len();
+    calibration.warnings.splice(noticed..noticed, data.warnings.iter().cloned());
+    let withheld = !calibration.doubts.is_empty() && !arguments.force;
+    let written = if withheld { Vec::new() } else { export_files(&arguments, &data, robot, &calibration)? };
     if session.json() {
         session.print_json(&document::calibration(robot, &calibration, arguments.intervals.level))?;
-        return Ok(ExitCode::SUCCESS);
+        return told_what_is_withheld(&arguments, withheld);
     }
     for warning in &calibration.warnings {
         session.message("warning", warning);
@@ -118,6 +121,20 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     write!(session.out(), "{}", text(robot, &calibration, arguments.intervals.level))?;
     for file in written {
         writeln!(session.out(), "wrote {file}")?;
+    }
+    told_what_is_withheld(&arguments, withheld)
+}
+
+/// Refuses the files that were asked for where they were not written.
+fn told_what_is_withheld(arguments: &Arguments, withheld: bool) -> anyhow::Result<ExitCode> {
+    let asked = [&arguments.export_ros2, &arguments.export_toml, &arguments.export_c];
+    let files: Vec<String> = asked.into_iter().flatten().map(|file| file.display().to_string()).collect();
+    if withheld && !files.is_empty() {
+        let verb = if files.len() > 1 { "were" } else { "was" };
+        anyhow::bail!(
+            "{}: {verb} not written, since the lengths are in doubt (see the warnings); --force writes them all the same",
+            files.join(", ")
+        );
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -141,7 +158,7 @@ fn export_files(
     let correction = &estimate.correction;
     let texts = [
         export::ros2_control(robot, correction, &arguments.controller),
-        export::robot_toml(robot, data.path.as_ref(), correction)?,
+        export::robot_toml(&data.robot_file(robot.clone()), correction)?,
         export::c_header(robot, correction)?,
     ];
     let mut written = Vec::new();
@@ -171,8 +188,9 @@ fn text(robot: &Robot, calibration: &Calibration, level: f64) -> String {
         Level::Tracks => "whole tracks; the closed forms use their ends",
     };
     let drive = &robot.drive;
+    let taken = taken_text(&calibration.taken);
     let mut text = format!(
-        "Calibration of {}\nobserved: {observed}\nnominal: b {:.3} mm, D_left {:.4} mm, D_right {:.4} mm\n\n",
+        "Calibration of {}\nobserved: {observed}\nnominal: b {:.3} mm, D_left {:.4} mm, D_right {:.4} mm\n{taken}\n",
         robot.name,
         1e3 * drive.wheelbase(),
         1e3 * drive.wheel_diameter_left(),

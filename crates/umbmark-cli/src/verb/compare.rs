@@ -5,17 +5,17 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use umbmark_core::compare::tracks::TrackComparison;
-use umbmark_core::compare::{Comparison, Judged, NoiseSource, Statistic, compare, compare_tracks};
-use umbmark_core::dataset::{Dataset, read_model};
-use umbmark_core::diagnose::{Level, Options, base_model, first_model};
+use umbmark_core::compare::{Comparison, Judged, NoiseSource, Statistic, compare, compare_tracks, usual_models};
+use umbmark_core::dataset::Dataset;
+use umbmark_core::diagnose::{Level, Options};
 use umbmark_core::document;
 use umbmark_core::effect::Model;
-use umbmark_core::learn::{fit, fit_to_returns};
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
-use crate::model_report::{circle_table, contrasts_table, p_text};
+use crate::model_report::{circle_table, contrasts_table, p_text, read_model};
 use crate::prose::hanging;
+use crate::setup_report::{faults_text, returns_text};
 use crate::table::table;
 use crate::test_arguments::TestArguments;
 use crate::tracks_report;
@@ -60,7 +60,7 @@ fn on_return_poses(
     session: &mut Session,
 ) -> anyhow::Result<bool> {
     let comparison = session.on_threads(|| -> anyhow::Result<Comparison> {
-        Ok(compare(data, &models(arguments, data, Level::Ends)?, options)?)
+        Ok(compare(data, &models(arguments, data, Level::Ends, session)?, options)?)
     })??;
     if session.json() {
         session.print_json(&document::comparison(&comparison, options))?;
@@ -73,7 +73,7 @@ fn on_return_poses(
 /// Says whether some model explains the data.
 fn on_tracks(arguments: &Arguments, data: &Dataset, options: &Options, session: &mut Session) -> anyhow::Result<bool> {
     let comparison = session.on_threads(|| -> anyhow::Result<TrackComparison> {
-        Ok(compare_tracks(data, &models(arguments, data, Level::Tracks)?, options)?)
+        Ok(compare_tracks(data, &models(arguments, data, Level::Tracks, session)?, options)?)
     })??;
     if session.json() {
         session.print_json(&document::track_comparison(&comparison, options))?;
@@ -84,17 +84,17 @@ fn on_tracks(arguments: &Arguments, data: &Dataset, options: &Options, session: 
     Ok(comparison.models.iter().any(|model| model.explains(options.size) != Some(false)))
 }
 
-/// The models that were given; else the nominal robot, and that with its first errors fitted.
-fn models(arguments: &Arguments, data: &Dataset, level: Level) -> anyhow::Result<Vec<(String, Model)>> {
-    let robot = data.nominal_robot()?;
+/// The models that were given, else the usual ones.
+fn models(
+    arguments: &Arguments,
+    data: &Dataset,
+    level: Level,
+    session: &Session,
+) -> anyhow::Result<Vec<(String, Model)>> {
     if arguments.model.is_empty() {
-        let (name, fitted) = match level {
-            Level::Ends => ("E_d and E_b, fitted to these runs", fit_to_returns(data, &base_model(robot)?)?.0),
-            Level::Tracks => ("E_d, E_b, E_s fitted", fit(data, &first_model(data)?)?.model),
-        };
-        return Ok(vec![("nominal robot".into(), Model::new(robot)), (name.into(), fitted)]);
+        return Ok(usual_models(data, level)?);
     }
-    let read = |file: &PathBuf| Ok((file.display().to_string(), read_model(file, robot)?.0));
+    let read = |file: &PathBuf| Ok((file.display().to_string(), read_model(file, data, session)?));
     arguments.model.iter().map(read).collect()
 }
 
@@ -108,6 +108,7 @@ fn text(comparison: &Comparison, options: &Options) -> String {
     };
     text += &table(&["model", "error [mm]", "[deg]", "p", "explains"], comparison.models.iter().map(row));
     text += "\n";
+    text += &(faults_text(&comparison.setup) + &returns_text(&comparison.setup));
     for judged in &comparison.models {
         text += &format!("\n{}\n\n", judged.name);
         text += &table(&["", "measured", "predicted", "p"], judged.statistics.iter().map(statistic_row));

@@ -16,6 +16,7 @@ use crate::model_report::{
     circle_table, contrasts_table, estimates_table, meaning_text, model_of, outliers_text, p_text, unit_of,
 };
 use crate::prose::hanging;
+use crate::setup_report::{disturbances_text, faults_text, reasons_text, taken_text};
 use crate::table::{table, with_precision_of};
 use crate::test_arguments::TestArguments;
 use crate::unlisted::unlisted_text;
@@ -43,7 +44,7 @@ pub struct Arguments {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
-    let model = model_of(arguments.model.as_deref(), &data)?;
+    let model = model_of(arguments.model.as_deref(), &data, session)?;
     let options = arguments.test.options(session);
     let diagnosis = session.on_threads(|| diagnose(&data, &model, &options))??;
     for warning in data.warnings.iter().filter(|_| !session.json()) {
@@ -67,6 +68,7 @@ pub(super) fn in_words(verdict: Verdict) -> &'static str {
         Verdict::SeveralMissing => "more than one class of effects is missing",
         Verdict::UnlistedEffect => "something is missing that no single effect of the catalogue explains",
         Verdict::NotEnoughData => "not enough data to tell",
+        Verdict::NotExplained => "not explained, though no single effect is certified as missing",
     }
 }
 
@@ -78,12 +80,14 @@ fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, terminal: bool
     };
     let mut text = format!("Diagnosis of {robot} from {from}\n\n");
     text += &hanging("verdict", 10, in_words(diagnosis.verdict));
+    text += &(faults_text(&diagnosis.setup) + &reasons_text(&diagnosis.reasons));
     for suspect in diagnosis.certified() {
         text += &hanging("missing", 10, &suspect.class.join(" or "));
         let said = suspect.meaning(diagnosis.model.robot());
         text += &said.map_or_else(String::new, |said| hanging("", 10, &said));
     }
-    text += &outliers_text(&diagnosis.outliers);
+    text += &(taken_text(&diagnosis.taken) + &disturbances_text(&diagnosis.setup));
+    text += &outliers_text(&diagnosis.outliers, &diagnosis.setup);
     for remark in &diagnosis.remarks {
         text += &hanging("note", 10, remark);
     }
@@ -117,6 +121,9 @@ fn next_text(diagnosis: &Diagnosis) -> String {
             "umbmark learn --model FILE tries a formula of your own; umbmark compare shows where the error is made."
         }
         Verdict::NotEnoughData => "drive at least three runs each way; umbmark plan says how many show what.",
+        Verdict::NotExplained => {
+            "mend what the reasons name, then diagnose again; umbmark inspect shows more of the data."
+        }
     };
     let mut text = format!("\nnext\n{}", hanging("", 2, with_the_model));
     if !diagnosis.next_experiments.is_empty() {

@@ -6,13 +6,14 @@ use std::process::ExitCode;
 
 use umbmark_core::document;
 use umbmark_core::learn::{Fit, fit};
-use umbmark_core::likelihood::Weighing;
+use umbmark_core::likelihood::USUAL_NOISE;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::level_argument::LevelArgument;
 use crate::model_report::{estimates_table, meaning_text, model_of, outliers_text, write_model};
 use crate::prose::hanging;
+use crate::setup_report::{disturbances_text, taken_text};
 
 /// Arguments of `fit`.
 #[derive(Debug, clap::Args)]
@@ -42,7 +43,7 @@ pub struct Arguments {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
-    let mut model = model_of(arguments.model.as_deref(), &data)?;
+    let mut model = model_of(arguments.model.as_deref(), &data, session)?;
     for effect in &arguments.add {
         model.add(effect)?.free = true;
     }
@@ -50,7 +51,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         anyhow::bail!("no effect of the model is free: say free = true in its file, or --add EFFECT");
     }
     let fitted = session.on_threads(|| fit(&data, &model))??;
-    let Fit { model, estimates, outliers, weighing } = &fitted;
+    let Fit { model, estimates, outliers, usual_noise, setup, taken } = &fitted;
     if let Some(file) = &arguments.output {
         write_model(model, file, arguments.force)?;
     }
@@ -66,10 +67,10 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         session.message("warning", &format!("{effect} was not fitted: {why}"));
     }
     writeln!(session.out(), "{}", estimates_table(estimates, arguments.intervals.level))?;
-    write!(session.out(), "{}{}", meaning_text(estimates, model), outliers_text(outliers))?;
-    let caution = weighing.map_or("", Weighing::caution);
-    if !caution.is_empty() {
-        write!(session.out(), "{}", hanging("note", 10, caution))?;
+    let disturbed = disturbances_text(setup) + &outliers_text(outliers, setup);
+    write!(session.out(), "{}{}{disturbed}", meaning_text(estimates, model), taken_text(taken))?;
+    if *usual_noise {
+        write!(session.out(), "{}", hanging("note", 10, USUAL_NOISE))?;
     }
     if let Some(file) = &arguments.output {
         writeln!(session.out(), "\nwrote {}", file.display())?;

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use umbmark_core::dataset::{Dataset, Group, Inspection, LogFacts, MovesFound, RunTopics};
+use umbmark_core::dataset::{Dataset, Determined, Group, Inspection, LogFacts, MovesFound, RunTopics};
 use umbmark_core::document;
 use umbmark_core::drive::Robot;
 use umbmark_core::path::Direction;
@@ -11,7 +11,8 @@ use umbmark_core::path::Direction;
 use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::prose::hanging;
-use crate::table::table;
+use crate::setup_report::{disturbances_text, faults_text, mounting_text, returns_text};
+use crate::table::{table, with_precision_of};
 use crate::terminal::{plan, sparkline};
 use crate::verb::convert::clocks_table;
 
@@ -39,7 +40,11 @@ fn direction_name(direction: Option<Direction>) -> &'static str {
 }
 
 fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
-    let mut text = String::new();
+    // What has to be mended first stands first.
+    let mut text = inspection.setup.as_ref().map_or(String::new(), |setup| faults_text(setup) + &returns_text(setup));
+    if !text.is_empty() {
+        text += "\n";
+    }
     match &data.robot {
         Some(robot) => text += &hanging("robot", 8, &robot_line(robot)),
         None => text += &hanging("robot", 8, "not known: no robot.toml beside the data"),
@@ -64,6 +69,10 @@ fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
     if !data.clocks.is_empty() {
         text += &format!("\nclocks set by the motion while reading\n\n{}\n", clocks_table(&data.clocks));
     }
+    let found = inspection.setup.as_ref().map(|setup| mounting_text(setup) + &disturbances_text(setup));
+    if let Some(found) = found.filter(|found| !found.is_empty()) {
+        text += &format!("\n{found}");
+    }
     text += "\nis it any good?\n";
     for check in &inspection.checks {
         let mark = if check.ok { "ok" } else { "LOOK" };
@@ -78,7 +87,7 @@ fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
     text += &hanging("  rank", 32, &format!("{} of 3 combinations of {of}", inspection.rank));
     for answer in &inspection.determined {
         let mark = if answer.yes { "yes" } else { "no" };
-        text += &hanging(&format!("  {mark:<6}{}", answer.quantity), 32, answer.because);
+        text += &hanging(&format!("  {mark:<6}{}", answer.quantity), 32, &told(answer));
     }
     if !inspection.warnings.is_empty() {
         text += "\nnoticed while reading\n";
@@ -87,6 +96,18 @@ fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
         }
     }
     text
+}
+
+/// Why a quantity can be determined or not, and its standard error beside its usual size, in per cent.
+fn told(answer: &Determined) -> String {
+    let Some(usual) = answer.usual else { return answer.because.into() };
+    let percent = |share: f64| with_precision_of(100.0 * share, 100.0 * share);
+    match answer.std_error {
+        Some(error) => {
+            format!("{}; standard error {} %, usual size {} %", answer.because, percent(error), percent(usual))
+        }
+        None => answer.because.into(),
+    }
 }
 
 /// A log seen from above, and its speed over the time.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use umbmark_core::dataset::Dataset;
-use umbmark_core::diagnose::{Experiment, Level, Options};
+use umbmark_core::diagnose::{Experiment, Level, Options, Reason, Verdict};
 use umbmark_core::document;
 use umbmark_core::effect::Model;
 use umbmark_core::learn::{Learnt, Step, learn_from};
@@ -13,8 +13,9 @@ use umbmark_core::learn::{Learnt, Step, learn_from};
 use super::diagnose::{experiment_text, in_words};
 use crate::Session;
 use crate::data_arguments::DataArguments;
-use crate::model_report::{estimates_table, meaning_text, model_of, outliers_text, p_text, write_model};
+use crate::model_report::{estimates_table, meaning_text, outliers_text, p_text, read_model, write_model};
 use crate::prose::hanging;
+use crate::setup_report::{disturbances_text, faults_text, reasons_text, taken_text};
 use crate::table::table;
 use crate::test_arguments::TestArguments;
 use crate::unlisted::unlisted_text;
@@ -44,7 +45,7 @@ pub struct Arguments {
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
     let options = arguments.test.options(session);
-    let start = arguments.model.as_deref().map(|file| model_of(Some(file), &data)).transpose()?;
+    let start = arguments.model.as_deref().map(|file| read_model(file, &data, session)).transpose()?;
     let start = match start {
         Some(start) => start,
         None => Model::new(data.nominal_robot()?),
@@ -54,20 +55,27 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if learnt.partial {
         session.message("partial", "stopped while an effect was still missing");
     }
-    if let Some(file) = &arguments.output {
+    let of_data = learnt.diagnosis.reasons.iter().any(Reason::is_of_data);
+    let withheld = (learnt.verdict == Verdict::NotExplained || of_data) && !arguments.force;
+    if let Some(file) = arguments.output.as_ref().filter(|_| !withheld) {
         write_model(&learnt.model, file, arguments.force)?;
     }
     if session.json() {
         session.print_json(&document::learnt(&learnt, &options))?;
-        return Ok(ExitCode::SUCCESS);
+    } else {
+        for warning in &data.warnings {
+            session.message("warning", warning);
+        }
+        let text = text(&data, &learnt, &options, session.on_terminal());
+        write!(session.out(), "{text}")?;
     }
-    for warning in &data.warnings {
-        session.message("warning", warning);
-    }
-    let text = text(&data, &learnt, &options, session.on_terminal());
-    write!(session.out(), "{text}")?;
-    if let Some(file) = &arguments.output {
-        writeln!(session.out(), "\nwrote {}", file.display())?;
+    match &arguments.output {
+        Some(file) if withheld => anyhow::bail!(
+            "{}: was not written, since the model does not explain the runs (see the reasons); --force writes it all the same",
+            file.display()
+        ),
+        Some(file) if !session.json() => writeln!(session.out(), "\nwrote {}", file.display())?,
+        _ => {}
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -89,6 +97,8 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     text += &hanging("", 0, &legend);
     text += "\n";
     text += &hanging("verdict", 10, in_words(learnt.verdict));
+    let diagnosis = &learnt.diagnosis;
+    text += &(faults_text(&diagnosis.setup) + &reasons_text(&diagnosis.reasons) + &taken_text(&diagnosis.taken));
     for step in learnt.steps.iter().filter(|s| s.class.len() > 1) {
         text += &hanging("class", 10, &format!("{} cannot be told apart here", step.class.join(", ")));
     }
@@ -97,7 +107,8 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     if let Some(experiment) = learnt.diagnosis.next_experiments.iter().find(tells) {
         text += &hanging("next", 10, &experiment_text(experiment));
     }
-    text += &outliers_text(&learnt.diagnosis.outliers);
+    text += &disturbances_text(&diagnosis.setup);
+    text += &outliers_text(&diagnosis.outliers, &diagnosis.setup);
     for remark in &learnt.remarks {
         text += &hanging("note", 10, remark);
     }

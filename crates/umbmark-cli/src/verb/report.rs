@@ -8,7 +8,7 @@ use anyhow::Context;
 use serde_json::json;
 use umbmark_core::dataset::Dataset;
 use umbmark_plot::kind::KINDS;
-use umbmark_plot::page::{Origin, Provenance, page, verdict};
+use umbmark_plot::page::{Origin, Provenance, notices, page, verdict};
 use umbmark_plot::study::Study;
 
 use crate::Session;
@@ -82,7 +82,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         session.message("partial", "stopped before all was worked out; the page says what is missing");
     }
     if session.json() {
-        let told = |study: &Study| json!({ "name": study.name, "verdict": verdict(study) });
+        let told = |study: &Study| json!({ "name": study.name, "notices": notices(study), "verdict": verdict(study) });
         session.print_json(&json!({
             "output": output,
             "bytes": text.len(),
@@ -95,6 +95,9 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     }
     for study in &studies {
         let name = if studies.len() > 1 { format!("{}: ", study.name) } else { String::new() };
+        for notice in notices(study) {
+            write!(session.out(), "{}", hanging("LOOK", 6, &format!("{name}{notice}")))?;
+        }
         write!(session.out(), "{}", hanging("", 0, &format!("{name}{}", verdict(study))))?;
     }
     writeln!(session.out(), "\nwrote {output} ({:.1} MB)", text.len() as f64 / 1e6)?;

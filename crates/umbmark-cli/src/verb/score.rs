@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use umbmark_core::document;
-use umbmark_core::score::{Cluster, Convention, Score, score};
+use umbmark_core::score::{Cluster, Convention, Score, score_dataset};
 use umbmark_core::stats::Interval;
 use umbmark_plot::kind::of_score;
 use umbmark_plot::render::terminal::plan;
@@ -43,8 +43,9 @@ pub struct Arguments {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
-    let mut score = score(&data.runs, arguments.intervals.level)?;
-    score.warnings.splice(0..0, data.warnings.iter().cloned());
+    let mut score = score_dataset(&data, arguments.intervals.level)?;
+    let noticed = score.setup.notices().len();
+    score.warnings.splice(noticed..noticed, data.warnings.iter().cloned());
     let convention = match arguments.convention {
         ConventionKind::Mean => Convention::Mean,
         ConventionKind::Sum => Convention::Sum,

@@ -20,6 +20,7 @@ use crate::drive::Robot;
 use crate::effect::{Evaluate, Model};
 use crate::fit::{self, Fit, Problem, RANK_TOLERANCE, jackknife_covariance, null_directions};
 use crate::geometry::{Dual, Pose2, seeded, wrap};
+use crate::likelihood::Taken;
 use crate::path::Direction;
 use crate::score::Scatter;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -38,17 +39,30 @@ pub(super) struct Exact {
     pub covariance: Option<Matrix3<f64>>,
     pub degrees_of_freedom: f64,
     pub fit: Fit,
+    /// Other ratios that fit about as well.
+    pub rival: Option<Correction>,
+}
+
+/// E_b of further starts, where the fit from the nominal robot ends far from it.
+pub(crate) const STARTS: [f64; 8] = [0.4, 0.5, 0.65, 0.8, 1.25, 1.6, 2.0, 2.5];
+/// E_d or E_b that differ from 1 by more are far.
+pub(crate) const FAR_FIT: f64 = 0.04;
+/// Ratios that a robot can have: the bounds of their effects.
+pub(crate) fn is_possible(ratio: f64) -> bool {
+    (0.2..=5.0).contains(&ratio)
 }
 
 /// Fits what the evidence shows.
 pub(super) fn exact(evidence: &Evidence, robot: &Robot) -> Exact {
-    let mut problem = Kinematics { evidence, model: model(robot), free: vec![0, 1] };
+    let model = model(robot, &evidence.taken);
+    let mut problem = Kinematics { evidence, places: places(&model), model, free: vec![0, 1] };
     if evidence.scale_shows {
         problem.free.push(2);
     }
     problem.keep_what_shows();
-    let fit = fit::least_squares(&problem, &vec![1.0; problem.free.len()], &fit::Options::default());
-    let correction = Correction::from_values(problem.all(&fit.values));
+    let fit::Searched { fit, rival } = search(&problem);
+    let rival = rival.map(|values| Correction::from_values(problem.ratios(&values)));
+    let correction = Correction::from_values(problem.ratios(&fit.values));
     let (covariance, degrees_of_freedom) = match evidence.level {
         Level::Ends => end_covariance(&problem, &fit),
         Level::Tracks => {
@@ -62,16 +76,54 @@ pub(super) fn exact(evidence: &Evidence, robot: &Robot) -> Exact {
         covariance: covariance.map(|c| spread(&c, &problem.free)),
         degrees_of_freedom,
         fit,
+        rival,
     }
 }
 
-/// A model whose values are E_d, E_b, E_s.
-fn model(robot: &Robot) -> Model {
+/// The three ratios, by their effects.
+const RATIOS: [&str; 3] = ["wheel_diameter_ratio", "wheelbase", "scale"];
+
+/// A model of E_d, E_b, E_s, with what was taken of the reference.
+fn model(robot: &Robot, taken: &[Taken]) -> Model {
     let mut model = Model::new(robot);
-    for effect in ["wheel_diameter_ratio", "wheelbase", "scale"] {
+    for effect in RATIOS {
         model.add(effect).expect("the catalogue holds the three ratios");
     }
+    set_taken(&mut model, taken);
     model
+}
+
+/// Sets what was taken of the reference in a model.
+pub(super) fn set_taken(model: &mut Model, taken: &[Taken]) {
+    for own in taken {
+        for (parameter, measured) in own.values.iter().flatten() {
+            // A value out of bounds is none of a reference, and says nothing.
+            let _ = model.set(own.effect, parameter, measured.value);
+        }
+    }
+}
+
+/// Places of E_d, E_b, E_s among the values of a model.
+fn places(model: &Model) -> [usize; 3] {
+    let parts = || model.parts().iter();
+    let before = |effect: &str| {
+        parts().take_while(|part| part.effect.name() != effect).map(|part| part.values.len()).sum::<usize>()
+    };
+    RATIOS.map(before)
+}
+
+/// The fit from the nominal robot, or from where the motion says; where it ends far from there, from further starts too.
+fn search(problem: &Kinematics) -> fit::Searched {
+    let options = fit::Options::default();
+    let nominal = vec![1.0; problem.free.len()];
+    let first = fit::least_squares(problem, &nominal, &options);
+    let start = |of: [f64; 3]| problem.free.iter().map(|ratio| of[*ratio]).collect::<Vec<f64>>();
+    let is_far = first.values.iter().any(|value| !((value - 1.0).abs() <= FAR_FIT)) || !first.termination.converged();
+    let mut starts: Vec<Vec<f64>> = problem.evidence.by_motion.map(start).into_iter().collect();
+    if is_far && problem.free.contains(&1) {
+        starts.extend(STARTS.map(|e_b| start([1.0, e_b, 1.0])));
+    }
+    fit::search(problem, first, &starts, &options, |values| values.iter().copied().all(is_possible))
 }
 
 /// The covariance of the free ratios as that of all three.
@@ -88,15 +140,27 @@ fn spread(covariance: &DMatrix<f64>, free: &[usize]) -> Matrix3<f64> {
 struct Kinematics<'a> {
     evidence: &'a Evidence,
     model: Model,
+    /// Of the three ratios among the model's values.
+    places: [usize; 3],
     /// Indices of the fitted ratios.
     free: Vec<usize>,
 }
 
 impl Kinematics<'_> {
-    fn all(&self, parameters: &[f64]) -> [f64; 3] {
+    /// E_d, E_b, E_s: 1 where they are not fitted.
+    fn ratios(&self, parameters: &[f64]) -> [f64; 3] {
         let mut all = [1.0; 3];
         for (index, value) in self.free.iter().zip(parameters) {
             all[*index] = *value;
+        }
+        all
+    }
+
+    /// All values of the model.
+    fn all(&self, parameters: &[f64]) -> Vec<f64> {
+        let mut all: Vec<f64> = self.model.values().collect();
+        for (place, ratio) in self.places.into_iter().zip(self.ratios(parameters)) {
+            all[place] = ratio;
         }
         all
     }
@@ -160,7 +224,8 @@ impl Problem for Kinematics<'_> {
     fn jacobian(&self, parameters: &[f64]) -> DMatrix<f64> {
         let values = self.all(parameters);
         let mut rows = Vec::with_capacity(self.count() * self.free.len());
-        self.predict::<Dual>(&seeded(values, &self.free), |drive, observation, pose| {
+        let lanes: Vec<usize> = self.free.iter().map(|ratio| self.places[*ratio]).collect();
+        self.predict::<Dual>(&seeded(values, &lanes), |drive, observation, pose| {
             let slopes = DMatrix::from_fn(3, self.free.len(), |k, lane| -[pose.x, pose.y, pose.heading][k].eps[lane]);
             let weighted = drive.weight * slopes;
             let of_row = |row: usize| weighted.row(row).iter().copied().collect::<Vec<_>>();

@@ -2,8 +2,8 @@
 
 use super::correction::Correction;
 use crate::VERSION;
-use crate::drive::{DriveError, Robot};
-use crate::path::{Path, SpeedProfile, WAYPOINTS};
+use crate::dataset::RobotFile;
+use crate::drive::{DifferentialDrive, DriveError, Robot};
 
 /// A float that every reader takes for a float: always with a decimal point.
 fn decimal(value: f64) -> String {
@@ -41,41 +41,14 @@ pub fn ros2_control(robot: &Robot, correction: &Correction, controller: &str) ->
     text
 }
 
-/// A `robot.toml` whose lengths are corrected, with the path where one is known.
-pub fn robot_toml(robot: &Robot, path: Option<&Path>, correction: &Correction) -> Result<String, DriveError> {
-    let corrected = correction.apply(robot)?;
-    let drive = &corrected.drive;
-    let mut text = format!("# {}\n[robot]\nname = {}\n", heading(correction), toml::Value::from(robot.name.as_str()));
-    text += "drive = \"differential\"\n";
-    for (key, value) in [
-        ("wheelbase_m", drive.wheelbase()),
-        ("wheel_diameter_left_m", drive.wheel_diameter_left()),
-        ("wheel_diameter_right_m", drive.wheel_diameter_right()),
-        ("ticks_per_revolution", robot.encoder.ticks_per_revolution()),
-    ] {
-        text += &format!("{key} = {}\n", decimal(value));
-    }
-    if let Some(rate) = robot.encoder.rate() {
-        text += &format!("encoder_rate_hz = {}\n", decimal(rate));
-    }
-    if let Some(bits) = robot.encoder.counter_bits() {
-        text += &format!("counter_bits = {bits}\n");
-    }
-    Ok(path.map_or(text.clone(), |path| text + &path_toml(path)))
-}
-
-fn path_toml(path: &Path) -> String {
-    let shape = path.shape();
-    let mut text = format!("\n[path]\nshape = \"{}\"\n", shape.name);
-    if std::ptr::eq(shape, &WAYPOINTS) {
-        let points = path.values().chunks_exact(2).map(|p| format!("[{}, {}]", decimal(p[0]), decimal(p[1])));
-        text += &format!("points_m = [{}]\n", points.collect::<Vec<_>>().join(", "));
-    }
-    let sizes = shape.parameters.iter().zip(path.values().iter().copied());
-    for (parameter, value) in sizes.chain(SpeedProfile::PARAMETERS.iter().zip(path.speed.values())) {
-        text += &format!("{} = {}\n", parameter.name, decimal(value));
-    }
-    text
+/// A `robot.toml` whose lengths are corrected, to the nanometre.
+pub fn robot_toml(file: &RobotFile, correction: &Correction) -> Result<String, DriveError> {
+    let corrected = correction.apply(&file.robot)?;
+    let lengths =
+        [corrected.drive.wheelbase(), corrected.drive.wheel_diameter_left(), corrected.drive.wheel_diameter_right()];
+    let [wheelbase, left, right] = lengths.map(|length| (length * 1e9).round() / 1e9);
+    let robot = Robot { drive: DifferentialDrive::new(wheelbase, left, right)?.into(), ..corrected };
+    Ok(format!("# {}\n{}", heading(correction), RobotFile { robot, ..file.clone() }.text()))
 }
 
 /// A C header with the corrected lengths and the ratios.
@@ -107,9 +80,8 @@ fn heading(correction: &Correction) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dataset::parse_robot;
-    use crate::drive::{DifferentialDrive, Encoder};
-    use crate::path::{CIRCLE, SQUARE};
+    use crate::drive::Encoder;
+    use crate::path::{CIRCLE, Path, SQUARE, SpeedProfile, WAYPOINTS};
 
     const CORRECTION: Correction = Correction { e_d: 1.00121, e_b: 337.2 / 340.0, e_s: 1.0 };
 
@@ -126,8 +98,8 @@ mod tests {
             Path::new(&CIRCLE, &[1.0, 2.0], speed).unwrap(),
             Path::new(&WAYPOINTS, &[1.0, 0.0, 1.0, 2.5], speed).unwrap(),
         ] {
-            let text = robot_toml(&robot, Some(&path), &CORRECTION).unwrap();
-            let (read, read_path) = parse_robot("exported", &text).unwrap();
+            let text = robot_toml(&RobotFile::new(robot.clone(), Some(path.clone())), &CORRECTION).unwrap();
+            let RobotFile { robot: read, path: read_path, .. } = RobotFile::parse("exported", &text).unwrap();
             let expected = CORRECTION.apply(&robot).unwrap();
             assert_eq!((&read.name, read.encoder), (&expected.name, expected.encoder));
             assert!((read.drive.wheelbase() - expected.drive.wheelbase()).abs() < 1e-9);
@@ -174,7 +146,9 @@ mod tests {
         let robot = Robot::labmate();
         let line = format!("umbmark {VERSION} calibrate: E_d 1.00121, E_b 0.991764706, E_s 1.0");
         assert!(ros2_control(&robot, &CORRECTION, "base").starts_with(&format!("# {line}\n")));
-        assert!(robot_toml(&robot, None, &CORRECTION).unwrap().starts_with(&format!("# {line}\n")));
+        assert!(
+            robot_toml(&RobotFile::new(robot.clone(), None), &CORRECTION).unwrap().starts_with(&format!("# {line}\n"))
+        );
         assert!(c_header(&robot, &CORRECTION).unwrap().starts_with(&format!("/* {line} */\n")));
     }
 

@@ -2,6 +2,7 @@
 
 use super::correction::Correction;
 use super::evidence::Evidence;
+use super::exact::set_taken;
 use crate::dataset::ReturnError;
 use crate::drive::Robot;
 use crate::effect::{Model, TestKind};
@@ -74,7 +75,8 @@ pub struct Replayed {
 
 /// Computes the recorded runs again with a correction; `None` where no ticks were recorded.
 pub(super) fn replayed(evidence: &Evidence, robot: &Robot, applied: &Correction) -> Option<Replayed> {
-    let model: Model = applied.model(robot).ok()?;
+    let mut model: Model = applied.model(robot).ok()?;
+    set_taken(&mut model, &evidence.taken);
     let chain = model.chain();
     let mut errors: [Vec<ReturnError>; 2] = Default::default();
     let mut largest: Option<f64> = None;

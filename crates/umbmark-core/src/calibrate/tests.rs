@@ -7,6 +7,7 @@ use crate::path::{Direction, RECTANGLE, SPIN, STRAIGHT, SpeedProfile, WAYPOINTS}
 use crate::replay::Track;
 use crate::score::Cluster;
 
+mod found;
 mod simulated;
 
 /// The paper's Table I: nominal 340 mm; correction factors of the plain and of the taped LabMate.
@@ -281,7 +282,7 @@ fn impossible_angles_data_and_options_are_refused_with_the_reason() {
     let wild = dataset(
         &Robot::labmate(),
         &Path::umbmark(),
-        &[(Direction::Cw, error(-200.0, 0.0)), (Direction::Ccw, error(-200.0, 0.0))],
+        &[(Direction::Cw, error(-15.0, 0.0)), (Direction::Ccw, error(-15.0, 0.0))],
     );
     let calibration = calibrate(&wild, &Options::default()).unwrap();
     assert!(calibration.warnings.iter().any(|w| w.contains("belong to no robot")), "{:?}", calibration.warnings);

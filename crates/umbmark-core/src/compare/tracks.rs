@@ -14,13 +14,17 @@ mod sentences;
 #[cfg(test)]
 mod tests;
 
+use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, moves_of};
-use crate::diagnose::{DiagnoseError, Options, tracks_of};
+use crate::diagnose::tracks::doubts_as_written;
+use crate::diagnose::{DiagnoseError, Options, Reason, tracks_of};
 use crate::effect::Model;
 use crate::geometry::Pose2;
-use crate::likelihood::Observed;
+use crate::likelihood::{Observed, Taken};
 use crate::path::Direction;
+use crate::setup::Setup;
 use followed::Followed;
+use std::sync::Arc;
 
 pub use covariate::{COVARIATES, Covariate, Rate, Span};
 pub use mean::Mean;
@@ -74,6 +78,10 @@ pub struct TracksJudged {
     pub parts: Vec<Part>,
     /// The errors themselves.
     pub residuals: Vec<TrackResiduals>,
+    /// What of the reference was taken from the motion, since the model says nothing of it and it is large.
+    pub taken: Vec<Taken>,
+    /// Why the model does not explain the runs, whatever the tests say.
+    pub reasons: Vec<Reason>,
     /// What is explained and what not, a sentence each.
     pub sentences: Vec<String>,
 }
@@ -85,6 +93,8 @@ pub struct TrackComparison {
     pub runs: [usize; 3],
     /// Number of measured poses.
     pub poses: usize,
+    /// What was found of the experiment before anything was predicted.
+    pub setup: Arc<Setup>,
     /// In the order in which they were given.
     pub models: Vec<TracksJudged>,
     /// What else should be said, a sentence each.
@@ -94,7 +104,7 @@ pub struct TrackComparison {
 impl TracksJudged {
     /// Whether nothing speaks against the model at this size of all tests together; `None` where nothing could.
     pub fn explains(&self, size: f64) -> Option<bool> {
-        self.p.map(|p| p >= size)
+        if self.reasons.is_empty() { self.p.map(|p| p >= size) } else { Some(false) }
     }
 }
 
@@ -116,22 +126,29 @@ pub fn compare_tracks(
     options: &Options,
 ) -> Result<TrackComparison, DiagnoseError> {
     let observed = tracks_of(data)?;
+    let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
     for (_, model) in models {
+        model.check_robot(robot)?;
         model.check_along(observed.tracks().flat_map(|track| track.contexts()))?;
     }
-    let judge = |(name, model): &(String, Model)| judge(name, data, &observed.along(model), model, options);
+    let judge = |(name, model): &(String, Model)| {
+        let (model, taken) = observed.with_reference(model)?;
+        Ok(TracksJudged { taken, ..judge(name, data, &observed.along(&model), &model, options) })
+    };
     let of = |direction| observed.runs.iter().filter(|run| run.direction == direction).count();
     Ok(TrackComparison {
         runs: [of(Some(Direction::Cw)), of(Some(Direction::Ccw)), of(None)],
         poses: observed.runs.iter().map(|run| run.seen.len()).sum(),
-        models: models.iter().map(judge).collect(),
+        models: models.iter().map(judge).collect::<Result<_, DiagnoseError>>()?,
         remarks: remarks(&observed),
+        setup: Arc::clone(&observed.setup),
     })
 }
 
 fn judge(name: &str, data: &Dataset, observed: &Observed, model: &Model, options: &Options) -> TracksJudged {
     let chain = model.chain();
-    let runs: Vec<Followed> = observed.runs.iter().map(|run| Followed::new(run, &chain)).collect();
+    let runs: Vec<Followed> =
+        observed.runs.iter().map(|run| Followed::new(run, &chain, observed.setup.noise)).collect();
     let confidence = 1.0 - options.size;
     let overall = rates::overall(&runs, &observed.robot, confidence);
     let against = rates::against(&runs, &overall, &observed.robot, confidence);
@@ -139,7 +156,7 @@ fn judge(name: &str, data: &Dataset, observed: &Observed, model: &Model, options
     let smallest = tests.iter().copied().reduce(f64::min);
     let mut judged = TracksJudged {
         name: name.to_owned(),
-        along: rms(&runs, |_| 1),
+        along: rms(&runs, |_| 0),
         end: rms(&runs, |run| run.places.len() - 1),
         tests: tests.len(),
         p: smallest.map(|p| (p * tests.len() as f64).min(1.0)),
@@ -147,6 +164,8 @@ fn judge(name: &str, data: &Dataset, observed: &Observed, model: &Model, options
         against,
         parts: parts(data, observed, &runs, confidence),
         residuals: runs.iter().map(residuals).collect(),
+        taken: Vec::new(),
+        reasons: doubts_as_written(observed, model, options),
         sentences: Vec::new(),
     };
     judged.sentences = sentences::of(&judged, options.size);
@@ -160,6 +179,7 @@ fn parts(data: &Dataset, observed: &Observed, runs: &[Followed], confidence: f64
         .iter()
         .enumerate()
         .filter_map(|(index, run)| {
+            // The moves of a whole log are not those of a piece of it.
             let (_, log) = logs.find(|(name, _)| **name == run.observed.name)?;
             Some(parts::made(index, run, &moves_of(log, &observed.robot), &log.time))
         })
@@ -168,10 +188,10 @@ fn parts(data: &Dataset, observed: &Observed, runs: &[Followed], confidence: f64
     parts::gathered(runs, &made, confidence)
 }
 
-/// Of all places from the `first` of each run on.
+/// Of all places from the `first` of each run on, but for those that START is fitted at.
 fn rms(runs: &[Followed], first: impl Fn(&Followed) -> usize) -> Rms {
     let (mut squares, mut count) = ([0.0; 2], 0);
-    for place in runs.iter().flat_map(|run| &run.places[first(run)..]) {
+    for place in runs.iter().flat_map(|run| &run.places[first(run)..]).filter(|place| !place.starts) {
         let [dx, dy] = [place.measured.x - place.predicted.x, place.measured.y - place.predicted.y];
         squares[0] += dx * dx + dy * dy;
         squares[1] += (place.measured.heading - place.predicted.heading).powi(2);

@@ -1,18 +1,20 @@
 //! Runs put together from return rows and logs.
 
-use super::dead_reckoning::{EndPose, computed_end, return_error};
 use super::error::DatasetError;
 use super::label::{self, Named};
 use super::recording::Recording;
+use super::reference_frame::ReferenceFrame;
 use super::reference_track::ReferenceTrack;
 use super::returns::ReturnRow;
 use super::stale::drop_stale;
 use super::start_frame::move_to_start;
 use super::synchronise::attach;
-use super::{Dataset, Run, RunClock, RunTopics, TickLog};
+use super::{Dataset, RobotFile, Run, RunClock, RunTopics, TickLog};
 use crate::drive::{Kind, Robot};
 use crate::effect::TestKind;
 use crate::path::{Direction, Path};
+use crate::run::StartKnown;
+use crate::run::dead_reckoning::{EndPose, computed_end, return_error};
 use std::collections::BTreeMap;
 
 /// A log that turns by less than this has no direction \[rad\].
@@ -22,6 +24,7 @@ const LEAST_TURN: f64 = 0.5;
 pub(super) struct Assembly {
     robot: Option<Robot>,
     path: Option<Path>,
+    reference_frame: ReferenceFrame,
     runs: Vec<Run>,
     /// The place of each test, direction and number among the runs.
     index: BTreeMap<(TestKind, Option<Direction>, u32), usize>,
@@ -40,10 +43,13 @@ pub(super) struct Tracked {
 }
 
 impl Assembly {
-    pub fn new(robot: Option<Robot>, path: Option<Path>) -> Assembly {
+    pub fn new(file: Option<RobotFile>) -> Assembly {
+        let reference_frame = file.as_ref().map(|file| file.reference).unwrap_or_default();
+        let (robot, path) = file.map_or((None, None), |file| (Some(file.robot), file.path));
         let (runs, places, warnings) = (Vec::new(), Vec::new(), Vec::new());
         let (index, clocks, topics) = (BTreeMap::new(), Vec::new(), Vec::new());
-        Assembly { robot, path, runs, index, places, has_returns: false, clocks, topics, warnings }
+        let has_returns = false;
+        Assembly { robot, path, reference_frame, runs, index, places, has_returns, clocks, topics, warnings }
     }
 
     /// The nominal robot, where it is known.
@@ -68,8 +74,8 @@ impl Assembly {
         self.robot.as_ref().map_or(Kind::Differential, |robot| robot.drive.kind())
     }
 
-    /// Adds a log whose file is called `stem`, with the poses that a tracking system saw of it, where there are some.
-    pub fn add_log(
+    /// Adds the recording of a file that is called `stem`, with the poses that a tracking system saw of it, where there are some.
+    pub fn add_recording(
         &mut self,
         recording: Recording,
         tracked: Option<Tracked>,
@@ -79,28 +85,32 @@ impl Assembly {
     ) -> Result<(), DatasetError> {
         let file = recording.file.clone();
         let bits = self.robot.as_ref().and_then(|robot| robot.encoder.counter_bits());
-        let mut log = recording.into_log(self.robot.as_ref(), bits, &mut self.warnings)?;
-        if let Some(tracked) = tracked {
-            self.set_clock(&mut log, tracked, stem)?;
-        }
-        self.add_ticks(file, log, stem, named, end)
+        let log = recording.into_log(self.robot.as_ref(), bits, &mut self.warnings)?;
+        self.add_log(file, log, tracked, stem, named, end)
     }
 
-    /// Adds the ticks of a file that is called `stem`.
-    pub fn add_ticks(
+    /// Adds the ticks of a file that is called `stem`, with the poses in it or those of a track.
+    pub fn add_log(
         &mut self,
         file: String,
         mut log: TickLog,
+        tracked: Option<Tracked>,
         stem: &str,
         named: Named,
         end: EndPose,
     ) -> Result<(), DatasetError> {
+        self.reference_frame.mend(&mut log.reference);
+        if let Some(mut tracked) = tracked {
+            self.reference_frame.mend_track(&mut tracked.track);
+            self.set_clock(&mut log, tracked, stem)?;
+        }
         if let Some(robot) = &self.robot {
             drop_stale(&file, &mut log, robot, &mut self.warnings);
         }
-        move_to_start(&file, &mut log, &mut self.warnings)?;
+        move_to_start(&file, &mut log, self.robot.as_ref(), &mut self.warnings)?;
         let (computed, turned) = self.robot.as_ref().map_or((None, 0.0), |robot| computed_end(&log, robot));
-        let returned = computed.and_then(|computed| return_error(&log, &computed, end));
+        let measured = log.start.known != StartKnown::OnTheWay;
+        let returned = computed.filter(|_| measured).and_then(|computed| return_error(&log, &computed, end));
         let direction = self.direction(&file, named, turned);
         if let Some(row) = self.row_of(named, direction) {
             return self.attach(row, log, stem, &file);
@@ -129,9 +139,9 @@ impl Assembly {
 
     /// The dataset, its runs in order.
     pub fn finish(self) -> Dataset {
-        let Assembly { robot, path, mut runs, clocks, topics, warnings, .. } = self;
+        let Assembly { robot, path, reference_frame, mut runs, clocks, topics, warnings, .. } = self;
         runs.sort_by_key(|run| (run.test, run.direction, run.number));
-        Dataset { robot, path, runs, clocks, topics, warnings }
+        Dataset { robot, path, reference_frame, runs, clocks, topics, warnings }
     }
 
     fn push(&mut self, run: Run, file: &str, line: usize) -> Result<(), DatasetError> {

@@ -2,18 +2,18 @@
 
 use super::Dataset;
 use super::assembly::{Assembly, Tracked};
-use super::dead_reckoning::EndPose;
 use super::error::DatasetError;
 use super::label::{self, Named};
 use super::mcap::{Survey, Topics};
 use super::optiodom;
 use super::reference_file::parse_reference;
 use super::returns::parse_returns;
-use super::robot_file::{parse_robot, read_robot};
+use super::robot_file::RobotFile;
 use super::sheet::Rows;
 use super::text::{Pieces, read_text, unreadable};
 use super::tick_log::{parse_tick_log, tick_log_in_pieces};
 use crate::drive::Kind;
+use crate::run::dead_reckoning::EndPose;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -52,8 +52,7 @@ fn load_folder(folder: &Path, topics: &Topics) -> Result<Dataset, DatasetError> 
             }),
         };
     }
-    let (robot, driven) = read_robot(folder.join(ROBOT))?;
-    let mut assembly = Assembly::new(Some(robot), driven);
+    let mut assembly = Assembly::new(Some(RobotFile::read(folder.join(ROBOT))?));
     for sheet in sheets() {
         add_returns(&mut assembly, &folder.join(sheet))?;
     }
@@ -145,7 +144,7 @@ fn add_log(assembly: &mut Assembly, file: &Path, track: Option<PathBuf>) -> Resu
     };
     let tracked = track.map(|track| read_track(&track, &mut assembly.warnings)).transpose()?;
     let stem = stem(file);
-    assembly.add_log(recording, tracked, &stem, label::parse(&stem), EndPose::Standing)
+    assembly.add_recording(recording, tracked, &stem, label::parse(&stem), EndPose::Standing)
 }
 
 fn read_track(file: &Path, warnings: &mut Vec<String>) -> Result<Tracked, DatasetError> {
@@ -160,21 +159,18 @@ fn add_mcap(assembly: &mut Assembly, survey: Survey, file: &Path, topics: &Topic
     assembly.topics.push(reading.topics(&stem));
     let log = reading.into_log(assembly.robot(), &mut warnings)?;
     assembly.warnings.append(&mut warnings);
-    assembly.add_ticks(file.display().to_string(), log, &stem, label::parse(&stem), EndPose::Standing)
+    assembly.add_log(file.display().to_string(), log, None, &stem, label::parse(&stem), EndPose::Standing)
 }
 
 /// One MCAP log, with the robot that stands beside it, or with the one that it brings along.
 fn load_mcap(file: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
     let survey = Survey::open(file)?;
-    let (robot, path) = match (robot_beside(folder_of(file)), &survey.robot) {
-        (Some(robot), _) => read_robot(robot).map(|(robot, path)| (Some(robot), path))?,
-        (None, Some(text)) => {
-            let place = format!("{} (its robot.toml)", file.display());
-            parse_robot(&place, text).map(|(robot, path)| (Some(robot), path))?
-        }
-        (None, None) => (None, None),
+    let robot_file = match (robot_beside(folder_of(file)), &survey.robot) {
+        (Some(robot), _) => Some(RobotFile::read(robot)?),
+        (None, Some(text)) => Some(RobotFile::parse(&format!("{} (its robot.toml)", file.display()), text)?),
+        (None, None) => None,
     };
-    let mut assembly = Assembly::new(robot, path);
+    let mut assembly = Assembly::new(robot_file);
     add_mcap(&mut assembly, survey, file, topics)?;
     Ok(assembly.finish())
 }
@@ -199,7 +195,7 @@ fn load_optiodom(folder: &Path, set: &str, names: &[String]) -> Result<Dataset, 
 fn optiodom_assembly(folder: &Path, set: &str) -> Result<Assembly, DatasetError> {
     let metadata = folder.join(format!("{set}_metadata.csv"));
     let (robot, path) = optiodom::parse_metadata(&metadata.display().to_string(), set, &read_text(&metadata)?)?;
-    Ok(Assembly::new(Some(robot), path))
+    Ok(Assembly::new(Some(RobotFile::new(robot, path))))
 }
 
 fn add_optiodom_run(assembly: &mut Assembly, folder: &Path, run: &optiodom::RunFiles) -> Result<(), DatasetError> {
@@ -213,7 +209,7 @@ fn add_optiodom_run(assembly: &mut Assembly, folder: &Path, run: &optiodom::RunF
             Some(robot) => optiodom::parse_tricycle_run(&name, &text, robot)?,
             None => optiodom::parse_run(&name, &text)?,
         };
-        return assembly.add_log(recording, None, &stem(&file), named, EndPose::Last);
+        return assembly.add_recording(recording, None, &stem(&file), named, EndPose::Last);
     };
     if tricycle.is_some() {
         let (key, value) = ("type".into(), "\"tricyc\"".into());
@@ -222,7 +218,7 @@ fn add_optiodom_run(assembly: &mut Assembly, folder: &Path, run: &optiodom::RunF
     }
     let recording = optiodom::parse_odometry(&name, &text)?;
     let tracked = read_track(&folder.join(track), &mut assembly.warnings)?;
-    assembly.add_log(recording, Some(tracked), &stem(&file), named, EndPose::Last)
+    assembly.add_recording(recording, Some(tracked), &stem(&file), named, EndPose::Last)
 }
 
 /// One file, with the robot that stands beside it where there is one.
@@ -241,11 +237,7 @@ fn load_file(file: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
     {
         return load_optiodom_file(file, folder, set);
     }
-    let (robot, path) = match robot_beside(folder) {
-        Some(robot) => read_robot(robot).map(|(robot, path)| (Some(robot), path))?,
-        None => (None, None),
-    };
-    let mut assembly = Assembly::new(robot, path);
+    let mut assembly = Assembly::new(robot_beside(folder).map(RobotFile::read).transpose()?);
     let text = read_text(file)?;
     let is_log = Rows::of(&text).next().is_some_and(|(_, header)| header.to_lowercase().contains("ticks"));
     if is_log {

@@ -5,20 +5,22 @@
 mod determine;
 mod log_facts;
 mod moves;
+mod together;
 mod wheels;
 
-use super::dead_reckoning::{EndPose, computed_end, return_error};
-use super::{Alignment, Dataset, Measured, Mended, ReturnError, Run};
+use super::{Dataset, Measured, Mended, ReturnError, Run};
 use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::geometry::{Pose2, wrap};
 use crate::path::{Direction, Path};
+use crate::run::dead_reckoning::{EndPose, computed_end, return_error};
+use crate::setup::{Fault, Mounting, Setup};
 
 pub use determine::Determined;
 pub use log_facts::{Coverage, LogFacts, ReferenceFacts};
 pub use moves::MovesFound;
 pub(crate) use moves::{Done, MoveDone, moves_of};
-pub use wheels::{Wheels, WheelsFound};
+pub use wheels::Wheels;
 
 /// The findings on a dataset.
 #[derive(Clone, Debug)]
@@ -27,13 +29,15 @@ pub struct Inspection {
     pub groups: Vec<Group>,
     /// Each log, in the order of the runs.
     pub logs: Vec<LogFacts>,
+    /// What the motion says of columns, clocks, the place of the tracked body, wrong poses and jumps; `None` without a robot.
+    pub setup: Option<Setup>,
     /// Each figure with what good looks like.
     pub checks: Vec<Check>,
     /// What the data can say of the robot.
     pub determined: Vec<Determined>,
     /// How many combinations of E_d, E_b and E_s the poses show, of three.
     pub rank: usize,
-    /// What the reader noticed and mended.
+    /// What the reader noticed and mended; what it noticed in many runs is one sentence.
     pub warnings: Vec<String>,
 }
 
@@ -70,12 +74,14 @@ pub struct Check {
 impl Dataset {
     /// Looks at everything in the dataset.
     pub fn inspect(&self) -> Inspection {
-        let logs: Vec<LogFacts> =
-            self.runs.iter().filter_map(|run| LogFacts::of(run, self.robot.as_ref(), self.path.as_ref())).collect();
+        let (robot, path) = (self.robot.as_ref(), self.path.as_ref());
+        let setup = robot.map(|robot| Setup::of(&self.runs, robot, path));
+        let of_log = |run| LogFacts::of(run, robot, path, setup.as_ref());
+        let logs: Vec<LogFacts> = self.runs.iter().filter_map(of_log).collect();
         let groups = groups(&self.runs);
         let mut checks = vec![runs_check(&groups)];
         checks.extend(headings_check(&groups));
-        checks.extend(log_checks(&logs, self.path.as_ref()));
+        checks.extend(log_checks(&logs, path, setup.as_ref()));
         // Where a track was put into a log, its rows are those of two clocks.
         if !self.clocks.is_empty() {
             checks.retain(|check| check.name != "jitter");
@@ -84,8 +90,8 @@ impl Dataset {
         if let Some(robot) = &self.robot {
             checks.extend(sheet_check(&self.runs, robot));
         }
-        let (determined, rank) = determine::determine(&groups, &logs, self.robot.as_ref(), self.path.as_ref());
-        Inspection { groups, logs, checks, determined, rank, warnings: self.warnings.clone() }
+        let (determined, rank) = determine::determine(&groups, &self.runs, robot, path, setup.as_ref());
+        Inspection { groups, logs, setup, checks, determined, rank, warnings: together::merged(&self.warnings) }
     }
 }
 
@@ -135,7 +141,7 @@ fn worst(values: impl Iterator<Item = f64>) -> Option<f64> {
     values.reduce(f64::max)
 }
 
-fn log_checks(logs: &[LogFacts], path: Option<&Path>) -> Vec<Check> {
+fn log_checks(logs: &[LogFacts], path: Option<&Path>, setup: Option<&Setup>) -> Vec<Check> {
     let mut checks = Vec::new();
     let mut add = |name, found: Option<String>, good, ok| {
         checks.extend(found.map(|found| Check { name, found, good, ok }));
@@ -163,12 +169,20 @@ fn log_checks(logs: &[LogFacts], path: Option<&Path>) -> Vec<Check> {
     let round = turn.is_some_and(|turn| turn <= 5f64.to_radians());
     let found = turn.map(|turn| format!("{:.1} deg off the path", turn.to_degrees()));
     add("heading by ticks", found, "5 deg or less: the robot drives by these ticks", round);
-    let wheels = logs.iter().filter_map(|log| log.wheels.as_ref()).max_by_key(|w| w.wheels != Wheels::AsGiven);
-    let sound = wheels.is_some_and(|w| w.wheels == Wheels::AsGiven);
-    add("wheels", wheels.map(|w| w.wheels.to_string()), "as named, both counting up when driving forward", sound);
+    let wheels = logs.iter().filter_map(|log| log.wheels).max_by_key(|wheels| *wheels != Wheels::AsGiven);
+    let sound = wheels == Some(Wheels::AsGiven);
+    let same = |log: &&LogFacts| log.wheels == wheels;
+    let of_these: Vec<&str> = logs.iter().filter(same).map(|log| log.name.as_str()).collect();
+    let where_it_is = match of_these.as_slice() {
+        these if sound || these.len() == logs.len() => String::new(),
+        [first, .., last] => format!(", in {} logs from {first} to {last}", of_these.len()),
+        these => format!(", in {}", these.concat()),
+    };
+    let found = wheels.map(|wheels| format!("{wheels}{where_it_is}"));
+    add("wheels", found, "as named, both counting up when driving forward", sound);
     checks.extend(shape_check(logs, path));
     checks.extend(reference_checks(logs));
-    checks.extend(alignment_checks(logs));
+    checks.extend(setup.map(|setup| mounting_checks(logs, setup)).unwrap_or_default());
     checks
 }
 
@@ -224,45 +238,75 @@ fn shape_check(logs: &[LogFacts], path: Option<&Path>) -> Option<Check> {
     })
 }
 
-/// Delay, rate, lever arm and yaw of the poses: the worst of each.
-fn alignment_checks(logs: &[LogFacts]) -> Vec<Check> {
-    let found = || logs.iter().filter_map(|log| log.alignment.as_ref());
-    let worst = |of: &dyn Fn(&Alignment) -> Option<Measured>| {
-        found().filter_map(of).max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))
+/// A delay that is not known better than this \[s\] is not told.
+const VAGUE_DELAY: f64 = 0.25;
+/// One clock: poses are late by no more than this \[s\], and their clock is fast by no more than this \[s/s\].
+const ONE_CLOCK: (f64, f64) = (0.020, 1e-3);
+
+/// Clock and place of the poses, as all runs agree.
+fn mounting_checks(logs: &[LogFacts], setup: &Setup) -> Vec<Check> {
+    let Some(mounting) = &setup.mounting else {
+        let tracked = logs.iter().any(|log| log.reference.as_ref().is_some_and(|r| r.coverage == Coverage::Track));
+        return tracked.then(|| clock_unknown(setup)).into_iter().collect();
     };
     let shown =
         |m: &Measured, scale: f64| format!("{:+.1} ± {:.1}", scale * m.value, scale * (m.interval.high - m.value));
     let within = |m: &Measured, limit: f64| m.value.abs() <= limit || m.interval.contains(0.0);
-    let mut checks = Vec::new();
-    if let (Some(delay), Some(rate)) = (worst(&|a| Some(a.offset)), worst(&|a| Some(a.rate.less(1.0)))) {
-        checks.push(Check {
-            name: "clock of the poses",
-            found: format!("{} ms late, {} ppm fast (95 %)", shown(&delay, 1e3), shown(&rate, 1e6)),
-            good: "within 20 ms and 1000 ppm: one clock; else convert from files with both clocks",
-            ok: within(&delay, 0.020) && within(&rate, 1e-3),
-        });
-    }
-    if let (Some(ahead), Some(left)) = (worst(&|a| a.lever_ahead), worst(&|a| a.lever_left)) {
+    let mut checks = vec![clock_check(mounting, logs, (&shown, &within))];
+    if let (Some(ahead), Some(left)) = (&mounting.ahead, &mounting.left) {
         checks.push(Check {
             name: "tracked point",
-            found: format!(
-                "{} mm ahead, {} mm left of the axle's centre (95 %)",
-                shown(&ahead, 1e3),
-                shown(&left, 1e3)
-            ),
+            found: format!("{} mm ahead, {} mm left of the axle's centre (95 %)", shown(ahead, 1e3), shown(left, 1e3)),
             good: "within 5 mm of the centre of the axle",
-            ok: within(&ahead, 5e-3) && within(&left, 5e-3),
+            ok: within(ahead, 5e-3) && within(left, 5e-3),
         });
     }
-    if let Some(yaw) = worst(&|a| a.yaw) {
+    if let Some(yaw) = &mounting.yaw {
         checks.push(Check {
             name: "tracked heading",
-            found: format!("turned by {} deg (95 %)", shown(&yaw, 1f64.to_degrees())),
+            found: format!("turned by {} deg (95 %)", shown(yaw, 1f64.to_degrees())),
             good: "0.5 deg or less: x of the tracked body points forward",
-            ok: within(&yaw, 0.5f64.to_radians()),
+            ok: within(yaw, 0.5f64.to_radians()),
         });
     }
     checks
+}
+
+const GOOD_CLOCK: &str = "within 20 ms and 1000 ppm: one clock; else convert from files with both clocks";
+
+/// How a quantity is shown in a unit, and whether it is within a limit.
+type Told<'a> = (&'a dyn Fn(&Measured, f64) -> String, &'a dyn Fn(&Measured, f64) -> bool);
+
+fn clock_check(mounting: &Mounting, logs: &[LogFacts], (shown, within): Told) -> Check {
+    let Mounting { delay, rate, .. } = mounting;
+    let half = delay.interval.high - delay.value;
+    if !(half <= VAGUE_DELAY) {
+        let found = "cannot be told: the motion is too even, or agrees too little".into();
+        return Check { name: "clock of the poses", found, good: GOOD_CLOCK, ok: false };
+    }
+    let mut found = format!("{} ms late", shown(delay, 1e3));
+    found += &rate.map_or(String::new(), |rate| format!(", {} ppm fast", shown(&rate, 1e6)));
+    found += " (95 %)";
+    let mut ok = within(delay, ONE_CLOCK.0) && rate.is_none_or(|rate| within(&rate, ONE_CLOCK.1));
+    // A recording may have a clock of its own.
+    let off = |own: &Measured| own.less(delay.value);
+    let others = logs.iter().filter_map(|log| Some((log, log.delay.filter(|own| !within(&off(own), ONE_CLOCK.0))?)));
+    let farthest = others.max_by(|a, b| off(&a.1).value.abs().total_cmp(&off(&b.1).value.abs()));
+    if let Some((log, own)) = farthest {
+        found += &format!("; {} by {} ms", log.name, shown(&own, 1e3));
+        ok = false;
+    }
+    Check { name: "clock of the poses", found, good: GOOD_CLOCK, ok }
+}
+
+/// Without agreement of both motions nothing is said of the clock.
+fn clock_unknown(setup: &Setup) -> Check {
+    let unlike = |fault: &Fault| matches!(fault, Fault::OtherMotion { .. });
+    let found = match setup.faults.is_empty() || setup.faults.iter().any(unlike) {
+        true => "cannot be told: poses and wheels do not move alike",
+        false => "cannot be told before the faults are mended",
+    };
+    Check { name: "clock of the poses", found: found.into(), good: GOOD_CLOCK, ok: false }
 }
 
 fn reference_checks(logs: &[LogFacts]) -> Vec<Check> {

@@ -3,38 +3,67 @@
 use super::distribution_table::{DISTRIBUTIONS, read_distribution};
 use super::document::{Entry, Source, Table};
 use super::error::{DatasetError, did_you_mean};
+use super::robot_file::read_robot_table;
 use super::text::read_text;
 use crate::drive::Robot;
-use crate::effect::{CATALOGUE, Entry as Effect, Formula, FormulaError, Model, Target};
+use crate::effect::{CATALOGUE, CONVERTED, Conversion, Entry as Effect, Formula, FormulaError, Model, Target};
 use crate::monte_carlo::{Distribution, Draw};
 use crate::parameter::Parameter;
 
 /// Keys of an effect of the user's own, those first that no other has.
 const OWN: [&str; 5] = ["acts_on", "formula", "parameters", "name", "free"];
 
-/// The effects of a `model.toml` on a robot, and those of their parameters that are drawn from a distribution.
-///
-/// In the model a drawn parameter has the middle of its distribution.
-pub fn read_model(file: impl AsRef<std::path::Path>, robot: &Robot) -> Result<(Model, Vec<Draw>), DatasetError> {
-    let file = file.as_ref();
-    parse_model(&file.display().to_string(), &read_text(file)?, robot)
+/// What a `model.toml` says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelFile {
+    /// The effects, of the robot that was asked for. A parameter that is drawn has the middle of its distribution.
+    pub model: Model,
+    /// The parameters that are drawn.
+    pub draws: Vec<Draw>,
+    /// What was changed where the file has another nominal robot.
+    pub conversion: Option<Conversion>,
 }
 
-/// The same from text; `file` is what messages call it.
-///
-/// ```
-/// use umbmark_core::{dataset::parse_model, drive::Robot};
-/// let text = "[[effect]]\nname = \"wheelbase\"\ne_b = { mean = 1.01, sd = 0.002 }\nfree = true\n";
-/// let (model, draws) = parse_model("model.toml", text, &Robot::labmate())?;
-/// assert_eq!(model.get("wheelbase", "e_b"), Some(1.01));
-/// assert!(model.parts()[0].free && draws.len() == 1);
-/// # Ok::<(), umbmark_core::dataset::DatasetError>(())
-/// ```
-pub fn parse_model(file: &str, text: &str, robot: &Robot) -> Result<(Model, Vec<Draw>), DatasetError> {
-    let source = Source { file, text };
-    let root = source.parse()?;
-    let root = Table::root(&source, &root);
-    root.only(&["effect"])?;
+impl ModelFile {
+    /// Reads a `model.toml` for a robot; for the file's own, and else the LabMate, where none is given.
+    pub fn read(file: impl AsRef<std::path::Path>, robot: Option<&Robot>) -> Result<ModelFile, DatasetError> {
+        let file = file.as_ref();
+        ModelFile::parse(&file.display().to_string(), &read_text(file)?, robot)
+    }
+
+    /// The same from text; `file` is what messages call it.
+    ///
+    /// ```
+    /// use umbmark_core::{dataset::ModelFile, drive::Robot};
+    /// let text = "[[effect]]\nname = \"wheelbase\"\ne_b = { mean = 1.01, sd = 0.002 }\nfree = true\n";
+    /// let ModelFile { model, draws, .. } = ModelFile::parse("model.toml", text, Some(&Robot::labmate()))?;
+    /// assert_eq!(model.get("wheelbase", "e_b"), Some(1.01));
+    /// assert!(model.parts()[0].free && draws.len() == 1);
+    /// # Ok::<(), umbmark_core::dataset::DatasetError>(())
+    /// ```
+    pub fn parse(file: &str, text: &str, robot: Option<&Robot>) -> Result<ModelFile, DatasetError> {
+        let source = Source { file, text };
+        let root = source.parse()?;
+        let root = Table::root(&source, &root);
+        root.only(&["robot", "effect"])?;
+        let made_for = root.get("robot").map(|entry| read_robot_table(&entry.table("[robot]".into())?)).transpose()?;
+        let own = made_for.as_ref().or(robot).cloned().unwrap_or_else(Robot::labmate);
+        let (model, draws) = read_effects(&root, &own)?;
+        let (Some(robot), Some(entry)) = (robot, root.get("robot")) else {
+            return Ok(ModelFile { model, draws, conversion: None });
+        };
+        let refuse = |reason: &str| entry.wrong("the nominal robot that the model is used for", reason);
+        let (model, conversion) = model.converted(robot).map_err(|error| refuse(&error.to_string()))?;
+        let drawn = draws.iter().any(|draw| CONVERTED.contains(&draw.effect()));
+        match conversion {
+            Some(_) if drawn => Err(refuse("E_d, E_b or E_s is drawn, and distributions are not converted")),
+            _ => Ok(ModelFile { model, draws, conversion }),
+        }
+    }
+}
+
+/// The effects of a file on a robot, and those of their parameters that are drawn.
+fn read_effects(root: &Table, robot: &Robot) -> Result<(Model, Vec<Draw>), DatasetError> {
     let mut model = Model::new(robot);
     let mut draws = Vec::new();
     let mut names: Vec<Entry> = Vec::new();
@@ -153,7 +182,38 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<(Model, Vec<Draw>), DatasetError> {
-        parse_model("model.toml", text, &Robot::labmate())
+        let ModelFile { model, draws, .. } = ModelFile::parse("model.toml", text, Some(&Robot::labmate()))?;
+        Ok((model, draws))
+    }
+
+    #[test]
+    fn a_model_of_another_robot_is_converted_or_refused() {
+        let robot = |wheelbase| {
+            format!("[robot]\nwheelbase_m = {wheelbase}\nwheel_diameter_m = 0.15\nticks_per_revolution = 2000\n")
+        };
+        let effects = "[[effect]]\nname = \"wheelbase\"\ne_b = 1.01\n";
+        let here = Robot::labmate();
+        let of = |text: &str| ModelFile::parse("model.toml", text, Some(&here));
+        let own = of(&(robot("0.34") + effects)).unwrap();
+        assert_eq!((own.model.get("wheelbase", "e_b"), own.conversion), (Some(1.01), None));
+        let far = of(&(robot("0.17") + effects)).unwrap();
+        assert_eq!((far.model.get("wheelbase", "e_b"), far.model.robot()), (Some(0.505), &here));
+        assert_eq!(
+            far.conversion.unwrap().to_string(),
+            "was made for a robot with wheelbase_m = 0.17, which is 0.34 here; converted: E_d 1.000000 is now 1.000000, E_b 1.010000 \
+             is 0.505000 and E_s 1.000000 is 1.000000"
+        );
+        let refused = |text: String| of(&text).unwrap_err().to_string();
+        let drawn = robot("0.33") + "[[effect]]\nname = \"wheelbase\"\ne_b = { mean = 1.01, sd = 0.002 }\n";
+        assert!(refused(drawn).ends_with("E_d, E_b or E_s is drawn, and distributions are not converted"));
+        let slip = robot("0.17") + "[[effect]]\nname = \"speed_slip\"\n";
+        assert!(refused(slip).contains("depend on speed, way or wheel angle, which differ too much; learn it anew"));
+        let crab = robot("0.335") + "[[effect]]\nname = \"crab\"\nangle_rad = 0.01\n";
+        assert!(
+            of(&crab).unwrap().conversion.unwrap().to_string().ends_with("; crab stayed as before, right to 1.5 %")
+        );
+        let without = ModelFile::parse("model.toml", &(robot("0.17") + effects), None).unwrap();
+        assert_eq!((without.model.robot().drive.wheelbase(), without.conversion), (0.17, None));
     }
 
     #[test]

@@ -1,29 +1,43 @@
 //! `model.toml` as text.
 
+use super::ModelFile;
+use super::robot_text::robot_text;
 use crate::effect::{Formula, Model, Part};
 use crate::monte_carlo::{Distribution, Draw};
 use crate::parameter::Parameter;
 use std::fmt::Write;
 
-/// A `model.toml` that reads back as this model, to the last bit. Scatter of parameters from trial to trial is not in a model,
-/// and effects that a program has added to the catalogue's are read by nobody.
-///
-/// ```
-/// use umbmark_core::{dataset::{model_text, parse_model}, drive::Robot, effect::Model};
-/// let mut model = Model::new(&Robot::labmate());
-/// model.set("wheelbase", "e_b", 1.01)?;
-/// model.add("wheelbase")?.free = true;
-/// let text = model_text(&model);
-/// assert_eq!(text, "[[effect]]\nname = \"wheelbase\"\ne_b = 1.01\nfree = true\n");
-/// assert_eq!(parse_model("model.toml", &text, &Robot::labmate())?.0, model);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn model_text(model: &Model) -> String {
-    model_text_with(model, &[])
+impl ModelFile {
+    /// A model whose parameters are not drawn.
+    pub fn new(model: Model) -> ModelFile {
+        ModelFile { model, draws: Vec::new(), conversion: None }
+    }
+
+    /// A `model.toml` that reads back as this, to the last bit, with its nominal robot. Effects that a program has added to the
+    /// catalogue's are read by nobody.
+    ///
+    /// ```
+    /// use umbmark_core::{dataset::ModelFile, drive::Robot, effect::Model};
+    /// let mut model = Model::new(&Robot::labmate());
+    /// model.set("wheelbase", "e_b", 1.01)?;
+    /// let file = ModelFile::new(model);
+    /// assert!(file.text().ends_with("\n[[effect]]\nname = \"wheelbase\"\ne_b = 1.01\n"));
+    /// assert_eq!(ModelFile::parse("model.toml", &file.text(), None)?, file);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn text(&self) -> String {
+        let robot = robot_text(self.model.robot());
+        let effects = effects_with(&self.model, &self.draws);
+        if effects.is_empty() { robot } else { format!("{robot}\n{effects}") }
+    }
 }
 
-/// The same with the distributions of the parameters that are drawn from trial to trial.
-pub fn model_text_with(model: &Model, draws: &[Draw]) -> String {
+/// The effects of a model as they stand in a `model.toml`.
+pub fn effects_text(model: &Model) -> String {
+    effects_with(model, &[])
+}
+
+fn effects_with(model: &Model, draws: &[Draw]) -> String {
     let mut text = String::new();
     for part in model.parts() {
         if !text.is_empty() {
@@ -73,7 +87,6 @@ fn own(formula: &Formula, values: &[f64]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dataset::parse_model;
     use crate::drive::Robot;
     use crate::effect::{CATALOGUE, Target};
 
@@ -92,15 +105,15 @@ mod tests {
         model.add_formula(own, &[1.0 / 3.0, -1e-300]).unwrap().free = true;
         let bare = Formula::new("bare", Target::ForwardScale, "0.001", &[]).unwrap();
         model.add_formula(bare, &[]).unwrap();
-        let (read, draws) = parse_model("model.toml", &model_text(&model), &robot).unwrap();
-        assert_eq!(read, model);
-        assert!(draws.is_empty());
+        let file = ModelFile::new(model);
+        assert_eq!(ModelFile::parse("model.toml", &file.text(), None).unwrap(), file);
+        assert_eq!(ModelFile::parse("model.toml", &effects_text(&file.model), Some(&robot)).unwrap(), file);
     }
     #[test]
     fn what_is_drawn_reads_back_with_its_distribution() {
         let text = "[[effect]]\nname = \"scale\"\ne_s = { mean = 1.002, sd = 0.0005 }\n\n\
                     [[effect]]\nname = \"crab\"\nangle_rad = { min = 0.0, max = 0.01 }\n";
-        let (model, draws) = parse_model("model.toml", text, &Robot::labmate()).unwrap();
-        assert_eq!(model_text_with(&model, &draws), text);
+        let file = ModelFile::parse("model.toml", text, None).unwrap();
+        assert!(file.text().starts_with("[robot]\nname = \"TRC LabMate\"\n") && file.text().ends_with(text));
     }
 }

@@ -3,11 +3,11 @@
 //!
 //! `UMBMARK_TEST_CASES=1000000` damages each of the files a million times and prints how many were read.
 
-use super::model_file::parse_model;
+use super::model_file::ModelFile;
 use super::place::place;
 use super::recording::Recording;
 use super::reference_track::{PoseRow, ReferenceTrack};
-use super::robot_file::parse_robot;
+use super::robot_file::RobotFile;
 use super::sheet::{Cell, Rows, Sheet, split};
 use super::stale::drop_stale;
 use super::start_frame::move_to_start;
@@ -85,7 +85,7 @@ fn finished(recording: Recording, bits: Option<u32>) -> bool {
     let finite = |log: &TickLog| log.left.iter().chain(&log.right).chain(&log.time).all(|value| value.is_finite());
     log.is_ok_and(|mut log| {
         drop_stale("file", &mut log, &Robot::labmate(), &mut Vec::new());
-        let moved = move_to_start("file", &mut log, &mut Vec::new()).is_ok();
+        let moved = move_to_start("file", &mut log, None, &mut Vec::new()).is_ok();
         assert!(finite(&log));
         assert!(log.reference.iter().all(|p| p.x.is_finite() && p.y.is_finite()));
         moved
@@ -163,18 +163,18 @@ fn a_log_in_pieces_of_any_size_is_the_same_as_in_one_or_is_left_to_be_refused() 
 #[test]
 fn damaged_robots_and_models() {
     let robot = "[robot]\nname = \"a\"\nwheel_separation_m = 0.34\nwheel_diameter_left_m = 0.15\nwheel_diameter_right_m = 0.151\n\
-                 ticks_per_revolution = 2_000\nencoder_rate_hz = \"every tick\"\ncounter_bits = 16\n\n[path]\nshape = \"waypoints\"\n\
+                 ticks_per_revolution = 2_000\nencoder_rate_hz = \"every tick\"\ncounter_bits = 16\nwheels_exchanged = true\n\n[reference]\ny_mirrored = true\n\n[path]\nshape = \"waypoints\"\n\
                  points_m = [[1.0, 0.0], [1, 1]]\nspeed_m_s = 0.2\n";
     survive(robot, 4, |text| {
-        parse_robot("file", text).is_ok_and(|(robot, path)| {
+        RobotFile::parse("file", text).is_ok_and(|RobotFile { robot, path, .. }| {
             assert!(robot.metres_per_tick().left > 0.0 && path.is_none_or(|path| path.length().is_finite()));
             true
         })
     });
-    let model = "[[effect]]\nname = \"wheelbase\"\ne_b = { mean = 1.01, sd = 0.002 }\nfree = true\n\n\
+    let model = "[robot]\nwheelbase_m = 0.34\nwheel_diameter_m = 0.15\nticks_per_revolution = 2000\n\n[[effect]]\nname = \"wheelbase\"\ne_b = { mean = 1.01, sd = 0.002 }\nfree = true\n\n\
                  [[effect]]\nname = \"placed_bumps\"\ncount = 10\nheight_m = { min = 0.0, max = 0.02 }\nprofile = \"cable\"\n";
     survive(model, 5, |text| {
-        parse_model("file", text, &Robot::labmate()).is_ok_and(|(model, _)| {
+        ModelFile::parse("file", text, Some(&Robot::labmate())).is_ok_and(|ModelFile { model, .. }| {
             assert!(model.values().all(f64::is_finite));
             true
         })

@@ -61,10 +61,10 @@ impl Recording {
             ));
         }
         let [left, right] = match robot {
-            Some(robot) => robot.axle_ticks(ticks),
+            Some(robot) => robot.axle_ticks(robot.encoder.wiring().counters(ticks)),
             None => ticks,
         };
-        Ok(TickLog { time: self.time, left, right, reference: self.reference, mended, bumps: Vec::new() })
+        Ok(TickLog { time: self.time, left, right, reference: self.reference, mended, ..TickLog::default() })
     }
 
     fn add_up(&mut self) {
@@ -103,6 +103,7 @@ impl Recording {
         let robot = robot.filter(|robot| wheel == 0 || robot.drive.kind() == Kind::Differential);
         let fastest = robot.map_or(f64::INFINITY, |robot| FASTEST / metres_per_tick(robot, wheel));
         let mut before = readings.first().copied().unwrap_or(0.0);
+        let widths = widths_of(&readings);
         let (mut total, mut before_reset, mut origin) = (0.0, 0.0, before);
         for (at, reading) in readings.iter_mut().enumerate() {
             let after = *reading;
@@ -110,13 +111,13 @@ impl Recording {
             let expected = (usual * seconds).max(1.0);
             let plain = after - before;
             let mut step = bits.map_or(plain, |bits| roll_over(before as i64, after as i64, bits) as f64);
-            if was_reset(before, after, expected, bits) {
+            if was_reset(before, after, expected, bits, &widths) {
                 reset_rows.push(at);
                 (before_reset, origin, step) = (total, 0.0, after);
             } else {
                 *roll_overs += usize::from(step != plain);
             }
-            if let (None, Some(bits)) = (bits, rolled_bits(step.abs(), expected)) {
+            if let (None, Some(bits)) = (bits, rolled_bits(step.abs(), expected, &widths)) {
                 return Err(self.rolled_over(wheel, at, [before, after], bits));
             }
             if let Some(robot) = robot.filter(|_| step.abs() > fastest * seconds) {
@@ -195,19 +196,30 @@ impl Recording {
 
 /// Whether a counter was set back to zero: it showed many steps and shows next to none, and it did not roll over, after
 /// which it would show next to none as well, but before which it would have been full.
-fn was_reset(before: f64, after: f64, expected: f64, bits: Option<u32>) -> bool {
+fn was_reset(before: f64, after: f64, expected: f64, bits: Option<u32>, widths: &[u32]) -> bool {
     let fell = after.abs() <= AFTER_RESET * expected && before.abs() > BEFORE_RESET * expected;
     let full = |bits: u32| (f64::from(bits).exp2() - before).abs() <= 4.0 * expected;
     fell && !match bits {
         Some(bits) => full(bits),
-        None => USUAL_BITS.into_iter().any(full),
+        None => widths.iter().copied().any(full),
     }
 }
 
-/// The counter that rolled over where a wheel went `size` ticks and about `expected` are usual.
-fn rolled_bits(size: f64, expected: f64) -> Option<u32> {
+/// The usual widths of a counter that can show all of some readings, unsigned or signed.
+fn widths_of(readings: &[f64]) -> Vec<u32> {
+    let (least, most) = readings.iter().fold((0.0_f64, 0.0_f64), |(l, m), reading| (l.min(*reading), m.max(*reading)));
+    let fits = |bits: &u32| {
+        let range = f64::from(*bits).exp2();
+        (least >= 0.0 && most < range) || (least >= -0.5 * range && most < 0.5 * range)
+    };
+    USUAL_BITS.into_iter().filter(fits).collect()
+}
+
+/// The width of the counter that rolled over where a wheel went `size` ticks and about `expected` are usual, among the widths that
+/// can show all of its readings.
+fn rolled_bits(size: f64, expected: f64, widths: &[u32]) -> Option<u32> {
     let near = |bits: &u32| (size - f64::from(*bits).exp2()).abs() <= 4.0 * expected;
-    if size > 10.0 * expected { USUAL_BITS.into_iter().find(near) } else { None }
+    if size > 10.0 * expected { widths.iter().copied().find(near) } else { None }
 }
 
 /// The error of time that goes back, or stands still, at row `at`.
@@ -238,6 +250,22 @@ fn metres_per_tick(robot: &Robot, wheel: usize) -> f64 {
 mod tests {
     use super::*;
     use crate::random::Stream;
+
+    #[test]
+    fn a_width_is_named_only_where_all_readings_fit_it() {
+        // Readings from 1251429 down by about 4096 at once: no counter of 12 bits shows such numbers.
+        let large = [1_251_429.0, 1_251_430.0, 1_247_334.0];
+        assert_eq!(rolled_bits(4096.0, 1.0, &widths_of(&large)), None);
+        assert!(USUAL_BITS.contains(&12) && USUAL_BITS.contains(&16));
+        for (readings, bits) in [
+            (vec![4090.0, 4095.0, 2.0], Some(12)),
+            (vec![2040.0, 2047.0, -2046.0], Some(12)),
+            (vec![4090.0, 4096.0, 2.0], None),
+            (vec![2040.0, 2049.0, -2046.0], None),
+        ] {
+            assert_eq!(rolled_bits(4094.0, 1.0, &widths_of(&readings)), bits, "{readings:?}");
+        }
+    }
 
     #[test]
     fn the_usual_rate_is_the_one_that_a_sorted_list_has_at_ninety_nine_per_cent() {

@@ -1,9 +1,10 @@
-//! `robot.toml`: the nominal robot, its encoders and its path.
+//! `robot.toml`: the nominal robot, its encoders and its path, and how the measured poses are counted.
 
 use super::document::{Entry, Source, Table};
 use super::error::{DatasetError, did_you_mean};
+use super::reference_frame::ReferenceFrame;
 use super::text::read_text;
-use crate::drive::{DifferentialDrive, Drive, DriveError, Encoder, Kind, MAX_COUNTER_BITS, Robot};
+use crate::drive::{DifferentialDrive, Drive, DriveError, Encoder, Kind, MAX_COUNTER_BITS, Robot, Wiring};
 use crate::parameter::{DefaultValue, Parameter};
 use crate::path::{Path, PathError, SHAPES, Shape, SpeedProfile, WAYPOINTS};
 
@@ -28,28 +29,47 @@ const BITS: Parameter =
 const WHEELBASE_NAMES: [&str; 3] = [WHEELBASE.name, "wheel_separation_m", "track_width_m"];
 const EVERY_TICK: &str = "every tick";
 const POINTS: &str = "points_m";
+pub(super) const EXCHANGED: &str = "wheels_exchanged";
 
-/// The robot of a `robot.toml`, and its path where the file says one.
-pub fn read_robot(file: impl AsRef<std::path::Path>) -> Result<(Robot, Option<Path>), DatasetError> {
-    let file = file.as_ref();
-    parse_robot(&file.display().to_string(), &read_text(file)?)
+/// What a `robot.toml` says.
+#[derive(Clone, Debug)]
+pub struct RobotFile {
+    /// The nominal robot.
+    pub robot: Robot,
+    /// What it was told to drive, where the file says it.
+    pub path: Option<Path>,
+    /// How the measured poses of its logs are counted.
+    pub reference: ReferenceFrame,
 }
 
-/// The same from text; `file` is what messages call it.
-pub fn parse_robot(file: &str, text: &str) -> Result<(Robot, Option<Path>), DatasetError> {
-    let source = Source { file, text };
-    let root = source.parse()?;
-    let root = Table::root(&source, &root);
-    root.only(&["robot", "path"])?;
-    let robot = root.need("robot", "a table [robot] with wheelbase_m, wheel_diameter_m and ticks_per_revolution")?;
-    let robot = read_robot_table(&robot.table("[robot]".into())?)?;
-    let path = root.get("path").map(|path| read_path_table(&path.table("[path]".into())?)).transpose()?;
-    Ok((robot, path))
+impl RobotFile {
+    /// Reads a `robot.toml`.
+    pub fn read(file: impl AsRef<std::path::Path>) -> Result<RobotFile, DatasetError> {
+        let file = file.as_ref();
+        RobotFile::parse(&file.display().to_string(), &read_text(file)?)
+    }
+
+    /// The same from text; `file` is what messages call it.
+    pub fn parse(file: &str, text: &str) -> Result<RobotFile, DatasetError> {
+        let source = Source { file, text };
+        let root = source.parse()?;
+        let root = Table::root(&source, &root);
+        root.only(&["robot", "path", "reference"])?;
+        let robot =
+            root.need("robot", "a table [robot] with wheelbase_m, wheel_diameter_m and ticks_per_revolution")?;
+        let robot = read_robot_table(&robot.table("[robot]".into())?)?;
+        let path = root.get("path").map(|path| read_path_table(&path.table("[path]".into())?)).transpose()?;
+        let reference =
+            root.get("reference").map(|entry| ReferenceFrame::of_table(&entry.table("[reference]".into())?));
+        Ok(RobotFile { robot, path, reference: reference.transpose()?.unwrap_or_default() })
+    }
 }
 
-fn read_robot_table(table: &Table) -> Result<Robot, DatasetError> {
+/// The table of a robot.
+pub(super) fn read_robot_table(table: &Table) -> Result<Robot, DatasetError> {
     let kind = table.get("drive").map_or(Ok(Kind::Differential), |drive| read_kind(&drive))?;
-    let mut keys = vec!["name", "drive"];
+    let backward = kind.counters().map(|counter| format!("{counter}_counts_backward"));
+    let mut keys = vec!["name", "drive", EXCHANGED, &backward[0], &backward[1]];
     if kind == Kind::Differential {
         keys.extend(WHEELBASE_NAMES);
         keys.extend([DIAMETER, DIAMETER_LEFT, DIAMETER_RIGHT, RADIUS].map(|p| p.name));
@@ -63,9 +83,11 @@ fn read_robot_table(table: &Table) -> Result<Robot, DatasetError> {
         Kind::Differential => read_differential(table)?,
         _ => Drive::from_values(kind, &read_numbers(table, kind.parameters())?),
     };
+    let flag = |key: &str| table.get(key).map_or(Ok(false), |entry| entry.flag());
+    let wiring = Wiring { exchanged: flag(EXCHANGED)?, backward: [flag(&backward[0])?, flag(&backward[1])?] };
     let encoder = Encoder::new(table.number(&TICKS)?, read_rate(table)?, read_bits(table)?);
     match (drive, encoder) {
-        (Ok(drive), Ok(encoder)) => Ok(Robot { name: name.to_owned(), drive, encoder }),
+        (Ok(drive), Ok(encoder)) => Ok(Robot { name: name.to_owned(), drive, encoder: encoder.wired(wiring) }),
         (Err(error), _) | (_, Err(error)) => Err(table.missing("possible values", &error.to_string())),
     }
 }

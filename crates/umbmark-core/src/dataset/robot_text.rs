@@ -1,19 +1,43 @@
 //! `robot.toml` as text.
 
-use super::robot_file::is_waypoints;
+use super::RobotFile;
+use super::reference_frame::ReferenceFrame;
+use super::robot_file::{EXCHANGED, is_waypoints};
 use crate::drive::{Kind, Robot};
 use crate::path::{Path, SpeedProfile};
 use std::fmt::Write;
 
-/// A commented `robot.toml` that reads back as this robot and this path, to the last bit.
-///
-/// ```
-/// use umbmark_core::{dataset::{parse_robot, robot_text}, drive::Robot, path::Path};
-/// let text = robot_text(&Robot::labmate(), Some(&Path::umbmark()));
-/// assert_eq!(parse_robot("robot.toml", &text)?.0, Robot::labmate());
-/// # Ok::<(), umbmark_core::dataset::DatasetError>(())
-/// ```
-pub fn robot_text(robot: &Robot, path: Option<&Path>) -> String {
+impl RobotFile {
+    /// A robot and its path, whose measured poses are counted as they are meant to be.
+    pub fn new(robot: Robot, path: Option<Path>) -> RobotFile {
+        RobotFile { robot, path, reference: ReferenceFrame::default() }
+    }
+
+    /// A commented `robot.toml` that reads back as this, to the last bit.
+    ///
+    /// ```
+    /// use umbmark_core::{dataset::RobotFile, drive::Robot, path::Path};
+    /// let file = RobotFile::new(Robot::labmate(), Some(Path::umbmark()));
+    /// assert_eq!(RobotFile::parse("robot.toml", &file.text())?.robot, Robot::labmate());
+    /// # Ok::<(), umbmark_core::dataset::DatasetError>(())
+    /// ```
+    pub fn text(&self) -> String {
+        let mut text = robot_text(&self.robot);
+        if let Some(path) = &self.path {
+            text.push_str("\n[path]\n");
+            push_path(&mut text, path);
+        }
+        let said: Vec<_> = self.reference.keys().into_iter().filter(|(_, is, _)| *is).collect();
+        if !said.is_empty() {
+            text.push_str("\n[reference]\n");
+            said.into_iter().for_each(|(key, _, meaning)| line(&mut text, key, "true", meaning));
+        }
+        text
+    }
+}
+
+/// The table `[robot]` of a nominal robot, which reads back to the last bit.
+pub(super) fn robot_text(robot: &Robot) -> String {
     let mut text = String::from("[robot]\n");
     let name = toml::Value::from(robot.name.as_str()).to_string();
     line(&mut text, "name", &name, "");
@@ -27,9 +51,19 @@ pub fn robot_text(robot: &Robot, path: Option<&Path>) -> String {
     if let Some(bits) = encoder.counter_bits() {
         line(&mut text, "counter_bits", &bits.to_string(), "the counters roll over");
     }
-    if let Some(path) = path {
-        text.push_str("\n[path]\n");
-        push_path(&mut text, path);
+    let wiring = encoder.wiring();
+    for (counter, backward) in robot.drive.kind().counters().iter().zip(wiring.backward) {
+        if backward {
+            line(
+                &mut text,
+                &format!("{counter}_counts_backward"),
+                "true",
+                &format!("the column ticks_{counter} counts down ahead"),
+            );
+        }
+    }
+    if wiring.exchanged {
+        line(&mut text, EXCHANGED, "true", "the columns of the counters are exchanged");
     }
     text
 }

@@ -3,9 +3,8 @@
 use super::error::DatasetError;
 use super::folder::{RETURNS, ROBOT, RUNS};
 use super::label;
-use super::robot_text::robot_text;
 use super::sheets::{returns_text, tick_log_text};
-use super::{Dataset, Run, TickLog};
+use super::{Dataset, RobotFile, Run, TickLog};
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -59,7 +58,9 @@ impl Dataset {
     ) -> Result<Dataset, DatasetError> {
         let robot = self.nominal_robot()?;
         let mut files = BTreeMap::new();
-        files.insert(PathBuf::from(ROBOT), robot_text(robot, self.path.as_ref()).into_bytes());
+        // The poses are written as they are meant to be.
+        let robot_file = RobotFile::new(robot.clone(), self.path.clone());
+        files.insert(PathBuf::from(ROBOT), robot_file.text().into_bytes());
         files.extend(returns_text(&self.runs).map(|text| (PathBuf::from(RETURNS), text.into_bytes())));
         for run in &self.runs {
             let Some(log) = &run.log else { continue };

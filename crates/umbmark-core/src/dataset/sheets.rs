@@ -39,7 +39,7 @@ pub(super) fn returns_text(runs: &[Run]) -> Option<String> {
 /// shows them, rolled over where it does.
 pub(super) fn tick_log_text(log: &TickLog, robot: &Robot) -> String {
     let (encoder, kind) = (&robot.encoder, robot.drive.kind());
-    let [first, second] = robot.counters([&log.left, &log.right]);
+    let [first, second] = encoder.wiring().columns(robot.counters([&log.left, &log.right]));
     let shown = |ticks: f64| encoder.reading(ticks.floor() as i64) as f64 + (ticks - ticks.floor());
     let mut text = String::with_capacity(40 * log.time.len());
     let referenced = !log.reference.is_empty();

@@ -1,9 +1,9 @@
 //! Poses that a tracking system repeated while the robot moved on.
 
-use super::dead_reckoning::computed_poses;
 use super::{ReferencePose, TickLog};
 use crate::drive::Robot;
 use crate::geometry::Pose2;
+use crate::run::dead_reckoning::computed_poses;
 
 /// A pose that stays the same to the last bit while the robot drives so far, or turns so far, is stale \[m, rad\].
 const MOVED: (f64, f64) = (0.005, 0.010);

@@ -13,13 +13,14 @@ mod coarse;
 mod motion;
 mod windows;
 
-use super::dead_reckoning::{computed_poses, standing_at_start};
 use super::place::place;
 use super::reference_track::{PoseRow, ReferenceTrack};
 use super::{DatasetError, TickLog};
 use crate::drive::Robot;
 use crate::fit::{Options, jackknife_covariance, least_squares};
 use crate::geometry::Pose2;
+use crate::run::dead_reckoning::{computed_poses, standing_at_start};
+pub use crate::setup::Measured;
 use crate::stats::{Interval, student_t_quantile};
 use motion::Motion;
 use nalgebra::DMatrix;
@@ -35,26 +36,6 @@ const BELIEVED: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 /// Windows whose residual is so many times the median one are left out of a second fit: markers that were mistaken, poses that
 /// froze.
 const FAR_OFF: f64 = 12.0;
-
-/// A quantity with its standard error and its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Measured {
-    /// The estimate.
-    pub value: f64,
-    /// Its standard error.
-    pub std_error: f64,
-    /// Its 95 % interval.
-    pub interval: Interval,
-}
-
-impl Measured {
-    /// The quantity less a number that is known.
-    pub(super) fn less(&self, known: f64) -> Measured {
-        let Interval { low, high } = self.interval;
-        let interval = Interval { low: low - known, high: high - known };
-        Measured { value: self.value - known, interval, ..*self }
-    }
-}
 
 /// How a track lies against the wheel counts: τ = offset + rate · t, and from the axle to the tracked point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

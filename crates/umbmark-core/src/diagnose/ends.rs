@@ -15,11 +15,13 @@ mod verdict;
 use crate::calibrate::evidence::{Drive, end_poses};
 use crate::calibrate::{CalibrateError, noise_shape};
 use crate::dataset::Dataset;
+use crate::diagnose::{DiagnoseError, Reason};
 use crate::drive::Robot;
 use crate::effect::{Evaluate, Model, ModelError};
 use crate::geometry::{Pose2, wrap};
 use crate::path::{Direction, Path};
 use crate::replay::Track;
+use crate::setup::Setup;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -42,6 +44,10 @@ pub(crate) struct Ends {
     pub runs: Vec<End>,
     tracks: Vec<Arc<Believed>>,
     pub with_heading: bool,
+    /// What was found of the data, where it was [examined](Ends::examined).
+    pub setup: Arc<Setup>,
+    /// Why these return errors are not to be believed.
+    pub doubts: Vec<Reason>,
 }
 
 /// One run.
@@ -76,11 +82,38 @@ impl Ends {
         let robot = data.robot.clone().ok_or(CalibrateError::NoRobot)?;
         let drives = end_poses(data, &robot)?;
         let with_heading = drives.iter().all(|d| d.seen.iter().all(|s| s.heading.is_some()));
-        let mut ends = Ends { robot, path: data.path.clone(), runs: Vec::new(), tracks: Vec::new(), with_heading };
+        let mut ends = Ends {
+            robot,
+            path: data.path.clone(),
+            runs: Vec::new(),
+            tracks: Vec::new(),
+            with_heading,
+            setup: Arc::default(),
+            doubts: Vec::new(),
+        };
         for drive in drives {
             ends.push(drive);
         }
         Ok(ends)
+    }
+
+    /// The return poses of a dataset, with what is found of them before any fit.
+    pub fn examined(data: &Dataset) -> Result<Ends, CalibrateError> {
+        let ends = Ends::new(data)?;
+        let setup = Setup::of(&data.runs, &ends.robot, data.path.as_ref());
+        let doubts = setup.doubts(&data.runs);
+        Ok(Ends { setup: Arc::new(setup), doubts, ..ends })
+    }
+
+    /// Whether all columns are what they are called.
+    pub fn is_sound(&self) -> bool {
+        self.setup.all_faults().next().is_none()
+    }
+
+    /// Refuses columns that are not what they are called.
+    pub fn check_columns(&self) -> Result<(), DiagnoseError> {
+        let faults: Vec<_> = self.setup.all_faults().cloned().collect();
+        if faults.is_empty() { Ok(()) } else { Err(DiagnoseError::Faulty { faults }) }
     }
 
     fn push(&mut self, drive: Drive) {

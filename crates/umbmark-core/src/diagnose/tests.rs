@@ -358,3 +358,37 @@ fn where_no_exact_test_applies_simulated_ones_have_their_size() {
         assert!(share < 0.05 + margin(0.05, trials), "{share}");
     }
 }
+
+/// Seed 23: a complete model of ten runs, one of them typed wrongly; and all of them in millimetres.
+#[test]
+fn a_typing_error_or_a_wrong_unit_is_never_explained() {
+    let options = Options::default();
+    let data = simulated(&robot_with(&[]), &Path::umbmark(), 5, 23, 0..1).remove(0);
+    let told = diagnose(&data, &base(), &options).unwrap();
+    assert_eq!((told.verdict, told.reasons.len()), (Verdict::Explained, 0));
+    let changed = |change: &dyn Fn(usize, &mut ReturnError)| {
+        let mut data = data.clone();
+        let returns = data.runs.iter_mut().filter_map(|run| run.returned.as_mut());
+        returns.enumerate().for_each(|(run, own)| change(run, own));
+        data
+    };
+    let typed = changed(&|run, own| own.y = if run == 3 { 2.01 } else { own.y });
+    let told = diagnose(&typed, &base(), &options).unwrap();
+    assert_ne!(told.verdict, Verdict::Explained);
+    assert!(
+        matches!(&told.reasons[..], [Reason::OutlyingReturn(run)] if run.run == data.runs[3].name),
+        "{:?}",
+        told.reasons
+    );
+    let learnt = crate::learn::learn(&typed, &options).unwrap();
+    assert!(learnt.verdict != Verdict::Explained && learnt.diagnosis.reasons[0].is_of_data());
+    let models = [("fitted".to_owned(), told.model)];
+    let compared = crate::compare::compare(&typed, &models, &options).unwrap();
+    assert!(!compared.models[0].explains(0.05) && compared.models[0].in_doubt);
+    let in_mm = changed(&|_, own| (own.x, own.y) = (1e3 * own.x, 1e3 * own.y));
+    let told = diagnose(&in_mm, &base(), &options).unwrap();
+    assert_eq!(told.verdict, Verdict::NotExplained);
+    assert!(matches!(told.reasons[..], [Reason::Fault(Fault::ReturnsIn { .. })]), "{:?}", told.reasons);
+    assert!(matches!(crate::learn::fit(&in_mm, &base()), Err(DiagnoseError::Faulty { .. })));
+    assert_eq!(crate::learn::learn(&in_mm, &options).unwrap().verdict, Verdict::NotExplained);
+}

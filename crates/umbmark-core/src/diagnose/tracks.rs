@@ -11,6 +11,7 @@
 
 mod alone;
 mod curve;
+mod doubts;
 mod errors;
 mod examination;
 mod experiments;
@@ -18,26 +19,30 @@ mod flips;
 pub(crate) mod growth;
 mod look;
 mod responses;
+mod search;
 mod smooth;
 mod suggestion;
 mod system;
 
 use super::{
     Dependence, Detectable, DiagnoseError, Diagnosis, Estimate, Experiment, GoodnessOfFit, Identifiability, Level,
-    Likeness, Options, Suspect, Unseen, Verdict, Why, experiments::worth,
+    Likeness, Options, Reason, Suspect, Unseen, Verdict, Why, experiments::worth,
 };
 use crate::diagnose::likeness::correlations;
-use crate::likelihood::{Fitted, Observed};
+use crate::effect::Model;
+use crate::likelihood::{Fitted, Noise, Observed};
 use crate::stats::{chi_squared_upper_tail, normal_quantile};
 use crate::watch::Watch;
-use responses::{Asked, Question};
+use responses::Question;
 use smooth::Motion;
+use std::sync::Arc;
 use system::Projected;
 
-pub(crate) use alone::Alone;
+pub(crate) use alone::{Alone, trusted};
 pub use errors::Misses;
 pub(crate) use examination::Examination;
-pub(crate) use look::Finding;
+pub(crate) use look::{Finding, class_of_own};
+pub(crate) use search::{Search, search};
 pub use suggestion::Suggestion;
 
 /// Share by which errors in runs left out must fall for an effect to count: less is not worth a parameter.
@@ -54,125 +59,6 @@ const LOUD: f64 = 1e-20;
 const MOST: usize = 3;
 /// Fewer runs give no certificate.
 const FEWEST: usize = 2;
-
-/// What a fitted model is missing.
-pub(crate) struct Missing {
-    /// The certified effect that would be added.
-    pub effect: Option<(Finding, Suspect)>,
-    /// A certified smooth that this effect, or none, explains.
-    pub smooth: Option<Finding>,
-    /// All effects that were asked, the likeliest first.
-    pub asked: Vec<Suspect>,
-}
-
-/// Looks for what is missing.
-fn missing(exam: &Examination, options: &Options) -> Missing {
-    let findings = look::effects(exam, options);
-    let smooth = look::smooths(exam, options).iter().find(|s| s.certified(options)).cloned();
-    let enough = exam.fitted.observed.runs.len() >= FEWEST;
-    let best = if enough { first_with_gain(exam, &findings, options) } else { None };
-    let unexplained = smooth.filter(|smooth| !explains(exam, best, smooth) && smooth_gains(exam, smooth));
-    Missing {
-        effect: best.and_then(|finding| look::suspect(exam, finding).map(|suspect| (finding.clone(), suspect))),
-        smooth: unexplained,
-        asked: findings.iter().filter_map(|finding| look::suspect(exam, finding)).collect(),
-    }
-}
-
-/// Whether an effect explains as much as a smooth does, both asked beside the same.
-fn explains(exam: &Examination, effect: Option<&Finding>, smooth: &Finding) -> bool {
-    let Some(effect) = effect else { return false };
-    let whole = &exam.system.whole;
-    let beside = Projected::new(whole, effect.base());
-    let drop = exam.answer(&beside, whole, smooth.answer.asked).map_or(0.0, |answer| answer.drop);
-    effect.answer.drop >= EXPLAINED * drop
-}
-
-/// The first certified effect with which runs left out are predicted better, the choice being made anew without each.
-///
-/// Physics comes before the reference: an effect is asked beside all effects of the reference and stands for itself, where a
-/// delay, asked without itself, takes a share of what physics explains better.
-fn first_with_gain<'a>(exam: &Examination, findings: &'a [Finding], options: &Options) -> Option<&'a Finding> {
-    let nuisance = |finding: &Finding| exam.asked[finding.answer.asked].nuisance;
-    for of_reference in [false, true] {
-        let mut passed: Vec<&str> = Vec::new();
-        let own = findings.iter().filter(|f| nuisance(f) == of_reference && f.certified(options));
-        let own = own.filter(|f| look::possible(exam, f));
-        for finding in own.take(TRIES) {
-            let wanted = |asked: &Asked| {
-                let name = asked.effect().map_or("", |effect| effect.about.name);
-                asked.nuisance == of_reference && !passed.contains(&name)
-            };
-            // Effects of the reference are in both predictions, so that the gain is the effect's own.
-            let beside: Vec<usize> = finding.base().iter().copied().filter(|c| !exam.free.contains(c)).collect();
-            let before = exam.left_out(&beside);
-            let after = exam.left_out_with(&beside, |products| exam.likeliest(products, wanted));
-            if after.gain(&before) >= LEAST_GAIN {
-                return Some(finding);
-            }
-            passed.extend(exam.asked[finding.answer.asked].effect().map(|effect| effect.about.name));
-        }
-    }
-    None
-}
-
-/// Whether runs left out are predicted better with a smooth.
-fn smooth_gains(exam: &Examination, finding: &Finding) -> bool {
-    let own = &finding.answer.columns;
-    let errors = exam.errors_with(own);
-    let of = |columns: Vec<usize>| {
-        errors.misses(|run| {
-            let values = Projected::fit(&exam.system.without(run), &columns);
-            (columns.clone(), values)
-        })
-    };
-    let base = exam.base(None);
-    of([&base[..], own].concat()).gain(&of(base.clone())) >= TELLING
-}
-
-/// What was found missing, one effect after the other, each fitted before the next was asked about.
-pub(crate) struct Search {
-    /// The model as it was, and after each effect.
-    pub exams: Vec<Examination>,
-    /// The effects.
-    pub added: Vec<(Finding, Suspect)>,
-    /// What the last model is missing and was not added.
-    pub left: Missing,
-}
-
-/// Adds what is certified as missing, at most `most` effects, each fitted without approximation before the next is asked; once
-/// stopped, no more.
-pub(crate) fn search(fitted: Fitted, options: &Options, most: usize, watch: &Watch) -> Result<Search, DiagnoseError> {
-    let exam = Examination::new(fitted)?;
-    let left = missing(&exam, options);
-    let mut search = Search { exams: vec![exam], added: Vec::new(), left };
-    let goes_on = |search: &Search| search.added.len() < most && !watch.is_stopped();
-    while let Some((finding, suspect)) = search.left.effect.clone().filter(|_| goes_on(&search)) {
-        (watch.progress)((search.added.len() + 1) as f64 / (most + 1) as f64);
-        let exam = search.last().of_grown(growth::grown(search.last(), &suspect)?)?;
-        if search.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&exam, smooth, options)) {
-            break;
-        }
-        search.left = missing(&exam, options);
-        search.exams.push(exam);
-        search.added.push((finding, suspect));
-    }
-    Ok(search)
-}
-
-impl Search {
-    /// The last examination.
-    pub fn last(&self) -> &Examination {
-        &self.exams[self.exams.len() - 1]
-    }
-}
-
-/// Whether a smooth that an effect seemed not to explain is there after that effect was fitted. What one linear step
-/// leaves of a large effect is gone then; what is not in the catalogue is not.
-fn speaks_on(exam: &Examination, smooth: &Finding, options: &Options) -> bool {
-    let mut now = look::smooths(exam, options).iter().filter(|finding| finding.certified(options));
-    now.any(|finding| finding.answer.drop > (1.0 - EXPLAINED) * smooth.answer.drop)
-}
 
 /// A smooth, for people.
 pub(crate) fn dependence(exam: &Examination, finding: &Finding, asked: &[Suspect]) -> Option<Dependence> {
@@ -193,9 +79,10 @@ pub(crate) fn dependence(exam: &Examination, finding: &Finding, asked: &[Suspect
 
 /// Fits a model's free parameters to tracks and asks every other effect, and every smooth, whether it is missing.
 pub(crate) fn diagnose(fitted: Fitted, options: &Options) -> Result<Diagnosis, DiagnoseError> {
-    let search = Watch::nobody(|watch| search(fitted, options, MOST, watch))?;
+    let search = Watch::nobody(|watch| search(fitted, options, MOST, Vec::new(), watch))?;
     let verdict = verdict(&search);
-    let Search { mut exams, added, left } = search;
+    let reasons = doubts_of(search.last(), options);
+    let Search { mut exams, added, left, .. } = search;
     let last = exams.len() - 1;
     let told = left.smooth.as_ref().and_then(|finding| dependence(&exams[last], finding, &left.asked));
     let mut certified: Vec<Suspect> = Vec::new();
@@ -214,7 +101,29 @@ pub(crate) fn diagnose(fitted: Fitted, options: &Options) -> Result<Diagnosis, D
     diagnosis.remarks.extend(hints);
     let mut next_experiments = [experiments, diagnosis.next_experiments].concat();
     next_experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
-    Ok(Diagnosis { verdict, ranking, certified: certified.len(), next_experiments, ..diagnosis })
+    let verdict = if verdict == Verdict::Explained && !reasons.is_empty() { Verdict::NotExplained } else { verdict };
+    Ok(Diagnosis { verdict, ranking, certified: certified.len(), next_experiments, reasons, ..diagnosis })
+}
+
+/// What speaks against the model of an examination as a whole.
+pub(crate) fn doubts_of(exam: &Examination, options: &Options) -> Vec<Reason> {
+    let Examination { fitted, errors, .. } = exam;
+    doubts::of_model(&fitted.observed, &fitted.model, &fitted.noise, &errors.in_sample(), options.seed)
+}
+
+/// The same of a model with the values that it has, nothing but START fitted: under the noise that would make what it leaves
+/// likeliest.
+pub(crate) fn doubts_as_written(observed: &Observed, model: &Model, options: &Options) -> Vec<Reason> {
+    if observed.runs.is_empty() {
+        return Vec::new();
+    }
+    let fixed = observed.whole().unfitted(model, &Noise::default());
+    let chain = fixed.model.chain();
+    let columns: Vec<Vec<_>> = fixed.observed.runs.iter().map(|run| vec![run.residuals_along(&chain)]).collect();
+    let noise = Noise::estimate(&fixed.observed, &chain, &columns, &fixed.noise);
+    let system = system::System::new(&fixed.observed, &noise, &columns);
+    let errors = errors::Errors::new(&fixed.observed, &system, &columns, vec![0]);
+    doubts::of_model(&fixed.observed, model, &noise, &errors.in_sample(), options.seed)
 }
 
 /// Drives that would tell apart the members of a certified class, and for those that none does, what their own pages say.
@@ -291,6 +200,9 @@ pub(crate) fn conclude(
         identifiability: Identifiability { shares: Vec::new(), rank: exam.free.len(), hidden: Vec::new() },
         remarks: remarks(&exam, dependence.as_ref()),
         outliers: exam.fitted.outliers.clone(),
+        setup: Arc::clone(&exam.fitted.observed.setup),
+        taken: exam.fitted.taken.clone(),
+        reasons: Vec::new(),
         dependence,
         model: exam.fitted.model,
     })
@@ -309,7 +221,7 @@ pub(crate) fn estimates(fitted: &Fitted) -> Vec<Estimate> {
         parameter: names[*index].1,
         value: values[*index],
         standard_error: fitted.covariance.as_ref().map_or(f64::NAN, |c| c[(k, k)].max(0.0).sqrt()),
-        degrees_of_freedom: (fitted.observed.runs.len().max(2) - 1) as f64,
+        degrees_of_freedom: (system::folds_of(&fitted.observed).max(2) - 1) as f64,
     };
     fitted.free.iter().enumerate().map(of).collect()
 }
@@ -442,18 +354,17 @@ fn remarks(exam: &Examination, unlisted: Option<&Dependence>) -> Vec<String> {
     remarks
 }
 
-/// The free parameters of a model that predict whole runs best.
-pub(crate) fn predicting(observed: &Observed, model: &crate::effect::Model) -> Result<Fitted, DiagnoseError> {
-    Ok(Alone::new(fit(observed, model)?).predicting()?)
-}
-
-/// Fits the free parameters of a model to what is new from pose to pose.
-pub(crate) fn fit(observed: &Observed, model: &crate::effect::Model) -> Result<Fitted, DiagnoseError> {
+/// Fits the free parameters of a model to what is new from pose to pose, beginning with what the motion says of the reference.
+pub(crate) fn fit(observed: &Observed, model: &Model) -> Result<Fitted, DiagnoseError> {
+    if !observed.setup.is_sound() {
+        return Err(DiagnoseError::Faulty { faults: observed.setup.faults.clone() });
+    }
     model.check_along(observed.tracks().flat_map(|track| track.contexts()))?;
-    let fitted = observed.fit(model, &crate::likelihood::Noise::default(), &[])?;
+    let (model, taken) = observed.begin(model)?;
+    let fitted = Fitted { taken, ..observed.fit(&model, &Noise::default(), &[])? };
     // Where the size of a formula began at 0, its shape shows only now.
     if model.has_formulas() && observed.free_values(&fitted.model).len() > fitted.free.len() {
-        return Ok(observed.fit(&fitted.model, &fitted.noise, &[])?);
+        return Ok(Fitted { taken: fitted.taken, ..observed.fit(&fitted.model, &fitted.noise, &[])? });
     }
     Ok(fitted)
 }

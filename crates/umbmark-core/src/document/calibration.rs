@@ -1,6 +1,7 @@
 //! `calibrate`.
 
 use super::ends;
+use super::setup::{setup, taken};
 use crate::calibrate::{Calibration, Estimate, Level, Method, Ratio, Replayed};
 use crate::drive::Robot;
 use serde_json::{Map, Value, json};
@@ -16,6 +17,9 @@ pub fn calibration(robot: &Robot, calibration: &Calibration, level: f64) -> Valu
         "observed": level_name(calibration.level),
         "heading_arm_m": calibration.heading_arm,
         "level": level,
+        "setup": setup(&calibration.setup),
+        "taken": taken(&calibration.taken),
+        "doubts": calibration.doubts,
         "warnings": calibration.warnings,
         "version": crate::VERSION,
     })

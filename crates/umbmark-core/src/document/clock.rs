@@ -13,7 +13,7 @@ pub fn clock(clock: &RunClock) -> Value {
 }
 
 /// An alignment: each quantity with standard error and 95 % interval.
-pub(super) fn alignment(alignment: &Alignment) -> Value {
+fn alignment(alignment: &Alignment) -> Value {
     let measured = |m: &Measured| json!({ "value": m.value, "std_error": m.std_error, "interval": ends(m.interval) });
     json!({
         "offset_s": measured(&alignment.offset),

@@ -1,5 +1,6 @@
 //! `compare`.
 
+use super::setup::setup;
 use super::square::square;
 use crate::compare::{Comparison, Judged, NoiseSource};
 use crate::diagnose::Options;
@@ -12,6 +13,7 @@ pub fn comparison(comparison: &Comparison, options: &Options) -> Value {
         "n_cw": comparison.runs[0],
         "n_ccw": comparison.runs[1],
         "models": comparison.models.iter().map(|m| model_json(m, options)).collect::<Vec<_>>(),
+        "setup": setup(&comparison.setup),
         "remarks": comparison.remarks,
         "size": options.size,
         "draws": options.draws,

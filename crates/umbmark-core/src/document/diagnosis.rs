@@ -1,9 +1,10 @@
 //! `diagnose`.
 
 use super::fitted::{estimates, meaning, outliers};
+use super::setup::{reasons, setup, taken};
 use super::square::square;
 use super::{finite, model::model};
-use crate::dataset::model_text;
+use crate::dataset::effects_text;
 use crate::diagnose::{
     CurvePoint, Dependence, Detectable, Diagnosis, Estimate, Experiment, Identifiability, Level, Options, Suspect,
     Unseen, Why,
@@ -39,6 +40,9 @@ pub fn diagnosis(diagnosis: &Diagnosis, options: &Options) -> Value {
         "model": model(&diagnosis.model),
         "meaning": meaning(&diagnosis.fitted, &diagnosis.model),
         "outliers": outliers(&diagnosis.outliers),
+        "setup": setup(&diagnosis.setup),
+        "taken": taken(&diagnosis.taken),
+        "reasons": reasons(&diagnosis.reasons),
         "remarks": diagnosis.remarks,
         "size": options.size,
         "draws": options.draws,
@@ -68,7 +72,7 @@ pub(super) fn unlisted(unlisted: Option<&Dependence>) -> Value {
             "suggestion": told.suggestion.as_ref().map(|suggestion| {
                 let mut model = model(&suggestion.model);
                 model["share"] = json!(suggestion.share);
-                model["toml"] = json!(model_text(&suggestion.model));
+                model["toml"] = json!(effects_text(&suggestion.model));
                 model
             }),
         })

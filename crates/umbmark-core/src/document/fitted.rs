@@ -1,10 +1,11 @@
 //! `fit`.
 
+use super::setup::{setup, taken};
 use super::{ends, finite, model::model};
 use crate::diagnose::Estimate;
 use crate::effect::Model;
 use crate::learn::Fit;
-use crate::likelihood::{Outlier, Weighing};
+use crate::likelihood::Outlier;
 use serde_json::{Map, Value, json};
 
 /// A fit: its numbers, the free effects that the data does not show, and the model.
@@ -14,7 +15,9 @@ pub fn fitted(fit: &Fit, level: f64) -> Value {
         "not_shown": not_shown(&fit.model, &fit.estimates),
         "meaning": meaning(&fit.estimates, &fit.model),
         "outliers": outliers(&fit.outliers),
-        "weighed": fit.weighing.map(Weighing::name),
+        "usual_noise": fit.usual_noise,
+        "setup": setup(&fit.setup),
+        "taken": taken(&fit.taken),
         "model": model(&fit.model),
         "level": level,
         "version": crate::VERSION,

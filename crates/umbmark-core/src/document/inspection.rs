@@ -1,10 +1,9 @@
 //! `inspect`.
 
-use super::clock::{alignment, clock};
+use super::clock::clock;
 use super::nominal::{path, robot};
-use crate::dataset::{
-    Dataset, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, RunTopics, Wheels, WheelsFound,
-};
+use super::setup::measured;
+use crate::dataset::{Dataset, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, RunTopics, Wheels};
 use crate::path::Direction;
 use serde_json::{Value, json};
 
@@ -20,10 +19,15 @@ pub fn inspection(place: &str, data: &Dataset, found: &Inspection) -> Value {
         .checks
         .iter()
         .map(|check| json!({ "name": check.name, "found": check.found, "good": check.good, "ok": check.ok }));
-    let determined = found
-        .determined
-        .iter()
-        .map(|answer| json!({ "quantity": answer.quantity, "yes": answer.yes, "because": answer.because }));
+    let determined = found.determined.iter().map(|answer| {
+        json!({
+            "quantity": answer.quantity,
+            "yes": answer.yes,
+            "std_error": answer.std_error,
+            "usual_size": answer.usual,
+            "because": answer.because,
+        })
+    });
     json!({
         "data": place,
         "robot": data.robot.as_ref().map(robot),
@@ -35,6 +39,7 @@ pub fn inspection(place: &str, data: &Dataset, found: &Inspection) -> Value {
         "checks": checks.collect::<Vec<Value>>(),
         "determined": determined.collect::<Vec<Value>>(),
         "rank": found.rank,
+        "setup": found.setup.as_ref().map(super::setup::setup),
         "warnings": found.warnings,
         "version": crate::VERSION,
     })
@@ -71,9 +76,9 @@ fn log_json(log: &LogFacts) -> Value {
         "length_m": log.length,
         "heading_rad": log.heading,
         "heading_off_rad": log.heading_off,
-        "wheels": log.wheels.as_ref().map(wheels_json),
+        "wheels": log.wheels.map(wheels_json),
         "moves": log.moves.as_ref().map(moves_json),
-        "alignment": log.alignment.as_ref().map(alignment),
+        "delay_s": log.delay.as_ref().map(measured),
         "reference": log.reference.as_ref().map(reference_json),
     })
 }
@@ -89,18 +94,16 @@ fn moves_json(moves: &MovesFound) -> Value {
     })
 }
 
-fn wheels_json(found: &WheelsFound) -> Value {
-    let (exchanged, left, right) = match found.wheels {
+fn wheels_json(wheels: Wheels) -> Value {
+    let (exchanged, left, right) = match wheels {
         Wheels::AsGiven => (false, false, false),
         Wheels::Otherwise { exchanged, left_backward, right_backward } => (exchanged, left_backward, right_backward),
     };
     json!({
-        "as_named": found.wheels == Wheels::AsGiven,
+        "as_named": wheels == Wheels::AsGiven,
         "exchanged": exchanged,
         "left_backward": left,
         "right_backward": right,
-        "misfit_m": found.misfit.map(|(given, _)| given),
-        "best_misfit_m": found.misfit.map(|(_, best)| best),
     })
 }
 

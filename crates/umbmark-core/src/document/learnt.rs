@@ -2,6 +2,7 @@
 
 use super::diagnosis::{experiments, unlisted};
 use super::fitted::{estimates, meaning, outliers};
+use super::setup::{reasons, setup, taken};
 use super::{finite, model::model};
 use crate::diagnose::Options;
 use crate::learn::{Learnt, Step};
@@ -31,6 +32,9 @@ pub fn learnt(learnt: &Learnt, options: &Options) -> Value {
         "fitted": estimates(&learnt.diagnosis.fitted, 1.0 - options.size),
         "meaning": meaning(&learnt.diagnosis.fitted, &learnt.model),
         "outliers": outliers(&learnt.diagnosis.outliers),
+        "setup": setup(&learnt.diagnosis.setup),
+        "taken": taken(&learnt.diagnosis.taken),
+        "reasons": reasons(&learnt.diagnosis.reasons),
         "remarks": learnt.remarks,
         "partial": learnt.partial,
         "size": options.size,

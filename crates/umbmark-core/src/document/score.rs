@@ -1,5 +1,6 @@
 //! `score`.
 
+use super::setup::setup;
 use super::{ends, pair};
 use crate::score::{CentroidInterval, Convention, Score};
 use serde_json::{Value, json};
@@ -34,6 +35,7 @@ pub fn score(score: &Score, convention: Convention) -> Value {
     put("n_bumps_cw".into(), json!(extended.map_or(0, |e| e.n_cw)));
     put("n_bumps_ccw".into(), json!(extended.map_or(0, |e| e.n_ccw)));
     put("level".into(), json!(score.level));
+    put("setup".into(), setup(&score.setup));
     put("warnings".into(), json!(score.warnings));
     put("version".into(), json!(crate::VERSION));
     document

@@ -1,6 +1,7 @@
 //! `compare` along the way.
 
 use super::finite;
+use super::setup::{reasons, setup, taken};
 use crate::compare::tracks::{Against, Bin, By, Mean, Part, Rms, TrackComparison, TracksJudged};
 use crate::diagnose::Options;
 use crate::path::Direction;
@@ -18,6 +19,7 @@ pub fn track_comparison(comparison: &TrackComparison, options: &Options) -> Valu
         "poses": comparison.poses,
         "models": comparison.models.iter().map(|judged| model_json(judged, options)).collect::<Vec<_>>(),
         "remarks": comparison.remarks,
+        "setup": setup(&comparison.setup),
         "size": options.size,
         "version": crate::VERSION,
     })
@@ -45,6 +47,8 @@ fn model_json(judged: &TracksJudged, options: &Options) -> Value {
         "overall": Map::from_iter(overall),
         "against": judged.against.iter().map(against_json).collect::<Vec<_>>(),
         "sentences": judged.sentences,
+        "taken": taken(&judged.taken),
+        "reasons": reasons(&judged.reasons),
     })
 }
 

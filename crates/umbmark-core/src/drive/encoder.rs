@@ -5,6 +5,45 @@ use super::{DriveError, positive};
 /// The widest counter that is unrolled.
 pub const MAX_COUNTER_BITS: u32 = 62;
 
+/// How the counters of a log are wired to the wheels: which is in which column, and which way it counts.
+///
+/// Columns are as the file names them; first each counts its own way, then they are exchanged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wiring {
+    /// The first column is the second counter, and the second is the first.
+    pub exchanged: bool,
+    /// Whether the first column, and the second, counts down when the robot drives forward.
+    pub backward: [bool; 2],
+}
+
+impl Wiring {
+    /// What the drive's own counters show, for what stands in the columns of a log.
+    pub fn counters<T: std::ops::Neg<Output = T>>(&self, mut columns: [Vec<T>; 2]) -> [Vec<T>; 2] {
+        self.turn(&mut columns);
+        if self.exchanged {
+            columns.reverse();
+        }
+        columns
+    }
+
+    /// What stands in the columns of a log, for what the drive's own counters show.
+    pub fn columns<T: std::ops::Neg<Output = T>>(&self, mut counters: [Vec<T>; 2]) -> [Vec<T>; 2] {
+        if self.exchanged {
+            counters.reverse();
+        }
+        self.turn(&mut counters);
+        counters
+    }
+
+    fn turn<T: std::ops::Neg<Output = T>>(&self, columns: &mut [Vec<T>; 2]) {
+        for (column, backward) in columns.iter_mut().zip(self.backward) {
+            if backward {
+                *column = std::mem::take(column).into_iter().map(|count| -count).collect();
+            }
+        }
+    }
+}
+
 /// The encoders of a robot's wheels.
 ///
 /// A wheel at angle u \[ticks\] shows the count floor(u): resolution and phase of the quantisation. The counts are looked
@@ -14,6 +53,7 @@ pub struct Encoder {
     ticks_per_revolution: f64,
     rate: Option<f64>,
     counter_bits: Option<u32>,
+    wiring: Wiring,
 }
 
 impl Encoder {
@@ -26,8 +66,19 @@ impl Encoder {
         }
         match counter_bits {
             Some(bits) if !(1..=MAX_COUNTER_BITS).contains(&bits) => Err(DriveError::CounterBits(bits)),
-            _ => Ok(Encoder { ticks_per_revolution, rate, counter_bits }),
+            _ => Ok(Encoder { ticks_per_revolution, rate, counter_bits, wiring: Wiring::default() }),
         }
+    }
+
+    /// The same encoders, whose logs are wired as said.
+    #[must_use]
+    pub fn wired(self, wiring: Wiring) -> Self {
+        Encoder { wiring, ..self }
+    }
+
+    /// How the columns of a log are wired to the counters.
+    pub fn wiring(&self) -> Wiring {
+        self.wiring
     }
 
     /// Ticks per wheel revolution.
@@ -87,6 +138,19 @@ mod tests {
                     assert_eq!(unrolled, count);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn columns_are_the_counters_as_they_are_wired_and_back() {
+        let columns = [vec![1.0, 2.0], vec![10.0, 20.0]];
+        let wired = |exchanged, backward| Wiring { exchanged, backward };
+        assert_eq!(wired(false, [false; 2]).counters(columns.clone()), columns);
+        assert_eq!(wired(true, [false; 2]).counters(columns.clone()), [vec![10.0, 20.0], vec![1.0, 2.0]]);
+        assert_eq!(wired(true, [true, false]).counters(columns.clone()), [vec![10.0, 20.0], vec![-1.0, -2.0]]);
+        for k in 0..8 {
+            let wiring = wired(k & 1 != 0, [k & 2 != 0, k & 4 != 0]);
+            assert_eq!(wiring.columns(wiring.counters(columns.clone())), columns, "{wiring:?}");
         }
     }
 

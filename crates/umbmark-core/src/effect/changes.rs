@@ -24,10 +24,12 @@ impl Changes {
     pub const MEASURED: Changes = Changes(1 << 7);
     /// [`Effect::link`](super::Effect::link).
     pub const LINK: Changes = Changes(1 << 8);
+    /// [`Effect::late`](super::Effect::late).
+    pub const CLOCK: Changes = Changes(1 << 9);
     /// What moves the mean of where a robot is.
     pub const MOTION: Changes = Changes::WHEELS.and(Changes::BODY).and(Changes::START).and(Changes::LINK);
     /// What moves the mean of what is observed.
-    pub const MEAN: Changes = Changes::MOTION.and(Changes::SEEN);
+    pub const MEAN: Changes = Changes::MOTION.and(Changes::SEEN).and(Changes::CLOCK);
     /// All of these: always right, if slower.
     pub const ALL: Changes = Changes(u16::MAX);
 

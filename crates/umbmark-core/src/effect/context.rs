@@ -119,11 +119,13 @@ pub struct Place {
 /// The moment of an absolute measurement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sight {
-    /// Time since the run began \[s\].
+    /// Time since the run began by its stamp \[s\].
     pub time: f64,
-    /// Speed of the axle's centre at that moment \[m/s\].
+    /// By how much that is later than the moment of the pose that is asked about \[s\].
+    pub late: f64,
+    /// Speed of the axle's centre at the moment of that pose \[m/s\].
     pub speed: f64,
-    /// \[rad/s\]
+    /// The same \[rad/s\].
     pub turn_rate: f64,
 }
 

@@ -1,7 +1,7 @@
 //! A marker that is not over the axle's centre.
 
 use super::words::{either, mm, side};
-use super::{About, ActsOn, Changes, Effect, Sight};
+use super::{About, ActsOn, Changes, Effect};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
@@ -56,7 +56,7 @@ impl Effect for MarkerOffset {
         )
     }
 
-    fn seen<T: Real>(p: &[T], _at: &Sight, pose: &mut Pose2<T>) {
+    fn seen<T: Real>(p: &[T], pose: &mut Pose2<T>) {
         let (sine, cosine) = pose.heading.sine_cosine();
         pose.x += cosine * p[0] - sine * p[1] - p[0];
         pose.y += sine * p[0] + cosine * p[1] - p[1];

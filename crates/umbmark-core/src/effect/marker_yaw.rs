@@ -1,7 +1,7 @@
 //! A marker that is mounted askew.
 
 use super::words::{deg, side};
-use super::{About, ActsOn, Changes, Effect, Sight};
+use super::{About, ActsOn, Changes, Effect};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
@@ -40,7 +40,7 @@ impl Effect for MarkerYaw {
         format!("The marker faces {} to the {} of where the robot does.", deg(p[0]), side(p[0]))
     }
 
-    fn seen<T: Real>(p: &[T], _at: &Sight, pose: &mut Pose2<T>) {
+    fn seen<T: Real>(p: &[T], pose: &mut Pose2<T>) {
         pose.heading += p[0];
     }
 }

@@ -46,6 +46,16 @@ pub enum ModelError {
         /// The robot's.
         drive: &'static str,
     },
+    /// A model of another nominal robot.
+    #[error("the model is of another robot ({own}) than this one ({other}); {why}")]
+    OtherRobot {
+        /// That of the model.
+        own: String,
+        /// The other.
+        other: String,
+        /// Why it is not converted, and what to do.
+        why: &'static str,
+    },
     /// A second effect of the same name.
     #[error("there is another effect \"{name}\"; give one of them another name")]
     Taken {
@@ -184,6 +194,12 @@ impl Model {
         let part = self.place(Law::Formula(Arc::new(formula)));
         part.values.copy_from_slice(values);
         Ok(part)
+    }
+
+    /// The model without an effect.
+    pub fn without(&self, effect: &str) -> Model {
+        let parts = self.parts.iter().filter(|part| part.effect.name() != effect).cloned().collect();
+        Model { robot: self.robot.clone(), parts }
     }
 
     /// Takes over a part of another model, with its values.
@@ -484,13 +500,36 @@ impl<T: Evaluate> Chain<T> {
         self.body(at, &self.wheel_travel(at, believed))
     }
 
-    /// What a measurement without noise shows of a true pose.
+    /// Whether measurements may be older, or younger, than their stamps say.
+    #[inline]
+    pub fn has_clock(&self) -> bool {
+        self.links(Changes::CLOCK).next().is_some()
+    }
+
+    /// By how much older than its stamp a measurement is that is stamped `time` after the run began \[s\].
+    #[inline]
+    pub fn late(&self, time: f64) -> T {
+        self.links(Changes::CLOCK).fold(T::from(0.0), |mut late, link| {
+            if let Work::Entry(mean) = &link.work {
+                (mean.late)(&link.values, time, &mut late);
+            }
+            late
+        })
+    }
+
+    /// What a measurement without noise shows of a true pose, that of `at.late` before its stamp. What it is later than that is
+    /// small: the robot is taken to move on as it does.
     #[inline]
     pub fn seen(&self, at: &Sight, pose: &Pose2<T>) -> Pose2<T> {
         let mut seen = *pose;
+        if self.has_clock() {
+            let further = self.late(at.time) - at.late;
+            let back = [-at.speed, -at.turn_rate].map(|rate| further * rate);
+            seen.advance(&Displacement2 { forward: back[0], sideways: T::from(0.0), rotation: back[1] });
+        }
         for link in self.links(Changes::SEEN) {
             if let Work::Entry(mean) = &link.work {
-                (mean.seen)(&link.values, at, &mut seen);
+                (mean.seen)(&link.values, &mut seen);
             }
         }
         seen

@@ -1,10 +1,9 @@
 //! A reference whose clock runs slow.
 
-use super::reference_delay::go_back;
 use super::words::{either, size};
-use super::{About, ActsOn, Changes, Effect, Sight};
+use super::{About, ActsOn, Changes, Effect};
 use crate::drive::{Kinds, Robot};
-use crate::geometry::{Pose2, Real};
+use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// By how much the clock of the reference and that of the encoders part, per time.
@@ -35,14 +34,14 @@ impl Effect for ReferenceClockRate {
 
     const DRIVES: Kinds = Kinds::ALL;
 
-    const CHANGES: Changes = Changes::SEEN;
+    const CHANGES: Changes = Changes::CLOCK;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("The clock of the reference {} {} ms in a minute.", either(p[0], "loses", "gains"), size(6e4 * p[0]))
     }
 
-    fn seen<T: Real>(p: &[T], at: &Sight, pose: &mut Pose2<T>) {
-        go_back(p[0] * at.time, at, pose);
+    fn late<T: Real>(p: &[T], time: f64, late: &mut T) {
+        *late += p[0] * time;
     }
 }
 

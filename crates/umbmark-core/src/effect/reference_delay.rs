@@ -1,9 +1,9 @@
 //! A reference whose clock is behind.
 
 use super::words::{either, mm, size};
-use super::{About, ActsOn, Changes, Effect, Sight};
+use super::{About, ActsOn, Changes, Effect};
 use crate::drive::{Kinds, Robot};
-use crate::geometry::{Displacement2, Pose2, Real};
+use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// How old a measured pose is when it is stamped.
@@ -22,7 +22,7 @@ impl Effect for ReferenceDelay {
             (-10.0, 10.0),
             "how much older the measured pose is than its time stamp says",
         )],
-        equation: "seen(t) = true(t - τ) = true(t) · exp(-τ (v, 0, ω))",
+        equation: "seen(t) = true(t - τ)",
         physics: "Cameras expose, compute and send before a pose gets its time: 10 to 100 ms are usual. At 1 m/s 10 ms are \
                   10 mm.",
         signature: "Late along the course by v τ and in turns by ω τ; right again at rest, so return poses do not show it.",
@@ -33,7 +33,7 @@ impl Effect for ReferenceDelay {
 
     const DRIVES: Kinds = Kinds::ALL;
 
-    const CHANGES: Changes = Changes::SEEN;
+    const CHANGES: Changes = Changes::CLOCK;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(
@@ -45,15 +45,9 @@ impl Effect for ReferenceDelay {
         )
     }
 
-    fn seen<T: Real>(p: &[T], at: &Sight, pose: &mut Pose2<T>) {
-        go_back(p[0], at, pose);
+    fn late<T: Real>(p: &[T], _time: f64, late: &mut T) {
+        *late += p[0];
     }
-}
-
-/// Moves a pose to where it was `delay` \[s\] earlier.
-pub(super) fn go_back<T: Real>(delay: T, at: &Sight, pose: &mut Pose2<T>) {
-    let back = Displacement2 { forward: -delay * at.speed, sideways: T::from(0.0), rotation: -delay * at.turn_rate };
-    *pose = pose.moved(&back);
 }
 
 #[cfg(test)]

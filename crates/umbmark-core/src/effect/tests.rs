@@ -384,8 +384,7 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
     let travel = WheelTravel { left: 0.3, right: 0.5 };
     let motion = Displacement2 { forward: 0.4, sideways: 0.1, rotation: 0.2 };
     let pose = Pose2::new(1.0, 2.0, 0.5);
-    let sight = Sight { time: 30.0, speed: 0.2, turn_rate: 0.3 };
-    let Mean { start, wheels, body, link, seen } = entry.values;
+    let Mean { start, wheels, body, link, late, seen } = entry.values;
     let Scatter { diffusion, bumps, start_scatter, measured } = entry.scatter;
     let mut stream = Stream::new(1, 2, 3);
     let (mut rolled, mut moved, mut shown, mut found) = ([travel; 2], [motion; 2], pose, pose);
@@ -393,7 +392,9 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
         wheels(values, at, rolled);
         body(values, at, moved);
     }
-    seen(values, &sight, &mut shown);
+    seen(values, &mut shown);
+    let mut behind = 0.0;
+    late(values, 30.0, &mut behind);
     let reading = LinkReading { length: 1.0, angles: [0.1, -0.2] };
     let mut read = reading;
     link(values, &mut read);
@@ -406,6 +407,7 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
         (Changes::WHEELS, rolled != [travel; 2]),
         (Changes::BODY, moved != [motion; 2]),
         (Changes::SEEN, shown != pose),
+        (Changes::CLOCK, behind != 0.0),
         (Changes::LINK, read != reading),
         (Changes::MEASURED, found != pose),
         (Changes::BUMPS, !met.is_empty()),

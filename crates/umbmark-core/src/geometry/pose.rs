@@ -58,6 +58,19 @@ impl Pose2 {
         }
     }
 
+    /// The pose on the way to `to`, with constant twist, where a share of it is made.
+    pub fn toward(&self, to: &Pose2, share: f64) -> Pose2 {
+        if share == 0.0 {
+            return *self;
+        }
+        let whole = self.between(to).log();
+        self.moved(&Displacement2 {
+            forward: share * whole.forward,
+            sideways: share * whole.sideways,
+            rotation: share * whole.rotation,
+        })
+    }
+
     /// This pose with derivatives of zero, as a [`Real`] of another kind.
     pub fn lift<T: Real>(&self) -> Pose2<T> {
         Pose2 { x: T::from(self.x), y: T::from(self.y), heading: T::from(self.heading) }

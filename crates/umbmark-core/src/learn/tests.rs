@@ -1,7 +1,7 @@
 //! What is learnt from simulated tests, whose cause is known.
 
 use super::*;
-use crate::dataset::{model_text, parse_model};
+use crate::dataset::ModelFile;
 use crate::diagnose::ends::Ends;
 use crate::diagnose::tests::{margin, robot_with, simulated, trials};
 use crate::diagnose::{Options, base_model};
@@ -91,8 +91,8 @@ fn the_story_goes_from_the_nominal_robot_by_e_d_and_e_b_to_the_class_and_the_mod
     assert!(slope.p_adjusted.unwrap() < 0.05);
     assert!(learnt.steps.windows(2).skip(1).all(|pair| pair[1].held_out.weighted < pair[0].held_out.weighted));
     assert_eq!(learnt.verdict, Verdict::Explained);
-    let text = model_text(&learnt.model);
-    let (read, _) = parse_model("model.toml", &text, &Robot::labmate()).unwrap();
+    let text = ModelFile::new(learnt.model.clone()).text();
+    let read = ModelFile::parse("model.toml", &text, Some(&Robot::labmate())).unwrap().model;
     assert_eq!(read, learnt.model);
     // Fresh runs of the same robot are explained by what was learnt; E_d and E_b alone do not explain them.
     let fresh = simulated(&truth, &Path::umbmark(), 5, 38, 0..1).remove(0);

@@ -1,11 +1,22 @@
 //! Learning from tracks: the same story, told from products of columns instead of one fit for each fold.
 
 use super::{Error, Learnt, MOST, Step};
-use crate::diagnose::tracks::{self, Alone, LEAST_GAIN, Misses, Search};
-use crate::diagnose::{DiagnoseError, Diagnosis, Options, Verdict};
-use crate::effect::Model;
-use crate::likelihood::{Fitted, Noise, Observed};
+use crate::diagnose::tracks::{self, Alone, LEAST_GAIN, Misses, Search, trusted};
+use crate::diagnose::{DiagnoseError, Diagnosis, Level, Options, Reason, Verdict};
+use crate::effect::{Model, Part, find};
+use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE};
 use crate::watch::Watch;
+
+/// A first effect whose standard error is so many times its usual size, and which stands out by fewer standard errors than this, is not
+/// shown.
+const OPEN: f64 = 10.0;
+const SURE: f64 = 4.0;
+/// A ratio is one that a robot has where it is within this factor of the one by which its motion differs.
+const FAR: f64 = 1.5;
+/// Runs left out are predicted worse than by the nominal robot where their error is so many times as large: three numbers that are
+/// fitted to few runs cost something where the nominal robot is right.
+const WORSE: f64 = 1.5;
+const ENOUGH_RUNS: usize = 5;
 
 /// Learns which effects the robot of some tracks has, beside those of a `start`.
 pub(super) fn learn(
@@ -16,22 +27,46 @@ pub(super) fn learn(
 ) -> Result<Learnt, DiagnoseError> {
     let mut model = Model::new(&observed.robot);
     let mut steps = vec![step(plainly(observed, &model)?, None)];
-    let first = observed.robot.drive.first_effects();
-    let mut add = |model: &mut Model, effect: &'static str, fitted: Fitted| {
-        *model = fitted.model.clone();
-        steps.push(step(fitted, Some((effect, vec![effect], None))));
-    };
-    for effect in first {
-        model.add(effect)?.free = true;
-        let fitted = plainly(observed, &model)?;
-        add(&mut model, effect, fitted);
+    if !observed.setup.is_sound() {
+        let diagnosis = Diagnosis::of_faults(&observed.setup, &model, Level::Tracks);
+        return Ok(Learnt { steps, verdict: diagnosis.verdict, model, diagnosis, remarks: Vec::new(), partial: false });
     }
-    for part in start.parts().iter().filter(|part| !first.contains(&part.effect.name())) {
+    let mut add = |model: &mut Model, effect: &'static str, p: Option<f64>, fitted: Fitted| {
+        *model = fitted.model.clone();
+        steps.push(step(fitted, Some((effect, vec![effect], p))));
+    };
+    // What the motion alone says of the reference comes first: no physics is told from it otherwise.
+    let (begun, taken) = observed.begin(&model)?;
+    for own in &taken {
+        let part = begun.parts().iter().find(|part| part.effect.name() == own.effect);
+        part.into_iter().for_each(|part| model.adopt(part));
+        let fitted = plainly(observed, &model)?;
+        add(&mut model, own.effect, Some(own.p), fitted);
+    }
+    let first = shown(observed, &model)?;
+    // Each row begins anew from what the motion says: a ratio by itself takes up what the next one is.
+    let mut fresh = model.clone();
+    for effect in &first {
+        fresh.add(effect)?.free = true;
+        let fitted = plainly(observed, &observed.begin(&fresh)?.0)?;
+        add(&mut model, effect, None, fitted);
+    }
+    let known =
+        |part: &Part| first.contains(&part.effect.name()) || taken.iter().any(|own| own.effect == part.effect.name());
+    for part in start.parts().iter().filter(|part| !known(part)) {
         model.adopt(part);
         let fitted = tracks::fit(observed, &model)?;
-        add(&mut model, part.effect.name(), fitted);
+        add(&mut model, part.effect.name(), None, fitted);
     }
-    let search = tracks::search(tracks::fit(observed, &model)?, options, MOST, watch)?;
+    let fitted = Fitted { taken, ..tracks::fit(observed, &model)? };
+    let not_shown = observed.robot.drive.first_effects().into_iter().filter(|effect| !first.contains(effect));
+    let search = tracks::search(fitted, options, MOST, not_shown.collect(), watch)?;
+    let of_reference = |step: &&mut Step| {
+        step.added.is_some_and(|effect| search.exams[0].fitted.taken.iter().any(|own| own.effect == effect))
+    };
+    for step in steps.iter_mut().filter(of_reference) {
+        step.class = step.added.map_or(Vec::new(), |effect| tracks::class_of_own(&search.exams[0], effect));
+    }
     let partial = watch.is_stopped() && search.left.effect.is_some();
     for (exam, (finding, suspect)) in search.exams[1..].iter().zip(&search.added) {
         let told = (suspect.best, suspect.class.clone(), Some(finding.p_adjusted()));
@@ -40,28 +75,89 @@ pub(super) fn learn(
     Ok(Learnt { partial, ..finish(search, steps, options)? })
 }
 
+/// Those of the first effects of the robot's drive that the runs say anything of, beside what is in a model.
+fn shown(observed: &Observed, model: &Model) -> Result<Vec<&'static str>, DiagnoseError> {
+    let mut first = observed.robot.drive.first_effects().to_vec();
+    loop {
+        let mut with = model.clone();
+        for effect in &first {
+            with.add(effect)?.free = true;
+        }
+        let fitted = plainly(observed, &observed.begin(&with)?.0)?;
+        let Some(silent) = first.iter().rposition(|effect| !is_shown(&fitted, effect)) else { return Ok(first) };
+        first.remove(silent);
+    }
+}
+
+/// Whether the runs say anything of an effect that every robot is asked for: that it is something, or that it is less than
+/// so many times its usual size.
+fn is_shown(fitted: &Fitted, effect: &str) -> bool {
+    let own = tracks::estimates(fitted).into_iter().find(|e| e.effect == effect);
+    let parameter = find(effect).ok().and_then(|entry| entry.about.parameters.first());
+    let Some((own, parameter)) = own.zip(parameter) else { return false };
+    let nothing = parameter.default.resolve(fitted.model.robot());
+    let off = (own.value - nothing).abs();
+    // Ratios far from those of the motion itself stand for something else.
+    let expected = fitted.observed.ratio_by_motion(effect).unwrap_or(nothing);
+    let possible = nothing != 1.0 || (own.value / expected < FAR && expected / own.value < FAR);
+    possible && (own.standard_error < OPEN * parameter.typical || off > SURE * own.standard_error)
+}
+
+/// Runs left out do not agree with those fitted where their error is so many times as large.
+const FAR_WORSE: f64 = 5.0;
+
 /// The story's end: the diagnosis of the model that was learnt.
-fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Learnt, DiagnoseError> {
+fn finish(mut search: Search, mut steps: Vec<Step>, options: &Options) -> Result<Learnt, DiagnoseError> {
     let told = search.left.smooth.as_ref().and_then(|f| tracks::dependence(search.last(), f, &search.left.asked));
     let more = search.left.effect.is_some();
-    let verdict = match (&search.left.smooth, more) {
-        _ if tracks::verdict(&search) == Verdict::NotEnoughData => Verdict::NotEnoughData,
-        (Some(_), _) => Verdict::UnlistedEffect,
-        (None, true) => Verdict::SeveralMissing,
-        (None, false) => Verdict::Explained,
-    };
     let (mut experiments, mut hints) = (Vec::new(), Vec::new());
     for (exam, (finding, suspect)) in search.exams.iter().zip(&search.added) {
         let (told, hint) = tracks::next_experiments(exam, finding, suspect)?;
         experiments.extend(told);
         hints.extend(hint);
     }
+    let not_enough = tracks::verdict(&search) == Verdict::NotEnoughData;
+    hints.extend(search.removed.iter().map(|effect| {
+        format!("{effect} was added on the way and taken out again: beside the others it no longer predicts runs that are left out better.")
+    }));
+    let mut reasons = tracks::doubts_of(search.last(), options);
+    hints.extend(search.harmful.iter().map(|effect| {
+        format!("{effect} is significant, and with it runs that are left out are predicted worse; it was not added.")
+    }));
+    let (left, harmful, runs) = (search.left, search.harmful, search.exams[0].fitted.observed.runs.len());
     let Some(last) = search.exams.pop() else { return Err(DiagnoseError::NotConverged { how: "has no model" }) };
+    let written = trusted(last.fitted.clone())?;
+    // The table ends with the model that is written.
+    if let Some(own) = steps.last_mut() {
+        *own = Step {
+            added: own.added,
+            class: own.class.clone(),
+            p_adjusted: own.p_adjusted,
+            ..step(written.clone(), None)
+        };
+    }
+    let (first, end) = (&steps[0], &steps[steps.len() - 1]);
+    if runs >= ENOUGH_RUNS && end.held_out.position > WORSE * first.held_out.position {
+        let (left_out, nominal) = (end.held_out.position, first.held_out.position);
+        reasons.push(Reason::WorseThanNominal { left_out, nominal });
+    }
+    let (left_out, inside) = (end.held_out.position, end.error.position);
+    if left_out > FAR_WORSE * inside.max(written.observed.setup.noise.position) {
+        reasons.push(Reason::LeftOutFarWorse { left_out, inside });
+    }
+    let verdict = match (&left.smooth, more) {
+        _ if not_enough => Verdict::NotEnoughData,
+        (Some(_), _) => Verdict::UnlistedEffect,
+        (None, true) => Verdict::SeveralMissing,
+        (None, false) if !reasons.is_empty() => Verdict::NotExplained,
+        (None, false) => Verdict::Explained,
+    };
     let diagnosis = tracks::conclude(last, told, options)?;
-    hints.extend(tracks::uncertified(&search.left.asked, options));
+    hints.extend(tracks::uncertified(&left.asked, options));
     let mut remarks = [diagnosis.remarks.clone(), hints].concat();
-    let ranking = search.left.asked;
-    if let Some(suspect) = ranking.first().filter(|s| s.p_adjusted <= options.size) {
+    let ranking = left.asked;
+    let asked = ranking.first().filter(|s| s.p_adjusted <= options.size && !harmful.contains(&s.best));
+    if let Some(suspect) = asked {
         remarks.push(format!(
             "{} is significant (p = {:.1e}) but was not added: runs that are left out are predicted better by less than {:.0} %.",
             suspect.class.join(" or "),
@@ -69,9 +165,21 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
             100.0 * LEAST_GAIN
         ));
     }
+    if written.usual_noise {
+        remarks.push(USUAL_NOISE.to_owned());
+    }
     experiments.extend(diagnosis.next_experiments);
-    let diagnosis = Diagnosis { verdict, ranking, next_experiments: experiments, ..diagnosis };
-    Ok(Learnt { steps, verdict, model: diagnosis.model.clone(), remarks, diagnosis, partial: false })
+    let (model, fitted) = (written.model.clone(), tracks::estimates(&written));
+    let diagnosis = Diagnosis {
+        verdict,
+        ranking,
+        reasons,
+        fitted,
+        model: model.clone(),
+        next_experiments: experiments,
+        ..diagnosis
+    };
+    Ok(Learnt { steps, verdict, model, remarks, diagnosis, partial: false })
 }
 
 /// A model fitted under noise of the usual size: enough for its errors.

@@ -1,5 +1,6 @@
 //! The free parameters of a model, fitted to whole tracks.
 
+use super::beginning::Taken;
 use super::noise::Noise;
 use super::observed::{Observed, ObservedRun};
 use super::outliers::Outlier;
@@ -17,36 +18,6 @@ pub type Column = Vec<[f64; 3]>;
 /// Effects of the reference that every track has; they are fitted out before anything is said of the robot.
 pub const NUISANCE: [&str; 3] = ["reference_delay", "marker_offset", "marker_yaw"];
 
-/// What of its runs a model was fitted to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Weighing {
-    /// What is new from pose to pose: the likeliest values, where nothing is missing from the model.
-    Increments,
-    /// Positions and headings all along: the values that predict best where something is missing.
-    Tracks,
-}
-
-impl Weighing {
-    /// As in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Weighing::Increments => "increments",
-            Weighing::Tracks => "tracks",
-        }
-    }
-
-    /// What is to be said of values so fitted; empty where nothing is.
-    pub fn caution(self) -> &'static str {
-        match self {
-            Weighing::Increments => "",
-            Weighing::Tracks => {
-                "Fitted to whole tracks, which predict the runs left out better than what is new from pose to pose does: a complete \
-                 model would not let that happen. Use the values to predict this robot; as its physics, take them with caution."
-            }
-        }
-    }
-}
-
 /// A model fitted to tracks, and the noise that it leaves.
 #[derive(Clone, Debug)]
 pub struct Fitted {
@@ -62,8 +33,10 @@ pub struct Fitted {
     pub reference: Vec<Vec<Column>>,
     /// The covariance of the free values; `None` where the data leaves a combination of them open.
     pub covariance: Option<DMatrix<f64>>,
-    /// What was fitted.
-    pub weighing: Weighing,
+    /// Whether the values are those under noise of the usual sizes, which the likeliest ones differ from.
+    pub usual_noise: bool,
+    /// What was taken from the motion before the fit, and is in the model now.
+    pub taken: Vec<Taken>,
     /// Where runs were disturbed; what happened there is left out.
     pub outliers: Vec<Outlier>,
     pub(crate) slopes: Slopes,
@@ -132,8 +105,9 @@ impl Observed {
             reference: vec![Vec::new(); self.runs.len()],
             free: slopes.free.clone(),
             covariance: None,
-            weighing: Weighing::Increments,
-            outliers: Vec::new(),
+            usual_noise: false,
+            taken: Vec::new(),
+            outliers: self.jumps(),
             slopes,
         }
     }
@@ -299,6 +273,11 @@ impl Fitted {
         DMatrix::from_row_slice(values.len() / width.max(1), width, &values)
     }
 }
+
+/// What is to be said of values under noise of the usual sizes.
+pub const USUAL_NOISE: &str = "The likeliest values under the noise that was fitted and those under noise of the usual sizes differ by more than \
+     chance: the noise has taken up something that the model lacks. The values are those under noise of the usual sizes, which that \
+     moves less; their intervals come from leaving out one run after the other.";
 
 /// The free values of a model, and behind them the sizes of the effects of the reference.
 struct Tracks<'a> {

@@ -58,14 +58,31 @@ impl Default for Noise {
     }
 }
 
-/// No size falls below this share of its usual value, or rises above its inverse.
-const RANGE: f64 = 1e-2;
+/// No size falls below this share of its usual value, or rises above this multiple of it.
+const RANGE: (f64, f64) = (1e-2, 1e3);
 /// So often are the columns fitted out anew before they are fitted with every noise that is tried.
 const ROUNDS: usize = 2;
 
 impl Noise {
     /// How many sizes are estimated.
     pub const SIZES: usize = 8;
+
+    /// The largest sizes that are searched.
+    pub fn largest() -> Noise {
+        let usual = Noise::default();
+        let most = RANGE.1;
+        Noise {
+            heading_per_metre: most * usual.heading_per_metre,
+            heading_per_radian: most * usual.heading_per_radian,
+            forward_per_metre: most * usual.forward_per_metre,
+            sideways_per_metre: most * usual.sideways_per_metre,
+            reference_position: most * usual.reference_position,
+            reference_heading: most * usual.reference_heading,
+            reference_time: most * usual.reference_time,
+            reference_delay: most * usual.reference_delay,
+            ..usual
+        }
+    }
 
     /// The sizes under which the residuals of a model are likeliest, by restricted maximum likelihood:
     ///
@@ -83,7 +100,7 @@ impl Noise {
         (start.within_position, start.within_heading) = (pooled(0), pooled(1));
         let sizes = |x: &[f64; Noise::SIZES]| {
             let usual = Noise::default();
-            let at = |i: usize, usual: f64| usual * libm::exp(x[i].clamp(libm::log(RANGE), -libm::log(RANGE)));
+            let at = |i: usize, usual: f64| usual * libm::exp(x[i].clamp(libm::log(RANGE.0), libm::log(RANGE.1)));
             Noise {
                 heading_per_metre: at(0, usual.heading_per_metre),
                 heading_per_radian: at(1, usual.heading_per_radian),
@@ -200,7 +217,7 @@ impl Noise<Eight> {
 impl<T: Scalar> Noise<T> {
     /// Covariance added from one block to the next, in error coordinates.
     #[inline(always)]
-    pub(super) fn growth(&self, growth: &Growth) -> [[T; 3]; 3] {
+    pub(crate) fn growth(&self, growth: &Growth) -> [[T; 3]; 3] {
         let metre = self.heading_per_metre * self.heading_per_metre;
         let radian = self.heading_per_radian * self.heading_per_radian;
         let sideways = self.sideways_per_metre * self.sideways_per_metre;

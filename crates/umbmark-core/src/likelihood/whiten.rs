@@ -368,15 +368,18 @@ mod tests {
                     growth,
                     unit: 0,
                     afresh: false,
+                    jumped: false,
                 }
             })
             .collect();
         ObservedRun {
             name: "a few".into(),
+            log: "a few".into(),
             direction: None,
             track: track.into(),
             measured: [].into(),
             seen: [].into(),
+            moments: [].into(),
             places: [].into(),
             blocks,
             start_seen,

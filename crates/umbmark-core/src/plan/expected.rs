@@ -42,9 +42,7 @@ pub(super) fn displaced(
         robot: Some(setting.robot().clone()),
         path: Some(setting.path.clone()),
         runs: order.iter().enumerate().map(run).collect(),
-        warnings: Vec::new(),
-        clocks: Vec::new(),
-        topics: Vec::new(),
+        ..Dataset::default()
     }
 }
 

@@ -7,14 +7,16 @@ use crate::drive::WheelTravel;
 const HALF_WINDOW: f64 = 0.05;
 
 /// Speeds of the left and the right wheel at each sample \[m/s\]: (s(t + h) - s(t - h))/2h with h = 0.05 s, counts between
-/// samples interpolated and the wheels at rest before and after the log.
+/// samples interpolated; at the ends of the log over what there is of that window.
 ///
 /// At h = 0.05 s a tick of 0.2 mm is 2 mm/s, and a ramp of half a second is followed.
 pub(super) fn wheel_speeds(log: &TickLog, per_tick: &WheelTravel) -> Vec<[f64; 2]> {
     let (mut early, mut late) = (Cursor::default(), Cursor::default());
     let speed = |time: &f64| {
-        let (from, to) = (early.at(log, time - HALF_WINDOW), late.at(log, time + HALF_WINDOW));
-        let scale = 0.5 / HALF_WINDOW;
+        let [first, last] = [log.time[0], log.time[log.time.len() - 1]];
+        let window = [(time - HALF_WINDOW).max(first), (time + HALF_WINDOW).min(last)];
+        let (from, to) = (early.at(log, window[0]), late.at(log, window[1]));
+        let scale = if window[1] > window[0] { 1.0 / (window[1] - window[0]) } else { 0.0 };
         [(to[0] - from[0]) * per_tick.left * scale, (to[1] - from[1]) * per_tick.right * scale]
     };
     log.time.iter().map(speed).collect()

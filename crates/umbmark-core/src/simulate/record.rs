@@ -1,6 +1,6 @@
 //! A run written down: what the encoders showed, and where the robot really was.
 
-use super::{Leg, Rest, SimulateError, Simulator, Truth, return_error};
+use super::{Rest, SimulateError, Simulator, Truth, return_error};
 use crate::dataset::{ReferencePose, ReturnError, TickLog};
 use crate::drive::{Kind, Robot, Wheel, WheelTravel};
 use crate::effect::{Sight, Stretch, TestKind};
@@ -81,7 +81,7 @@ impl Simulator {
             computed: Vec::with_capacity(samples + 1),
             returned: ReturnError::default(),
         };
-        let (mut begun, mut next_reference) = (0, 0.0);
+        let (mut begun, mut next_reference, mut sights) = (0, 0.0, Vec::new());
         for sample in 0..=samples {
             let time = sample as f64 / rate;
             let driving = time - STANDING;
@@ -115,21 +115,21 @@ impl Simulator {
             recording.truth.push(truth.pose());
             recording.computed.push(track.pose());
             if time + 1e-9 >= next_reference || sample == samples {
-                let leg = begun.checked_sub(1).map(|index| &legs[index]);
-                let pose = truth.measure(&self.sight(leg, driving, time));
-                recording.log.reference.push(ReferencePose {
-                    sample,
-                    x: pose.x,
-                    y: pose.y,
-                    heading: Some(pose.heading),
-                });
+                sights.push((sample, Sight { time, ..Sight::default() }));
                 next_reference += 1.0 / reference_rate;
             }
         }
+        let shown = |time: f64| between(&recording.truth, time * rate);
+        let measured = sights.into_iter().map(|(sample, sight)| {
+            let Pose2 { x, y, heading } = truth.measure(&sight, shown);
+            ReferencePose { sample, x, y, heading: Some(heading) }
+        });
+        recording.log.reference = measured.collect();
         if self.robot().drive.kind() != Kind::Differential {
             recording.reckon(self.robot());
         }
-        let measured = truth.measure(&Sight { time: samples as f64 / rate, ..Sight::default() });
+        let at_rest = Sight { time: samples as f64 / rate, ..Sight::default() };
+        let measured = truth.measure(&at_rest, |time| between(&recording.truth, time * rate));
         recording.returned = return_error(&measured, &recording.computed.last().copied().unwrap_or_default());
         Ok(recording)
     }
@@ -144,12 +144,14 @@ impl Simulator {
             bumps.push([pose.x - left * libm::sin(pose.heading), pose.y + left * libm::cos(pose.heading)]);
         }
     }
+}
 
-    /// How the robot moves at `time` \[s\] of the recording, `driving` of it since START.
-    fn sight(&self, leg: Option<&Leg>, driving: f64, time: f64) -> Sight {
-        let Some(leg) = leg else { return Sight { time, ..Sight::default() } };
-        let rate = leg.profile.rate(driving - leg.begins);
-        let per_second = self.robot().drive.displacement(&leg.travel.scaled(rate));
-        Sight { time, speed: per_second.forward, turn_rate: per_second.rotation }
-    }
+/// The pose at so many samples, with constant twist from one to the next; the robot rests before the first and after the last.
+fn between(poses: &[Pose2], samples: f64) -> Pose2 {
+    let samples = samples.clamp(0.0, poses.len().saturating_sub(1) as f64);
+    let whole = (samples - samples.round()).abs() < 1e-9;
+    let before = if whole { samples.round() } else { samples.floor() };
+    let (share, before) = (if whole { 0.0 } else { samples - before }, before as usize);
+    let Some(from) = poses.get(before) else { return Pose2::IDENTITY };
+    poses.get(before + 1).map_or(*from, |to| from.toward(to, share))
 }

@@ -373,10 +373,10 @@ impl Truth {
         self.pieces.reached().last().unwrap_or_default()
     }
 
-    /// The true pose as an absolute measurement at this moment shows it.
-    pub fn measure(&mut self, at: &Sight) -> Pose2 {
-        let pose = self.pose();
-        measured(&self.chain, &mut self.random, at, &pose)
+    /// What an absolute measurement shows of the true poses, each given by the time since the run began \[s\].
+    pub fn measure(&mut self, at: &Sight, shown: impl Fn(f64) -> Pose2) -> Pose2 {
+        let late = self.chain.late(at.time);
+        measured(&self.chain, &mut self.random, &Sight { late, ..*at }, &shown(at.time - late))
     }
 
     /// The ends of all runs as absolute measurements at this moment of each show them, in the order in which they were begun.

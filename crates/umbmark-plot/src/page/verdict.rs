@@ -4,6 +4,13 @@ use umbmark_core::diagnose::{Diagnosis, Verdict};
 
 use crate::study::Study;
 
+/// What has to be known before any figure is believed: faults of the columns, jumps of tracks, runs far from the others. A sentence each.
+pub fn notices(study: &Study) -> Vec<String> {
+    let told = |setup: &umbmark_core::setup::Setup| setup.notices();
+    let notices = study.inspection().setup.as_ref().map(told).unwrap_or_default();
+    notices.iter().map(|notice| format!("{}.", super::spoken(notice))).collect()
+}
+
 /// What a study comes to, in one sentence.
 pub fn verdict(study: &Study) -> String {
     let robot = study.data.robot.as_ref().map_or("The robot", |robot| robot.name.as_str());
@@ -35,6 +42,9 @@ fn cause(diagnosis: &Diagnosis) -> String {
         Verdict::UnlistedEffect => {
             let on = diagnosis.dependence.as_ref().map(|told| format!("; it depends on {}", told.title));
             format!("beside {model} something is missing that the catalogue does not list{}", on.unwrap_or_default())
+        }
+        Verdict::NotExplained => {
+            format!("{model} does not explain these runs, though no single effect is certified as missing")
         }
         Verdict::NotEnoughData => "these runs are not enough to say what is missing".into(),
     }

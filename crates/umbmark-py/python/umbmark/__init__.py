@@ -43,6 +43,7 @@ from umbmark._plan import Plan, Separation, plan, separate
 from umbmark._report import Report, figures, plot, report
 from umbmark._scores import Score, score
 from umbmark._sensitivity import Sensitivity, sensitivity
+from umbmark._setup import Setup
 from umbmark._simulation import simulate
 from umbmark._sweep import Sweep, sweep
 from umbmark._tolerance import Tolerance, tolerance
@@ -85,6 +86,7 @@ __all__ = [
     "Score",
     "Sensitivity",
     "Separation",
+    "Setup",
     "Study",
     "Sweep",
     "Tolerance",

@@ -9,6 +9,7 @@ import msgspec
 from umbmark._diagnosis import Estimate
 from umbmark._result import Interval, Record, Result, Row
 from umbmark._scores import Data, data_of
+from umbmark._setup import Setup, Taken
 from umbmark._umbmark import Model, Path, Robot, export
 from umbmark._umbmark import calibrate as _calibrate
 from umbmark._umbmark import calibrate_gears as _calibrate_gears
@@ -64,8 +65,15 @@ class Calibration(Result, frozen=True):
         Metres that a radian of heading counted as, where whole tracks were fitted.
     level : float
         Probability with which the intervals hold.
+    setup : Setup
+        What was found of the data before anything was fitted: faults, clock and mounting of the
+        reference, jumps, wrong poses, runs far from the others.
+    taken : tuple of Taken
+        Effects of the reference whose values were taken from the motion.
+    doubts : tuple of str
+        What puts the corrected lengths in doubt, a sentence each; ``export`` refuses them then.
     warnings : tuple of str
-        What could not be determined, and why.
+        What to know of the data first; then what could not be determined, and why.
     robot, path
         The nominal robot, and the path where it is known.
     """
@@ -76,6 +84,9 @@ class Calibration(Result, frozen=True):
     observed: str
     heading_arm_m: float | None
     level: float
+    setup: Setup
+    taken: tuple[Taken, ...]
+    doubts: tuple[str, ...]
     warnings: tuple[str, ...]
     version: str
     robot: Robot
@@ -87,7 +98,12 @@ class Calibration(Result, frozen=True):
         return self._of_method("exact")
 
     def export(
-        self, format: str, *, method: str = "exact", controller: str = "diff_drive_controller"
+        self,
+        format: str,
+        *,
+        method: str = "exact",
+        controller: str = "diff_drive_controller",
+        force: bool = False,
     ) -> str:
         """Give the corrected lengths as the text of a file of another program.
 
@@ -99,12 +115,18 @@ class Calibration(Result, frozen=True):
             Whose corrections.
         controller : str
             Name of the controller in the parameters of ros2_control.
+        force : bool, default False
+            Whether to give lengths that are in doubt.
 
         Raises
         ------
         ValueError
-            If the method does not give both ratios, or the format is unknown.
+            If the method does not give both ratios, the format is unknown, or the lengths are in
+            doubt (``doubts`` says why) and ``force`` is not set.
         """
+        if self.doubts and not force:
+            why = " ".join(self.doubts)
+            raise ValueError(f"the lengths are in doubt; force=True gives them all the same. {why}")
         found = self._of_method(method)
         if found.e_d is None or found.e_b is None:
             raise ValueError(f"nothing to export: {method} does not give both E_d and E_b")

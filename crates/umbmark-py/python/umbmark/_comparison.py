@@ -10,6 +10,7 @@ import msgspec
 from umbmark import _umbmark
 from umbmark._result import Interval, Record, Result, Row
 from umbmark._scores import Data, data_of
+from umbmark._setup import Setup, Taken
 from umbmark._umbmark import Model
 
 if TYPE_CHECKING:
@@ -72,6 +73,9 @@ class Comparison(Result, frozen=True):
         Numbers of runs.
     models : tuple of Judged
         In the order in which they were given.
+    setup : Setup
+        What was found of the data before anything was fitted: faults, clock and mounting of the
+        reference, jumps, wrong poses, runs far from the others.
     remarks : tuple of str
         What else should be said.
     contrasts, circle
@@ -82,6 +86,7 @@ class Comparison(Result, frozen=True):
     n_cw: int
     n_ccw: int
     models: tuple[Judged, ...]
+    setup: Setup
     remarks: tuple[str, ...]
     size: float
     draws: int
@@ -178,7 +183,11 @@ class Against(Record, frozen=True):
 
 
 class JudgedAlong(Record, frozen=True):
-    """How one model does along the way, and at its end."""
+    """How one model does along the way, and at its end.
+
+    ``taken`` has the effects of the reference whose values were taken from the motion; ``reasons``
+    say why the model does not explain the tracks, a sentence each.
+    """
 
     name: str
     explains: bool
@@ -190,6 +199,8 @@ class JudgedAlong(Record, frozen=True):
     overall: dict[str, Overall]
     against: tuple[Against, ...]
     sentences: tuple[str, ...]
+    taken: tuple[Taken, ...]
+    reasons: tuple[str, ...]
 
 
 class TrackComparison(Result, frozen=True):
@@ -207,6 +218,9 @@ class TrackComparison(Result, frozen=True):
         In the order in which they were given.
     remarks : tuple of str
         What else should be said.
+    setup : Setup
+        What was found of the data before anything was fitted: faults, clock and mounting of the
+        reference, jumps, wrong poses, runs far from the others.
     """
 
     observed: str
@@ -216,6 +230,7 @@ class TrackComparison(Result, frozen=True):
     poses: int
     models: tuple[JudgedAlong, ...]
     remarks: tuple[str, ...]
+    setup: Setup
     size: float
     version: str
 

@@ -12,6 +12,7 @@ from umbmark._comparison import Contrast, OnCircle
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Interval, Record, Result, Row
 from umbmark._scores import Data, data_of
+from umbmark._setup import Setup, Taken
 from umbmark._umbmark import Model
 
 if TYPE_CHECKING:
@@ -153,7 +154,9 @@ class Diagnosis(Result, frozen=True):
     Attributes
     ----------
     verdict : str
-        "explained", "missing_effect", "several_missing", "unlisted_effect" or "not_enough_data".
+        "explained"; "missing_effect" or "several_missing"; "unlisted_effect", which is not in the
+        catalogue; "not_explained", where the model is not enough though no single effect is
+        certified (``reasons`` say why); or "not_enough_data".
     ranking : tuple of Suspect
         Classes of effects that were asked, the first ``certified`` of them missing.
     fitted : tuple of Estimate
@@ -166,6 +169,13 @@ class Diagnosis(Result, frozen=True):
         The least size of each effect that would have been seen.
     next_experiments : tuple of Experiment
         What to measure next, the most telling per minute first.
+    setup : Setup
+        What was found of the data before anything was fitted: faults, clock and mounting of the
+        reference, jumps, wrong poses, runs far from the others.
+    taken : tuple of Taken
+        Effects of the reference whose values were taken from the motion.
+    reasons : tuple of str
+        Why the model is not called explained, a sentence each.
     """
 
     verdict: str
@@ -184,6 +194,9 @@ class Diagnosis(Result, frozen=True):
     model: Model
     meaning: dict[str, str]
     outliers: tuple[Outlier, ...]
+    setup: Setup
+    taken: tuple[Taken, ...]
+    reasons: tuple[str, ...]
     remarks: tuple[str, ...]
     size: float
     draws: int
@@ -221,9 +234,14 @@ class Fitted(Result, frozen=True):
         The free parameters.
     not_shown : tuple of str
         Free effects that this data does not show apart from the rest; they keep their values.
-    weighed : str or None
-        What of tracks was fitted: "increments" from pose to pose, or whole "tracks" where these
-        predict runs left out better. None for return poses.
+    usual_noise : bool
+        Whether the values are those under noise of the usual sizes: from tracks, where these
+        differ from the likeliest ones and predict runs left out better.
+    setup : Setup
+        What was found of the data before anything was fitted: faults, clock and mounting of the
+        reference, jumps, wrong poses, runs far from the others.
+    taken : tuple of Taken
+        Effects of the reference whose values were taken from the motion.
     model : Model
         The model with the fitted values.
     level : float
@@ -234,7 +252,9 @@ class Fitted(Result, frozen=True):
     not_shown: tuple[str, ...]
     meaning: dict[str, str]
     outliers: tuple[Outlier, ...]
-    weighed: str | None
+    usual_noise: bool
+    setup: Setup
+    taken: tuple[Taken, ...]
     model: Model
     level: float
     version: str
@@ -272,11 +292,18 @@ class Learnt(Result, frozen=True):
     steps : tuple of Step
         The nominal robot, and each effect that was added.
     verdict : str
-        What the last diagnosis says.
+        What the last diagnosis says, in the words of ``Diagnosis``.
     model : Model
         The model that was learnt.
     fitted : tuple of Estimate
         Its free parameters.
+    setup : Setup
+        What was found of the data before anything was fitted: faults, clock and mounting of the
+        reference, jumps, wrong poses, runs far from the others.
+    taken : tuple of Taken
+        Effects of the reference whose values were taken from the motion.
+    reasons : tuple of str
+        Why the model is not called explained, a sentence each.
     partial : bool
         Whether it was stopped while an effect was still missing.
     """
@@ -289,6 +316,9 @@ class Learnt(Result, frozen=True):
     fitted: tuple[Estimate, ...]
     meaning: dict[str, str]
     outliers: tuple[Outlier, ...]
+    setup: Setup
+    taken: tuple[Taken, ...]
+    reasons: tuple[str, ...]
     remarks: tuple[str, ...]
     partial: bool
     size: float

@@ -6,8 +6,9 @@ from os import fspath
 from typing import TYPE_CHECKING
 
 from umbmark import _umbmark
-from umbmark._result import Interval, Record, Result, Row
+from umbmark._result import Record, Result, Row
 from umbmark._scores import Data, data_of
+from umbmark._setup import Measured, Setup
 from umbmark._umbmark import Dataset
 
 if TYPE_CHECKING:
@@ -46,14 +47,12 @@ class Group(Record, frozen=True):
 
 
 class WheelFacts(Record, frozen=True):
-    """Whether the wheels are what they are called, by the misfit to the poses in m."""
+    """Whether the wheels are what they are called, by the motion of the poses."""
 
     as_named: bool
     exchanged: bool
     left_backward: bool
     right_backward: bool
-    misfit_m: float | None
-    best_misfit_m: float | None
 
 
 class Moves(Record, frozen=True):
@@ -67,17 +66,11 @@ class Moves(Record, frozen=True):
     stops: int
 
 
-class Measured(Record, frozen=True):
-    """A quantity with standard error and 95 % interval."""
+class Clock(Record, frozen=True):
+    """How the clock and the body of a run's track lie against those of the ticks."""
 
-    value: float
-    std_error: float
-    interval: Interval
-
-
-class Alignment(Record, frozen=True):
-    """How the clock and the body of a track lie against those of the ticks."""
-
+    run: str
+    track: str
     offset_s: Measured
     rate: Measured
     lever_ahead_m: Measured | None
@@ -86,13 +79,6 @@ class Alignment(Record, frozen=True):
     misfit_m: float
     windows: int
     left_out: int
-
-
-class Clock(Alignment, frozen=True):
-    """The alignment of a run's track."""
-
-    run: str
-    track: str
 
 
 class ReferenceFacts(Record, frozen=True):
@@ -118,7 +104,11 @@ class Mended(Record, frozen=True):
 
 
 class LogFacts(Record, frozen=True):
-    """A log: its rows, times in s, and what its ticks and poses say."""
+    """A log: its rows, times in s, and what its ticks and poses say.
+
+    ``delay_s`` is how much older than its stamp a pose is in the middle of the run; None where the
+    motion does not show it.
+    """
 
     name: str
     direction: str | None
@@ -134,7 +124,7 @@ class LogFacts(Record, frozen=True):
     heading_off_rad: float | None
     wheels: WheelFacts | None
     moves: Moves | None
-    alignment: Alignment | None
+    delay_s: Measured | None
     reference: ReferenceFacts | None
 
 
@@ -156,10 +146,28 @@ class Check(Record, frozen=True):
 
 
 class Determined(Record, frozen=True):
-    """Whether the data determines a quantity, and why."""
+    """Whether the data determines a quantity, and why.
+
+    Attributes
+    ----------
+    quantity : str
+        What is asked for.
+    yes : bool
+        Whether the data determines it.
+    std_error : float or None
+        Standard error that this data promises with noise of the usual size, as a share of one;
+        None where the data does not show the quantity, or it is no value of the robot.
+    usual_size : float or None
+        Usual size of the error in robots, as a share of one; None where it is no value of the
+        robot.
+    because : str
+        Why, or what would help.
+    """
 
     quantity: str
     yes: bool
+    std_error: float | None
+    usual_size: float | None
     because: str
 
 
@@ -176,6 +184,8 @@ class Inspection(Result, frozen=True):
         The runs, and each log.
     clocks, topics
         Clocks that were set, and topics that were read.
+    setup : Setup or None
+        What was found of the runs from their motion and return errors; None without a robot.
     """
 
     data: str
@@ -188,6 +198,7 @@ class Inspection(Result, frozen=True):
     checks: tuple[Check, ...]
     determined: tuple[Determined, ...]
     rank: int
+    setup: Setup | None
     warnings: tuple[str, ...]
     version: str
 

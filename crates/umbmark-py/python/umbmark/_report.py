@@ -19,9 +19,10 @@ Asked: TypeAlias = tuple[str, Dataset, tuple[str, Model] | None]
 
 
 class Said(Record, frozen=True):
-    """What a study comes to, in one sentence."""
+    """What a study comes to, in one sentence; ``notices`` say what to know of its data first."""
 
     name: str
+    notices: tuple[str, ...]
     verdict: str
 
 
@@ -33,7 +34,7 @@ class Report(Result, frozen=True):
     html : str
         The page.
     studies : tuple of Said
-        The verdict of each study on it.
+        The verdict of each study on it, and what to know of its data first.
     bytes : int
         Its length.
     """

@@ -104,6 +104,10 @@ def _shown(value: Any) -> str:
     if isinstance(value, tuple):
         inner = ", ".join(_shown(item) for item in value)
         return f"({inner},)" if len(value) == 1 else f"({inner})"
+    if isinstance(value, Record):
+        keys = [(key, getattr(value, key)) for key in value.__struct_fields__]
+        inner = ", ".join(f"{key}={_shown(item)}" for key, item in keys if item not in (None, ()))
+        return f"{type(value).__name__}({inner})"
     if isinstance(value, dict):
         return "{" + ", ".join(f"{key}: {_shown(item)}" for key, item in value.items()) + "}"
     return repr(value)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from umbmark._result import Interval, Record, Result, Row
+from umbmark._setup import Setup
 from umbmark._umbmark import Dataset, load_dataset, score_arrays, score_dataset
 
 if TYPE_CHECKING:
@@ -63,8 +64,13 @@ class Score(Result, frozen=True):
         Number of runs with bumps.
     level : float
         Probability with which each interval holds.
+    setup : Setup
+        What was found of the runs before they were scored: faults, jumps and wrong poses of
+        tracks, runs whose return is far from the others. Empty where return errors were given in
+        arrays.
     warnings : tuple of str
-        What could not be computed and why, and what looks wrong.
+        What to know of the data first; then what could not be computed and why, and what looks
+        wrong.
     version : str
         Version of umbmark.
     """
@@ -93,6 +99,7 @@ class Score(Result, frozen=True):
     n_bumps_cw: int
     n_bumps_ccw: int
     level: float
+    setup: Setup
     warnings: tuple[str, ...]
     version: str
 

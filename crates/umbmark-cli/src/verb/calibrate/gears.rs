@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use umbmark_core::dataset::{Dataset, robot_text};
+use umbmark_core::dataset::Dataset;
 use umbmark_core::document;
 use umbmark_core::drive::Robot;
 use umbmark_core::learn::{GearCalibration, calibrate_gears};
@@ -31,7 +31,7 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
         );
     }
     if let Some(file) = &arguments.export_toml {
-        let text = robot_text(&calibration.corrected, data.path.as_ref());
+        let text = data.robot_file(calibration.corrected.clone()).text();
         Pending::write_whole(file, arguments.force, &text).context("the corrected robot was not written")?;
     }
     if session.json() {

@@ -5,6 +5,7 @@ use crate::geometry::Pose2;
 use crate::likelihood::ObservedRun;
 use crate::path::Direction;
 use crate::replay::Track;
+use crate::setup::PoseNoise;
 use std::ops::Range;
 
 /// Steps longer than this \[m\], or that turn by more \[rad\], say nothing of how the robot drove within them.
@@ -32,6 +33,8 @@ pub(super) struct Place {
     /// How many pieces of the track are made, and how far the wheels have rolled on average by then \[m\].
     pub made: usize,
     pub rolled: f64,
+    /// Whether START was fitted here, so that its error is none.
+    pub starts: bool,
 }
 
 /// What lies between two neighbouring places.
@@ -70,8 +73,8 @@ pub(super) struct Conditions {
 
 impl<'a> Followed<'a> {
     /// `observed` must lie along the model of `chain`.
-    pub fn new(observed: &'a ObservedRun, chain: &Chain<f64>) -> Followed<'a> {
-        let places = places(observed, chain);
+    pub fn new(observed: &'a ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Followed<'a> {
+        let places = places(observed, chain, noise);
         let short = |step: &Step| step.motion[0].abs() <= LONGEST.0 && step.motion[1].abs() <= LONGEST.1;
         let steps = places.windows(2).filter_map(|pair| step(&observed.track, pair)).filter(short).collect();
         let with_heading = observed.blocks.iter().any(|block| block.headings > 0);
@@ -79,29 +82,30 @@ impl<'a> Followed<'a> {
     }
 }
 
-/// Measured poses are moved so that they agree with the model at START, where one was taken there; else START is trusted. A
-/// heading that was not measured errs as the last one did.
-fn places(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Place> {
+/// Measured poses are moved so that they agree with the model at START, which is fitted to the first of them where it was measured, and
+/// anew where the track jumps; else START is trusted. A heading that was not measured errs as the last one did.
+fn places(run: &ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Vec<Place> {
     let rolled = rolled(&run.track);
-    let mut turned = 0.0;
-    let of_block = run.blocks.iter().zip(run.residuals(chain)).map(|(block, [dx, dy, turn])| {
-        if block.headings > 0 {
-            turned = turn;
+    let residuals = run.residuals(chain);
+    let mut places = Vec::with_capacity(run.blocks.len() + 1);
+    if !run.start_seen {
+        let start = run.track.start(chain);
+        places.push(Place { predicted: start, measured: start, made: 0, rolled: 0.0, starts: true });
+    }
+    for stretch in run.stretches([noise.position, noise.heading]) {
+        let mut turned = 0.0;
+        let left = stretch.less_start(run, &residuals);
+        for (index, [dx, dy, turn]) in stretch.blocks.clone().zip(left) {
+            let block = &run.blocks[index];
+            if block.headings > 0 {
+                turned = turn;
+            }
+            let (made, predicted) = (run.made_at(block), block.place);
+            let starts = !stretch.told().contains(&index);
+            let off = if starts { [0.0; 3] } else { [dx, dy, turned] };
+            let measured = Pose2::new(predicted.x + off[0], predicted.y + off[1], predicted.heading + off[2]);
+            places.push(Place { predicted, measured, made, rolled: rolled[made], starts });
         }
-        let made = run.track.seen_after()[block.first + (block.count - 1) / 2];
-        let predicted = block.place;
-        let measured = Pose2::new(predicted.x + dx, predicted.y + dy, predicted.heading + turned);
-        Place { predicted, measured, made, rolled: rolled[made] }
-    });
-    let mut places: Vec<Place> = of_block.collect();
-    if run.start_seen {
-        let world_from_measured = places[0].predicted.compose(&places[0].measured.inverse());
-        for place in &mut places {
-            place.measured = world_from_measured.compose(&place.measured);
-        }
-    } else {
-        let start = chain.start();
-        places.insert(0, Place { predicted: start, measured: start, made: 0, rolled: 0.0 });
     }
     places
 }
@@ -118,6 +122,10 @@ pub(super) fn rolled(track: &Track) -> Vec<f64> {
 
 fn step(track: &Track, pair: &[Place]) -> Option<Step> {
     let (a, b) = (&pair[0], &pair[1]);
+    // Across a jump nothing is told.
+    if b.starts {
+        return None;
+    }
     let predicted = a.predicted.between(&b.predicted);
     let own = predicted.between(&a.measured.between(&b.measured));
     let forward = predicted.log().forward;

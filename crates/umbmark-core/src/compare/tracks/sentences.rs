@@ -13,6 +13,7 @@ pub(super) fn of(judged: &TracksJudged, size: f64) -> Vec<String> {
         sentences.push("Too few runs, or poses too far apart, to test what the errors depend on.".to_owned());
     }
     let least = size / judged.tests.max(1) as f64;
+    sentences.extend(judged.reasons.iter().map(|reason| format!("Not explained: {}.", reason.sentence())));
     sentences.extend(levels(judged, least));
     sentences.extend(dependences(judged, least));
     if judged.tests > 0 && sentences.is_empty() {

@@ -1,15 +1,14 @@
 //! What one log is like.
 
-use super::super::dead_reckoning::{computed_poses, mean_pose, standing_at_end, standing_at_start};
-use super::super::reference_track::count_turns;
-use super::super::synchronise::{Alignment, synchronise};
-use super::super::{Mended, ReferencePose, ReferenceTrack, Run, TickLog};
+use super::super::{Mended, ReferencePose, Run, TickLog};
 use super::heading_off;
 use super::moves::MovesFound;
-use super::wheels::{WheelsFound, find_wheels};
+use super::wheels::{Wheels, by_motion, by_path};
 use crate::drive::Robot;
 use crate::geometry::wrap;
 use crate::path::{Direction, Path};
+use crate::run::dead_reckoning::{computed_poses, mean_pose, standing_at_end, standing_at_start};
+use crate::setup::{Measured, Setup};
 
 /// Figures of one log.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,12 +37,13 @@ pub struct LogFacts {
     pub heading: Option<f64>,
     /// How far that is from the path's own heading \[rad\], where the path is known.
     pub heading_off: Option<f64>,
-    /// Whether the wheels are what they are called.
-    pub wheels: Option<WheelsFound>,
+    /// Whether the wheels are what they are called: by the motion of all runs or, without poses on the way, by the path; `None` where
+    /// neither tells.
+    pub wheels: Option<Wheels>,
     /// What the robot did, where it is known.
     pub moves: Option<MovesFound>,
-    /// How the poses lie against the ticks, by the motion: delay, rate, lever arm and yaw; where it shows them.
-    pub alignment: Option<Alignment>,
+    /// By how much later than taken its poses are stamped, in the middle of the run \[s\]; `None` where the motion does not tell.
+    pub delay: Option<Measured>,
     /// The absolute poses.
     pub reference: Option<ReferenceFacts>,
 }
@@ -92,7 +92,7 @@ pub struct ReferenceFacts {
 const FEWEST: usize = 5;
 
 impl LogFacts {
-    pub(super) fn of(run: &Run, robot: Option<&Robot>, path: Option<&Path>) -> Option<LogFacts> {
+    pub(super) fn of(run: &Run, robot: Option<&Robot>, path: Option<&Path>, setup: Option<&Setup>) -> Option<LogFacts> {
         let log = run.log.as_ref()?;
         let (first, last) = (*log.time.first()?, *log.time.last()?);
         let mut steps: Vec<f64> = log.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -115,23 +115,13 @@ impl LogFacts {
             length,
             heading: poses.last().map(|pose| pose.heading),
             heading_off: path.and_then(|path| Some(heading_off(path, run.direction, poses.last()?))),
-            wheels: robot.and_then(|robot| find_wheels(log, robot, path)),
+            wheels: setup
+                .and_then(|setup| by_motion(setup, &run.name))
+                .or_else(|| by_path(log, run.direction, robot?, path?)),
             moves: robot.map(|robot| MovesFound::of(log, robot)),
-            alignment: robot.and_then(|robot| synchronise(log, &own_track(log), robot).ok()),
+            delay: setup.and_then(|setup| setup.of_run(&run.name)?.delay),
             reference: ReferenceFacts::of(log, length.unwrap_or(0.0)),
         })
-    }
-}
-
-/// The poses of a log as a track, by the ticks' clock.
-fn own_track(log: &TickLog) -> ReferenceTrack {
-    let mut heading: Option<Vec<f64>> = log.reference.iter().map(|pose| pose.heading).collect();
-    count_turns(heading.iter_mut().flatten());
-    ReferenceTrack {
-        time: log.reference.iter().map(|pose| log.time[pose.sample]).collect(),
-        x: log.reference.iter().map(|pose| pose.x).collect(),
-        y: log.reference.iter().map(|pose| pose.y).collect(),
-        heading,
     }
 }
 

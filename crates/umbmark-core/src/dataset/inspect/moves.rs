@@ -1,9 +1,9 @@
 //! What the robot did by its ticks: legs, turns, arcs and stops, and the shape that they make.
 
 use super::super::TickLog;
-use super::super::dead_reckoning::computed_poses;
 use crate::drive::Robot;
 use crate::geometry::Pose2;
+use crate::run::dead_reckoning::computed_poses;
 use std::f64::consts::FRAC_PI_2;
 
 /// Speeds are those over so long a time \[s\], and over two samples at least.

@@ -87,7 +87,7 @@ fn exchanged_and_backward_wheels_are_told_from_the_track() {
         };
         let found = dataset(vec![drive(Direction::Ccw, 5, wheels)]).inspect();
         let expected = Wheels::Otherwise { exchanged, left_backward, right_backward };
-        assert_eq!(found.logs[0].wheels.as_ref().unwrap().wheels, expected);
+        assert_eq!(found.logs[0].wheels, Some(expected));
         assert!(!check(&found, "wheels").ok);
     }
     assert_eq!(
@@ -97,11 +97,89 @@ fn exchanged_and_backward_wheels_are_told_from_the_track() {
 }
 
 #[test]
+fn one_recording_of_exchanged_wheels_among_others_is_named() {
+    let mut runs: Vec<Run> = (0..4).map(|_| drive(Direction::Ccw, 5, same)).collect();
+    runs[2] = Run { name: "odd".into(), ..drive(Direction::Ccw, 5, |left, right| (right, left)) };
+    let found = dataset(runs).inspect();
+    assert_eq!(check(&found, "wheels").found, "left and right exchanged, in odd");
+    assert_eq!(found.logs[0].wheels, Some(Wheels::AsGiven));
+    let faults = &found.setup.as_ref().unwrap().faults;
+    assert!(matches!(&faults[..], [Fault::InRuns { runs, .. }] if *runs == ["odd"]), "{faults:?}");
+}
+
+/// What is said of the wheels of a run without poses on the way.
+fn by_path(run: Run) -> Option<Wheels> {
+    dataset(vec![run]).inspect().logs[0].wheels
+}
+
+const NONE: usize = 100_000;
+
+#[test]
 fn without_a_track_a_wheel_that_runs_backward_is_told_by_the_path() {
-    let found = dataset(vec![drive(Direction::Ccw, 100_000, |left, right| (left, -right))]).inspect();
-    let wheels = found.logs[0].wheels.as_ref().unwrap();
-    assert_eq!(wheels.wheels, Wheels::Otherwise { exchanged: false, left_backward: false, right_backward: true });
-    assert_eq!(wheels.misfit, None);
+    let otherwise =
+        |left_backward, right_backward| Some(Wheels::Otherwise { exchanged: false, left_backward, right_backward });
+    for direction in Direction::BOTH {
+        assert_eq!(by_path(drive(direction, NONE, |left, right| (left, -right))), otherwise(false, true));
+        assert_eq!(by_path(drive(direction, NONE, |left, right| (-left, right))), otherwise(true, false));
+        assert_eq!(by_path(drive(direction, NONE, same)), Some(Wheels::AsGiven));
+        assert_eq!(by_path(drive(direction, NONE, |left, right| (-left, -right))), otherwise(true, true));
+    }
+}
+
+#[test]
+fn a_run_that_reverses_or_is_driven_backward_accuses_no_counter() {
+    let reversing = |mut run: Run, share: f64| {
+        let log = run.log.as_mut().unwrap();
+        let turn = (share * (log.time.len() - 1) as f64) as usize;
+        // From there on, it goes back the way that it came.
+        for counts in [&mut log.left, &mut log.right] {
+            let most = counts[turn];
+            counts[turn + 1..].iter_mut().for_each(|count| *count = 2.0 * most - *count);
+        }
+        run
+    };
+    for share in [0.3, 0.5, 0.7] {
+        assert_eq!(by_path(reversing(drive(Direction::Ccw, NONE, same), share)), None, "{share}");
+    }
+    // Backward all the way, and turning as the direction is named.
+    assert_eq!(by_path(drive(Direction::Ccw, NONE, |left, right| (-right, -left))), None);
+}
+
+#[test]
+fn a_clock_is_told_only_where_poses_and_wheels_move_alike() {
+    let mut run = drive(Direction::Ccw, 5, same);
+    let other = drive(Direction::Cw, 5, |left, right| (0.3 * left, right));
+    let log = run.log.as_mut().unwrap();
+    // The poses of a robot that was driven round and round meanwhile.
+    for (k, pose) in log.reference.iter_mut().enumerate() {
+        let angle = 0.31 * k as f64 + (0.05 * k as f64).sin();
+        (pose.x, pose.y, pose.heading) = (0.7 * angle.cos(), 0.4 * angle.sin(), Some(wrap(-2.3 * angle)));
+    }
+    (log.left, log.right) = {
+        let log = other.log.unwrap();
+        (log.left, log.right)
+    };
+    let found = dataset(vec![run]).inspect();
+    let clock = check(&found, "clock of the poses");
+    assert!(!clock.ok && clock.found.starts_with("cannot be told") && !clock.found.contains("ms"), "{}", clock.found);
+    assert!(found.logs[0].delay.is_none());
+}
+
+#[test]
+fn a_recording_with_a_clock_of_its_own_is_named() {
+    let late = |run: Run, samples: usize| {
+        let mut run = run;
+        let log = run.log.as_mut().unwrap();
+        log.reference.retain(|pose| pose.sample + samples < log.time.len());
+        log.reference.iter_mut().for_each(|pose| pose.sample += samples);
+        run.name = format!("late_{samples}");
+        run
+    };
+    let runs = [0, 0, 5, 0].map(|samples| late(drive(Direction::Ccw, 5, same), samples));
+    let found = dataset(runs.into()).inspect();
+    let clock = check(&found, "clock of the poses");
+    assert!(!clock.ok && clock.found.contains("late_5 by +"), "{}", clock.found);
+    assert!((found.logs[2].delay.unwrap().value - 0.1).abs() < 0.01, "{:?}", found.logs[2].delay);
 }
 
 #[test]
@@ -189,6 +267,75 @@ fn what_returns_can_determine_depends_on_path_directions_and_headings() {
     assert_eq!(determined(path(&CIRCLE, &[2.0, 0.5]), both, true), [true, true, true]);
 }
 
+/// A log of a drive along a straight of 6 m, tracked all the way, which wanders by some hundredths of a radian.
+fn straight(number: u32) -> Run {
+    let robot = Robot::labmate();
+    let per_tick = robot.metres_per_tick();
+    let (mut log, mut pose) = (TickLog::default(), Pose2::IDENTITY);
+    let [mut left, mut right] = [0.0; 2];
+    for sample in 0..600 {
+        log.time.push(f64::from(sample) / 50.0);
+        log.left.push(left / per_tick.left);
+        log.right.push(right / per_tick.right);
+        log.reference.push(ReferencePose {
+            sample: sample as usize,
+            x: pose.x,
+            y: pose.y,
+            heading: Some(pose.heading),
+        });
+        let rotation = 1e-4 * f64::from(sample % 100 - 50) / 50.0;
+        let (l, r) = (0.01 - 0.17 * rotation, 0.01 + 0.17 * rotation);
+        (left, right) = (left + l, right + r);
+        pose = pose.moved(&crate::geometry::Displacement2 { forward: 0.01, sideways: 0.0, rotation });
+    }
+    let (name, test) = (format!("straight_{number}"), TestKind::Systematic);
+    Run { name, number, direction: None, test, log: Some(log), returned: None }
+}
+
+#[test]
+fn what_tracks_determine_depends_on_the_motion_that_was_driven_and_not_on_the_path_that_is_named() {
+    // The path of the dataset is a square, but these runs only went straight on.
+    let found = dataset((0..6).map(straight).collect()).inspect();
+    let [bends, turns, scale] = [0, 1, 2].map(|k| &found.determined[k]);
+    assert!(bends.yes && !turns.yes && scale.yes, "{:?}", &found.determined[..3]);
+    assert!(turns.std_error.is_none_or(|error| error > 0.5 * turns.usual.unwrap()), "{turns:?}");
+    assert!(turns.because.contains("does not show it") && found.rank == 2, "{turns:?}");
+    let square = dataset(vec![drive(Direction::Ccw, 5, same)]).inspect();
+    assert!(square.determined[..3].iter().all(|d| d.yes && d.std_error.unwrap() < 2e-3), "{:?}", square.determined);
+    assert_eq!(square.rank, 3);
+}
+
+#[test]
+fn more_runs_have_smaller_standard_errors_and_one_direction_of_ends_keeps_both_together() {
+    let ends = |directions: &[Direction]| {
+        let runs = directions.iter().map(|d| drive(*d, NONE, same)).map(|mut run| {
+            run.log = None;
+            run
+        });
+        dataset(runs.collect()).inspect()
+    };
+    let error = |found: &Inspection, k: usize| found.determined[k].std_error;
+    let (two, eight) = (ends(&Direction::BOTH), ends(&Direction::BOTH.repeat(4)));
+    for k in 0..2 {
+        let ratio = error(&two, k).unwrap() / error(&eight, k).unwrap();
+        assert!((ratio - 2.0).abs() < 0.05, "{ratio}: {:?}", two.determined);
+    }
+    let one = ends(&[Direction::Cw; 20]);
+    for d in &one.determined[..2] {
+        assert!(!d.yes && d.because.contains("cannot tell them apart"), "{d:?}");
+    }
+    assert_eq!([one.rank, two.rank], [1, 2]);
+}
+
+#[test]
+fn without_logs_and_a_path_nothing_is_determined() {
+    let mut run = drive(Direction::Cw, NONE, same);
+    run.log = None;
+    let found = Dataset { path: None, ..dataset(vec![run]) }.inspect();
+    assert!(found.determined[..3].iter().all(|d| !d.yes && d.std_error.is_none() && d.because.contains("[path]")));
+    assert_eq!(found.rank, 0);
+}
+
 #[test]
 fn what_cannot_be_determined_is_said_with_what_would_help() {
     let strip = |mut run: Run| {
@@ -219,9 +366,10 @@ fn late_poses_and_a_tracked_point_beside_the_axle_are_seen_by_the_motion() {
             (pose.x, pose.y) = (pose.x + ahead * heading.cos(), pose.y + ahead * heading.sin());
         }
         let found = dataset(vec![run]).inspect();
-        let alignment = found.logs[0].alignment.as_ref().unwrap();
-        assert!((alignment.offset.value - late).abs() < 0.01, "{late}: {alignment:?}");
-        assert!((alignment.lever_ahead.unwrap().value - ahead).abs() < 2e-3, "{ahead}: {alignment:?}");
+        let mounting = found.setup.as_ref().unwrap().mounting.unwrap();
+        assert!((mounting.delay.value - late).abs() < 0.01, "{late}: {mounting:?}");
+        assert!((found.logs[0].delay.unwrap().value - late).abs() < 0.01, "{late}: {:?}", found.logs[0].delay);
+        assert!((mounting.ahead.unwrap().value - ahead).abs() < 2e-3, "{ahead}: {mounting:?}");
         assert_eq!(check(&found, "clock of the poses").ok, late == 0.0);
         assert_eq!(check(&found, "tracked point").ok, ahead == 0.0);
         assert!(check(&found, "tracked heading").ok && check(&found, "path by ticks").ok);

@@ -1,9 +1,9 @@
 //! Whether the wheels are what their columns say.
 
 use super::super::TickLog;
-use super::super::dead_reckoning::computed_poses;
 use crate::drive::Robot;
 use crate::path::{Direction, Path};
+use crate::setup::{Fault, Setup};
 
 /// What the columns of a log are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,70 +36,62 @@ impl std::fmt::Display for Wheels {
     }
 }
 
-/// What was found of the wheels of a log, and how.
-#[derive(Clone, Debug, PartialEq)]
-pub struct WheelsFound {
-    /// What the columns are.
-    pub wheels: Wheels,
-    /// Root mean square distance of the absolute poses to the computed ones \[m\], for the columns as given and as they
-    /// fit best; nothing where there are no absolute poses to tell by.
-    pub misfit: Option<(f64, f64)>,
-}
-
-/// The best fit must be this many times better than the columns as given to be believed.
-const CLEARLY: f64 = 3.0;
-/// The fewest absolute poses that columns are told by.
-const FEWEST: usize = 4;
-
-/// Tries every exchange and sign against the absolute poses; without those, looks whether both wheels go forward.
-pub(super) fn find_wheels(log: &TickLog, robot: &Robot, path: Option<&Path>) -> Option<WheelsFound> {
-    if log.reference.len() < FEWEST {
-        return signs_by_path(log, robot, path?);
-    }
-    let given = misfit(log, robot);
-    let (mut best, mut wheels) = (given, Wheels::AsGiven);
-    for trial in 1..8 {
-        let (exchanged, left_backward, right_backward) = (trial & 1 != 0, trial & 2 != 0, trial & 4 != 0);
-        let sign = |backward| if backward { -1.0 } else { 1.0 };
-        let mut turned = log.clone();
-        turned.left.iter_mut().for_each(|ticks| *ticks *= sign(left_backward));
-        turned.right.iter_mut().for_each(|ticks| *ticks *= sign(right_backward));
-        if exchanged {
-            std::mem::swap(&mut turned.left, &mut turned.right);
-        }
-        let found = misfit(&turned, robot);
-        if found * CLEARLY < given && found < best {
-            (best, wheels) = (found, Wheels::Otherwise { exchanged, left_backward, right_backward });
-        }
-    }
-    Some(WheelsFound { wheels, misfit: Some((given, best)) })
-}
-
-/// Root mean square distance of absolute and computed positions \[m\].
-fn misfit(log: &TickLog, robot: &Robot) -> f64 {
-    let poses = computed_poses(log, robot);
-    let square = |p: &super::super::ReferencePose| {
-        let at = poses[p.sample];
-        (p.x - at.x) * (p.x - at.x) + (p.y - at.y) * (p.y - at.y)
+/// What the motion says of the columns of a run, all runs looked at together; `None` where it cannot say.
+pub(super) fn by_motion(setup: &Setup, run: &str) -> Option<Wheels> {
+    let of_fault = |fault: &Fault| match fault {
+        Fault::Exchanged => Some(Wheels::Otherwise { exchanged: true, left_backward: false, right_backward: false }),
+        Fault::Backward { counters: [left_backward, right_backward], exchanged, .. } => Some(Wheels::Otherwise {
+            exchanged: *exchanged,
+            left_backward: *left_backward,
+            right_backward: *right_backward,
+        }),
+        _ => None,
     };
-    (log.reference.iter().map(square).sum::<f64>() / log.reference.len() as f64).sqrt()
+    let of_run = |fault: &Fault| match fault {
+        Fault::InRuns { fault, runs } if runs.iter().any(|own| own == run) => of_fault(fault),
+        fault => of_fault(fault),
+    };
+    let unlike = |fault: &Fault| matches!(fault, Fault::OtherMotion { .. });
+    let told = setup.of_run(run).is_some() && (setup.mounting.is_some() || !setup.faults.is_empty());
+    (told && !setup.faults.iter().any(unlike)).then(|| setup.faults.iter().find_map(of_run).unwrap_or(Wheels::AsGiven))
 }
 
-/// A wheel that ends behind where it began counts backward, on a path where both wheels go forward.
-fn signs_by_path(log: &TickLog, robot: &Robot, path: &Path) -> Option<WheelsFound> {
-    let ahead = Direction::BOTH.into_iter().all(|direction| {
-        let moves = path.moves(direction);
-        let travel = moves.iter().map(|m| m.wheel_travel(&robot.drive));
-        let (left, right) = travel.fold((0.0, 0.0), |(l, r), travel| (l + travel.left, r + travel.right));
-        left > 0.0 && right > 0.0
-    });
-    let (left, right) = (log.left.last()?, log.right.last()?);
-    ahead.then(|| {
-        let (left_backward, right_backward) = (*left < 0.0, *right < 0.0);
-        let wheels = match (left_backward, right_backward) {
-            (false, false) => Wheels::AsGiven,
-            _ => Wheels::Otherwise { exchanged: false, left_backward, right_backward },
-        };
-        WheelsFound { wheels, misfit: None }
-    })
+/// So much of its travel a wheel goes the same way in a run that does not reverse.
+const ONE_WAY: f64 = 0.6;
+/// Turns by less than this share of those of the path contradict nothing.
+const MUCH: f64 = 0.5;
+
+/// What the path says of the columns of a log without poses on the way.
+///
+/// On a path where both wheels go forward, a wheel that goes backward nearly all the time, beside one that goes forward, counts
+/// backward. Both are said to only where the robot also turned the other way than the direction that the run is named after: it may
+/// have been driven backward. A run that reverses says nothing.
+pub(super) fn by_path(log: &TickLog, direction: Option<Direction>, robot: &Robot, path: &Path) -> Option<Wheels> {
+    let travel = |direction: Direction| {
+        let travel = path.moves(direction).into_iter().map(|m| m.wheel_travel(&robot.drive));
+        travel.fold((0.0, 0.0), |(l, r), travel| (l + travel.left, r + travel.right))
+    };
+    if !Direction::BOTH.into_iter().map(travel).all(|(left, right)| left > 0.0 && right > 0.0) {
+        return None;
+    }
+    let [left, right] = [&log.left, &log.right].map(|counts| sense(counts));
+    match (left?, right?) {
+        (false, false) => Some(Wheels::AsGiven),
+        (true, true) => {
+            let (meant_left, meant_right) = travel(direction?);
+            let per_tick = robot.metres_per_tick();
+            let made = log.right.last()? * per_tick.right - log.left.last()? * per_tick.left;
+            let meant = meant_right - meant_left;
+            let contradicts = made * meant < 0.0 && made.abs() > MUCH * meant.abs();
+            contradicts.then_some(Wheels::Otherwise { exchanged: false, left_backward: true, right_backward: true })
+        }
+        (left_backward, right_backward) => Some(Wheels::Otherwise { exchanged: false, left_backward, right_backward }),
+    }
+}
+
+/// Whether a wheel counts down nearly all the time; `None` where it goes both ways, or stands.
+fn sense(counts: &[f64]) -> Option<bool> {
+    let whole: f64 = counts.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+    let net = counts.last()? - counts.first()?;
+    (whole > 0.0 && net.abs() > ONE_WAY * whole).then_some(net < 0.0)
 }

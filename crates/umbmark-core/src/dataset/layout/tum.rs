@@ -1,11 +1,11 @@
 //! Trajectories for tools that compare them: measured and computed poses of each run.
 
-use super::super::dead_reckoning::computed_poses;
 use super::super::error::DatasetError;
 use super::super::label::label;
 use super::super::save::{Existing, put};
 use super::super::tum::tum_text;
 use super::super::{Dataset, ReferencePose};
+use crate::run::dead_reckoning::computed_poses;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -15,7 +15,7 @@ use super::protobuf;
 use super::schema::Schema;
 use super::write::write;
 use super::{Survey, Topics, json};
-use crate::dataset::{ReferencePose, TickLog};
+use crate::dataset::{ReferencePose, RobotFile, TickLog};
 use crate::drive::Robot;
 use crate::random::Stream;
 use std::io::{Cursor, Write};
@@ -39,7 +39,7 @@ fn log() -> TickLog {
 
 fn file_of(log: &TickLog) -> Vec<u8> {
     let mut file = Cursor::new(Vec::new());
-    write(&mut file, &Robot::labmate(), None, log, 0.0).unwrap();
+    write(&mut file, &RobotFile::new(Robot::labmate(), None), log, 0.0).unwrap();
     file.into_inner()
 }
 

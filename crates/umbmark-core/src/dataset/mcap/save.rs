@@ -2,7 +2,7 @@
 
 use super::super::error::DatasetError;
 use super::super::save::{Existing, LogFormat, unwritable};
-use super::super::{Dataset, Run, TickLog};
+use super::super::{Dataset, RobotFile, Run, TickLog};
 use super::clock::is_calendar;
 use super::write::{nanoseconds, write};
 use crate::drive::Kind;
@@ -99,8 +99,8 @@ fn bytes(data: &Dataset, run: &Run, log: &TickLog) -> Result<Vec<u8>, DatasetErr
         return Err(refuse(format!("time {time} s cannot be written; stamps go from 0 to {} s", i32::MAX)));
     }
     let mut file = Cursor::new(Vec::new());
-    write(&mut file, data.nominal_robot()?, data.path.as_ref(), log, begin)
-        .map_err(|error| refuse(error.to_string()))?;
+    let robot_file = RobotFile::new(data.nominal_robot()?.clone(), data.path.clone());
+    write(&mut file, &robot_file, log, begin).map_err(|error| refuse(error.to_string()))?;
     Ok(file.into_inner())
 }
 

@@ -5,16 +5,13 @@
 //! zeros, which is no rotation. The nominal robot goes along as metadata. Chunks are packed with zstd, and the same log
 //! gives the same bytes.
 
-use super::super::dead_reckoning::computed_poses;
-use super::super::robot_text::robot_text;
-use super::super::{ReferencePose, TickLog};
+use super::super::{ReferencePose, RobotFile, TickLog};
 use super::definitions::{Definition, JOINT_STATE, MARKER_ARRAY, ODOMETRY, PATH, POSE_STAMPED, TF};
 use super::parts::{Cdr, header, numbers, orientation};
 use super::scene;
 use super::survey::{METADATA, ROBOT};
-use crate::drive::Robot;
 use crate::geometry::Pose2;
-use crate::path::Path;
+use crate::run::dead_reckoning::computed_poses;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, McapResult, WriteOptions, Writer};
 use std::collections::BTreeMap;
@@ -27,13 +24,7 @@ const JOINTS: [&str; 2] = ["left_wheel_joint", "right_wheel_joint"];
 const LEVEL: u32 = 3;
 
 /// Writes a log into a file, its stamps counted from `begin` \[s\].
-pub(super) fn write(
-    file: impl Write + Seek,
-    robot: &Robot,
-    path: Option<&Path>,
-    log: &TickLog,
-    begin: f64,
-) -> McapResult<()> {
+pub(super) fn write(file: impl Write + Seek, robot_file: &RobotFile, log: &TickLog, begin: f64) -> McapResult<()> {
     let options = WriteOptions::new()
         .profile("ros2")
         .library(format!("umbmark {}", crate::VERSION))
@@ -41,7 +32,8 @@ pub(super) fn write(
         .compression_level(LEVEL)
         .compression_threads(0);
     let mut writer = options.create(file)?;
-    let robot_toml = BTreeMap::from([(ROBOT.to_owned(), robot_text(robot, path))]);
+    let robot = &robot_file.robot;
+    let robot_toml = BTreeMap::from([(ROBOT.to_owned(), robot_file.text())]);
     writer.write_metadata(&Metadata { name: METADATA.to_owned(), metadata: robot_toml })?;
     let mut joint_states = Topic::add(&mut writer, "/joint_states", &JOINT_STATE)?;
     let mut odometry = Topic::add(&mut writer, "/odom", &ODOMETRY)?;
@@ -51,12 +43,13 @@ pub(super) fn write(
         None => None,
     };
     let per_radian = TAU / robot.encoder.ticks_per_revolution();
+    let [first, second] = robot.encoder.wiring().columns([log.left.clone(), log.right.clone()]);
     let poses = computed_poses(log, robot);
     write_scene(&mut writer, log, &poses, begin)?;
     let mut references = log.reference.iter().peekable();
     for (sample, pose) in poses.iter().enumerate() {
         let time = nanoseconds(log.time[sample] - begin);
-        let positions = [log.left[sample] * per_radian, log.right[sample] * per_radian];
+        let positions = [first[sample] * per_radian, second[sample] * per_radian];
         joint_states.write(&mut writer, time, |cdr| joint_state(cdr, time, positions))?;
         let before = sample.saturating_sub(1);
         let twist = twist(&poses[before], pose, log.time[sample] - log.time[before]);

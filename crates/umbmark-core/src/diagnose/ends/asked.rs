@@ -346,7 +346,7 @@ fn moves_means(entry: &'static Entry, model: &Model) -> bool {
         direction: 1.0,
         recorded: true,
     };
-    let sight = Sight { time: 10.0, speed: 0.3, turn_rate: 0.4 };
+    let sight = Sight { time: 10.0, late: 0.0, speed: 0.3, turn_rate: 0.4 };
     let all = |model: &Model| {
         let chain = model.chain();
         let travel = WheelTravel { left: 0.02, right: 0.04 };

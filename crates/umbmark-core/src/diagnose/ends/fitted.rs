@@ -5,6 +5,7 @@
 //! pooled scatter that the runs really show.
 
 use super::{Ends, mirrored};
+use crate::calibrate::{FAR_FIT, STARTS, is_possible};
 use crate::diagnose::{DiagnoseError, Estimate};
 use crate::effect::Model;
 use crate::fit::{self, Problem, RANK_TOLERANCE, null_directions};
@@ -44,6 +45,7 @@ impl Fitted {
         let problem = Returns { ends, model, start: &start, free: &free };
         let first: Vec<f64> = free.iter().map(|i| start[*i]).collect();
         let fit = fit::least_squares(&problem, &first, &SETTLED);
+        let fit = problem.searched(fit, &first);
         if !fit.termination.converged() {
             return Err(DiagnoseError::NotConverged { how: fit.termination.name() });
         }
@@ -220,6 +222,24 @@ impl Returns<'_> {
             all[*index] = *value;
         }
         all
+    }
+
+    /// The fit, or a better one: where E_d or E_b ended far from the nominal robot, or the fit nowhere, others are tried.
+    fn searched(&self, fit: fit::Fit, first: &[f64]) -> fit::Fit {
+        let names = names(self.model);
+        let ratio = |effect: &str| self.free.iter().position(|i| names[*i].0 == effect && self.start[*i] == 1.0);
+        let (Some(e_d), Some(e_b)) = (ratio("wheel_diameter_ratio"), ratio("wheelbase")) else { return fit };
+        let is_near = |place: usize| (fit.values[place] - 1.0).abs() <= FAR_FIT;
+        if fit.termination.converged() && is_near(e_d) && is_near(e_b) {
+            return fit;
+        }
+        let start = |value: f64| {
+            let mut start = first.to_vec();
+            start[e_b] = value;
+            start
+        };
+        let is_possible = |values: &[f64]| is_possible(values[e_d]) && is_possible(values[e_b]);
+        fit::search(self, fit, &STARTS.map(start), &SETTLED, is_possible).fit
     }
 
     fn rows(&self) -> usize {

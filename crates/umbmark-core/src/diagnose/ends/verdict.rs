@@ -13,6 +13,7 @@ use crate::diagnose::{
 };
 use crate::effect::Model;
 use crate::stats::{normal_quantile, student_t_quantile};
+use std::sync::Arc;
 
 /// Probability with which an effect of the minimum detectable size is seen.
 const POWER: f64 = 0.8;
@@ -38,6 +39,9 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
         identifiability: of_ends(ends, &fitted.model)?,
         dependence: None,
         outliers: Vec::new(),
+        setup: Arc::clone(&ends.setup),
+        taken: Vec::new(),
+        reasons: ends.doubts.clone(),
         remarks: Vec::new(),
     };
     diagnosis.remarks.extend(remarks_on_data(ends, &fitted));
@@ -61,6 +65,9 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
     diagnosis.invisible = asked.unseen.clone();
     diagnosis.likeness = asked.likeness();
     judge(&mut diagnosis, &asked, &family, options);
+    if diagnosis.verdict == Verdict::Explained && !diagnosis.reasons.is_empty() {
+        diagnosis.verdict = Verdict::NotExplained;
+    }
     diagnosis.next_experiments = next_experiments(ends, &fitted, &asked, &diagnosis.ranking)?;
     Ok(diagnosis)
 }

@@ -1,23 +1,26 @@
-//! A fitted model by itself: its errors, in the runs it was fitted to and in runs left out, and how these runs are weighed.
+//! A fitted model by itself: its errors, in the runs it was fitted to and in runs left out, and its criteria.
 
 use super::TELLING;
 use super::errors::{Errors, Misses};
 use super::system::{Projected, System};
 use crate::effect::ModelError;
-use crate::likelihood::{Column, Fitted, Noise, Weighing};
+use crate::likelihood::{Column, Fitted, Noise};
+use crate::stats::t_two_sided;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Steps of Gauss and Newton that fit whole tracks, from the fit of increments.
-const STEPS: usize = 8;
-/// Stops where no value changes by more than this share of its standard error.
-const SMALL: f64 = 1e-3;
+/// Fewer folds do not show whether two fits differ.
+const FEWEST_FOLDS: usize = 6;
+/// Two fits differ where chance does as much less often. Both are right of a complete model, so that a doubt costs little.
+const CHANCE: f64 = 0.25;
 
 /// A fitted model, its residuals, and the columns of its free values and of the effects of the reference that are fitted along.
 pub(crate) struct Alone {
     fitted: Fitted,
     columns: Vec<Vec<Column>>,
     system: System,
+    /// Where the values are those under noise of the usual sizes: the products that these are fitted by.
+    usual: Option<System>,
     errors: Errors,
 }
 
@@ -26,8 +29,22 @@ impl Alone {
     pub fn new(fitted: Fitted) -> Alone {
         let (observed, columns) = (&fitted.observed, fitted.all_columns());
         let system = System::new(observed, &fitted.noise, &columns);
-        let errors = Errors::new(observed, &system, &columns, (0..system.width).collect());
-        Alone { fitted, columns, system, errors }
+        let usual = fitted.usual_noise.then(|| System::new(observed, &Noise::default(), &columns));
+        // Errors are those of the model as anyone has them: a run starts anew where its track jumps, and not where this fit found
+        // less than that.
+        let which = (0..system.width).collect();
+        let disturbed = observed.runs.iter().flat_map(|run| &run.blocks).any(|block| block.afresh && !block.jumped);
+        let errors = if disturbed {
+            let (whole, chain) = (observed.whole().along(&fitted.model), fitted.model.chain());
+            let mut columns = columns.clone();
+            for (run, columns) in whole.runs.iter().zip(&mut columns) {
+                columns[system.residual()] = run.residuals_along(&chain);
+            }
+            Errors::new(&whole, &system, &columns, which)
+        } else {
+            Errors::new(observed, &system, &columns, which)
+        };
+        Alone { fitted, columns, system, usual, errors }
     }
 
     /// Columns that are fitted together.
@@ -41,36 +58,23 @@ impl Alone {
         ((0..own).collect(), values.rows(0, own).into_owned())
     }
 
-    /// Errors of runs left out, the others fitted pose by pose or as whole tracks.
-    fn left_out(&self, weighing: Weighing) -> Misses {
-        self.errors.misses(|run| {
-            self.own(&match weighing {
-                Weighing::Increments => Projected::fit(&self.system.without(run), &self.together()),
-                Weighing::Tracks => self.errors.fit(&self.together(), Some(run)),
-            })
-        })
+    /// Errors of runs left out, the others fitted.
+    fn left_out(&self) -> Misses {
+        let fitted_by = self.usual.as_ref().unwrap_or(&self.system);
+        self.errors.misses(|fold| self.own(&Projected::fit(&fitted_by.without(fold), &self.together())))
     }
 
-    /// What predicts runs left out better: the fit of what is new from pose to pose, which is the likeliest where nothing is
-    /// missing from the model, or that of whole tracks, which does what can be done where something is. Whole tracks are weighed
-    /// only where they are better by a tenth.
-    pub fn weighing(&self) -> Weighing {
-        let [increments, tracks] = [Weighing::Increments, Weighing::Tracks].map(|by| self.left_out(by).position);
-        let better = !self.fitted.free.is_empty() && tracks < (1.0 - TELLING) * increments;
-        if better { Weighing::Tracks } else { Weighing::Increments }
-    }
-
-    /// Errors inside and in runs left out, so weighed.
+    /// Errors inside and in runs left out.
     pub fn misses(&self) -> (Misses, Misses) {
-        let weighing = self.weighing();
-        let inside = match weighing {
-            Weighing::Increments => self.errors.in_sample(),
-            Weighing::Tracks => {
-                let all = self.errors.fit(&self.together(), None);
-                self.errors.misses(|_| self.own(&all))
-            }
-        };
-        (inside, self.left_out(weighing))
+        (self.errors.in_sample(), self.left_out())
+    }
+
+    /// The model's own values where each fold is left out.
+    fn by_fold(&self) -> Vec<DVector<f64>> {
+        let values: Vec<f64> = self.fitted.model.values().collect();
+        let now = DVector::from_iterator(self.fitted.free.len(), self.fitted.free.iter().map(|place| values[*place]));
+        let of = |fold| &now + self.own(&Projected::fit(&self.system.without(fold), &self.together())).1;
+        (0..self.system.folds()).into_par_iter().map(of).collect()
     }
 
     /// AICc, BIC and the root mean square of the whitened residuals, the effects of the reference fitted out.
@@ -86,46 +90,57 @@ impl Alone {
         let aicc = deviance + 2.0 * k * n / (n - k - 1.0).max(1.0);
         (aicc, deviance + k * libm::log(n), (squares / n).sqrt())
     }
+}
 
-    /// The model with the values that predict runs left out best. Where these are of whole tracks, their covariance comes from
-    /// leaving out one run after the other.
-    pub fn predicting(self) -> Result<Fitted, ModelError> {
-        if self.weighing() == Weighing::Increments {
-            return Ok(self.fitted);
-        }
-        let (mut now, mut covariance) = (self, None);
-        for _ in 0..STEPS {
-            let step = now.own(&now.errors.fit(&now.together(), None)).1;
-            let values: Vec<f64> = now.fitted.model.values().collect();
-            let moved: Vec<f64> = now.fitted.free.iter().zip(step.iter()).map(|(i, step)| values[*i] + step).collect();
-            let model = now.fitted.model.with_values(&now.fitted.free, &moved)?;
-            let observed = now.fitted.observed.along(&model);
-            now = Alone::new(Fitted { model, observed, weighing: Weighing::Tracks, ..now.fitted });
-            covariance = now.jackknife();
-            let variance = |k: usize| covariance.as_ref().map_or(0.0, |covariance| covariance[(k, k)]);
-            if step.iter().enumerate().all(|(k, step)| step * step <= SMALL * SMALL * variance(k)) {
-                break;
-            }
-        }
-        Ok(Fitted { covariance, ..now.fitted })
-    }
+/// (n - 1)/n Σ Δ Δᵀ, Δ the distance of n values, each of which left out one fold, from their mean: the covariance of what all folds give.
+fn jackknife(values: &[DVector<f64>]) -> DMatrix<f64> {
+    let n = values.len() as f64;
+    let width = values.first().map_or(0, DVector::len);
+    let mean = values.iter().fold(DVector::zeros(width), |sum, v| sum + v) / n;
+    let sum = values.iter().fold(DMatrix::zeros(width, width), |sum, v| sum + (v - &mean) * (v - &mean).transpose());
+    sum * ((n - 1.0) / n)
+}
 
-    /// (n - 1)/n Σ Δ Δᵀ, with Δ the change of the values when one of n runs is left out.
-    fn jackknife(&self) -> Option<DMatrix<f64>> {
-        let (runs, own) = (self.fitted.observed.runs.len(), self.fitted.free.len());
-        let mut sum = DMatrix::zeros(own, own);
-        for run in 0..runs {
-            let change = self.own(&self.errors.fit(&self.together(), Some(run))).1;
-            sum += &change * change.transpose();
-        }
-        (runs > 1).then(|| sum * ((runs - 1) as f64 / runs as f64))
+/// A covariance with no variance below that of the likeliest values.
+fn no_sharper(covariance: DMatrix<f64>, sharpest: &DMatrix<f64>) -> DMatrix<f64> {
+    let wider = |k: usize| (sharpest[(k, k)] / covariance[(k, k)]).max(1.0).sqrt();
+    let wider: Vec<f64> = (0..covariance.ncols()).map(wider).collect();
+    DMatrix::from_fn(wider.len(), wider.len(), |i, j| covariance[(i, j)] * wider[i] * wider[j])
+}
+
+/// A fit with the values that it has under noise of the usual sizes, where these are others.
+///
+/// Of a complete model both are right, and the likeliest are sharper. Where both differ by more than chance (Hausman 1978) and runs left
+/// out are predicted better by a tenth by the other, the noise that was fitted has taken up something that the model lacks; then the
+/// weights of usual noise are trusted.
+/// Covariances are those of leaving out one fold after the other.
+pub(crate) fn trusted(fitted: Fitted) -> Result<Fitted, ModelError> {
+    let own = fitted.free.len();
+    let mut usual = Fitted { noise: Noise::default(), ..fitted.clone() };
+    usual.refit()?;
+    let both = [&fitted, &usual].map(|fitted| Alone::new(fitted.clone()));
+    let [likely, other] = [0, 1].map(|k: usize| both[k].left_out().position);
+    let [likeliest, plain] = both.each_ref().map(Alone::by_fold);
+    if own == 0 || plain.len() < FEWEST_FOLDS || !(other < (1.0 - TELLING) * likely) {
+        return Ok(fitted);
     }
+    let apart: Vec<DVector<f64>> = likeliest.iter().zip(&plain).map(|(a, b)| a - b).collect();
+    let (n, spread) = (apart.len() as f64, jackknife(&apart));
+    let mean = apart.iter().fold(DVector::zeros(own), |sum, v| sum + v) / n;
+    let p = |k: usize| t_two_sided(mean[k] / spread[(k, k)].sqrt().max(f64::MIN_POSITIVE), n - 1.0);
+    let differ = (0..own).any(|k| p(k) * (own as f64) < CHANCE);
+    if !differ {
+        return Ok(fitted);
+    }
+    let covariance = fitted.covariance.as_ref().map(|sharpest| no_sharper(jackknife(&plain), sharpest));
+    Ok(Fitted { covariance, usual_noise: true, noise: fitted.noise, ..usual })
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::tests::fitted;
     use super::*;
+    use nalgebra::DMatrix;
 
     /// BIC - AICc = k ln n - 2kn/(n - k - 1), here solved for k: the model's values, those of the reference and the sizes of the noise.
     #[test]
@@ -165,17 +180,8 @@ mod tests {
             ((0..own).collect(), values.rows(0, own).into_owned())
         };
         let expected = alone.errors.misses(without);
-        let found = alone.left_out(Weighing::Increments);
+        let found = alone.left_out();
         assert!((found.position / expected.position - 1.0).abs() < 1e-6, "{found:?} {expected:?}");
         assert!((found.white / expected.white - 1.0).abs() < 1e-6, "{found:?} {expected:?}");
-    }
-
-    #[test]
-    fn whole_tracks_are_weighed_where_they_predict_runs_left_out_better_by_a_tenth() {
-        for effects in [&[][..], &[("floor_slope", "drift_x", 6e-3)]] {
-            let alone = Alone::new(fitted(effects));
-            let [increments, tracks] = [Weighing::Increments, Weighing::Tracks].map(|by| alone.left_out(by).position);
-            assert_eq!(alone.weighing() == Weighing::Tracks, tracks < 0.9 * increments, "{tracks} {increments}");
-        }
     }
 }

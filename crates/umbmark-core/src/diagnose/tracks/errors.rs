@@ -1,9 +1,14 @@
 //! Errors as people see them: metres and degrees along the way, in the runs at hand and in runs left out.
 
-use super::system::{Projected, System};
+use super::LEAST_GAIN;
+use super::system::System;
 use crate::likelihood::{Column, Observed, ObservedRun, gram};
+use crate::setup::PoseNoise;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+
+/// An effect is not kept where positions or headings of runs left out are worse by this share, and neither is better.
+const HARM: f64 = 0.1;
 
 /// Root mean square errors along the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,24 +28,31 @@ impl Misses {
         let heading = self.heading.zip(before.heading).map_or(f64::NEG_INFINITY, |(now, then)| fall(now, then));
         fall(self.position, before.position).max(heading).max(fall(self.white, before.white))
     }
+
+    /// Whether positions or headings are worse than `before` by a share that is not chance, and neither is better.
+    pub fn harms(&self, before: &Misses) -> bool {
+        let position = fall(self.position, before.position);
+        let heading = self.heading.zip(before.heading).map_or(position, |(now, then)| fall(now, then));
+        position.max(heading) < LEAST_GAIN && position.min(heading) < -HARM
+    }
 }
 
 fn fall(now: f64, then: f64) -> f64 {
     if then > 0.0 { 1.0 - now / then } else { 0.0 }
 }
 
-/// Products of residuals and columns in metres and radians, run by run, START taken from the first pose where it was measured.
+/// Products of residuals and columns in metres and radians, fold by fold (runs, or quarters of few), with START fitted to the first poses.
 #[derive(Clone, Debug, Default)]
 pub struct Errors {
     /// The columns of the system that are in it, the residual last.
     which: Vec<usize>,
-    runs: Vec<Run>,
-    /// Products of whitened columns and their number of rows, run by run.
+    folds: Vec<Fold>,
+    /// Products of whitened columns and their number of rows, fold by fold.
     white: Vec<(DMatrix<f64>, usize)>,
 }
 
 #[derive(Clone, Debug)]
-struct Run {
+struct Fold {
     position: DMatrix<f64>,
     heading: DMatrix<f64>,
     /// Number of positions and of headings.
@@ -48,35 +60,37 @@ struct Run {
 }
 
 impl Errors {
-    /// The errors of all runs; `columns` holds all columns run by run, `which` says which may be used, the residual last.
+    /// The errors of all runs; `columns` holds all columns run by run, `which` says which may be used, the residual last. START is fitted
+    /// where it was measured, and where the track jumps.
     pub fn new(observed: &Observed, system: &System, columns: &[Vec<Column>], which: Vec<usize>) -> Errors {
-        let of_run = |run: usize| {
+        let of_fold = |fold: usize| {
             let (mut sum, mut rows) = (DMatrix::zeros(which.len(), which.len()), 0);
-            for unit in system.of_run(run) {
+            for unit in system.of_fold(fold) {
                 sum += DMatrix::from_fn(which.len(), which.len(), |i, j| unit.white[(which[i], which[j])]);
                 rows += unit.rows;
             }
             (sum, rows)
         };
-        let white = (0..observed.runs.len()).into_par_iter().map(of_run).collect();
-        let runs = observed.runs.par_iter().zip(columns).map(|(run, columns)| Run::new(run, columns, &which)).collect();
-        Errors { which, runs, white }
+        let noise = observed.setup.noise;
+        let white = (0..system.folds()).into_par_iter().map(of_fold).collect();
+        let runs = observed.runs.par_iter().zip(columns).enumerate();
+        let folds = runs.flat_map_iter(|(index, (run, columns))| {
+            let mut folds: Vec<usize> = system.folds_of(index).collect();
+            folds.dedup();
+            let by_quarter = folds.len() > 1;
+            Fold::of_run(run, noise, columns, &which, by_quarter.then_some(folds.len()))
+        });
+        Errors { folds: folds.collect(), white, which }
     }
 
-    /// Errors that are left when each run is predicted with values of its own, `of_run`: pairs of columns and values.
-    pub fn misses(&self, of_run: impl Fn(usize) -> (Vec<usize>, DVector<f64>) + Send + Sync) -> Misses {
+    /// Errors that are left when each fold is predicted with values of its own, `of_fold`: pairs of columns and values.
+    pub fn misses(&self, of_fold: impl Fn(usize) -> (Vec<usize>, DVector<f64>) + Send + Sync) -> Misses {
         let (mut squares, mut counts) = ([0.0; 3], [0; 3]);
-        let fitted: Vec<_> = (0..self.runs.len()).into_par_iter().map(of_run).collect();
-        for ((run, white), (columns, values)) in self.runs.iter().zip(&self.white).zip(fitted) {
-            let mut weights = DVector::zeros(self.which.len());
-            weights[self.which.len() - 1] = 1.0;
-            for (column, value) in columns.iter().zip(values.iter()) {
-                if let Some(place) = self.which.iter().position(|c| c == column) {
-                    weights[place] = -value;
-                }
-            }
-            let [positions, headings] = run.counts;
-            let parts = [(&run.position, positions), (&run.heading, headings), (&white.0, white.1)];
+        let fitted: Vec<_> = (0..self.folds.len()).into_par_iter().map(of_fold).collect();
+        for ((fold, white), fitted) in self.folds.iter().zip(&self.white).zip(fitted) {
+            let weights = self.weights(&fitted);
+            let [positions, headings] = fold.counts;
+            let parts = [(&fold.position, positions), (&fold.heading, headings), (&white.0, white.1)];
             for (k, (products, count)) in parts.into_iter().enumerate() {
                 squares[k] += (products * &weights).dot(&weights).max(0.0);
                 counts[k] += count;
@@ -86,18 +100,16 @@ impl Errors {
         Misses { position: root(0), heading: (counts[1] > 0).then(|| root(1)), white: root(2) }
     }
 
-    /// Values of some columns that make whole tracks fit best, position and heading errors counting alike; without one run.
-    pub fn fit(&self, columns: &[usize], without: Option<usize>) -> DVector<f64> {
-        let width = self.which.len();
-        let (mut position, mut heading) = (DMatrix::zeros(width, width), DMatrix::zeros(width, width));
-        for run in self.runs.iter().enumerate().filter(|(index, _)| Some(*index) != without).map(|(_, run)| run) {
-            position += &run.position;
-            heading += &run.heading;
+    /// What the residual and the columns are multiplied by where columns have these values.
+    fn weights(&self, (columns, values): &(Vec<usize>, DVector<f64>)) -> DVector<f64> {
+        let mut weights = DVector::zeros(self.which.len());
+        weights[self.which.len() - 1] = 1.0;
+        for (column, value) in columns.iter().zip(values.iter()) {
+            if let Some(place) = self.which.iter().position(|c| c == column) {
+                weights[place] = -value;
+            }
         }
-        let (far, turned) = (position[(width - 1, width - 1)], heading[(width - 1, width - 1)]);
-        let products = if turned > 0.0 { position + heading * (far / turned) } else { position };
-        let places = columns.iter().filter_map(|c| self.which.iter().position(|w| w == c)).collect::<Vec<_>>();
-        Projected::fit(&products, &places)
+        weights
     }
 
     /// Errors with the residuals as they are.
@@ -106,32 +118,38 @@ impl Errors {
     }
 }
 
-impl Run {
-    fn new(run: &ObservedRun, columns: &[Column], which: &[usize]) -> Run {
+impl Fold {
+    /// A run as one fold, or as one for each of some `quarters` of it.
+    fn of_run(
+        run: &ObservedRun,
+        noise: PoseNoise,
+        columns: &[Column],
+        which: &[usize],
+        quarters: Option<usize>,
+    ) -> Vec<Fold> {
         let width = which.len();
-        let (mut position, mut heading) = (Vec::new(), Vec::new());
-        // Where the frame was measured: at START, and where the run starts anew.
-        let mut origin = run.start_seen.then_some(0);
-        for (index, block) in run.blocks.iter().enumerate().skip(usize::from(run.start_seen)) {
-            if block.afresh {
-                origin = Some(index);
-                continue;
-            }
-            let from = run.blocks[origin.unwrap_or(0)].place;
-            let (x, y) = (block.place.x - from.x, block.place.y - from.y);
-            let aligned = |column: &Column, k: usize| {
-                let start = origin.map_or([0.0; 3], |origin| column[origin]);
-                column[index][k] - start[k] - start[2] * [-y, x, 0.0][k]
-            };
-            for k in 0..2 {
-                position.extend(which.iter().map(|c| aligned(&columns[*c], k)));
-            }
-            if block.headings > 0 {
-                heading.extend(which.iter().map(|c| aligned(&columns[*c], 2)));
+        let mut rows = vec![[Vec::new(), Vec::new()]; quarters.unwrap_or(1)];
+        let mut units: Vec<usize> = run.blocks.iter().map(|block| block.unit).collect();
+        units.dedup();
+        for stretch in run.stretches([noise.position, noise.heading]) {
+            let left: Vec<Vec<[f64; 3]>> = which.iter().map(|c| stretch.less_start(run, &columns[*c])).collect();
+            for index in stretch.told() {
+                let block = &run.blocks[index];
+                let own = |k: usize| left.iter().map(move |column| column[index - stretch.blocks.start][k]);
+                let place = units.iter().position(|unit| *unit == block.unit).unwrap_or(0);
+                let last = rows.len() - 1;
+                let [position, heading] = &mut rows[place.min(last)];
+                position.extend(own(0).chain(own(1)));
+                if block.headings > 0 {
+                    heading.extend(own(2));
+                }
             }
         }
-        let counts = [position.len() / width / 2, heading.len() / width];
-        Run { position: gram(&position, width), heading: gram(&heading, width), counts }
+        let fold = |[position, heading]: [Vec<f64>; 2]| {
+            let counts = [position.len() / width / 2, heading.len() / width];
+            Fold { position: gram(&position, width), heading: gram(&heading, width), counts }
+        };
+        rows.into_iter().map(fold).collect()
     }
 }
 
@@ -147,14 +165,14 @@ mod tests {
         let mut stream = Stream::new(4, 0, 0);
         let mut rows = |n: usize| DMatrix::from_fn(n, 4, |_, _| stream.normal());
         let rows: Vec<_> = (0..3).map(|run| [rows(2 * (6 + run)), rows(5)]).collect();
-        let run = |(run, [position, heading]): (usize, &[DMatrix<f64>; 2])| Run {
+        let fold = |(run, [position, heading]): (usize, &[DMatrix<f64>; 2])| Fold {
             position: position.tr_mul(position),
             heading: heading.tr_mul(heading),
             counts: [6 + run, 5],
         };
-        let runs = rows.iter().enumerate().map(run).collect();
+        let folds = rows.iter().enumerate().map(fold).collect();
         let white = rows.iter().map(|[position, _]| (4.0 * position.tr_mul(position), position.nrows())).collect();
-        (rows, Errors { which: WHICH.to_vec(), runs, white })
+        (rows, Errors { which: WHICH.to_vec(), folds, white })
     }
 
     #[test]
@@ -176,24 +194,6 @@ mod tests {
         assert!((misses.white - (4.0 * left(0) / 42.0).sqrt()).abs() < 1e-12, "{misses:?}");
     }
 
-    /// Oracle: least squares of all rows, those of headings in the unit in which both errors are as large.
-    #[test]
-    fn whole_tracks_are_fitted_with_positions_and_headings_alike_and_without_the_run_left_out() {
-        let (rows, errors) = errors();
-        for without in [None, Some(1)] {
-            let kept: Vec<_> = rows.iter().enumerate().filter(|(run, _)| Some(*run) != without).collect();
-            let far = |of: usize| kept.iter().map(|(_, rows)| rows[of].column(3).norm_squared()).sum::<f64>();
-            let unit = (far(0) / far(1)).sqrt();
-            let all = kept.iter().flat_map(|(_, [position, heading])| [position.clone(), heading * unit]);
-            let all: Vec<_> = all.flat_map(|m| m.row_iter().map(|row| row.into_owned()).collect::<Vec<_>>()).collect();
-            let all = DMatrix::from_rows(&all);
-            let columns = all.select_columns(&[2, 0]);
-            let expected = columns.svd(true, true).solve(&all.column(3).into_owned(), 1e-12).unwrap();
-            let values = errors.fit(&[4, 1], without);
-            assert!((values - expected).amax() < 1e-9, "{without:?}");
-        }
-    }
-
     #[test]
     fn a_gain_is_the_greatest_fall_of_three() {
         let misses = |position, heading, white| Misses { position, heading, white };
@@ -202,5 +202,10 @@ mod tests {
         assert_eq!(misses(2.0, Some(0.05), 0.9).gain(&before), 0.5);
         assert_eq!(misses(4.0, None, 0.75).gain(&before), 0.25);
         assert_eq!(misses(0.0, None, 2.0).gain(&misses(0.0, None, 1.0)), 0.0);
+        assert!(misses(2.3, Some(0.1), 0.1).harms(&before));
+        assert!(misses(2.0, Some(0.12), 0.1).harms(&before));
+        assert!(misses(2.3, None, 0.1).harms(&before));
+        assert!(!misses(2.3, Some(0.09), 1.0).harms(&before));
+        assert!(!misses(2.1, Some(0.105), 1.0).harms(&before));
     }
 }

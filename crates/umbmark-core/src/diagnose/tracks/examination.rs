@@ -6,7 +6,7 @@ use super::look::Finding;
 use super::responses::{self, Asked, Question, Responses};
 use super::system::{Projected, System};
 use crate::diagnose::ends::names;
-use crate::effect::{Changes, Entry, Law, Model, ModelError, Number};
+use crate::effect::{Changes, Entry, Law, Model, ModelError, Number, is_shape};
 use crate::geometry::Pose2;
 use crate::likelihood::{ABSORBED, Column, Fitted, Noise, share_left};
 use nalgebra::{DMatrix, DVector};
@@ -66,10 +66,11 @@ impl Examination {
 
     /// The same of a model that has grown from that of this one.
     pub fn of_grown(&self, fitted: Fitted) -> Result<Examination, ModelError> {
-        // A delay makes what is seen jump wherever the robot starts or stops: from pose to pose, responses change much.
+        // A delay shows another moment of every start and stop: from pose to pose, responses change much.
         let known = |effect: &Law| self.fitted.model.parts().iter().any(|part| part.effect == *effect);
         let mut effects = fitted.model.parts().iter().map(|part| &part.effect);
-        let sees_alike = effects.all(|effect| known(effect) || !effect.changes().include(Changes::SEEN));
+        let sees_alike =
+            effects.all(|effect| known(effect) || !effect.changes().include(Changes::SEEN.and(Changes::CLOCK)));
         let hold = sees_alike && responses::hold(&self.along, &fitted.observed);
         let responses = if hold { self.lacked_by(&fitted.model) } else { Responses::new(&fitted)? };
         Ok(Examination::by(fitted, responses))
@@ -189,6 +190,35 @@ impl Examination {
             let values = Projected::fit(&products, &columns);
             (columns, values)
         })
+    }
+
+    /// Errors of runs left out without some of the model's own columns, which are at nothing, and the columns `beside` fitted to the
+    /// others.
+    pub fn left_out_without(&self, own: &[usize], beside: &[usize]) -> Misses {
+        let nothing: Vec<f64> = own.iter().map(|column| self.departure(*column)).collect();
+        self.errors.misses(|run| {
+            let mut products = self.system.without(run);
+            let residual = products.ncols() - 1;
+            // What the effect does is left to the others.
+            for (column, value) in own.iter().zip(&nothing) {
+                let added = products.column(*column) * *value;
+                products.set_column(residual, &(products.column(residual) + added));
+            }
+            let values = Projected::fit(&products, beside);
+            let values = values.iter().copied().chain(nothing.iter().map(|value| -value));
+            ([beside, own].concat(), DVector::from_iterator(beside.len() + own.len(), values))
+        })
+    }
+
+    /// How far one of the model's free values is from that which does nothing.
+    pub fn departure(&self, column: usize) -> f64 {
+        let place = self.fitted.free[column];
+        let model = &self.fitted.model;
+        let values = model.parts().iter().flat_map(|part| part.values.iter().zip(part.effect.parameters()));
+        values
+            .into_iter()
+            .nth(place)
+            .map_or(0.0, |(value, p)| if is_shape(p) { 0.0 } else { value - p.default.resolve(model.robot()) })
     }
 
     /// The effect that explains most of some products, of those `wanted`, beside the model.

@@ -13,14 +13,15 @@ pub(crate) fn grown(exam: &Examination, suspect: &Suspect) -> Result<Fitted, Dia
     let model = with(exam.fitted.model.clone(), suspect)?;
     let observed = &exam.fitted.observed;
     let shapes = model.shapes();
-    let sized = observed.fit(&model, &Noise::default(), &shapes)?;
+    let taken = || exam.fitted.taken.clone();
+    let sized = Fitted { taken: taken(), ..observed.fit(&model, &Noise::default(), &shapes)? };
     let shaped = observed.free_values(&sized.model).iter().any(|value| shapes.contains(value));
     let stands_out = |e: &Estimate| e.effect == suspect.best && (e.value / e.standard_error).abs() > SHOWN;
     let clear = estimates(&sized).iter().any(stands_out);
     if !(shaped && clear) {
         return Ok(sized);
     }
-    let both = observed.fit(&sized.model, &sized.noise, &[])?;
+    let both = Fitted { taken: taken(), ..observed.fit(&sized.model, &sized.noise, &[])? };
     let determined = estimates(&both).iter().all(|e| e.standard_error.is_finite());
     Ok(if determined { both } else { sized })
 }

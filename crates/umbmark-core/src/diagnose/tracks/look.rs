@@ -5,7 +5,9 @@ use super::flips::{Family, Scores};
 use super::responses::Question;
 use super::system::Projected;
 use crate::diagnose::{Estimate, Options, Suspect};
+use crate::effect::{Entry, find};
 use crate::stats::f_upper_tail;
+use nalgebra::DVector;
 use rayon::prelude::*;
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -154,6 +156,27 @@ fn scores(exam: &Examination, finding: &Finding, by_quarter: bool) -> Scores {
 /// The effects whose response could be taken for that of a finding, itself not among them: the best shape of each.
 pub fn rivals(exam: &Examination, finding: &Finding) -> Vec<Answer> {
     let own = exam.asked[finding.answer.asked].effect();
+    alike(exam, own, (&finding.answer.columns, &finding.answer.step), &finding.projected)
+}
+
+/// The same of an effect that the model has already: its name, and theirs.
+pub fn class_of_own(exam: &Examination, effect: &'static str) -> Vec<&'static str> {
+    let (own, others): (Vec<usize>, Vec<usize>) =
+        exam.free.iter().copied().partition(|column| exam.name(*column) == Some(effect));
+    let values = DVector::from_iterator(own.len(), own.iter().map(|column| exam.departure(*column)));
+    let beside = Projected::new(&exam.system.whole, &others);
+    let rivals = alike(exam, find(effect).ok(), (&own, &values), &beside);
+    let names = rivals.iter().filter_map(|rival| exam.asked[rival.asked].effect()).map(|rival| rival.about.name);
+    std::iter::once(effect).chain(names).collect()
+}
+
+/// The effects that can make the response of some columns, `own` not among them: the best shape of each.
+fn alike(
+    exam: &Examination,
+    own: Option<&Entry>,
+    (columns, values): (&[usize], &DVector<f64>),
+    beside: &Projected,
+) -> Vec<Answer> {
     let mut alike: Vec<(&str, Answer)> = Vec::new();
     for (index, other) in exam.asked.iter().enumerate() {
         let Some(effect) = other.effect().filter(|effect| Some(*effect) != own) else { continue };
@@ -161,12 +184,11 @@ pub fn rivals(exam: &Examination, finding: &Finding) -> Vec<Answer> {
             continue;
         }
         // The rival's own place in the base, if it has one, is free while the two are compared.
-        let base: Vec<usize> =
-            finding.base().iter().copied().filter(|column| !other.columns.contains(column)).collect();
-        let freed = (base.len() < finding.base().len()).then(|| Projected::new(&exam.system.whole, &base));
-        let projected = freed.as_ref().unwrap_or(&finding.projected);
+        let base: Vec<usize> = beside.base.iter().copied().filter(|column| !other.columns.contains(column)).collect();
+        let freed = (base.len() < beside.base.len()).then(|| Projected::new(&exam.system.whole, &base));
+        let projected = freed.as_ref().unwrap_or(beside);
         let Some(answer) = exam.answer(projected, &exam.system.whole, index) else { continue };
-        if projected.likeness(&finding.answer.columns, &finding.answer.step, &answer.columns) > ALIKE {
+        if projected.likeness(columns, values, &answer.columns) > ALIKE {
             alike.push((effect.about.name, answer));
         }
     }

@@ -284,9 +284,9 @@ fn of_run(run: &ObservedRun, chain: &Chain<f64>, scales: &Scales) -> Vec<Column>
     let mut states: [Vec<f64>; 5] = std::array::from_fn(|_| vec![0.0; terms]);
     let mut columns = vec![vec![[0.0; 3]; run.blocks.len()]; 3 * terms];
     let mut basis = vec![0.0; terms];
-    let (mut pose, mut made) = (chain.start(), 0);
+    let (mut pose, mut made) = (track.start(chain), 0);
     for (index, block) in run.blocks.iter().enumerate() {
-        let until = track.seen_after()[block.first + (block.count - 1) / 2];
+        let until = run.made_at(block);
         for (travel, at) in track.travel()[made..until].iter().zip(&track.contexts()[made..until]) {
             let motion = chain.displacement(&at.headed(pose.heading), travel);
             let middle = pose.moved(&crate::geometry::Displacement2 {

@@ -1,7 +1,9 @@
 //! A model's residuals beside what its parameters, and the effects that it may be missing, would do to them: products of
 //! whitened columns, summed run by run, from which every test and every fold of a cross-validation follows.
 
-use crate::likelihood::{ABSORBED, Column, Noise, Observed, ScaledCholesky, gram, scaled_cholesky, solver};
+use crate::likelihood::{
+    ABSORBED, Column, Noise, Observed, ObservedRun, ScaledCholesky, gram, scaled_cholesky, solver,
+};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -10,6 +12,8 @@ use rayon::prelude::*;
 pub struct Unit {
     /// The run.
     pub run: usize,
+    /// What is left out together with it: its run or, of few runs, it alone.
+    pub fold: usize,
     /// Products of whitened columns.
     pub white: DMatrix<f64>,
     /// Number of whitened rows.
@@ -29,6 +33,18 @@ pub struct System {
     pub rows: usize,
 }
 
+/// Fewer runs are left out by quarters: without one of two, nothing can be told from the other.
+const FEW: usize = 4;
+
+/// How many parts of the data are left out in turn.
+pub fn folds_of(observed: &Observed) -> usize {
+    if observed.runs.len() >= FEW {
+        return observed.runs.len();
+    }
+    let quarters = |run: &ObservedRun| run.blocks.chunk_by(|a, b| a.unit == b.unit).count();
+    observed.runs.iter().map(quarters).sum()
+}
+
 impl System {
     /// Whitens the columns of every run and sums their products by unit. `columns` holds, run by run, all columns and last
     /// the residual.
@@ -42,11 +58,14 @@ impl System {
             let unit = |quarter: &[usize]| {
                 let values;
                 (values, rest) = rest.split_at(quarter.len() * width);
-                Unit { run: index, rows: quarter.len(), white: gram(values, width) }
+                Unit { run: index, fold: index, rows: quarter.len(), white: gram(values, width) }
             };
             quarters.map(unit).collect::<Vec<_>>()
         });
-        let units: Vec<Unit> = units.collect();
+        let mut units: Vec<Unit> = units.collect();
+        if observed.runs.len() < FEW {
+            units.iter_mut().enumerate().for_each(|(index, unit)| unit.fold = index);
+        }
         let mut whole = DMatrix::zeros(width, width);
         units.iter().for_each(|unit| whole += &unit.white);
         System { rows: units.iter().map(|unit| unit.rows).sum(), units, width, whole }
@@ -57,15 +76,25 @@ impl System {
         self.width - 1
     }
 
-    /// The units of one run.
-    pub fn of_run(&self, run: usize) -> impl Iterator<Item = &Unit> {
-        self.units.iter().filter(move |unit| unit.run == run)
+    /// How many folds there are.
+    pub fn folds(&self) -> usize {
+        self.units.last().map_or(0, |unit| unit.fold + 1)
     }
 
-    /// Products of all columns over all runs but one.
-    pub fn without(&self, run: usize) -> DMatrix<f64> {
+    /// The units of one fold.
+    pub fn of_fold(&self, fold: usize) -> impl Iterator<Item = &Unit> {
+        self.units.iter().filter(move |unit| unit.fold == fold)
+    }
+
+    /// Which fold the blocks of a run belong to, by their quarter.
+    pub fn folds_of(&self, run: usize) -> impl Iterator<Item = usize> + '_ {
+        self.units.iter().filter(move |unit| unit.run == run).map(|unit| unit.fold)
+    }
+
+    /// Products of all columns over all folds but one.
+    pub fn without(&self, fold: usize) -> DMatrix<f64> {
         let mut sum = self.whole.clone();
-        self.of_run(run).for_each(|unit| sum -= &unit.white);
+        self.of_fold(fold).for_each(|unit| sum -= &unit.white);
         sum
     }
 }
@@ -172,7 +201,8 @@ mod tests {
     fn system() -> (Vec<DMatrix<f64>>, System) {
         let mut stream = Stream::new(5, 0, 0);
         let rows: Vec<_> = (0..4).map(|_| DMatrix::from_fn(10, 7, |_, k| (1.0 + k as f64) * stream.normal())).collect();
-        let unit = |(rows, run): (&DMatrix<f64>, usize)| Unit { run, white: rows.tr_mul(rows), rows: rows.nrows() };
+        let unit =
+            |(rows, run): (&DMatrix<f64>, usize)| Unit { run, fold: run, white: rows.tr_mul(rows), rows: rows.nrows() };
         let units: Vec<Unit> = rows.iter().zip([0, 1, 1, 2]).map(unit).collect();
         let whole = units.iter().map(|unit| unit.white.clone()).sum();
         (rows, System { rows: 40, units, width: 7, whole })

@@ -6,7 +6,7 @@ use crate::geometry::{Pose2, mean_angle, wrap};
 
 /// Which measurement says where the robot stands at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum EndPose {
+pub(crate) enum EndPose {
     /// The last one.
     Last,
     /// The mean of those taken while both counters rest at the end, but for the first half of them, in which the robot
@@ -15,7 +15,7 @@ pub(super) enum EndPose {
 }
 
 /// Pose after each sample, every step an exact circular arc.
-pub(super) fn computed_poses(log: &TickLog, robot: &Robot) -> Vec<Pose2> {
+pub(crate) fn computed_poses(log: &TickLog, robot: &Robot) -> Vec<Pose2> {
     let mut poses = Vec::with_capacity(log.time.len());
     for_each_pose(log, robot, |pose| poses.push(*pose));
     poses
@@ -23,7 +23,7 @@ pub(super) fn computed_poses(log: &TickLog, robot: &Robot) -> Vec<Pose2> {
 
 /// The computed pose at the end of the track, if it has one, and how much the robot has turned by the end of the log
 /// \[rad\].
-pub(super) fn computed_end(log: &TickLog, robot: &Robot) -> (Option<Pose2>, f64) {
+pub(crate) fn computed_end(log: &TickLog, robot: &Robot) -> (Option<Pose2>, f64) {
     let last = log.reference.last().map(|last| last.sample);
     let (mut sample, mut computed, mut turned) = (0, None, 0.0);
     for_each_pose(log, robot, |pose| {
@@ -48,7 +48,7 @@ fn for_each_pose(log: &TickLog, robot: &Robot, mut visit: impl FnMut(&Pose2)) {
 }
 
 /// Absolute minus computed pose at the end of the track, if it has one.
-pub(super) fn return_error(log: &TickLog, computed: &Pose2, end: EndPose) -> Option<ReturnError> {
+pub(crate) fn return_error(log: &TickLog, computed: &Pose2, end: EndPose) -> Option<ReturnError> {
     let last = log.reference.last()?;
     let absolute = match end {
         EndPose::Last => *last,
@@ -65,14 +65,14 @@ pub(super) fn return_error(log: &TickLog, computed: &Pose2, end: EndPose) -> Opt
 }
 
 /// The measurements taken before the first count moved.
-pub(super) fn standing_at_start(log: &TickLog) -> &[ReferencePose] {
+pub(crate) fn standing_at_start(log: &TickLog) -> &[ReferencePose] {
     let moved = (0..log.time.len()).find(|i| log.left[*i] != log.left[0] || log.right[*i] != log.right[0]);
     let end = log.reference.partition_point(|pose| moved.is_none_or(|moved| pose.sample < moved));
     &log.reference[..end]
 }
 
 /// The measurements taken at the same counts as the last one, up to it.
-pub(super) fn standing_at_end(log: &TickLog) -> &[ReferencePose] {
+pub(crate) fn standing_at_end(log: &TickLog) -> &[ReferencePose] {
     let Some(last) = log.reference.last() else { return &[] };
     let counts = |i: usize| (log.left[i], log.right[i]);
     let moving = (0..last.sample).rev().find(|i| counts(*i) != counts(last.sample));
@@ -80,8 +80,30 @@ pub(super) fn standing_at_end(log: &TickLog) -> &[ReferencePose] {
     &log.reference[start..]
 }
 
-/// The mean of poses that differ little; its heading counts full turns as the first one does.
-pub(super) fn mean_pose(poses: &[ReferencePose]) -> Option<ReferencePose> {
+/// A pose of a robot at rest counts if it lies within so many median distances of the others, and this far at least \[m, rad\].
+const NEAR: f64 = 8.0;
+const AT_LEAST: (f64, f64) = (0.02, 0.02);
+
+/// The mean of poses that differ little, but for some that are wrong; its heading counts full turns as the first one does.
+pub(crate) fn mean_pose(poses: &[ReferencePose]) -> Option<ReferencePose> {
+    let middle = |of: &dyn Fn(&ReferencePose) -> f64| {
+        let mut values: Vec<f64> = poses.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied()
+    };
+    let (x, y) = (middle(&|p| p.x)?, middle(&|p| p.y)?);
+    let away = |p: &ReferencePose| libm::hypot(p.x - x, p.y - y);
+    let straight = poses.iter().find(|p| away(p) <= AT_LEAST.0).and_then(|p| p.heading).unwrap_or(0.0);
+    let turn = |p: &ReferencePose| p.heading.map_or(0.0, |heading| wrap(heading - straight));
+    let turned = middle(&turn)?;
+    let off = |p: &ReferencePose| wrap(turn(p) - turned).abs();
+    let (far, much) = (NEAR * middle(&away)?, NEAR * middle(&off)?);
+    let near = |p: &&ReferencePose| away(p) <= far.max(AT_LEAST.0) && off(p) <= much.max(AT_LEAST.1);
+    let near: Vec<ReferencePose> = poses.iter().filter(near).copied().collect();
+    mean_of(if near.is_empty() { poses } else { &near })
+}
+
+fn mean_of(poses: &[ReferencePose]) -> Option<ReferencePose> {
     let first = *poses.first()?;
     let n = poses.len() as f64;
     let x = first.x + poses.iter().map(|p| p.x - first.x).sum::<f64>() / n;

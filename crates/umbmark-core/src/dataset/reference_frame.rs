@@ -1,0 +1,55 @@
+//! How measured poses are counted, where it is not as it is meant: y to the left of x, headings counter-clockwise.
+
+use super::ReferenceTrack;
+use super::document::Table;
+use super::error::DatasetError;
+use crate::run::ReferencePose;
+use serde::{Deserialize, Serialize};
+
+/// The table `[reference]` of `robot.toml`. What it says is mended while logs are read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ReferenceFrame {
+    /// y grows to the right of x.
+    pub y_mirrored: bool,
+    /// Headings grow clockwise.
+    pub heading_clockwise: bool,
+}
+
+impl ReferenceFrame {
+    /// Each key with what it says here and what it means.
+    pub(super) fn keys(&self) -> [(&'static str, bool, &'static str); 2] {
+        [
+            ("y_mirrored", self.y_mirrored, "y_ref grows to the right of x_ref"),
+            ("heading_clockwise", self.heading_clockwise, "theta_ref grows clockwise"),
+        ]
+    }
+
+    pub(super) fn of_table(table: &Table) -> Result<ReferenceFrame, DatasetError> {
+        let keys = ReferenceFrame::default().keys().map(|(key, ..)| key);
+        table.only(&keys)?;
+        let [y_mirrored, heading_clockwise] = keys.map(|key| table.get(key).map_or(Ok(false), |entry| entry.flag()));
+        Ok(ReferenceFrame { y_mirrored: y_mirrored?, heading_clockwise: heading_clockwise? })
+    }
+
+    /// Poses as they are meant.
+    pub(super) fn mend(&self, poses: &mut [ReferencePose]) {
+        for pose in poses {
+            self.mend_one(&mut pose.y, pose.heading.as_mut());
+        }
+    }
+
+    /// The same of a track with a clock of its own.
+    pub(super) fn mend_track(&self, track: &mut ReferenceTrack) {
+        track.y.iter_mut().for_each(|y| self.mend_one(y, None));
+        track.heading.iter_mut().flatten().for_each(|heading| self.mend_one(&mut 0.0, Some(heading)));
+    }
+
+    fn mend_one(&self, y: &mut f64, heading: Option<&mut f64>) {
+        if self.y_mirrored {
+            *y = -*y;
+        }
+        if let Some(heading) = heading.filter(|_| self.heading_clockwise) {
+            *heading = -*heading;
+        }
+    }
+}

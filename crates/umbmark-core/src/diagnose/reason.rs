@@ -1,0 +1,114 @@
+//! Why a model is not called explained though nothing further is certified.
+
+use crate::setup::{Fault, Jump, OutlyingReturn};
+
+/// One reason.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reason {
+    /// A column, a unit or a frame is not what it is called.
+    Fault(Fault),
+    /// A size of the noise ran into the limit of its search: what the model leaves is no noise.
+    NoiseAtLimit {
+        /// Which size, in words.
+        what: &'static str,
+        /// In units of people.
+        value: f64,
+        /// That unit.
+        unit: &'static str,
+    },
+    /// A size of the noise is far above what counters, floor and reference make.
+    NoiseTooLarge {
+        /// Which size, in words.
+        what: &'static str,
+        /// In units of people.
+        value: f64,
+        /// The most that robots like this have.
+        most: f64,
+        /// Unit of both.
+        unit: &'static str,
+    },
+    /// The error along the way, or at the ends, is larger than the noise would make it.
+    LargerThanNoise {
+        /// "along the way" or "at the ends".
+        place: &'static str,
+        /// Root mean square error \[m\] and, where that is what is too large, \[rad\].
+        left: f64,
+        /// What the noise would leave of the same, in nineteen of twenty cases no more.
+        expected: f64,
+        /// Whether both are headings.
+        heading: bool,
+    },
+    /// Runs that were left out are predicted worse than by the nominal robot.
+    WorseThanNominal {
+        /// \[m\]
+        left_out: f64,
+        /// \[m\]
+        nominal: f64,
+    },
+    /// Runs that were left out are predicted far worse than those that were fitted: they do not agree, or are too few.
+    LeftOutFarWorse {
+        /// \[m\]
+        left_out: f64,
+        /// Of the runs that were fitted \[m\].
+        inside: f64,
+    },
+    /// The return error of a run is far from those of the other runs of its direction.
+    OutlyingReturn(OutlyingReturn),
+    /// The track of a run jumps, so that its return error is not the robot's.
+    JumpBeforeReturn {
+        /// The run's name.
+        run: String,
+        /// Its first jump.
+        jump: Jump,
+    },
+    /// The poses jump so often that the reference, or the way the counts are read, is in doubt.
+    ManyJumps {
+        /// How many jumps and wrong poses there are.
+        count: usize,
+        /// Number of all poses.
+        poses: usize,
+    },
+}
+
+impl Reason {
+    /// Whether it is of the data, and not of the model: nothing that is fitted to such data is written.
+    pub fn is_of_data(&self) -> bool {
+        matches!(self, Reason::Fault(_) | Reason::OutlyingReturn(_) | Reason::JumpBeforeReturn { .. })
+    }
+
+    /// In a sentence, without a full stop.
+    pub fn sentence(&self) -> String {
+        match self {
+            Reason::Fault(fault) => format!("{}; {}", fault.sentence(), fault.remedy()),
+            Reason::NoiseAtLimit { what, value, unit } => format!(
+                "the {what} is at the limit of what is searched ({value:.3} {unit}): what the model leaves is not noise"
+            ),
+            Reason::NoiseTooLarge { what, value, most, unit } => format!(
+                "the {what} is {value:.2} {unit}; robots like this have {most:.2} {unit} at most, so the model leaves something that is not noise"
+            ),
+            Reason::LargerThanNoise { place, left, expected, heading } => {
+                let (scale, unit) = if *heading { (1f64.to_degrees(), "deg") } else { (1e3, "mm") };
+                format!(
+                    "{:.2} {unit} are left {place}, where the fitted noise would leave {:.2} {unit} at most",
+                    scale * left,
+                    scale * expected
+                )
+            }
+            Reason::WorseThanNominal { left_out, nominal } => format!(
+                "runs that were left out are predicted to {:.1} mm, worse than by the nominal robot ({:.1} mm)",
+                1e3 * left_out,
+                1e3 * nominal
+            ),
+            Reason::LeftOutFarWorse { left_out, inside } => format!(
+                "runs that were left out are predicted to {:.1} mm and those that were fitted to {:.1} mm: the runs do not agree, or are too few",
+                1e3 * left_out,
+                1e3 * inside
+            ),
+            Reason::OutlyingReturn(run) => format!("{}; {}", run.sentence(), run.remedy()),
+            Reason::JumpBeforeReturn { run, jump } => jump.notice(run),
+            Reason::ManyJumps { count, poses } => format!(
+                "{count} of {poses} poses are wrong or jump: look at the reference, and whether the counts are read as the drive makes them"
+            ),
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! What speaks against a fitted model as a whole, though no effect that it lacks is certified.
+
+use super::errors::Misses;
+use crate::diagnose::Reason;
+use crate::effect::Model;
+use crate::likelihood::{Growth, Noise, Observed, ObservedRun, Stretch};
+use crate::random::Stream;
+use crate::setup::PoseNoise;
+use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
+
+/// Sizes of the noise beyond which it is none, for a robot with [`USUAL_BASE`]: on carpet, with worn wheels and a reference of
+/// centimetres.
+const MOST: Noise = Noise {
+    heading_per_metre: 0.03,
+    heading_per_radian: 0.03,
+    forward_per_metre: 0.04,
+    sideways_per_metre: 0.04,
+    reference_position: 0.05,
+    reference_heading: 0.05,
+    reference_time: 0.03,
+    reference_delay: 0.06,
+    within_position: 0.1,
+    within_heading: 0.1,
+    start_position: 0.0,
+    start_heading: 0.0,
+};
+/// Wheelbase of a usual robot \[m\]: with wheels nearer together, the same slip turns a robot more.
+const USUAL_BASE: f64 = 0.3;
+/// A size is at its limit within this share of it.
+const AT_LIMIT: f64 = 0.9;
+/// Way \[m\] and turning \[rad\] of a run on average from which the noise of wheels is told.
+const LEAST: (f64, f64) = (1.0, 1.0);
+/// Simulated sets that errors along the way are held against: so many, fewer where there are more blocks in all than this.
+const SETS: (usize, usize) = (100, 2_000_000);
+/// Errors may be larger than the largest of nineteen in twenty simulated sets by this factor: noise that remembers over metres makes
+/// drifts 2.6 times as wide as the noise model believes.
+const REMEMBERS: f64 = 2.5;
+/// Purpose of the stream.
+const DOUBTS: u64 = 0x646f_7562;
+
+/// The reasons by noise, jumps and the size of what is left.
+pub(super) fn of_model(observed: &Observed, model: &Model, noise: &Noise, left: &Misses, seed: u64) -> Vec<Reason> {
+    let mut reasons: Vec<Reason> = observed.setup.faults.iter().cloned().map(Reason::Fault).collect();
+    reasons.extend(observed.setup.many_jumps());
+    reasons.extend(of_noise(observed, noise, model.robot().drive.wheelbase()));
+    reasons.extend(of_size(observed, noise, left, seed));
+    reasons
+}
+
+/// Sizes that are at their limit, or too large; those that a run has hardly any way or turns for say nothing.
+fn of_noise(observed: &Observed, noise: &Noise, wheelbase: f64) -> Vec<Reason> {
+    let slim = (USUAL_BASE / wheelbase).max(1.0);
+    let of_run = |of: fn(&Growth) -> f64| {
+        let blocks = observed.runs.iter().flat_map(|run| &run.blocks);
+        blocks.map(|block| of(&block.growth)).sum::<f64>() / observed.runs.len().max(1) as f64
+    };
+    let (drives, turns) = (of_run(|g| g.way) > LEAST.0, of_run(|g| g.heading_per_radian[5]) > LEAST.1);
+    /// What it is called, where it stands, whether the runs show it, by how much more of it is usual, and its unit with how many of it
+    /// make one of SI.
+    type Size = (&'static str, fn(&Noise) -> f64, bool, f64, f64, &'static str);
+    let sizes: [Size; 8] = [
+        ("heading noise of the wheels", |n| n.heading_per_metre, drives, slim, 1e3, "mrad per root metre"),
+        ("heading noise in turns", |n| n.heading_per_radian, turns, slim, 1e3, "mrad per root radian"),
+        ("forward noise of the wheels", |n| n.forward_per_metre, drives, 1.0, 1e3, "mm per root metre"),
+        ("sideways noise of the wheels", |n| n.sideways_per_metre, drives, 1.0, 1e3, "mm per root metre"),
+        ("noise of the reference's positions", |n| n.reference_position, true, 1.0, 1e3, "mm"),
+        ("noise of the reference's headings", |n| n.reference_heading, true, 1.0, 1e3, "mrad"),
+        ("noise of the reference's clock from pose to pose", |n| n.reference_time, true, 1.0, 1e3, "ms"),
+        ("noise of the reference's clock from run to run", |n| n.reference_delay, true, 1.0, 1e3, "ms"),
+    ];
+    let limits = Noise::largest();
+    let told = sizes.into_iter().filter(|size| size.2).filter_map(|(what, of, _, wider, scale, unit)| {
+        let (value, limit, most) = (of(noise), of(&limits), wider * of(&MOST));
+        if value >= AT_LIMIT * limit {
+            return Some(Reason::NoiseAtLimit { what, value: scale * value, unit });
+        }
+        (value > most).then_some(Reason::NoiseTooLarge { what, value: scale * value, most: scale * most, unit })
+    });
+    told.collect()
+}
+
+/// Whether positions and headings along the way are off by more than the noise would have them.
+fn of_size(observed: &Observed, noise: &Noise, left: &Misses, seed: u64) -> Vec<Reason> {
+    let blocks: usize = observed.runs.iter().map(|run| run.blocks.len()).sum();
+    let sets = SETS.0.min(SETS.1 / blocks.max(1)).max(20);
+    let stretches: Vec<Vec<Stretch>> = observed
+        .runs
+        .iter()
+        .map(|run| run.stretches([observed.setup.noise.position, observed.setup.noise.heading]))
+        .collect();
+    let simulated: Vec<[f64; 2]> = (0..sets)
+        .into_par_iter()
+        .map(|set| {
+            let mut sums = [[0.0; 2]; 2];
+            for (index, (run, stretches)) in observed.runs.iter().zip(&stretches).enumerate() {
+                let mut stream = Stream::new(seed, DOUBTS, (set * observed.runs.len() + index) as u64);
+                let errors = random_walk(run, noise, observed.setup.noise, &mut stream);
+                for stretch in stretches {
+                    let left = stretch.less_start(run, &errors);
+                    for block in stretch.told() {
+                        let [x, y, heading] = left[block - stretch.blocks.start];
+                        sums[0] = [sums[0][0] + x * x + y * y, sums[0][1] + 1.0];
+                        if run.blocks[block].headings > 0 {
+                            sums[1] = [sums[1][0] + heading * heading, sums[1][1] + 1.0];
+                        }
+                    }
+                }
+            }
+            sums.map(|[sum, count]| (sum / f64::max(count, 1.0)).sqrt())
+        })
+        .collect();
+    let most = |k: usize| {
+        let mut sorted: Vec<f64> = simulated.iter().map(|s| s[k]).collect();
+        sorted.sort_by(f64::total_cmp);
+        REMEMBERS * sorted[(sorted.len() * 19 / 20).min(sorted.len() - 1)]
+    };
+    let mut reasons = Vec::new();
+    for (k, left) in [Some(left.position), left.heading].into_iter().enumerate() {
+        if let Some(left) = left.filter(|left| *left > most(k)) {
+            let (expected, heading) = (most(k), k == 1);
+            reasons.push(Reason::LargerThanNoise { place: "along the way", left, expected, heading });
+        }
+    }
+    reasons
+}
+
+/// Errors of a run as its noise alone would make them: (x, y, heading) a block.
+fn random_walk(run: &ObservedRun, noise: &Noise, single: PoseNoise, stream: &mut Stream) -> Vec<[f64; 3]> {
+    let mut state = Vector3::zeros();
+    let late = noise.reference_delay * stream.normal();
+    let draw = |stream: &mut Stream| Vector3::from_fn(|_, _| stream.normal());
+    let block = |block: &crate::likelihood::Block| {
+        let growth = noise.growth(&block.growth);
+        let covariance = Matrix3::from_fn(|i, j| growth[i][j]);
+        if let Some(root) = (covariance + Matrix3::identity() * 1e-18).cholesky() {
+            state += root.l() * draw(stream);
+        }
+        let (x, y) = (block.place.x, block.place.y);
+        let measured = draw(stream);
+        let own =
+            |shared: f64, single: f64, count: usize| (shared * shared + single * single / count.max(1) as f64).sqrt();
+        let position = own(noise.reference_position, noise.within_position.max(single.position), block.count);
+        let heading = own(noise.reference_heading, noise.within_heading.max(single.heading), block.headings);
+        let time = late + noise.reference_time * stream.normal();
+        [
+            state[0] - y * state[2] + position * measured[0] + time * block.velocity[0],
+            state[1] + x * state[2] + position * measured[1] + time * block.velocity[1],
+            state[2] + heading * measured[2] + time * block.velocity[2],
+        ]
+    };
+    run.blocks.iter().map(block).collect()
+}

@@ -1,0 +1,235 @@
+//! What a model is missing, and a model that grows by it: one effect after the other, and what no longer helps taken out again.
+
+use super::examination::Examination;
+use super::look::{self, Finding};
+use super::responses::Asked;
+use super::system::Projected;
+use super::{EXPLAINED, FEWEST, LEAST_GAIN, TELLING, TRIES, estimates, growth};
+use crate::diagnose::{DiagnoseError, Estimate, Options, Suspect};
+use crate::effect::{Part, is_shape};
+use crate::likelihood::{Fitted, Noise};
+use crate::watch::Watch;
+
+/// A fit with an effect more went astray where its error is so many times as large.
+const ASTRAY: f64 = 2.0;
+
+/// What a fitted model is missing.
+pub(crate) struct Missing {
+    /// The certified effect that would be added.
+    pub effect: Option<(Finding, Suspect)>,
+    /// A certified smooth that this effect, or none, explains.
+    pub smooth: Option<Finding>,
+    /// All effects that were asked, the likeliest first.
+    pub asked: Vec<Suspect>,
+}
+
+/// Looks for what is missing and not refused.
+fn missing(exam: &Examination, options: &Options, refused: &[&str]) -> Missing {
+    let findings = look::effects(exam, options);
+    let smooth = look::smooths(exam, options).iter().find(|s| s.certified(options)).cloned();
+    let enough = exam.fitted.observed.runs.len() >= FEWEST;
+    let best = if enough { first_with_gain(exam, &findings, options, refused) } else { None };
+    let unexplained = smooth.filter(|smooth| !explains(exam, best, smooth) && smooth_gains(exam, smooth));
+    Missing {
+        effect: best.and_then(|finding| look::suspect(exam, finding).map(|suspect| (finding.clone(), suspect))),
+        smooth: unexplained,
+        asked: findings.iter().filter_map(|finding| look::suspect(exam, finding)).collect(),
+    }
+}
+
+/// Whether an effect explains as much as a smooth does, both asked beside the same.
+pub(super) fn explains(exam: &Examination, effect: Option<&Finding>, smooth: &Finding) -> bool {
+    let Some(effect) = effect else { return false };
+    let whole = &exam.system.whole;
+    let beside = Projected::new(whole, effect.base());
+    let drop = exam.answer(&beside, whole, smooth.answer.asked).map_or(0.0, |answer| answer.drop);
+    effect.answer.drop >= EXPLAINED * drop
+}
+
+/// The first certified effect with which runs left out are predicted better, the choice being made anew without each.
+///
+/// Physics comes before the reference: an effect is asked beside all effects of the reference and stands for itself, where a
+/// delay, asked without itself, takes a share of what physics explains better.
+fn first_with_gain<'a>(
+    exam: &Examination,
+    findings: &'a [Finding],
+    options: &Options,
+    refused: &[&str],
+) -> Option<&'a Finding> {
+    let nuisance = |finding: &Finding| exam.asked[finding.answer.asked].nuisance;
+    for of_reference in [false, true] {
+        let mut passed: Vec<&str> = refused.to_vec();
+        let own = findings.iter().filter(|f| nuisance(f) == of_reference && f.certified(options));
+        let is_refused =
+            |f: &Finding| exam.asked[f.answer.asked].effect().is_some_and(|e| refused.contains(&e.about.name));
+        let own = own.filter(|f| look::possible(exam, f) && !is_refused(f));
+        for finding in own.take(TRIES) {
+            let wanted = |asked: &Asked| {
+                let name = asked.effect().map_or("", |effect| effect.about.name);
+                asked.nuisance == of_reference && !passed.contains(&name)
+            };
+            // Effects of the reference are in both predictions, so that the gain is the effect's own.
+            let beside: Vec<usize> = finding.base().iter().copied().filter(|c| !exam.free.contains(c)).collect();
+            let before = exam.left_out(&beside);
+            let after = exam.left_out_with(&beside, |products| exam.likeliest(products, wanted));
+            if after.gain(&before) >= LEAST_GAIN {
+                return Some(finding);
+            }
+            passed.extend(exam.asked[finding.answer.asked].effect().map(|effect| effect.about.name));
+        }
+    }
+    None
+}
+
+/// Whether runs left out are predicted better with a smooth.
+fn smooth_gains(exam: &Examination, finding: &Finding) -> bool {
+    let own = &finding.answer.columns;
+    let errors = exam.errors_with(own);
+    let of = |columns: Vec<usize>| {
+        errors.misses(|run| {
+            let values = Projected::fit(&exam.system.without(run), &columns);
+            (columns.clone(), values)
+        })
+    };
+    let base = exam.base(None);
+    of([&base[..], own].concat()).gain(&of(base.clone())) >= TELLING
+}
+
+/// What was found missing, one effect after the other, each fitted before the next was asked about.
+pub(crate) struct Search {
+    /// The model as it was, and after each effect.
+    pub exams: Vec<Examination>,
+    /// The effects.
+    pub added: Vec<(Finding, Suspect)>,
+    /// Effects that no longer helped once others were there, and were taken out again.
+    pub removed: Vec<&'static str>,
+    /// Certified effects with which runs left out are predicted worse; they were not added.
+    pub harmful: Vec<&'static str>,
+    /// What the last model is missing and was not added.
+    pub left: Missing,
+}
+
+/// Adds what is certified as missing, at most `most` effects and none of those `refused`, each fitted without approximation before the
+/// next is asked; once stopped, no more.
+pub(crate) fn search(
+    fitted: Fitted,
+    options: &Options,
+    most: usize,
+    refused: Vec<&'static str>,
+    watch: &Watch,
+) -> Result<Search, DiagnoseError> {
+    let mut exam = Examination::new(fitted)?;
+    // What was taken from the motion is asked whether it helps, as all that is added here is; what the user's model says stands.
+    let taken: Vec<&str> = exam.fitted.taken.iter().map(|taken| taken.effect).collect();
+    let own: Vec<&str> = exam.fitted.model.parts().iter().map(|part| part.effect.name()).collect();
+    let stands = |effect: &&'static str| own.contains(effect) && !taken.contains(effect);
+    let mut removed = Vec::new();
+    while let Some(effect) = silent(&exam, |effect| taken.contains(&effect)) {
+        exam = Examination::new(without(&exam.fitted, effect)?)?;
+        removed.push(effect);
+    }
+    let left = missing(&exam, options, &[&refused[..], &removed].concat());
+    let mut search = Search { exams: vec![exam], added: Vec::new(), removed, harmful: Vec::new(), left };
+    let goes_on = |search: &Search| search.added.len() < most && !watch.is_stopped();
+    while let Some((finding, suspect)) = search.left.effect.clone().filter(|_| goes_on(&search)) {
+        (watch.progress)((search.added.len() + 1) as f64 / (most + 1) as f64);
+        let mut exam = search.last().of_grown(growth::grown(search.last(), &suspect)?)?;
+        // What a fit without approximation does not bear out is passed over; it is not asked for again.
+        if astray(&exam, search.last()) || idle(&exam, |effect| effect == suspect.best).is_some() {
+            search.removed.push(suspect.best);
+            search.left = missing(search.last(), options, &search.passed(&refused));
+            continue;
+        }
+        while let Some(effect) = idle(&exam, |effect| !stands(&effect) && effect != suspect.best) {
+            exam = Examination::new(without(&exam.fitted, effect)?)?;
+            search.removed.push(effect);
+        }
+        if exam.left_out(&[]).harms(&search.last().left_out(&[])) {
+            search.harmful.push(suspect.best);
+            search.left = missing(search.last(), options, &search.passed(&refused));
+            continue;
+        }
+        if search.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&exam, smooth, options)) {
+            break;
+        }
+        search.left = missing(&exam, options, &search.passed(&refused));
+        search.exams.push(exam);
+        search.added.push((finding, suspect));
+    }
+    Ok(search)
+}
+
+/// A fit without one of its effects.
+fn without(fitted: &Fitted, effect: &str) -> Result<Fitted, DiagnoseError> {
+    let taken = fitted.taken.iter().filter(|taken| taken.effect != effect).copied().collect();
+    let again = fitted.observed.fit(&fitted.model.without(effect), &Noise::default(), &[])?;
+    Ok(Fitted { taken, ..again })
+}
+
+/// Whether a fit ended far from the one before it: with an effect more, no model need miss by more.
+fn astray(exam: &Examination, before: &Examination) -> bool {
+    let [now, then] = [exam, before].map(|exam| exam.errors.in_sample().position);
+    now > ASTRAY * then
+}
+
+/// An effect among those `asked` that does not help: none of its sizes is known to be other than nothing, or runs left out are predicted
+/// as well without it.
+fn idle(exam: &Examination, asked: impl Fn(&'static str) -> bool) -> Option<&'static str> {
+    silent(exam, &asked).or_else(|| last_part(exam, asked, |part| !helps(exam, part.effect.name())))
+}
+
+/// An effect among those `asked` of which no size is known to be other than nothing.
+fn silent(exam: &Examination, asked: impl Fn(&'static str) -> bool) -> Option<&'static str> {
+    let estimates = estimates(&exam.fitted);
+    let robot = exam.fitted.model.robot();
+    let is_silent = |part: &Part| {
+        let own: Vec<&Estimate> = estimates.iter().filter(|e| e.effect == part.effect.name()).collect();
+        let shows = |e: &&&Estimate| {
+            let parameter = part.effect.parameters().iter().find(|p| p.name == e.parameter);
+            let nothing = parameter.filter(|p| !is_shape(p)).map(|p| p.default.resolve(robot));
+            nothing.is_some_and(|nothing| e.interval(0.95).is_none_or(|interval| !interval.contains(nothing)))
+        };
+        !own.is_empty() && own.iter().all(|e| !shows(&e))
+    };
+    last_part(exam, asked, is_silent)
+}
+
+/// The last added of the effects that are fitted, `asked` and such.
+fn last_part(
+    exam: &Examination,
+    asked: impl Fn(&'static str) -> bool,
+    is_such: impl Fn(&Part) -> bool,
+) -> Option<&'static str> {
+    let parts = exam.fitted.model.parts().iter().filter(|part| part.free && asked(part.effect.name()));
+    parts.rev().find(|part| is_such(part)).map(|part| part.effect.name())
+}
+
+/// Whether runs left out are predicted better with an effect of the model than without it.
+fn helps(exam: &Examination, effect: &str) -> bool {
+    let own: Vec<usize> = exam.free.iter().copied().filter(|column| exam.name(*column) == Some(effect)).collect();
+    if own.is_empty() {
+        return true;
+    }
+    let beside: Vec<usize> = exam.base(None).into_iter().filter(|column| !own.contains(column)).collect();
+    let with = exam.left_out(&beside.iter().copied().filter(|c| !exam.free.contains(c)).collect::<Vec<_>>());
+    with.gain(&exam.left_out_without(&own, &beside)) >= LEAST_GAIN
+}
+
+impl Search {
+    /// Effects that are not asked for again, beside those `refused` from the beginning.
+    fn passed(&self, refused: &[&'static str]) -> Vec<&'static str> {
+        refused.iter().chain(&self.removed).chain(&self.harmful).copied().collect()
+    }
+
+    /// The last examination.
+    pub fn last(&self) -> &Examination {
+        &self.exams[self.exams.len() - 1]
+    }
+}
+
+/// Whether a smooth that an effect seemed not to explain is there after that effect was fitted. What one linear step
+/// leaves of a large effect is gone then; what is not in the catalogue is not.
+pub(super) fn speaks_on(exam: &Examination, smooth: &Finding, options: &Options) -> bool {
+    let mut now = look::smooths(exam, options).iter().filter(|finding| finding.certified(options));
+    now.any(|finding| finding.answer.drop > (1.0 - EXPLAINED) * smooth.answer.drop)
+}

@@ -1,0 +1,151 @@
+//! Where a fit begins: with what the motion alone says of the reference, and of the robot's sizes where they are far off.
+
+use super::observed::Observed;
+use crate::drive::Drive;
+use crate::effect::{Model, ModelError, Part};
+use crate::replay::Track;
+use crate::setup::{Measured, Mounting};
+use crate::stats::t_two_sided;
+
+/// The reference's clock and place are taken where they stand out by so many standard errors ...
+const SURE: f64 = 5.0;
+/// ... and are larger than this: small ones are fitted along, and asked about as every effect is.
+const LATE: f64 = 0.010;
+const AWAY: f64 = 0.010;
+const TURNED: f64 = 0.020;
+/// Sizes of the robot that are off by this share are far off: a fit from the nominal ones may end elsewhere.
+pub(crate) const FAR: f64 = 0.04;
+/// A ratio is known well enough to begin with where it is so many times its standard error.
+const KNOWN: f64 = 5.0;
+/// A track that the nominal robot turns out of its way by more \[rad\] is far off too.
+const AWAY_BY: f64 = 0.2;
+/// Parts of the data that the values of the motion rest on.
+const PARTS: f64 = 8.0;
+
+/// Effects that look like a delay of the reference to the motion.
+const CLOCKS: [&str; 3] = ["reference_delay", "reference_clock_rate", "encoder_skew"];
+
+/// An effect of the reference that was taken from the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Taken {
+    /// Its name.
+    pub effect: &'static str,
+    /// Its numbers, as the motion has them.
+    pub values: [Option<(&'static str, Measured)>; 2],
+    /// Probability of so large a value where there is none.
+    pub p: f64,
+}
+
+impl Observed {
+    /// Where the fit of a model begins: with clock and mounting of the reference as the motion has them, and with start values near the
+    /// robot's sizes.
+    pub fn begin(&self, model: &Model) -> Result<(Model, Vec<Taken>), ModelError> {
+        let (mut model, taken) = self.with_reference(model)?;
+        if let Some(mounting) = &self.setup.mounting {
+            self.start_near(&mut model, mounting)?;
+        }
+        Ok((model, taken))
+    }
+
+    /// A model with what the motion says of clock and mounting of the reference, where the model says nothing and it is large.
+    pub fn with_reference(&self, model: &Model) -> Result<(Model, Vec<Taken>), ModelError> {
+        let (start, mut model, mut taken) = (model, model.clone(), Vec::new());
+        let Some(mounting) = self.setup.mounting else { return Ok((model, taken)) };
+        let sights = self.runs.iter().filter_map(|run| run.track.sights().last());
+        let duration = sights.map(|sight| sight.time).fold(0.0, f64::max);
+        let at_work = |part: &&Part| part.values.iter().any(|value| *value != 0.0);
+        let said: Vec<&str> = start.parts().iter().filter(at_work).map(|part| part.effect.name()).collect();
+        let says_of_clock = CLOCKS.iter().any(|effect| said.contains(effect));
+        for found in of_reference(&mounting, duration) {
+            // A delay that the motion shows is what one of these does already.
+            if says_of_clock && CLOCKS.contains(&found.effect) {
+                continue;
+            }
+            let own = model.parts().iter().find(|part| part.effect.name() == found.effect);
+            // What the model says of the reference stands, but for a start value that says nothing.
+            if own.is_some_and(|part| !part.free || part.values.iter().any(|value| *value != 0.0)) {
+                continue;
+            }
+            if own.is_none() {
+                taken.push(found);
+            }
+            for (parameter, measured) in found.values.into_iter().flatten() {
+                model.set(found.effect, parameter, measured.value)?;
+            }
+            model.add(found.effect)?.free = true;
+        }
+        Ok((model, taken))
+    }
+
+    /// The ratio that a first effect of a differential drive has by the motion alone; `None` where that does not show it.
+    pub fn ratio_by_motion(&self, effect: &str) -> Option<f64> {
+        let mounting = self.setup.mounting.as_ref().filter(|_| matches!(self.robot.drive, Drive::Differential(_)))?;
+        ratios(mounting, self.robot.drive.wheelbase()).into_iter().find(|(name, ..)| *name == effect)?.2
+    }
+
+    /// Whether the heading at the end of a track is far from the nominal robot's by what the motion says.
+    fn turns_away(&self, track: &Track, mounting: &Mounting) -> bool {
+        let turned = track.contexts().iter().map(|at| (at.turn_rate * at.duration).abs()).sum::<f64>();
+        let known = |m: &Option<Measured>| m.filter(|m| m.is_beyond(2.0)).map(|m| m.value);
+        let drift = known(&mounting.drift).map_or(0.0, |drift| (drift * track.length()).abs());
+        drift.max(known(&mounting.gain).map_or(0.0, |gain| ((gain - 1.0) * turned).abs())) > AWAY_BY
+    }
+
+    /// Sets the free first effects of a differential drive to what the motion says, where that is far from their start values.
+    fn start_near(&self, model: &mut Model, mounting: &Mounting) -> Result<(), ModelError> {
+        let Drive::Differential(_) = &self.robot.drive else { return Ok(()) };
+        let values = ratios(mounting, self.robot.drive.wheelbase());
+        let far = values.iter().any(|(_, _, value)| value.is_some_and(|value| (value - 1.0).abs() > FAR))
+            || self.tracks().any(|track| self.turns_away(track, mounting));
+        for (effect, parameter, value) in values.into_iter().filter(|_| far) {
+            let is_free = model.parts().iter().any(|part| part.effect.name() == effect && part.free);
+            if let Some(value) = value.filter(|_| is_free && model.get(effect, parameter) == Some(1.0)) {
+                let (low, high) = crate::effect::find(effect)?.about.parameters[0].bounds;
+                model.set(effect, parameter, value.clamp(low, high))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The effects of the reference that are large beyond doubt, in runs of at most this duration \[s\].
+pub(crate) fn of_reference(mounting: &Mounting, duration: f64) -> Vec<Taken> {
+    let rate = mounting.rate.filter(|rate| rate.is_beyond(SURE) && rate.value.abs() * duration > LATE);
+    // A delay is that at the beginning of a run.
+    let delay = mounting.delay.less(rate.map_or(0.0, |rate| rate.value * mounting.middle));
+    let mut found = Vec::new();
+    if delay.is_beyond(SURE) && delay.value.abs() > LATE {
+        found.push(("reference_delay", [Some(("delay_s", delay)), None]));
+    }
+    if let Some(rate) = rate {
+        found.push(("reference_clock_rate", [Some(("ratio", rate)), None]));
+    }
+    if let (Some(ahead), Some(left)) = (mounting.ahead, mounting.left) {
+        let large = |m: &Measured| m.is_beyond(SURE) && m.value.abs() > AWAY;
+        if large(&ahead) || large(&left) {
+            found.push(("marker_offset", [Some(("forward_m", ahead)), Some(("left_m", left))]));
+        }
+    }
+    if let Some(yaw) = mounting.yaw.filter(|yaw| yaw.is_beyond(SURE) && yaw.value.abs() > TURNED) {
+        found.push(("marker_yaw", [Some(("yaw_rad", yaw)), None]));
+    }
+    let p = |measured: &Measured| t_two_sided(measured.value / measured.std_error, PARTS - 1.0);
+    let of = |(effect, values): (&'static str, [Option<(&'static str, Measured)>; 2])| {
+        let p = values.iter().flatten().map(|(_, measured)| p(measured)).fold(1.0, f64::min);
+        Taken { effect, values, p }
+    };
+    found.into_iter().map(of).collect()
+}
+
+/// The first effects of a differential drive, with the values that the motion has.
+pub(crate) fn ratios(mounting: &Mounting, wheelbase: f64) -> [(&'static str, &'static str, Option<f64>); 3] {
+    let known = |m: &Measured| m.value > 0.0 && m.is_beyond(KNOWN);
+    let value = |measured: &Option<Measured>| measured.filter(known).map(|m| m.value);
+    let (scale, gain) = (value(&mounting.scale), value(&mounting.gain));
+    let drift = mounting.drift.map_or(0.0, |drift| drift.value);
+    let e_b = gain.map(|gain| scale.unwrap_or(1.0) / gain);
+    // A metre ahead turns the robot by 2 g (E_d - 1)/((E_d + 1) b).
+    let bend = gain.map(|gain| 0.5 * drift * wheelbase / gain);
+    let e_d = bend.map(|bend| (1.0 + bend) / (1.0 - bend));
+    [("scale", "e_s", scale), ("wheelbase", "e_b", e_b), ("wheel_diameter_ratio", "e_d", e_d)]
+}

@@ -1,0 +1,92 @@
+//! A run laid along a model: where its blocks are, and its measured poses on the prediction where it starts, and starts anew.
+
+use super::walk::{Walk, velocity};
+use super::{Block, ObservedRun};
+use crate::effect::Chain;
+use crate::geometry::{Pose2, mean_angle, wrap};
+
+/// Without headings, poses are turned so that so much of the way behind a start lies on the prediction \[m\].
+const WAY: f64 = 1.0;
+
+impl ObservedRun {
+    /// Places the blocks, and the growth of the error between them, along the poses that a model predicts.
+    pub(super) fn lay_along(&mut self, chain: &Chain<f64>) {
+        let walk = Walk::new(&self.track, chain);
+        self.moments = self.track.moments(chain).into();
+        self.places = self.moments.iter().map(|moment| walk.at(moment)).collect();
+        let mut before = 0;
+        for block in &mut self.blocks {
+            let own = block.first..block.first + block.count;
+            let (places, moments) = (&self.places[own.clone()], &self.moments[own]);
+            let mean = |of: fn(&Pose2) -> f64| places.iter().map(of).sum::<f64>() / places.len() as f64;
+            block.place = Pose2::new(mean(|p| p.x), mean(|p| p.y), mean(|p| p.heading));
+            block.velocity = velocity(places, moments);
+            let middle = moments[(moments.len() - 1) / 2].made;
+            block.growth = walk.growth(before, middle);
+            before = middle;
+        }
+        self.lay_measured(chain);
+    }
+
+    /// Lays what was measured on what the model predicts where the run starts, unless START is trusted, and where it starts anew:
+    /// turned by degrees, what follows would be off by more than a small rotation moves it.
+    pub(super) fn lay_measured(&mut self, chain: &Chain<f64>) {
+        let mut predicted = Vec::with_capacity(self.places.len());
+        self.sighted(chain, &mut |_, pose| predicted.push(*pose));
+        let mut laid = Pose2::IDENTITY;
+        let mut seen = Vec::with_capacity(self.measured.len());
+        for (index, block) in self.blocks.iter().enumerate() {
+            if block.afresh || (index == 0 && self.start_seen) {
+                laid = self.laid_at(block, &predicted, laid);
+            }
+            let own = &self.measured[block.first..block.first + block.count];
+            seen.extend(own.iter().map(|(x, y, heading)| {
+                let pose = laid.compose(&Pose2::new(*x, *y, heading.unwrap_or(0.0)));
+                (pose.x, pose.y, heading.map(|_| pose.heading))
+            }));
+        }
+        self.seen = seen.into();
+    }
+
+    /// What brings the measured poses of a block onto the predicted ones; `before` is what brought those before it there.
+    fn laid_at(&self, block: &Block, predicted: &[Pose2], before: Pose2) -> Pose2 {
+        let own = block.first..block.first + block.count;
+        let turned = self.measured[own.clone()].iter().zip(&predicted[own.clone()]);
+        let turned = mean_angle(turned.filter_map(|((_, _, heading), pose)| Some(wrap(pose.heading - (*heading)?))));
+        let turned = turned.or_else(|| self.course_behind(block, predicted)).unwrap_or(before.heading);
+        let n = block.count as f64;
+        let mean = |of: &dyn Fn(usize) -> f64| own.clone().map(of).sum::<f64>() / n;
+        let (x, y) = (mean(&|i| self.measured[i].0), mean(&|i| self.measured[i].1));
+        let (to_x, to_y) = (mean(&|i| predicted[i].x), mean(&|i| predicted[i].y));
+        let there = Pose2::new(0.0, 0.0, turned).compose(&Pose2::new(x, y, 0.0));
+        Pose2::new(to_x - there.x, to_y - there.y, turned)
+    }
+
+    /// The turn that lays the way behind a block on the predicted one.
+    fn course_behind(&self, block: &Block, predicted: &[Pose2]) -> Option<f64> {
+        let first = block.first;
+        let from = predicted[first];
+        let near = |i: &usize| libm::hypot(predicted[*i].x - from.x, predicted[*i].y - from.y) <= WAY;
+        let later = self.blocks.iter().find(|other| other.first > first && other.afresh);
+        let until = later.map_or(predicted.len(), |block| block.first);
+        let way: Vec<usize> = (first..until).take_while(near).collect();
+        let pairs = way.iter().map(|i| (&self.measured[*i], &predicted[*i]));
+        turn_onto(pairs.map(|((x, y, _), pose)| ([*x, *y], [pose.x, pose.y])))
+    }
+}
+
+/// The rotation that brings points nearest to others (Procrustes); `None` where they are one place.
+pub(crate) fn turn_onto(pairs: impl Iterator<Item = ([f64; 2], [f64; 2])> + Clone) -> Option<f64> {
+    let n = pairs.clone().count() as f64;
+    let mut middle = [0.0; 4];
+    for (a, b) in pairs.clone() {
+        middle = [middle[0] + a[0] / n, middle[1] + a[1] / n, middle[2] + b[0] / n, middle[3] + b[1] / n];
+    }
+    let (mut dot, mut cross, mut spread) = (0.0, 0.0, 0.0_f64);
+    for ([ax, ay], [bx, by]) in pairs {
+        let (ax, ay, bx, by) = (ax - middle[0], ay - middle[1], bx - middle[2], by - middle[3]);
+        (dot, cross) = (dot + ax * bx + ay * by, cross + ax * by - ay * bx);
+        spread = spread.max(libm::hypot(bx, by));
+    }
+    (spread > 0.1).then(|| libm::atan2(cross, dot))
+}

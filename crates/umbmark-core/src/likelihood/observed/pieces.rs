@@ -1,0 +1,90 @@
+//! Long runs cut into pieces that count as runs.
+//!
+//! What tells noise from a cause is that it differs from run to run. A drive of ten minutes holds as much of that as ten drives
+//! of a minute, once each piece has a START of its own: its pose there is measured, and what was gathered before is forgotten.
+
+use super::{FEWEST, ObservedRun};
+use crate::drive::Robot;
+use crate::effect::Model;
+use crate::geometry::Pose2;
+use std::ops::Range;
+
+/// Fewer runs than this are cut where they are long, into so many in all.
+const FEW: usize = 6;
+const ENOUGH: usize = 10;
+/// A run as long as this is long \[s\]; one that stands alone is long from the second on.
+const LONG: [f64; 2] = [150.0, 60.0];
+/// No piece is shorter \[s\], or has fewer blocks.
+const SHORTEST: f64 = 20.0;
+const LEAST_BLOCKS: usize = 30;
+/// What is driven so long before and after a piece may be seen in it \[s\].
+const MARGIN: f64 = 2.0;
+
+/// The runs, long ones of them in pieces where there are few.
+pub(super) fn cut(runs: Vec<ObservedRun>, robot: &Robot) -> Vec<ObservedRun> {
+    let long = LONG[usize::from(runs.len() == 1)];
+    if runs.len() >= FEW || runs.iter().all(|run| duration(run) < long) {
+        return runs;
+    }
+    let whole: f64 = runs.iter().map(duration).sum();
+    let of_run = |run: ObservedRun| {
+        let share = (ENOUGH as f64 * duration(&run) / whole).round();
+        let most = (duration(&run) / SHORTEST).min((run.blocks.len() / LEAST_BLOCKS) as f64).floor();
+        let count = if duration(&run) < long { 1.0 } else { share.min(most).max(1.0) };
+        if count > 1.0 { in_pieces(&run, count as usize, robot) } else { vec![run] }
+    };
+    runs.into_iter().flat_map(of_run).collect()
+}
+
+fn duration(run: &ObservedRun) -> f64 {
+    let sights = run.track.sights();
+    sights.last().zip(sights.first()).map_or(0.0, |(last, first)| last.time - first.time)
+}
+
+/// Pieces of about the same time, cut between blocks.
+fn in_pieces(run: &ObservedRun, count: usize, robot: &Robot) -> Vec<ObservedRun> {
+    let sights = run.track.sights();
+    let begins = sights[0].time;
+    let length = duration(run) / count as f64;
+    let edge = |k: usize| {
+        let time = begins + k as f64 * length;
+        let after = run.blocks.iter().find(|block| sights[block.first].time >= time - 1e-9);
+        after.map_or(sights.len(), |block| block.first)
+    };
+    let edges: Vec<usize> = (0..count).map(edge).chain([sights.len()]).collect();
+    edges.windows(2).filter_map(|pair| piece(run, pair[0]..pair[1], robot)).collect()
+}
+
+/// Some observations of a run as a run of its own, which begins where the robot was measured first.
+fn piece(run: &ObservedRun, own: Range<usize>, robot: &Robot) -> Option<ObservedRun> {
+    if own.is_empty() {
+        return None;
+    }
+    let measured = &run.measured[own.clone()];
+    let track = run.track.part(own.clone(), MARGIN);
+    // Where the counts have the robot, seen from where the piece begins to be driven.
+    let model = Model::new(robot);
+    let poses = track.clone().beginning_at(Pose2::IDENTITY).poses(&model.chain());
+    let (x, y, heading) = measured[0];
+    let turned = heading.map(|heading| heading - poses[0].heading).or_else(|| {
+        super::laid::turn_onto(poses.iter().zip(measured).map(|(pose, (x, y, _))| ([pose.x, pose.y], [*x, *y])))
+    });
+    let there = Pose2::new(0.0, 0.0, turned?).compose(&poses[0]);
+    let begins = if own.start == 0 { None } else { Some(Pose2::new(x - there.x, y - there.y, turned?)) };
+    let track = match begins {
+        Some(origin) => track.beginning_at(origin),
+        None => track,
+    };
+    let jumps: Vec<usize> = run
+        .blocks
+        .iter()
+        .filter(|b| b.jumped && own.contains(&b.first) && b.first > own.start)
+        .map(|b| b.first - own.start)
+        .collect();
+    let sights = run.track.sights();
+    let (from, to) = (sights[own.start].time, sights[own.end - 1].time);
+    let start_seen = begins.is_some() || run.start_seen;
+    let mut piece = ObservedRun::laid(&run.log, run.direction, track, measured.into(), &jumps, start_seen, &model);
+    piece.name = format!("{}, {from:.0} to {to:.0} s", run.log);
+    (piece.blocks.len() >= FEWEST).then_some(piece)
+}

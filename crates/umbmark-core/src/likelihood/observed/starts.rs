@@ -1,0 +1,182 @@
+//! Where a run starts, and starts anew, fitted to what was measured there: all that is fitted before an error is told.
+//!
+//! A single pose turns everything behind it by its own noise, ten metres on by some centimetres. So START is fitted to the
+//! first poses of a stretch, each weighed by its own noise and by what wheels usually gather until then.
+
+use super::{Block, ObservedRun};
+use crate::likelihood::{Column, Noise};
+use nalgebra::{Matrix3, Vector3};
+use std::ops::Range;
+
+/// No pose is taken for better than this \[m, rad\].
+const LEAST: f64 = 1e-4;
+/// The first block alone is START where its mean is as sure as this \[m, rad\].
+const ENOUGH: (f64, f64) = (1e-3, 5e-4);
+
+/// A stretch of a run in which nothing but START is fitted.
+#[derive(Clone, Debug)]
+pub struct Stretch {
+    /// Its blocks.
+    pub blocks: Range<usize>,
+    /// How START is fitted; `None` where it is trusted.
+    start: Option<Start>,
+}
+
+/// How START is fitted.
+#[derive(Clone, Debug)]
+enum Start {
+    /// Its heading to headings, its position to positions: weights of the blocks.
+    Posed { headings: Vec<f64>, positions: Vec<f64> },
+    /// All of it to positions: weights of the blocks, and what solves for it.
+    Placed { weights: Vec<f64>, solver: Matrix3<f64> },
+}
+
+impl ObservedRun {
+    /// The stretches of a run, where single poses have this noise \[m, rad\].
+    pub fn stretches(&self, noise: [f64; 2]) -> Vec<Stretch> {
+        let begins = |(index, block): (usize, &Block)| (index == 0 || block.afresh).then_some(index);
+        let begins: Vec<usize> = self.blocks.iter().enumerate().filter_map(begins).collect();
+        let ends = begins.iter().skip(1).copied().chain([self.blocks.len()]);
+        let stretch = |(begin, end): (&usize, usize)| {
+            let blocks = *begin..end;
+            let is_fitted = *begin > 0 || self.start_seen;
+            Stretch { start: is_fitted.then(|| self.start_of(blocks.clone(), noise)), blocks }
+        };
+        begins.iter().zip(ends).map(stretch).collect()
+    }
+
+    fn start_of(&self, blocks: Range<usize>, [position, heading]: [f64; 2]) -> Start {
+        let usual = Noise::default();
+        let own = |sd: f64, count: usize| (sd * sd).max(LEAST * LEAST) / count.max(1) as f64;
+        let first = &self.blocks[blocks.start];
+        // Of poses at rest there are mostly enough: then nothing that happens behind them is taken for START.
+        let sure = own(position, first.count) <= ENOUGH.0 * ENOUGH.0
+            && first.headings > 0
+            && own(heading, first.headings) <= ENOUGH.1 * ENOUGH.1;
+        if sure {
+            let alone = |k: usize| if k == 0 { 1.0 } else { 0.0 };
+            let weights: Vec<f64> = (0..blocks.len()).map(alone).collect();
+            return Start::Posed { headings: weights.clone(), positions: weights };
+        }
+        let (mut turned, mut gone) = (0.0, 0.0);
+        let (mut positions, mut headings) = (Vec::new(), Vec::new());
+        for (k, block) in self.blocks[blocks.clone()].iter().enumerate() {
+            let growth = &block.growth;
+            let further = |of: f64| if k > 0 { of } else { 0.0 };
+            let turning = further(
+                usual.heading_per_metre.powi(2) * growth.heading_per_metre[5]
+                    + usual.heading_per_radian.powi(2) * growth.heading_per_radian[5],
+            );
+            (turned, gone) = (turned + turning, gone + further(growth.way));
+            // What the heading has gathered since START moves the robot aside.
+            let aside = further((usual.forward_per_metre.powi(2) + turned * gone) * growth.way);
+            positions.push((Some(own(position, block.count)), aside));
+            headings.push(((block.headings > 0).then(|| own(heading, block.headings)), turning));
+        }
+        if headings.iter().any(|(own, _)| own.is_some()) {
+            return Start::Posed { headings: of_first(&headings), positions: of_first(&positions) };
+        }
+        let mut sum = 0.0;
+        let weigh = |(own, aside): &(Option<f64>, f64)| {
+            sum += aside;
+            1.0 / (own.unwrap_or(0.0) + sum)
+        };
+        let weights: Vec<f64> = positions.iter().map(weigh).collect();
+        let mut products = Matrix3::identity() * 1e-6;
+        for (block, p) in self.blocks[blocks.clone()].iter().zip(&weights) {
+            let [x, y] = self.away(&blocks, block);
+            products += Matrix3::new(1.0, 0.0, -y, 0.0, 1.0, x, -y, x, x * x + y * y) * *p;
+        }
+        Start::Placed { weights, solver: products.try_inverse().unwrap_or_else(Matrix3::zeros) }
+    }
+
+    /// Where a block is, seen from the first of a stretch.
+    fn away(&self, blocks: &Range<usize>, block: &Block) -> [f64; 2] {
+        let from = &self.blocks[blocks.start].place;
+        [block.place.x - from.x, block.place.y - from.y]
+    }
+}
+
+/// Weights by which the first value of a random walk is best told from later ones: each has noise of its own, where it was measured,
+/// and the walk a step before it. Generalised least squares, by the information filter from the last value back.
+fn of_first(values: &[(Option<f64>, f64)]) -> Vec<f64> {
+    let mut weights = vec![0.0; values.len()];
+    let (mut information, mut shares) = (0.0, vec![0.0; values.len()]);
+    for (k, (own, _)) in values.iter().enumerate().rev() {
+        let later = values.get(k + 1).map_or(0.0, |(_, step)| information / (1.0 + information * step));
+        information = later + own.map_or(0.0, |own| 1.0 / own);
+        shares[k] = if information > 0.0 { later / information } else { 0.0 };
+    }
+    let mut passed = 1.0;
+    for (weight, share) in weights.iter_mut().zip(shares) {
+        *weight = passed * (1.0 - share);
+        passed *= share;
+    }
+    weights
+}
+
+impl Stretch {
+    /// What is left of a column within the stretch when START is fitted to it: (x, y, heading) a block.
+    pub fn less_start(&self, run: &ObservedRun, column: &Column) -> Vec<[f64; 3]> {
+        let own = &run.blocks[self.blocks.clone()];
+        let values = &column[self.blocks.clone()];
+        let away = |block: &Block| run.away(&self.blocks, block);
+        let start = match &self.start {
+            None => return values.to_vec(),
+            Some(Start::Posed { headings, positions }) => {
+                let turned: f64 = values.iter().zip(headings).map(|(value, weight)| weight * value[2]).sum();
+                let mut start = Vector3::new(0.0, 0.0, turned);
+                for ((block, value), weight) in own.iter().zip(values).zip(positions) {
+                    let [x, y] = away(block);
+                    start[0] += weight * (value[0] + y * turned);
+                    start[1] += weight * (value[1] - x * turned);
+                }
+                start
+            }
+            Some(Start::Placed { weights, solver }) => {
+                let mut sums = Vector3::zeros();
+                for ((block, value), weight) in own.iter().zip(values).zip(weights) {
+                    let [x, y] = away(block);
+                    sums += Vector3::new(value[0], value[1], x * value[1] - y * value[0]) * *weight;
+                }
+                solver * sums
+            }
+        };
+        let left = |(block, value): (&Block, &[f64; 3])| {
+            let [x, y] = away(block);
+            [value[0] - start[0] + y * start[2], value[1] - start[1] - x * start[2], value[2] - start[2]]
+        };
+        own.iter().zip(values).map(left).collect()
+    }
+
+    /// The blocks whose errors are told: where START is fitted, the first is spent on it.
+    pub fn told(&self) -> Range<usize> {
+        self.blocks.start + usize::from(self.start.is_some())..self.blocks.end
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::of_first;
+    use nalgebra::{DMatrix, DVector};
+
+    /// Oracle: 1ᵀC⁻¹/1ᵀC⁻¹1 with C the covariance of a random walk seen with noise.
+    #[test]
+    fn the_first_value_of_a_walk_is_told_by_generalised_least_squares() {
+        let values = [(Some(0.4), 0.0), (Some(1.0), 0.3), (None, 0.2), (Some(0.1), 0.5), (Some(0.2), 0.0)];
+        let seen: Vec<usize> = (0..5).filter(|k| values[*k].0.is_some()).collect();
+        let walk = |k: usize| values[..=k].iter().map(|(_, step)| step).sum::<f64>();
+        let covariance = DMatrix::from_fn(4, 4, |i, j| {
+            let own = if i == j { values[seen[i]].0.unwrap() } else { 0.0 };
+            walk(seen[i].min(seen[j])) + own
+        });
+        let solved = covariance.cholesky().unwrap().solve(&DVector::from_element(4, 1.0));
+        let expected = &solved / solved.sum();
+        let found = of_first(&values);
+        assert_eq!(found[2], 0.0);
+        for (k, index) in seen.iter().enumerate() {
+            assert!((found[*index] - expected[k]).abs() < 1e-12, "{found:?} {expected:?}");
+        }
+        assert_eq!(of_first(&[(Some(1.0), 0.0)]), [1.0]);
+    }
+}

@@ -1,0 +1,67 @@
+//! A run as a model has it: where the robot is after each piece, and how its error grows.
+
+use super::Growth;
+use crate::effect::Chain;
+use crate::geometry::Pose2;
+use crate::replay::{Moment, Track};
+
+/// Mean rate of change of the pose over some observations: what a delay of a second takes off.
+pub(super) fn velocity(places: &[Pose2], moments: &[Moment]) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for (place, Moment { sight, .. }) in places.iter().zip(moments) {
+        let (sine, cosine) = libm::sincos(place.heading);
+        for (total, rate) in sum.iter_mut().zip([sight.speed * cosine, sight.speed * sine, sight.turn_rate]) {
+            *total += rate / places.len() as f64;
+        }
+    }
+    sum
+}
+
+/// Where a model has the robot after each piece, and how far it has gone and turned.
+pub(super) struct Walk {
+    pub places: Vec<Pose2>,
+    pub way: Vec<f64>,
+    pub turned: Vec<f64>,
+}
+
+impl Walk {
+    pub fn new(track: &Track, chain: &Chain<f64>) -> Walk {
+        let (mut pose, mut way, mut turned) = (track.start(chain), 0.0, 0.0);
+        let mut walk = Walk { places: vec![pose], way: vec![way], turned: vec![turned] };
+        for (travel, at) in track.travel().iter().zip(track.contexts()) {
+            let motion = chain.displacement(&at.headed(pose.heading), travel);
+            pose.advance(&motion);
+            way += motion.forward.abs();
+            turned += motion.rotation.abs();
+            walk.places.push(pose);
+            walk.way.push(way);
+            walk.turned.push(turned);
+        }
+        walk
+    }
+
+    /// The pose at a moment.
+    pub fn at(&self, moment: &Moment) -> Pose2 {
+        let from = &self.places[moment.made];
+        self.places.get(moment.made + 1).map_or(*from, |to| from.toward(to, moment.share))
+    }
+
+    pub fn growth(&self, from: usize, to: usize) -> Growth {
+        let mut growth = Growth { way: self.way[to] - self.way[from], ..Growth::default() };
+        for piece in from..to {
+            let (a, b) = (&self.places[piece], &self.places[piece + 1]);
+            let g = [0.5 * (a.y + b.y), -0.5 * (a.x + b.x), 1.0];
+            let outer = [g[0] * g[0], g[1] * g[0], g[1] * g[1], g[0], g[1], 1.0];
+            let (way, turned) = (self.way[piece + 1] - self.way[piece], self.turned[piece + 1] - self.turned[piece]);
+            let (sine, cosine) = libm::sincos(0.5 * (a.heading + b.heading));
+            for (sum, product) in growth.forward.iter_mut().zip([cosine * cosine, cosine * sine, sine * sine]) {
+                *sum += way * product;
+            }
+            for (k, product) in outer.into_iter().enumerate() {
+                growth.heading_per_metre[k] += way * product;
+                growth.heading_per_radian[k] += turned * product;
+            }
+        }
+        growth
+    }
+}

@@ -1,0 +1,124 @@
+//! One drive of a robot: its wheel counts, the absolute poses measured on the way, and its return error.
+
+pub(crate) mod dead_reckoning;
+
+use crate::effect::TestKind;
+use crate::geometry::Pose2;
+use crate::path::Direction;
+use serde::{Deserialize, Serialize};
+
+/// The error of one return to START: absolute minus computed end pose (Eq. 1 of the paper), in the frame of START.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ReturnError {
+    /// ε_x \[m\], along the START heading.
+    pub x: f64,
+    /// ε_y \[m\], to the left.
+    pub y: f64,
+    /// ε_θ \[rad\] in (-π, π], where the heading was measured.
+    pub heading: Option<f64>,
+}
+
+/// A row of an array: x, y \[m\] and heading \[rad\], NaN where it was not measured.
+impl From<[f64; 3]> for ReturnError {
+    fn from([x, y, heading]: [f64; 3]) -> ReturnError {
+        ReturnError { x, y, heading: Some(heading).filter(|heading| !heading.is_nan()) }
+    }
+}
+
+/// An absolute pose of the robot, in the frame of START.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReferencePose {
+    /// Index of the tick sample it belongs to.
+    pub sample: usize,
+    /// \[m\]
+    pub x: f64,
+    /// \[m\]
+    pub y: f64,
+    /// \[rad\], where the heading was measured.
+    pub heading: Option<f64>,
+}
+
+/// The recorded wheel angles of one run, with the absolute poses measured on the way.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TickLog {
+    /// Time of each sample \[s\], increasing.
+    pub time: Vec<f64>,
+    /// Left wheel angle \[ticks\], cumulative from START, roll-overs undone.
+    pub left: Vec<f64>,
+    /// Right wheel angle \[ticks\], cumulative from START, roll-overs undone.
+    pub right: Vec<f64>,
+    /// Absolute poses in the order of their samples: many, few, or none.
+    pub reference: Vec<ReferencePose>,
+    /// What was mended while it was read.
+    pub mended: Mended,
+    /// Where START was found.
+    #[serde(default)]
+    pub start: Start,
+    /// Where on the floor a wheel met a bump, seen from START \[m\]; known of simulated runs alone.
+    #[serde(default)]
+    pub bumps: Vec<[f64; 2]>,
+}
+
+/// Where the START of a log lies in the frame that its poses were measured in, and how that is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Start {
+    /// START, seen from the origin of the poses as they stand in the file: x, y \[m\] and heading \[rad\].
+    pub x: f64,
+    /// \[m\]
+    pub y: f64,
+    /// \[rad\]
+    pub heading: f64,
+    /// How it is known.
+    pub known: StartKnown,
+}
+
+/// How START is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum StartKnown {
+    /// The poses are given in the frame of START.
+    #[default]
+    Given,
+    /// The robot was measured where it rested before it moved.
+    AtRest,
+    /// It was not measured: it follows from the first poses on the way and the counts until then.
+    OnTheWay,
+}
+
+impl Start {
+    /// As a pose.
+    pub fn pose(&self) -> Pose2 {
+        Pose2::new(self.x, self.y, self.heading)
+    }
+}
+
+/// What was mended in a log while it was read, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Mended {
+    /// Roll-overs of either counter that were undone.
+    pub roll_overs: usize,
+    /// Rows before which a counter was set back to zero.
+    pub resets: usize,
+    /// Rows out of order that were put where their time stamps say.
+    pub late: usize,
+    /// Rows that repeat a time stamp and were left out.
+    pub repeated: usize,
+    /// Poses that repeat the one before while the wheels turn and were left out.
+    pub stale: usize,
+}
+
+/// One drive round the path.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// What it is called: file stem or row.
+    pub name: String,
+    /// Its number, unique within its direction and test.
+    pub number: u32,
+    /// Sense of driving; `None` for paths that have none.
+    pub direction: Option<Direction>,
+    /// Which test it belongs to.
+    pub test: TestKind,
+    /// Its ticks, where they were recorded.
+    pub log: Option<TickLog>,
+    /// Its return error, where one was measured or follows from the log.
+    pub returned: Option<ReturnError>,
+}

@@ -1,0 +1,467 @@
+//! What has to be known of an experiment before its errors say anything of the robot.
+//!
+//! Which column is which wheel and how it counts; how the headings of the reference are counted; by how much its stamps are late
+//! and its clock is fast; where on the robot the tracked body sits; which poses are wrong and where the track jumps. All of it
+//! follows from the motion alone, robustly and in all runs at once, before any model is fitted:
+//!
+//! 1. the delay at which the sizes of both motions go together best (`clock`);
+//! 2. the reading of columns and headings under which both motions agree (`agreement`), each window of them weighed robustly;
+//! 3. delay and rate of the clock run by run, and with these all else once more;
+//! 4. wrong poses and jumps, found together (`disturbances`).
+//!
+//! Return errors are looked at by themselves (`returns`): runs far from the others, and columns in another unit.
+
+mod agreement;
+mod clock;
+mod disturbances;
+mod faults;
+mod returns;
+mod robust;
+mod windows;
+
+use crate::diagnose::Reason;
+use crate::drive::Robot;
+use crate::effect::TestKind;
+use crate::geometry::{Displacement2, Pose2, wrap};
+use crate::path::Path;
+use crate::run::{Run, TickLog};
+use crate::stats::{Interval, student_t_quantile};
+use agreement::{Agreement, Beside, Reading};
+use clock::Late;
+use disturbances::{Found, Sighting};
+use serde::{Deserialize, Serialize};
+use windows::{Rolled, Window, windows};
+
+pub use faults::Fault;
+pub use returns::{Coordinate, Deviant, OutlyingReturn, Returned};
+
+/// Rounds in which the clocks are found by the agreement of all runs, and the agreement by the clocks.
+const ROUNDS: usize = 3;
+/// Fewer windows in all say nothing.
+const FEWEST: usize = 20;
+/// Values of so many parts of the data tell how sure one is.
+const PARTS: usize = 8;
+
+/// A quantity with its standard error and its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// The estimate.
+    pub value: f64,
+    /// Its standard error.
+    pub std_error: f64,
+    /// Its 95 % interval.
+    pub interval: Interval,
+}
+
+impl Measured {
+    /// A value with the standard error of `parts` independent ones.
+    fn of_parts(value: f64, std_error: f64, parts: usize) -> Measured {
+        let half = student_t_quantile(0.975, parts.max(2) as f64 - 1.0) * std_error;
+        Measured { value, std_error, interval: Interval::around(value, half) }
+    }
+
+    /// The quantity less a number that is known.
+    pub(crate) fn less(&self, known: f64) -> Measured {
+        let Interval { low, high } = self.interval;
+        let interval = Interval { low: low - known, high: high - known };
+        Measured { value: self.value - known, interval, ..*self }
+    }
+
+    /// Whether it is farther from zero than so many standard errors.
+    pub fn is_beyond(&self, std_errors: f64) -> bool {
+        self.value.abs() > std_errors * self.std_error
+    }
+}
+
+/// How the measured poses lie against the wheels, over all runs.
+///
+/// ```text
+/// taken = stamp - (delay + rate (t - middle)),   t the time of the stamp since the run began
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mounting {
+    /// By how much older than its stamp a pose is, in the middle of a run \[s\].
+    pub delay: Measured,
+    /// Time from the beginning of a run to its middle, on average \[s\].
+    pub middle: f64,
+    /// What is added to that for each second \[s/s\]; `None` where the runs are too short.
+    pub rate: Option<Measured>,
+    /// Where the tracked point lies ahead of the centre of the axle \[m\]; `None` where turning or headings do not show it.
+    pub ahead: Option<Measured>,
+    /// Where it lies to the left \[m\].
+    pub left: Option<Measured>,
+    /// Heading of the tracked body less that of the robot \[rad\]; `None` where driving or headings do not show it.
+    pub yaw: Option<Measured>,
+    /// Way by the reference over way by the wheels; `None` where nothing is driven.
+    pub scale: Option<Measured>,
+    /// Turns by the reference over turns by the wheels; `None` where nothing is turned.
+    pub gain: Option<Measured>,
+    /// Turning by the reference for each metre ahead \[rad/m\]; `None` where nothing is driven.
+    pub drift: Option<Measured>,
+}
+
+/// A pose that is wrong.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrongPose {
+    /// Its place among the poses of its log.
+    pub pose: usize,
+    /// Time since the log began \[s\].
+    pub time: f64,
+    /// How far it lies from where the poses around it say \[m\].
+    pub moved: f64,
+    /// The same \[rad\]; `None` without headings.
+    pub turned: Option<f64>,
+}
+
+/// A place where a track jumps: the robot was pushed or carried, or the reference lost it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Jump {
+    /// The first pose behind it, by its place among the poses of its log.
+    pub pose: usize,
+    /// Time since the log began \[s\].
+    pub time: f64,
+    /// How far the tracked point went and the wheels did not \[m\].
+    pub moved: f64,
+    /// How far it turned and the wheels did not \[rad\]; `None` without headings.
+    pub turned: Option<f64>,
+    /// In standard deviations of the motion from pose to pose.
+    pub deviations: f64,
+}
+
+/// What was found of one run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RunSetup {
+    /// The run's name.
+    pub run: String,
+    /// Number of its poses.
+    pub poses: usize,
+    /// By how much older than its stamp a pose is, in the middle of this run \[s\]; `None` where the motion does not tell.
+    pub delay: Option<Measured>,
+    /// Those that are wrong.
+    pub wrong: Vec<WrongPose>,
+    /// Where it jumps.
+    pub jumps: Vec<Jump>,
+}
+
+/// What was found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Setup {
+    /// What is not as it is called: nothing is said of the robot until it is mended.
+    pub faults: Vec<Fault>,
+    /// How the poses lie against the wheels; `None` where they are too few or too far apart.
+    pub mounting: Option<Mounting>,
+    /// The runs of the regular test that have poses, in the order of the dataset.
+    pub runs: Vec<RunSetup>,
+    /// Noise of a single pose, each coordinate \[m\] and the heading \[rad\], by how poses that follow each other differ; usual sizes
+    /// where that is not known.
+    pub noise: PoseNoise,
+    /// What the return errors of all runs, with bumps too, say by themselves.
+    pub returned: Returned,
+}
+
+/// Noise of a single pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseNoise {
+    /// Each coordinate \[m\].
+    pub position: f64,
+    /// \[rad\]
+    pub heading: f64,
+}
+
+impl Default for PoseNoise {
+    /// That of motion capture.
+    fn default() -> Self {
+        PoseNoise { position: 5e-4, heading: 5e-4 }
+    }
+}
+
+/// A run with its windows.
+struct Seen<'a> {
+    run: &'a Run,
+    log: &'a TickLog,
+    rolled: Rolled<'a>,
+    windows: Vec<Window>,
+    late: Late,
+}
+
+impl Setup {
+    /// Looks at all runs of the regular test that have ticks and poses, and at the return errors of all runs. `path`: what they were to
+    /// drive, where it is known.
+    pub fn of(runs: &[Run], robot: &Robot, path: Option<&Path>) -> Setup {
+        let setup = Setup::of_tracks(runs, robot);
+        // Return errors follow from the tracks, and are as wrong as these.
+        let returned = if setup.is_sound() { Returned::of(runs, robot, path) } else { Returned::default() };
+        Setup { returned, ..setup }
+    }
+
+    fn of_tracks(runs: &[Run], robot: &Robot) -> Setup {
+        let wheelbase = robot.drive.wheelbase();
+        let regular = runs.iter().filter(|run| run.test == TestKind::Systematic);
+        let with_poses =
+            regular.filter_map(|run| run.log.as_ref().filter(|log| !log.reference.is_empty()).map(|log| (run, log)));
+        let mut seen: Vec<Seen> = with_poses
+            .map(|(run, log)| {
+                let (rolled, windows) = (Rolled::new(log, robot), windows(log));
+                let late = clock::guess(&windows, &rolled, wheelbase);
+                Seen { run, log, rolled, windows, late }
+            })
+            .collect();
+        let named = |seen: &Seen| RunSetup {
+            run: seen.run.name.clone(),
+            poses: seen.log.reference.len(),
+            ..RunSetup::default()
+        };
+        if seen.iter().map(|seen| seen.windows.len()).sum::<usize>() < FEWEST {
+            return Setup { runs: seen.iter().map(named).collect(), ..Setup::default() };
+        }
+        let pooled = |seen: &[Seen]| -> Vec<Beside> {
+            seen.iter().flat_map(|seen| clock::beside(&seen.windows, &seen.rolled, &seen.late)).collect()
+        };
+        let (faults, reading) = faults::look(&pooled(&seen), robot);
+        let alone = |seen: &Seen| clock::beside(&seen.windows, &seen.rolled, &seen.late);
+        let by_run: Vec<(&str, Vec<Beside>)> = seen.iter().map(|seen| (seen.run.name.as_str(), alone(seen))).collect();
+        let faults = faults::differing(&by_run, (&faults, reading), robot).unwrap_or(faults);
+        if !faults.is_empty() {
+            return Setup { faults, runs: seen.iter().map(named).collect(), ..Setup::default() };
+        }
+        let mut agreement = Agreement::of(&pooled(&seen), reading, wheelbase);
+        for _ in 0..ROUNDS {
+            for seen in &mut seen {
+                seen.late = clock::refined(&seen.windows, &seen.rolled, &seen.late, (&agreement, reading, wheelbase));
+            }
+            agreement = Agreement::of(&pooled(&seen), reading, wheelbase);
+        }
+        let mounting = mounting(&seen, &agreement, reading, wheelbase);
+        let faults = faults::sizes(&agreement);
+        if !faults.is_empty() {
+            return Setup { faults, runs: seen.iter().map(named).collect(), ..Setup::default() };
+        }
+        let (named_all, credible) = (|| seen.iter().map(named).collect(), agreement.is_credible());
+        if !credible {
+            return Setup { runs: named_all(), ..Setup::default() };
+        }
+        let sightings: Vec<Vec<Sighting>> = seen.iter().map(|seen| sightings(seen, robot, &agreement)).collect();
+        let (found, noise) = disturbances::search(&sightings);
+        let runs = seen.iter().zip(found).map(|(seen, found)| RunSetup { ..told(named(seen), seen, found) }).collect();
+        Setup { faults, mounting: Some(mounting), runs, noise, returned: Returned::default() }
+    }
+
+    /// Whether nothing stands in the way of asking what the robot does on its tracks.
+    pub fn is_sound(&self) -> bool {
+        self.faults.is_empty()
+    }
+
+    /// All faults, of the tracks and of the return errors.
+    pub fn all_faults(&self) -> impl Iterator<Item = &Fault> {
+        self.faults.iter().chain(&self.returned.faults)
+    }
+
+    /// Regular runs whose return error is far from the others.
+    pub fn outlying(&self) -> impl Iterator<Item = &OutlyingReturn> {
+        self.returned.outlying.iter().filter(|run| run.test == TestKind::Systematic)
+    }
+
+    /// What speaks against the return errors of the regular runs: outlying ones, and jumps of the tracks that end in them.
+    pub(crate) fn doubts(&self, runs: &[Run]) -> Vec<Reason> {
+        let returned = |name: &str| runs.iter().any(|run| run.name == name && run.returned.is_some());
+        let jumps = self.runs.iter().filter(|run| returned(&run.run));
+        let jumped = jumps.filter_map(|run| {
+            let (run, jump) = (run.run.clone(), run.jumps.first()?.clone());
+            Some(Reason::JumpBeforeReturn { run, jump })
+        });
+        self.outlying().cloned().map(Reason::OutlyingReturn).chain(jumped).collect()
+    }
+
+    /// That more of all poses jump or are wrong than by accident.
+    pub(crate) fn many_jumps(&self) -> Option<Reason> {
+        let [jumps, wrong] = self.disturbances();
+        let poses: usize = self.runs.iter().map(|run| run.poses).sum();
+        let many = (jumps + wrong) as f64 > ACCIDENTS * poses as f64;
+        many.then_some(Reason::ManyJumps { count: jumps + wrong, poses })
+    }
+
+    /// What has to be known before the return errors are believed, a sentence each without a full stop: faults, jumps and wrong poses
+    /// of tracks, runs whose return is far from the others. Of many of a kind, the first [`TOLD`] are told and the rest counted.
+    pub fn notices(&self) -> Vec<String> {
+        let told = |fault: &Fault| format!("{}; to mend it, {}", fault.sentence(), fault.remedy());
+        let mut notices: Vec<String> = self.all_faults().map(told).collect();
+        let jumps = self.runs.iter().flat_map(|run| run.jumps.iter().map(|jump| jump.notice(&run.run)));
+        notices.extend(shortened(jumps.collect(), "jumps of tracks"));
+        let wrong = self.runs.iter().filter(|run| !run.wrong.is_empty()).map(RunSetup::notice);
+        notices.extend(shortened(wrong.collect(), "runs with wrong poses"));
+        let outlying = self.returned.outlying.iter().map(|run| format!("{}; {}", run.sentence(), run.remedy()));
+        notices.extend(shortened(outlying.collect(), "runs far from the others"));
+        notices
+    }
+
+    /// What was found of a run.
+    pub fn of_run(&self, name: &str) -> Option<&RunSetup> {
+        self.runs.iter().find(|run| run.run == name)
+    }
+
+    /// Number of jumps in all runs, and of wrong poses.
+    pub fn disturbances(&self) -> [usize; 2] {
+        let count = |of: fn(&RunSetup) -> usize| self.runs.iter().map(of).sum();
+        [count(|run| run.jumps.len()), count(|run| run.wrong.len())]
+    }
+}
+
+/// More of all poses than this share are no accidents.
+const ACCIDENTS: f64 = 0.1;
+/// Of many notices of a kind, so many are told.
+pub const TOLD: usize = 5;
+
+/// The first notices, and how many more there are.
+fn shortened(mut notices: Vec<String>, kind: &str) -> Vec<String> {
+    if let rest @ 1.. = notices.len().saturating_sub(TOLD) {
+        notices.truncate(TOLD);
+        notices.push(format!("there are {rest} more {kind}"));
+    }
+    notices
+}
+
+impl Jump {
+    /// What it does to the run of this name.
+    pub(crate) fn notice(&self, run: &str) -> String {
+        let turned = self.turned.map(|t| format!(" and {:.0} deg", t.to_degrees())).unwrap_or_default();
+        let (moved, time) = (self.moved, self.time);
+        format!(
+            "the track of run {run} jumps by {moved:.2} m{turned} at {time:.1} s: its return error is not the robot's"
+        )
+    }
+}
+
+impl RunSetup {
+    /// How many of its poses are wrong, and by how much at most: "3 of 1801 poses of run cw_01 are wrong, by up to 0.012 m and 1.6 deg".
+    pub fn notice(&self) -> String {
+        let most = |of: fn(&WrongPose) -> f64| self.wrong.iter().map(of).fold(0.0, f64::max);
+        let (moved, turned) = (most(|wrong| wrong.moved), most(|wrong| wrong.turned.map_or(0.0, f64::abs)));
+        let turned = if turned > 0.0 { format!(" and {:.1} deg", turned.to_degrees()) } else { String::new() };
+        let (run, wrong, poses) = (&self.run, self.wrong.len(), self.poses);
+        format!("{wrong} of {poses} poses of run {run} are wrong, by up to {moved:.3} m{turned}")
+    }
+}
+
+/// The findings of a run with times.
+fn told(mut run: RunSetup, seen: &Seen, found: Found) -> RunSetup {
+    let time = |pose: usize| seen.log.time[seen.log.reference[pose].sample] - seen.log.time[0];
+    let wrong =
+        |w: disturbances::Wrong| WrongPose { pose: w.pose, time: time(w.pose), moved: w.moved, turned: w.turned };
+    run.wrong = found.wrong.into_iter().map(wrong).collect();
+    let jump = |leap: disturbances::Leap| Jump {
+        pose: leap.pose,
+        time: time(leap.pose),
+        moved: leap.moved,
+        turned: leap.turned,
+        deviations: leap.deviations,
+    };
+    run.jumps = found.jumps.into_iter().map(jump).collect();
+    run.delay = seen.late.measured();
+    run
+}
+
+/// Every pose of a run beside the one that the wheels give, scaled and mounted as all runs agree.
+fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting> {
+    let wheelbase = robot.drive.wheelbase();
+    let (scale, [gain, drift]) = (agreement.scale(), agreement.turn);
+    let [ahead, left] = agreement.lever_on_robot();
+    let with_heading = seen.log.reference.iter().all(|pose| pose.heading.is_some());
+    let body = if with_heading { Pose2::new(ahead, left, agreement.yaw()) } else { Pose2::IDENTITY };
+    let (mut pose, mut rolled, mut now) = (Pose2::IDENTITY, [0.0; 2], None);
+    let mut samples = seen.log.time.iter().copied().peekable();
+    let mut drive_to = |time: f64| {
+        let from: f64 = *now.get_or_insert(time);
+        let [l, r] = seen.rolled.between(from, time);
+        let (way, turn) = (0.5 * (l + r), (r - l) / wheelbase);
+        let rotation = gain * turn + drift * way;
+        pose = pose.moved(&Displacement2 { forward: scale * way, sideways: 0.0, rotation });
+        rolled = [rolled[0] + way.abs(), rolled[1] + turn.abs()];
+        now = Some(time);
+        (pose, rolled)
+    };
+    let of = |reference: &crate::run::ReferencePose| {
+        let stamp = seen.log.time[reference.sample];
+        let taken = seen.late.taken(stamp);
+        // Sample by sample, so that each piece is an arc; poses are in the order of time but for what rounding does.
+        while let Some(sample) = samples.next_if(|sample| *sample < taken) {
+            drive_to(sample);
+        }
+        let (pose, [way, turned]) = drive_to(taken);
+        Sighting {
+            time: stamp,
+            way,
+            turned,
+            rolled: way + 0.5 * wheelbase * turned,
+            expected: pose.compose(&body),
+            measured: (reference.x, reference.y, reference.heading),
+        }
+    };
+    seen.log.reference.iter().map(of).collect()
+}
+
+/// What all runs agree in, each value with how much its parts differ.
+fn mounting(seen: &[Seen], agreement: &Agreement, reading: Reading, wheelbase: f64) -> Mounting {
+    let with_heading = seen.iter().all(|seen| seen.log.reference.iter().all(|pose| pose.heading.is_some()));
+    let parts = parts(seen, reading, wheelbase);
+    let [way, turns] = agreement.shown;
+    let by_parts = |is_shown: bool, value: f64, of: &dyn Fn(&Agreement) -> f64| {
+        let others: Vec<f64> =
+            parts.iter().filter(|part| part.shown[0] == way && part.shown[1] == turns).map(of).collect();
+        let n = others.len() as f64;
+        let square = others.iter().map(|other| (other - value).powi(2)).sum::<f64>() / (n * (n - 1.0));
+        (is_shown && others.len() > 2).then(|| Measured::of_parts(value, square.sqrt(), others.len()))
+    };
+    let lever =
+        |k: usize| by_parts(turns && with_heading, agreement.lever_on_robot()[k], &|part| part.lever_on_robot()[k]);
+    let yaw = agreement.yaw();
+    Mounting {
+        middle: seen.iter().map(|seen| seen.late.middle - seen.log.time[0]).sum::<f64>() / seen.len().max(1) as f64,
+        delay: of_runs(seen, |late| (late.delay, late.covariance[0])).unwrap_or(Measured::of_parts(
+            0.0,
+            f64::INFINITY,
+            2,
+        )),
+        rate: of_runs(seen, |late| (late.rate, late.covariance[2])),
+        ahead: lever(0),
+        left: lever(1),
+        yaw: by_parts(way && with_heading, yaw, &|part| yaw + wrap(part.yaw() - yaw)),
+        scale: by_parts(way, agreement.scale(), &Agreement::scale),
+        gain: by_parts(turns, agreement.turn[0], &|part| part.turn[0]),
+        drift: by_parts(way, agreement.turn[1], &|part| part.turn[1]),
+    }
+}
+
+/// A value of the clocks of all runs: their mean by how sure each is, which scatters as the runs do.
+fn of_runs(seen: &[Seen], of: impl Fn(&Late) -> (f64, f64)) -> Option<Measured> {
+    let values: Vec<(f64, f64)> =
+        seen.iter().map(|seen| of(&seen.late)).filter(|(_, variance)| *variance > 0.0).collect();
+    let n = values.len() as f64;
+    let middle = robust::median(values.iter().map(|(value, _)| *value));
+    // Half of the windows share their motion with the next.
+    let own = 2.0 * robust::median(values.iter().map(|(_, variance)| *variance));
+    let between = (robust::DEVIATION * robust::median(values.iter().map(|(value, _)| (value - middle).abs()))).powi(2);
+    let weight = |variance: f64| 1.0 / (2.0 * variance + between);
+    let near =
+        values.iter().filter(|(value, variance)| (value - middle).powi(2) <= 25.0 * (2.0 * variance + between) + 1e-12);
+    let (sum, weights) =
+        near.fold((0.0, 0.0), |(s, w), (value, variance)| (s + weight(*variance) * value, w + weight(*variance)));
+    (weights > 0.0).then(|| Measured::of_parts(sum / weights, (own.max(between) / n).sqrt(), values.len().max(PARTS)))
+}
+
+/// The agreement of parts of the data: of whole runs where there are enough, else of stretches of them.
+fn parts(seen: &[Seen], reading: Reading, wheelbase: f64) -> Vec<Agreement> {
+    let cut = PARTS.div_ceil(seen.len().max(1));
+    let of = |seen: &Seen| {
+        let beside = clock::beside(&seen.windows, &seen.rolled, &seen.late);
+        let length = beside.len().div_ceil(cut).max(FEWEST);
+        beside
+            .chunks(length)
+            .filter(|part| part.len() >= FEWEST)
+            .map(|part| Agreement::of(part, reading, wheelbase))
+            .collect::<Vec<_>>()
+    };
+    seen.iter().flat_map(of).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,241 @@
+//! How the motion that the reference saw agrees with the motion that the wheels rolled, window by window.
+//!
+//! In a window the tracked body moves by u, seen from where it was at the beginning, and turns by α; the wheels roll by l and r. With
+//! D = (l + r)/2 and β = (r - l)/b,
+//!
+//! ```text
+//! u = (c e^(-iδ)) D sinc(α/2) e^(iα/2) + (e^(iα) - 1) m,     α = g β + k D
+//! ```
+//!
+//! where c is the scale of the way, δ the yaw of the tracked body on the robot, m its lever arm turned by -δ, g the gain of
+//! turns and k the drift of the heading per metre. Both are linear in what is sought.
+
+use super::robust::{self, Line};
+use super::windows::Window;
+use crate::geometry::Real;
+
+/// Turning \[rad\] and driving \[m\] of all windows together below which they show nothing.
+const LEAST_TURN: f64 = 0.5;
+const LEAST_WAY: f64 = 0.1;
+
+/// Less must be left of the way, and of the turns.
+const CREDIBLE: f64 = 0.7;
+
+/// How columns and headings are read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Reading {
+    /// Whether the first counter is taken with the opposite sign.
+    pub opposed: bool,
+    /// Whether measured headings are taken with the opposite sign.
+    pub clockwise: bool,
+}
+
+/// A window beside what the wheels rolled in it \[m\].
+pub(super) type Beside = (Window, [f64; 2]);
+
+/// What agrees best.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Agreement {
+    /// c e^(-iδ): its real and its imaginary part.
+    pub way: [f64; 2],
+    /// m \[m\].
+    pub lever: [f64; 2],
+    /// g, and k \[rad/m\].
+    pub turn: [f64; 2],
+    /// Standard deviation of what is left of a coordinate \[m\] and of a rotation \[rad\].
+    pub left: [f64; 2],
+    /// Share of the way, of the turns and of both that is left: 0 where all agrees, about 1 where nothing does.
+    pub misfits: [f64; 2],
+    pub misfit: f64,
+    /// Whether the windows show the way, and turns.
+    pub shown: [bool; 2],
+}
+
+impl Reading {
+    /// D and β of the wheels' travel, for a wheelbase.
+    pub fn motion(&self, [left, right]: [f64; 2], wheelbase: f64) -> [f64; 2] {
+        let left = if self.opposed { -left } else { left };
+        [0.5 * (left + right), (right - left) / wheelbase]
+    }
+
+    /// u and α.
+    pub fn seen(&self, window: &Window) -> ([f64; 2], f64) {
+        let sign = if self.clockwise { -1.0 } else { 1.0 };
+        let (sine, cosine) = libm::sincos(sign * window.heading);
+        let [x, y] = window.moved;
+        ([cosine * x + sine * y, cosine * y - sine * x], sign * window.turned)
+    }
+}
+
+/// sinc(α/2) e^(iα/2).
+fn chord(turned: f64) -> [f64; 2] {
+    let (sinc, cosine) = (0.5 * turned).sinc_cos();
+    [sinc * cosine, sinc * 0.5 * turned * sinc]
+}
+
+impl Agreement {
+    /// Fits all windows, read so.
+    pub fn of(windows: &[Beside], reading: Reading, wheelbase: f64) -> Agreement {
+        Agreement::fitted(windows, reading, wheelbase, true)
+    }
+
+    /// The same of wheels of one diameter: without drift, which can stand for a counter that is read wrongly.
+    pub fn without_drift(windows: &[Beside], reading: Reading, wheelbase: f64) -> Agreement {
+        Agreement::fitted(windows, reading, wheelbase, false)
+    }
+
+    fn fitted(windows: &[Beside], reading: Reading, wheelbase: f64, with_drift: bool) -> Agreement {
+        let arm = 0.5 * wheelbase;
+        let drift = if with_drift { 1.0 } else { 0.0 };
+        let read: Vec<([f64; 2], f64, [f64; 2])> = windows
+            .iter()
+            .map(|(window, rolled)| {
+                let (moved, turned) = reading.seen(window);
+                (moved, turned, reading.motion(*rolled, wheelbase))
+            })
+            .collect();
+        let turns: Vec<([f64; 2], f64)> =
+            read.iter().map(|(_, turned, [way, turn])| ([*turn, drift * way], *turned)).collect();
+        let rows = |(moved, turned, [way, _]): &([f64; 2], f64, [f64; 2])| {
+            let [real, imaginary] = chord(*turned).map(|part| part * way);
+            let (sine, cosine) = libm::sincos(*turned);
+            [([real, -imaginary, cosine - 1.0, -sine], moved[0]), ([imaginary, real, sine, cosine - 1.0], moved[1])]
+        };
+        let ways: Vec<([f64; 4], f64)> = read.iter().flat_map(rows).collect();
+        let (turn, way): (Line<2>, Line<4>) = (robust::fit(&turns), robust::fit(&ways));
+        // No window counts for more than the wheels ever roll in one.
+        let most = read.iter().map(|(_, _, [way, turn])| way.abs() + arm * turn.abs()).fold(0.0, f64::max);
+        let left = |row: &[f64], values: &[f64], y: f64| y - row.iter().zip(values).map(|(x, v)| x * v).sum::<f64>();
+        let stretch = libm::hypot(way.values[0], way.values[1]).max(1.0);
+        let (mut off, mut whole) = ([0.0; 2], [0.0; 2]);
+        for ((row, turned), pair) in turns.iter().zip(ways.chunks_exact(2)) {
+            let moved = libm::hypot(left(&pair[0].0, &way.values, pair[0].1), left(&pair[1].0, &way.values, pair[1].1));
+            let cut = |value: f64, stretch: f64| (value / stretch).min(most);
+            off[0] += cut(moved, stretch);
+            off[1] += cut(arm * left(row, &turn.values, *turned).abs(), 1.0);
+            whole[0] += cut(libm::hypot(pair[0].1, pair[1].1), stretch);
+            whole[1] += cut(arm * turned.abs(), 1.0);
+        }
+        let share = |off: f64, whole: f64| if whole > 0.0 { off / whole } else { 1.0 };
+        let (driven, turned) =
+            read.iter().fold((0.0, 0.0), |(w, t), (_, _, [way, turn])| (w + way.abs(), t + turn.abs()));
+        Agreement {
+            way: [way.values[0], way.values[1]],
+            lever: [way.values[2], way.values[3]],
+            turn: turn.values,
+            left: [way.scale, turn.scale],
+            misfits: [share(off[0], whole[0]), share(off[1], whole[1])],
+            misfit: share(off[0] + off[1], whole[0] + whole[1]),
+            shown: [driven > LEAST_WAY, turned > LEAST_TURN],
+        }
+    }
+
+    /// Whether it says how the wheels' motion looks to the reference: something moves, and most of it agrees.
+    pub fn is_credible(&self) -> bool {
+        self.shown.contains(&true) && (0..2).all(|k| !self.shown[k] || self.misfits[k] < CREDIBLE)
+    }
+
+    /// Way by the reference over way by the wheels.
+    pub fn scale(&self) -> f64 {
+        libm::hypot(self.way[0], self.way[1])
+    }
+
+    /// δ \[rad\].
+    pub fn yaw(&self) -> f64 {
+        -libm::atan2(self.way[1], self.way[0])
+    }
+
+    /// The lever arm on the robot: ahead and to the left of the axle's centre \[m\].
+    pub fn lever_on_robot(&self) -> [f64; 2] {
+        let (sine, cosine) = libm::sincos(self.yaw());
+        let [x, y] = self.lever;
+        [cosine * x - sine * y, sine * x + cosine * y]
+    }
+
+    /// Share of the way, and of the turns, of some windows that is left; 0 where they show none.
+    pub fn misfits_of(&self, windows: &[Beside], reading: Reading, wheelbase: f64) -> [f64; 2] {
+        let (mut off, mut whole, mut shown) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+        for beside in windows {
+            let (moved, turned) = reading.seen(&beside.0);
+            let [way, turn] = reading.motion(beside.1, wheelbase);
+            let [x, y, left] = self.residual(reading, beside, wheelbase);
+            let most = way.abs() + 0.5 * wheelbase * turn.abs();
+            whole[0] += libm::hypot(moved[0], moved[1]);
+            whole[1] += turned.abs();
+            // One wild pose is no other wiring.
+            off[0] += libm::hypot(x, y).min(2.0 * most);
+            off[1] += left.abs().min(2.0 * most / (0.5 * wheelbase));
+            shown = [shown[0] + way.abs(), shown[1] + turn.abs()];
+        }
+        let least = [LEAST_WAY, LEAST_TURN];
+        [0, 1].map(|k| if shown[k] > least[k] && whole[k] > 0.0 { off[k] / whole[k] } else { 0.0 })
+    }
+
+    /// What is left of a window: of both coordinates \[m\] and of the rotation \[rad\].
+    pub fn residual(&self, reading: Reading, (window, rolled): &Beside, wheelbase: f64) -> [f64; 3] {
+        let (moved, turned) = reading.seen(window);
+        let [way, turn] = reading.motion(*rolled, wheelbase);
+        let [real, imaginary] = chord(turned).map(|part| part * way);
+        let (sine, cosine) = libm::sincos(turned);
+        [
+            moved[0]
+                - (self.way[0] * real - self.way[1] * imaginary + self.lever[0] * (cosine - 1.0)
+                    - self.lever[1] * sine),
+            moved[1]
+                - (self.way[1] * real
+                    + self.way[0] * imaginary
+                    + self.lever[0] * sine
+                    + self.lever[1] * (cosine - 1.0)),
+            turned - self.turn[0] * turn - self.turn[1] * way,
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Displacement2, Pose2};
+    use crate::random::Stream;
+
+    /// 300 windows of random motion of a robot with wheelbase 0.4 m, whose tracked body sits at `body`, seed 9.
+    fn made(body: Pose2, scale: f64, gain: f64) -> Vec<Beside> {
+        let mut stream = Stream::new(9, 0, 0);
+        let mut pose = Pose2::IDENTITY;
+        (0..300)
+            .map(|_| {
+                let (way, turn) = (0.1 * stream.normal(), 0.2 * stream.normal());
+                let before = pose.compose(&body);
+                pose = pose.moved(&Displacement2 { forward: scale * way, sideways: 0.0, rotation: gain * turn });
+                let after = pose.compose(&body);
+                let moved = [after.x - before.x, after.y - before.y];
+                let turned = after.heading - before.heading;
+                (
+                    Window { from: 0.0, to: 0.4, moved, heading: before.heading, turned, raw_turn: turned },
+                    [way - 0.2 * turn, way + 0.2 * turn],
+                )
+            })
+            .collect()
+    }
+
+    #[test]
+    fn scale_gain_lever_arm_and_yaw_are_found_exactly_where_nothing_disturbs() {
+        for yaw in [0.0, 0.4, -2.9] {
+            let windows = made(Pose2::new(0.12, -0.05, yaw), 1.03, 0.96);
+            let found = Agreement::of(&windows, Reading::default(), 0.4);
+            let [ahead, left] = found.lever_on_robot();
+            assert!((found.scale() - 1.03).abs() < 1e-9 && (found.turn[0] - 0.96).abs() < 1e-9, "{found:?}");
+            assert!((found.yaw() - yaw).abs() < 1e-9 && (ahead - 0.12).abs() < 1e-9 && (left + 0.05).abs() < 1e-9);
+            assert!(found.misfit < 1e-9 && found.turn[1].abs() < 1e-9);
+            assert!(windows.iter().all(|w| found.residual(Reading::default(), w, 0.4).iter().all(|r| r.abs() < 1e-9)));
+        }
+    }
+
+    #[test]
+    fn what_is_read_wrongly_does_not_agree() {
+        let windows = made(Pose2::new(0.02, 0.0, 0.1), 1.0, 1.0);
+        for (opposed, clockwise) in [(true, false), (false, true), (true, true)] {
+            let found = Agreement::of(&windows, Reading { opposed, clockwise }, 0.4);
+            assert!(found.misfit > 0.4, "{opposed} {clockwise} {found:?}");
+        }
+    }
+}

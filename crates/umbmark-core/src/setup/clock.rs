@@ -1,0 +1,203 @@
+//! By how much the stamps of the reference are late, run by run.
+
+use super::Measured;
+use super::agreement::{Agreement, Beside, Reading};
+use super::robust::{biweight, median};
+use super::windows::{Rolled, Window};
+
+/// Delays that are looked at \[s\]: both ways up to the farthest, in these steps.
+const FARTHEST: f64 = 1.0;
+const STEP: f64 = 0.05;
+/// Another delay than none must agree better by this share of the disagreement.
+const CLEARLY: f64 = 0.05;
+/// A piece of a run in which a clock that is fast shows as one delay \[s\], and the fewest windows in it.
+const PIECE: f64 = 60.0;
+const FEWEST: usize = 20;
+/// Steps of the fit, by absolute deviations first: a robot that drives steadily shows its delay in few windows, and from afar these look
+/// wrong. And a change of the delay that ends it \[s\].
+const STEPS: [usize; 2] = [5, 9];
+const ENOUGH: f64 = 1e-6;
+/// A way that is so many times that of the wheels is in another unit.
+const OTHER_UNIT: f64 = 5.0;
+/// Half of the step of a derivative by time \[s\].
+const HALF: f64 = 0.01;
+/// What is left of a window has three coordinates; the median of its size is so many standard deviations of one.
+const MEDIAN_SIZE: f64 = 1.538;
+/// Windows are weighed by no smaller standard deviation \[m\]: those in which the motion changes are the ones that show a delay, and are
+/// not one arc.
+const LEAST_SCALE: f64 = 1e-3;
+/// What a clock leaves may be more than before by this share: it is weighed otherwise.
+const SLACK: f64 = 1e-2;
+/// Beyond so many standard deviations a window has no weight.
+const BEYOND: f64 = 6.0;
+
+/// What the stamps of a run are late: delay at the middle of the run and what is added for each second after that.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Late {
+    /// \[s\]
+    pub delay: f64,
+    /// \[s/s\]
+    pub rate: f64,
+    /// Time of the middle \[s\].
+    pub middle: f64,
+    /// Variances and covariance of delay and rate.
+    pub covariance: [f64; 3],
+    /// How many windows the delay is told from: fewer where the motion seldom changes.
+    pub told_by: f64,
+}
+
+impl Late {
+    /// By how much a stamp is late \[s\].
+    pub fn at(&self, time: f64) -> f64 {
+        self.delay + self.rate * (time - self.middle)
+    }
+
+    /// The delay with its standard error; `None` where the motion does not show it.
+    pub fn measured(&self) -> Option<Measured> {
+        // Half of the windows share their motion with the next.
+        let (variance, parts) = (2.0 * self.covariance[0], (0.5 * self.told_by) as usize);
+        (variance > 0.0).then(|| Measured::of_parts(self.delay, variance.sqrt(), parts))
+    }
+
+    /// When a pose was taken that is stamped so \[s\].
+    pub fn taken(&self, time: f64) -> f64 {
+        time - self.at(time)
+    }
+}
+
+/// What the wheels rolled while each window was really seen.
+pub(super) fn beside(windows: &[Window], rolled: &Rolled, late: &Late) -> Vec<Beside> {
+    windows.iter().map(|w| (*w, rolled.between(late.taken(w.from), late.taken(w.to)))).collect()
+}
+
+/// The delay at which the sizes of both motions go together best, whatever the columns are called: a first guess. Where the
+/// motion is too even to tell, none.
+pub(super) fn guess(windows: &[Window], rolled: &Rolled, wheelbase: f64) -> Late {
+    let (Some(first), Some(last)) = (windows.first(), windows.last()) else { return Late::default() };
+    let middle = 0.5 * (first.from + last.to);
+    let count = ((last.to - first.from) / PIECE).ceil().max(1.0);
+    let span = (last.to - first.from) / count + 1e-9;
+    let piece = |k: usize| {
+        let from = first.from + k as f64 * span;
+        let own: Vec<&Window> = windows.iter().filter(|w| w.from >= from && w.from < from + span).collect();
+        Some((from + 0.5 * span, delay_of(&own, rolled, wheelbase)?))
+    };
+    let found: Vec<(f64, f64)> = (0..count as usize).filter_map(piece).collect();
+    if found.is_empty() {
+        return Late { middle, ..Late::default() };
+    }
+    let slopes =
+        found.iter().enumerate().flat_map(|(k, a)| found[k + 1..].iter().map(move |b| (b.1 - a.1) / (b.0 - a.0)));
+    // Two pieces have one slope, and a step of the grid between them is none.
+    let rate = if found.len() > 2 { median(slopes) } else { 0.0 };
+    let delay = median(found.iter().map(|(at, delay)| delay - rate * (at - middle)));
+    Late { delay, rate, middle, ..Late::default() }
+}
+
+/// The delay of a piece; `None` where it does not tell.
+fn delay_of(windows: &[&Window], rolled: &Rolled, wheelbase: f64) -> Option<f64> {
+    if windows.len() < FEWEST {
+        return None;
+    }
+    let way: Vec<f64> = windows.iter().map(|w| libm::hypot(w.moved[0], w.moved[1])).collect();
+    let still: Vec<f64> = windows.iter().map(|w| faster(rolled.between(w.from, w.to))).collect();
+    // Positions in another unit than metres must not drown the turns.
+    let unit = Some(ratio(&way, &still)).filter(|ratio| *ratio > OTHER_UNIT).unwrap_or(1.0);
+    let seen: Vec<f64> =
+        windows.iter().zip(&way).map(|(w, way)| way / unit + 0.5 * wheelbase * w.turned.abs()).collect();
+    let reach = (FARTHEST / STEP).round() as i32;
+    let off = |late: f64| {
+        // The way of the faster wheel is the body's way and the arm's, whatever the signs of the counts are.
+        let own: Vec<f64> = windows.iter().map(|w| faster(rolled.between(w.from - late, w.to - late))).collect();
+        let ratio = ratio(&seen, &own);
+        let most = 2.0 * ratio * own.iter().fold(0.0_f64, |most, v| most.max(*v));
+        own.iter().zip(&seen).map(|(own, seen)| (seen - ratio * own).abs().min(most)).sum::<f64>()
+    };
+    let found = (-reach..=reach).map(|k| f64::from(k) * STEP).map(|late| (off(late), late));
+    let (least, late) = found.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    (least > 0.0).then(|| if off(0.0) > least * (1.0 + CLEARLY) { late } else { 0.0 })
+}
+
+/// The travel of the faster wheel.
+fn faster([left, right]: [f64; 2]) -> f64 {
+    left.abs().max(right.abs())
+}
+
+/// How many times as much the reference moved as the wheels: of windows in which they moved much.
+fn ratio(seen: &[f64], own: &[f64]) -> f64 {
+    let usual = median(own.iter().copied());
+    let much = own.iter().zip(seen).filter(|(own, _)| **own >= usual && **own > 0.0);
+    let ratio = median(much.map(|(own, seen)| seen / own));
+    if ratio > 0.0 { ratio } else { 1.0 }
+}
+
+/// The delay and the rate that leave least of a run, where all else is as it agrees in all runs.
+pub(super) fn refined(
+    windows: &[Window],
+    rolled: &Rolled,
+    from: &Late,
+    (agreement, reading, wheelbase): (&Agreement, Reading, f64),
+) -> Late {
+    let arm = 0.5 * wheelbase;
+    // Rotations in metres, at the arm of a wheel.
+    let residuals = |late: &Late, shift: f64| -> Vec<[f64; 3]> {
+        let own = windows.iter().map(|w| {
+            let of = (*w, rolled.between(late.taken(w.from) + shift, late.taken(w.to) + shift));
+            let [x, y, turned] = agreement.residual(reading, &of, wheelbase);
+            [x, y, arm * turned]
+        });
+        own.collect()
+    };
+    let span = windows.last().zip(windows.first()).map_or(0.0, |(last, first)| last.to - first.from);
+    let with_rate = span > PIECE;
+    let size = |r: &[f64; 3]| r.iter().map(|r| r * r).sum::<f64>().sqrt();
+    let mut late = *from;
+    let mut widest = LEAST_SCALE;
+    for step in 0..STEPS[0] + STEPS[1] {
+        let (now, before, after) = (residuals(&late, 0.0), residuals(&late, -HALF), residuals(&late, HALF));
+        // Some coordinates may be without any noise.
+        let scale = median(now.iter().map(size)) / MEDIAN_SIZE;
+        widest = widest.max(scale);
+        let (mut products, mut score) = ([0.0; 3], [0.0; 2]);
+        let (mut squares, mut shares) = (0.0, 0.0);
+        for (w, ((now, before), after)) in windows.iter().zip(now.iter().zip(&before).zip(&after)) {
+            let off = size(now) / scale.max(LEAST_SCALE);
+            let weight = if step < STEPS[0] { 1.0 / off.max(1.0) } else { biweight(off / BEYOND) };
+            let at = if with_rate { 0.5 * (w.from + w.to) - late.middle } else { 0.0 };
+            let (mut pull, mut share) = (0.0, 0.0);
+            for k in 0..3 {
+                // Residuals by a later moment, which is less delay.
+                let slope = -(after[k] - before[k]) / (2.0 * HALF);
+                let x = [slope, slope * at];
+                products = [
+                    products[0] + weight * x[0] * x[0],
+                    products[1] + weight * x[0] * x[1],
+                    products[2] + weight * x[1] * x[1],
+                ];
+                score = [score[0] - weight * x[0] * now[k], score[1] - weight * x[1] * now[k]];
+                (pull, share) = (pull + weight * slope * now[k], share + weight * slope * slope);
+            }
+            (squares, shares) = (squares + pull * pull, shares + share * share);
+        }
+        let [a, b, c] = products;
+        let determinant = a * c - b * b;
+        let plain = determinant <= 1e-9 * a * c || c <= 0.0;
+        let change = match (a > 0.0, plain) {
+            (false, _) => break,
+            (true, true) => [score[0] / a, 0.0],
+            (true, false) => [(c * score[0] - b * score[1]) / determinant, (a * score[1] - b * score[0]) / determinant],
+        };
+        late.delay += change[0].clamp(-0.2, 0.2);
+        late.rate = (late.rate + change[1]).clamp(-0.2, 0.2);
+        // The windows that show the delay are those in which the motion changes, and may leave more than the others (White 1980).
+        let variance = (scale * scale).max(squares / a);
+        late.told_by = a * a / shares;
+        late.covariance = if plain { [variance / a, 0.0, 0.0] } else { [c, -b, a].map(|v| variance * v / determinant) };
+        if step >= STEPS[0] && change[0].abs() < ENOUGH {
+            break;
+        }
+    }
+    // Where few windows show the clock, steps can lead astray.
+    let left = |late: &Late| residuals(late, 0.0).iter().map(|r| size(r).min(BEYOND * widest)).sum::<f64>();
+    if left(&late) <= left(from) * (1.0 + SLACK) { late } else { Late { covariance: [0.0; 3], ..*from } }
+}

@@ -1,0 +1,322 @@
+//! Columns that are not what they are called.
+
+use super::agreement::{Agreement, Beside, Reading};
+use crate::drive::{Kind, Robot};
+use std::f64::consts::FRAC_PI_2;
+
+/// Where so much of the motion disagrees, another reading is tried; it is believed where it leaves so much less.
+const DOUBTFUL: f64 = 0.3;
+const CLEARLY: f64 = 0.6;
+/// Where so much of the motion disagrees in every reading, both are not of one drive.
+const NOTHING: f64 = 0.75;
+/// Turns by less than this share of what they should be have no sign. Way and turns by more than the inverse are another reading's.
+const LEAST_GAIN: f64 = 0.2;
+/// Where so much of the way, or of the turns, disagrees, its scale says nothing.
+const VAGUE: f64 = 0.5;
+/// Units in which lengths are written by mistake: how many of them a metre has.
+const UNITS: [(f64, &str); 4] = [(1000.0, "mm"), (100.0, "cm"), (39.37, "inches"), (3.2808, "feet")];
+/// A run with fewer windows is not looked at by itself.
+const FEWEST: usize = 20;
+/// A unit, or a factor of the counts, is known by its size to this share.
+const NEAR: f64 = 0.08;
+
+/// Something that is not what it is called.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fault {
+    /// Left and right wheel are exchanged, or the frame of the reference is left-handed.
+    Exchanged,
+    /// Counters count backward when driving forward.
+    Backward {
+        /// What the columns are called, after "ticks_".
+        names: [&'static str; 2],
+        /// Whether the first counts backward, and the second.
+        counters: [bool; 2],
+        /// Whether the columns are exchanged as well.
+        exchanged: bool,
+    },
+    /// Measured headings grow clockwise.
+    HeadingClockwise,
+    /// x and y are of a left-handed frame, and headings are not.
+    PositionsMirrored,
+    /// Headings are in degrees.
+    HeadingInDegrees,
+    /// Lengths of the reference are in another unit than their column says.
+    LengthsIn {
+        /// Its name.
+        unit: &'static str,
+        /// Way by the reference over way by the wheels.
+        ratio: f64,
+    },
+    /// The reference moves far more, or far less, than the wheels roll.
+    OtherScale {
+        /// Way by the reference over way by the wheels.
+        ratio: f64,
+    },
+    /// Some runs were recorded with other columns or headings than the rest.
+    InRuns {
+        /// What is not as it is called in these.
+        fault: Box<Fault>,
+        /// Their names.
+        runs: Vec<String>,
+    },
+    /// The reference does not move as the wheels roll, however they are read.
+    OtherMotion {
+        /// Share of the motion that disagrees.
+        misfit: f64,
+    },
+    /// Return errors are in another unit than metres.
+    ReturnsIn {
+        /// "mm", or "mm or cm".
+        unit: &'static str,
+        /// Distance of the median return from START, if it were in metres \[m\].
+        distance: f64,
+        /// Way of a run \[m\].
+        way: f64,
+    },
+    /// Return headings are in degrees.
+    ReturnHeadingsInDegrees,
+}
+
+impl Fault {
+    /// Why nothing is fitted where there are some: each with what to do.
+    pub(crate) fn refusal(faults: &[Fault]) -> String {
+        let told: Vec<String> = faults.iter().map(|f| format!("{}; {}", f.sentence(), f.remedy())).collect();
+        format!("nothing can be said of the robot yet: {}", told.join("; and "))
+    }
+
+    /// What is wrong, in words.
+    pub fn sentence(&self) -> String {
+        match self {
+            Fault::Exchanged => {
+                "left and right are exchanged: the robot turns the other way than its counts say".into()
+            }
+            Fault::Backward { names: [first, second], counters, exchanged } => {
+                let which = match counters {
+                    [true, true] => "both counters count".to_owned(),
+                    [true, false] => format!("ticks_{first} counts"),
+                    _ => format!("ticks_{second} counts"),
+                };
+                let and = if *exchanged { ", and left and right are exchanged" } else { "" };
+                format!("{which} backward when the robot drives forward{and}")
+            }
+            Fault::HeadingClockwise => {
+                "the measured heading grows clockwise: it turns the other way than the robot and its track".into()
+            }
+            Fault::PositionsMirrored => {
+                "the measured track is mirrored: x and y are of a left-handed frame, the headings are not".into()
+            }
+            Fault::HeadingInDegrees => "the measured heading is in degrees, not in radians".into(),
+            Fault::LengthsIn { unit, ratio } => {
+                format!(
+                    "the measured positions are in {unit}, not in metres: the track is {ratio:.4} times as long as the wheels rolled"
+                )
+            }
+            Fault::OtherScale { ratio } => {
+                format!(
+                    "the measured track is {ratio:.3} times as long as the wheels rolled: positions, wheel diameter or ticks per revolution are wrong"
+                )
+            }
+            Fault::InRuns { fault, runs } => {
+                format!("in {}, and not in the other runs, {}", named(runs), fault.sentence())
+            }
+            Fault::OtherMotion { misfit } => format!(
+                "the reference does not move as the wheels roll ({:.0} % of the motion disagrees, however the columns are read): \
+                 ticks and poses may be of different drives, or stamped by clocks that are seconds apart",
+                100.0 * misfit
+            ),
+            Fault::ReturnsIn { unit, distance, way } => format!(
+                "the return errors are in {unit}, not in metres: read as metres, their median is {distance:.1} m after a way of {way:.1} m"
+            ),
+            Fault::ReturnHeadingsInDegrees => {
+                "the return headings are in degrees, not in radians: read as degrees they agree with the return positions, read as radians they do not".into()
+            }
+        }
+    }
+
+    /// What to do, with the line of robot.toml where there is one.
+    pub fn remedy(&self) -> String {
+        match self {
+            Fault::Exchanged => {
+                "write wheels_exchanged = true under [robot] in robot.toml (or, if the wheels are right and the reference is mirrored, \
+                 y_mirrored = true and heading_clockwise = true under [reference])"
+                    .into()
+            }
+            Fault::Backward { names, counters, exchanged } => {
+                let backward = names.iter().zip(counters).filter(|(_, is)| **is);
+                let mut lines: Vec<String> = backward.map(|(name, _)| format!("{name}_counts_backward = true")).collect();
+                lines.extend(exchanged.then(|| "wheels_exchanged = true".to_owned()));
+                format!("write {} under [robot] in robot.toml", lines.join(" and "))
+            }
+            Fault::HeadingClockwise => "write heading_clockwise = true under [reference] in robot.toml".into(),
+            Fault::PositionsMirrored => "write y_mirrored = true under [reference] in robot.toml".into(),
+            Fault::HeadingInDegrees => "call the column theta_ref_deg".into(),
+            Fault::LengthsIn { unit: unit @ ("mm" | "cm"), .. } => format!("call the columns x_ref_{unit} and y_ref_{unit}"),
+            Fault::LengthsIn { .. } => "convert the columns to metres".into(),
+            Fault::OtherScale { .. } => "look at the unit of the positions and at [robot] in robot.toml".into(),
+            Fault::InRuns { fault, runs } => format!(
+                "mend the recordings of {} ({}), or keep them in a folder of their own and {} there",
+                named(runs),
+                fault.in_recording(),
+                fault.remedy()
+            ),
+            Fault::OtherMotion { .. } => "look whether each file holds ticks and poses of the same drive".into(),
+            Fault::ReturnsIn { unit: "mm", .. } => {
+                "write the unit into the names of the columns of returns.csv: ex_mm and ey_mm, or x_abs_mm, y_abs_mm, x_calc_mm and y_calc_mm".into()
+            }
+            Fault::ReturnsIn { .. } => {
+                "write the unit into the names of the columns of returns.csv: ex_mm and ey_mm (or ex_cm and ey_cm); for poses x_abs_mm, y_abs_mm, x_calc_mm and y_calc_mm".into()
+            }
+            Fault::ReturnHeadingsInDegrees => {
+                "call the column etheta_deg in returns.csv, or the two columns theta_abs_deg and theta_calc_deg".into()
+            }
+        }
+    }
+
+    /// What to change in a recording.
+    fn in_recording(&self) -> String {
+        match self {
+            Fault::Exchanged => "exchange the columns of the two wheels".into(),
+            Fault::Backward { names, counters, exchanged } => {
+                let backward = names.iter().zip(counters).filter(|(_, is)| **is);
+                let mut changes: Vec<String> =
+                    backward.map(|(name, _)| format!("change the sign of ticks_{name}")).collect();
+                changes.extend(exchanged.then(|| "exchange the columns of the two wheels".to_owned()));
+                changes.join(" and ")
+            }
+            Fault::HeadingClockwise => "change the sign of the measured heading".into(),
+            Fault::PositionsMirrored => "change the sign of y".into(),
+            Fault::HeadingInDegrees => "write the measured heading in radians".into(),
+            _ => "look at their columns".into(),
+        }
+    }
+}
+
+/// Names of runs in a sentence.
+fn named(runs: &[String]) -> String {
+    match runs {
+        [first, .., last] if runs.len() > 6 => format!("{} runs from {first} to {last}", runs.len()),
+        [name] => format!("run {name}"),
+        _ => format!("runs {}", runs.join(", ")),
+    }
+}
+
+/// The faults of runs that were recorded with other columns or headings than the rest; `None` where all were recorded alike.
+///
+/// A run is looked at by itself only where it does not move as all runs together say.
+pub(super) fn differing(
+    runs: &[(&str, Vec<Beside>)],
+    (together, reading): (&[Fault], Reading),
+    robot: &Robot,
+) -> Option<Vec<Fault>> {
+    if runs.len() < 2 || together.contains(&Fault::HeadingInDegrees) {
+        return None;
+    }
+    let wheelbase = robot.drive.wheelbase();
+    let pooled: Vec<Beside> = runs.iter().flat_map(|(_, own)| own.iter().copied()).collect();
+    let agreed = Agreement::without_drift(&pooled, reading, wheelbase);
+    let doubtful = |own: &[Beside]| agreed.misfits_of(own, reading, wheelbase).iter().any(|misfit| *misfit > VAGUE);
+    if !runs.iter().any(|(_, own)| own.len() >= FEWEST && doubtful(own)) {
+        return None;
+    }
+    // By itself, each run whose motion then agrees and shows both way and turns.
+    let mut kinds: Vec<(Vec<Fault>, Vec<String>)> = Vec::new();
+    for (name, own) in runs.iter().filter(|(_, own)| own.len() >= FEWEST) {
+        let (faults, reading) = look(own, robot);
+        let in_degrees = || own.iter().map(|(window, rolled)| (window.in_degrees(), *rolled)).collect::<Vec<Beside>>();
+        let read = if faults.contains(&Fault::HeadingInDegrees) { &in_degrees() } else { own };
+        let found = Agreement::without_drift(read, reading, wheelbase);
+        if found.shown != [true; 2] || found.misfits.iter().any(|misfit| *misfit > DOUBTFUL) {
+            continue;
+        }
+        match kinds.iter_mut().find(|(own, _)| *own == faults) {
+            Some((_, same)) => same.push((*name).to_owned()),
+            None => kinds.push((faults, vec![(*name).to_owned()])),
+        }
+    }
+    let each = |(faults, runs): (Vec<Fault>, Vec<String>)| {
+        faults.into_iter().map(move |fault| Fault::InRuns { fault: Box::new(fault), runs: runs.clone() })
+    };
+    (kinds.len() > 1).then(|| kinds.into_iter().flat_map(each).collect())
+}
+
+/// The faults of columns and headings, and the reading under which the rest was found.
+pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
+    let wheelbase = robot.drive.wheelbase();
+    let of = |windows: &[Beside], reading: Reading| Agreement::without_drift(windows, reading, wheelbase);
+    // Wheels that differ a little can stand for way or turns where one of them is read wrongly: many times over.
+    let doubt = |found: &Agreement| {
+        let possible =
+            |k: usize, ratio: f64| found.misfits[k] > VAGUE || (LEAST_GAIN..=1.0 / LEAST_GAIN).contains(&ratio);
+        let sound = possible(0, found.scale()) && possible(1, found.turn[0].abs());
+        if sound { found.misfit } else { found.misfit.max(1.0) }
+    };
+    let given = of(windows, Reading::default());
+    let differential = robot.drive.kind() == Kind::Differential;
+    let (mut best, mut reading, mut degrees) = (given, Reading::default(), false);
+    if doubt(&given) > DOUBTFUL {
+        let in_degrees: Vec<Beside> = windows.iter().map(|(window, rolled)| (window.in_degrees(), *rolled)).collect();
+        let as_degrees = windows.iter().any(|(window, _)| window.heading.abs() > 7.0);
+        for (opposed, clockwise, degree) in (0..8)
+            .map(|k| (k & 1 != 0, k & 2 != 0, k & 4 != 0))
+            .filter(|(o, _, d)| (differential || !o) && (as_degrees || !d))
+        {
+            let tried = Reading { opposed, clockwise };
+            let found = of(if degree { &in_degrees } else { windows }, tried);
+            // Where all agrees as it is read, only what agrees as well and has possible sizes is more likely.
+            let clearly = if given.misfit > DOUBTFUL { CLEARLY * doubt(&given) } else { DOUBTFUL };
+            if doubt(&found) < clearly && doubt(&found) < doubt(&best) {
+                (best, reading, degrees) = (found, tried, degree);
+            }
+        }
+    }
+    if best.misfit > NOTHING && best.shown.contains(&true) {
+        return (vec![Fault::OtherMotion { misfit: best.misfit }], reading);
+    }
+    let mut faults = Vec::new();
+    if degrees {
+        faults.push(Fault::HeadingInDegrees);
+    }
+    faults.extend(turned(&best, reading, robot.drive.kind()));
+    (faults, reading)
+}
+
+/// What signs and exchanges make of an agreement.
+fn turned(found: &Agreement, Reading { opposed, clockwise }: Reading, kind: Kind) -> Vec<Fault> {
+    let [way, turns] = found.shown;
+    let backward = way && found.yaw().abs() > FRAC_PI_2;
+    let other_way = turns && found.turn[0] < -LEAST_GAIN;
+    if clockwise && other_way && !opposed && !backward {
+        // A clockwise heading beside wheels that turn the other way is, simpler, a mirrored track.
+        return vec![Fault::PositionsMirrored];
+    }
+    let of = |counters, exchanged| Some(Fault::Backward { names: kind.counters(), counters, exchanged });
+    // A tracked body may face backward; wheels that turn the other way as well have another cause.
+    let wheels = match (kind, opposed, other_way, backward) {
+        (_, false, false, _) => None,
+        (Kind::Differential, false, true, false) => Some(Fault::Exchanged),
+        (Kind::Differential, false, true, true) => of([true, true], false),
+        (_, true, false, false) => of([true, false], false),
+        (_, true, true, true) => of([false, true], false),
+        (_, true, true, false) => of([true, false], true),
+        (_, true, false, true) => of([false, true], true),
+        // Driven backward, a steered wheel turns the robot the other way.
+        (Kind::Ackermann, false, true, true) => of([true, false], false),
+        // The second counter of the others is that of the steering.
+        (_, false, true, _) => of([false, true], false),
+    };
+    clockwise.then_some(Fault::HeadingClockwise).into_iter().chain(wheels).collect()
+}
+
+/// Units that are not those of their columns.
+pub(super) fn sizes(found: &Agreement) -> Vec<Fault> {
+    let ratio = found.scale();
+    if !found.shown[0] || found.misfits[0] > VAGUE || (LEAST_GAIN..=1.0 / LEAST_GAIN).contains(&ratio) {
+        return Vec::new();
+    }
+    // The nominal diameter may be wrong too, but not by as much as units differ.
+    let unit = UNITS.into_iter().find(|(size, _)| (ratio / size - 1.0).abs() < 3.0 * NEAR);
+    vec![match unit {
+        Some((_, unit)) => Fault::LengthsIn { unit, ratio },
+        None => Fault::OtherScale { ratio },
+    }]
+}

@@ -1,0 +1,425 @@
+//! Return errors that are not what the robot did: typing errors in single runs, and columns in another unit.
+//!
+//! A run is held against the other runs of its direction and test, coordinate by coordinate. Several typing errors hide each other
+//! when the runs are looked at one after the other, so they are found together: of all ways to leave out i runs, the one that leaves
+//! the least scatter is tested by
+//!
+//! ```text
+//! F(i, ν) = ((S_0 - S_i)/i) / (S_i/ν),   ν = N - groups - i
+//! ```
+//!
+//! S: sum of squares about the group means, pooled over the directions of a test. p is multiplied by the number of subsets, N over i, by
+//! the number of sizes i, of coordinates and of tests (Bonferroni), so normal scatter gives a false alarm in at most [`FALSE_ALARMS`] of all data sets.
+
+use super::Fault;
+use crate::calibrate::by_positions;
+use crate::drive::{Robot, WheelTravel};
+use crate::effect::TestKind;
+use crate::geometry::wrap;
+use crate::path::{Direction, Path};
+use crate::run::{ReturnError, Run, TickLog};
+use crate::stats::{f_upper_tail, t_two_sided};
+
+/// Share of data sets with normal scatter in which a run is named.
+const FALSE_ALARMS: f64 = 1e-3;
+/// A group of fewer runs does not show which of them is wrong.
+const FEWEST: usize = 3;
+/// At most this share of all runs is wrong, beyond the first two.
+const MOST: f64 = 0.25;
+/// Scatter is never smaller than the reading of a tape \[m\] and of a protractor \[rad\].
+const READING: [f64; 3] = [5e-4, 5e-4, 9e-4];
+/// Values closer than this are equal: they differ by rounding only.
+const EQUAL: f64 = 1e-9;
+/// Runs whose ways differ from the median by a larger share are not the same drive.
+const SAME_WAY: f64 = 0.2;
+/// In centimetres, a return error of more than this share of the way is not believed either.
+const BELIEVED: f64 = 0.2;
+/// Headings that differ by less \[rad\] from those which follow from the positions are in radians.
+const NEAR: f64 = 0.1;
+/// The mean headings differ from a unit by so many standard errors where it is wrong.
+const BEYOND: f64 = 6.0;
+/// Read in the right unit, headings are so much nearer to those which follow from the positions.
+const NEARER: f64 = 0.25;
+
+/// Median deviation of headings from their middle \[rad\] that no protractor has.
+const WILD: f64 = 0.1;
+/// The same that no instrument has.
+const HOPELESS: f64 = 0.3;
+/// Positions that deviate by less than this share of what such headings would make of them, over an eighth of the way, were not made by
+/// such headings.
+const ALONE: f64 = 0.06;
+
+/// A coordinate of a return error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coordinate {
+    /// Along the START heading \[m\].
+    X,
+    /// To the left \[m\].
+    Y,
+    /// \[rad\]
+    Heading,
+}
+
+impl Coordinate {
+    const ALL: [Coordinate; 3] = [Coordinate::X, Coordinate::Y, Coordinate::Heading];
+
+    /// As in files: "x", "y" or "heading".
+    pub fn name(self) -> &'static str {
+        match self {
+            Coordinate::X => "x",
+            Coordinate::Y => "y",
+            Coordinate::Heading => "heading",
+        }
+    }
+
+    /// A value with its unit, in degrees where it is a heading.
+    fn shown(self, value: f64) -> String {
+        match self {
+            Coordinate::Heading => format!("{:.2} deg", value.to_degrees()),
+            _ => format!("{value:.3} m"),
+        }
+    }
+}
+
+/// A coordinate that lies away from those of the other runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviant {
+    /// Which one.
+    pub coordinate: Coordinate,
+    /// Its value \[m, rad\].
+    pub value: f64,
+    /// Mean of the other runs \[m, rad\].
+    pub usual: f64,
+    /// Distance from that mean, in standard deviations of a run about it.
+    pub deviations: f64,
+}
+
+/// A run whose return error is far from those of the other runs of its direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutlyingReturn {
+    /// The run's name.
+    pub run: String,
+    /// Its test.
+    pub test: TestKind,
+    /// Its direction.
+    pub direction: Option<Direction>,
+    /// Number of the other runs that it was compared with.
+    pub others: usize,
+    /// Distance of its end position from their mean \[m\].
+    pub moved: f64,
+    /// Its heading less their mean \[rad\]; `None` without headings.
+    pub turned: Option<f64>,
+    /// The coordinates that are off, the farthest first: one at least.
+    pub deviants: Vec<Deviant>,
+}
+
+impl OutlyingReturn {
+    /// Distance of the farthest coordinate, in standard deviations.
+    pub fn deviations(&self) -> f64 {
+        self.deviants.first().map_or(0.0, |deviant| deviant.deviations)
+    }
+
+    /// What is wrong, in words.
+    pub fn sentence(&self) -> String {
+        let turned = self.turned.map(|t| format!(" and {:.1} deg", t.to_degrees().abs())).unwrap_or_default();
+        let direction = self.direction.map_or(String::new(), |direction| format!("{} ", direction.name()));
+        let bumps = if self.test == TestKind::Bumps { " with bumps" } else { "" };
+        let one = |d: &Deviant| {
+            format!(
+                "{} is {}, their mean is {}",
+                d.coordinate.name(),
+                d.coordinate.shown(d.value),
+                d.coordinate.shown(d.usual)
+            )
+        };
+        let values: Vec<String> = self.deviants.iter().map(one).collect();
+        format!(
+            "the return error of run {} lies {:.3} m{turned} from the mean of the other {} {direction}runs{bumps} ({:.0} standard deviations): {}",
+            self.run,
+            self.moved,
+            self.others,
+            self.deviations(),
+            values.join("; ")
+        )
+    }
+
+    /// What to do.
+    pub fn remedy(&self) -> String {
+        format!("correct the numbers of run {}, or leave the run out if it was disturbed", self.run)
+    }
+}
+
+/// What the return errors alone show.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Returned {
+    /// Columns in another unit than their name says.
+    pub faults: Vec<Fault>,
+    /// Runs that are far from the others.
+    pub outlying: Vec<OutlyingReturn>,
+}
+
+impl Returned {
+    /// Looks at the return errors of all runs.
+    pub fn of(runs: &[Run], robot: &Robot, path: Option<&Path>) -> Returned {
+        let ways: Vec<Option<f64>> = runs.iter().map(|run| run.log.as_ref().and_then(|log| way(log, robot))).collect();
+        let faults: Vec<Fault> =
+            too_far(runs, &ways, path).or_else(|| in_degrees(runs, robot, path)).into_iter().collect();
+        // Where a unit is wrong, values that are far off in it say nothing.
+        let outlying = if faults.is_empty() { outlying(runs, &ways) } else { Vec::new() };
+        Returned { faults, outlying }
+    }
+}
+
+/// Way by the ticks of a log \[m\]; `None` where the robot has none.
+fn way(log: &TickLog, robot: &Robot) -> Option<f64> {
+    let per_tick = robot.metres_per_tick();
+    let steps = log.left.windows(2).zip(log.right.windows(2));
+    let way: f64 = steps
+        .map(|(l, r)| {
+            let travel = WheelTravel { left: (l[1] - l[0]) * per_tick.left, right: (r[1] - r[0]) * per_tick.right };
+            0.5 * (travel.left.abs() + travel.right.abs())
+        })
+        .sum();
+    (way > 0.0 && way.is_finite()).then_some(way)
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    (n > 0).then(|| 0.5 * (values[(n - 1) / 2] + values[n / 2]))
+}
+
+/// Return errors larger than the way driven.
+fn too_far(runs: &[Run], ways: &[Option<f64>], path: Option<&Path>) -> Option<Fault> {
+    let distances = runs.iter().filter_map(|run| run.returned).map(|e| libm::hypot(e.x, e.y));
+    let distance = median(distances.filter(|d| d.is_finite()).collect())?;
+    let by_path = path.map(Path::length).filter(|length| *length > 0.0);
+    let way = by_path.or_else(|| median(ways.iter().flatten().copied().collect()))?;
+    let unit = if distance / 100.0 > BELIEVED * way { "mm" } else { "mm or cm" };
+    (distance > way).then_some(Fault::ReturnsIn { unit, distance, way })
+}
+
+/// Headings that agree with the positions once they are read as degrees, and do not as they are.
+fn in_degrees(runs: &[Run], robot: &Robot, path: Option<&Path>) -> Option<Fault> {
+    let path = path?;
+    let regular = |direction: Direction| {
+        let own = runs.iter().filter(move |run| run.test == TestKind::Systematic && run.direction == Some(direction));
+        own.filter_map(|run| run.returned).collect::<Vec<_>>()
+    };
+    let both = Direction::BOTH.map(regular);
+    let headings = both.each_ref().map(|own| own.iter().filter_map(|e| e.heading).collect::<Vec<f64>>());
+    let enough = (0..2).all(|k| both[k].len() >= FEWEST && headings[k].len() == both[k].len());
+    if !enough || headings.iter().flatten().all(|heading| heading.abs() < NEAR) {
+        return None;
+    }
+    let expected = by_positions(&both, robot, path)?;
+    let degrees = 1f64.to_degrees();
+    let (mut as_given, mut as_degrees, mut certain) = (0.0, 0.0, false);
+    let (mut turns, mut places) = (Vec::new(), Vec::new());
+    for own in &both {
+        let middle =
+            [|e: &ReturnError| e.x, |e: &ReturnError| e.y].map(|of| (of, median(own.iter().map(of).collect())));
+        for (of, middle) in middle {
+            places.extend(own.iter().map(|e| (of(e) - middle.unwrap_or(0.0)).abs()));
+        }
+    }
+    for (headings, expected) in headings.iter().zip(expected) {
+        // Degrees that were read as radians may go round; the median does not mind single typing errors.
+        let off = |from: f64| headings.iter().map(|heading| wrap(heading - from)).collect::<Vec<f64>>();
+        let (given, turned) = (median(off(expected))?, median(off(degrees * expected))?);
+        let spread = median(off(degrees * expected).into_iter().map(|own| (own - turned).abs()).collect())?;
+        let error = 1.4826 * spread / (headings.len() as f64).sqrt();
+        turns.extend(off(degrees * expected).into_iter().map(|own| (own - turned).abs()));
+        as_given += given * given;
+        as_degrees += turned * turned;
+        certain |= given.abs() > NEAR.max(BEYOND * error);
+    }
+    // A robot that turns by chance also moves aside: headings do not scatter by themselves.
+    let (turns, places) = (median(turns)?, median(places)?);
+    let alone = turns > WILD && places < ALONE * turns * path.length() / 8.0;
+    let agree = certain && as_degrees < NEARER * NEARER * as_given;
+    (agree || alone && (turns > HOPELESS || as_degrees < as_given)).then_some(Fault::ReturnHeadingsInDegrees)
+}
+
+/// The runs of a test in a direction, with their values of each coordinate.
+struct Group {
+    direction: Option<Direction>,
+    /// Places among all runs.
+    runs: Vec<usize>,
+}
+
+fn outlying(runs: &[Run], ways: &[Option<f64>]) -> Vec<OutlyingReturn> {
+    let tests = [TestKind::Systematic, TestKind::Bumps].map(|test| (test, groups(runs, ways, test)));
+    let told = tests.iter().filter(|(_, groups)| !groups.is_empty()).count();
+    let mut found: Vec<(usize, Deviant, usize)> = Vec::new();
+    for (_, groups) in tests.iter().filter(|(_, groups)| !groups.is_empty()) {
+        let level = FALSE_ALARMS / (told * Coordinate::ALL.len()) as f64;
+        for coordinate in Coordinate::ALL {
+            found.extend(odd_ones(runs, groups, coordinate, level));
+        }
+    }
+    let mut named: Vec<OutlyingReturn> = Vec::new();
+    let mut places: Vec<usize> = found.iter().map(|(run, ..)| *run).collect();
+    places.sort_unstable();
+    places.dedup();
+    for place in &places {
+        let own = found.iter().filter(|(run, ..)| run == place);
+        let mut deviants: Vec<Deviant> = own.map(|(_, deviant, _)| *deviant).collect();
+        deviants.sort_by(|a, b| b.deviations.total_cmp(&a.deviations));
+        let run = &runs[*place];
+        let Some(group) = tests.iter().flat_map(|(_, groups)| groups).find(|group| group.runs.contains(place)) else {
+            continue;
+        };
+        let others: Vec<usize> = group.runs.iter().copied().filter(|other| !places.contains(other)).collect();
+        let off = |coordinate| {
+            let value = coordinate_of(run, coordinate)?;
+            let values: Vec<f64> = others
+                .iter()
+                .filter_map(|other| coordinate_of(&runs[*other], coordinate))
+                .map(|v| near(v, value, coordinate))
+                .collect();
+            (!values.is_empty()).then(|| value - values.iter().sum::<f64>() / values.len() as f64)
+        };
+        named.push(OutlyingReturn {
+            run: run.name.clone(),
+            test: run.test,
+            direction: group.direction,
+            others: others.len(),
+            moved: libm::hypot(off(Coordinate::X).unwrap_or(0.0), off(Coordinate::Y).unwrap_or(0.0)),
+            turned: off(Coordinate::Heading),
+            deviants,
+        });
+    }
+    named
+}
+
+/// A heading as it is nearest to another; positions as they are.
+fn near(value: f64, to: f64, coordinate: Coordinate) -> f64 {
+    if coordinate == Coordinate::Heading { to + wrap(value - to) } else { value }
+}
+
+fn coordinate_of(run: &Run, coordinate: Coordinate) -> Option<f64> {
+    let returned = run.returned?;
+    let value = match coordinate {
+        Coordinate::X => Some(returned.x),
+        Coordinate::Y => Some(returned.y),
+        Coordinate::Heading => returned.heading,
+    };
+    value.filter(|value| value.is_finite())
+}
+
+/// The directions of a test that have runs enough, all of one way.
+fn groups(runs: &[Run], ways: &[Option<f64>], test: TestKind) -> Vec<Group> {
+    let of = |direction: Option<Direction>| {
+        let own = |place: &usize| {
+            let run = &runs[*place];
+            run.test == test && run.direction == direction && coordinate_of(run, Coordinate::X).is_some()
+        };
+        let runs: Vec<usize> = (0..runs.len()).filter(own).collect();
+        let ways: Vec<f64> = runs.iter().filter_map(|place| ways[*place]).collect();
+        let usual = median(ways.clone()).unwrap_or(0.0);
+        let alike = ways.iter().all(|way| (way - usual).abs() <= SAME_WAY * usual);
+        (runs.len() >= FEWEST && alike).then_some(Group { direction, runs })
+    };
+    [Some(Direction::Cw), Some(Direction::Ccw), None].into_iter().filter_map(of).collect()
+}
+
+/// Runs whose value of a coordinate is no scatter, each with the number of the others in its group.
+fn odd_ones(runs: &[Run], groups: &[Group], coordinate: Coordinate, level: f64) -> Vec<(usize, Deviant, usize)> {
+    let mut of_groups: Vec<Vec<(usize, f64)>> = Vec::new();
+    for group in groups {
+        let own: Vec<(usize, f64)> =
+            group.runs.iter().filter_map(|run| Some((*run, coordinate_of(&runs[*run], coordinate)?))).collect();
+        if own.len() < FEWEST {
+            continue;
+        }
+        // Headings are counted from the one that lies nearest to all.
+        let spread = |from: f64| own.iter().map(|(_, value)| wrap(value - from).abs()).sum::<f64>();
+        let middle = own.iter().map(|own| own.1).min_by(|a, b| spread(*a).total_cmp(&spread(*b))).unwrap_or(0.0);
+        let mut own: Vec<(usize, f64)> =
+            own.iter().map(|(run, value)| (*run, near(*value, middle, coordinate))).collect();
+        own.sort_by(|a, b| a.1.total_cmp(&b.1));
+        of_groups.push(own);
+    }
+    let least = READING[coordinate as usize].max(0.5 * finest(&of_groups));
+    let Some((kept, deviation, freedom)) = subset(&of_groups, least, level) else { return Vec::new() };
+    let all: usize = of_groups.iter().map(Vec::len).sum();
+    let mut odd = Vec::new();
+    for (own, kept) in of_groups.iter().zip(kept) {
+        let usual = mean(&own[kept.clone()]);
+        let rest = own.iter().enumerate().filter(|(place, _)| !kept.contains(place)).map(|(_, own)| own);
+        for (run, value) in rest {
+            let deviations = (value - usual).abs() / deviation;
+            let t = deviations / (1.0 + 1.0 / kept.len() as f64).sqrt();
+            if t_two_sided(t, freedom) * (all as f64) < level {
+                odd.push((*run, Deviant { coordinate, value: *value, usual, deviations }, kept.len()));
+            }
+        }
+    }
+    odd
+}
+
+/// The smallest difference between values that are not equal: what they were rounded to, at most.
+fn finest(groups: &[Vec<(usize, f64)>]) -> f64 {
+    let differences = groups.iter().flat_map(|own| own.windows(2).map(|pair| pair[1].1 - pair[0].1));
+    let least = differences.filter(|difference| *difference > EQUAL).fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
+}
+
+fn mean(own: &[(usize, f64)]) -> f64 {
+    own.iter().map(|(_, value)| value).sum::<f64>() / own.len().max(1) as f64
+}
+
+/// Values of each group, sorted, that are kept, with their pooled standard deviation and its degrees of freedom; `None` where nothing
+/// is certain to be wrong.
+fn subset(groups: &[Vec<(usize, f64)>], least: f64, level: f64) -> Option<(Vec<std::ops::Range<usize>>, f64, f64)> {
+    let all: usize = groups.iter().map(Vec::len).sum();
+    let possible: usize = groups.iter().map(|own| (own.len() - 1) / 2).sum();
+    let most = possible.min(2.max((MOST * all as f64) as usize));
+    // By the number of values left out in the groups so far: the least sum of squares, and what is kept for it.
+    let mut best: Vec<Option<(f64, Vec<std::ops::Range<usize>>)>> = vec![None; most + 1];
+    best[0] = Some((0.0, Vec::new()));
+    for own in groups {
+        let windows: Vec<(f64, std::ops::Range<usize>)> =
+            (0..=((own.len() - 1) / 2).min(most)).map(|out| narrowest(own, own.len() - out)).collect();
+        let so_far = std::mem::replace(&mut best, vec![None; most + 1]);
+        for (before, told) in so_far.iter().enumerate().filter_map(|(i, told)| Some((i, told.as_ref()?))) {
+            for (out, (squares, range)) in windows.iter().enumerate().take(most + 1 - before) {
+                let sum = told.0 + squares;
+                if best[before + out].as_ref().is_none_or(|known| sum < known.0) {
+                    best[before + out] = Some((sum, [told.1.as_slice(), std::slice::from_ref(range)].concat()));
+                }
+            }
+        }
+    }
+    let whole = best[0].as_ref()?.0;
+    let (mut subsets, mut found, mut smallest) = (1.0, None, level);
+    for (out, told) in best.into_iter().enumerate().skip(1) {
+        subsets *= (all + 1 - out) as f64 / out as f64;
+        let (Some((squares, kept)), freedom) = (told, all as f64 - (groups.len() + out) as f64) else { continue };
+        if freedom < 1.0 {
+            continue;
+        }
+        let variance = squares / freedom + least * least;
+        let f = (whole - squares) / out as f64 / variance;
+        let p = f_upper_tail(f, [out as f64, freedom]) * subsets * most as f64;
+        if p < smallest {
+            (smallest, found) = (p, Some((kept, variance.sqrt(), freedom)));
+        }
+    }
+    found
+}
+
+/// The neighbouring values, so many of them, that scatter least: their sum of squares about their mean, and where they stand.
+fn narrowest(own: &[(usize, f64)], count: usize) -> (f64, std::ops::Range<usize>) {
+    let squares = |range: &std::ops::Range<usize>| {
+        let middle = mean(&own[range.clone()]);
+        own[range.clone()].iter().map(|(_, value)| (value - middle).powi(2)).sum::<f64>()
+    };
+    let windows = (0..=own.len() - count).map(|first| first..first + count);
+    let all = windows.map(|range| (squares(&range), range));
+    all.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0..own.len()))
+}
+
+#[cfg(test)]
+mod tests;

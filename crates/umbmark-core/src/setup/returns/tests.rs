@@ -1,0 +1,176 @@
+//! Typing errors and units of return errors, of simulated tests.
+
+use super::*;
+use crate::calibrate::{Correction, drive_again};
+use crate::diagnose::tests::{robot_with, simulated, trials};
+use crate::random::Stream;
+use crate::run::ReturnError;
+use rayon::prelude::*;
+use std::io::Write;
+
+/// n runs each way with normal scatter: 20 mm and 0.3 deg about the errors of a robot like the paper's; y and heading correlated.
+fn normal(n: [usize; 2], stream: &mut Stream) -> Vec<Run> {
+    let mut runs = Vec::new();
+    for (k, direction) in Direction::BOTH.into_iter().enumerate() {
+        for number in 1..=n[k] as u32 {
+            let [a, b, c] = [0; 3].map(|_: i32| stream.normal());
+            let y = 0.02 * (0.8 * c + 0.6 * b) - 0.15;
+            let returned = Some(ReturnError { x: 0.02 * a - 0.2, y, heading: Some(0.005 * c + 0.04) });
+            let name = format!("{}_{number}", direction.name());
+            let direction = Some(direction);
+            runs.push(Run { name, number, direction, test: TestKind::Systematic, log: None, returned });
+        }
+    }
+    runs
+}
+
+fn named(runs: &[Run]) -> Vec<String> {
+    let found = Returned::of(runs, &Robot::labmate(), Some(&Path::umbmark()));
+    assert!(found.faults.is_empty(), "{:?}", found.faults);
+    found.outlying.into_iter().map(|run| run.run).collect()
+}
+
+/// Seed 11. Allowed: 1e-3 of the sets of each size; Bonferroni makes it less.
+#[test]
+fn normal_scatter_is_named_in_at_most_one_of_a_thousand_sets() {
+    let trials = trials(4000);
+    for n in [[2, 2], [3, 3], [3, 5], [5, 5], [5, 2], [10, 10], [20, 20]] {
+        let false_alarm = |trial: u64| !named(&normal(n, &mut Stream::new(11, n[0] as u64, trial))).is_empty();
+        let alarms = (0..trials).into_par_iter().filter(|trial| false_alarm(*trial)).count();
+        let _ = writeln!(std::io::stderr(), "{n:?}: {alarms} false alarms in {trials} sets");
+        assert!(alarms as f64 <= 1e-3 * trials as f64 + 3.0 * (1e-3 * trials as f64).sqrt(), "{n:?}: {alarms}");
+    }
+}
+
+/// Seed 12. Numbers rounded to 10 mm and a degree repeat each other; a rounding step is no outlier.
+#[test]
+fn rounded_numbers_that_repeat_each_other_are_not_named() {
+    for trial in 0..500 {
+        let mut runs = normal([5, 5], &mut Stream::new(12, 0, trial));
+        for returned in runs.iter_mut().filter_map(|run| run.returned.as_mut()) {
+            let to = |value: f64, step: f64| (value / step).round() * step;
+            let heading = returned.heading.map(|heading| to(heading, 1f64.to_radians()));
+            *returned = ReturnError { x: to(returned.x, 0.01), y: to(returned.y, 0.01), heading };
+        }
+        assert_eq!(named(&runs), Vec::<String>::new(), "{trial}");
+    }
+}
+
+/// Seed 13. One typing error, two in one direction, one each way; a digit more, a lost sign, degrees for radians.
+#[test]
+fn one_and_two_typing_errors_of_ten_are_named_and_no_other_run() {
+    let typed = |runs: &mut [Run], place: usize, how: u64| {
+        if let Some(own) = runs[place].returned.as_mut() {
+            match how {
+                0 => own.y = 2.010,
+                1 => own.x *= -10.0,
+                _ => own.heading = own.heading.map(|heading| wrap(heading.to_degrees())),
+            }
+        }
+    };
+    let (sets, mut right) = (trials(600), 0);
+    for trial in 0..sets {
+        let mut runs = normal([5, 5], &mut Stream::new(13, 0, trial));
+        let places: &[usize] = [&[3][..], &[3, 4], &[1, 8]][trial as usize % 3];
+        for (k, place) in places.iter().enumerate() {
+            typed(&mut runs, *place, (trial / 3 + k as u64) % 3);
+        }
+        let expected: Vec<&str> = places.iter().map(|place| runs[*place].name.as_str()).collect();
+        right += u64::from(named(&runs) == expected);
+    }
+    let _ = writeln!(std::io::stderr(), "named rightly: {right} of {sets}");
+    assert!(right as f64 > 0.99 * sets as f64, "{right} of {sets}");
+}
+
+#[test]
+fn a_run_is_told_with_its_distance_and_with_what_stands_out() {
+    let mut runs = normal([5, 5], &mut Stream::new(14, 0, 0));
+    runs[2].returned.as_mut().unwrap().y = 2.010;
+    let found = Returned::of(&runs, &Robot::labmate(), None).outlying;
+    let [run] = found.as_slice() else { panic!("{found:?}") };
+    assert_eq!((run.run.as_str(), run.others, run.deviants.len()), ("cw_3", 4, 1));
+    assert_eq!(run.deviants[0].coordinate, Coordinate::Y);
+    assert!((run.moved - 2.16).abs() < 0.05 && (50.0..400.0).contains(&run.deviations()), "{run:?}");
+    assert!(run.turned.is_some_and(|turned| turned.abs() < 0.03));
+    let told = run.sentence();
+    assert!(
+        told.starts_with("the return error of run cw_3 lies 2.1") && told.contains("y is 2.010 m, their mean is -0.1"),
+        "{told}"
+    );
+}
+
+#[test]
+fn bumps_have_groups_of_their_own() {
+    let mut runs = normal([5, 5], &mut Stream::new(15, 0, 0));
+    let with_bumps: Vec<Run> = normal([5, 5], &mut Stream::new(15, 0, 1))
+        .into_iter()
+        .map(|run| {
+            let moved =
+                run.returned.map(|own| ReturnError { x: own.x + 0.5, heading: own.heading.map(|h| h + 0.3), ..own });
+            Run { name: format!("bumps_{}", run.name), test: TestKind::Bumps, returned: moved, ..run }
+        })
+        .collect();
+    runs.extend(with_bumps);
+    assert_eq!(named(&runs), Vec::<String>::new());
+    runs[14].returned.as_mut().unwrap().x = -5.0;
+    assert_eq!(named(&runs), ["bumps_cw_5"]);
+    assert_eq!(Returned::of(&runs, &Robot::labmate(), None).outlying[0].test, TestKind::Bumps);
+}
+
+/// Two of two cannot be told apart, and two runs of one direction are not judged by those of the other.
+#[test]
+fn of_two_runs_nothing_is_said() {
+    let mut runs = normal([5, 2], &mut Stream::new(16, 0, 0));
+    runs[6].returned.as_mut().unwrap().x = 3.0;
+    assert_eq!(named(&runs), Vec::<String>::new());
+}
+
+/// Robots that are off by 5 % and 10 % return metres and tens of degrees away: that is no unit.
+#[test]
+fn large_errors_of_a_robot_are_no_fault_and_the_same_in_millimetres_or_degrees_is() {
+    let (robot, path) = (Robot::labmate(), Path::umbmark());
+    let (mut told, mut honest) = ([0; 2], 0);
+    for trial in 0..200 {
+        let mut stream = Stream::new(17, 0, trial);
+        let truth = Correction { e_d: 0.95 + 0.1 * stream.uniform(), e_b: 0.9 + 0.2 * stream.uniform(), e_s: 1.0 };
+        let mut runs = normal([5, 5], &mut stream);
+        for run in &mut runs {
+            let (Some(own), Some(direction)) = (run.returned.as_mut(), run.direction) else { continue };
+            let mean = drive_again(&robot, &path, direction, &truth, &Correction::NONE).unwrap();
+            let heading = own.heading.map(|h| wrap(h - 0.04 + mean.heading.unwrap_or(0.0)));
+            *own = ReturnError { x: own.x + 0.2 + mean.x, y: own.y + 0.15 + mean.y, heading };
+        }
+        let faults = |runs: &[Run]| Returned::of(runs, &robot, Some(&path)).faults;
+        assert_eq!(faults(&runs), Vec::new(), "{truth:?}");
+        honest += 1;
+        let scaled = |length: f64, angle: f64| {
+            let of = |own: ReturnError| ReturnError {
+                x: length * own.x,
+                y: length * own.y,
+                heading: own.heading.map(|heading| wrap(angle * heading)),
+            };
+            runs.iter().map(|run| Run { returned: run.returned.map(of), ..run.clone() }).collect::<Vec<_>>()
+        };
+        told[0] += usize::from(matches!(faults(&scaled(1e3, 1.0))[..], [Fault::ReturnsIn { .. }]));
+        told[1] += usize::from(faults(&scaled(1.0, 1f64.to_degrees())) == [Fault::ReturnHeadingsInDegrees]);
+    }
+    let _ = writeln!(std::io::stderr(), "of {honest} robots: mm {}, deg {}", told[0], told[1]);
+    assert_eq!(told[0], 200);
+}
+
+/// Seeds 18: the paper's robot and 5 + 5 runs.
+#[test]
+fn degrees_of_a_usual_robot_are_seen_and_its_radians_are_left_alone() {
+    let (sets, mut told) = (100, 0);
+    for data in simulated(&robot_with(&[]), &Path::umbmark(), 5, 18, 0..sets) {
+        let mut runs = data.runs.clone();
+        let faults = |runs: &[Run]| Returned::of(runs, &Robot::labmate(), data.path.as_ref()).faults;
+        assert_eq!(faults(&runs), Vec::new());
+        for own in runs.iter_mut().filter_map(|run| run.returned.as_mut()) {
+            own.heading = own.heading.map(|heading| wrap(heading.to_degrees()));
+        }
+        told += usize::from(faults(&runs) == [Fault::ReturnHeadingsInDegrees]);
+    }
+    let _ = writeln!(std::io::stderr(), "degrees seen in {told} of {sets}");
+    assert!(told > 90, "{told}");
+}

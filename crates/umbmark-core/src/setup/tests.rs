@@ -1,0 +1,309 @@
+use super::*;
+use crate::dataset::ReferencePose;
+use crate::drive::{DifferentialDrive, Encoder, Wiring};
+use crate::random::Stream;
+
+/// A free drive as it is put in; see [`Drive::runs`].
+#[derive(Clone)]
+struct Drive {
+    wiring: Wiring,
+    /// Delay of the stamps in each run \[s\], the first of them also where there are no more, and what is added each second.
+    delays: Vec<f64>,
+    rate: f64,
+    /// The tracked body on the robot.
+    body: Pose2,
+    /// What is written of a pose.
+    written: fn(f64, f64, f64) -> (f64, f64, f64),
+    /// Runs whose columns are exchanged.
+    exchanged: Vec<usize>,
+    /// Run, time and size of jumps; run, place and size of wrong poses.
+    jumps: Vec<(usize, f64, [f64; 3])>,
+    wrong: Vec<(usize, usize, [f64; 3])>,
+    runs: usize,
+    seconds: f64,
+    seed: u64,
+}
+
+/// Poses a second.
+const RATE: f64 = 20.0;
+/// Noise of a pose \[m, rad\].
+const NOISE: (f64, f64) = (1e-3, 2e-3);
+const WHEELBASE: f64 = 0.3;
+
+fn clean() -> Drive {
+    Drive {
+        wiring: Wiring::default(),
+        delays: vec![0.0],
+        rate: 0.0,
+        body: Pose2::IDENTITY,
+        written: |x, y, heading| (x, y, heading),
+        exchanged: Vec::new(),
+        jumps: Vec::new(),
+        wrong: Vec::new(),
+        runs: 4,
+        seconds: 50.0,
+        seed: 40,
+    }
+}
+
+fn robot() -> Robot {
+    Robot {
+        name: "free".into(),
+        drive: DifferentialDrive::new(WHEELBASE, 0.1, 0.1).unwrap().into(),
+        encoder: Encoder::new(20_000.0, None, None).unwrap(),
+    }
+}
+
+/// Where the robot is at each millisecond, with the travel of both wheels: every two seconds another speed and turn rate, with ramps
+/// of 0.4 s, and rest for two seconds at both ends. Integrated here, by midpoints.
+fn driven(seconds: f64, stream: &mut Stream) -> Vec<(Pose2, [f64; 2])> {
+    let pick = |values: &[f64], stream: &mut Stream| values[(stream.uniform() * values.len() as f64) as usize];
+    let (mut pose, mut rolled) = ([0.0; 3], [0.0; 2]);
+    let (mut now, mut goal) = ([0.0; 2], [0.0; 2]);
+    let mut driven = Vec::new();
+    for step in 0..(1000.0 * seconds) as usize {
+        driven.push((Pose2::new(pose[0], pose[1], pose[2]), rolled));
+        if step % 2000 == 0 {
+            let ends = step < 2000 || step as f64 >= 1000.0 * seconds - 4000.0;
+            goal = [pick(&[0.0, 0.15, 0.3, 0.45], stream), pick(&[-0.5, -0.2, 0.0, 0.0, 0.2, 0.5], stream)];
+            goal = if ends { [0.0; 2] } else { goal };
+        }
+        for (now, goal) in now.iter_mut().zip(goal) {
+            *now += (goal - *now).clamp(-1.5e-3, 1.5e-3);
+        }
+        let [way, turn] = now.map(|speed| 1e-3 * speed);
+        let middle = pose[2] + 0.5 * turn;
+        pose = [pose[0] + way * middle.cos(), pose[1] + way * middle.sin(), pose[2] + turn];
+        rolled = [rolled[0] + way - 0.5 * WHEELBASE * turn, rolled[1] + way + 0.5 * WHEELBASE * turn];
+    }
+    driven
+}
+
+impl Drive {
+    fn runs(&self) -> Vec<Run> {
+        (0..self.runs).map(|run| self.run(run)).collect()
+    }
+
+    fn run(&self, run: usize) -> Run {
+        let mut stream = Stream::new(self.seed, 0, run as u64);
+        let driven = driven(self.seconds, &mut stream);
+        let delay = self.delays.get(run).copied().unwrap_or(self.delays[0]);
+        let per_tick = robot().metres_per_tick();
+        let mut log = TickLog::default();
+        let mut counters = [Vec::new(), Vec::new()];
+        for sample in 0..(RATE * self.seconds) as usize {
+            let time = sample as f64 / RATE;
+            log.time.push(time);
+            let (_, [left, right]) = driven[(1000.0 * time) as usize];
+            counters[0].push((left / per_tick.left).floor());
+            counters[1].push((right / per_tick.right).floor());
+            let taken = time - delay - self.rate * (time - 0.5 * self.seconds);
+            let (robot, _) = driven[((1000.0 * taken).round().max(0.0) as usize).min(driven.len() - 1)];
+            let mut seen = robot.compose(&self.body);
+            for (_, _, [x, y, turned]) in self.jumps.iter().filter(|(own, at, _)| *own == run && *at <= time) {
+                seen = Pose2::new(seen.x + x, seen.y + y, seen.heading + turned);
+            }
+            for (_, _, [x, y, turned]) in self.wrong.iter().filter(|(own, at, _)| *own == run && *at == sample) {
+                seen = Pose2::new(seen.x + x, seen.y + y, seen.heading + turned);
+            }
+            let noise = [NOISE.0, NOISE.0, NOISE.1].map(|sd| sd * stream.normal());
+            let (x, y, heading) = (self.written)(seen.x + noise[0], seen.y + noise[1], wrap(seen.heading + noise[2]));
+            log.reference.push(ReferencePose { sample, x, y, heading: Some(heading) });
+        }
+        let mut columns = self.wiring.columns(counters);
+        if self.exchanged.contains(&run) {
+            columns.reverse();
+        }
+        [log.left, log.right] = columns;
+        let name = format!("run_{run}");
+        Run { name, number: run as u32, direction: None, test: TestKind::Systematic, log: Some(log), returned: None }
+    }
+
+    fn found(&self) -> Setup {
+        Setup::of(&self.runs(), &robot(), None)
+    }
+}
+
+fn near(found: Option<Measured>, truth: f64, limit: f64) {
+    let found = found.unwrap();
+    let off = (found.value - truth).abs();
+    assert!(off < limit && off < 4.0 * found.std_error, "{found:?}, and {truth} was put in");
+}
+
+#[test]
+fn a_clean_set_has_no_fault_no_delay_and_no_disturbance() {
+    for seed in [40, 41, 42] {
+        let found = Drive { seed, ..clean() }.found();
+        assert_eq!(found.faults, []);
+        assert_eq!(found.disturbances(), [0, 0], "{:?}", found.runs);
+        let mounting = found.mounting.unwrap();
+        near(Some(mounting.delay), 0.0, 5e-3);
+        near(mounting.ahead, 0.0, 2e-3);
+        near(mounting.left, 0.0, 2e-3);
+        near(mounting.yaw, 0.0, 3e-3);
+        near(mounting.scale, 1.0, 3e-3);
+        near(mounting.gain, 1.0, 3e-3);
+        assert!(found.runs.iter().all(|run| run.delay.unwrap().value.abs() < 5e-3), "{:?}", found.runs);
+        assert!(found.noise.position < 2e-3 && found.noise.heading < 4e-3, "{:?}", found.noise);
+    }
+}
+
+/// What a fault says of the columns.
+fn wiring(fault: &Fault) -> Wiring {
+    match fault {
+        Fault::Exchanged => Wiring { exchanged: true, backward: [false; 2] },
+        Fault::Backward { counters, exchanged, .. } => Wiring { exchanged: *exchanged, backward: *counters },
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn each_way_to_wire_the_counters_is_named_as_it_is() {
+    for k in 1..8_u32 {
+        let put_in = Wiring { exchanged: k & 1 != 0, backward: [k & 2 != 0, k & 4 != 0] };
+        let found = Drive { wiring: put_in, ..clean() }.found();
+        if put_in == (Wiring { exchanged: true, backward: [true; 2] }) {
+            // Which is what a tracked body that faces backward looks like.
+            assert_eq!(found.faults, []);
+            assert!(wrap(found.mounting.unwrap().yaw.unwrap().value - std::f64::consts::PI).abs() < 0.01);
+            continue;
+        }
+        assert_eq!(found.faults.len(), 1, "{put_in:?}: {:?}", found.faults);
+        assert_eq!(wiring(&found.faults[0]), put_in);
+        assert!(!found.is_sound() && found.mounting.is_none());
+    }
+}
+
+#[test]
+fn headings_and_positions_that_are_not_what_they_are_called_are_named() {
+    let faults = |written| Drive { written, ..clean() }.found().faults;
+    assert_eq!(faults(|x, y, heading| (x, y, -heading)), [Fault::HeadingClockwise]);
+    assert_eq!(faults(|x, y, heading| (x, -y, heading)), [Fault::PositionsMirrored]);
+    assert_eq!(faults(|x, y, heading| (x, y, heading.to_degrees())), [Fault::HeadingInDegrees]);
+    // A reference that is mirrored altogether looks like exchanged wheels, and the remedy says so.
+    let mirrored = faults(|x, y, heading| (x, -y, -heading));
+    assert_eq!(mirrored, [Fault::Exchanged]);
+    assert!(mirrored[0].remedy().contains("y_mirrored"));
+    for (written, expected) in [
+        ((|x, y, heading| (1e3 * x, 1e3 * y, heading)) as fn(f64, f64, f64) -> (f64, f64, f64), "mm"),
+        (|x, y, heading| (1e2 * x, 1e2 * y, heading), "cm"),
+        (|x, y, heading| (39.37 * x, 39.37 * y, heading), "inches"),
+    ] {
+        let found = faults(written);
+        assert!(matches!(found[..], [Fault::LengthsIn { unit, .. }] if unit == expected), "{expected}: {found:?}");
+    }
+    let found = faults(|x, y, heading| (8.0 * x, 8.0 * y, heading));
+    assert!(matches!(found[..], [Fault::OtherScale { ratio }] if (ratio - 8.0).abs() < 0.1), "{found:?}");
+}
+
+#[test]
+fn poses_of_another_drive_are_named_and_nothing_is_said_of_the_clock() {
+    let (mut runs, other) = (clean().runs(), Drive { seed: 77, ..clean() }.runs());
+    for (run, other) in runs.iter_mut().zip(other) {
+        run.log.as_mut().unwrap().reference = other.log.unwrap().reference;
+    }
+    let found = Setup::of(&runs, &robot(), None);
+    assert!(matches!(found.faults[..], [Fault::OtherMotion { .. }]), "{:?}", found.faults);
+    assert!(found.mounting.is_none() && found.runs.iter().all(|run| run.delay.is_none()));
+}
+
+#[test]
+fn a_delay_of_either_sign_is_found_in_all_runs_and_in_each() {
+    for delay in [-0.3, -0.12, -0.06, 0.04, 0.09, 0.18, 0.3] {
+        let found = Drive { delays: vec![delay], ..clean() }.found();
+        assert_eq!((found.faults.len(), found.disturbances()), (0, [0, 0]), "{delay}");
+        near(found.mounting.map(|m| m.delay), delay, 5e-3);
+        assert!(found.runs.iter().all(|run| (run.delay.unwrap().value - delay).abs() < 8e-3), "{:?}", found.runs);
+    }
+}
+
+#[test]
+fn a_delay_of_each_run_is_found_as_its_own() {
+    let delays = vec![0.0, 0.08, -0.05, 0.2];
+    let found = Drive { delays: delays.clone(), ..clean() }.found();
+    for (run, delay) in found.runs.iter().zip(delays) {
+        assert!((run.delay.unwrap().value - delay).abs() < 8e-3, "{run:?}, and {delay} was put in");
+    }
+}
+
+#[test]
+fn a_clock_that_is_fast_or_slow_is_found() {
+    for rate in [-1e-3, 2e-3] {
+        let found = Drive { rate, runs: 3, seconds: 120.0, ..clean() }.found();
+        near(found.mounting.unwrap().rate, rate, 2e-4);
+    }
+}
+
+#[test]
+fn lever_arm_and_yaw_are_found() {
+    for (ahead, left, yaw) in [(0.1, 0.0, 0.0), (-0.05, 0.08, 0.0), (0.03, -0.02, 0.5), (0.0, 0.0, -2.5)] {
+        let found = Drive { body: Pose2::new(ahead, left, yaw), ..clean() }.found();
+        assert_eq!(found.faults, [], "{ahead} {left} {yaw}");
+        let mounting = found.mounting.unwrap();
+        near(mounting.ahead, ahead, 3e-3);
+        near(mounting.left, left, 3e-3);
+        near(mounting.yaw, yaw, 3e-3);
+    }
+}
+
+#[test]
+fn several_jumps_in_a_set_and_one_in_every_run_are_named_with_time_and_size() {
+    let size = [0.4, -0.3, 0.5];
+    let two = vec![(0, 20.0, size), (0, 31.0, [-0.2, 0.1, -0.3]), (2, 25.0, [0.0, 0.3, 0.0])];
+    let every = (0..4).map(|run| (run, 12.0 + 7.0 * run as f64, size)).collect();
+    for jumps in [two, every] {
+        let found = Drive { jumps: jumps.clone(), ..clean() }.found();
+        assert_eq!(found.disturbances(), [jumps.len(), 0], "{:?}", found.runs);
+        let named = found.runs.iter().enumerate().flat_map(|(k, run)| run.jumps.iter().map(move |jump| (k, jump)));
+        for ((run, time, [x, y, turned]), (own, jump)) in jumps.iter().zip(named) {
+            assert!(*run == own && (jump.time - time).abs() < 0.06, "{jump:?}");
+            assert!((jump.moved - libm::hypot(*x, *y)).abs() < 0.05, "{jump:?}");
+            assert!((jump.turned.unwrap() - turned).abs() < 0.03, "{jump:?}");
+        }
+    }
+}
+
+#[test]
+fn poses_that_are_wrong_are_named_and_are_no_jumps() {
+    let wrong: Vec<(usize, usize, [f64; 3])> = vec![
+        (0, 150, [0.5, 0.0, 0.0]),
+        (0, 151, [0.5, 0.1, 0.2]),
+        (1, 400, [0.0, -0.2, 0.0]),
+        (3, 300, [0.0, 0.0, 0.6]),
+    ];
+    let found = Drive { wrong: wrong.clone(), ..clean() }.found();
+    assert_eq!(found.disturbances(), [0, 4], "{:?}", found.runs);
+    let named: Vec<(usize, usize)> =
+        found.runs.iter().enumerate().flat_map(|(k, run)| run.wrong.iter().map(move |w| (k, w.pose))).collect();
+    assert_eq!(named, wrong.iter().map(|(run, pose, _)| (*run, *pose)).collect::<Vec<_>>());
+}
+
+#[test]
+fn runs_that_were_wired_otherwise_are_named_and_only_these() {
+    for exchanged in [vec![2], vec![0, 3], vec![0, 1, 3]] {
+        let found = Drive { exchanged: exchanged.clone(), ..clean() }.found();
+        let expected: Vec<String> = exchanged.iter().map(|run| format!("run_{run}")).collect();
+        let [Fault::InRuns { fault, runs }] = &found.faults[..] else { panic!("{exchanged:?}: {:?}", found.faults) };
+        assert_eq!((&**fault, runs), (&Fault::Exchanged, &expected));
+        assert!(!found.is_sound() && found.faults[0].remedy().contains("mend the recordings of"));
+        assert!(expected.iter().all(|name| found.faults[0].sentence().contains(name)));
+    }
+    // All of them are wired alike: no run differs.
+    assert_eq!(Drive { exchanged: vec![0, 1, 2, 3], ..clean() }.found().faults, [Fault::Exchanged]);
+}
+
+#[test]
+fn too_little_motion_says_nothing() {
+    let mut runs = clean().runs();
+    for run in &mut runs {
+        let log = run.log.as_mut().unwrap();
+        log.reference.retain(|pose| pose.sample < 30);
+    }
+    let found = Setup::of(&runs, &robot(), None);
+    assert!(found.faults.is_empty() && found.disturbances() == [0, 0]);
+    for run in &mut runs {
+        run.log.as_mut().unwrap().reference.truncate(1);
+    }
+    assert!(Setup::of(&runs, &robot(), None).mounting.is_none());
+    assert_eq!(Setup::of(&[], &robot(), None), Setup::default());
+}

@@ -1,0 +1,188 @@
+//! The motion of a run cut into short windows, as the reference measured it and as the wheels rolled.
+
+use crate::drive::{Robot, WheelTravel};
+use crate::geometry::wrap;
+use crate::run::TickLog;
+
+/// Length of a window \[s\], where both are sampled faster.
+const LENGTH: f64 = 0.4;
+/// A window takes in no longer time than this \[s\]: in it, the motion is one arc.
+const LONGEST: f64 = 2.5;
+/// Windows begin twice in their length, and there are no more than so many a run.
+const OVERLAP: f64 = 2.0;
+const MOST: usize = 600;
+
+/// What the reference saw between two of its poses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Window {
+    /// Time stamps of the two \[s\].
+    pub from: f64,
+    pub to: f64,
+    /// How far the tracked point moved in the room \[m\].
+    pub moved: [f64; 2],
+    /// Heading at the beginning, and by how much it turned \[rad\]: as measured or, where no heading was, of the course.
+    pub heading: f64,
+    pub turned: f64,
+    /// The same with full turns, as the numbers stand.
+    pub raw_turn: f64,
+}
+
+impl Window {
+    /// The same, if its headings are degrees.
+    pub fn in_degrees(&self) -> Window {
+        Window { heading: self.heading.to_radians(), turned: wrap(self.raw_turn.to_radians()), ..*self }
+    }
+}
+
+/// The windows of a run; empty where its poses are too few or too far apart.
+pub(super) fn windows(log: &TickLog) -> Vec<Window> {
+    let time: Vec<f64> = log.reference.iter().map(|pose| log.time[pose.sample]).collect();
+    if time.len() < 4 {
+        return Vec::new();
+    }
+    let with_heading = log.reference.iter().all(|pose| pose.heading.is_some());
+    let length = LENGTH.max(2.0 * usual_step(&time)).max(2.0 * usual_step(&log.time));
+    let step = (length / OVERLAP).max((time[time.len() - 1] - time[0]) / MOST as f64);
+    let (sine, cosine) = libm::sincos(log.start.heading);
+    let (mut windows, mut next) = (Vec::new(), time[0]);
+    for (i, from) in time.iter().enumerate() {
+        if *from < next {
+            continue;
+        }
+        next = (next + step).max(*from);
+        let j = time.partition_point(|t| *t < from + length - 1e-9);
+        let Some(to) = time.get(j).filter(|to| **to <= from + LONGEST.min(2.0 * length)) else { continue };
+        let (a, b) = (&log.reference[i], &log.reference[j]);
+        // In the frame of the file: what is wrong with headings there is not the same in that of each START.
+        let (x, y) = (b.x - a.x, b.y - a.y);
+        let moved = [cosine * x - sine * y, sine * x + cosine * y];
+        let (heading, raw_turn) = match (a.heading, b.heading) {
+            (Some(from), Some(to)) if with_heading => (from + log.start.heading, to - from),
+            _ => (0.0, 0.0),
+        };
+        windows.push(Window { from: *from, to: *to, moved, heading, turned: wrap(raw_turn), raw_turn });
+    }
+    if with_heading { windows } else { by_course(windows) }
+}
+
+/// Windows with the course in place of a heading: that halfway between the window before and the one after. Without a way there is
+/// none.
+fn by_course(windows: Vec<Window>) -> Vec<Window> {
+    let course = |w: &Window| libm::atan2(w.moved[1], w.moved[0]);
+    let way = |w: &Window| libm::hypot(w.moved[0], w.moved[1]);
+    let usual = super::robust::median(windows.iter().map(way));
+    let around = |three: &[Window]| {
+        let [before, own, after] = three else { return None };
+        let turned = wrap(course(after) - course(before));
+        let near = after.from - before.from < 2.0 * LONGEST;
+        // From the middle of the window before to that of the one after: as long as so many windows.
+        let share = (own.to - own.from) / (after.from - before.from).max(f64::MIN_POSITIVE);
+        let turned = turned * share;
+        let driven = three.iter().all(|w| way(w) > 0.3 * usual) && turned.abs() < 1.0;
+        (near && driven).then_some(Window { heading: course(own) - 0.5 * turned, turned, raw_turn: turned, ..*own })
+    };
+    windows.windows(3).filter_map(around).collect()
+}
+
+/// The median step \[s\].
+pub(super) fn usual_step(time: &[f64]) -> f64 {
+    super::robust::median(time.windows(2).map(|pair| pair[1] - pair[0]))
+}
+
+/// How far the wheels have rolled by any time, as the counts say.
+pub(super) struct Rolled<'a> {
+    log: &'a TickLog,
+    per_tick: WheelTravel,
+    /// Samples a second, on average.
+    rate: f64,
+}
+
+impl<'a> Rolled<'a> {
+    pub fn new(log: &'a TickLog, robot: &Robot) -> Rolled<'a> {
+        let span = log.time.last().zip(log.time.first()).map_or(0.0, |(last, first)| last - first);
+        let rate = if span > 0.0 { (log.time.len() - 1) as f64 / span } else { 0.0 };
+        Rolled { log, per_tick: robot.metres_per_tick(), rate }
+    }
+
+    /// How many samples are not after a time: sought from where even sampling would have it.
+    fn after(&self, time: f64) -> usize {
+        let times = &self.log.time;
+        let guess = ((time - times[0]) * self.rate) as usize + 1;
+        let mut at = guess.min(times.len());
+        while at < times.len() && times[at] <= time {
+            at += 1;
+        }
+        while at > 0 && times[at - 1] > time {
+            at -= 1;
+        }
+        at
+    }
+
+    /// Travel of the left and the right wheel by a time \[m\]: linear between samples, and beyond the ends as there.
+    pub fn at(&self, time: f64) -> [f64; 2] {
+        let times = &self.log.time;
+        let after = self.after(time).clamp(1, times.len().max(2) - 1);
+        let before = after - 1;
+        let after = after.min(times.len() - 1);
+        let span = times[after] - times[before];
+        let share = if span > 0.0 { ((time - times[before]) / span).clamp(-50.0, 50.0) } else { 0.0 };
+        let of = |counts: &[f64]| counts[before] + share * (counts[after] - counts[before]);
+        [of(&self.log.left) * self.per_tick.left, of(&self.log.right) * self.per_tick.right]
+    }
+
+    /// Travel between two times \[m\].
+    pub fn between(&self, from: f64, to: f64) -> [f64; 2] {
+        let (from, to) = (self.at(from), self.at(to));
+        [to[0] - from[0], to[1] - from[1]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::ReferencePose;
+
+    /// A circle of radius 2 m, driven at 1 rad/s, seen every 50 ms.
+    fn circle(with_heading: bool) -> TickLog {
+        let seen = |sample: usize| {
+            let angle = 0.05 * sample as f64;
+            let (x, y) = (2.0 * libm::sin(angle), 2.0 - 2.0 * libm::cos(angle));
+            ReferencePose { sample, x, y, heading: with_heading.then_some(wrap(angle)) }
+        };
+        let time: Vec<f64> = (0..200).map(|k| 0.05 * f64::from(k)).collect();
+        let counts = |wheel: f64| time.iter().map(|t| wheel * t).collect();
+        TickLog {
+            left: counts(1.0),
+            right: counts(2.0),
+            reference: (0..200).map(seen).collect(),
+            time,
+            ..TickLog::default()
+        }
+    }
+
+    #[test]
+    fn windows_turn_as_the_course_does_with_measured_headings_and_without() {
+        for with_heading in [true, false] {
+            let found = windows(&circle(with_heading));
+            assert!(found.len() > 40, "{}", found.len());
+            for window in found {
+                let expected = window.to - window.from;
+                assert!((window.turned - expected).abs() < 0.02, "{with_heading} {window:?}");
+                // Halfway, the robot heads as the chord does.
+                let chord = libm::atan2(window.moved[1], window.moved[0]);
+                assert!(wrap(window.heading + 0.5 * window.turned - chord).abs() < 0.02, "{window:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn rolled_is_linear_between_samples_and_goes_on_beyond_them() {
+        let log = circle(true);
+        let robot = Robot::labmate();
+        let (rolled, per_tick) = (Rolled::new(&log, &robot), robot.metres_per_tick());
+        for time in [-0.1, 0.0, 0.03, 4.999, 9.95, 10.2] {
+            let [left, right] = rolled.at(time);
+            assert!((left - time * per_tick.left).abs() < 1e-12 && (right - 2.0 * time * per_tick.right).abs() < 1e-12);
+        }
+    }
+}

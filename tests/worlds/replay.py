@@ -1,0 +1,178 @@
+"""What the truth leaves: the ticks of a world replayed with everything that was put into it.
+
+Works from the files alone. The rest of the error is noise of wheels and reference, and what a
+reference does that drifts.
+"""
+
+import json
+from dataclasses import dataclass
+from math import pi
+from pathlib import Path as File
+from typing import Any
+
+import numpy as np
+from laws import added_turn, scrubbed, wheel_travel
+from setting import Array, Drive, Faults, Laws, Recording, Reference, Robot, Setting
+from tracker import tracked, turned
+
+FIRST_S = 2.0
+"""A replay is laid on the poses of so many first seconds, and on five poses at least."""
+
+
+@dataclass
+class Left:
+    """Measured minus replayed poses of one log, [poses x 3]; NaN where there is no heading."""
+
+    stamp_s: Array
+    error: Array
+    bad: Array
+    """1 where the pose is a glitch, else 0."""
+
+
+def read_truth(folder: File) -> dict[str, Any]:
+    """What truth.json says."""
+    truth: dict[str, Any] = json.loads((folder / "truth.json").read_text())
+    return truth
+
+
+def setting_in(truth: dict[str, Any]) -> Setting:
+    """The numbers of a world from its truth.json."""
+    parts: dict[str, Any] = truth["numbers"]
+    return Setting(
+        Robot(**parts["robot"]),
+        Drive(**parts["drive"]),
+        Recording(**parts["recording"]),
+        Reference(**parts["reference"]),
+        Faults(**parts["faults"]),
+        Laws(**parts["laws"]),
+    )
+
+
+def read_log(file: File) -> Array:
+    """The rows of a log [rows x 6]; NaN in cells without a number."""
+    lines = file.read_text().splitlines()
+    cells = [[float(cell or "nan") for cell in line.split(",")] for line in lines[1:]]
+    rows = np.array(cells)
+    missing = np.full((len(rows), 6 - rows.shape[1]), np.nan)
+    return np.column_stack([rows, missing])
+
+
+def wheels_of(log: Array, setting: Setting) -> Array:
+    """Angles [2 x rows, rad] of the wheels since they were switched on, from a log's columns."""
+    faults = setting.faults
+    left, right = log[:, 1:3].T
+    if faults.exchanged:
+        left, right = right, left
+    if faults.left_reversed:
+        left = -left
+    if faults.right_reversed:
+        right = -right
+    return (np.stack([left, right]) - setting.recording.first_count) * setting.robot.tick_rad
+
+
+def poses_of(log: Array, setting: Setting) -> Array:
+    """Measured poses [rows x 3] in metres, radians and a right-handed frame."""
+    x, y, heading = log[:, 3:6].T
+    faults = setting.faults
+    length = 1e-3 if faults.mm_as_m else 1.0
+    heading = heading * (pi / 180 if faults.deg_as_rad else 1.0)
+    if faults.heading_clockwise or faults.mirrored:
+        heading = -heading
+    if faults.compass:
+        heading = pi / 2 - heading
+    return np.column_stack([x * length, (-y if faults.mirrored else y) * length, heading])
+
+
+def replayed(on_s: Array, angle: Array, setting: Setting, heading: float) -> Array:
+    """Poses [rows x 3] from wheel angles [2 x rows], beginning at the origin with a heading.
+
+    `on_s` is the time since the robot was switched on.
+    """
+    robot, laws = setting.robot, setting.laws
+    rolled, step_s = np.diff(angle), np.maximum(np.diff(on_s), 1e-6)
+    middle = (angle[:, 1:] + angle[:, :-1]) / 2
+    radii = np.array(robot.true_radii_m)[:, None]
+    travel = wheel_travel(laws, rolled, middle, radii, step_s)
+    forward = (travel[0] + travel[1]) / 2
+    turn = (travel[1] - travel[0]) / robot.true_wheelbase_m
+    turn = scrubbed(laws, forward, turn, robot.true_wheelbase_m, step_s)
+    total = turn
+    for _ in range(3 if laws.slope_cosine_rad_m or laws.slope_sine_rad_m else 1):
+        course = heading + total.cumsum() - total / 2
+        time_s = on_s[:-1] + step_s / 2
+        total = turn + added_turn(laws, travel, forward, course, time_s, step_s)
+    course = heading + total.cumsum() - total / 2
+    steps = np.stack([forward * np.cos(course), forward * np.sin(course), total], axis=1)
+    return np.concatenate([[[0.0, 0.0, heading]], steps]).cumsum(axis=0)
+
+
+def shown(stamp_s: Array, body: Array, when_s: Array, setting: Setting) -> Array:
+    """Poses of the tracked point [poses x 3] at other times than those of the rows."""
+    moved = [np.interp(when_s, stamp_s, column) for column in body.T]
+    return tracked(np.stack(moved, axis=1), setting.reference)
+
+
+def mean_angle(angles: Array) -> float:
+    """The mean direction."""
+    return float(np.arctan2(np.sin(angles).mean(), np.cos(angles).mean()))
+
+
+def best_turn(from_: Array, to: Array) -> float:
+    """The angle that turns places [n x 2] best onto others, all about their means."""
+    a, b = from_ - from_.mean(axis=0), to - to.mean(axis=0)
+    return float(np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum()))
+
+
+def laid_on(poses: Array, measured: Array, stamp_s: Array, good: Array) -> Array:
+    """Poses [n x 3] turned and shifted so that their first ones lie on the measured ones.
+
+    Without headings, all poses say how they are turned.
+    """
+    first = np.flatnonzero(good)
+    first = first[stamp_s[first] <= max(stamp_s[first[0]] + FIRST_S, stamp_s[first[:5]].max())]
+    if np.isnan(measured[:, 2]).any():
+        angle = best_turn(poses[good > 0, :2], measured[good > 0, :2])
+    else:
+        angle = mean_angle(measured[first, 2] - poses[first, 2])
+    place = turned(poses[:, :2], angle)
+    place += (measured[first, :2] - place[first]).mean(axis=0)
+    return np.column_stack([place, poses[:, 2] + angle])
+
+
+def left_in(rows: Array, name: str, truth: dict[str, Any], setting: Setting) -> Left:
+    """What the truth leaves in one log; START is laid anew behind each jump."""
+    stamp_s = rows[:, 0]
+    has_pose = np.isfinite(rows[:, 3])
+    measured, when_s = poses_of(rows, setting)[has_pose], stamp_s[has_pose]
+    about = truth["logs"][name]
+    room = about["start_in_room"][2]
+    body = replayed(stamp_s + about["begin_s"], wheels_of(rows, setting), setting, room)
+    rate = setting.reference.clock_rate
+    predicted = shown(stamp_s, body, when_s * (1 - rate) - about["delay_s"], setting)
+    glitches = np.array(truth["glitches"].get(name, []))
+    bad = np.array([np.abs(glitches - t).min(initial=1.0) < 1e-5 for t in when_s], dtype=float)
+    jumps = sorted(jump["time_s"] for jump in truth["jumps"] if jump["run"] == name)
+    error = np.full_like(measured, np.nan)
+    part = np.searchsorted(np.array(jumps), when_s)
+    for i in np.unique(part):
+        own = part == i
+        laid = laid_on(predicted[own], measured[own], when_s[own], 1 - bad[own])
+        error[own] = measured[own] - laid
+    error[:, 2] = np.arctan2(np.sin(error[:, 2]), np.cos(error[:, 2]))
+    return Left(when_s, error, bad)
+
+
+def left(folder: File) -> dict[str, Left]:
+    """What the truth leaves in each log of a world."""
+    truth = read_truth(folder)
+    setting = setting_in(truth)
+    files = sorted((folder / "runs").glob("*.csv"))
+    return {f.stem: left_in(read_log(f), f.stem, truth, setting) for f in files}
+
+
+def rms_m(logs: dict[str, Left], with_glitches: bool = True) -> float:
+    """Root mean square distance of the poses from the replay."""
+    squares = [
+        (one.error[(one.bad == 0) | with_glitches, :2] ** 2).sum(axis=1) for one in logs.values()
+    ]
+    return float(np.sqrt(np.concatenate(squares).mean()))

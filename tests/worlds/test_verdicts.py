@@ -1,0 +1,54 @@
+"""The command on a few small worlds; `study.py` runs it on hundreds."""
+
+from pathlib import Path as File
+from typing import Any
+
+import pytest
+from judge import judged
+from study import ROOT, Task, study
+
+COMMAND = ROOT / "target/debug/umbmark"
+SMALL = ("runs=4", "run_s=30", "reference_rate_hz=20", "layout=same", "kind=random_commands")
+
+pytestmark = pytest.mark.skipif(
+    not COMMAND.exists(), reason=f"{COMMAND} is not built (cargo build)"
+)
+
+
+def found(world: str, seed: int, *overrides: str) -> dict[str, Any]:
+    """What the command says of a small world, held against the truth."""
+    task = Task(world, seed, SMALL + overrides, File(COMMAND), None, 300.0)
+    row = study(task)
+    return judged(row["answers"], row["truth"], row["truth_leaves_m"])
+
+
+@pytest.mark.parametrize(
+    "world",
+    ["exchanged", "left_reversed", "right_reversed", "heading_clockwise", "mirrored", "mm_as_m"],
+)
+def test_a_fault_of_columns_or_frames_is_named_and_nothing_is_called_explained(world: str) -> None:
+    said = found(world, 1)
+    assert said["faults"]
+    assert all(said["faults"].values()), said["faults"]
+    assert all(said["faults_inspected"].values()), said["faults_inspected"]
+    assert said["verdict"] == "not_explained"
+    assert (said["added_right"], said["added_wrong"]) == ([], [])
+
+
+@pytest.mark.parametrize("delay_s", [-0.12, 0.06])
+def test_a_delay_is_found_with_its_sign(delay_s: float) -> None:
+    said = found("delay", 2, f"delay_s={delay_s}")
+    assert said["delay"]["within"], said["delay"]
+
+
+def test_jumps_are_named_and_the_robot_is_not_blamed() -> None:
+    said = found("jumps", 3)
+    assert said["jumps"]["there"] > 0
+    assert said["jumps"]["named"] == said["jumps"]["there"]
+    assert all(abs(one["standard_errors"]) < 4 for one in said["ratios"].values())
+
+
+def test_where_nothing_is_hidden_nothing_is_accused() -> None:
+    said = found("null", 4)
+    assert (said["verdict"], said["added_wrong"]) == ("explained", [])
+    assert said["problems"] == []

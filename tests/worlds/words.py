@@ -1,0 +1,80 @@
+"""Which words of the command name which trouble. Edit this table when its sentences change."""
+
+import re
+
+FAULTS: dict[str, str] = {
+    # Exchanged wheels and a mirrored frame show the same: turns to the other side.
+    "exchanged": r"exchang|swapp|mirror|left-handed",
+    "mirrored": r"exchang|swapp|mirror|left-handed",
+    "left_reversed": r"left[^.]{0,60}(backward|revers|down)|left_backward\W+true",
+    "right_reversed": r"right[^.]{0,60}(backward|revers|down)|right_backward\W+true",
+    "both_reversed": r"both[^.]{0,60}(backward|revers|down)|(wheels|counters)[^.]{0,40}backward",
+    # Exchanged and both reversed: the robot drives tail first, as a heading turned by half a turn.
+    "exchanged_reversed": r"exchang|swapp|backward|tail|18\d(\.\d+)? deg|half a turn|marker_yaw",
+    "heading_clockwise": r"clockwise|heading[^.]{0,60}(sign|revers|negat)",
+    "compass": r"compass|bearing|clockwise",
+    "mm_as_m": r"millimet|in mm\b|mm (for|as|under)|(1000|thousand) times",
+    "deg_as_rad": r"in degrees|degrees (for|as|under)|57\.\d* times",
+}
+"""Regular expressions, in lower case, by fault."""
+
+EVENT = re.compile(r"\b(\w+_\d+)\b[^.;:]{0,60}?\bat (\d+(?:\.\d+)?) s\b")
+"""A sentence that names a moment of a run."""
+TIME_KEYS = ("time_s", "at_s", "t_s", "from_s")
+"""Keys of JSON objects that, beside `run`, name a moment."""
+LEFT_UNREAD = ("next_experiments", "model", "fitted")
+"""Keys of what `learn` prints in which a word names nothing that was found."""
+
+ALWAYS = {"wheel_diameter_ratio", "wheelbase", "scale"}
+"""Steps of every model."""
+NUISANCES: dict[str, set[str]] = {
+    "delay_s": {"reference_delay"},
+    "clock_rate": {"reference_clock_rate", "reference_delay"},
+    "lever_forward_m": {"marker_offset"},
+    "yaw_rad": {"marker_yaw", "crab"},
+    "counts_commands": {"reference_delay", "motor_lag", "command_lag"},
+}
+"""Effects that are right to add where the number is not zero."""
+LAWS: dict[str, tuple[set[str], str]] = {
+    "slope_cosine_rad_m": ({"floor_slope_yaw"}, "heading"),
+    "slip_s_m": ({"speed_slip", "speed_slip_left", "speed_slip_right"}, "speed"),
+    "eccentricity_left_m": ({"wheel_eccentricity_left"}, "wheel_angle_left"),
+    "eccentricity_right_m": ({"wheel_eccentricity_right"}, "wheel_angle_right"),
+    "wave_rad_s": (set(), "time"),
+    "scrub_s_rad": ({"turn_slip", "turn_slip_rate"}, "turn_rate"),
+}
+"""Effects, and the variable of a formula, that are right where the number is not zero."""
+EXPLAINED = "explained"
+FREE_START = {"late_start", "moving_start", "long_pieces"}
+"""Worlds where START was never seen at rest: `start_pose` is right there."""
+UNSTEADY = {"scanmatch", "slam", "command", "sparse"}
+"""Worlds whose reference or wheels do more than the model can say: any verdict is right."""
+
+
+def named(fault: str, text: str) -> bool:
+    """Whether a text, in lower case, names the fault."""
+    return re.search(FAULTS[fault], text) is not None
+
+
+def as_one(faults: list[str]) -> list[str]:
+    """Faults of columns that together are one."""
+    together = set(faults)
+    if together >= {"exchanged", "left_reversed", "right_reversed"}:
+        return ["exchanged_reversed"]
+    return ["both_reversed"] if together >= {"left_reversed", "right_reversed"} else faults
+
+
+def moments(answer: object) -> list[tuple[str, float]]:
+    """Every moment of a run, (run, seconds), that an answer in JSON names."""
+    if isinstance(answer, dict):
+        own = [
+            (str(answer["run"]), float(answer[key]))
+            for key in TIME_KEYS
+            if "run" in answer and isinstance(answer.get(key), int | float)
+        ]
+        return own + [one for value in answer.values() for one in moments(value)]
+    if isinstance(answer, list):
+        return [one for value in answer for one in moments(value)]
+    if isinstance(answer, str):
+        return [(run, float(at)) for run, at in EVENT.findall(answer)]
+    return []
