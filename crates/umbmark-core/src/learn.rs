@@ -205,7 +205,7 @@ pub fn fit(data: &Dataset, model: &Model) -> Result<Fit, DiagnoseError> {
         }
         Level::Tracks => {
             let fitted = diagnose::tracks::fit(&diagnose::tracks_of(data)?, model)?;
-            let fitted = diagnose::tracks::trusted(fitted)?;
+            let fitted = diagnose::tracks::trusted(fitted)?.into_fitted();
             let estimates = diagnose::tracks::estimates(&fitted);
             let Fitted { model, outliers, usual_noise, taken, observed, .. } = fitted;
             Ok(Fit { model, estimates, outliers, usual_noise, setup: observed.setup, taken })

@@ -1,7 +1,7 @@
 //! Learning from tracks: the same story, told from products of columns instead of one fit for each fold.
 
 use super::{Error, Learnt, MOST, Step};
-use crate::diagnose::tracks::{self, Alone, LEAST_GAIN, Misses, Search, trusted};
+use crate::diagnose::tracks::{self, Alone, LEAST_GAIN, Misses, Search};
 use crate::diagnose::{DiagnoseError, Diagnosis, Level, Options, Reason, Verdict};
 use crate::effect::{Model, Part, find};
 use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE};
@@ -68,9 +68,14 @@ pub(super) fn learn(
         step.class = step.added.map_or(Vec::new(), |effect| tracks::class_of_own(&search.exams[0], effect));
     }
     let partial = watch.is_stopped() && search.left.effect.is_some();
-    for (exam, (finding, suspect)) in search.exams[1..].iter().zip(&search.added) {
+    // What was fitted at the beginning is written as it is where nothing was added.
+    if let Some(own) = steps.last_mut() {
+        let Step { added, class, p_adjusted, .. } = own.clone();
+        *own = Step { added, class, p_adjusted, ..step_of(&search.written[0], None) };
+    }
+    for (written, (finding, suspect)) in search.written[1..].iter().zip(&search.added) {
         let told = (suspect.best, suspect.class.clone(), Some(finding.p_adjusted()));
-        steps.push(step(exam.fitted.clone(), Some(told)));
+        steps.push(step_of(written, Some(told)));
     }
     Ok(Learnt { partial, ..finish(search, steps, options)? })
 }
@@ -107,7 +112,7 @@ fn is_shown(fitted: &Fitted, effect: &str) -> bool {
 const FAR_WORSE: f64 = 5.0;
 
 /// The story's end: the diagnosis of the model that was learnt.
-fn finish(mut search: Search, mut steps: Vec<Step>, options: &Options) -> Result<Learnt, DiagnoseError> {
+fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Learnt, DiagnoseError> {
     let told = search.left.smooth.as_ref().and_then(|f| tracks::dependence(search.last(), f, &search.left.asked));
     let more = search.left.effect.is_some();
     let (mut experiments, mut hints) = (Vec::new(), Vec::new());
@@ -126,16 +131,7 @@ fn finish(mut search: Search, mut steps: Vec<Step>, options: &Options) -> Result
     }));
     let (left, harmful, runs) = (search.left, search.harmful, search.exams[0].fitted.observed.runs.len());
     let Some(last) = search.exams.pop() else { return Err(DiagnoseError::NotConverged { how: "has no model" }) };
-    let written = trusted(last.fitted.clone())?;
-    // The table ends with the model that is written.
-    if let Some(own) = steps.last_mut() {
-        *own = Step {
-            added: own.added,
-            class: own.class.clone(),
-            p_adjusted: own.p_adjusted,
-            ..step(written.clone(), None)
-        };
-    }
+    let written = search.written.pop().map_or_else(|| last.fitted.clone(), Alone::into_fitted);
     let (first, end) = (&steps[0], &steps[steps.len() - 1]);
     if runs >= ENOUGH_RUNS && end.held_out.position > WORSE * first.held_out.position {
         let (left_out, nominal) = (end.held_out.position, first.held_out.position);
@@ -191,8 +187,13 @@ fn plainly(observed: &Observed, model: &Model) -> Result<Fitted, DiagnoseError> 
     Ok(fitted)
 }
 
-fn step(fitted: Fitted, added: Option<(&'static str, Vec<&'static str>, Option<f64>)>) -> Step {
-    let alone = Alone::new(fitted);
+type Added = (&'static str, Vec<&'static str>, Option<f64>);
+
+fn step(fitted: Fitted, added: Option<Added>) -> Step {
+    step_of(&Alone::new(fitted), added)
+}
+
+fn step_of(alone: &Alone, added: Option<Added>) -> Step {
     let (inside, held_out) = alone.misses();
     let (aicc, bic, weighted) = alone.criteria();
     let error = |misses: Misses| Error { position: misses.position, heading: misses.heading, weighted };

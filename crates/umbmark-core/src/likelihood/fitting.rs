@@ -33,7 +33,7 @@ pub struct Fitted {
     pub reference: Vec<Vec<Column>>,
     /// The covariance of the free values; `None` where the data leaves a combination of them open.
     pub covariance: Option<DMatrix<f64>>,
-    /// Whether the values are those under noise of the usual sizes, which the likeliest ones differ from.
+    /// Whether the values are those under noise of the usual sizes, because these predict runs left out better.
     pub usual_noise: bool,
     /// What was taken from the motion before the fit, and is in the model now.
     pub taken: Vec<Taken>,
@@ -275,9 +275,9 @@ impl Fitted {
 }
 
 /// What is to be said of values under noise of the usual sizes.
-pub const USUAL_NOISE: &str = "The likeliest values under the noise that was fitted and those under noise of the usual sizes differ by more than \
-     chance: the noise has taken up something that the model lacks. The values are those under noise of the usual sizes, which that \
-     moves less; their intervals come from leaving out one run after the other.";
+pub const USUAL_NOISE: &str = "Runs left out are predicted nearer by the values under noise of the usual sizes than by the likeliest ones: \
+     the noise that was fitted has taken up something that the model lacks. The values are those under noise of the usual sizes; their \
+     intervals come from leaving out one run after the other.";
 
 /// The free values of a model, and behind them the sizes of the effects of the reference.
 struct Tracks<'a> {

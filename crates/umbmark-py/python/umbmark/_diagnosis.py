@@ -236,7 +236,7 @@ class Fitted(Result, frozen=True):
         Free effects that this data does not show apart from the rest; they keep their values.
     usual_noise : bool
         Whether the values are those under noise of the usual sizes: from tracks, where these
-        differ from the likeliest ones and predict runs left out better.
+        predict runs left out nearer than the likeliest ones by a tenth.
     setup : Setup
         What was found of the data before anything was fitted: faults, clock and mounting of the
         reference, jumps, wrong poses, runs far from the others.

@@ -1,5 +1,6 @@
 //! What a model is missing, and a model that grows by it: one effect after the other, and what no longer helps taken out again.
 
+use super::alone::{Alone, trusted};
 use super::examination::Examination;
 use super::look::{self, Finding};
 use super::responses::Asked;
@@ -99,6 +100,8 @@ fn smooth_gains(exam: &Examination, finding: &Finding) -> bool {
 pub(crate) struct Search {
     /// The model as it was, and after each effect.
     pub exams: Vec<Examination>,
+    /// Each of them as it is written.
+    pub written: Vec<Alone>,
     /// The effects.
     pub added: Vec<(Finding, Suspect)>,
     /// Effects that no longer helped once others were there, and were taken out again.
@@ -129,7 +132,8 @@ pub(crate) fn search(
         removed.push(effect);
     }
     let left = missing(&exam, options, &[&refused[..], &removed].concat());
-    let mut search = Search { exams: vec![exam], added: Vec::new(), removed, harmful: Vec::new(), left };
+    let written = vec![trusted(exam.fitted.clone())?];
+    let mut search = Search { exams: vec![exam], written, added: Vec::new(), removed, harmful: Vec::new(), left };
     let goes_on = |search: &Search| search.added.len() < most && !watch.is_stopped();
     while let Some((finding, suspect)) = search.left.effect.clone().filter(|_| goes_on(&search)) {
         (watch.progress)((search.added.len() + 1) as f64 / (most + 1) as f64);
@@ -144,7 +148,8 @@ pub(crate) fn search(
             exam = Examination::new(without(&exam.fitted, effect)?)?;
             search.removed.push(effect);
         }
-        if exam.left_out(&[]).harms(&search.last().left_out(&[])) {
+        let written = trusted(exam.fitted.clone())?;
+        if written.left_out().harms(&search.last_written().left_out()) {
             search.harmful.push(suspect.best);
             search.left = missing(search.last(), options, &search.passed(&refused));
             continue;
@@ -154,6 +159,7 @@ pub(crate) fn search(
         }
         search.left = missing(&exam, options, &search.passed(&refused));
         search.exams.push(exam);
+        search.written.push(written);
         search.added.push((finding, suspect));
     }
     Ok(search)
@@ -219,6 +225,11 @@ impl Search {
     /// Effects that are not asked for again, beside those `refused` from the beginning.
     fn passed(&self, refused: &[&'static str]) -> Vec<&'static str> {
         refused.iter().chain(&self.removed).chain(&self.harmful).copied().collect()
+    }
+
+    /// The last model as it is written.
+    fn last_written(&self) -> &Alone {
+        &self.written[self.written.len() - 1]
     }
 
     /// The last examination.
