@@ -52,7 +52,10 @@ def ratios(learn: Json, truth: Json) -> Json:
         wheelbase = off_by(said["e_b"], truth["e_b"] / truth["e_s"] * scale)
         return {"e_d": None, "e_b": wheelbase, "e_s": None}
     if kind == "straights":
-        said["e_b"] = None
+        # Straights show the turn of each metre, (E_d - 1) / E_b, where E_b is not fitted.
+        wheelbase = said["e_b"][0] if said["e_b"] else 1.0
+        ratio = off_by(said["e_d"], 1.0 + (truth["e_d"] - 1.0) / truth["e_b"] * wheelbase)
+        return {"e_d": ratio, "e_b": None, "e_s": off_by(said["e_s"], truth["e_s"])}
     return {name: off_by(pair, truth[name]) for name, pair in said.items()}
 
 

@@ -89,6 +89,8 @@ pub struct ObservedRun {
     pub places: Arc<[Pose2]>,
     /// The poses in blocks.
     pub blocks: Vec<Block>,
+    /// Whether what is left is freed of what is not linear in headings that are off: near its optimum a model is fitted so.
+    pub linear: bool,
     /// Whether the pose at START was measured, or START follows from the poses, so that the frame is not taken on trust.
     pub start_seen: bool,
 }
@@ -133,9 +135,10 @@ impl Observed {
         self.runs.iter().map(|run| run.track.as_ref())
     }
 
-    /// The same runs, starting anew only where the track jumps.
+    /// The same runs as they were measured, starting anew only where the track jumps.
     pub(crate) fn whole(&self) -> Observed {
         let mut observed = self.clone();
+        observed.runs.iter_mut().for_each(|run| run.linear = false);
         observed.runs.iter_mut().flat_map(|run| &mut run.blocks).for_each(|block| block.afresh = block.jumped);
         observed
     }
@@ -211,8 +214,19 @@ impl ObservedRun {
         let blocks = blocks(&track, &measured, jumps, &chain);
         let (name, log, track, seen) = (name.to_owned(), name.to_owned(), Arc::new(track), Arc::clone(&measured));
         let (moments, places) = ([].into(), [].into());
-        let mut observed =
-            ObservedRun { name, log, direction, track, measured, seen, moments, places, blocks, start_seen };
+        let mut observed = ObservedRun {
+            name,
+            log,
+            direction,
+            track,
+            measured,
+            seen,
+            moments,
+            places,
+            blocks,
+            linear: false,
+            start_seen,
+        };
         observed.lay_along(&chain);
         observed
     }

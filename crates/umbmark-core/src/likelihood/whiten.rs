@@ -382,6 +382,7 @@ mod tests {
             moments: [].into(),
             places: [].into(),
             blocks,
+            linear: false,
             start_seen,
         }
     }

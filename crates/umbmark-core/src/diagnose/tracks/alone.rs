@@ -28,10 +28,10 @@ impl Alone {
         let system = System::new(observed, &fitted.noise, &columns);
         let usual = fitted.usual_noise.then(|| System::new(observed, &Noise::default(), &columns));
         // Errors are those of the model as anyone has them: a run starts anew where its track jumps, and not where this fit found
-        // less than that.
+        // less than that, and as far off as it is.
         let which = (0..system.width).collect();
         let disturbed = observed.runs.iter().flat_map(|run| &run.blocks).any(|block| block.afresh && !block.jumped);
-        let errors = if disturbed {
+        let errors = if disturbed || observed.runs.iter().any(|run| run.linear) {
             let (whole, chain) = (observed.whole().along(&fitted.model), fitted.model.chain());
             let mut columns = columns.clone();
             for (run, columns) in whole.runs.iter().zip(&mut columns) {

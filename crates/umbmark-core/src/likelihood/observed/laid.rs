@@ -4,9 +4,12 @@ use super::walk::{Walk, velocity};
 use super::{Block, ObservedRun};
 use crate::effect::Chain;
 use crate::geometry::{Pose2, mean_angle, wrap};
+use crate::likelihood::Column;
 
 /// Without headings, poses are turned so that so much of the way behind a start lies on the prediction \[m\].
 const WAY: f64 = 1.0;
+/// A heading that is off by more is that of a model far from the runs \[rad\].
+const DRIFT: f64 = 0.5;
 
 impl ObservedRun {
     /// Places the blocks, and the growth of the error between them, along the poses that a model predicts.
@@ -46,6 +49,63 @@ impl ObservedRun {
             }));
         }
         self.seen = seen.into();
+        if self.linear {
+            self.linearise(chain);
+        }
+    }
+
+    /// Takes from what is left what is not linear in headings that are off.
+    ///
+    /// Where the heading is off by θ(s), the robot stands off by ∫ (R(θ) - 1) dp, dp its predicted way: to first order ∫ θ J dp, which the
+    /// filter and the columns know, and to second order -½ ∫ θ² dp, which would be taken for wheels that are too large. θ² is taken as the
+    /// product of two blocks, whose noise is independent. What is taken off is that of the laid model, so that residuals of models near it
+    /// have the derivatives of their predictions.
+    fn linearise(&mut self, chain: &Chain<f64>) {
+        let left = self.residuals_along(chain);
+        let off = self.headings_off(&left);
+        let mut seen = self.seen.to_vec();
+        let (mut x, mut y) = (0.0, 0.0);
+        for (index, block) in self.blocks.iter().enumerate() {
+            if block.afresh || index == 0 {
+                (x, y) = (0.0, 0.0);
+            } else {
+                let square = off[index - 1] * off[index];
+                let (from, to) = (self.blocks[index - 1].place, block.place);
+                (x, y) = (x + 0.5 * square * (to.x - from.x), y + 0.5 * square * (to.y - from.y));
+            }
+            for place in &mut seen[block.first..block.first + block.count] {
+                (place.0, place.1) = (place.0 + x, place.1 + y);
+            }
+        }
+        self.seen = seen.into();
+    }
+
+    /// How far the heading of each block is off: as measured, else as the course around it says, else as the block before.
+    fn headings_off(&self, left: &Column) -> Vec<f64> {
+        let mut last = 0.0;
+        let of = |(index, block): (usize, &Block)| {
+            let own = if block.headings > 0 { Some(left[index][2]) } else { self.course_off(left, index) };
+            last = own.map_or(last, |own| own.clamp(-DRIFT, DRIFT));
+            last
+        };
+        self.blocks.iter().enumerate().map(of).collect()
+    }
+
+    /// The turn from the predicted to the measured course around a block.
+    fn course_off(&self, left: &Column, index: usize) -> Option<f64> {
+        let at = self.blocks[index].place;
+        let near = |i: &usize| {
+            let place = self.blocks[*i].place;
+            libm::hypot(place.x - at.x, place.y - at.y) <= 0.5 * WAY
+        };
+        let begun = (0..=index).rev().find(|i| self.blocks[*i].afresh).unwrap_or(0);
+        let first = (begun..=index).rev().take_while(near).last().unwrap_or(index);
+        let behind = (index + 1..self.blocks.len()).take_while(|i| !self.blocks[*i].afresh && near(i));
+        let pair = |i: usize| {
+            let (place, [x, y, _]) = (self.blocks[i].place, left[i]);
+            ([place.x, place.y], [place.x + x, place.y + y])
+        };
+        turn_onto((first..=index).chain(behind).map(pair))
     }
 
     /// What brings the measured poses of a block onto the predicted ones; `before` is what brought those before it there.
