@@ -53,8 +53,8 @@ def ratios(learn: Json, truth: Json) -> Json:
         return {"e_d": None, "e_b": wheelbase, "e_s": None}
     if kind == "straights":
         # Straights show the turn of each metre, (E_d - 1) / E_b, where E_b is not fitted.
-        wheelbase = said["e_b"][0] if said["e_b"] else 1.0
-        ratio = off_by(said["e_d"], 1.0 + (truth["e_d"] - 1.0) / truth["e_b"] * wheelbase)
+        believed = said["e_b"][0] if said["e_b"] else 1.0
+        ratio = off_by(said["e_d"], 1.0 + (truth["e_d"] - 1.0) / truth["e_b"] * believed)
         return {"e_d": ratio, "e_b": None, "e_s": off_by(said["e_s"], truth["e_s"])}
     return {name: off_by(pair, truth[name]) for name, pair in said.items()}
 

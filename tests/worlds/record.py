@@ -37,6 +37,8 @@ class Log:
     """[rows x 3] where the axle's centre is in the room."""
     bad: Array
     """1 where the pose is a glitch, else 0."""
+    late_s: float
+    """By how much the rows of the poses are stamped after the poses, in the mean."""
 
 
 @dataclass
@@ -157,6 +159,7 @@ def merged(setting: Setting, ride: Ride, ticks: Ticks, poses: Poses) -> Log:
         nowhere.copy(),
         ride.poses(ride.begin_s + stamp),
         np.zeros(len(stamp)),
+        float(np.mean(stamp[row] - poses.stamp_s[inside])),
     )
     log.pose[row] = tracker.in_columns(poses.pose[inside], setting)
     log.true[row] = poses.true[inside]
@@ -194,6 +197,7 @@ def pieces(log: Log, count: int) -> list[Log]:
             log.error[rows],
             log.body[rows],
             log.bad[rows],
+            log.late_s,
         )
         for i, rows in enumerate(parts, start=1)
     ]
