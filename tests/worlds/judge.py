@@ -83,6 +83,8 @@ def right_additions(truth: Json) -> tuple[set[str], set[str]]:
         if flat[key]:
             effects |= names
             variables.add(variable)
+    if truth["apparent_delay_s"]:
+        effects |= words.NUISANCES["delay_s"]
     moved_start = flat["start"] == "origin" and effects & {"marker_offset", "marker_yaw"}
     if moved_start or truth["world"] in words.FREE_START:
         effects.add("start_pose")
