@@ -21,6 +21,7 @@ mod bumps;
 mod carpet_nap;
 mod caster_kick;
 mod centripetal_load;
+mod chain;
 mod changes;
 mod contact_trail;
 mod context;
@@ -80,6 +81,7 @@ use crate::path::Direction;
 use crate::random::Stream;
 
 pub use bumps::extra_travel;
+pub use chain::Chain;
 pub use changes::Changes;
 pub use context::{Context, Place, Progress, Sight};
 pub(crate) use conversion::CONVERTED;
@@ -87,7 +89,7 @@ pub use conversion::Conversion;
 pub use formula::{Formula, FormulaError, Target};
 pub use law::Law;
 pub(crate) use model::is_shape;
-pub use model::{Chain, Model, ModelError, Part};
+pub use model::{Model, ModelError, Part};
 pub use number::{Derived, Number};
 
 /// The largest number of parameters of one effect.

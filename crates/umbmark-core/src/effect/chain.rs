@@ -1,0 +1,170 @@
+//! The effects of a model at work: from believed to true motion, and to what is seen of it.
+
+use super::{Changes, Context, Evaluate, Formula, MAX_PARAMETERS, Mean, Sight};
+use crate::drive::{DifferentialDrive, LinkReading, WheelTravel};
+use crate::geometry::{Displacement2, Pose2};
+use std::sync::Arc;
+
+/// The deterministic effects of a model, ready to turn believed into true motion.
+#[derive(Clone, Debug)]
+pub struct Chain<T: Evaluate> {
+    pub(super) drive: DifferentialDrive,
+    pub(super) links: Vec<Link<T>>,
+}
+
+/// One effect of a chain, with its values.
+#[derive(Clone, Debug)]
+pub(super) struct Link<T: Evaluate> {
+    pub work: Work<T>,
+    pub changes: Changes,
+    pub count: usize,
+    pub values: [T; MAX_PARAMETERS],
+}
+
+/// What an effect does: the functions of an entry of the catalogue, or a formula.
+#[derive(Clone, Debug)]
+pub(super) enum Work<T: Evaluate> {
+    Entry(Mean<T>),
+    Formula(Arc<Formula>),
+}
+
+impl<T: Evaluate> Chain<T> {
+    /// Its links that change this.
+    #[inline(always)]
+    fn links(&self, change: Changes) -> impl Iterator<Item = &Link<T>> {
+        self.links.iter().filter(move |link| link.changes.include(change))
+    }
+
+    /// Replaces all values, in the order of [`Model::values`](super::Model::values).
+    ///
+    /// # Panics
+    /// Where there are fewer values than parameters.
+    pub fn set_values(&mut self, values: &[T]) {
+        let mut rest = values;
+        for link in &mut self.links {
+            let own;
+            (own, rest) = rest.split_at(link.count);
+            link.values[..link.count].copy_from_slice(own);
+        }
+    }
+
+    /// Where the robot truly stands at START on average, seen from where it is believed to stand.
+    pub fn start(&self) -> Pose2<T> {
+        let start = Pose2::IDENTITY.lift();
+        self.links(Changes::START).fold(start, |pose, link| match &link.work {
+            Work::Entry(mean) => pose.compose(&(mean.start)(&link.values)),
+            Work::Formula(_) => pose,
+        })
+    }
+
+    /// True wheel travel for a believed one.
+    #[inline(always)]
+    pub fn wheel_travel(&self, at: &Context<T>, believed: &WheelTravel) -> WheelTravel<T> {
+        self.rolled(at, WheelTravel { left: T::from(believed.left), right: T::from(believed.right) })
+    }
+
+    /// The same of a believed travel that has itself a derivative: that of a robot which steers by what the effects change.
+    #[inline(always)]
+    pub fn rolled(&self, at: &Context<T>, believed: WheelTravel<T>) -> WheelTravel<T> {
+        let mut travel = [believed];
+        self.change_wheels(at, &mut travel);
+        let [travel] = travel;
+        travel
+    }
+
+    /// What the encoders of a link show of it.
+    #[inline]
+    pub fn link(&self, reading: LinkReading<T>) -> LinkReading<T> {
+        self.links(Changes::LINK).fold(reading, |mut shown, link| {
+            if let Work::Entry(mean) = &link.work {
+                (mean.link)(&link.values, &mut shown);
+            }
+            shown
+        })
+    }
+
+    /// Makes true wheel travels of believed ones, all in one place: link after link, so that no travel waits for another.
+    #[inline(always)]
+    pub(crate) fn change_wheels(&self, at: &Context<T>, travels: &mut [WheelTravel<T>]) {
+        for link in self.links(Changes::WHEELS) {
+            for travel in &mut *travels {
+                match &link.work {
+                    Work::Entry(mean) => (mean.wheels)(&link.values, at, travel),
+                    Work::Formula(formula) => {
+                        let rotation = self.drive.displacement(travel).rotation;
+                        formula.wheels(&link.values, at, rotation, travel);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Body motion that a true wheel travel makes.
+    #[inline(always)]
+    pub fn body(&self, at: &Context<T>, travel: &WheelTravel<T>) -> Displacement2<T> {
+        let mut motion = [self.drive.displacement(travel)];
+        self.change_bodies(at, &mut motion);
+        let [motion] = motion;
+        motion
+    }
+
+    /// Body motions that true wheel travels make, all in one place, into `motions`.
+    pub(crate) fn bodies(&self, at: &Context<T>, travels: &[WheelTravel<T>], motions: &mut Vec<Displacement2<T>>) {
+        motions.clear();
+        motions.extend(travels.iter().map(|travel| self.drive.displacement(travel)));
+        self.change_bodies(at, motions);
+    }
+
+    #[inline(always)]
+    fn change_bodies(&self, at: &Context<T>, motions: &mut [Displacement2<T>]) {
+        for link in self.links(Changes::BODY) {
+            for motion in &mut *motions {
+                match &link.work {
+                    Work::Entry(mean) => (mean.body)(&link.values, at, motion),
+                    Work::Formula(formula) => formula.body(&link.values, at, motion),
+                }
+            }
+        }
+    }
+
+    /// Body motion for a believed wheel travel at constant ratio of the wheel speeds.
+    #[inline(always)]
+    pub fn displacement(&self, at: &Context<T>, believed: &WheelTravel) -> Displacement2<T> {
+        self.body(at, &self.wheel_travel(at, believed))
+    }
+
+    /// Whether measurements may be older, or younger, than their stamps say.
+    #[inline]
+    pub fn has_clock(&self) -> bool {
+        self.links(Changes::CLOCK).next().is_some()
+    }
+
+    /// By how much older than its stamp a measurement is that is stamped `time` after the run began \[s\].
+    #[inline]
+    pub fn late(&self, time: f64) -> T {
+        self.links(Changes::CLOCK).fold(T::from(0.0), |mut late, link| {
+            if let Work::Entry(mean) = &link.work {
+                (mean.late)(&link.values, time, &mut late);
+            }
+            late
+        })
+    }
+
+    /// What a measurement without noise shows of a true pose, that of `at.late` before its stamp. What it is later than that is
+    /// small: the robot is taken to move on as it does.
+    #[inline]
+    pub fn seen(&self, at: &Sight, pose: &Pose2<T>) -> Pose2<T> {
+        let mut seen = *pose;
+        if self.has_clock() {
+            let further = self.late(at.time) - at.late;
+            let back = [-at.speed, -at.turn_rate].map(|rate| further * rate);
+            seen.advance(&Displacement2 { forward: back[0], sideways: T::from(0.0), rotation: back[1] });
+        }
+        for link in self.links(Changes::SEEN) {
+            if let Work::Entry(mean) = &link.work {
+                (mean.seen)(&link.values, &mut seen);
+            }
+        }
+        seen
+    }
+}
