@@ -35,6 +35,12 @@ def test_a_fault_of_columns_or_frames_is_named_and_nothing_is_called_explained(w
     assert (said["added_right"], said["added_wrong"]) == ([], [])
 
 
+def test_a_robot_that_drives_tail_first_may_be_wired_so_and_is_not_explained() -> None:
+    said = found("exchanged_reversed", 1)
+    assert all(said["faults"].values()), said["faults"]
+    assert said["verdict"] == "not_explained"
+
+
 @pytest.mark.parametrize("delay_s", [-0.12, 0.06])
 def test_a_delay_is_found_with_its_sign(delay_s: float) -> None:
     said = found("delay", 2, f"delay_s={delay_s}")

@@ -249,7 +249,7 @@ pub fn calibrate(data: &Dataset, options: &Options) -> Result<Calibration, Calib
     let (cw, ccw) = outcome::summary_of(data);
     let mut warnings: Vec<String> = setup.notices().iter().map(|notice| sentence(notice)).collect();
     warnings.extend(lost);
-    let mut doubts = doubts_of_data(&setup, evidence.level);
+    let mut doubts = doubts_of_data(&setup, evidence.level, robot);
     let square = Square::new(data.path.as_ref(), robot, &cw, &ccw, &mut warnings);
     let fitted = exact_estimate(&evidence, robot, &mut warnings, &mut doubts);
     let mut estimates: Vec<Estimate> =
@@ -271,12 +271,16 @@ pub fn calibrate(data: &Dataset, options: &Options) -> Result<Calibration, Calib
     Ok(Calibration { estimates, level, heading_arm, warnings, doubts, setup, taken })
 }
 
-/// Why data itself is not to be believed: from return errors, those that are far from the others; from tracks, jumps without number.
-fn doubts_of_data(setup: &Setup, level: Level) -> Vec<String> {
+/// Why data itself is not to be believed: from return errors, those that are far from the others; from tracks, jumps without number, and headings that
+/// two robots have.
+fn doubts_of_data(setup: &Setup, level: Level, robot: &Robot) -> Vec<String> {
     let outlying = || setup.outlying().map(|run| sentence(&format!("{}; {}", run.sentence(), run.remedy())));
     match level {
         Level::Ends => outlying().collect(),
-        Level::Tracks => setup.many_jumps().iter().map(|reason| sentence(&reason.sentence())).collect(),
+        Level::Tracks => {
+            let reasons = setup.tail_first(robot).into_iter().chain(setup.many_jumps());
+            reasons.map(|reason| sentence(&reason.sentence())).collect()
+        }
     }
 }
 

@@ -20,7 +20,7 @@ mod robust;
 mod windows;
 
 use crate::diagnose::Reason;
-use crate::drive::Robot;
+use crate::drive::{Kind, Robot};
 use crate::effect::TestKind;
 use crate::geometry::{Displacement2, Pose2, wrap};
 use crate::path::Path;
@@ -280,6 +280,13 @@ impl Setup {
         many.then_some(Reason::ManyJumps { count: jumps + wrong, poses })
     }
 
+    /// That the tracked body faces backward, or the wheels are exchanged and both count backward: the motion is the same.
+    pub(crate) fn tail_first(&self, robot: &Robot) -> Option<Reason> {
+        let yaw = self.mounting?.yaw?.value;
+        let half = robot.drive.kind() == Kind::Differential && wrap(yaw - std::f64::consts::PI).abs() < HALF_TURN;
+        half.then_some(Reason::TailFirst { yaw })
+    }
+
     /// What has to be known before the return errors are believed, a sentence each without a full stop: faults, jumps and wrong poses
     /// of tracks, runs whose return is far from the others. Of many of a kind, the first [`TOLD`] are told and the rest counted.
     pub fn notices(&self) -> Vec<String> {
@@ -306,6 +313,8 @@ impl Setup {
     }
 }
 
+/// A heading within this of half a turn is that of a body that faces backward \[rad\].
+const HALF_TURN: f64 = 0.05;
 /// More of all poses than this share are no accidents.
 const ACCIDENTS: f64 = 0.1;
 /// Of many notices of a kind, so many are told.

@@ -113,10 +113,10 @@ fn columns_and_headings_that_are_not_what_they_are_called_are_mended_where_robot
     let track = "t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad\n0,0,0,0,0,0\n1,100,200,0.1,0.05,0.2\n2,100,200,0.1,0.05,0.2\n";
     let robot = |keys: &str| ROBOT.to_owned() + keys;
     let read = |keys: &str| load(&[("robot.toml", &robot(keys)), ("runs/ccw_01.csv", track)], "").unwrap();
-    let seen = |keys: &str| {
-        let log = read(keys).runs.remove(0).log.unwrap();
-        let pose = log.reference[1];
-        ([log.left[1], log.right[1]], (pose.y, pose.heading.unwrap()))
+    let seen = |data: Dataset| {
+        let log = data.runs[0].log.as_ref().unwrap();
+        let (pose, rounded) = (log.reference[1], |value: f64| (1e9 * value).round() / 1e9);
+        ([log.left[1], log.right[1]], (rounded(pose.y), rounded(pose.heading.unwrap())))
     };
     for (keys, ticks, pose) in [
         ("", [100.0, 200.0], (0.05, 0.2)),
@@ -126,8 +126,11 @@ fn columns_and_headings_that_are_not_what_they_are_called_are_mended_where_robot
         ("left_counts_backward = true\ncounter_bits = 16\n", [-100.0, 200.0], (0.05, 0.2)),
         ("left_counts_backward = false\n[reference]\ny_mirrored = true\n", [100.0, 200.0], (-0.05, 0.2)),
         ("[reference]\nheading_clockwise = true\n", [100.0, 200.0], (0.05, -0.2)),
+        // Poses are seen from START, where the robot then faces the other way.
+        ("[reference]\nheading_backward = true\n", [100.0, 200.0], (-0.05, 0.2)),
+        ("[reference]\nheading_backward = true\nheading_clockwise = true\n", [100.0, 200.0], (-0.05, -0.2)),
     ] {
-        assert_eq!(seen(keys), (ticks, pose), "{keys}");
+        assert_eq!(seen(read(keys)), (ticks, pose), "{keys}");
         // What is saved reads back as it is meant, whatever its columns were.
         let (data, folder) = (read(keys), tempfile::tempdir().unwrap());
         for (place, mcap) in [("csv", false), ("mcap", true)] {
@@ -137,8 +140,7 @@ fn columns_and_headings_that_are_not_what_they_are_called_are_mended_where_robot
             } else {
                 data.save(&place, Existing::Keep).unwrap();
             }
-            let log = Dataset::load(&place).unwrap().runs.remove(0).log.unwrap();
-            assert_eq!(([log.left[1], log.right[1]], log.reference[1].y), (ticks, pose.0), "{keys}");
+            assert_eq!(seen(Dataset::load(&place).unwrap()), (ticks, pose), "{keys}");
         }
         let file = data.robot_file(data.robot.clone().unwrap());
         let again = RobotFile::parse("robot.toml", &file.text()).unwrap();

@@ -5,6 +5,7 @@ use super::document::Table;
 use super::error::DatasetError;
 use crate::run::ReferencePose;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// The table `[reference]` of `robot.toml`. What it says is mended while logs are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -13,22 +14,30 @@ pub struct ReferenceFrame {
     pub y_mirrored: bool,
     /// Headings grow clockwise.
     pub heading_clockwise: bool,
+    /// The tracked body faces backward: its heading is half a turn from the robot's.
+    pub heading_backward: bool,
 }
 
 impl ReferenceFrame {
     /// Each key with what it says here and what it means.
-    pub(super) fn keys(&self) -> [(&'static str, bool, &'static str); 2] {
+    pub(super) fn keys(&self) -> [(&'static str, bool, &'static str); 3] {
         [
             ("y_mirrored", self.y_mirrored, "y_ref grows to the right of x_ref"),
             ("heading_clockwise", self.heading_clockwise, "theta_ref grows clockwise"),
+            ("heading_backward", self.heading_backward, "theta_ref is that of the robot's tail"),
         ]
     }
 
     pub(super) fn of_table(table: &Table) -> Result<ReferenceFrame, DatasetError> {
         let keys = ReferenceFrame::default().keys().map(|(key, ..)| key);
         table.only(&keys)?;
-        let [y_mirrored, heading_clockwise] = keys.map(|key| table.get(key).map_or(Ok(false), |entry| entry.flag()));
-        Ok(ReferenceFrame { y_mirrored: y_mirrored?, heading_clockwise: heading_clockwise? })
+        let [y_mirrored, heading_clockwise, heading_backward] =
+            keys.map(|key| table.get(key).map_or(Ok(false), |entry| entry.flag()));
+        Ok(ReferenceFrame {
+            y_mirrored: y_mirrored?,
+            heading_clockwise: heading_clockwise?,
+            heading_backward: heading_backward?,
+        })
     }
 
     /// Poses as they are meant.
@@ -48,8 +57,9 @@ impl ReferenceFrame {
         if self.y_mirrored {
             *y = -*y;
         }
-        if let Some(heading) = heading.filter(|_| self.heading_clockwise) {
-            *heading = -*heading;
+        if let Some(heading) = heading {
+            let counter_clockwise = if self.heading_clockwise { -*heading } else { *heading };
+            *heading = if self.heading_backward { counter_clockwise + PI } else { counter_clockwise };
         }
     }
 }

@@ -52,6 +52,11 @@ pub enum Reason {
         /// Of the runs that were fitted \[m\].
         inside: f64,
     },
+    /// The headings of the reference are half a turn from the way the wheels drive: two robots do that.
+    TailFirst {
+        /// Heading of the tracked body less that of the robot, as the columns are read \[rad\].
+        yaw: f64,
+    },
     /// The return error of a run is far from those of the other runs of its direction.
     OutlyingReturn(OutlyingReturn),
     /// The track of a run jumps, so that its return error is not the robot's.
@@ -73,7 +78,10 @@ pub enum Reason {
 impl Reason {
     /// Whether it is of the data, and not of the model: nothing that is fitted to such data is written.
     pub fn is_of_data(&self) -> bool {
-        matches!(self, Reason::Fault(_) | Reason::OutlyingReturn(_) | Reason::JumpBeforeReturn { .. })
+        matches!(
+            self,
+            Reason::Fault(_) | Reason::TailFirst { .. } | Reason::OutlyingReturn(_) | Reason::JumpBeforeReturn { .. }
+        )
     }
 
     /// In a sentence, without a full stop.
@@ -103,6 +111,12 @@ impl Reason {
                 "runs that were left out are predicted to {:.1} mm and those that were fitted to {:.1} mm: the runs do not agree, or are too few",
                 1e3 * left_out,
                 1e3 * inside
+            ),
+            Reason::TailFirst { yaw } => format!(
+                "the measured heading is {:.1} deg from the way the robot drives: either the tracked body faces backward (write heading_backward = \
+                 true under [reference] in robot.toml), or left and right are exchanged and both count backward (write wheels_exchanged, \
+                 left_counts_backward and right_counts_backward = true under [robot]); E_d of the one is one over E_d of the other",
+                yaw.to_degrees()
             ),
             Reason::OutlyingReturn(run) => format!("{}; {}", run.sentence(), run.remedy()),
             Reason::JumpBeforeReturn { run, jump } => jump.notice(run),
