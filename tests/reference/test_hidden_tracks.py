@@ -64,9 +64,9 @@ WITHOUT_A_FORMULA = {"room_scale": ("forward", None)}
 BASE = 4
 
 
-def learnt(case: str, folder: File) -> tuple[dict[str, Any], dict[str, Any]]:
+def learnt(case: str, folder: File, seed: int = 7) -> tuple[dict[str, Any], dict[str, Any]]:
     """What is learnt of a case, and the sealed answer."""
-    main([case, str(folder), "--seed", "7"])
+    main([case, str(folder), "--seed", str(seed)])
     words = [str(COMMAND), "learn", str(folder), "--json"]
     done = subprocess.run(words, capture_output=True, check=True, text=True)
     answer: dict[str, Any] = json.loads(done.stdout)
@@ -91,6 +91,25 @@ def test_the_class_of_a_hidden_effect_is_added_and_the_error_left_out_falls(
     begun = [step for step in answer["steps"] if step["p_adjusted"] is None]
     last = answer["steps"][-1]
     assert last["heldout_rmse_m"] < 1.02 * begun[-1]["heldout_rmse_m"]
+
+
+def test_of_two_causes_the_first_is_kept_though_runs_left_out_are_worse_by_it_alone(
+    tmp_path: File,
+) -> None:
+    answer, _ = learnt("crab_and_floor_slope_yaw", tmp_path / "data", seed=8)
+    before, first, second = answer["steps"][-3:]
+    assert {"crab", "marker_yaw"} == set(first["class"])
+    assert second["class"] == ["floor_slope_yaw"]
+    assert first["heldout_rmse_m"] > 1.1 * before["heldout_rmse_m"]
+    assert second["heldout_rmse_m"] < 0.7 * before["heldout_rmse_m"]
+    assert answer["verdict"] == "explained"
+
+
+def test_an_effect_is_not_taken_out_where_the_fit_without_it_is_worse(tmp_path: File) -> None:
+    answer, _ = learnt("missed_counts", tmp_path / "data")
+    assert [step["added"] for step in added_in(answer)] == ["speed_slip_right", "missed_counts"]
+    assert answer["steps"][-1]["heldout_rmse_m"] < 0.02
+    assert answer["verdict"] == "explained"
 
 
 @pytest.mark.parametrize("case", NOTHING + (ALSO_NOTHING if ALL else []))

@@ -1,6 +1,7 @@
 //! What a model is missing, and a model that grows by it: one effect after the other, and what no longer helps taken out again.
 
 use super::alone::{Alone, trusted};
+use super::errors::Misses;
 use super::examination::Examination;
 use super::look::{self, Finding};
 use super::responses::Asked;
@@ -124,8 +125,6 @@ pub(crate) fn search(
     let mut exam = Examination::new(fitted)?;
     // What was taken from the motion is asked whether it helps, as all that is added here is; what the user's model says stands.
     let taken: Vec<&str> = exam.fitted.taken.iter().map(|taken| taken.effect).collect();
-    let own: Vec<&str> = exam.fitted.model.parts().iter().map(|part| part.effect.name()).collect();
-    let stands = |effect: &&'static str| own.contains(effect) && !taken.contains(effect);
     let mut removed = Vec::new();
     while let Some(effect) = silent(&exam, |effect| taken.contains(&effect)) {
         exam = Examination::new(without(&exam.fitted, effect)?)?;
@@ -134,33 +133,10 @@ pub(crate) fn search(
     let left = missing(&exam, options, &[&refused[..], &removed].concat());
     let written = vec![trusted(exam.fitted.clone())?];
     let mut search = Search { exams: vec![exam], written, added: Vec::new(), removed, harmful: Vec::new(), left };
-    let goes_on = |search: &Search| search.added.len() < most && !watch.is_stopped();
-    while let Some((finding, suspect)) = search.left.effect.clone().filter(|_| goes_on(&search)) {
-        (watch.progress)((search.added.len() + 1) as f64 / (most + 1) as f64);
-        let mut exam = search.last().of_grown(growth::grown(search.last(), &suspect)?)?;
-        // What a fit without approximation does not bear out is passed over; it is not asked for again.
-        if astray(&exam, search.last()) || idle(&exam, |effect| effect == suspect.best).is_some() {
-            search.removed.push(suspect.best);
-            search.left = missing(search.last(), options, &search.passed(&refused));
-            continue;
-        }
-        while let Some(effect) = idle(&exam, |effect| !stands(&effect) && effect != suspect.best) {
-            exam = Examination::new(without(&exam.fitted, effect)?)?;
-            search.removed.push(effect);
-        }
-        let written = trusted(exam.fitted.clone())?;
-        if written.left_out().harms(&search.last_written().left_out()) {
-            search.harmful.push(suspect.best);
-            search.left = missing(search.last(), options, &search.passed(&refused));
-            continue;
-        }
-        if search.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&exam, smooth, options)) {
-            break;
-        }
-        search.left = missing(&exam, options, &search.passed(&refused));
-        search.exams.push(exam);
-        search.written.push(written);
-        search.added.push((finding, suspect));
+    search.grow(options, most, &refused, watch)?;
+    while search.undo_harm() {
+        search.left = missing(search.last(), options, &search.passed(&refused));
+        search.grow(options, most, &refused, watch)?;
     }
     Ok(search)
 }
@@ -222,14 +198,73 @@ fn helps(exam: &Examination, effect: &str) -> bool {
 }
 
 impl Search {
+    /// Adds what is certified as missing, one effect after the other.
+    fn grow(
+        &mut self,
+        options: &Options,
+        most: usize,
+        refused: &[&'static str],
+        watch: &Watch,
+    ) -> Result<(), DiagnoseError> {
+        let first = &self.exams[0].fitted;
+        let taken: Vec<&str> = first.taken.iter().map(|taken| taken.effect).collect();
+        let own: Vec<&str> = first.model.parts().iter().map(|part| part.effect.name()).collect();
+        let stands = |effect: &&'static str| own.contains(effect) && !taken.contains(effect);
+        let goes_on = |search: &Search| search.added.len() < most && !watch.is_stopped();
+        while let Some((finding, suspect)) = self.left.effect.clone().filter(|_| goes_on(self)) {
+            (watch.progress)((self.added.len() + 1) as f64 / (most + 1) as f64);
+            let mut exam = self.last().of_grown(growth::grown(self.last(), &suspect)?)?;
+            // What a fit without approximation does not bear out is passed over; it is not asked for again.
+            if astray(&exam, self.last()) || idle(&exam, |effect| effect == suspect.best).is_some() {
+                self.removed.push(suspect.best);
+                self.left = missing(self.last(), options, &self.passed(refused));
+                continue;
+            }
+            let mut kept = vec![suspect.best];
+            while let Some(effect) = idle(&exam, |effect| !stands(&effect) && !kept.contains(&effect)) {
+                let fewer = Examination::new(without(&exam.fitted, effect)?)?;
+                // That it helps no longer was seen in one step; the fit has to say so too.
+                let is_silent = silent(&exam, |asked| asked == effect).is_some();
+                if !is_silent && exam.left_out(&[]).gain(&fewer.left_out(&[])) >= LEAST_GAIN {
+                    kept.push(effect);
+                } else {
+                    exam = fewer;
+                    self.removed.push(effect);
+                }
+            }
+            if self.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&exam, smooth, options)) {
+                break;
+            }
+            self.left = missing(&exam, options, &self.passed(refused));
+            self.written.push(trusted(exam.fitted.clone())?);
+            self.exams.push(exam);
+            self.added.push((finding, suspect));
+        }
+        Ok(())
+    }
+
     /// Effects that are not asked for again, beside those `refused` from the beginning.
     fn passed(&self, refused: &[&'static str]) -> Vec<&'static str> {
         refused.iter().chain(&self.removed).chain(&self.harmful).copied().collect()
     }
 
-    /// The last model as it is written.
-    fn last_written(&self) -> &Alone {
-        &self.written[self.written.len() - 1]
+    /// Takes back the last effect by which the last model predicts runs left out worse than before it, and all that came after; whether
+    /// there is one.
+    ///
+    /// An effect that does harm alone is not refused at once: where two are missing, what the second does may hide in the values until
+    /// both are there.
+    fn undo_harm(&mut self) -> bool {
+        let errors: Vec<Misses> = self.written.iter().map(Alone::left_out).collect();
+        let Some(before) = errors.iter().rposition(|before| errors[errors.len() - 1].harms(before)) else {
+            return false;
+        };
+        self.harmful.push(self.added[before].1.best);
+        self.added.truncate(before);
+        self.exams.truncate(before + 1);
+        self.written.truncate(before + 1);
+        let kept = self.exams[before].fitted.model.parts();
+        self.removed.retain(|effect| kept.iter().all(|part| part.effect.name() != *effect));
+        true
     }
 
     /// The last examination.
