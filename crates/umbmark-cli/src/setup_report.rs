@@ -60,8 +60,11 @@ pub fn disturbances_text(setup: &Setup) -> String {
     for (run, jump) in jumps.clone().take(JUMPS) {
         let turned = jump.turned.map(|t| format!(" and {:.1} deg", t.to_degrees())).unwrap_or_default();
         let said = format!(
-            "{} after {:.2} s: the track jumps by {:.3} m{turned} ({:.0} standard deviations); the run starts anew there.",
-            run.run, jump.time, jump.moved, jump.deviations
+            "{} {}: the track jumps by {:.3} m{turned} ({:.0} standard deviations); the run starts anew there.",
+            run.run,
+            jump.when(2),
+            jump.moved,
+            jump.deviations
         );
         text += &hanging("jump", 10, &said);
     }

@@ -7,7 +7,7 @@
 //! 1. the delay at which the sizes of both motions go together best (`clock`);
 //! 2. the reading of columns and headings under which both motions agree (`agreement`), each window of them weighed robustly;
 //! 3. delay and rate of the clock run by run, and with these all else once more;
-//! 4. wrong poses and jumps, found together (`disturbances`).
+//! 4. wrong poses and jumps, found together (`disturbances`), and jumps that last (`stretches`).
 //!
 //! Return errors are looked at by themselves (`returns`): runs far from the others, and columns in another unit.
 
@@ -17,6 +17,7 @@ mod disturbances;
 mod faults;
 mod returns;
 mod robust;
+mod stretches;
 mod windows;
 
 use crate::diagnose::Reason;
@@ -113,12 +114,17 @@ pub struct WrongPose {
     pub turned: Option<f64>,
 }
 
-/// A place where a track jumps: the robot was pushed or carried, or the reference lost it.
+/// A place where a track jumps, or a few seconds in which robot and wheels part: a wheel slipped, the robot was pushed or carried, or the
+/// reference lost it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jump {
-    /// The first pose behind it, by its place among the poses of its log.
+    /// The last pose before it, by its place among the poses of its log; what lies between is left out.
+    pub from: usize,
+    /// The first behind it.
     pub pose: usize,
-    /// Time since the log began \[s\].
+    /// Time of the former since the log began \[s\].
+    pub since: f64,
+    /// Time of the latter \[s\].
     pub time: f64,
     /// How far the tracked point went and the wheels did not \[m\].
     pub moved: f64,
@@ -274,10 +280,10 @@ impl Setup {
 
     /// That more of all poses jump or are wrong than by accident.
     pub(crate) fn many_jumps(&self) -> Option<Reason> {
-        let [jumps, wrong] = self.disturbances();
         let poses: usize = self.runs.iter().map(|run| run.poses).sum();
-        let many = (jumps + wrong) as f64 > ACCIDENTS * poses as f64;
-        many.then_some(Reason::ManyJumps { count: jumps + wrong, poses })
+        let lost = |run: &RunSetup| run.jumps.len() + (0..run.poses).filter(|pose| run.is_lost(*pose)).count();
+        let count = self.runs.iter().map(lost).sum();
+        (count as f64 > ACCIDENTS * poses as f64).then_some(Reason::ManyJumps { count, poses })
     }
 
     /// That the tracked body faces backward, or the wheels are exchanged and both count backward: the motion is the same.
@@ -333,14 +339,32 @@ impl Jump {
     /// What it does to the run of this name.
     pub(crate) fn notice(&self, run: &str) -> String {
         let turned = self.turned.map(|t| format!(" and {:.0} deg", t.to_degrees())).unwrap_or_default();
-        let (moved, time) = (self.moved, self.time);
-        format!(
-            "the track of run {run} jumps by {moved:.2} m{turned} at {time:.1} s: its return error is not the robot's"
-        )
+        let (moved, when) = (self.moved, self.when(1));
+        format!("the track of run {run} jumps by {moved:.2} m{turned} {when}: its return error is not the robot's")
+    }
+
+    /// Whether a pose is within it.
+    pub(crate) fn holds(&self, pose: usize) -> bool {
+        self.from < pose && pose < self.pose
+    }
+
+    /// "at 12.3 s" or "between 12.3 s and 13.1 s", with so many decimals.
+    pub fn when(&self, decimals: usize) -> String {
+        let Jump { since, time, .. } = self;
+        if self.pose - self.from > 1 {
+            format!("between {since:.decimals$} s and {time:.decimals$} s")
+        } else {
+            format!("at {time:.decimals$} s")
+        }
     }
 }
 
 impl RunSetup {
+    /// Whether a pose is wrong or within a jump.
+    pub(crate) fn is_lost(&self, pose: usize) -> bool {
+        self.wrong.iter().any(|wrong| wrong.pose == pose) || self.jumps.iter().any(|jump| jump.holds(pose))
+    }
+
     /// How many of its poses are wrong, and by how much at most: "3 of 1801 poses of run cw_01 are wrong, by up to 0.012 m and 1.6 deg".
     pub fn notice(&self) -> String {
         let most = |of: fn(&WrongPose) -> f64| self.wrong.iter().map(of).fold(0.0, f64::max);
@@ -358,7 +382,9 @@ fn told(mut run: RunSetup, seen: &Seen, found: Found) -> RunSetup {
         |w: disturbances::Wrong| WrongPose { pose: w.pose, time: time(w.pose), moved: w.moved, turned: w.turned };
     run.wrong = found.wrong.into_iter().map(wrong).collect();
     let jump = |leap: disturbances::Leap| Jump {
+        from: leap.from,
         pose: leap.pose,
+        since: time(leap.from),
         time: time(leap.pose),
         moved: leap.moved,
         turned: leap.turned,

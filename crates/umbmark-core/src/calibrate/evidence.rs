@@ -116,9 +116,7 @@ pub(super) fn mended<'a>(data: &'a Dataset, setup: &Setup) -> (Cow<'a, Dataset>,
         let (Some(found), Some(log)) = (found, run.log.as_mut()) else { continue };
         let last = log.reference.len().saturating_sub(1);
         let jump = found.jumps.iter().min_by_key(|jump| jump.pose);
-        let is_kept = |pose: usize| {
-            jump.is_none_or(|jump| pose < jump.pose) && found.wrong.iter().all(|wrong| wrong.pose != pose)
-        };
+        let is_kept = |pose: usize| jump.is_none_or(|jump| pose < jump.pose) && !found.is_lost(pose);
         if !is_kept(last) {
             run.returned = None;
         }

@@ -24,6 +24,7 @@ pub fn setup(setup: &Setup) -> Value {
     let jump = |run: &RunSetup, jump: &Jump| {
         json!({
             "run": run.run,
+            "since_s": jump.since,
             "time_s": jump.time,
             "moved_m": jump.moved,
             "turned_rad": jump.turned,

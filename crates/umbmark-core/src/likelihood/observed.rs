@@ -172,8 +172,8 @@ impl ObservedRun {
         origin: Pose2,
     ) -> Result<Option<ObservedRun>, ReplayError> {
         let Some(log) = &run.log else { return Ok(None) };
-        let is_wrong = |pose: usize| found.is_some_and(|found| found.wrong.iter().any(|wrong| wrong.pose == pose));
-        let kept: Vec<usize> = (0..log.reference.len()).filter(|pose| !is_wrong(*pose)).collect();
+        let is_lost = |pose: usize| found.is_some_and(|found| found.is_lost(pose));
+        let kept: Vec<usize> = (0..log.reference.len()).filter(|pose| !is_lost(*pose)).collect();
         let samples = kept.iter().map(|pose| log.reference[*pose].sample);
         let track = Track::from_log_seen(log, robot, place, samples)?.beginning_at(origin);
         let in_room = |pose: &usize| {

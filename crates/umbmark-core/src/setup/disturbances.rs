@@ -3,10 +3,10 @@
 //! Between two poses the reference moves and the wheels roll; how far the two differ, in standard deviations, is what an edge costs
 //! that joins them. A pose that is passed over costs something, and a jump costs something. The cheapest way from the
 //! first pose of a run to its last (Viterbi 1967) therefore says at once which poses are wrong and where the track jumps, and no
-//! jump hides another. The standard deviations come from medians over all runs, which wild poses do not move.
+//! jump hides another. Slower ones are looked for afterwards (`stretches`). The standard deviations come from medians over all runs, which wild poses do not move.
 
-use super::PoseNoise;
 use super::robust::median;
+use super::{PoseNoise, stretches};
 use crate::geometry::Pose2;
 
 /// A difference beyond so many standard deviations is a jump.
@@ -29,9 +29,10 @@ const LEAST: [f64; 2] = [1.5e-3, 3e-3];
 const JITTER: f64 = 0.01;
 /// Sizes of the robot by the motion alone are wrong by up to this share of way and turns.
 const SIZES: f64 = 0.005;
-/// A jump that stands in other runs at the same place is none: within this way \[m\], beyond so many standard deviations, and too often
-/// for chance at this level.
-const SAME_PLACE: (f64, f64, f64) = (0.15, 4.0, 1e-4);
+/// A jump that stands in other runs at the same place is none: within this way \[m\], and too often for chance at this level.
+const SAME_PLACE: (f64, f64) = (0.15, 1e-4);
+/// It stands there where a difference is beyond so many standard deviations.
+pub(super) const LARGE: f64 = 4.0;
 
 /// A pose of a run: as the wheels have it, and as it was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +69,9 @@ pub(super) struct Wrong {
 /// A jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Leap {
-    /// The first pose behind it.
+    /// The last pose before it.
+    pub from: usize,
+    /// The first behind it.
     pub pose: usize,
     /// How far the tracked point went that the wheels did not \[m\], and how far it turned \[rad\].
     pub moved: f64,
@@ -161,13 +164,19 @@ pub(super) fn search(runs: &[Vec<Sighting>]) -> (Vec<Found>, PoseNoise) {
     let (spread, noise) = Spread::of(runs);
     let ways: Vec<Way> = runs.iter().map(|run| Way::cheapest(run, &spread)).collect();
     let steps: Vec<Vec<Step>> = runs.iter().zip(&ways).map(|(run, way)| way.steps(run, &spread)).collect();
-    let shared = Shared::new(runs, &steps);
-    let found = |(index, run): (usize, &Vec<Sighting>)| {
+    let large = |(run, steps): (&Vec<Sighting>, &Vec<Step>)| {
+        steps.iter().filter(|step| step.deviations > LARGE).map(|step| run[step.to].rolled).collect()
+    };
+    let shared = Shared::new(runs, runs.iter().zip(&steps).map(large).collect());
+    let left = |(index, run): (usize, &Vec<Sighting>)| {
         let own = |step: &&Step| step.deviations > JUMP && !shared.stands_elsewhere(index, run[step.to].rolled);
         let jumps = steps[index].iter().filter(own).copied().collect::<Vec<Step>>();
         sorted_out(run, &ways[index].kept, jumps, &spread)
     };
-    (runs.iter().enumerate().map(found).collect(), noise)
+    let (kept, jumps): (Vec<_>, Vec<_>) = runs.iter().enumerate().map(left).unzip();
+    let stretches = stretches::search(runs, &kept, jumps, &spread);
+    let found = runs.iter().zip(&kept).zip(stretches).map(|((run, kept), stretches)| Found::of(run, kept, stretches));
+    (found.collect(), noise)
 }
 
 /// The poses of a run that are kept, in order.
@@ -175,12 +184,18 @@ struct Way {
     kept: Vec<usize>,
 }
 
-/// From one kept pose to the next.
+/// From one kept pose to another.
 #[derive(Clone, Copy, Debug)]
-struct Step {
-    from: usize,
-    to: usize,
-    deviations: f64,
+pub(super) struct Step {
+    pub from: usize,
+    pub to: usize,
+    pub deviations: f64,
+}
+
+impl Step {
+    pub fn between(run: &[Sighting], from: usize, to: usize, spread: &Spread) -> Step {
+        Step { from, to, deviations: spread.deviations(&run[from], &run[to]) }
+    }
 }
 
 impl Way {
@@ -218,17 +233,12 @@ impl Way {
     }
 
     fn steps(&self, run: &[Sighting], spread: &Spread) -> Vec<Step> {
-        let of = |pair: &[usize]| Step {
-            from: pair[0],
-            to: pair[1],
-            deviations: spread.deviations(&run[pair[0]], &run[pair[1]]),
-        };
-        self.kept.windows(2).map(of).collect()
+        self.kept.windows(2).map(|pair| Step::between(run, pair[0], pair[1], spread)).collect()
     }
 }
 
 /// Where each run has large differences.
-struct Shared {
+pub(super) struct Shared {
     /// Way of the wheels there, run by run.
     large: Vec<Vec<f64>>,
     /// Chance that a run has one within a place.
@@ -236,25 +246,19 @@ struct Shared {
 }
 
 impl Shared {
-    fn new(runs: &[Vec<Sighting>], steps: &[Vec<Step>]) -> Shared {
-        let large: Vec<Vec<f64>> = runs
-            .iter()
-            .zip(steps)
-            .map(|(run, steps)| {
-                steps.iter().filter(|step| step.deviations > SAME_PLACE.1).map(|step| run[step.to].rolled).collect()
-            })
-            .collect();
+    /// `large`: what is large in each run, whatever it is.
+    pub fn new(runs: &[Vec<Sighting>], large: Vec<Vec<f64>>) -> Shared {
         let way: f64 = runs.iter().filter_map(|run| run.last()).map(|last| last.rolled).sum();
         let all: usize = large.iter().map(Vec::len).sum();
         Shared { large, chance: (all as f64 * 2.0 * SAME_PLACE.0 / way.max(SAME_PLACE.0)).min(1.0) }
     }
 
     /// Whether more of the other runs have one at this place than chance would have it.
-    fn stands_elsewhere(&self, run: usize, rolled: f64) -> bool {
+    pub fn stands_elsewhere(&self, run: usize, rolled: f64) -> bool {
         let others = self.large.iter().enumerate().filter(|(other, _)| *other != run);
         let there = others.filter(|(_, own)| own.iter().any(|at| (at - rolled).abs() <= SAME_PLACE.0)).count();
         let n = self.large.len().saturating_sub(1);
-        there > 0 && at_least(there, n, self.chance) < SAME_PLACE.2.max(0.5 * self.chance.powi(n as i32))
+        there > 0 && at_least(there, n, self.chance) < SAME_PLACE.1.max(0.5 * self.chance.powi(n as i32))
     }
 }
 
@@ -272,8 +276,8 @@ fn at_least(count: usize, n: usize, p: f64) -> f64 {
     (1.0 - below).max(0.0)
 }
 
-/// Jumps that are taken back soon are wrong poses; those in between that are not on the way are too.
-fn sorted_out(run: &[Sighting], kept: &[usize], jumps: Vec<Step>, spread: &Spread) -> Found {
+/// Jumps that are taken back soon are wrong poses: the poses that are kept then, and the jumps that are left.
+fn sorted_out(run: &[Sighting], kept: &[usize], jumps: Vec<Step>, spread: &Spread) -> (Vec<usize>, Vec<Step>) {
     let mut jumps = jumps;
     let mut kept = kept.to_vec();
     let longest = ((APART.0 * run.len() as f64) as usize).max(LONGEST);
@@ -290,23 +294,30 @@ fn sorted_out(run: &[Sighting], kept: &[usize], jumps: Vec<Step>, spread: &Sprea
             k += 1;
         }
     }
-    let mut wrong = Vec::new();
-    let mut next = 0;
-    for pose in 0..run.len() {
-        if kept.get(next) == Some(&pose) {
-            next += 1;
-            continue;
+    (kept, jumps)
+}
+
+impl Found {
+    /// Poses that are not kept are wrong.
+    fn of(run: &[Sighting], kept: &[usize], jumps: Vec<Step>) -> Found {
+        let mut wrong = Vec::new();
+        let mut next = 0;
+        for pose in 0..run.len() {
+            if kept.get(next) == Some(&pose) {
+                next += 1;
+                continue;
+            }
+            let before = next.checked_sub(1).map(|k| kept[k]);
+            let Some(from) = before.or_else(|| kept.get(next).copied()) else { continue };
+            let ([x, y], turned) = difference(&run[from], &run[pose]);
+            wrong.push(Wrong { pose, moved: libm::hypot(x, y), turned });
         }
-        let before = next.checked_sub(1).map(|k| kept[k]);
-        let Some(from) = before.or_else(|| kept.get(next).copied()) else { continue };
-        let ([x, y], turned) = difference(&run[from], &run[pose]);
-        wrong.push(Wrong { pose, moved: libm::hypot(x, y), turned });
+        let jumps = jumps.into_iter().map(|Step { from, to, deviations }| {
+            let ([x, y], turned) = difference(&run[from], &run[to]);
+            Leap { from, pose: to, moved: libm::hypot(x, y), turned, deviations }
+        });
+        Found { wrong, jumps: jumps.collect() }
     }
-    let jumps = jumps.into_iter().map(|Step { from, to, deviations }| {
-        let ([x, y], turned) = difference(&run[from], &run[to]);
-        Leap { pose: to, moved: libm::hypot(x, y), turned, deviations }
-    });
-    Found { wrong, jumps: jumps.collect() }
 }
 
 #[cfg(test)]
@@ -396,6 +407,57 @@ mod tests {
             assert_eq!(found.wrong.iter().map(|wrong| wrong.pose).collect::<Vec<_>>(), *expected);
             assert!(found.wrong.iter().all(|wrong| (0.25..1.1).contains(&wrong.moved)), "{:?}", found.wrong);
         }
+    }
+
+    /// From 300 on, so many poses slip by so much each.
+    fn slip(run: &mut [Sighting], poses: usize, turned: f64) {
+        for at in 300..300 + poses {
+            jump(run, at, 0.0, turned);
+        }
+    }
+
+    #[test]
+    fn a_slip_of_a_second_is_found_as_one_jump_and_no_pose_is_wrong() {
+        let mut runs = runs(4);
+        slip(&mut runs[1], 16, 0.012);
+        let (found, _) = search(&runs);
+        for (index, found) in found.iter().enumerate() {
+            assert_eq!((found.wrong.len(), found.jumps.len()), (0, usize::from(index == 1)), "{found:?}");
+        }
+        let jump = found[1].jumps[0];
+        assert!((285..=300).contains(&jump.from) && (315..=331).contains(&jump.pose), "{jump:?}");
+        assert!((jump.turned.unwrap() - 0.19).abs() < 0.03, "{jump:?}");
+    }
+
+    #[test]
+    fn a_robot_that_is_carried_for_two_seconds_jumps_once() {
+        let mut runs = runs(4);
+        slip(&mut runs[2], 40, 0.1);
+        let (found, _) = search(&runs);
+        assert_eq!(found.iter().map(|found| found.jumps.len()).collect::<Vec<_>>(), [0, 0, 1, 0]);
+        let jump = found[2].jumps[0];
+        assert!(jump.from.abs_diff(299) <= 2 && jump.pose.abs_diff(339) <= 2, "{jump:?}");
+    }
+
+    #[test]
+    fn what_slips_in_many_places_or_at_the_same_of_all_runs_is_no_accident() {
+        let mut runs = runs(4);
+        for run in &mut runs {
+            for at in (0..6).map(|k| 40 + 90 * k) {
+                for pose in at..at + 16 {
+                    jump(run, pose, 0.0, 0.012);
+                }
+            }
+        }
+        assert!(search(&runs).0.iter().all(|found| found.jumps.is_empty()));
+        let mut runs = self::runs(6);
+        for run in &mut runs {
+            let at = run.iter().position(|pose| pose.rolled > 3.0).unwrap();
+            for pose in at..at + 16 {
+                jump(run, pose, 0.0, 0.012);
+            }
+        }
+        assert!(search(&runs).0.iter().all(|found| found.jumps.is_empty()));
     }
 
     #[test]

@@ -85,14 +85,18 @@ class WrongPose(Record, frozen=True):
 
 
 class Jump(Record, frozen=True):
-    """A place where a track jumps: the robot was pushed or carried, or the reference lost it.
+    """A place where a track jumps, or a few seconds in which robot and wheels part.
+
+    A wheel slipped, the robot was pushed or carried, or the reference lost it.
 
     Attributes
     ----------
     run : str
         Name of the run.
+    since_s : float
+        Time of the last pose before it since the log began, in s.
     time_s : float
-        Time since the log began, in s.
+        Time of the first pose behind it, in s.
     moved_m : float
         How far the tracked point moved without the wheels, in m.
     turned_rad : float or None
@@ -102,6 +106,7 @@ class Jump(Record, frozen=True):
     """
 
     run: str
+    since_s: float
     time_s: float
     moved_m: float
     turned_rad: float | None
