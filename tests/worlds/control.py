@@ -21,8 +21,18 @@ class Push:
 
     run: int
     time_s: float
+    lasts_s: float
     shift: Array
     """x, y and heading."""
+    spin_rad: Array
+    """What each wheel turns more than it rolls."""
+
+    def share(self, period: int, period_s: float) -> float:
+        """Which part of it happens in a control period."""
+        if self.lasts_s == 0:
+            return float(round(self.time_s / period_s) == period)
+        begin, end = (np.array([period, period + 1]) * period_s - self.time_s) / self.lasts_s
+        return float(np.clip(end, 0, 1) - np.clip(begin, 0, 1))
 
 
 def wheel_rates(twist: Array, robot: Robot) -> Array:
@@ -117,8 +127,9 @@ def drive(
     limit = 1.3 * np.array([[setting.robot.top_speed_m_s], [setting.robot.top_turn_rad_s]])
     for period, twist in enumerate(plan):
         for push in pushes:
-            if round(push.time_s / period_s) == period:
-                motion.push(push.run, push.shift)
+            if share := push.share(period, period_s):
+                motion.push(push.run, share * push.shift)
+                motion.spin(push.run, share * push.spin_rad)
         if observer is not None:
             steered = twist + correction(goals[period], observer.see(motion), twist)
             moves = np.any(twist != 0, axis=0)

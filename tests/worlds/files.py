@@ -78,12 +78,14 @@ def jumps_in_logs(made: Made) -> list[dict[str, Any]]:
     found = []
     for jump in made.jumps:
         x, y, turn = jump.shift
-        stamp = jump.time_s - made.begins_s[jump.run] + made.delays_s[jump.run]
+        begin = jump.time_s - made.begins_s[jump.run] + made.delays_s[jump.run]
+        stamp = begin + jump.lasts_s
         for log in made.logs:
             if log.run == jump.run and log.stamp_s[0] <= stamp <= log.stamp_s[-1]:
                 found.append(
                     {
                         "run": log.name,
+                        "since_s": begin,
                         "time_s": stamp,
                         "moved_m": float(np.hypot(x, y)),
                         "turned_rad": turn,

@@ -86,6 +86,11 @@ class Motion:
         """Move the robot of a run by x, y and heading without its wheels."""
         self.pose[:, run] += shift
 
+    def spin(self, run: int, angle: Array) -> None:
+        """Turn the wheels of a run by so much where they stand."""
+        self.angle[:, run] += angle
+        self.counted[:, run] += angle
+
     def track(self) -> Track:
         """What happened so far."""
         return Track(np.concatenate(self.poses, axis=2), np.concatenate(self.counts, axis=2))

@@ -134,8 +134,27 @@ def draw_jumps(setting: Setting, seconds: list[float], random: Random) -> list[J
             share = 0.2 + 0.6 * (part + random.uniform(0.1, 0.9)) / number
             x, y = around(random, log_uniform(random, *faults.jump_m))
             turn = signed(random, log_uniform(random, *faults.jump_rad))
-            jumps.append(Jump(run, between_steps(setting, share * seconds[run]), (x, y, turn)))
+            at = between_steps(setting, share * seconds[run])
+            jump = Jump(run, at, (x, y, turn))
+            if faults.jump_lasts_s[1] > 0:
+                jump = replace(jump, lasts_s=float(random.uniform(*faults.jump_lasts_s)))
+            if faults.jump_of == "wheel":
+                jump = spun(setting, jump, random)
+            jumps.append(jump)
     return jumps
+
+
+def spun(setting: Setting, jump: Jump, random: Random) -> Jump:
+    """A wheel that spins as long as a jump lasts, and how far the odometry is off by it, nearly."""
+    robot = setting.robot
+    rim = float(random.uniform(0.2, 1.0)) * robot.top_speed_m_s * jump.lasts_s
+    rim = signed(random, rim)
+    angle = rim / robot.nominal_radius_m
+    right = random.random() < 0.5
+    turn = (-1 if right else 1) * rim / robot.wheelbase_m
+    return replace(
+        jump, shift=(rim / 2, 0.0, turn), spin_rad=(0.0, angle) if right else (angle, 0.0)
+    )
 
 
 def merged(setting: Setting, ride: Ride, ticks: Ticks, poses: Poses) -> Log:
@@ -229,9 +248,15 @@ def make(world: str, seed: int, overrides: list[str] | None = None) -> Made:
     ends = [len(one) * setting.drive.control_period_s for one in plans]
     made.jumps = draw_jumps(setting, ends, stream(seed, source, "jumps"))
     pushes = [
-        control.Push(jump.run, jump.time_s, np.array(jump.shift))
+        control.Push(
+            jump.run,
+            jump.time_s,
+            jump.lasts_s,
+            np.array(jump.shift) * (setting.faults.jump_of == "robot"),
+            np.array(jump.spin_rad),
+        )
         for jump in made.jumps
-        if setting.faults.jump_of == "robot"
+        if setting.faults.jump_of != "reference"
     ]
     track = control.drive(setting, plans, starts(setting, random), pushes, random)
     for run, end_s in enumerate(ends):

@@ -151,10 +151,13 @@ def left_in(rows: Array, name: str, truth: dict[str, Any], setting: Setting) -> 
     predicted = shown(stamp_s, body, when_s * (1 - rate) - about["delay_s"], setting)
     glitches = np.array(truth["glitches"].get(name, []))
     bad = np.array([np.abs(glitches - t).min(initial=1.0) < 1e-5 for t in when_s], dtype=float)
-    jumps = sorted(jump["time_s"] for jump in truth["jumps"] if jump["run"] == name)
+    own_jumps = [jump for jump in truth["jumps"] if jump["run"] == name]
+    jumps = sorted(jump[end] for jump in own_jumps for end in ("since_s", "time_s"))
     error = np.full_like(measured, np.nan)
     part = np.searchsorted(np.array(jumps), when_s)
     for i in np.unique(part):
+        if i % 2:  # within a jump
+            continue
         own = part == i
         laid = laid_on(predicted[own], measured[own], when_s[own], 1 - bad[own])
         error[own] = measured[own] - laid
@@ -175,4 +178,4 @@ def rms_m(logs: dict[str, Left], with_glitches: bool = True) -> float:
     squares = [
         (one.error[(one.bad == 0) | with_glitches, :2] ** 2).sum(axis=1) for one in logs.values()
     ]
-    return float(np.sqrt(np.concatenate(squares).mean()))
+    return float(np.sqrt(np.nanmean(np.concatenate(squares))))

@@ -160,7 +160,9 @@ class Faults:
     jumping_share: float = 1.0
     """Share of runs that have jumps."""
     jump_of: str = "robot"
-    """`robot`: it was pushed; `reference`: its frame moved."""
+    """`robot`: it was pushed; `reference`: its frame moved; `wheel`: one spun on the spot."""
+    jump_lasts_s: tuple[float, float] = (0.0, 0.0)
+    """How long a push lasts, or a wheel spins."""
     jump_m: tuple[float, float] = (0.1, 1.0)
     jump_rad: tuple[float, float] = (3 * pi / 180, 60 * pi / 180)
     glitch_share: float = 0.0

@@ -47,8 +47,9 @@ def test_a_delay_is_found_with_its_sign(delay_s: float) -> None:
     assert said["delay"]["within"], said["delay"]
 
 
-def test_jumps_are_named_and_the_robot_is_not_blamed() -> None:
-    said = found("jumps", 3)
+@pytest.mark.parametrize("world", ["jumps", "carried", "spinning"])
+def test_jumps_are_named_and_the_robot_is_not_blamed(world: str) -> None:
+    said = found(world, 3)
     assert said["jumps"]["there"] > 0
     assert said["jumps"]["named"] == said["jumps"]["there"]
     assert all(abs(one["standard_errors"]) < 4 for one in said["ratios"].values())

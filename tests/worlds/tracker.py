@@ -18,6 +18,9 @@ class Jump:
     """Since the robot was switched on."""
     shift: Pose
     """x and y in the room, and heading."""
+    lasts_s: float = 0.0
+    spin_rad: tuple[float, float] = (0.0, 0.0)
+    """What each wheel turns on the spot."""
 
 
 @dataclass
@@ -186,7 +189,7 @@ def seen(setting: Setting, ride: Ride, taken_s: Array, random: Random) -> Array:
 def perfect(setting: Setting, ride: Ride, shown_s: Array, jumps: list[Jump]) -> Array:
     """What a reference without noise shows of the robot at the given true times."""
     reference = setting.reference
-    if setting.faults.jump_of == "robot":
+    if setting.faults.jump_of != "reference":
         jumps = []
     when = np.concatenate([shown_s, [jump.time_s for jump in jumps]])
     pose = tracked(ride.poses(when), reference)

@@ -63,6 +63,16 @@ def jumps(_: Setting, random: Random) -> Changes:
     }
 
 
+def carried(setting: Setting, random: Random) -> Changes:
+    """Robots that are lifted and carried."""
+    return {**jumps(setting, random), "jump_of": "robot", "jump_lasts_s": (0.8, 2.5)}
+
+
+def spinning(setting: Setting, random: Random) -> Changes:
+    """A wheel that spins on the spot."""
+    return {**jumps(setting, random), "jump_of": "wheel", "jump_lasts_s": (0.3, 1.5)}
+
+
 def glitches(_: Setting, random: Random) -> Changes:
     """Bad poses, single or in bursts."""
     return {
@@ -245,6 +255,8 @@ WORLDS = {
         World("mirrored", "y and heading with the wrong sign", always(mirrored=True)),
         World("compass", "heading is a bearing, π/2 - θ", always(compass=True)),
         World("jumps", "1 or 2 jumps in some runs, 0.1 to 1 m and 3 to 60 degrees", jumps),
+        World("carried", "jumps that last 0.8 to 2.5 s: the robot is carried", carried),
+        World("spinning", "a wheel spins on the spot for 0.3 to 1.5 s", spinning),
         World("glitches", "0.5 to 5 % bad poses, single or in bursts", glitches),
         World("tails", "noise of the reference with t2 tails", always(noise="t2")),
         World("late_start", "wheels turn 2 to 5 s before the first pose", late_start),

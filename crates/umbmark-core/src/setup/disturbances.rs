@@ -298,7 +298,7 @@ fn sorted_out(run: &[Sighting], kept: &[usize], jumps: Vec<Step>, spread: &Sprea
 }
 
 impl Found {
-    /// Poses that are not kept are wrong.
+    /// Poses that are not kept are wrong, but for those within a jump that lasts.
     fn of(run: &[Sighting], kept: &[usize], jumps: Vec<Step>) -> Found {
         let mut wrong = Vec::new();
         let mut next = 0;
@@ -312,6 +312,9 @@ impl Found {
             let ([x, y], turned) = difference(&run[from], &run[pose]);
             wrong.push(Wrong { pose, moved: libm::hypot(x, y), turned });
         }
+        let lasts = |jump: &Step| kept.iter().any(|pose| jump.from < *pose && *pose < jump.to);
+        let lasting: Vec<Step> = jumps.iter().filter(|jump| lasts(jump)).copied().collect();
+        wrong.retain(|wrong| !lasting.iter().any(|jump| jump.from < wrong.pose && wrong.pose < jump.to));
         let jumps = jumps.into_iter().map(|Step { from, to, deviations }| {
             let ([x, y], turned) = difference(&run[from], &run[to]);
             Leap { from, pose: to, moved: libm::hypot(x, y), turned, deviations }
@@ -435,6 +438,7 @@ mod tests {
         slip(&mut runs[2], 40, 0.1);
         let (found, _) = search(&runs);
         assert_eq!(found.iter().map(|found| found.jumps.len()).collect::<Vec<_>>(), [0, 0, 1, 0]);
+        assert!(found.iter().all(|found| found.wrong.is_empty()), "{found:?}");
         let jump = found[2].jumps[0];
         assert!(jump.from.abs_diff(299) <= 2 && jump.pose.abs_diff(339) <= 2, "{jump:?}");
     }

@@ -15,10 +15,12 @@ const SEEMING: f64 = 2.0;
 const TOGETHER: f64 = 0.5;
 /// A stretch is beyond so many times what this share of all windows of its length are below.
 const BEYOND: (f64, f64) = (4.0, 0.9);
+/// And beyond so many standard deviations: windows are many, and what they add up is less well known than what one edge does.
+const LEAST: f64 = 1.5 * JUMP;
 /// It begins and ends where windows are below this share of that.
 const ENDS: f64 = 0.4;
 /// What fills more than this share of all poses is no accident.
-const ACCIDENTS: f64 = 0.05;
+const ACCIDENTS: f64 = 0.1;
 
 /// Jumps of each run with those that belong together as one, and the stretches. `kept`: the poses of each run that are not wrong.
 pub(super) fn search(
@@ -39,7 +41,7 @@ pub(super) fn search(
         };
         let windows: Vec<Vec<Step>> = runs.iter().zip(kept).zip(&found).map(of_run).collect();
         let all = windows.iter().flatten().map(|window| window.deviations);
-        let beyond = JUMP.max(BEYOND.0 * quantile(all, BEYOND.1));
+        let beyond = LEAST.max(BEYOND.0 * quantile(all, BEYOND.1));
         let of_size = |index: usize, size: f64| {
             let windows = windows[index].iter().filter(move |window| window.deviations > size).copied();
             joined(&runs[index], windows, 0.0, spread)
