@@ -28,7 +28,7 @@ pub use ends::{Contrast, OnCircle};
 pub use identifiability::{Identifiability, Share, identifiability};
 pub use likeness::Likeness;
 pub use reason::Reason;
-pub use tracks::Suggestion;
+pub use tracks::{Repeated, Suggestion};
 
 /// What was observed of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -280,6 +280,8 @@ pub struct Diagnosis {
     pub taken: Vec<Taken>,
     /// Why the model is not called explained, or would not be.
     pub reasons: Vec<Reason>,
+    /// What repeats most beside the model, whether it counts or not; from tracks only.
+    pub repeats: Option<Repeated>,
     /// What else should be said, a sentence each.
     pub remarks: Vec<String>,
 }
@@ -352,6 +354,7 @@ impl Diagnosis {
             setup: Arc::clone(setup),
             taken: Vec::new(),
             reasons: faults.cloned().map(Reason::Fault).collect(),
+            repeats: None,
             remarks: Vec::new(),
         }
     }

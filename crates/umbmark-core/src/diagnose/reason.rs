@@ -1,5 +1,6 @@
 //! Why a model is not called explained though nothing further is certified.
 
+use super::tracks::Repeated;
 use crate::setup::{Fault, Jump, OutlyingReturn};
 
 /// One reason.
@@ -52,6 +53,8 @@ pub enum Reason {
         /// Of the runs that were fitted \[m\].
         inside: f64,
     },
+    /// What is left repeats from run to run.
+    Repeats(Repeated),
     /// The headings of the reference are half a turn from the way the wheels drive: two robots do that.
     TailFirst {
         /// Heading of the tracked body less that of the robot, as the columns are read \[rad\].
@@ -118,6 +121,7 @@ impl Reason {
                  left_counts_backward and right_counts_backward = true under [robot]); E_d of the one is one over E_d of the other",
                 yaw.to_degrees()
             ),
+            Reason::Repeats(repeated) => repeated.sentence(),
             Reason::OutlyingReturn(run) => format!("{}; {}", run.sentence(), run.remedy()),
             Reason::JumpBeforeReturn { run, jump } => jump.notice(run),
             Reason::ManyJumps { count, poses } => format!(

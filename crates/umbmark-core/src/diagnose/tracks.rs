@@ -18,6 +18,7 @@ mod experiments;
 mod flips;
 pub(crate) mod growth;
 mod look;
+mod repeats;
 mod responses;
 mod search;
 mod smooth;
@@ -42,6 +43,7 @@ pub(crate) use alone::{Alone, trusted};
 pub use errors::Misses;
 pub(crate) use examination::Examination;
 pub(crate) use look::{Finding, class_of_own};
+pub use repeats::Repeated;
 pub(crate) use search::{Search, search};
 pub use suggestion::Suggestion;
 
@@ -81,7 +83,9 @@ pub(crate) fn dependence(exam: &Examination, finding: &Finding, asked: &[Suspect
 pub(crate) fn diagnose(fitted: Fitted, options: &Options) -> Result<Diagnosis, DiagnoseError> {
     let search = Watch::nobody(|watch| search(fitted, options, MOST, Vec::new(), watch))?;
     let verdict = verdict(&search);
-    let reasons = doubts_of(search.last(), options);
+    let mut reasons = doubts_of(search.last(), options);
+    let (repeats, repeated) = repeats_beside(search.last(), options);
+    reasons.extend(repeated);
     let Search { mut exams, added, left, .. } = search;
     let last = exams.len() - 1;
     let told = left.smooth.as_ref().and_then(|finding| dependence(&exams[last], finding, &left.asked));
@@ -102,13 +106,20 @@ pub(crate) fn diagnose(fitted: Fitted, options: &Options) -> Result<Diagnosis, D
     let mut next_experiments = [experiments, diagnosis.next_experiments].concat();
     next_experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     let verdict = if verdict == Verdict::Explained && !reasons.is_empty() { Verdict::NotExplained } else { verdict };
-    Ok(Diagnosis { verdict, ranking, certified: certified.len(), next_experiments, reasons, ..diagnosis })
+    Ok(Diagnosis { verdict, ranking, certified: certified.len(), next_experiments, reasons, repeats, ..diagnosis })
 }
 
 /// What speaks against the model of an examination as a whole.
 pub(crate) fn doubts_of(exam: &Examination, options: &Options) -> Vec<Reason> {
     let Examination { fitted, errors, .. } = exam;
     doubts::of_model(&fitted.observed, &fitted.model, &fitted.noise, &errors.in_sample(), options.seed)
+}
+
+/// What repeats most beside the model of an examination, and the reason that it is, where it counts.
+pub(crate) fn repeats_beside(exam: &Examination, options: &Options) -> (Option<Repeated>, Option<Reason>) {
+    let repeated = repeats::beside(exam, options.seed);
+    let reason = repeated.clone().filter(|repeated| repeated.counts(LEAST_GAIN)).map(Reason::Repeats);
+    (repeated, reason)
 }
 
 /// The same of a model with the values that it has, nothing but START fitted: under the noise that would make what it leaves
@@ -123,7 +134,10 @@ pub(crate) fn doubts_as_written(observed: &Observed, model: &Model, options: &Op
     let noise = Noise::estimate(&fixed.observed, &chain, &columns, &fixed.noise);
     let system = system::System::new(&fixed.observed, &noise, &columns);
     let errors = errors::Errors::new(&fixed.observed, &system, &columns, vec![0]);
-    doubts::of_model(&fixed.observed, model, &noise, &errors.in_sample(), options.seed)
+    let mut reasons = doubts::of_model(&fixed.observed, model, &noise, &errors.in_sample(), options.seed);
+    let repeated = repeats::look(&fixed.observed, model, &noise, &columns, options.seed);
+    reasons.extend(repeated.filter(|repeated| repeated.counts(TELLING)).map(Reason::Repeats));
+    reasons
 }
 
 /// Drives that would tell apart the members of a certified class, and for those that none does, what their own pages say.
@@ -203,6 +217,7 @@ pub(crate) fn conclude(
         setup: Arc::clone(&exam.fitted.observed.setup),
         taken: exam.fitted.taken.clone(),
         reasons: Vec::new(),
+        repeats: None,
         dependence,
         model: exam.fitted.model,
     })

@@ -1,7 +1,7 @@
 //! `diagnose`.
 
 use super::fitted::{estimates, meaning, outliers};
-use super::setup::{reasons, setup, taken};
+use super::setup::{reasons, repeats, setup, taken};
 use super::square::square;
 use super::{finite, model::model};
 use crate::dataset::effects_text;
@@ -43,6 +43,7 @@ pub fn diagnosis(diagnosis: &Diagnosis, options: &Options) -> Value {
         "setup": setup(&diagnosis.setup),
         "taken": taken(&diagnosis.taken),
         "reasons": reasons(&diagnosis.reasons),
+        "repeats": diagnosis.repeats.as_ref().map(repeats),
         "remarks": diagnosis.remarks,
         "size": options.size,
         "draws": options.draws,

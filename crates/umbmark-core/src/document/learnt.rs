@@ -2,7 +2,7 @@
 
 use super::diagnosis::{experiments, unlisted};
 use super::fitted::{estimates, meaning, outliers};
-use super::setup::{reasons, setup, taken};
+use super::setup::{reasons, repeats, setup, taken};
 use super::{finite, model::model};
 use crate::diagnose::Options;
 use crate::learn::{Learnt, Step};
@@ -35,6 +35,7 @@ pub fn learnt(learnt: &Learnt, options: &Options) -> Value {
         "setup": setup(&learnt.diagnosis.setup),
         "taken": taken(&learnt.diagnosis.taken),
         "reasons": reasons(&learnt.diagnosis.reasons),
+        "repeats": learnt.diagnosis.repeats.as_ref().map(repeats),
         "remarks": learnt.remarks,
         "partial": learnt.partial,
         "size": options.size,

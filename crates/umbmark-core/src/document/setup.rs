@@ -1,7 +1,7 @@
 //! What was found of an experiment before anything was fitted.
 
 use super::{ends, finite};
-use crate::diagnose::Reason;
+use crate::diagnose::{Reason, Repeated};
 use crate::likelihood::Taken;
 use crate::setup::{Deviant, Jump, Measured, OutlyingReturn, RunSetup, Setup, WrongPose};
 use serde_json::{Map, Value, json};
@@ -80,6 +80,21 @@ pub(super) fn taken(taken: &[Taken]) -> Value {
         json!({ "effect": own.effect, "parameters": Map::from_iter(numbers), "p": own.p })
     };
     json!(taken.iter().map(one).collect::<Vec<_>>())
+}
+
+/// What repeats most beside a model.
+pub(super) fn repeats(repeated: &Repeated) -> Value {
+    json!({
+        "p": repeated.p,
+        "laws": repeated.laws,
+        "acts_on": repeated.acts_on,
+        "per": repeated.per,
+        "by": repeated.by,
+        "with_sense": repeated.with_sense,
+        "heldout_rmse_m": repeated.left_out[0],
+        "heldout_rmse_with_law_m": repeated.left_out[1],
+        "gain": repeated.gain,
+    })
 }
 
 /// Why a model is not called explained, a sentence each.

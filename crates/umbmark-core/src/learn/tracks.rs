@@ -126,6 +126,8 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         format!("{effect} was added on the way and taken out again: beside the others it no longer predicts runs that are left out better.")
     }));
     let mut reasons = tracks::doubts_of(search.last(), options);
+    let (repeats, repeated) = tracks::repeats_beside(search.last(), options);
+    reasons.extend(repeated);
     hints.extend(search.harmful.iter().map(|effect| {
         format!("{effect} is significant, and with it runs that are left out are predicted worse; it was not added.")
     }));
@@ -170,6 +172,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         verdict,
         ranking,
         reasons,
+        repeats,
         fitted,
         model: model.clone(),
         next_experiments: experiments,

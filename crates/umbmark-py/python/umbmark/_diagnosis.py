@@ -148,6 +148,43 @@ class Outlier(Record, frozen=True):
     standard_deviations: float | None
 
 
+class Repeated(Record, frozen=True):
+    """What is left of the error and repeats: the law that stands out most among thousands.
+
+    Attributes
+    ----------
+    p : float
+        Of all laws together, by flips of the signs of runs.
+    laws : int
+        How many there are that the data could show.
+    acts_on : str
+        "forward", "sideways" or "yaw".
+    per : str
+        What the motion is in proportion to: "second", "metre" or "radian turned".
+    by : str
+        What it follows, in words.
+    with_sense : bool
+        Whether it turns over with the sense of the run.
+    heldout_rmse_m : float
+        Error of runs left out, in m.
+    heldout_rmse_with_law_m : float
+        The same with the law, in m.
+    gain : float
+        By what share errors of runs left out fall: of positions, of headings, or from pose to
+        pose, whichever falls most.
+    """
+
+    p: float
+    laws: int
+    acts_on: str
+    per: str
+    by: str
+    with_sense: bool
+    heldout_rmse_m: float
+    heldout_rmse_with_law_m: float
+    gain: float
+
+
 class Diagnosis(Result, frozen=True):
     """What a model is missing, how sure that is, and what this data cannot see.
 
@@ -176,6 +213,8 @@ class Diagnosis(Result, frozen=True):
         Effects of the reference whose values were taken from the motion.
     reasons : tuple of str
         Why the model is not called explained, a sentence each.
+    repeats : Repeated or None
+        What repeats most beside the model, whether it counts or not; None without tracks.
     """
 
     verdict: str
@@ -197,6 +236,7 @@ class Diagnosis(Result, frozen=True):
     setup: Setup
     taken: tuple[Taken, ...]
     reasons: tuple[str, ...]
+    repeats: Repeated | None
     remarks: tuple[str, ...]
     size: float
     draws: int
@@ -304,6 +344,8 @@ class Learnt(Result, frozen=True):
         Effects of the reference whose values were taken from the motion.
     reasons : tuple of str
         Why the model is not called explained, a sentence each.
+    repeats : Repeated or None
+        What repeats most beside the model, whether it counts or not; None without tracks.
     partial : bool
         Whether it was stopped while an effect was still missing.
     """
@@ -319,6 +361,7 @@ class Learnt(Result, frozen=True):
     setup: Setup
     taken: tuple[Taken, ...]
     reasons: tuple[str, ...]
+    repeats: Repeated | None
     remarks: tuple[str, ...]
     partial: bool
     size: float

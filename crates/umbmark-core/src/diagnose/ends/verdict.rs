@@ -42,6 +42,7 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
         setup: Arc::clone(&ends.setup),
         taken: Vec::new(),
         reasons: ends.doubts.clone(),
+        repeats: None,
         remarks: Vec::new(),
     };
     diagnosis.remarks.extend(remarks_on_data(ends, &fitted));

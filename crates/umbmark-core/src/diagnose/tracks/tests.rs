@@ -20,7 +20,7 @@ pub(super) fn complete() -> &'static Examination {
     &EXAMINATION
 }
 
-fn fitted_to(truth: &Model) -> Fitted {
+pub(super) fn fitted_to(truth: &Model) -> Fitted {
     let data = watched(truth, 3, 5);
     let observed = Observed::new(&data, &Robot::labmate()).unwrap();
     fit(&observed, &first_model(&data).unwrap()).unwrap()
@@ -52,7 +52,7 @@ fn of_a_complete_model_nothing_is_said_to_be_missing() {
 }
 
 /// A robot on a floor that turns it one way along two sides of the square and the other way along the others.
-fn on_grain() -> Model {
+pub(super) fn on_grain() -> Model {
     let mut truth = robot_with(&[]);
     let law = Formula::new("grain", Target::HeadingPerMetre, "k * cos(2 * heading)", &["k"]).unwrap();
     truth.add_formula(law, &[0.02]).unwrap();
