@@ -1,10 +1,14 @@
 """The command on a few small worlds; `study.py` runs it on hundreds."""
 
+import json
+import subprocess
 from pathlib import Path as File
 from typing import Any
 
 import pytest
+from files import write
 from judge import judged
+from record import make
 from study import ROOT, Task, study
 
 COMMAND = ROOT / "target/debug/umbmark"
@@ -39,6 +43,24 @@ def test_a_robot_that_drives_tail_first_may_be_wired_so_and_is_not_explained() -
     said = found("exchanged_reversed", 1)
     assert all(said["faults"].values()), said["faults"]
     assert said["verdict"] == "not_explained"
+
+
+def test_a_law_that_no_catalogue_lists_is_not_explained_and_its_formula_finds_its_period(
+    tmp_path: File,
+) -> None:
+    made = make("time_wave", 3, [*SMALL, "wave_period_s=7.3", "wave_rad_s=0.02"])
+    write(made, tmp_path)
+    words = [str(COMMAND), "learn", str(tmp_path), "--json"]
+    before = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
+    assert before["verdict"] == "not_explained"
+    assert (before["repeats"]["acts_on"], before["repeats"]["per"]) == ("yaw", "second")
+    law = tmp_path / "law.toml"
+    law.write_text(before["repeats"]["toml"])
+    words += ["--model", str(law)]
+    after = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
+    period = next(one for one in after["fitted"] if one["parameter"] == "c")
+    assert period["value"] == pytest.approx(7.3, rel=0.01)
+    assert after["steps"][-1]["heldout_rmse_m"] < 0.5 * before["steps"][-1]["heldout_rmse_m"]
 
 
 @pytest.mark.parametrize("delay_s", [-0.12, 0.06])

@@ -1,7 +1,7 @@
 //! What is missing and not in the catalogue: as a curve, and as a formula to try.
 
 use umbmark_core::dataset::effects_text;
-use umbmark_core::diagnose::{Curve, CurvePoint, Dependence};
+use umbmark_core::diagnose::{Curve, CurvePoint, Dependence, Reason};
 
 use crate::prose::hanging;
 use crate::table::with_precision_of;
@@ -25,6 +25,16 @@ pub fn unlisted_text(unlisted: Option<&Dependence>, terminal: bool) -> String {
         None => format!("\n{}", hanging("", 0, "No formula of one variable that was tried explains half of it.")),
     };
     text
+}
+
+/// The law that repeats as a formula, where it counts and can be written as one.
+pub fn law_text(reasons: &[Reason]) -> String {
+    let law = reasons.iter().find_map(|reason| match reason {
+        Reason::Repeats(repeated) => repeated.law.as_ref(),
+        _ => None,
+    });
+    let what = "a formula for what repeats; save it as FILE and try `umbmark learn DATA --model FILE`";
+    law.map_or_else(String::new, |law| format!("\n{}\n{}", hanging("", 0, what), effects_text(law)))
 }
 
 /// A line for each place: the value with half its 95 % interval, and where it lies between the edges.

@@ -19,7 +19,7 @@ use crate::prose::hanging;
 use crate::setup_report::{disturbances_text, faults_text, reasons_text, taken_text};
 use crate::table::{table, with_precision_of};
 use crate::test_arguments::TestArguments;
-use crate::unlisted::unlisted_text;
+use crate::unlisted::{law_text, unlisted_text};
 
 /// So many experiments are printed; --json has all.
 const EXPERIMENTS: usize = 3;
@@ -93,6 +93,9 @@ fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, terminal: bool
     }
     text += &next_text(diagnosis);
     text += &unlisted_text(diagnosis.dependence.as_ref(), terminal);
+    if diagnosis.dependence.is_none() {
+        text += &law_text(&diagnosis.reasons);
+    }
     if !diagnosis.fitted.is_empty() {
         text += &format!("\n{}\n", estimates_table(&diagnosis.fitted, 1.0 - options.size));
         text += &meaning_text(&diagnosis.fitted, &diagnosis.model);

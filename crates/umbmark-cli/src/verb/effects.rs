@@ -69,6 +69,7 @@ fn own() -> String {
         (
             "acts_on",
             "heading_per_metre [rad/m], sideways_per_metre [m/m] to the left, forward_per_radian, sideways_per_radian [m/rad], \
+             heading_per_second [rad/s], forward_per_second, sideways_per_second [m/s], \
              forward_scale, turn_scale, left_wheel_scale or right_wheel_scale: what the formula adds to the motion that odometry \
              believes, so that 0 does nothing",
         ),

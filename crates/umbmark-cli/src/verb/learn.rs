@@ -18,7 +18,7 @@ use crate::prose::hanging;
 use crate::setup_report::{disturbances_text, faults_text, reasons_text, taken_text};
 use crate::table::table;
 use crate::test_arguments::TestArguments;
-use crate::unlisted::unlisted_text;
+use crate::unlisted::{law_text, unlisted_text};
 
 /// Arguments of `learn`.
 #[derive(Debug, clap::Args)]
@@ -113,6 +113,9 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
         text += &hanging("note", 10, remark);
     }
     text += &unlisted_text(learnt.diagnosis.dependence.as_ref(), terminal);
+    if learnt.diagnosis.dependence.is_none() {
+        text += &law_text(&learnt.diagnosis.reasons);
+    }
     if !learnt.diagnosis.fitted.is_empty() {
         text += &format!("\n{}\n", estimates_table(&learnt.diagnosis.fitted, 1.0 - options.size));
         text += &meaning_text(&learnt.diagnosis.fitted, &learnt.model);

@@ -266,7 +266,8 @@ mod tests {
                 "acts_on",
                 "\"heading_per_meter\"",
                 "3: acts_on must be one of heading_per_metre, forward_scale, turn_scale, sideways_per_metre, \
-                 forward_per_radian, sideways_per_radian, left_wheel_scale, right_wheel_scale, got \"heading_per_meter\"; \
+                 forward_per_radian, sideways_per_radian, heading_per_second, forward_per_second, sideways_per_second, \
+                 left_wheel_scale, right_wheel_scale, got \"heading_per_meter\"; \
                  did you mean \"heading_per_metre\"?",
             ),
             ("formula", "", "1: [[effect]] has no formula; add e.g. formula = \"k * sin(heading)\""),

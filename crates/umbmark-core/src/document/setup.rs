@@ -1,6 +1,7 @@
 //! What was found of an experiment before anything was fitted.
 
 use super::{ends, finite};
+use crate::dataset::effects_text;
 use crate::diagnose::{Reason, Repeated};
 use crate::likelihood::Taken;
 use crate::setup::{Deviant, Jump, Measured, OutlyingReturn, RunSetup, Setup, WrongPose};
@@ -86,6 +87,8 @@ pub(super) fn taken(taken: &[Taken]) -> Value {
 pub(super) fn repeats(repeated: &Repeated) -> Value {
     json!({
         "p": repeated.p,
+        "toml": repeated.law.as_ref().map(effects_text),
+        "standard_deviations": repeated.deviations,
         "laws": repeated.laws,
         "acts_on": repeated.acts_on,
         "per": repeated.per,

@@ -5,14 +5,17 @@
 //! sideways_per_metre    sideways ← sideways + f · length       f [m/m], to the left
 //! forward_per_radian    forward ← forward + f · |rotation|     f [m/rad]
 //! sideways_per_radian   sideways ← sideways + f · |rotation|   f [m/rad], to the left
+//! heading_per_second    Δθ ← Δθ + f · duration                 f [rad/s]
+//! forward_per_second    forward ← forward + f · duration       f [m/s]
+//! sideways_per_second   sideways ← sideways + f · duration     f [m/s], to the left
 //! forward_scale         forward ← (1 + f) · forward            f [-]
 //! turn_scale            Δθ ← (1 + f) · Δθ                      f [-]
 //! left_wheel_scale      s_L ← (1 + f) · s_L                    f [-]
 //! right_wheel_scale     s_R ← (1 + f) · s_R                    f [-]
 //! ```
 //!
-//! *length* is the path length of a piece, always positive, and *rotation* how far it turns; where they are 0, laws per metre, or per
-//! radian, do nothing. f is taken in the middle of the piece. So a formula that is 0 does nothing.
+//! *length* is the path length of a piece, always positive, *rotation* how far it turns and *duration* how long it takes; where they are 0,
+//! laws per metre, per radian, or per second, do nothing. f is taken in the middle of the piece. So a formula that is 0 does nothing.
 
 mod error;
 mod parser;
@@ -47,6 +50,12 @@ pub enum Target {
     ForwardPerRadian,
     /// Sideways motion per radian turned either way \[m/rad\], to the left positive.
     SidewaysPerRadian,
+    /// Rotation per second \[rad/s\], counter-clockwise positive.
+    HeadingPerSecond,
+    /// Motion ahead per second \[m/s\].
+    ForwardPerSecond,
+    /// Sideways motion per second \[m/s\], to the left positive.
+    SidewaysPerSecond,
     /// Share by which the left wheel's travel grows.
     LeftWheelScale,
     /// Share by which the right wheel's travel grows.
@@ -55,13 +64,16 @@ pub enum Target {
 
 impl Target {
     /// All of them.
-    pub const ALL: [Target; 8] = [
+    pub const ALL: [Target; 11] = [
         Target::HeadingPerMetre,
         Target::ForwardScale,
         Target::TurnScale,
         Target::SidewaysPerMetre,
         Target::ForwardPerRadian,
         Target::SidewaysPerRadian,
+        Target::HeadingPerSecond,
+        Target::ForwardPerSecond,
+        Target::SidewaysPerSecond,
         Target::LeftWheelScale,
         Target::RightWheelScale,
     ];
@@ -75,6 +87,9 @@ impl Target {
             Target::SidewaysPerMetre => "sideways_per_metre",
             Target::ForwardPerRadian => "forward_per_radian",
             Target::SidewaysPerRadian => "sideways_per_radian",
+            Target::HeadingPerSecond => "heading_per_second",
+            Target::ForwardPerSecond => "forward_per_second",
+            Target::SidewaysPerSecond => "sideways_per_second",
             Target::LeftWheelScale => "left_wheel_scale",
             Target::RightWheelScale => "right_wheel_scale",
         }
@@ -84,16 +99,19 @@ impl Target {
         match self {
             Target::HeadingPerMetre => Unit { metres: -1.0, seconds: 0.0 },
             Target::ForwardPerRadian | Target::SidewaysPerRadian => Unit { metres: 1.0, seconds: 0.0 },
+            Target::HeadingPerSecond => Unit { metres: 0.0, seconds: -1.0 },
+            Target::ForwardPerSecond | Target::SidewaysPerSecond => Unit { metres: 1.0, seconds: -1.0 },
             _ => Unit::PLAIN,
         }
     }
 
-    /// What the formula is multiplied by over a piece: its length, how far it turns either way, or 1 for a share.
+    /// What the formula is multiplied by over a piece: its length, how far it turns either way, how long it takes, or 1 for a share.
     #[inline]
     fn exposure<T>(self, at: &Context<T>) -> f64 {
         match self {
             Target::HeadingPerMetre | Target::SidewaysPerMetre => at.length,
             Target::ForwardPerRadian | Target::SidewaysPerRadian => (at.turn_rate * at.duration).abs(),
+            Target::HeadingPerSecond | Target::ForwardPerSecond | Target::SidewaysPerSecond => at.duration,
             Target::ForwardScale | Target::TurnScale | Target::LeftWheelScale | Target::RightWheelScale => 1.0,
         }
     }
@@ -213,9 +231,9 @@ impl Formula {
         }
         let f = self.program.evaluate(p, at, at.heading + motion.rotation * 0.5) * exposure;
         match self.target {
-            Target::HeadingPerMetre => motion.rotation += f,
-            Target::SidewaysPerMetre | Target::SidewaysPerRadian => motion.sideways += f,
-            Target::ForwardPerRadian => motion.forward += f,
+            Target::HeadingPerMetre | Target::HeadingPerSecond => motion.rotation += f,
+            Target::SidewaysPerMetre | Target::SidewaysPerRadian | Target::SidewaysPerSecond => motion.sideways += f,
+            Target::ForwardPerRadian | Target::ForwardPerSecond => motion.forward += f,
             Target::TurnScale => motion.rotation *= f + 1.0,
             _ => motion.forward *= f + 1.0,
         }

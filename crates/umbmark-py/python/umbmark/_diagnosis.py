@@ -155,8 +155,13 @@ class Repeated(Record, frozen=True):
     ----------
     p : float
         Of all laws together, by flips of the signs of runs.
+    toml : str or None
+        The law as an effect of a model file, with start values; None where formulas lack what it
+        depends on.
+    standard_deviations : float
+        Size of its score, in standard deviations of the noise model.
     laws : int
-        How many there are that the data could show.
+        How many laws there are that the data could show.
     acts_on : str
         "forward", "sideways" or "yaw".
     per : str
@@ -175,6 +180,8 @@ class Repeated(Record, frozen=True):
     """
 
     p: float
+    toml: str | None
+    standard_deviations: float
     laws: int
     acts_on: str
     per: str

@@ -69,6 +69,10 @@ fn every_target_does_what_its_law_says() {
     near(moved(Target::SidewaysPerMetre).1.sideways, plain.sideways + 0.005);
     near(moved(Target::ForwardPerRadian).1.forward, plain.forward + 0.006);
     near(moved(Target::SidewaysPerRadian).1.sideways, plain.sideways + 0.006);
+    let seconds = at.duration;
+    near(moved(Target::HeadingPerSecond).1.rotation, plain.rotation + 0.01 * seconds);
+    near(moved(Target::ForwardPerSecond).1.forward, plain.forward + 0.01 * seconds);
+    near(moved(Target::SidewaysPerSecond).1.sideways, plain.sideways + 0.01 * seconds);
     near(moved(Target::TurnScale).1.rotation, 1.01 * plain.rotation);
     near(moved(Target::ForwardScale).1.forward, 1.01 * plain.forward);
     near(moved(Target::LeftWheelScale).0.left, 0.404);

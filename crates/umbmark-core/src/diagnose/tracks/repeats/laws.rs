@@ -1,7 +1,8 @@
 //! The laws that are asked about: functions of how and where the robot drives, for each second, metre or radian.
 
 use super::super::smooth::Motion;
-use crate::effect::Chain;
+use crate::drive::Robot;
+use crate::effect::{Chain, Formula, Model, Target};
 use crate::geometry::{Displacement2, Pose2};
 use crate::likelihood::{Column, Observed, ObservedRun};
 use std::f64::consts::TAU;
@@ -64,10 +65,10 @@ pub struct Step {
     /// Way since the last turn \[m\], and its sense.
     since_turn: f64,
     last_turn: f64,
-    /// Number of the run.
-    run: f64,
 }
 
+/// The name that a law has as an effect.
+const NAME: &str = "unlisted";
 /// A step ends after so much way \[m\], rotation \[rad\] or time \[s\].
 const STEP: (f64, f64, f64) = (0.02, 0.05, 0.1);
 /// Wheels roll alike where they differ by less than this share.
@@ -93,7 +94,6 @@ fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
                     wheel_angle: at.wheel_angle,
                     since_turn: at.since_turn,
                     last_turn: at.last_turn,
-                    run: at.run,
                     ..Step::default()
                 };
                 (wheels, change) = ([0.0; 2], [0.0; 2]);
@@ -136,10 +136,22 @@ fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
 }
 
 /// A function of a step.
-pub struct Function {
-    /// What it is: "a sine of the time with a period of 18.9 s".
-    pub words: String,
+struct Function {
+    /// What it is: "a wave of the time with a period of about 18.900 s".
+    words: String,
+    /// The same as a formula of the user's own, with a parameter c where it has a value; none where formulas lack what it depends on.
+    formula: Option<(String, Option<f64>)>,
     value: Box<dyn Fn(&Step) -> f64 + Send + Sync>,
+}
+
+/// A formula without a parameter.
+fn written(text: impl Into<String>) -> Option<(String, Option<f64>)> {
+    Some((text.into(), None))
+}
+
+/// A formula of a parameter c.
+fn shaped(text: &str, c: f64) -> Option<(String, Option<f64>)> {
+    Some((text.to_owned(), Some(c)))
 }
 
 /// A function for each second, metre or radian.
@@ -209,17 +221,31 @@ impl Laws {
         laws
     }
 
-    fn add(&mut self, words: String, per: &[Per], value: impl Fn(&Step) -> f64 + Send + Sync + 'static) {
+    fn add(
+        &mut self,
+        words: String,
+        formula: Option<(String, Option<f64>)>,
+        per: &[Per],
+        value: impl Fn(&Step) -> f64 + Send + Sync + 'static,
+    ) {
         let function = self.functions.len();
-        self.functions.push(Function { words, value: Box::new(value) });
+        self.functions.push(Function { words, formula, value: Box::new(value) });
         self.terms.extend(per.iter().map(|per| Term { function, per: *per, twin: None }));
     }
 
-    /// A cosine and a sine of an angle.
-    fn wave(&mut self, words: String, per: &[Per], angle: impl Fn(&Step) -> f64 + Copy + Send + Sync + 'static) {
+    /// A cosine and a sine of an angle, times a size; of the latter two, formulas.
+    fn wave(
+        &mut self,
+        words: String,
+        (size_text, angle_text, value): (&str, &str, Option<f64>),
+        per: &[Per],
+        size: impl Fn(&Step) -> f64 + Copy + Send + Sync + 'static,
+        angle: impl Fn(&Step) -> f64 + Copy + Send + Sync + 'static,
+    ) {
         let first = self.terms.len();
-        self.add(words.clone(), per, move |s| libm::cos(angle(s)));
-        self.add(words, per, move |s| libm::sin(angle(s)));
+        let formula = |wave: &str| Some((format!("{size_text}{wave}({angle_text})"), value));
+        self.add(words.clone(), formula("cos"), per, move |s| size(s) * libm::cos(angle(s)));
+        self.add(words, formula("sin"), per, move |s| size(s) * libm::sin(angle(s)));
         for k in 0..per.len() {
             self.terms[first + k].twin = Some(first + per.len() + k);
             self.terms[first + per.len() + k].twin = Some(first + k);
@@ -228,41 +254,48 @@ impl Laws {
 
     fn fill(&mut self, extent: &Extent) {
         use Per::{Metre, Radian, Second};
-        self.add("always".into(), &[Second, Metre, Radian], |_| 1.0);
+        self.add("always".into(), written("1"), &[Second, Metre, Radian], |_| 1.0);
         let periods = |(low, high): (f64, f64)| -> Vec<f64> {
             let ratio = (high / low).powf(1.0 / (PERIODS - 1) as f64);
             (0..PERIODS).map(|k| low * ratio.powi(k as i32)).collect()
         };
         for period in periods(TIMES).into_iter().filter(|period| *period < 1.5 * extent.time) {
             let words = format!("a wave of the time with a period of about {period:.3} s");
-            self.wave(words, &[Second, Metre], move |s| TAU * s.time / period);
+            let about = ("", "2 * pi * time / c", Some(period));
+            self.wave(words, about, &[Second, Metre], |_| 1.0, move |s| TAU * s.time / period);
         }
         for period in periods(WAYS).into_iter().filter(|period| *period < 1.5 * extent.distance) {
             let words = format!("a wave of the way with a period of about {period:.3} m");
-            self.wave(words, &[Metre], move |s| TAU * s.distance / period);
+            let about = ("", "2 * pi * distance / c", Some(period));
+            self.wave(words, about, &[Metre], |_| 1.0, move |s| TAU * s.distance / period);
         }
         for c in DECAYS {
-            self.add(format!("what dies away within {c} s of the start"), &[Second, Metre], move |s| {
-                libm::exp(-s.time / c)
-            });
+            self.add(
+                format!("what dies away within {c} s of the start"),
+                shaped("exp(-time / c)", c),
+                &[Second, Metre],
+                move |s| libm::exp(-s.time / c),
+            );
         }
-        self.add("the time in the run".into(), &[Second, Metre], |s| s.time);
-        self.add("the square of the time in the run".into(), &[Second, Metre], |s| s.time * s.time);
-        self.add("the place of the run in the session".into(), &[Second, Metre], |s| s.run);
+        self.add("the time in the run".into(), written("time"), &[Second, Metre], |s| s.time);
+        self.add("the square of the time in the run".into(), written("time^2"), &[Second, Metre], |s| s.time * s.time);
         for n in 1..=4 {
             let times = if n == 1 { String::new() } else { format!("{n} times ") };
+            let angle = |of: &str| format!("{n} * {of}");
             let n = f64::from(n);
-            self.wave(format!("a wave of {times}the heading"), &[Second, Metre, Radian], move |s| n * s.middle.heading);
+            let words = format!("a wave of {times}the heading");
+            let about = angle("heading");
+            self.wave(words, ("", &about, None), &[Second, Metre, Radian], |_| 1.0, move |s| n * s.middle.heading);
             for (wheel, name) in ["left", "right"].into_iter().enumerate() {
                 let words = format!("a wave of {times}the angle of the {name} wheel");
-                self.wave(words, &[Metre], move |s| n * s.wheel_angle[wheel]);
+                let about = angle(&format!("wheel_angle_{name}"));
+                self.wave(words, ("", &about, None), &[Metre], |_| 1.0, move |s| n * s.wheel_angle[wheel]);
             }
-        }
-        for n in [1.0, 2.0] {
-            let (first, words) = (self.terms.len(), format!("the speed times a wave of {n} times the heading"));
-            self.add(words.clone(), &[Metre], move |s| s.speed.abs() * libm::cos(n * s.middle.heading));
-            self.add(words, &[Metre], move |s| s.speed.abs() * libm::sin(n * s.middle.heading));
-            (self.terms[first].twin, self.terms[first + 1].twin) = (Some(first + 1), Some(first));
+            if n < 3.0 {
+                let words = format!("the speed times a wave of {times}the heading");
+                let about = ("abs(speed) * ", &*about, None);
+                self.wave(words, about, &[Metre], |s| s.speed.abs(), move |s| n * s.middle.heading);
+            }
         }
         self.of_motion(extent);
         self.of_place(extent);
@@ -271,55 +304,118 @@ impl Laws {
     fn of_motion(&mut self, extent: &Extent) {
         use Per::{Metre, Radian, Second};
         let (fastest, quickest) = (extent.speed, extent.turn_rate);
-        self.add("the speed".into(), &[Metre], |s| s.speed.abs());
-        self.add("the sense of driving".into(), &[Metre, Second], |s| s.speed.signum());
-        self.add("the square of the speed".into(), &[Metre], |s| s.speed * s.speed);
-        self.add("the root of the speed".into(), &[Metre], |s| s.speed.abs().sqrt());
+        self.add("the speed".into(), written("abs(speed)"), &[Metre], |s| s.speed.abs());
+        self.add("the sense of driving".into(), written("sign(speed)"), &[Metre, Second], |s| s.speed.signum());
+        self.add("the square of the speed".into(), written("speed^2"), &[Metre], |s| s.speed * s.speed);
+        self.add("the root of the speed".into(), written("sqrt(abs(speed))"), &[Metre], |s| s.speed.abs().sqrt());
         for share in SHARES {
             let v = share * fastest;
-            self.add(format!("a speed above {v:.2} m/s"), &[Metre], move |s| f64::from(s.speed.abs() > v));
-            self.add(format!("the speed beyond {v:.2} m/s"), &[Metre], move |s| (s.speed.abs() - v).max(0.0));
-            self.add(format!("tanh(speed / {v:.2} m/s)"), &[Metre], move |s| libm::tanh(s.speed.abs() / v));
+            self.add(
+                format!("a speed above {v:.2} m/s"),
+                written(format!("(1 + sign(abs(speed) - {v:.4})) / 2")),
+                &[Metre],
+                move |s| f64::from(s.speed.abs() > v),
+            );
+            self.add(format!("the speed beyond {v:.2} m/s"), shaped("max(abs(speed) - c, 0)", v), &[Metre], move |s| {
+                (s.speed.abs() - v).max(0.0)
+            });
+            self.add(format!("tanh(speed / {v:.2} m/s)"), shaped("tanh(abs(speed) / c)", v), &[Metre], move |s| {
+                libm::tanh(s.speed.abs() / v)
+            });
             let w = share * quickest;
-            self.add(format!("a turn rate above {w:.2} rad/s"), &[Radian], move |s| f64::from(s.turn_rate.abs() > w));
-            self.add(format!("a turn rate above {w:.2} rad/s, with its sense"), &[Radian], move |s| {
-                s.turn_rate.signum() * f64::from(s.turn_rate.abs() > w)
-            });
-            self.add(format!("tanh(turn rate / {w:.2} rad/s)"), &[Second], move |s| libm::tanh(s.turn_rate / w));
+            self.add(
+                format!("a turn rate above {w:.2} rad/s"),
+                written(format!("(1 + sign(abs(turn_rate) - {w:.4})) / 2")),
+                &[Radian],
+                move |s| f64::from(s.turn_rate.abs() > w),
+            );
+            self.add(
+                format!("a turn rate above {w:.2} rad/s, with its sense"),
+                written(format!("sign(turn_rate) * (1 + sign(abs(turn_rate) - {w:.4})) / 2")),
+                &[Radian],
+                move |s| s.turn_rate.signum() * f64::from(s.turn_rate.abs() > w),
+            );
+            self.add(
+                format!("tanh(turn rate / {w:.2} rad/s)"),
+                shaped("tanh(turn_rate / c)", w),
+                &[Second],
+                move |s| libm::tanh(s.turn_rate / w),
+            );
         }
-        self.add("the sense of the turn".into(), &[Radian], |s| s.turn_rate.signum());
-        self.add("the turn rate".into(), &[Radian], |s| s.turn_rate);
-        self.add("the size of the turn rate".into(), &[Radian], |s| s.turn_rate.abs());
-        self.add("the square of the turn rate".into(), &[Radian], |s| s.turn_rate * s.turn_rate);
-        self.add("the turn rate times its size".into(), &[Radian], |s| s.turn_rate * s.turn_rate.abs());
-        self.add("the speed times the turn rate".into(), &[Second], |s| s.speed * s.turn_rate);
-        self.add("the speed times the size of the turn rate".into(), &[Second], |s| s.speed * s.turn_rate.abs());
+        self.add("the sense of the turn".into(), written("sign(turn_rate)"), &[Radian], |s| s.turn_rate.signum());
+        self.add("the turn rate".into(), written("turn_rate"), &[Radian], |s| s.turn_rate);
+        self.add("the size of the turn rate".into(), written("abs(turn_rate)"), &[Radian], |s| s.turn_rate.abs());
+        self.add("the square of the turn rate".into(), written("turn_rate^2"), &[Radian], |s| {
+            s.turn_rate * s.turn_rate
+        });
+        self.add("the turn rate times its size".into(), written("turn_rate * abs(turn_rate)"), &[Radian], |s| {
+            s.turn_rate * s.turn_rate.abs()
+        });
+        self.add("the speed times the turn rate".into(), written("speed * turn_rate"), &[Second], |s| {
+            s.speed * s.turn_rate
+        });
+        self.add(
+            "the speed times the size of the turn rate".into(),
+            written("speed * abs(turn_rate)"),
+            &[Second],
+            |s| s.speed * s.turn_rate.abs(),
+        );
         let sharp = 0.25 * extent.acceleration;
-        self.add("the acceleration".into(), &[Second, Metre], |s| s.acceleration);
-        self.add("the size of the acceleration".into(), &[Second, Metre], |s| s.acceleration.abs());
-        self.add(format!("braking by more than {sharp:.2} m/s²"), &[Second, Metre], move |s| {
-            f64::from(s.acceleration * s.speed.signum() < -sharp)
+        self.add("the acceleration".into(), written("acceleration"), &[Second, Metre], |s| s.acceleration);
+        self.add("the size of the acceleration".into(), written("abs(acceleration)"), &[Second, Metre], |s| {
+            s.acceleration.abs()
         });
-        self.add(format!("speeding up by more than {sharp:.2} m/s²"), &[Second, Metre], move |s| {
-            f64::from(s.acceleration * s.speed.signum() > sharp)
-        });
+        self.add(
+            format!("braking by more than {sharp:.2} m/s²"),
+            written(format!("(1 + sign(-acceleration * sign(speed) - {sharp:.4})) / 2")),
+            &[Second, Metre],
+            move |s| f64::from(s.acceleration * s.speed.signum() < -sharp),
+        );
+        self.add(
+            format!("speeding up by more than {sharp:.2} m/s²"),
+            written(format!("(1 + sign(acceleration * sign(speed) - {sharp:.4})) / 2")),
+            &[Second, Metre],
+            move |s| f64::from(s.acceleration * s.speed.signum() > sharp),
+        );
         let sharp = 0.25 * extent.turn_acceleration;
-        self.add("the change of the turn rate".into(), &[Second], |s| s.turn_acceleration);
-        self.add("the size of the change of the turn rate".into(), &[Second], |s| s.turn_acceleration.abs());
-        self.add(format!("turns that grow by more than {sharp:.2} rad/s², with their sense"), &[Second], move |s| {
-            let grows = s.turn_acceleration * s.turn_rate.signum() > sharp;
-            s.turn_rate.signum() * f64::from(grows)
+        self.add("the change of the turn rate".into(), written("turn_acceleration"), &[Second], |s| {
+            s.turn_acceleration
         });
-        self.add(format!("turns that end by more than {sharp:.2} rad/s², with their sense"), &[Second], move |s| {
-            let ends = s.turn_acceleration * s.turn_rate.signum() < -sharp;
-            s.turn_rate.signum() * f64::from(ends)
+        self.add("the size of the change of the turn rate".into(), written("abs(turn_acceleration)"), &[Second], |s| {
+            s.turn_acceleration.abs()
         });
-        self.add("the sense of the last turn".into(), &[Metre], |s| s.last_turn);
+        self.add(
+            format!("turns that grow by more than {sharp:.2} rad/s², with their sense"),
+            written(format!("sign(turn_rate) * (1 + sign(turn_acceleration * sign(turn_rate) - {sharp:.4})) / 2")),
+            &[Second],
+            move |s| {
+                let grows = s.turn_acceleration * s.turn_rate.signum() > sharp;
+                s.turn_rate.signum() * f64::from(grows)
+            },
+        );
+        self.add(
+            format!("turns that end by more than {sharp:.2} rad/s², with their sense"),
+            written(format!("sign(turn_rate) * (1 + sign(-turn_acceleration * sign(turn_rate) - {sharp:.4})) / 2")),
+            &[Second],
+            move |s| {
+                let ends = s.turn_acceleration * s.turn_rate.signum() < -sharp;
+                s.turn_rate.signum() * f64::from(ends)
+            },
+        );
+        self.add("the sense of the last turn".into(), written("last_turn"), &[Metre], |s| s.last_turn);
         for c in NEAR {
-            self.add(format!("what dies away within {c} m of a turn"), &[Metre], move |s| libm::exp(-s.since_turn / c));
-            self.add(format!("what dies away within {c} m of a turn, with its sense"), &[Metre], move |s| {
-                s.last_turn * libm::exp(-s.since_turn / c)
-            });
+            self.add(
+                format!("what dies away within {c} m of a turn"),
+                shaped("exp(-since_turn / c)", c),
+                &[Metre],
+                move |s| libm::exp(-s.since_turn / c),
+            );
+            self.add(
+                format!("what dies away within {c} m of a turn, with its sense"),
+                shaped("last_turn * exp(-since_turn / c)", c),
+                &[Metre],
+                move |s| s.last_turn * libm::exp(-s.since_turn / c),
+            );
         }
     }
 
@@ -330,17 +426,17 @@ impl Laws {
         if wide.max(deep) < HUMPS.0 {
             return;
         }
-        self.add("x in the room".into(), &[Metre, Second], |s| s.middle.x);
-        self.add("y in the room".into(), &[Metre, Second], |s| s.middle.y);
-        self.add("the square of x in the room".into(), &[Metre], |s| s.middle.x * s.middle.x);
-        self.add("the square of y in the room".into(), &[Metre], |s| s.middle.y * s.middle.y);
-        self.add("x times y in the room".into(), &[Metre], |s| s.middle.x * s.middle.y);
+        self.add("x in the room".into(), None, &[Metre, Second], |s| s.middle.x);
+        self.add("y in the room".into(), None, &[Metre, Second], |s| s.middle.y);
+        self.add("the square of x in the room".into(), None, &[Metre], |s| s.middle.x * s.middle.x);
+        self.add("the square of y in the room".into(), None, &[Metre], |s| s.middle.y * s.middle.y);
+        self.add("x times y in the room".into(), None, &[Metre], |s| s.middle.x * s.middle.y);
         for c in NEAR {
             let words = |wall: &str| format!("what dies away within {c} m of the {wall}");
-            self.add(words("least x"), &[Metre], move |s| libm::exp(-(s.middle.x - x0) / c));
-            self.add(words("greatest x"), &[Metre], move |s| libm::exp(-(x1 - s.middle.x) / c));
-            self.add(words("least y"), &[Metre], move |s| libm::exp(-(s.middle.y - y0) / c));
-            self.add(words("greatest y"), &[Metre], move |s| libm::exp(-(y1 - s.middle.y) / c));
+            self.add(words("least x"), None, &[Metre], move |s| libm::exp(-(s.middle.x - x0) / c));
+            self.add(words("greatest x"), None, &[Metre], move |s| libm::exp(-(x1 - s.middle.x) / c));
+            self.add(words("least y"), None, &[Metre], move |s| libm::exp(-(s.middle.y - y0) / c));
+            self.add(words("greatest y"), None, &[Metre], move |s| libm::exp(-(y1 - s.middle.y) / c));
         }
         let apart = HUMPS.0.max((wide * deep / HUMPS.1 as f64).sqrt()).max(wide.max(deep) / HUMPS.1 as f64);
         let along = |from: f64, length: f64| {
@@ -350,12 +446,42 @@ impl Laws {
         };
         for x in along(x0, wide) {
             for y in along(y0, deep) {
-                self.add(format!("a place on the floor near ({x:.1}, {y:.1}) m"), &[Metre], move |s| {
+                self.add(format!("a place on the floor near ({x:.1}, {y:.1}) m"), None, &[Metre], move |s| {
                     let square = (s.middle.x - x).powi(2) + (s.middle.y - y).powi(2);
                     libm::exp(-0.5 * square / (0.6 * apart).powi(2))
                 });
             }
         }
+    }
+
+    /// A model that holds a term alone, and its twin, with these sizes: for each motion, with the sense of the run or without.
+    pub fn model(&self, term: usize, sizes: &[f64], motion: Motion, with_sense: bool, robot: &Robot) -> Option<Model> {
+        let about = self.terms[term];
+        let (target, factor) = match (motion, about.per) {
+            (Motion::Yaw, Per::Metre) => (Target::HeadingPerMetre, ""),
+            (Motion::Yaw, Per::Radian) => (Target::TurnScale, "sign(turn_rate) * "),
+            (Motion::Yaw, Per::Second) => (Target::HeadingPerSecond, ""),
+            (Motion::Forward, Per::Metre) => (Target::ForwardScale, "sign(speed) * "),
+            (Motion::Forward, Per::Radian) => (Target::ForwardPerRadian, ""),
+            (Motion::Forward, Per::Second) => (Target::ForwardPerSecond, ""),
+            (Motion::Sideways, Per::Metre) => (Target::SidewaysPerMetre, ""),
+            (Motion::Sideways, Per::Radian) => (Target::SidewaysPerRadian, ""),
+            (Motion::Sideways, Per::Second) => (Target::SidewaysPerSecond, ""),
+        };
+        let sense = if with_sense { "direction * " } else { "" };
+        let (first, shape) = self.functions[about.function].formula.as_ref()?;
+        let second = about.twin.and_then(|twin| self.functions[self.terms[twin].function].formula.as_ref());
+        let text = match second {
+            Some((second, _)) if sense.is_empty() && factor.is_empty() => format!("a * {first} + b * {second}"),
+            Some((second, _)) => format!("{sense}{factor}(a * {first} + b * {second})"),
+            None => format!("a * {sense}{factor}{first}"),
+        };
+        let names: Vec<&str> = ["a", "b"].into_iter().take(sizes.len()).chain(shape.map(|_| "c")).collect();
+        let rounded = sizes.iter().copied().chain(*shape).map(|value| format!("{value:.4e}").parse().unwrap_or(value));
+        let formula = Formula::new(NAME, target, &text, &names).ok()?;
+        let mut model = Model::new(robot);
+        model.add_formula(formula, &rounded.collect::<Vec<f64>>()).ok()?.free = true;
+        Some(model)
     }
 
     /// What a term depends on, in words.
