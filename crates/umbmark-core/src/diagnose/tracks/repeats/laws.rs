@@ -137,7 +137,7 @@ fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
 
 /// A function of a step.
 struct Function {
-    /// What it is: "a wave of the time with a period of about 18.900 s".
+    /// What it is: "a wave of the time with a period of about 18.9 s".
     words: String,
     /// The same as a formula of the user's own, with a parameter c where it has a value; none where formulas lack what it depends on.
     formula: Option<(String, Option<f64>)>,
@@ -254,18 +254,18 @@ impl Laws {
 
     fn fill(&mut self, extent: &Extent) {
         use Per::{Metre, Radian, Second};
-        self.add("always".into(), written("1"), &[Second, Metre, Radian], |_| 1.0);
+        self.add("a constant".into(), written("1"), &[Second, Metre, Radian], |_| 1.0);
         let periods = |(low, high): (f64, f64)| -> Vec<f64> {
             let ratio = (high / low).powf(1.0 / (PERIODS - 1) as f64);
             (0..PERIODS).map(|k| low * ratio.powi(k as i32)).collect()
         };
         for period in periods(TIMES).into_iter().filter(|period| *period < 1.5 * extent.time) {
-            let words = format!("a wave of the time with a period of about {period:.3} s");
+            let words = format!("a wave of the time with a period of about {period:.1} s");
             let about = ("", "2 * pi * time / c", Some(period));
             self.wave(words, about, &[Second, Metre], |_| 1.0, move |s| TAU * s.time / period);
         }
         for period in periods(WAYS).into_iter().filter(|period| *period < 1.5 * extent.distance) {
-            let words = format!("a wave of the way with a period of about {period:.3} m");
+            let words = format!("a wave of the way with a period of about {period:.2} m");
             let about = ("", "2 * pi * distance / c", Some(period));
             self.wave(words, about, &[Metre], |_| 1.0, move |s| TAU * s.distance / period);
         }
