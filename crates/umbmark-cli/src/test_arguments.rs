@@ -24,6 +24,6 @@ impl TestArguments {
     /// The same for the core.
     pub fn options(&self, session: &Session) -> Options {
         let (size, draws, seed) = (self.size, self.draws as usize, session.seed());
-        Options { size, draws, seed, ends_only: self.return_poses }
+        Options { size, draws, seed, ends_only: self.return_poses, ..Options::default() }
     }
 }

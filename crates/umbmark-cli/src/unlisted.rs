@@ -30,7 +30,7 @@ pub fn unlisted_text(unlisted: Option<&Dependence>, terminal: bool) -> String {
 /// The law that repeats as a formula, where it counts and can be written as one.
 pub fn law_text(reasons: &[Reason]) -> String {
     let law = reasons.iter().find_map(|reason| match reason {
-        Reason::Repeats(repeated) => repeated.law.as_ref(),
+        Reason::Repeats(repeated) => repeated.law.model.as_ref(),
         _ => None,
     });
     let what = "a formula for what repeats; save it as FILE and try `umbmark learn DATA --model FILE`";

@@ -28,7 +28,7 @@ pub use ends::{Contrast, OnCircle};
 pub use identifiability::{Identifiability, Share, identifiability};
 pub use likeness::Likeness;
 pub use reason::Reason;
-pub use tracks::{Repeated, Suggestion};
+pub use tracks::{Repeated, Suggestion, UnlistedLaw};
 
 /// What was observed of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,12 +83,15 @@ pub struct Options {
     pub seed: u64,
     /// Whether to use return poses alone, even where the runs were observed on the way.
     pub ends_only: bool,
+    /// Which of the laws that stand out is added first where no effect of the catalogue explains what repeats: 1 for the one that would be
+    /// taken, 2 for the first of its [`Repeated::others`], and so on.
+    pub law: usize,
 }
 
 impl Default for Options {
-    /// 5 %, 999 draws, seed 1.
+    /// 5 %, 999 draws, seed 1, the first law.
     fn default() -> Self {
-        Options { size: 0.05, draws: 999, seed: 1, ends_only: false }
+        Options { size: 0.05, draws: 999, seed: 1, ends_only: false, law: 1 }
     }
 }
 

@@ -14,7 +14,7 @@ pub use gears::{GearCalibration, GearError, calibrate_gears};
 use crate::calibrate::CalibrateError;
 use crate::dataset::Dataset;
 use crate::diagnose::ends::Ends;
-use crate::diagnose::{self, DiagnoseError, Diagnosis, Estimate, Level, Suspect, Verdict};
+use crate::diagnose::{self, DiagnoseError, Diagnosis, Estimate, Level, Repeated, Suspect, Verdict};
 use crate::effect::{Model, Part};
 use crate::likelihood::{Fitted, Outlier, Taken};
 use crate::setup::Setup;
@@ -45,6 +45,8 @@ pub struct Step {
     pub class: Vec<&'static str>,
     /// p of its class among all that were asked; `None` for what was not asked but fitted.
     pub p_adjusted: Option<f64>,
+    /// Of a law that no catalogue lists: how it was found, what else it may be, and its formula as it was fitted.
+    pub law: Option<Box<Repeated>>,
     /// In the runs that the model was fitted to.
     pub error: Error,
     /// In runs that were left out.
@@ -352,6 +354,7 @@ impl<'a, E: Evidence> Story<'a, E> {
             added,
             class,
             p_adjusted,
+            law: None,
             error: total(&|run| self.evidence.squares(&self.model, run)),
             held_out: total(&|run| self.evidence.squares(&self.fold_models[run], run)),
             aicc: criteria.map(|c| c[0]),

@@ -123,5 +123,5 @@ pub fn options_of((size, draws, seed): (f64, usize, u64), ends_only: bool) -> Py
         let (least, most) = (DRAWS.start(), DRAWS.end());
         return Err(PyValueError::new_err(format!("draws must be between {least} and {most}, got {draws}")));
     }
-    Ok(Options { size, draws, seed, ends_only })
+    Ok(Options { size, draws, seed, ends_only, ..Options::default() })
 }

@@ -54,7 +54,7 @@ pub enum Reason {
         inside: f64,
     },
     /// What is left repeats from run to run.
-    Repeats(Repeated),
+    Repeats(Box<Repeated>),
     /// The headings of the reference are half a turn from the way the wheels drive: two robots do that.
     TailFirst {
         /// Heading of the tracked body less that of the robot, as the columns are read \[rad\].

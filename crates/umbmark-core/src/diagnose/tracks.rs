@@ -43,8 +43,8 @@ pub(crate) use alone::{Alone, trusted};
 pub use errors::Misses;
 pub(crate) use examination::Examination;
 pub(crate) use look::{Finding, class_of_own};
-pub use repeats::Repeated;
-pub(crate) use search::{Search, search};
+pub use repeats::{Repeated, UnlistedLaw};
+pub(crate) use search::{Added, Found, Search, Wanted, search};
 pub use suggestion::Suggestion;
 
 /// Share by which errors in runs left out must fall for an effect to count: less is not worth a parameter.
@@ -81,22 +81,22 @@ pub(crate) fn dependence(exam: &Examination, finding: &Finding, asked: &[Suspect
 
 /// Fits a model's free parameters to tracks and asks every other effect, and every smooth, whether it is missing.
 pub(crate) fn diagnose(fitted: Fitted, options: &Options) -> Result<Diagnosis, DiagnoseError> {
-    let search = Watch::nobody(|watch| search(fitted, options, MOST, Vec::new(), watch))?;
+    let mut search = Watch::nobody(|watch| search(fitted, options, (MOST, Wanted::Listed), Vec::new(), watch))?;
     let verdict = verdict(&search);
+    let repeats = search.repeats(options).cloned();
     let mut reasons = doubts_of(search.last(), options);
-    let (repeats, repeated) = repeats_beside(search.last(), options);
-    reasons.extend(repeated);
+    reasons.extend(reason_to_doubt(repeats.as_ref()));
     let Search { mut exams, added, left, .. } = search;
     let last = exams.len() - 1;
     let told = left.smooth.as_ref().and_then(|finding| dependence(&exams[last], finding, &left.asked));
     let mut certified: Vec<Suspect> = Vec::new();
     let mut experiments = Vec::new();
     let mut hints = Vec::new();
-    for (exam, (finding, suspect)) in exams.iter().zip(&added) {
-        let (told, hint) = next_experiments(exam, finding, suspect)?;
+    for (exam, added) in exams.iter().zip(&added) {
+        let (told, hint) = next_experiments(exam, added)?;
         experiments.extend(told);
         hints.extend(hint);
-        certified.push(suspect.clone());
+        certified.push(added.suspect.clone());
     }
     hints.extend(uncertified(&left.asked, options));
     let asked = left.asked.into_iter().filter(|other| certified.iter().all(|known| known.best != other.best));
@@ -115,11 +115,9 @@ pub(crate) fn doubts_of(exam: &Examination, options: &Options) -> Vec<Reason> {
     doubts::of_model(&fitted.observed, &fitted.model, &fitted.noise, &errors.in_sample(), options.seed)
 }
 
-/// What repeats most beside the model of an examination, and the reason that it is, where it counts.
-pub(crate) fn repeats_beside(exam: &Examination, options: &Options) -> (Option<Repeated>, Option<Reason>) {
-    let repeated = repeats::beside(exam, options.seed);
-    let reason = repeated.clone().filter(|repeated| repeated.counts(LEAST_GAIN)).map(Reason::Repeats);
-    (repeated, reason)
+/// The reason that what repeats beside a fitted model is, where it counts.
+pub(crate) fn reason_to_doubt(repeated: Option<&Repeated>) -> Option<Reason> {
+    repeated.filter(|repeated| repeated.counts(LEAST_GAIN)).cloned().map(|repeated| Reason::Repeats(Box::new(repeated)))
 }
 
 /// The same of a model with the values that it has, nothing but START fitted: under the noise that would make what it leaves
@@ -136,16 +134,18 @@ pub(crate) fn doubts_as_written(observed: &Observed, model: &Model, options: &Op
     let errors = errors::Errors::new(&fixed.observed, &system, &columns, vec![0]);
     let mut reasons = doubts::of_model(&fixed.observed, model, &noise, &errors.in_sample(), options.seed);
     let repeated = repeats::look(&fixed.observed, model, &noise, &columns, options.seed);
-    reasons.extend(repeated.filter(|repeated| repeated.counts(TELLING)).map(Reason::Repeats));
+    reasons.extend(
+        repeated.filter(|repeated| repeated.counts(TELLING)).map(|repeated| Reason::Repeats(Box::new(repeated))),
+    );
     reasons
 }
 
 /// Drives that would tell apart the members of a certified class, and for those that none does, what their own pages say.
 pub(crate) fn next_experiments(
     exam: &Examination,
-    finding: &Finding,
-    suspect: &Suspect,
+    added: &Added,
 ) -> Result<(Vec<Experiment>, Vec<String>), DiagnoseError> {
+    let Added { suspect, by: Found::Listed(finding) } = added else { return Ok((Vec::new(), Vec::new())) };
     let told = experiments::next(exam, &[finding], &[])?;
     let mut hints = Vec::new();
     for other in suspect.class.iter().filter(|name| **name != suspect.best) {

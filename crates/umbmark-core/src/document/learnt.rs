@@ -15,6 +15,7 @@ pub fn learnt(learnt: &Learnt, options: &Options) -> Value {
             "added": s.added,
             "class": s.class,
             "p_adjusted": s.p_adjusted,
+            "law": s.law.as_deref().map(repeats),
             "rmse_m": finite(s.error.position),
             "heading_rmse_rad": s.error.heading,
             "heldout_rmse_m": finite(s.held_out.position),

@@ -2,7 +2,8 @@
 
 use super::{ends, finite};
 use crate::dataset::effects_text;
-use crate::diagnose::{Reason, Repeated};
+use crate::diagnose::{Reason, Repeated, UnlistedLaw};
+use crate::effect::Formula;
 use crate::likelihood::Taken;
 use crate::setup::{Deviant, Jump, Measured, OutlyingReturn, RunSetup, Setup, WrongPose};
 use serde_json::{Map, Value, json};
@@ -85,18 +86,32 @@ pub(super) fn taken(taken: &[Taken]) -> Value {
 
 /// What repeats most beside a model.
 pub(super) fn repeats(repeated: &Repeated) -> Value {
+    let Value::Object(mut all) = law(&repeated.law) else { return Value::Null };
+    all.extend([
+        ("p".to_owned(), json!(repeated.p)),
+        ("standard_deviations".to_owned(), json!(repeated.deviations)),
+        ("laws".to_owned(), json!(repeated.laws)),
+        ("others".to_owned(), json!(repeated.others.iter().map(law).collect::<Vec<_>>())),
+    ]);
+    Value::Object(all)
+}
+
+/// A law that no catalogue lists.
+fn law(law: &UnlistedLaw) -> Value {
+    let formula = law.model.as_ref().and_then(|model| model.parts().first()?.effect.formula());
     json!({
-        "p": repeated.p,
-        "toml": repeated.law.as_ref().map(effects_text),
-        "standard_deviations": repeated.deviations,
-        "laws": repeated.laws,
-        "acts_on": repeated.acts_on,
-        "per": repeated.per,
-        "by": repeated.by,
-        "with_sense": repeated.with_sense,
-        "heldout_rmse_m": repeated.left_out[0],
-        "heldout_rmse_with_law_m": repeated.left_out[1],
-        "gain": repeated.gain,
+        "toml": law.model.as_ref().map(effects_text),
+        "formula": formula.map(Formula::text),
+        "target": formula.map(|formula| formula.target().name()),
+        "acts_on": law.acts_on,
+        "per": law.per,
+        "by": law.by,
+        "with_sense": law.with_sense,
+        "length": formula.map(|_| law.length),
+        "heldout_rmse_m": law.left_out[0],
+        "heldout_rmse_with_law_m": law.left_out[1],
+        "gain": law.gain,
+        "likeness": law.likeness,
     })
 }
 

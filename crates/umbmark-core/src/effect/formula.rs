@@ -185,9 +185,24 @@ impl Formula {
         })
     }
 
+    /// The names of all variables that formulas may depend on.
+    pub(crate) fn variables() -> [&'static str; variable::Variable::ALL.len()] {
+        variable::Variable::ALL.map(|(name, ..)| name)
+    }
+
     /// The effect's name in files.
     pub fn name(&self) -> &'static str {
         self.name
+    }
+
+    /// The same formula under another name, which no effect of the catalogue has.
+    pub(crate) fn named(&self, name: &str) -> Formula {
+        Formula { name: lasting(name), ..self.clone() }
+    }
+
+    /// How long it is: the number of its operations, variables and numbers.
+    pub(crate) fn length(&self) -> usize {
+        self.program.ops().len()
     }
 
     /// What it acts on.

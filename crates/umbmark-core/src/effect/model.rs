@@ -240,6 +240,12 @@ impl Model {
         Ok(())
     }
 
+    /// The model that has one of its effects alone.
+    pub(crate) fn only(&self, effect: &str) -> Model {
+        let parts = self.parts.iter().filter(|part| part.effect.name() == effect).cloned().collect();
+        Model { parts, ..self.clone() }
+    }
+
     /// The value of a parameter, if its effect is in the model.
     pub fn get(&self, effect: &str, parameter: &str) -> Option<f64> {
         let part = self.parts.iter().find(|part| part.effect.name() == effect)?;
@@ -326,6 +332,13 @@ impl Model {
         };
         let of_part = |part: &Part| (0..part.values.len()).map(|index| shape(&part.effect, index)).collect::<Vec<_>>();
         self.parts.iter().flat_map(of_part).enumerate().filter(|(_, shape)| *shape).map(|(value, _)| value).collect()
+    }
+
+    /// The value of one of the [values](Model::values), named by its place, at which its effect does nothing; `None` for a shape.
+    pub(crate) fn nothing(&self, place: usize) -> Option<f64> {
+        let parameters = self.parts.iter().flat_map(|part| part.effect.parameters());
+        let nothing = parameters.into_iter().nth(place)?.default.resolve(&self.robot);
+        (!self.shapes().contains(&place)).then_some(nothing)
     }
 
     /// The same effects with some of the [values](Model::values), named by their place, replaced.

@@ -1,7 +1,7 @@
 //! Learning from tracks: the same story, told from products of columns instead of one fit for each fold.
 
 use super::{Error, Learnt, MOST, Step};
-use crate::diagnose::tracks::{self, Alone, LEAST_GAIN, Misses, Search};
+use crate::diagnose::tracks::{self, Added, Alone, Found, LEAST_GAIN, Misses, Search, Wanted};
 use crate::diagnose::{DiagnoseError, Diagnosis, Level, Options, Reason, Verdict};
 use crate::effect::{Model, Part, find};
 use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE};
@@ -60,7 +60,7 @@ pub(super) fn learn(
     }
     let fitted = Fitted { taken, ..tracks::fit(observed, &model)? };
     let not_shown = observed.robot.drive.first_effects().into_iter().filter(|effect| !first.contains(effect));
-    let search = tracks::search(fitted, options, MOST, not_shown.collect(), watch)?;
+    let search = tracks::search(fitted, options, (MOST, Wanted::All), not_shown.collect(), watch)?;
     let of_reference = |step: &&mut Step| {
         step.added.is_some_and(|effect| search.exams[0].fitted.taken.iter().any(|own| own.effect == effect))
     };
@@ -70,12 +70,16 @@ pub(super) fn learn(
     let partial = watch.is_stopped() && search.left.effect.is_some();
     // What was fitted at the beginning is written as it is where nothing was added.
     if let Some(own) = steps.last_mut() {
-        let Step { added, class, p_adjusted, .. } = own.clone();
-        *own = Step { added, class, p_adjusted, ..step_of(&search.written[0], None) };
+        let Step { added, class, p_adjusted, law, .. } = own.clone();
+        *own = Step { added, class, p_adjusted, law, ..step_of(&search.written[0], None) };
     }
-    for (written, (finding, suspect)) in search.written[1..].iter().zip(&search.added) {
-        let told = (suspect.best, suspect.class.clone(), Some(finding.p_adjusted()));
-        steps.push(step_of(written, Some(told)));
+    for (written, Added { suspect, by }) in search.written[1..].iter().zip(&search.added) {
+        let told = (suspect.best, suspect.class.clone(), Some(suspect.p_adjusted));
+        let law = match by {
+            Found::Listed(_) => None,
+            Found::Unlisted(repeated) => Some(repeated.clone()),
+        };
+        steps.push(Step { law, ..step_of(written, Some(told)) });
     }
     Ok(Learnt { partial, ..finish(search, steps, options)? })
 }
@@ -116,8 +120,8 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     let told = search.left.smooth.as_ref().and_then(|f| tracks::dependence(search.last(), f, &search.left.asked));
     let more = search.left.effect.is_some();
     let (mut experiments, mut hints) = (Vec::new(), Vec::new());
-    for (exam, (finding, suspect)) in search.exams.iter().zip(&search.added) {
-        let (told, hint) = tracks::next_experiments(exam, finding, suspect)?;
+    for (exam, added) in search.exams.iter().zip(&search.added) {
+        let (told, hint) = tracks::next_experiments(exam, added)?;
         experiments.extend(told);
         hints.extend(hint);
     }
@@ -126,8 +130,9 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         format!("{effect} was added on the way and taken out again: beside the others it no longer predicts runs that are left out better.")
     }));
     let mut reasons = tracks::doubts_of(search.last(), options);
-    let (repeats, repeated) = tracks::repeats_beside(search.last(), options);
-    reasons.extend(repeated);
+    let repeats = search.repeats(options).cloned();
+    reasons.extend(tracks::reason_to_doubt(repeats.as_ref()));
+    let has_law = search.has_law();
     hints.extend(search.harmful.iter().map(|effect| {
         format!("{effect} is significant, and with it runs that are left out are predicted worse; it was not added.")
     }));
@@ -148,6 +153,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         (Some(_), _) => Verdict::UnlistedEffect,
         (None, true) => Verdict::SeveralMissing,
         (None, false) if !reasons.is_empty() => Verdict::NotExplained,
+        (None, false) if has_law => Verdict::UnlistedEffect,
         (None, false) => Verdict::Explained,
     };
     let diagnosis = tracks::conclude(last, told, options)?;
@@ -190,16 +196,25 @@ fn plainly(observed: &Observed, model: &Model) -> Result<Fitted, DiagnoseError> 
     Ok(fitted)
 }
 
-type Added = (&'static str, Vec<&'static str>, Option<f64>);
+type Told = (&'static str, Vec<&'static str>, Option<f64>);
 
-fn step(fitted: Fitted, added: Option<Added>) -> Step {
+fn step(fitted: Fitted, added: Option<Told>) -> Step {
     step_of(&Alone::new(fitted), added)
 }
 
-fn step_of(alone: &Alone, added: Option<Added>) -> Step {
+fn step_of(alone: &Alone, added: Option<Told>) -> Step {
     let (inside, held_out) = alone.misses();
     let (aicc, bic, weighted) = alone.criteria();
     let error = |misses: Misses| Error { position: misses.position, heading: misses.heading, weighted };
     let (added, class, p_adjusted) = added.map_or((None, Vec::new(), None), |(name, class, p)| (Some(name), class, p));
-    Step { added, class, p_adjusted, error: error(inside), held_out: error(held_out), aicc: Some(aicc), bic: Some(bic) }
+    Step {
+        added,
+        class,
+        p_adjusted,
+        law: None,
+        error: error(inside),
+        held_out: error(held_out),
+        aicc: Some(aicc),
+        bic: Some(bic),
+    }
 }

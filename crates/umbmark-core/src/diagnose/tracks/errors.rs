@@ -85,19 +85,26 @@ impl Errors {
 
     /// Errors that are left when each fold is predicted with values of its own, `of_fold`: pairs of columns and values.
     pub fn misses(&self, of_fold: impl Fn(usize) -> (Vec<usize>, DVector<f64>) + Send + Sync) -> Misses {
-        let (mut squares, mut counts) = ([0.0; 3], [0; 3]);
-        let fitted: Vec<_> = (0..self.folds.len()).into_par_iter().map(of_fold).collect();
-        for ((fold, white), fitted) in self.folds.iter().zip(&self.white).zip(fitted) {
-            let weights = self.weights(&fitted);
-            let [positions, headings] = fold.counts;
-            let parts = [(&fold.position, positions), (&fold.heading, headings), (&white.0, white.1)];
-            for (k, (products, count)) in parts.into_iter().enumerate() {
-                squares[k] += (products * &weights).dot(&weights).max(0.0);
-                counts[k] += count;
-            }
-        }
-        let root = |k: usize| (squares[k] / counts[k].max(1) as f64).sqrt();
+        self.misses_of(&self.squares(of_fold))
+    }
+
+    /// The same from the squares of all folds.
+    pub fn misses_of(&self, squares: &[[f64; 3]]) -> Misses {
+        let counts = self.folds.iter().zip(&self.white).fold([0; 3], |[positions, headings, rows], (fold, white)| {
+            [positions + fold.counts[0], headings + fold.counts[1], rows + white.1]
+        });
+        let root = |k: usize| (squares.iter().map(|fold| fold[k]).sum::<f64>() / counts[k].max(1) as f64).sqrt();
         Misses { position: root(0), heading: (counts[1] > 0).then(|| root(1)), white: root(2) }
+    }
+
+    /// Sums of squares of what is left in each fold: of positions, of headings and of what is new from pose to pose.
+    pub fn squares(&self, of_fold: impl Fn(usize) -> (Vec<usize>, DVector<f64>) + Send + Sync) -> Vec<[f64; 3]> {
+        let of_fold = |(index, (fold, white)): (usize, (&Fold, &(DMatrix<f64>, usize)))| {
+            let weights = self.weights(&of_fold(index));
+            [&fold.position, &fold.heading, &white.0].map(|products| (products * &weights).dot(&weights).max(0.0))
+        };
+        let folds: Vec<_> = self.folds.iter().zip(&self.white).enumerate().collect();
+        folds.into_par_iter().map(of_fold).collect()
     }
 
     /// What the residual and the columns are multiplied by where columns have these values.

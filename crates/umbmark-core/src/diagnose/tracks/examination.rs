@@ -6,7 +6,7 @@ use super::look::Finding;
 use super::responses::{self, Asked, Question, Responses};
 use super::system::{Projected, System};
 use crate::diagnose::ends::names;
-use crate::effect::{Changes, Entry, Law, Model, ModelError, Number, is_shape};
+use crate::effect::{Changes, Entry, Law, Model, ModelError, Number};
 use crate::geometry::Pose2;
 use crate::likelihood::{ABSORBED, Column, Fitted, Noise, share_left};
 use nalgebra::{DMatrix, DVector};
@@ -214,11 +214,7 @@ impl Examination {
     pub fn departure(&self, column: usize) -> f64 {
         let place = self.fitted.free[column];
         let model = &self.fitted.model;
-        let values = model.parts().iter().flat_map(|part| part.values.iter().zip(part.effect.parameters()));
-        values
-            .into_iter()
-            .nth(place)
-            .map_or(0.0, |(value, p)| if is_shape(p) { 0.0 } else { value - p.default.resolve(model.robot()) })
+        model.values().nth(place).zip(model.nothing(place)).map_or(0.0, |(value, nothing)| value - nothing)
     }
 
     /// The effect that explains most of some products, of those `wanted`, beside the model.

@@ -2,28 +2,53 @@
 
 use super::examination::Examination;
 use super::{DiagnoseError, Estimate, Suspect, estimates};
-use crate::effect::Model;
+use crate::effect::{Law, Model, Part};
 use crate::likelihood::{Fitted, Noise};
+use std::sync::Arc;
 
 /// A shape (a length, a threshold) is fitted where its size stands out by so many standard errors.
 const SHOWN: f64 = 8.0;
 
 /// The model of an examination with a suspect more, fitted: its sizes first, then its shapes too where its size stands out.
 pub(crate) fn grown(exam: &Examination, suspect: &Suspect) -> Result<Fitted, DiagnoseError> {
-    let model = with(exam.fitted.model.clone(), suspect)?;
+    fitted(exam, &with(exam.fitted.model.clone(), suspect)?, suspect.best)
+}
+
+/// The model of an examination with a law more that no catalogue lists, fitted in the same way, and the name that the law has there.
+pub(crate) fn grown_by_law(exam: &Examination, law: &Model) -> Result<(Fitted, &'static str), DiagnoseError> {
+    let mut model = exam.fitted.model.clone();
+    let mut name = "";
+    for part in law.parts() {
+        let Law::Formula(formula) = &part.effect else { continue };
+        let taken = |name: &str| model.parts().iter().any(|other| other.effect.name() == name);
+        let numbered = |number: usize| {
+            if number == 1 { formula.name().to_owned() } else { format!("{}_{number}", formula.name()) }
+        };
+        let own = (1..).map(numbered).find(|name| !taken(name)).unwrap_or_default();
+        let formula = formula.named(&own);
+        name = formula.name();
+        model.adopt(&Part { effect: Law::Formula(Arc::new(formula)), ..part.clone() });
+    }
+    Ok((fitted(exam, &model, name)?, name))
+}
+
+/// A model with an effect more fitted: its sizes first, then its shapes too where its size stands out.
+fn fitted(exam: &Examination, model: &Model, effect: &str) -> Result<Fitted, DiagnoseError> {
     let observed = &exam.fitted.observed;
     let shapes = model.shapes();
     let taken = || exam.fitted.taken.clone();
-    let sized = Fitted { taken: taken(), ..observed.fit(&model, &Noise::default(), &shapes)? };
+    let sized = Fitted { taken: taken(), ..observed.fit(model, &Noise::default(), &shapes)? };
     let shaped = observed.free_values(&sized.model).iter().any(|value| shapes.contains(value));
-    let stands_out = |e: &Estimate| e.effect == suspect.best && (e.value / e.standard_error).abs() > SHOWN;
+    let is_size = |e: &Estimate| model.place_of(e.effect, e.parameter).is_some_and(|place| !shapes.contains(&place));
+    let stands_out = |e: &Estimate| e.effect == effect && is_size(e) && (e.value / e.standard_error).abs() > SHOWN;
     let clear = estimates(&sized).iter().any(stands_out);
     if !(shaped && clear) {
         return Ok(sized);
     }
     let both = Fitted { taken: taken(), ..observed.fit(&sized.model, &sized.noise, &[])? };
+    let contexts = observed.tracks().flat_map(|track| track.contexts());
     let determined = estimates(&both).iter().all(|e| e.standard_error.is_finite());
-    Ok(if determined { both } else { sized })
+    Ok(if determined && both.model.check_along(contexts).is_ok() { both } else { sized })
 }
 
 /// The model with a suspect at its one-step size, free.

@@ -1,14 +1,16 @@
-//! What a model is missing, and a model that grows by it: one effect after the other, and what no longer helps taken out again.
+//! What a model is missing, and a model that grows by it: one effect after the other, and what no longer helps taken out again. Where no
+//! effect of the catalogue is certified and something repeats all the same, the law that it follows is added.
 
 use super::alone::{Alone, trusted};
 use super::errors::Misses;
 use super::examination::Examination;
 use super::look::{self, Finding};
+use super::repeats::{self, Repeated, UnlistedLaw};
 use super::responses::Asked;
 use super::system::Projected;
 use super::{EXPLAINED, FEWEST, LEAST_GAIN, TELLING, TRIES, estimates, growth};
 use crate::diagnose::{DiagnoseError, Estimate, Options, Suspect};
-use crate::effect::{Part, is_shape};
+use crate::effect::{Law, Model, Part};
 use crate::likelihood::{Fitted, Noise};
 use crate::watch::Watch;
 
@@ -97,6 +99,33 @@ fn smooth_gains(exam: &Examination, finding: &Finding) -> bool {
     of([&base[..], own].concat()).gain(&of(base.clone())) >= TELLING
 }
 
+/// Something that was missing and was added.
+#[derive(Clone)]
+pub(crate) struct Added {
+    /// What it is, how sure that is, and what cannot be told from it.
+    pub suspect: Suspect,
+    /// How.
+    pub by: Found,
+}
+
+/// How something that was missing was found.
+#[derive(Clone)]
+pub(crate) enum Found {
+    /// Among the effects of the catalogue.
+    Listed(Finding),
+    /// Among the laws that no catalogue lists.
+    Unlisted(Box<Repeated>),
+}
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// Effects of the catalogue.
+    Listed,
+    /// These, and laws that it does not list.
+    All,
+}
+
 /// What was found missing, one effect after the other, each fitted before the next was asked about.
 pub(crate) struct Search {
     /// The model as it was, and after each effect.
@@ -104,21 +133,25 @@ pub(crate) struct Search {
     /// Each of them as it is written.
     pub written: Vec<Alone>,
     /// The effects.
-    pub added: Vec<(Finding, Suspect)>,
+    pub added: Vec<Added>,
     /// Effects that no longer helped once others were there, and were taken out again.
     pub removed: Vec<&'static str>,
     /// Certified effects with which runs left out are predicted worse; they were not added.
     pub harmful: Vec<&'static str>,
     /// What the last model is missing and was not added.
     pub left: Missing,
+    /// What repeats most beside the last model, once it was asked for.
+    repeats: Option<Option<Repeated>>,
+    /// Formulas that were tried and taken back.
+    refused_laws: Vec<String>,
 }
 
-/// Adds what is certified as missing, at most `most` effects and none of those `refused`, each fitted without approximation before the
-/// next is asked; once stopped, no more.
+/// Adds what is certified as missing and `wanted`, at most `most` effects and none of those `refused`, each fitted without approximation
+/// before the next is asked; once stopped, no more.
 pub(crate) fn search(
     fitted: Fitted,
     options: &Options,
-    most: usize,
+    (most, wanted): (usize, Wanted),
     refused: Vec<&'static str>,
     watch: &Watch,
 ) -> Result<Search, DiagnoseError> {
@@ -132,11 +165,20 @@ pub(crate) fn search(
     }
     let left = missing(&exam, options, &[&refused[..], &removed].concat());
     let written = vec![trusted(exam.fitted.clone())?];
-    let mut search = Search { exams: vec![exam], written, added: Vec::new(), removed, harmful: Vec::new(), left };
-    search.grow(options, most, &refused, watch)?;
+    let mut search = Search {
+        exams: vec![exam],
+        written,
+        added: Vec::new(),
+        removed,
+        harmful: Vec::new(),
+        left,
+        repeats: None,
+        refused_laws: Vec::new(),
+    };
+    search.grow(options, (most, wanted), &refused, watch)?;
     while search.undo_harm() {
         search.left = missing(search.last(), options, &search.passed(&refused));
-        search.grow(options, most, &refused, watch)?;
+        search.grow(options, (most, wanted), &refused, watch)?;
     }
     Ok(search)
 }
@@ -163,12 +205,11 @@ fn idle(exam: &Examination, asked: impl Fn(&'static str) -> bool) -> Option<&'st
 /// An effect among those `asked` of which no size is known to be other than nothing.
 fn silent(exam: &Examination, asked: impl Fn(&'static str) -> bool) -> Option<&'static str> {
     let estimates = estimates(&exam.fitted);
-    let robot = exam.fitted.model.robot();
+    let model = &exam.fitted.model;
     let is_silent = |part: &Part| {
         let own: Vec<&Estimate> = estimates.iter().filter(|e| e.effect == part.effect.name()).collect();
         let shows = |e: &&&Estimate| {
-            let parameter = part.effect.parameters().iter().find(|p| p.name == e.parameter);
-            let nothing = parameter.filter(|p| !is_shape(p)).map(|p| p.default.resolve(robot));
+            let nothing = model.place_of(e.effect, e.parameter).and_then(|place| model.nothing(place));
             nothing.is_some_and(|nothing| e.interval(0.95).is_none_or(|interval| !interval.contains(nothing)))
         };
         !own.is_empty() && own.iter().all(|e| !shows(&e))
@@ -202,45 +243,115 @@ impl Search {
     fn grow(
         &mut self,
         options: &Options,
-        most: usize,
+        (most, wanted): (usize, Wanted),
         refused: &[&'static str],
         watch: &Watch,
     ) -> Result<(), DiagnoseError> {
+        while self.added.len() < most && !watch.is_stopped() {
+            (watch.progress)((self.added.len() + 1) as f64 / (most + 1) as f64);
+            if let Some((finding, suspect)) = self.left.effect.clone() {
+                let exam = self.last().of_grown(growth::grown(self.last(), &suspect)?)?;
+                let Some((exam, removed)) = self.borne_out(exam, suspect.best)? else {
+                    self.removed.push(suspect.best);
+                    self.left = missing(self.last(), options, &self.passed(refused));
+                    continue;
+                };
+                if !self.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&exam, smooth, options)) {
+                    self.take(exam, removed, Added { suspect, by: Found::Listed(finding) })?;
+                    self.left = missing(self.last(), options, &self.passed(refused));
+                    continue;
+                }
+            }
+            let next = if wanted == Wanted::All { self.law(options)? } else { None };
+            let Some((exam, removed, added)) = next else { break };
+            self.take(exam, removed, added)?;
+            self.left = missing(self.last(), options, &self.passed(refused));
+        }
+        Ok(())
+    }
+
+    /// A model grown by an effect, less those that no longer help beside it, and which they are; `None` where a fit without approximation
+    /// does not bear the effect out.
+    fn borne_out(
+        &self,
+        mut exam: Examination,
+        effect: &'static str,
+    ) -> Result<Option<(Examination, Vec<&'static str>)>, DiagnoseError> {
+        if astray(&exam, self.last()) || idle(&exam, |asked| asked == effect).is_some() {
+            return Ok(None);
+        }
         let first = &self.exams[0].fitted;
         let taken: Vec<&str> = first.taken.iter().map(|taken| taken.effect).collect();
         let own: Vec<&str> = first.model.parts().iter().map(|part| part.effect.name()).collect();
-        let stands = |effect: &&'static str| own.contains(effect) && !taken.contains(effect);
-        let goes_on = |search: &Search| search.added.len() < most && !watch.is_stopped();
-        while let Some((finding, suspect)) = self.left.effect.clone().filter(|_| goes_on(self)) {
-            (watch.progress)((self.added.len() + 1) as f64 / (most + 1) as f64);
-            let mut exam = self.last().of_grown(growth::grown(self.last(), &suspect)?)?;
-            // What a fit without approximation does not bear out is passed over; it is not asked for again.
-            if astray(&exam, self.last()) || idle(&exam, |effect| effect == suspect.best).is_some() {
-                self.removed.push(suspect.best);
-                self.left = missing(self.last(), options, &self.passed(refused));
-                continue;
+        let stands = |effect: &str| own.contains(&effect) && !taken.contains(&effect);
+        let (mut kept, mut removed) = (vec![effect], Vec::new());
+        while let Some(effect) = idle(&exam, |effect| !stands(effect) && !kept.contains(&effect)) {
+            let fewer = Examination::new(without(&exam.fitted, effect)?)?;
+            // That it helps no longer was seen in one step; the fit has to say so too.
+            let is_silent = silent(&exam, |asked| asked == effect).is_some();
+            if !is_silent && exam.left_out(&[]).gain(&fewer.left_out(&[])) >= LEAST_GAIN {
+                kept.push(effect);
+            } else {
+                exam = fewer;
+                removed.push(effect);
             }
-            let mut kept = vec![suspect.best];
-            while let Some(effect) = idle(&exam, |effect| !stands(&effect) && !kept.contains(&effect)) {
-                let fewer = Examination::new(without(&exam.fitted, effect)?)?;
-                // That it helps no longer was seen in one step; the fit has to say so too.
-                let is_silent = silent(&exam, |asked| asked == effect).is_some();
-                if !is_silent && exam.left_out(&[]).gain(&fewer.left_out(&[])) >= LEAST_GAIN {
-                    kept.push(effect);
-                } else {
-                    exam = fewer;
-                    self.removed.push(effect);
-                }
-            }
-            if self.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&exam, smooth, options)) {
-                break;
-            }
-            self.left = missing(&exam, options, &self.passed(refused));
-            self.written.push(trusted(exam.fitted.clone())?);
-            self.exams.push(exam);
-            self.added.push((finding, suspect));
         }
+        Ok(Some((exam, removed)))
+    }
+
+    /// The model grown by the law that what repeats follows, where it counts and a fit bears it out.
+    fn law(&mut self, options: &Options) -> Result<Option<(Examination, Vec<&'static str>, Added)>, DiagnoseError> {
+        while let Some(repeated) = self.repeats(options).cloned().filter(|repeated| repeated.counts(LEAST_GAIN)) {
+            let tried =
+                |law: &UnlistedLaw| law.model.as_ref().is_none_or(|model| self.refused_laws.contains(&text_of(model)));
+            let wanted = if self.has_law() { 1 } else { options.law };
+            let Some(mut repeated) = repeated.taking(wanted, tried) else { return Ok(None) };
+            let Some(model) = repeated.law.model.clone() else { return Ok(None) };
+            let (fitted, name) = growth::grown_by_law(self.last(), &model)?;
+            let exam = self.last().of_grown(fitted)?;
+            if let Some((exam, removed)) = self.borne_out(exam, name)? {
+                let suspect = repeats::suspect(&repeated, name, &exam);
+                repeated.law.model = Some(exam.fitted.model.only(name));
+                return Ok(Some((exam, removed, Added { suspect, by: Found::Unlisted(Box::new(repeated)) })));
+            }
+            self.refused_laws.push(text_of(&model));
+        }
+        Ok(None)
+    }
+
+    /// What repeats most beside the last model.
+    pub fn repeats(&mut self, options: &Options) -> Option<&Repeated> {
+        if self.repeats.is_none() {
+            self.repeats = Some(repeats::beside(self.last(), options.seed));
+        }
+        self.repeats.as_ref().and_then(Option::as_ref)
+    }
+
+    /// Whether a law that no catalogue lists was added.
+    pub fn has_law(&self) -> bool {
+        self.added.iter().any(|added| matches!(added.by, Found::Unlisted(_)))
+    }
+
+    /// Goes on from a model that has grown.
+    fn take(&mut self, exam: Examination, removed: Vec<&'static str>, added: Added) -> Result<(), DiagnoseError> {
+        let before = self.last().fitted.model.clone();
+        for effect in removed {
+            self.refuse(&before, effect);
+            self.removed.push(effect);
+        }
+        self.written.push(trusted(exam.fitted.clone())?);
+        self.exams.push(exam);
+        self.added.push(added);
+        self.repeats = None;
         Ok(())
+    }
+
+    /// Remembers a formula of a model that is taken out of it.
+    fn refuse(&mut self, model: &Model, effect: &str) {
+        let part = model.parts().iter().find(|part| part.effect.name() == effect);
+        if let Some(Law::Formula(formula)) = part.map(|part| &part.effect) {
+            self.refused_laws.push(formula.text().to_owned());
+        }
     }
 
     /// Effects that are not asked for again, beside those `refused` from the beginning.
@@ -258,7 +369,11 @@ impl Search {
         let Some(before) = errors.iter().rposition(|before| errors[errors.len() - 1].harms(before)) else {
             return false;
         };
-        self.harmful.push(self.added[before].1.best);
+        let effect = self.added[before].suspect.best;
+        let model = self.exams[before + 1].fitted.model.clone();
+        self.refuse(&model, effect);
+        self.harmful.push(effect);
+        self.repeats = None;
         self.added.truncate(before);
         self.exams.truncate(before + 1);
         self.written.truncate(before + 1);
@@ -271,6 +386,12 @@ impl Search {
     pub fn last(&self) -> &Examination {
         &self.exams[self.exams.len() - 1]
     }
+}
+
+/// The formula that a law is written as.
+fn text_of(law: &Model) -> String {
+    let formula = law.parts().first().and_then(|part| part.effect.formula());
+    formula.map_or_else(String::new, |formula| formula.text().to_owned())
 }
 
 /// Whether a smooth that an effect seemed not to explain is there after that effect was fitted. What one linear step

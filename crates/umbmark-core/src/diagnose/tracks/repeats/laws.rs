@@ -4,7 +4,7 @@ use super::super::smooth::Motion;
 use crate::drive::Robot;
 use crate::effect::{Chain, Formula, Model, Target};
 use crate::geometry::{Displacement2, Pose2};
-use crate::likelihood::{Column, Observed, ObservedRun};
+use crate::likelihood::{Column, ObservedRun};
 use std::f64::consts::TAU;
 
 /// What a law is in proportion to.
@@ -53,6 +53,8 @@ pub struct Step {
     /// Since the run began \[s\] and \[m\], in its middle.
     time: f64,
     distance: f64,
+    /// Way driven in all runs of the session \[m\].
+    session_distance: f64,
     /// \[m/s\], ahead positive.
     speed: f64,
     /// \[rad/s\]; nothing where both wheels roll nearly alike.
@@ -67,15 +69,13 @@ pub struct Step {
     last_turn: f64,
 }
 
-/// The name that a law has as an effect.
-const NAME: &str = "unlisted";
 /// A step ends after so much way \[m\], rotation \[rad\] or time \[s\].
 const STEP: (f64, f64, f64) = (0.02, 0.05, 0.1);
 /// Wheels roll alike where they differ by less than this share.
 const ALIKE: f64 = 0.05;
 
-/// The steps of a run.
-fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
+/// The steps of a run along a model.
+pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
     let track = &run.track;
     let (mut pose, mut made, mut steps) = (track.start(chain), 0, Vec::new());
     for (block, own) in run.blocks.iter().enumerate() {
@@ -91,6 +91,7 @@ fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
                     block,
                     time: at.time,
                     distance: at.distance,
+                    session_distance: at.session_distance,
                     wheel_angle: at.wheel_angle,
                     since_turn: at.since_turn,
                     last_turn: at.last_turn,
@@ -121,6 +122,7 @@ fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
                 step.turn_rate = step.rotation / duration;
                 (step.acceleration, step.turn_acceleration) = (change[0] / duration, change[1] / duration);
                 (step.time, step.distance) = (step.time + 0.5 * duration, step.distance + 0.5 * way);
+                step.session_distance += 0.5 * way;
                 (0..2).for_each(|wheel| {
                     step.wheel_angle[wheel] +=
                         0.5 * (at.wheel_angle[wheel] + at.wheel_rotation[wheel] - step.wheel_angle[wheel]);
@@ -164,10 +166,13 @@ pub struct Term {
     pub twin: Option<usize>,
 }
 
-/// Number of periods, from the least to the largest \[s\] and \[m\].
-const PERIODS: usize = 48;
+/// Periods from the least to the largest \[s\] and \[m\].
 const TIMES: (f64, f64) = (1.5, 80.0);
 const WAYS: (f64, f64) = (0.25, 30.0);
+/// Waves one after the other go out of step by half a cycle over a run: a wave between two of them is nearly one of them. So many of these,
+/// from the longest; beyond, each period is shorter by this factor.
+const PERIODS: usize = 96;
+const SHORTER: f64 = 1.1;
 /// Decays over so much time \[s\], and way since a turn or from a wall \[m\].
 const DECAYS: [f64; 4] = [5.0, 12.0, 30.0, 75.0];
 const NEAR: [f64; 3] = [0.1, 0.3, 1.0];
@@ -183,6 +188,17 @@ pub struct Laws {
     pub terms: Vec<Term>,
 }
 
+/// The periods to ask about where runs last so long, or go so far.
+fn periods((low, high): (f64, f64), extent: f64) -> Vec<f64> {
+    let longest = high.min(1.5 * extent);
+    let mut periods: Vec<f64> = (0..PERIODS).map(|k| 1.0 / (1.0 / longest + k as f64 / (2.0 * extent))).collect();
+    while let Some(last) = periods.last().filter(|last| **last > low) {
+        periods.push(last / SHORTER);
+    }
+    periods.retain(|period| *period >= low);
+    periods
+}
+
 /// The extent of what runs do.
 struct Extent {
     time: f64,
@@ -196,9 +212,9 @@ struct Extent {
 }
 
 impl Extent {
-    fn of(steps: &[Step]) -> Extent {
-        let most = |of: fn(&Step) -> f64| steps.iter().map(of).fold(1e-9, f64::max);
-        let least = |of: fn(&Step) -> f64| steps.iter().map(of).fold(0.0, f64::min);
+    fn of(steps: &[Vec<Step>]) -> Extent {
+        let most = |of: fn(&Step) -> f64| steps.iter().flatten().map(of).fold(1e-9, f64::max);
+        let least = |of: fn(&Step) -> f64| steps.iter().flatten().map(of).fold(0.0, f64::min);
         Extent {
             time: most(|s| s.time),
             distance: most(|s| s.distance),
@@ -213,11 +229,10 @@ impl Extent {
 }
 
 impl Laws {
-    /// Those of some runs along a model.
-    pub fn of(observed: &Observed, chain: &Chain<f64>) -> Laws {
-        let all: Vec<Step> = observed.runs.iter().flat_map(|run| steps(run, chain)).collect();
+    /// Those of the steps of some runs.
+    pub fn of(steps: &[Vec<Step>]) -> Laws {
         let mut laws = Laws { functions: Vec::new(), terms: Vec::new() };
-        laws.fill(&Extent::of(&all));
+        laws.fill(&Extent::of(steps));
         laws
     }
 
@@ -255,16 +270,12 @@ impl Laws {
     fn fill(&mut self, extent: &Extent) {
         use Per::{Metre, Radian, Second};
         self.add("a constant".into(), written("1"), &[Second, Metre, Radian], |_| 1.0);
-        let periods = |(low, high): (f64, f64)| -> Vec<f64> {
-            let ratio = (high / low).powf(1.0 / (PERIODS - 1) as f64);
-            (0..PERIODS).map(|k| low * ratio.powi(k as i32)).collect()
-        };
-        for period in periods(TIMES).into_iter().filter(|period| *period < 1.5 * extent.time) {
+        for period in periods(TIMES, extent.time) {
             let words = format!("a wave of the time with a period of about {period:.1} s");
             let about = ("", "2 * pi * time / c", Some(period));
             self.wave(words, about, &[Second, Metre], |_| 1.0, move |s| TAU * s.time / period);
         }
-        for period in periods(WAYS).into_iter().filter(|period| *period < 1.5 * extent.distance) {
+        for period in periods(WAYS, extent.distance) {
             let words = format!("a wave of the way with a period of about {period:.2} m");
             let about = ("", "2 * pi * distance / c", Some(period));
             self.wave(words, about, &[Metre], |_| 1.0, move |s| TAU * s.distance / period);
@@ -279,6 +290,7 @@ impl Laws {
         }
         self.add("the time in the run".into(), written("time"), &[Second, Metre], |s| s.time);
         self.add("the square of the time in the run".into(), written("time^2"), &[Second, Metre], |s| s.time * s.time);
+        self.add("the way in the session".into(), written("session_distance"), &[Metre], |s| s.session_distance);
         for n in 1..=4 {
             let times = if n == 1 { String::new() } else { format!("{n} times ") };
             let angle = |of: &str| format!("{n} * {of}");
@@ -454,6 +466,33 @@ impl Laws {
         }
     }
 
+    /// The name that a term has as an effect: "periodic_yaw", "forward_by_speed".
+    fn name(&self, term: usize, motion: Motion) -> String {
+        let text = self.functions[self.terms[term].function].formula.as_ref().map_or("", |(text, _)| text);
+        let by = Formula::variables().into_iter().filter(|variable| text.contains(variable)).max_by_key(|v| v.len());
+        let motion = motion.name();
+        match by {
+            Some("time" | "distance") if text.contains("pi") => format!("periodic_{motion}"),
+            Some(variable) => format!("{motion}_by_{variable}"),
+            None => format!("steady_{motion}"),
+        }
+    }
+
+    /// A word for the shape of a term's function, whatever its numbers are.
+    pub fn shape(&self, term: usize) -> String {
+        let Function { words, formula, .. } = &self.functions[self.terms[term].function];
+        match formula {
+            Some((text, Some(_))) => text.replace("sin(", "cos("),
+            _ => words.chars().filter(|c| !c.is_ascii_digit() && !"-.".contains(*c)).collect(),
+        }
+    }
+
+    /// How many numbers a term and its twin have as a law.
+    pub fn numbers(&self, term: usize) -> usize {
+        let shaped = self.functions[self.terms[term].function].formula.as_ref().is_some_and(|(_, c)| c.is_some());
+        1 + usize::from(self.terms[term].twin.is_some()) + usize::from(shaped)
+    }
+
     /// A model that holds a term alone, and its twin, with these sizes: for each motion, with the sense of the run or without.
     pub fn model(&self, term: usize, sizes: &[f64], motion: Motion, with_sense: bool, robot: &Robot) -> Option<Model> {
         let about = self.terms[term];
@@ -478,7 +517,7 @@ impl Laws {
         };
         let names: Vec<&str> = ["a", "b"].into_iter().take(sizes.len()).chain(shape.map(|_| "c")).collect();
         let rounded = sizes.iter().copied().chain(*shape).map(|value| format!("{value:.4e}").parse().unwrap_or(value));
-        let formula = Formula::new(NAME, target, &text, &names).ok()?;
+        let formula = Formula::new(&self.name(term, motion), target, &text, &names).ok()?;
         let mut model = Model::new(robot);
         model.add_formula(formula, &rounded.collect::<Vec<f64>>()).ok()?.free = true;
         Some(model)
@@ -489,13 +528,12 @@ impl Laws {
         &self.functions[self.terms[term].function].words
     }
 
-    /// The columns of some terms for each motion in turn, in a run.
-    pub fn columns(&self, terms: &[usize], run: &ObservedRun, chain: &Chain<f64>) -> Vec<Column> {
+    /// The columns of some terms for each motion in turn, in the [`steps`] of a run.
+    pub fn columns(&self, terms: &[usize], run: &ObservedRun, steps: &[Step]) -> Vec<Column> {
         let own: Vec<Term> = terms.iter().map(|term| self.terms[*term]).collect();
         let mut sums: [Vec<f64>; 5] = std::array::from_fn(|_| vec![0.0; own.len()]);
         let mut columns = vec![vec![[0.0; 3]; run.blocks.len()]; 3 * own.len()];
         let mut values = vec![0.0; own.len()];
-        let steps = steps(run, chain);
         let mut next = 0;
         for (block, about) in run.blocks.iter().enumerate() {
             while let Some(step) = steps.get(next).filter(|step| step.block == block) {
