@@ -1,10 +1,11 @@
 //! What is missing and not in the catalogue: as a curve, and as a formula to try.
 
 use umbmark_core::dataset::effects_text;
-use umbmark_core::diagnose::{Curve, CurvePoint, Dependence, Reason};
+use umbmark_core::diagnose::{Curve, CurvePoint, Dependence, Reason, Repeated, UnlistedLaw};
 
+use crate::model_report::p_text;
 use crate::prose::hanging;
-use crate::table::with_precision_of;
+use crate::table::{table, with_precision_of};
 
 /// Characters from the lower to the upper edge of a figure.
 const WIDTH: usize = 41;
@@ -25,6 +26,39 @@ pub fn unlisted_text(unlisted: Option<&Dependence>, terminal: bool) -> String {
         None => format!("\n{}", hanging("", 0, "No formula of one variable that was tried explains half of it.")),
     };
     text
+}
+
+/// The law that was added, and the others that were tried: a longer formula has to predict runs left out better.
+pub fn laws_text(repeated: &Repeated) -> String {
+    let [before, after] = repeated.law.left_out.map(|error| 1e3 * error);
+    let said = format!(
+        "{} (p = {} among {} laws; runs left out {before:.1} mm before, {after:.1} mm with it)",
+        repeated.law.words(),
+        p_text(repeated.p),
+        repeated.laws
+    );
+    let mut text = format!("\n{}", hanging("law", 10, &said));
+    text += &hanging("", 10, &formula_of(&repeated.law));
+    let alike: Vec<String> = repeated.others.iter().filter(|law| law.is_alike()).map(UnlistedLaw::words).collect();
+    if !alike.is_empty() {
+        text += &hanging("alike", 10, &format!("these runs cannot tell it from: {}", alike.join("; ")));
+    }
+    let row = |(number, law): (usize, &UnlistedLaw)| {
+        let length = if law.model.is_some() { law.length.to_string() } else { "-".to_owned() };
+        vec![format!("{:<2} {}", number + 1, formula_of(law)), length, format!("{:.1}", 1e3 * law.left_out[1])]
+    };
+    let laws = std::iter::once(&repeated.law).chain(&repeated.others).take(MOST_SHOWN).enumerate();
+    text += &format!("\n{}\n", table(&["laws tried (--law N takes another)", "length", "left out [mm]"], laws.map(row)));
+    text
+}
+
+/// So many laws are shown.
+const MOST_SHOWN: usize = 8;
+
+/// A law as a formula, or in words.
+fn formula_of(law: &UnlistedLaw) -> String {
+    let formula = law.model.as_ref().and_then(|model| model.parts().first()?.effect.formula());
+    formula.map_or_else(|| law.words(), |formula| format!("{} = {}", formula.target().name(), formula.text()))
 }
 
 /// The law that repeats as a formula, where it counts and can be written as one.

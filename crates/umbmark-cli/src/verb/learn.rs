@@ -18,7 +18,7 @@ use crate::prose::hanging;
 use crate::setup_report::{disturbances_text, faults_text, reasons_text, taken_text};
 use crate::table::table;
 use crate::test_arguments::TestArguments;
-use crate::unlisted::{law_text, unlisted_text};
+use crate::unlisted::{law_text, laws_text, unlisted_text};
 
 /// Arguments of `learn`.
 #[derive(Debug, clap::Args)]
@@ -34,6 +34,10 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 
+    /// Where no effect of the catalogue explains what repeats: add the law of this number in the table of laws, not the first
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = crate::numbers::whole_in::<u32>(1..=16))]
+    law: u32,
+
     #[command(flatten)]
     test: TestArguments,
 
@@ -44,7 +48,7 @@ pub struct Arguments {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
-    let options = arguments.test.options(session);
+    let options = Options { law: arguments.law as usize, ..arguments.test.options(session) };
     let start = arguments.model.as_deref().map(|file| read_model(file, &data, session)).transpose()?;
     let start = match start {
         Some(start) => start,
@@ -96,7 +100,12 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     );
     text += &hanging("", 0, &legend);
     text += "\n";
-    text += &hanging("verdict", 10, in_words(learnt.verdict));
+    let has_law = learnt.steps.iter().any(|step| step.law.is_some());
+    let verdict = match learnt.verdict {
+        Verdict::UnlistedEffect if has_law && learnt.diagnosis.dependence.is_none() => BY_A_LAW,
+        verdict => in_words(verdict),
+    };
+    text += &hanging("verdict", 10, verdict);
     let diagnosis = &learnt.diagnosis;
     text += &(faults_text(&diagnosis.setup) + &reasons_text(&diagnosis.reasons) + &taken_text(&diagnosis.taken));
     for step in learnt.steps.iter().filter(|s| s.class.len() > 1) {
@@ -112,6 +121,9 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     for remark in &learnt.remarks {
         text += &hanging("note", 10, remark);
     }
+    for step in &learnt.steps {
+        text += &step.law.as_deref().map(laws_text).unwrap_or_default();
+    }
     text += &unlisted_text(learnt.diagnosis.dependence.as_ref(), terminal);
     if learnt.diagnosis.dependence.is_none() {
         text += &law_text(&learnt.diagnosis.reasons);
@@ -122,6 +134,10 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     }
     text
 }
+
+/// The verdict where what was missing was added as a law.
+const BY_A_LAW: &str =
+    "a law that the catalogue does not have, added as a formula; beside it there is no sign of a further effect";
 
 fn row(step: &Step) -> Vec<String> {
     let others = step.class.len().saturating_sub(1);

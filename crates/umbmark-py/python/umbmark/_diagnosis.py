@@ -148,28 +148,28 @@ class Outlier(Record, frozen=True):
     standard_deviations: float | None
 
 
-class Repeated(Record, frozen=True):
-    """What is left of the error and repeats: the law that stands out most among thousands.
+class UnlistedLaw(Record, frozen=True):
+    """A law that no catalogue lists.
 
     Attributes
     ----------
-    p : float
-        Of all laws together, by flips of the signs of runs.
     toml : str or None
-        The law as an effect of a model file, with start values; None where formulas lack what it
-        depends on.
-    standard_deviations : float
-        Size of its score, in standard deviations of the noise model.
-    laws : int
-        How many laws there are that the data could show.
+        The law as an effect of a model file, with start values or, once it was added, the fitted
+        ones; None where formulas lack what it depends on.
+    formula, target : str or None
+        Its formula, and what that acts on.
     acts_on : str
         "forward", "sideways" or "yaw".
     per : str
         What the motion is in proportion to: "second", "metre" or "radian turned".
     by : str
         What it follows, in words.
+    means : str or None
+        What its length is of the robot or of its path, such as the circumference of a wheel.
     with_sense : bool
         Whether it turns over with the sense of the run.
+    length : int or None
+        How long the formula is: operations, variables and numbers.
     heldout_rmse_m : float
         Error of runs left out, in m.
     heldout_rmse_with_law_m : float
@@ -177,19 +177,44 @@ class Repeated(Record, frozen=True):
     gain : float
         By what share errors of runs left out fall: of positions, of headings, or from pose to
         pose, whichever falls most.
+    likeness : float
+        Share of its response that the law which is taken makes as well, as a cosine.
     """
 
-    p: float
     toml: str | None
-    standard_deviations: float
-    laws: int
+    formula: str | None
+    target: str | None
     acts_on: str
     per: str
     by: str
+    means: str | None
     with_sense: bool
+    length: int | None
     heldout_rmse_m: float
     heldout_rmse_with_law_m: float
     gain: float
+    likeness: float
+
+
+class Repeated(UnlistedLaw, frozen=True):
+    """What is left of the error and repeats: the law that it is taken for, and its p.
+
+    Attributes
+    ----------
+    p : float
+        Of all laws together, by flips of the signs of runs.
+    standard_deviations : float
+        Size of the greatest score of a law, in standard deviations of the noise model.
+    laws : int
+        How many laws there are that the data could show.
+    others : tuple of UnlistedLaw
+        Others that stand out, the one that predicts runs left out best first.
+    """
+
+    p: float
+    standard_deviations: float
+    laws: int
+    others: tuple[UnlistedLaw, ...]
 
 
 class Diagnosis(Result, frozen=True):
@@ -318,11 +343,16 @@ class Fitted(Result, frozen=True):
 
 
 class Step(Record, frozen=True):
-    """One line of the story of a learnt model; errors in m and rad."""
+    """One line of the story of a learnt model; errors in m and rad.
+
+    ``law`` is that of a step which no effect of the catalogue makes: how it was found, what else
+    it may be, and its formula as it was fitted.
+    """
 
     added: str | None
     class_: tuple[str, ...] = msgspec.field(name="class")
     p_adjusted: float | None
+    law: Repeated | None
     rmse_m: float | None
     heading_rmse_rad: float | None
     heldout_rmse_m: float | None

@@ -14,6 +14,8 @@ use crate::effect::{Law, Model, Part};
 use crate::likelihood::{Fitted, Noise};
 use crate::watch::Watch;
 
+/// A law that no catalogue lists comes before an effect that explains less than this share of what it does.
+const OUTDONE: f64 = 0.5;
 /// A fit with an effect more went astray where its error is so many times as large.
 const ASTRAY: f64 = 2.0;
 
@@ -144,6 +146,8 @@ pub(crate) struct Search {
     repeats: Option<Option<Repeated>>,
     /// Formulas that were tried and taken back.
     refused_laws: Vec<String>,
+    /// Whether a law that explains more than the effect that would be added could not be.
+    law_failed: bool,
 }
 
 /// Adds what is certified as missing and `wanted`, at most `most` effects and none of those `refused`, each fitted without approximation
@@ -174,6 +178,7 @@ pub(crate) fn search(
         left,
         repeats: None,
         refused_laws: Vec::new(),
+        law_failed: false,
     };
     search.grow(options, (most, wanted), &refused, watch)?;
     while search.undo_harm() {
@@ -249,7 +254,8 @@ impl Search {
     ) -> Result<(), DiagnoseError> {
         while self.added.len() < most && !watch.is_stopped() {
             (watch.progress)((self.added.len() + 1) as f64 / (most + 1) as f64);
-            if let Some((finding, suspect)) = self.left.effect.clone() {
+            let outdone = wanted == Wanted::All && self.is_outdone(options);
+            if let Some((finding, suspect)) = self.left.effect.clone().filter(|_| !outdone) {
                 let exam = self.last().of_grown(growth::grown(self.last(), &suspect)?)?;
                 let Some((exam, removed)) = self.borne_out(exam, suspect.best)? else {
                     self.removed.push(suspect.best);
@@ -263,7 +269,13 @@ impl Search {
                 }
             }
             let next = if wanted == Wanted::All { self.law(options)? } else { None };
-            let Some((exam, removed, added)) = next else { break };
+            let Some((exam, removed, added)) = next else {
+                if outdone {
+                    self.law_failed = true;
+                    continue;
+                }
+                break;
+            };
             self.take(exam, removed, added)?;
             self.left = missing(self.last(), options, &self.passed(refused));
         }
@@ -311,12 +323,21 @@ impl Search {
             let exam = self.last().of_grown(fitted)?;
             if let Some((exam, removed)) = self.borne_out(exam, name)? {
                 let suspect = repeats::suspect(&repeated, name, &exam);
-                repeated.law.model = Some(exam.fitted.model.only(name));
+                repeated.law = repeated.law.fitted(name, &exam);
                 return Ok(Some((exam, removed, Added { suspect, by: Found::Unlisted(Box::new(repeated)) })));
             }
             self.refused_laws.push(text_of(&model));
         }
         Ok(None)
+    }
+
+    /// Whether a law that no catalogue lists explains far more than the effect that would be added.
+    fn is_outdone(&mut self, options: &Options) -> bool {
+        let Some((finding, _)) = &self.left.effect else { return false };
+        let drop = finding.answer.drop;
+        let law_failed = self.law_failed;
+        let repeated = self.repeats(options).filter(|repeated| repeated.counts(LEAST_GAIN));
+        !law_failed && repeated.is_some_and(|repeated| drop < OUTDONE * repeated.law.drop)
     }
 
     /// What repeats most beside the last model.
@@ -342,7 +363,7 @@ impl Search {
         self.written.push(trusted(exam.fitted.clone())?);
         self.exams.push(exam);
         self.added.push(added);
-        self.repeats = None;
+        (self.repeats, self.law_failed) = (None, false);
         Ok(())
     }
 

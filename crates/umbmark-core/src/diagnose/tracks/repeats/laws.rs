@@ -14,6 +14,8 @@ pub enum Per {
     Second,
     /// Way driven, ahead or back.
     Metre,
+    /// Way ahead, and back against it.
+    Ahead,
     /// Rotation, either way.
     Radian,
 }
@@ -24,6 +26,7 @@ impl Per {
         match self {
             Per::Second => "second",
             Per::Metre => "metre",
+            Per::Ahead => "metre ahead or back, against each other",
             Per::Radian => "radian turned",
         }
     }
@@ -32,6 +35,7 @@ impl Per {
         match self {
             Per::Second => step.duration,
             Per::Metre => step.way,
+            Per::Ahead => step.way * step.speed.signum(),
             Per::Radian => step.rotation.abs(),
         }
     }
@@ -139,7 +143,7 @@ pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
 
 /// A function of a step.
 struct Function {
-    /// What it is: "a wave of the time with a period of about 18.9 s".
+    /// What it is: "a wave of the time with a period of {c} s".
     words: String,
     /// The same as a formula of the user's own, with a parameter c where it has a value; none where formulas lack what it depends on.
     formula: Option<(String, Option<f64>)>,
@@ -154,6 +158,16 @@ fn written(text: impl Into<String>) -> Option<(String, Option<f64>)> {
 /// A formula of a parameter c.
 fn shaped(text: &str, c: f64) -> Option<(String, Option<f64>)> {
     Some((text.to_owned(), Some(c)))
+}
+
+/// What is above c counts, what is below does not, and about c it passes from the one to the other: a place where it jumps could not be fitted.
+fn above(quantity: &str) -> String {
+    format!("(1 + tanh(20 * ({quantity} / c - 1))) / 2")
+}
+
+/// The same as a number.
+fn beyond(quantity: f64, c: f64) -> f64 {
+    0.5 * (1.0 + libm::tanh(20.0 * (quantity / c - 1.0)))
 }
 
 /// A function for each second, metre or radian.
@@ -174,16 +188,20 @@ const WAYS: (f64, f64) = (0.25, 30.0);
 const PERIODS: usize = 96;
 const SHORTER: f64 = 1.1;
 /// Decays over so much time \[s\], and way since a turn or from a wall \[m\].
-const DECAYS: [f64; 4] = [5.0, 12.0, 30.0, 75.0];
-const NEAR: [f64; 3] = [0.1, 0.3, 1.0];
+const DECAYS: [f64; 7] = [3.0, 6.0, 12.0, 20.0, 35.0, 60.0, 100.0];
+const NEAR: [f64; 5] = [0.1, 0.2, 0.35, 0.6, 1.0];
 /// Sizes of what a robot does, as shares of the largest.
-const SHARES: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
+const SHARES: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+/// Runs drive back where more than this share of the way is back.
+const BACK: f64 = 0.02;
 /// Humps on the floor are so far apart at least \[m\], and so many at most.
 const HUMPS: (f64, usize) = (0.5, 80);
 
 /// All laws that some runs may follow.
 pub struct Laws {
     functions: Vec<Function>,
+    /// Whether some runs drive back.
+    reverses: bool,
     /// Each with three motions.
     pub terms: Vec<Term>,
 }
@@ -201,6 +219,9 @@ fn periods((low, high): (f64, f64), extent: f64) -> Vec<f64> {
 
 /// The extent of what runs do.
 struct Extent {
+    /// Way in all runs, and how much of it back.
+    way: f64,
+    back: f64,
     time: f64,
     distance: f64,
     speed: f64,
@@ -215,7 +236,10 @@ impl Extent {
     fn of(steps: &[Vec<Step>]) -> Extent {
         let most = |of: fn(&Step) -> f64| steps.iter().flatten().map(of).fold(1e-9, f64::max);
         let least = |of: fn(&Step) -> f64| steps.iter().flatten().map(of).fold(0.0, f64::min);
+        let sum = |of: fn(&Step) -> f64| steps.iter().flatten().map(of).sum::<f64>();
         Extent {
+            way: sum(|s| s.way),
+            back: sum(|s| if s.speed < 0.0 { s.way } else { 0.0 }),
             time: most(|s| s.time),
             distance: most(|s| s.distance),
             speed: most(|s| s.speed.abs()),
@@ -231,9 +255,25 @@ impl Extent {
 impl Laws {
     /// Those of the steps of some runs.
     pub fn of(steps: &[Vec<Step>]) -> Laws {
-        let mut laws = Laws { functions: Vec::new(), terms: Vec::new() };
-        laws.fill(&Extent::of(steps));
+        let extent = Extent::of(steps);
+        let mut laws = Laws { functions: Vec::new(), reverses: extent.back > BACK * extent.way, terms: Vec::new() };
+        laws.fill(&extent);
+        if laws.reverses {
+            laws.add_ahead();
+        }
         laws
+    }
+
+    /// For each law per metre driven, the same per metre ahead.
+    fn add_ahead(&mut self) {
+        let own: Vec<usize> = (0..self.terms.len()).filter(|term| self.terms[*term].per == Per::Metre).collect();
+        let first = self.terms.len();
+        let place = |term: usize| own.iter().position(|other| *other == term).map(|place| first + place);
+        let ahead: Vec<Term> = own
+            .iter()
+            .map(|term| Term { per: Per::Ahead, twin: self.terms[*term].twin.and_then(place), ..self.terms[*term] })
+            .collect();
+        self.terms.extend(ahead);
     }
 
     fn add(
@@ -271,18 +311,18 @@ impl Laws {
         use Per::{Metre, Radian, Second};
         self.add("a constant".into(), written("1"), &[Second, Metre, Radian], |_| 1.0);
         for period in periods(TIMES, extent.time) {
-            let words = format!("a wave of the time with a period of about {period:.1} s");
+            let words = "a wave of the time with a period of {c} s".to_owned();
             let about = ("", "2 * pi * time / c", Some(period));
             self.wave(words, about, &[Second, Metre], |_| 1.0, move |s| TAU * s.time / period);
         }
         for period in periods(WAYS, extent.distance) {
-            let words = format!("a wave of the way with a period of about {period:.2} m");
+            let words = "a wave of the way with a period of {c} m".to_owned();
             let about = ("", "2 * pi * distance / c", Some(period));
             self.wave(words, about, &[Metre], |_| 1.0, move |s| TAU * s.distance / period);
         }
         for c in DECAYS {
             self.add(
-                format!("what dies away within {c} s of the start"),
+                "what dies away within {c} s of the start".into(),
                 shaped("exp(-time / c)", c),
                 &[Second, Metre],
                 move |s| libm::exp(-s.time / c),
@@ -322,33 +362,27 @@ impl Laws {
         self.add("the root of the speed".into(), written("sqrt(abs(speed))"), &[Metre], |s| s.speed.abs().sqrt());
         for share in SHARES {
             let v = share * fastest;
-            self.add(
-                format!("a speed above {v:.2} m/s"),
-                written(format!("(1 + sign(abs(speed) - {v:.4})) / 2")),
-                &[Metre],
-                move |s| f64::from(s.speed.abs() > v),
-            );
-            self.add(format!("the speed beyond {v:.2} m/s"), shaped("max(abs(speed) - c, 0)", v), &[Metre], move |s| {
+            self.add("a speed above {c} m/s".into(), shaped(&above("abs(speed)"), v), &[Metre], move |s| {
+                beyond(s.speed.abs(), v)
+            });
+            self.add("the speed beyond {c} m/s".into(), shaped("max(abs(speed) - c, 0)", v), &[Metre], move |s| {
                 (s.speed.abs() - v).max(0.0)
             });
-            self.add(format!("tanh(speed / {v:.2} m/s)"), shaped("tanh(abs(speed) / c)", v), &[Metre], move |s| {
+            self.add("tanh(speed / {c} m/s)".into(), shaped("tanh(abs(speed) / c)", v), &[Metre], move |s| {
                 libm::tanh(s.speed.abs() / v)
             });
             let w = share * quickest;
+            self.add("a turn rate above {c} rad/s".into(), shaped(&above("abs(turn_rate)"), w), &[Radian], move |s| {
+                beyond(s.turn_rate.abs(), w)
+            });
             self.add(
-                format!("a turn rate above {w:.2} rad/s"),
-                written(format!("(1 + sign(abs(turn_rate) - {w:.4})) / 2")),
+                "a turn rate above {c} rad/s, with its sense".into(),
+                shaped(&format!("sign(turn_rate) * {}", above("abs(turn_rate)")), w),
                 &[Radian],
-                move |s| f64::from(s.turn_rate.abs() > w),
+                move |s| s.turn_rate.signum() * beyond(s.turn_rate.abs(), w),
             );
             self.add(
-                format!("a turn rate above {w:.2} rad/s, with its sense"),
-                written(format!("sign(turn_rate) * (1 + sign(abs(turn_rate) - {w:.4})) / 2")),
-                &[Radian],
-                move |s| s.turn_rate.signum() * f64::from(s.turn_rate.abs() > w),
-            );
-            self.add(
-                format!("tanh(turn rate / {w:.2} rad/s)"),
+                "tanh(turn rate / {c} rad/s)".into(),
                 shaped("tanh(turn_rate / c)", w),
                 &[Second],
                 move |s| libm::tanh(s.turn_rate / w),
@@ -378,16 +412,16 @@ impl Laws {
             s.acceleration.abs()
         });
         self.add(
-            format!("braking by more than {sharp:.2} m/s²"),
-            written(format!("(1 + sign(-acceleration * sign(speed) - {sharp:.4})) / 2")),
+            "braking by more than {c} m/s²".into(),
+            shaped(&above("-acceleration * sign(speed)"), sharp),
             &[Second, Metre],
-            move |s| f64::from(s.acceleration * s.speed.signum() < -sharp),
+            move |s| beyond(-s.acceleration * s.speed.signum(), sharp),
         );
         self.add(
-            format!("speeding up by more than {sharp:.2} m/s²"),
-            written(format!("(1 + sign(acceleration * sign(speed) - {sharp:.4})) / 2")),
+            "speeding up by more than {c} m/s²".into(),
+            shaped(&above("acceleration * sign(speed)"), sharp),
             &[Second, Metre],
-            move |s| f64::from(s.acceleration * s.speed.signum() > sharp),
+            move |s| beyond(s.acceleration * s.speed.signum(), sharp),
         );
         let sharp = 0.25 * extent.turn_acceleration;
         self.add("the change of the turn rate".into(), written("turn_acceleration"), &[Second], |s| {
@@ -397,33 +431,27 @@ impl Laws {
             s.turn_acceleration.abs()
         });
         self.add(
-            format!("turns that grow by more than {sharp:.2} rad/s², with their sense"),
-            written(format!("sign(turn_rate) * (1 + sign(turn_acceleration * sign(turn_rate) - {sharp:.4})) / 2")),
+            "turns that grow by more than {c} rad/s², with their sense".into(),
+            shaped(&format!("sign(turn_rate) * {}", above("turn_acceleration * sign(turn_rate)")), sharp),
             &[Second],
-            move |s| {
-                let grows = s.turn_acceleration * s.turn_rate.signum() > sharp;
-                s.turn_rate.signum() * f64::from(grows)
-            },
+            move |s| s.turn_rate.signum() * beyond(s.turn_acceleration * s.turn_rate.signum(), sharp),
         );
         self.add(
-            format!("turns that end by more than {sharp:.2} rad/s², with their sense"),
-            written(format!("sign(turn_rate) * (1 + sign(-turn_acceleration * sign(turn_rate) - {sharp:.4})) / 2")),
+            "turns that end by more than {c} rad/s², with their sense".into(),
+            shaped(&format!("sign(turn_rate) * {}", above("-turn_acceleration * sign(turn_rate)")), sharp),
             &[Second],
-            move |s| {
-                let ends = s.turn_acceleration * s.turn_rate.signum() < -sharp;
-                s.turn_rate.signum() * f64::from(ends)
-            },
+            move |s| s.turn_rate.signum() * beyond(-s.turn_acceleration * s.turn_rate.signum(), sharp),
         );
         self.add("the sense of the last turn".into(), written("last_turn"), &[Metre], |s| s.last_turn);
         for c in NEAR {
             self.add(
-                format!("what dies away within {c} m of a turn"),
+                "what dies away within {c} m of a turn".into(),
                 shaped("exp(-since_turn / c)", c),
                 &[Metre],
                 move |s| libm::exp(-s.since_turn / c),
             );
             self.add(
-                format!("what dies away within {c} m of a turn, with its sense"),
+                "what dies away within {c} m of a turn, with its sense".into(),
                 shaped("last_turn * exp(-since_turn / c)", c),
                 &[Metre],
                 move |s| s.last_turn * libm::exp(-s.since_turn / c),
@@ -498,12 +526,15 @@ impl Laws {
         let about = self.terms[term];
         let (target, factor) = match (motion, about.per) {
             (Motion::Yaw, Per::Metre) => (Target::HeadingPerMetre, ""),
+            (Motion::Yaw, Per::Ahead) => (Target::HeadingPerMetre, "sign(speed) * "),
             (Motion::Yaw, Per::Radian) => (Target::TurnScale, "sign(turn_rate) * "),
             (Motion::Yaw, Per::Second) => (Target::HeadingPerSecond, ""),
-            (Motion::Forward, Per::Metre) => (Target::ForwardScale, "sign(speed) * "),
+            (Motion::Forward, Per::Metre) if self.reverses => (Target::ForwardScale, "sign(speed) * "),
+            (Motion::Forward, Per::Metre | Per::Ahead) => (Target::ForwardScale, ""),
             (Motion::Forward, Per::Radian) => (Target::ForwardPerRadian, ""),
             (Motion::Forward, Per::Second) => (Target::ForwardPerSecond, ""),
             (Motion::Sideways, Per::Metre) => (Target::SidewaysPerMetre, ""),
+            (Motion::Sideways, Per::Ahead) => (Target::SidewaysPerMetre, "sign(speed) * "),
             (Motion::Sideways, Per::Radian) => (Target::SidewaysPerRadian, ""),
             (Motion::Sideways, Per::Second) => (Target::SidewaysPerSecond, ""),
         };
@@ -513,6 +544,7 @@ impl Laws {
         let text = match second {
             Some((second, _)) if sense.is_empty() && factor.is_empty() => format!("a * {first} + b * {second}"),
             Some((second, _)) => format!("{sense}{factor}(a * {first} + b * {second})"),
+            None if first == "1" => format!("a * {sense}{factor}").trim_end_matches(" * ").to_owned(),
             None => format!("a * {sense}{factor}{first}"),
         };
         let names: Vec<&str> = ["a", "b"].into_iter().take(sizes.len()).chain(shape.map(|_| "c")).collect();
@@ -523,7 +555,7 @@ impl Laws {
         Some(model)
     }
 
-    /// What a term depends on, in words.
+    /// What a term depends on, in words, with {c} for the number that it has.
     pub fn words(&self, term: usize) -> &str {
         &self.functions[self.terms[term].function].words
     }
