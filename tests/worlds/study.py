@@ -23,7 +23,7 @@ from pathlib import Path as File
 import tables
 from files import write
 from judge import Json
-from record import make
+from make import make
 from replay import left, read_truth, rms_m
 from worlds import WORLDS
 
