@@ -5,7 +5,6 @@ from pathlib import Path as File
 from typing import Any
 
 import numpy as np
-from plans import square_side_m
 from record import Log, Made, common_limits
 from setting import Setting
 from worlds import WORLDS
@@ -29,6 +28,10 @@ CONVENTIONS = {
     "a time stamp of the log",
     "glitches": "time stamps of bad poses, by log",
     "far_poses": "time stamps of poses that noise alone moved by more than eight times its size",
+    "law": "one that no catalogue lists: shows_m is what it adds to the positions beyond E_d, E_b, "
+    "E_s and START, noise_m what the truth leaves without it; share_of_one_run: of the squares of "
+    "shows_m, the run that has most; room_m: least and greatest x, least "
+    "and greatest y of the drives; what the law is stands in numbers",
     "corrections": "a reference that drifts is set right by so much at these time stamps",
 }
 
@@ -44,7 +47,7 @@ def robot_toml(setting: Setting) -> str:
         f"ticks_per_revolution = {robot.ticks_per_revolution}",
     ]
     if setting.drive.kind == "squares":
-        side = square_side_m(common_limits(setting, 0))
+        side = common_limits(setting, 0).side_m
         lines += ["", "[path]", 'shape = "square"', f"side_m = {side:.4f}"]
     return "\n".join(lines) + "\n"
 
@@ -157,6 +160,7 @@ def truth(made: Made) -> dict[str, Any]:
             for run, stamp, moved, turn in made.corrections
         ],
         "logs": logs_of(made),
+        "law": made.law,
         "numbers": setting.numbers(),
         "conventions": CONVENTIONS,
     }

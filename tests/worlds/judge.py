@@ -3,7 +3,9 @@
 import json
 from typing import Any, TypeAlias
 
+import naming
 import words
+from replay import setting_in
 from setting import Setting
 
 Json: TypeAlias = dict[str, Any]
@@ -93,18 +95,19 @@ def right_additions(truth: Json) -> tuple[set[str], set[str]]:
     return effects, variables
 
 
-def additions(learn: Json, truth: Json) -> tuple[list[str], list[str]]:
+def additions(learn: Json, truth: Json, law: Json) -> tuple[list[str], list[str]]:
     """Steps that are right and steps that are not."""
     effects, variables = right_additions(truth)
     right: list[str] = []
     wrong: list[str] = []
-    for step in learn.get("steps") or []:
+    for number, step in enumerate(learn.get("steps") or []):
         name = step["added"]
         if name is None or name in words.ALWAYS:
             continue
         formula = (step.get("law") or {}).get("formula", "")
         is_right = ({name} | set(step["class"])) & effects or any(v in formula for v in variables)
-        (right if is_right else wrong).append(name)
+        names_law = law and law["law_in_steps"][number] != "no"
+        (right if is_right or names_law else wrong).append(name)
     return right, wrong
 
 
@@ -147,12 +150,13 @@ def judged(answers: Json, truth: Json, truth_leaves_m: float) -> Json:
     learn = answers["learn"]["answer"] or {}
     stderr = answers["learn"]["stderr"]
     text = text_of(learn, stderr)
-    right, wrong = additions(learn, truth)
+    law = naming.named_law(answers, truth, setting_in(truth)) if hides_law(truth) else {}
+    right, wrong = additions(learn, truth, law)
     steps = learn.get("steps") or []
     last = steps[-1] if steps else {}
     models = ((answers.get("compare") or {}).get("answer") or {}).get("models") or [{}]
     compared = (models[0].get("along") or {}).get("rmse_m")
-    found = {
+    found: Json = {
         "verdict": learn.get("verdict") or ("timeout" if stopped(answers, "learn") else "refused"),
         "ratios": ratios(learn, truth),
         "delay": delay(learn, truth),
@@ -168,6 +172,10 @@ def judged(answers: Json, truth: Json, truth_leaves_m: float) -> Json:
         "learn_rmse_m": last.get("rmse_m"),
         "compare_rmse_m": compared,
     }
+    if law:
+        found |= law | {"law": law_of(truth), "explained": found["verdict"]}
+        left = found["left_out_m"]
+        found["left_out_by_truth"] = left / truth_leaves_m if left else None
     found["problems"] = problems(found, answers, truth)
     return found
 
@@ -190,7 +198,18 @@ def problems(found: Json, answers: Json, truth: Json) -> list[tuple[int, str]]:
 
 def has_law(truth: Json) -> bool:
     """Whether a law is at work that E_d, E_b and E_s may rightly take up where it does not show."""
-    return any(truth["numbers"]["laws"][key] for key in words.LAWS)
+    return hides_law(truth) or any(truth["numbers"]["laws"][key] for key in words.LAWS)
+
+
+def hides_law(truth: Json) -> bool:
+    """Whether a law is at work that no catalogue lists."""
+    return bool(truth["numbers"]["laws"].get("law_kind"))
+
+
+def law_of(truth: Json) -> str:
+    """A law that no catalogue lists, in a few words."""
+    laws = truth["numbers"]["laws"]
+    return f"{laws['law_acts_on']} per {laws['law_per']}: {laws['law_kind']}"
 
 
 def broken(answers: Json) -> list[tuple[int, str]]:
@@ -245,6 +264,10 @@ def wrong_verdict(found: Json, sure: bool, truth: Json) -> list[tuple[int, str]]
     if found["verdict"] == "refused":
         return [] if is_fault and all(found["faults"].values()) else [(2, "refused")]
     wrong = []
+    if hides_law(truth):
+        if found["law_right"] == "no":
+            wrong.append((3 if sure else 2, f"law not named: {found['law']}"))
+        is_fault = True  # Something is missing, and no verdict but `explained` is wrong.
     left, best = found["left_out_m"], found["truth_leaves_m"]
     if left and left > WORSE * best and left > best + WORSE_M:
         text = f"leaves {1e3 * left:.1f} mm, the truth {1e3 * best:.1f} mm"

@@ -4,9 +4,18 @@ import argparse
 import sys
 from pathlib import Path as File
 
+import unlisted
 from files import write
-from record import make
+from record import Made, driven, setting_of
 from worlds import WORLDS
+
+
+def make(world: str, seed: int, overrides: list[str] | None = None) -> Made:
+    """Make a world from its name and seed, with a law that shows where it hides one."""
+    setting = setting_of(world, seed, overrides or [])
+    if WORLDS[world].hides_law:
+        return unlisted.with_law(world, seed, setting, overrides or [])
+    return driven(world, seed, setting)
 
 
 def arguments(words: list[str]) -> argparse.Namespace:

@@ -30,6 +30,8 @@ class Limits:
     run_s: float
     sense: int
     """+1: a path that goes round is driven counter-clockwise; -1: clockwise."""
+    side_m: float
+    """Of a square."""
 
 
 Plan: TypeAlias = Callable[[Limits, Random], Array]
@@ -183,15 +185,15 @@ def lawn_mower(limits: Limits, random: Random) -> Array:
     return (rolling if is_round else stop_and_go)(moves(), limits)
 
 
-def square_side_m(limits: Limits) -> float:
+def square_side_m(speed_m_s: float, turn_rad_s: float, pause_s: float, run_s: float) -> float:
     """Side of a square that takes about half a run."""
-    corner_s = pi / 2 / limits.turn_rad_s + 0.5 + 2 * limits.pause_s
-    return limits.speed_m_s * max(2.0, limits.run_s / 8 - corner_s)
+    corner_s = pi / 2 / turn_rad_s + 0.5 + 2 * pause_s
+    return speed_m_s * max(2.0, run_s / 8 - corner_s)
 
 
 def squares(limits: Limits, _: Random) -> Array:
     """Whole squares with turns on the spot, as often as fit into a run, once at least."""
-    side = [(square_side_m(limits), 0.0), (0.0, limits.sense * pi / 2)]
+    side = [(limits.side_m, 0.0), (0.0, limits.sense * pi / 2)]
     once = stop_and_go(side * 4, replace(limits, run_s=np.inf))
     return np.tile(once, (max(1, int(limits.run_s / (len(once) * limits.period_s))), 1))
 

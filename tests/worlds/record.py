@@ -1,7 +1,8 @@
-"""Make a world: draw it, drive it, record it."""
+"""Draw a world, drive it, record it."""
 
 from dataclasses import dataclass, field, replace
 from math import pi
+from typing import Any
 from zlib import crc32
 
 import control
@@ -11,7 +12,7 @@ import tracker
 from draw import around, draw, log_uniform, signed
 from encoders import Ride, Ticks, read_ticks
 from physics import STEP_S, Track
-from plans import PLANS, ROUND, Limits, Random, still
+from plans import PLANS, ROUND, Limits, Random, square_side_m, still
 from setting import Array, Setting
 from tracker import Jump, Poses, follow, pose_times
 from worlds import WORLDS
@@ -56,6 +57,10 @@ class Made:
     """When the recording of each drive began, since the robot was switched on."""
     corrections: list[tuple[int, float, float, float]] = field(default_factory=list)
     """Of a reference that drifts: drive, stamp, distance, turn."""
+    tracks: list[Ride] = field(default_factory=list)
+    """What really happened in each drive, from its beginning to its end."""
+    law: dict[str, Any] = field(default_factory=dict)
+    """How far the law that no catalogue lists shows, where there is one."""
 
 
 def stream(seed: int, world: str, purpose: str) -> Random:
@@ -88,6 +93,13 @@ def plan(setting: Setting, run: int, random: Random) -> Array:
             turn_rad_s=limits.turn_rad_s * turn,
             run_s=limits.run_s * length,
         )
+    elif setting.drive.speed_spread > 1:
+        slower = setting.drive.speed_spread ** -random.uniform(0, 1, 2)
+        limits = replace(
+            limits,
+            speed_m_s=limits.speed_m_s * slower[0],
+            turn_rad_s=limits.turn_rad_s * slower[1],
+        )
     rest = still(setting.drive.rest_s, limits)
     return np.concatenate([rest, PLANS[setting.drive.kind](limits, random), rest])
 
@@ -104,6 +116,7 @@ def common_limits(setting: Setting, run: int) -> Limits:
         drive.pause_s,
         drive.run_s,
         sense(setting, run),
+        square_side_m(robot.top_speed_m_s, robot.top_turn_rad_s, drive.pause_s, drive.run_s),
     )
 
 
@@ -238,9 +251,8 @@ def record_run(made: Made, track: Track, run: int, end_s: float, random: Random)
     return merged(setting, ride, ticks, poses)
 
 
-def make(world: str, seed: int, overrides: list[str] | None = None) -> Made:
-    """Make a world from its name and seed."""
-    setting = setting_of(world, seed, overrides or [])
+def driven(world: str, seed: int, setting: Setting) -> Made:
+    """Drive and record a world with these numbers."""
     source = WORLDS[world].same_drive_as or world
     made = Made(world, seed, setting)
     random = stream(seed, source, "drive")
@@ -259,6 +271,7 @@ def make(world: str, seed: int, overrides: list[str] | None = None) -> Made:
         if setting.faults.jump_of != "reference"
     ]
     track = control.drive(setting, plans, starts(setting, random), pushes, random)
+    made.tracks = [Ride(track, run, 0.0, end_s) for run, end_s in enumerate(ends)]
     for run, end_s in enumerate(ends):
         log = record_run(made, track, run, end_s, stream(seed, source, f"record {run}"))
         made.logs += pieces(log, setting.drive.pieces) if setting.drive.pieces > 1 else [log]

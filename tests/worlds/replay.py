@@ -5,18 +5,24 @@ reference does that drifts.
 """
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path as File
 from typing import Any
 
 import numpy as np
-from laws import added_turn, scrubbed, wheel_travel
+from laws import Situation, added_turn, scrubbed, unlisted_motion, wheel_travel
 from setting import Array, Drive, Faults, Laws, Recording, Reference, Robot, Setting
 from tracker import tracked, turned
 
 FIRST_S = 2.0
 """A replay is laid on the poses of so many first seconds, and on five poses at least."""
+SMOOTH_S = 0.1
+"""Speeds, of which some laws are functions, are means over so long."""
+MOVES_M_S = 5e-3
+"""A wheel that is faster than this in such a mean moves."""
+MOST_ROUNDS, SETTLED = 40, 1e-7
+"""Laws of the pose are settled after so many rounds at most, or where poses change by less."""
 
 
 @dataclass
@@ -83,27 +89,81 @@ def poses_of(log: Array, setting: Setting) -> Array:
     return np.column_stack([x * length, (-y if faults.mirrored else y) * length, heading])
 
 
-def replayed(on_s: Array, angle: Array, setting: Setting, heading: float) -> Array:
-    """Poses [rows x 3] from wheel angles [2 x rows], beginning at the origin with a heading.
+def smoothed_rate(when_s: Array, on_s: Array, value: Array) -> Array:
+    """How fast a value known at some times changes at others, over a short while about each."""
+    early, late = (np.clip(when_s + s, on_s[0], on_s[-1]) for s in (-SMOOTH_S / 2, SMOOTH_S / 2))
+    change = np.interp(late, on_s, value) - np.interp(early, on_s, value)
+    return np.asarray(change / np.maximum(late - early, 1e-6))
+
+
+def driving(on_s: Array, angle: Array, setting: Setting) -> Situation:
+    """How a robot drives in each step, by the angles [2 x rows] of its wheels; not yet where.
+
+    Single counts are no speed: what is a rate is smoothed.
+    """
+    laws, robot = setting.laws, setting.robot
+    rolled, step_s = np.diff(angle), np.maximum(np.diff(on_s), 1e-6)
+    middle = (angle[:, 1:] + angle[:, :-1]) / 2
+    radii = np.array(robot.true_radii_m)[:, None]
+    travel = wheel_travel(laws, rolled, middle, radii, step_s)
+    middle_s = (on_s[1:] + on_s[:-1]) / 2
+    left, right = (
+        smoothed_rate(middle_s, on_s, np.concatenate([[0.0], one.cumsum()])) for one in travel
+    )
+    speed = (left + right) / 2
+    way = np.abs(travel.mean(axis=0))
+    turn_rate = (right - left) / robot.true_wheelbase_m
+    return Situation(
+        time_s=middle_s,
+        way_m=way.cumsum() - way / 2,
+        heading=np.zeros_like(speed),
+        x_m=np.zeros_like(speed),
+        y_m=np.zeros_like(speed),
+        speed_m_s=speed,
+        turn_rad_s=scrubbed(laws, speed, turn_rate, robot.true_wheelbase_m, 1.0),
+        acceleration_m_s2=smoothed_rate(middle_s, middle_s, speed),
+        wheel_angle=middle,
+        moves=(np.maximum(np.abs(left), np.abs(right)) > MOVES_M_S).astype(float),
+    )
+
+
+def replayed(on_s: Array, angle: Array, setting: Setting, start: Array) -> Array:
+    """Poses [rows x 3] from wheel angles [2 x rows], beginning at a pose.
 
     `on_s` is the time since the robot was switched on.
     """
     robot, laws = setting.robot, setting.laws
     rolled, step_s = np.diff(angle), np.maximum(np.diff(on_s), 1e-6)
-    middle = (angle[:, 1:] + angle[:, :-1]) / 2
+    at = driving(on_s, angle, setting)
     radii = np.array(robot.true_radii_m)[:, None]
-    travel = wheel_travel(laws, rolled, middle, radii, step_s)
+    travel = wheel_travel(laws, rolled, at.wheel_angle, radii, step_s)
     forward = (travel[0] + travel[1]) / 2
     turn = (travel[1] - travel[0]) / robot.true_wheelbase_m
     turn = scrubbed(laws, forward, turn, robot.true_wheelbase_m, step_s)
-    total = turn
-    for _ in range(3 if laws.slope_cosine_rad_m or laws.slope_sine_rad_m else 1):
-        course = heading + total.cumsum() - total / 2
-        time_s = on_s[:-1] + step_s / 2
-        total = turn + added_turn(laws, travel, forward, course, time_s, step_s)
-    course = heading + total.cumsum() - total / 2
-    steps = np.stack([forward * np.cos(course), forward * np.sin(course), total], axis=1)
-    return np.concatenate([[[0.0, 0.0, heading]], steps]).cumsum(axis=0)
+    motion = np.stack([forward, np.zeros_like(forward), turn])
+    poses = along(motion, start)
+    # Laws depend on the pose, and the pose on laws.
+    for _ in range(MOST_ROUNDS):
+        before = poses
+        x, y, heading = ((poses[1:] + poses[:-1]) / 2).T
+        at = replace(at, x_m=x, y_m=y, heading=heading)
+        added = np.zeros_like(motion)
+        added[2] = added_turn(laws, travel, forward, heading, at.time_s, step_s)
+        if laws.law_kind:
+            added += unlisted_motion(laws, at, forward, turn, step_s)
+        poses = along(motion + added, start)
+        if np.abs(poses - before).max() < SETTLED:
+            break
+    return poses
+
+
+def along(motion: Array, start: Array) -> Array:
+    """Poses [rows x 3] that steps of forward, sideways and yaw motion [3 x steps] lead to."""
+    forward, sideways, turn = motion
+    course = start[2] + turn.cumsum() - turn / 2
+    cos, sin = np.cos(course), np.sin(course)
+    steps = [forward * cos - sideways * sin, forward * sin + sideways * cos, turn]
+    return np.concatenate([start[None, :], np.stack(steps, axis=1)]).cumsum(axis=0)
 
 
 def shown(stamp_s: Array, body: Array, when_s: Array, setting: Setting) -> Array:
@@ -145,8 +205,8 @@ def left_in(rows: Array, name: str, truth: dict[str, Any], setting: Setting) -> 
     has_pose = np.isfinite(rows[:, 3])
     measured, when_s = poses_of(rows, setting)[has_pose], stamp_s[has_pose]
     about = truth["logs"][name]
-    room = about["start_in_room"][2]
-    body = replayed(stamp_s + about["begin_s"], wheels_of(rows, setting), setting, room)
+    start = np.array(about["start_in_room"])
+    body = replayed(stamp_s + about["begin_s"], wheels_of(rows, setting), setting, start)
     rate = setting.reference.clock_rate
     predicted = shown(stamp_s, body, when_s * (1 - rate) - about["delay_s"], setting)
     glitches = np.array(truth["glitches"].get(name, []))

@@ -87,6 +87,8 @@ class Drive:
     """This much of the beginning and of the end is not recorded."""
     pieces: int = 1
     """A run is cut into so many files."""
+    speed_spread: float = 1.0
+    """Squares: the speeds and turn rates of runs differ by up to this factor."""
 
 
 @dataclass(frozen=True)
@@ -204,6 +206,24 @@ class Laws:
     wave_period_s: float = 20.0
     scrub_s_rad: float = 0.0
     """A turn on the spot loses this share per rad/s of its rate; an arc loses less."""
+    law_kind: str = ""
+    """A law that no catalogue lists: a name of `laws.SHAPES`."""
+    law_acts_on: str = "yaw"
+    """`yaw` (counter-clockwise), `forward` or `sideways` (to the left)."""
+    law_per: str = "metre"
+    """`metre` driven, `second` in motion, or `radian` turned."""
+    law_size: float = 0.0
+    """What a shape of one adds for each metre, second or radian [m or rad]."""
+    law_scale: float = 0.0
+    """Period, decay or radius [s or m], threshold [m/s, rad/s or m/s²] or width [rad]."""
+    law_phase_rad: float = 0.0
+    law_order: int = 1
+    """Harmonic of the heading, or power of the time."""
+    law_wheel: str = "left"
+    """The wheel whose angle counts, `left` or `right`."""
+    law_x_m: float = 0.0
+    """Of a place in the room, or of a wall."""
+    law_y_m: float = 0.0
 
 
 @dataclass(frozen=True)

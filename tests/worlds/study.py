@@ -23,7 +23,7 @@ from pathlib import Path as File
 import tables
 from files import write
 from judge import Json
-from record import make
+from make import make
 from replay import left, read_truth, rms_m
 from worlds import WORLDS
 
@@ -104,9 +104,12 @@ KEPT = {
 
 def shortened(verb: str, answered: Json) -> Json:
     """An answer with the keys that are kept."""
-    answer = answered["answer"]
+    whole = answered["answer"]
+    answer = whole
     if answer and KEPT[verb]:
         answer = {key: answer.get(key) for key in KEPT[verb]}
+    if verb == "inspect" and whole and whole.get("logs"):
+        answer["first_log"] = whole["logs"][0]["name"]
     if verb == "compare" and answer:
         kept = ("name", "explains", "p", "along", "end")
         answer["models"] = [{key: one[key] for key in kept} for one in answer["models"]]
@@ -218,7 +221,10 @@ def main(words: list[str]) -> None:
     if not (chosen.worst or chosen.table):
         run(chosen)
     results = read_results(chosen.results, chosen.worlds)
-    lines = tables.worst(results) if chosen.worst else tables.table(results, chosen.by)
+    if chosen.worst:
+        lines = [*tables.worst(results)]
+    else:
+        lines = [*tables.table(results, chosen.by), *tables.laws(results)]
     print("\n".join(lines))
 
 

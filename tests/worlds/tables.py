@@ -5,11 +5,16 @@ from collections.abc import Iterable, Iterator
 from statistics import median
 
 from judge import AGREES, ERRORS, Json, judged
+from words import EXPLAINED
 from worlds import WORLDS
 
 COLUMNS = (
     "sets | verdicts | E_d | E_b | E_s | delay | faults | by inspect | jumps | added rightly "
     "| added wrongly | left out / truth leaves | compare | s |"
+)
+LAW_COLUMNS = (
+    "visible sets | explained | explained and not named | named rightly | as its class | not "
+    "| formula for a curve right or its class | left out / truth leaves |"
 )
 
 
@@ -106,6 +111,38 @@ def table(results: list[Json], key: str) -> Iterator[str]:
     for name, own in groups.items():
         if own:
             yield row(name, own)
+
+
+def laws(results: list[Json]) -> Iterator[str]:
+    """A row for each kind of law that no catalogue lists, and one for all of them."""
+    found = [one["judged"] for one in results if "law" in one["judged"]]
+    if not found:
+        return
+    yield ""
+    header = f"| law | {LAW_COLUMNS}"
+    yield header
+    yield "|" + "---|" * (header.count("|") - 1)
+    groups: dict[str, list[Json]] = {}
+    for one in sorted(found, key=lambda one: str(one["law"])):
+        groups.setdefault(one["law"], []).append(one)
+    for name, own in [*groups.items(), ("all", found)]:
+        yield law_row(name, own)
+
+
+def law_row(name: str, found: list[Json]) -> str:
+    """Some sets with a law together."""
+    said = Counter(one["law_right"] for one in found)
+    explained = [one for one in found if one["explained"] == EXPLAINED]
+    cells = [
+        name,
+        str(len(found)),
+        str(len(explained)),
+        str(sum(one["law_right"] == "no" for one in explained)),
+        *(str(said[worth]) for worth in ("right", "class", "no")),
+        str(sum(one["law_suggested"] != "no" for one in found)),
+        left_out(found),
+    ]
+    return f"| {' | '.join(cells)} |"
 
 
 def weight(result: Json) -> tuple[int, int]:

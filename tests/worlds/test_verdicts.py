@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from files import write
 from judge import judged
-from record import make
+from make import make
 from study import ROOT, Task, study
 
 COMMAND = ROOT / "target/debug/umbmark"

@@ -1,16 +1,20 @@
 """The worlds are what their names say, and a seed decides every byte."""
 
 import json
+from dataclasses import replace
 from math import cos, hypot, pi, sin
 from pathlib import Path as File
+from typing import Any
 
 import numpy as np
 import pytest
+import unlisted
 import words
 from files import truth, write
 from judge import judged
-from laws import added_turn, scrubbed, wheel_travel
-from record import Log, Made, make
+from laws import SHAPES, added_turn, scrubbed, wheel_travel
+from make import make
+from record import Log, Made, driven, setting_of
 from replay import left, rms_m
 from setting import Array, Laws
 from tracker import turned
@@ -334,3 +338,168 @@ def test_a_slope_turns_by_the_heading_in_the_room() -> None:
     heading = log.body[0, 2]
     assert log.body[row, 2] - heading == pytest.approx(0.02 * cos(heading) * metres[row], rel=0.05)
     assert sin(heading) != 0
+
+
+# A law that no catalogue lists.
+
+ADDED: dict[str, dict[str, Any]] = {
+    "time_wave": {"law_per": "second", "law_size": 0.05, "law_scale": 7.0, "law_phase_rad": 1.0},
+    "way_wave": {"law_size": 0.2, "law_scale": 1.7, "law_phase_rad": -1.0},
+    "heading_wave": {"law_size": -0.2, "law_order": 3, "law_phase_rad": 0.5},
+    "speed_squared": {"law_size": 0.9},
+    "speed_above": {"law_acts_on": "forward", "law_size": -0.1, "law_scale": 0.25},
+    "speed_tanh": {"law_size": -0.2, "law_scale": 0.2},
+    "speed_times_turn_rate": {"law_acts_on": "sideways", "law_per": "second", "law_size": 0.4},
+    "speed_times_heading": {"law_size": 0.5, "law_phase_rad": 2.0},
+    "turn_rate_above": {
+        "law_acts_on": "forward",
+        "law_per": "radian",
+        "law_size": 0.03,
+        "law_scale": 0.3,
+    },
+    "turn_rate_squared": {"law_per": "second", "law_size": -0.15},
+    "braking": {"law_per": "second", "law_size": 0.1, "law_scale": 0.1},
+    "fading": {"law_size": 0.2, "law_scale": 20.0},
+    "growing": {"law_size": -0.3, "law_order": 2},
+    "disc": {"law_size": 0.3, "law_scale": 0.8, "law_x_m": 0.5, "law_y_m": 0.2},
+    "place_x": {"law_acts_on": "forward", "law_size": 0.05},
+    "place_y_squared": {"law_acts_on": "forward", "law_size": -0.04},
+    "wall": {"law_size": 0.2, "law_scale": 0.6, "law_x_m": -2.0},
+    "wheel_pulse": {"law_size": 0.4, "law_scale": 0.4, "law_wheel": "right"},
+}
+"""Each law, so large that it moves a robot by far more than noise."""
+SLOW_ROBOT = [
+    *EXACT,
+    "top_speed_m_s=0.5",
+    "top_turn_rad_s=0.9",
+    "acceleration_m_s2=0.5",
+    "motor_lag_s=0.05",
+    "wheelbase_m=0.3",
+    "start=origin",
+    "kind=random_commands",
+    "controller=open",
+    "runs=2",
+    "run_s=40",
+]
+
+
+def with_a_law(kind: str, *overrides: str) -> Made:
+    """A drive with one law."""
+    setting = setting_of("unlisted_null", 5, [*SLOW_ROBOT, *overrides])
+    return driven("unlisted_null", 5, setting.with_(law_kind=kind, **ADDED[kind]))
+
+
+@pytest.mark.parametrize("kind", SHAPES)
+def test_ticks_replayed_with_a_law_leave_noise_and_without_it_far_more(
+    kind: str, tmp_path: File
+) -> None:
+    write(with_a_law(kind), tmp_path)
+    with_law_m = rms_m(left(tmp_path))
+    known = json.loads((tmp_path / "truth.json").read_text())
+    known["numbers"]["laws"] |= {"law_size": 0.0}
+    (tmp_path / "truth.json").write_text(json.dumps(known))
+    without_m = rms_m(left(tmp_path))
+    assert with_law_m < 2e-3
+    assert without_m > 20e-3
+    assert with_law_m < 0.06 * without_m
+
+
+def of_constant(acts_on: str, size: float) -> tuple[Array, Array]:
+    """Way driven and true poses of a straight drive with a law that is the same everywhere."""
+    changes = ["kind=straights", "e_d=1", "e_b=1", "e_s=1", "first_count=0"]
+    setting = setting_of("unlisted_null", 5, [*SLOW_ROBOT, *changes])
+    laws = Laws(law_kind="fading", law_scale=1e9, law_acts_on=acts_on, law_size=size)
+    made = driven("unlisted_null", 5, replace(setting, laws=laws))
+    robot, log = made.setting.robot, made.logs[0]
+    way = log.counts.mean(axis=1) * robot.tick_rad * robot.nominal_radius_m
+    far = int(np.argmax(way > 0.5))
+    return way[far], log.body[far]
+
+
+@pytest.mark.parametrize("size", [0.1, -0.1])
+def test_laws_act_ahead_to_the_left_and_counter_clockwise(size: float) -> None:
+    way, body = of_constant("yaw", size)
+    assert body[2] == pytest.approx(size * way, rel=0.01)
+    way, body = of_constant("forward", size)
+    assert body[0] == pytest.approx((1 + size) * way, rel=1e-3)
+    way, body = of_constant("sideways", size)
+    assert body[1] == pytest.approx(size * way, rel=0.01)
+
+
+@pytest.mark.parametrize("acts_on", ["yaw", "forward"])
+def test_a_law_that_is_e_d_or_e_s_does_not_show_beyond_them(acts_on: str) -> None:
+    setting = setting_of("unlisted_null", 5, [*SLOW_ROBOT, "kind=squares"])
+    known = unlisted.known_of(driven("unlisted_null", 5, setting))
+    columns = unlisted.taken_up(known)
+    same = Laws(law_kind="fading", law_scale=1e9, law_acts_on=acts_on, law_size=1e-4)
+    other = replace(same, law_scale=20.0)
+    moved = unlisted.positions(known, replace(setting, laws=same))
+    moves = np.concatenate(moved) - np.concatenate(unlisted.positions(known, setting))
+    moves_m = float(np.sqrt((moves**2).sum(axis=1).mean()))
+    assert moves_m > 1e-5
+    assert unlisted.beyond_m(known, same, columns) < 0.05 * moves_m
+    assert unlisted.beyond_m(known, other, columns) > 3 * unlisted.beyond_m(known, same, columns)
+
+
+def test_each_kind_of_law_is_first_in_as_many_seeds_as_there_are_kinds() -> None:
+    families = list(unlisted.FAMILIES)
+    seeds = range(len(families) * 3, len(families) * 4)
+    first = [next(unlisted.order(families, "unlisted", seed)) for seed in seeds]
+    assert sorted(first, key=families.index) == families
+    assert {one.kind for one in families} == set(SHAPES)
+
+
+def test_a_size_is_such_that_the_law_shows_as_far_as_wanted() -> None:
+    setting = setting_of("unlisted_null", 5, [*SLOW_ROBOT, "kind=squares"])
+    known = unlisted.known_of(driven("unlisted_null", 5, setting))
+    family = next(one for one in unlisted.FAMILIES if one.kind == "place_x")
+    law = Laws(law_kind="place_x", law_acts_on="forward", law_size=-1.0)
+    for wanted_m in (1e-3, 2e-3):
+        laws = unlisted.sized(known, family, law, wanted_m)
+        assert laws is not None
+        assert laws.law_size < 0
+        shows_m = unlisted.beyond_m(known, laws, unlisted.taken_up(known))
+        assert shows_m == pytest.approx(wanted_m, rel=0.02)
+    assert unlisted.sized(known, family, law, 10.0) is None
+
+
+def test_a_law_that_shows_too_little_or_too_far_or_that_ticks_do_not_say_is_not_fair() -> None:
+    fair = {"shows_m": 3.0, "noise_m": 1.0, "truth_leaves_m": 1.1, "share_of_one_run": 0.5}
+    assert unlisted.is_fair(fair)
+    wrongs = {"shows_m": 1.9}, {"shows_m": 8.1}, {"truth_leaves_m": 1.3}, {"share_of_one_run": 0.8}
+    for wrong in wrongs:
+        assert not unlisted.is_fair(fair | wrong)
+
+
+@pytest.mark.parametrize("seed", [2, 3, 4, 5])
+def test_a_law_shows_2_to_8_times_the_noise_and_its_ticks_say_all_of_it(
+    seed: int, tmp_path: File
+) -> None:
+    world = make("unlisted", seed, ["run_s=30"])
+    write(world, tmp_path)
+    noise_m = truth(world)["law"]["noise_m"]
+    assert 2 <= truth(world)["law"]["shows_m"] / noise_m <= 8
+    assert rms_m(left(tmp_path)) <= 1.25 * noise_m
+    write(make("unlisted_null", seed, ["run_s=30"]), tmp_path)
+    assert rms_m(left(tmp_path)) == pytest.approx(noise_m, rel=0.01)
+
+
+def test_a_null_has_the_robot_and_the_drives_of_the_world_with_a_law() -> None:
+    changes = ["kind=random_commands", "controller=open", "runs=3", "run_s=20"]
+    hidden = make("unlisted", 3, [*changes, "law_kind=place_x", "law_size=0.3"])
+    null = make("unlisted_null", 3, changes)
+    assert (null.setting.laws, null.law) == (Laws(), {})
+    assert hidden.setting.laws.law_size == 0.3
+    assert hidden.setting.robot == null.setting.robot
+    for one, other in zip(hidden.logs, null.logs, strict=True):
+        np.testing.assert_array_equal(one.counts, other.counts)
+        assert np.nanmax(np.abs(one.pose - other.pose)) > 0.01
+
+
+def test_squares_of_one_size_are_driven_at_speeds_up_to_three_times_apart() -> None:
+    changes = ["kind=squares", "controller=open", "runs=10", "run_s=20", "speed_spread=3"]
+    world = make("unlisted_null", 3, changes)
+    tops = [np.diff(ride.angles(np.arange(0, ride.end_s, 0.05))).max() for ride in world.tracks]
+    assert 1.5 < max(tops) / min(tops) <= 3.01
+    sides = [np.hypot(*np.ptp(log.body[:, :2], axis=0)) for log in world.logs]
+    assert max(sides) / min(sides) < 1.5

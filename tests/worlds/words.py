@@ -44,6 +44,46 @@ LAWS: dict[str, tuple[set[str], str]] = {
     "scrub_s_rad": ({"turn_slip", "turn_slip_rate"}, "turn_rate"),
 }
 """Effects, and the variable of a formula, that are right where the number is not zero."""
+SAME_AS_LAW: dict[str, set[str]] = {"turn_rate_squared": {"turn_slip_rate"}}
+"""Effects of the catalogue that are a law of `laws.SHAPES` itself, in other words: they name it.
+
+`missed_counts` loses in proportion to the speed beyond a threshold, and no fixed share there;
+`diameter_drift` grows with the way, and not with the time; `wheel_eccentricity` is a sine, and no
+pulse; `speed_slip` is linear; `centripetal_load` acts on the wheels, and not sideways.
+"""
+FIRST_HARMONIC = {"floor_slope_yaw"}
+"""Where all headings are multiples of a right angle, a third harmonic of it is a first one."""
+REVERSING = {"random_commands", "joystick", "back_and_forth"}
+"""Drives in which robots drive back, too."""
+NUMBER = r"(-?[\d.]+)"
+LAWS_IN_WORDS: list[tuple[str, str]] = [
+    (rf"a wave of the time with a period of about {NUMBER} s", "sin(2 * pi * time / {0})"),
+    (rf"a wave of the way with a period of about {NUMBER} m", "sin(2 * pi * distance / {0})"),
+    (rf"what dies away within {NUMBER} s of the start", "exp(-time / {0})"),
+    (r"the time in the run", "time"),
+    (r"the square of the time in the run", "time^2"),
+    (r"a wave of (?:(\d) times )?the heading", "sin({0} * heading)"),
+    (
+        r"a wave of (?:(\d) times )?the angle of the (left|right) wheel",
+        "sin({0} * wheel_angle_{1})",
+    ),
+    (
+        r"the speed times a wave of (?:(\d) times )?the heading",
+        "abs(speed) * sin({0} * heading)",
+    ),
+    (r"x in the room", "x"),
+    (r"y in the room", "y"),
+    (r"the square of x in the room", "x^2"),
+    (r"the square of y in the room", "y^2"),
+    (r"x times y in the room", "x * y"),
+    (rf"what dies away within {NUMBER} m of the least (x|y)", "exp(-{1} / {0})"),
+    (rf"what dies away within {NUMBER} m of the greatest (x|y)", "exp({1} / {0})"),
+    (
+        rf"a place on the floor near \({NUMBER}, {NUMBER}\) m",
+        "exp(-2 * ((x - ({0}))^2 + (y - ({1}))^2))",
+    ),
+]
+"""What `repeats` says in words, and the same as a formula: laws that have none in its answer."""
 EXPLAINED = "explained"
 FREE_START = {"late_start", "moving_start", "long_pieces"}
 """Worlds where START was never seen at rest: `start_pose` is right there."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import pi
+from math import ceil, pi
 from typing import Any, TypeAlias
 
 from draw import around, chance, log_uniform, pick, signed
@@ -25,6 +25,8 @@ class World:
     change: Change
     same_drive_as: str = ""
     """The world whose robots and drives this one has, seed by seed."""
+    hides_law: bool = False
+    """Whether a law that no catalogue lists is drawn for it (`unlisted.py`)."""
 
 
 def always(**changes: Any) -> Change:
@@ -223,6 +225,32 @@ def load(_: Setting, random: Random) -> Changes:
     }
 
 
+FINEST_TICK_M = 2e-4
+"""Travel of a wheel for a tick, where laws of the speed are to be read off the ticks."""
+
+
+def for_a_law(setting: Setting, random: Random) -> Changes:
+    """Drives and a log that a law of the motion can show in: squares of many speeds, or free."""
+    robot, recording = setting.robot, setting.recording
+    kind = "squares" if chance(random, 0.5) else pick(random, FREE)
+    open_loop = kind in WITHOUT_PLAN
+    controller = "open" if open_loop else pick(random, ["open", "odometry", "truth"])
+    is_square = kind == "squares"
+    return {
+        "kind": kind,
+        "controller": controller,
+        "control_period_s": 0.02,
+        "runs": 10 if is_square else int(random.integers(6, 13)),
+        "run_s": random.uniform(20, 120),
+        "speed_spread": 3.0 if is_square else 1.0,
+        "layout": "interleaved" if recording.layout == "interleaved" else "same",
+        "tick_rate_hz": max(recording.tick_rate_hz, 20.0),
+        "ticks_per_revolution": max(
+            robot.ticks_per_revolution, ceil(pi * robot.wheel_diameter_m / FINEST_TICK_M)
+        ),
+    }
+
+
 PERFECT = {"e_d": 1.0, "e_b": 1.0, "e_s": 1.0}
 
 WORLDS = {
@@ -293,5 +321,7 @@ WORLDS = {
         World("once_a_turn", "law: wheels that are not round", once_a_turn),
         World("time_wave", "law: yaw rate is a sine of time", time_wave),
         World("load", "law: fast turns on the spot lose more", load),
+        World("unlisted", "law: drawn from a wide family, and seen", for_a_law, hides_law=True),
+        World("unlisted_null", "the drives of unlisted without its law", for_a_law, "unlisted"),
     )
 }
