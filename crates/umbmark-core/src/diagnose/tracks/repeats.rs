@@ -156,9 +156,8 @@ pub(super) fn look(
     let values = Projected::fit(&system.whole, &(0..system.residual()).collect::<Vec<_>>());
     let sizes: Vec<f64> = values.iter().skip(system.residual() - terms.len()).copied().collect();
     let law = laws.model(terms[0], &sizes, Motion::ALL[which], with_sense, &observed.robot);
-    let contexts = || observed.tracks().flat_map(|track| track.contexts());
     Some(Repeated {
-        law: law.filter(|law| law.check_along(contexts()).is_ok()),
+        law: law.filter(|law| observed.tracks().all(|track| track.check(law).is_ok())),
         p,
         deviations: square.sqrt(),
         laws: asked.iter().map(|asked| asked.left.iter().filter(|left| **left > 0.0).count()).sum(),

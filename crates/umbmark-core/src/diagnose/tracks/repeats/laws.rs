@@ -98,7 +98,7 @@ fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
                 };
                 (wheels, change) = ([0.0; 2], [0.0; 2]);
             }
-            let motion = chain.displacement(&at.headed(pose.heading), travel);
+            let motion = chain.displacement(&at.at_pose(&pose), travel);
             pose = pose.moved(&motion);
             step.duration += at.duration;
             step.way += at.length.abs();
