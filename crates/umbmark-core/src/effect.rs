@@ -86,7 +86,7 @@ pub use changes::Changes;
 pub use context::{Context, Place, Progress, Sight};
 pub(crate) use conversion::CONVERTED;
 pub use conversion::Conversion;
-pub use formula::{Formula, FormulaError, Target};
+pub use formula::{Formula, FormulaError, FormulaVariable, Target};
 pub use law::Law;
 pub(crate) use model::is_shape;
 pub use model::{Model, ModelError, Part};

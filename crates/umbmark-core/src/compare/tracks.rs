@@ -129,7 +129,7 @@ pub fn compare_tracks(
     let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
     for (_, model) in models {
         model.check_robot(robot)?;
-        model.check_along(observed.tracks().flat_map(|track| track.contexts()))?;
+        observed.tracks().try_for_each(|track| track.check(model))?;
     }
     let judge = |(name, model): &(String, Model)| {
         let (model, taken) = observed.with_reference(model)?;

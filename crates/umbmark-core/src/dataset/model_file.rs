@@ -293,7 +293,7 @@ mod tests {
                 "",
                 "4: formula must be one that can be evaluated, got \"k * sin(heading)\"; column 1: there is no \"k\"; name \
                  it among the parameters, or use speed, turn_rate, acceleration, turn_acceleration, heading, wheel_angle_left, wheel_angle_right, \
-                 distance, time, session_distance, since_turn, last_turn, direction, pi and the functions sin, cos, tan, \
+                 x, y, distance, session_distance, since_turn, time, last_turn, direction, pi and the functions sin, cos, tan, \
                  exp, log, sqrt, abs, sign, min, max, tanh",
             ),
             ("parameters", "[1]", "5: parameters must be a table of start values, e.g. { k = 0.0 }, got [1]"),

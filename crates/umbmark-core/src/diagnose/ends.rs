@@ -165,7 +165,7 @@ impl Ends {
 
     /// Refuses a model whose formulas are no finite numbers somewhere on the way.
     pub fn check(&self, model: &Model) -> Result<(), ModelError> {
-        model.check_along(self.tracks(model.varies()).into_iter().flat_map(Track::contexts))
+        self.tracks(model.varies()).into_iter().try_for_each(|track| track.check(model))
     }
 
     /// A value for every run from one for every track.

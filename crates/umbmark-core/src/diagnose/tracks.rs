@@ -374,7 +374,7 @@ pub(crate) fn fit(observed: &Observed, model: &Model) -> Result<Fitted, Diagnose
     if !observed.setup.is_sound() {
         return Err(DiagnoseError::Faulty { faults: observed.setup.faults.clone() });
     }
-    model.check_along(observed.tracks().flat_map(|track| track.contexts()))?;
+    observed.tracks().try_for_each(|track| track.check(model))?;
     let (model, taken) = observed.begin(model)?;
     let fitted = Fitted { taken, ..observed.fit(&model, &Noise::default(), &[])? };
     // Where the size of a formula began at 0, its shape shows only now.

@@ -10,6 +10,7 @@ use std::sync::Arc;
 pub struct Chain<T: Evaluate> {
     pub(super) drive: DifferentialDrive,
     pub(super) links: Vec<Link<T>>,
+    pub(super) reads_place: bool,
 }
 
 /// One effect of a chain, with its values.
@@ -46,6 +47,12 @@ impl<T: Evaluate> Chain<T> {
             (own, rest) = rest.split_at(link.count);
             link.values[..link.count].copy_from_slice(own);
         }
+    }
+
+    /// Whether some of its effects may depend on [`Context::x`] and [`Context::y`].
+    #[inline]
+    pub(crate) fn reads_place(&self) -> bool {
+        self.reads_place
     }
 
     /// Where the robot truly stands at START on average, seen from where it is believed to stand.
@@ -90,10 +97,7 @@ impl<T: Evaluate> Chain<T> {
             for travel in &mut *travels {
                 match &link.work {
                     Work::Entry(mean) => (mean.wheels)(&link.values, at, travel),
-                    Work::Formula(formula) => {
-                        let rotation = self.drive.displacement(travel).rotation;
-                        formula.wheels(&link.values, at, rotation, travel);
-                    }
+                    Work::Formula(formula) => formula.wheels(&link.values, at, &self.drive, travel),
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! Where and how a robot drives, as effects may depend on it.
 
 use crate::drive::{Robot, WheelTravel};
-use crate::geometry::Real;
+use crate::geometry::{Pose2, Real};
 use crate::path::Direction;
 
 /// One piece of a run, in the terms of the robot's own odometry.
@@ -11,6 +11,11 @@ use crate::path::Direction;
 pub struct Context<T = f64> {
     /// Heading in the room \[rad\], counter-clockwise from the heading at START, at the beginning of the piece.
     pub heading: T,
+    /// Place of the robot in the room \[m\] along the heading at START, at the beginning of the piece; 0 in what [`Progress`] gives,
+    /// which knows no place: see [`Context::at_pose`].
+    pub x: T,
+    /// The same to the left of it \[m\].
+    pub y: T,
     /// How long the piece takes \[s\].
     pub duration: f64,
     /// Speed of the axle's centre \[m/s\], forward positive.
@@ -57,11 +62,13 @@ pub struct Context<T = f64> {
 }
 
 impl Context {
-    /// The same piece with another heading, value or dual.
+    /// The same piece where the robot is at this pose in the room at its beginning, values or duals.
     #[inline(always)]
-    pub fn headed<T: Real>(&self, heading: T) -> Context<T> {
+    pub fn at_pose<T: Real>(&self, pose: &Pose2<T>) -> Context<T> {
         Context {
-            heading,
+            heading: pose.heading,
+            x: pose.x,
+            y: pose.y,
             duration: self.duration,
             speed: self.speed,
             turn_rate: self.turn_rate,
@@ -84,6 +91,14 @@ impl Context {
             direction: self.direction,
             recorded: self.recorded,
         }
+    }
+}
+
+impl<T: Real> Context<T> {
+    /// Where the robot is at the beginning of the piece.
+    #[inline(always)]
+    pub fn pose(&self) -> Pose2<T> {
+        Pose2::new(self.x, self.y, self.heading)
     }
 }
 
@@ -136,7 +151,7 @@ const AWAY_FROM_TURN: f64 = 0.01;
 /// A wheel has reversed when it has rolled back by more than this \[m\] from where it was farthest.
 const LEAST_REVERSAL: f64 = 0.5e-3;
 
-/// Follows a run piece by piece and keeps what effects may depend on.
+/// Follows a run piece by piece and keeps what effects may depend on, but for its place in the room.
 #[derive(Clone, Debug)]
 pub struct Progress {
     now: Context,

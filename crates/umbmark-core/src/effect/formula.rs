@@ -15,7 +15,8 @@
 //! ```
 //!
 //! *length* is the path length of a piece, always positive, *rotation* how far it turns and *duration* how long it takes; where they are 0,
-//! laws per metre, per radian, or per second, do nothing. f is taken in the middle of the piece. So a formula that is 0 does nothing.
+//! laws per metre, per radian, or per second, do nothing. f is taken in the middle of the piece: at half of the motion that the effects
+//! before it make, from where the model predicts that the piece begins. So a formula that is 0 does nothing.
 
 mod error;
 mod parser;
@@ -26,14 +27,16 @@ mod variable;
 
 use super::name::lasting;
 use super::{CATALOGUE, Context, MAX_PARAMETERS};
-use crate::drive::WheelTravel;
-use crate::geometry::{Displacement2, Dual, LANES, Real};
+use crate::drive::{DifferentialDrive, WheelTravel};
+use crate::geometry::{Displacement2, Dual, LANES, Pose2, Real};
 use crate::parameter::{DefaultValue, Parameter};
 use program::{Op, Program};
 use std::fmt;
 use units::Unit;
+use variable::{Middle, VARIABLES, Variable};
 
 pub use error::FormulaError;
+pub use variable::FormulaVariable;
 
 /// What a formula acts on, by the laws of [`Formula`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,9 +124,13 @@ impl Target {
 ///
 /// It is made of `+ - * /`, `^` with a whole number, parentheses, numbers, `pi`, the functions `sin`, `cos`, `tan`, `exp`, `log`
 /// (natural), `sqrt`, `abs`, `sign`, `min`, `max` and `tanh`, its parameters, and what the robot's own odometry knows in the
-/// middle of a piece: `speed` \[m/s\], `turn_rate` \[rad/s\], `acceleration` \[m/s²\], `turn_acceleration` \[rad/s²\], `heading`
-/// \[rad\] in the room from the heading at START, `wheel_angle_left`, `wheel_angle_right` \[rad\] since START, `distance`, `session_distance`, `since_turn`
-/// \[m\], `time` \[s\] since START, `last_turn` and `direction` (+1 to the left, -1 to the right, 0 for neither).
+/// middle of a piece ([`Formula::variables`]): `speed` \[m/s\], `turn_rate` \[rad/s\], `acceleration` \[m/s²\], `turn_acceleration` \[rad/s²\],
+/// `heading` \[rad\] in the room from the heading at START, `wheel_angle_left`, `wheel_angle_right` \[rad\] since START, `x`, `y` \[m\] in
+/// the room from START, along the heading there and to its left, `distance`, `session_distance`, `since_turn` \[m\], `time` \[s\] since
+/// START, `last_turn` and `direction` (+1 to the left, -1 to the right, 0 for neither).
+///
+/// `heading`, `x` and `y` are those that the model predicts, not those that are measured. Where runs of one session start in different
+/// places, START is that of the first one.
 ///
 /// Units must agree: an angle is a plain number, and parameters and written numbers have whatever unit makes it so.
 /// Derivatives are exact; those of `abs`, `sign`, `min` and `max` at a corner are those of one side, or 0.
@@ -145,7 +152,7 @@ pub struct Formula {
     text: String,
     parameters: Vec<Parameter>,
     sizes: Vec<bool>,
-    turns: bool,
+    reads_place: bool,
     program: Program,
 }
 
@@ -180,14 +187,14 @@ impl Formula {
             text,
             parameters: parameters.iter().zip(&units).map(|(name, unit)| described(name, unit)).collect(),
             sizes: program.sizes(parameters.len()),
-            turns: program.ops().contains(&Op::Variable(variable::Variable::Heading)),
+            reads_place: [Variable::X, Variable::Y].iter().any(|place| program.ops().contains(&Op::Variable(*place))),
             program,
         })
     }
 
-    /// The names of all variables that formulas may depend on.
-    pub(crate) fn variables() -> [&'static str; variable::Variable::ALL.len()] {
-        variable::Variable::ALL.map(|(name, ..)| name)
+    /// What formulas may depend on.
+    pub fn variables() -> &'static [FormulaVariable] {
+        &VARIABLES
     }
 
     /// The effect's name in files.
@@ -226,15 +233,26 @@ impl Formula {
         self.sizes[parameter]
     }
 
-    /// Changes believed into true wheel travel \[m\]; `rotation` is what the piece turns the robot by \[rad\].
+    /// Whether it depends on x or y.
+    pub(super) fn reads_place(&self) -> bool {
+        self.reads_place
+    }
+
+    /// Changes believed into true wheel travel \[m\] of a robot with this drive.
     #[inline]
-    pub(super) fn wheels<T: Real>(&self, p: &[T], at: &Context<T>, rotation: T, travel: &mut WheelTravel<T>) {
-        let side = match self.target {
-            Target::LeftWheelScale => &mut travel.left,
-            Target::RightWheelScale => &mut travel.right,
-            _ => return,
-        };
-        *side *= self.program.evaluate(p, at, at.heading + rotation * 0.5) + 1.0;
+    pub(super) fn wheels<T: Real>(
+        &self,
+        p: &[T],
+        at: &Context<T>,
+        drive: &DifferentialDrive,
+        travel: &mut WheelTravel<T>,
+    ) {
+        if !matches!(self.target, Target::LeftWheelScale | Target::RightWheelScale) {
+            return;
+        }
+        let factor = self.program.evaluate(p, at, &drive.displacement(travel)) + 1.0;
+        let side = if self.target == Target::LeftWheelScale { &mut travel.left } else { &mut travel.right };
+        *side *= factor;
     }
 
     /// Changes the body motion that true wheel travel makes.
@@ -244,7 +262,7 @@ impl Formula {
         if matches!(self.target, Target::LeftWheelScale | Target::RightWheelScale) || exposure == 0.0 {
             return;
         }
-        let f = self.program.evaluate(p, at, at.heading + motion.rotation * 0.5) * exposure;
+        let f = self.program.evaluate(p, at, motion) * exposure;
         match self.target {
             Target::HeadingPerMetre | Target::HeadingPerSecond => motion.rotation += f,
             Target::SidewaysPerMetre | Target::SidewaysPerRadian | Target::SidewaysPerSecond => motion.sideways += f,
@@ -259,20 +277,29 @@ impl Formula {
         if self.target.exposure(at) == 0.0 {
             return Ok(());
         }
-        // Heading after the parameters: a lane for each.
+        // A lane for each parameter, for heading and, where it is read, for x and y: mostly all at once.
         const { assert!(MAX_PARAMETERS < LANES) };
-        let mut duals = [Dual::from(0.0); MAX_PARAMETERS + 1];
-        for (lane, (dual, value)) in duals.iter_mut().zip(values.iter().chain([&at.heading])).enumerate() {
-            *dual = Dual::from(*value);
-            dual.eps[lane] = if lane < values.len() || self.turns { 1.0 } else { 0.0 };
+        let lanes = values.len() + if self.reads_place { 3 } else { 1 };
+        let still = Displacement2 { forward: Dual::from(0.0), sideways: Dual::from(0.0), rotation: Dual::from(0.0) };
+        let mut first: Option<usize> = None;
+        for begin in (0..lanes).step_by(LANES) {
+            let seeded = |value: f64, number: usize| {
+                let mut dual = Dual::from(value);
+                if let Some(eps) = number.checked_sub(begin).and_then(|lane| dual.eps.get_mut(lane)) {
+                    *eps = 1.0;
+                }
+                dual
+            };
+            let mut duals = [Dual::from(0.0); MAX_PARAMETERS];
+            duals.iter_mut().zip(values).enumerate().for_each(|(i, (dual, value))| *dual = seeded(*value, i));
+            let [heading, x, y] = [(at.heading, 0), (at.x, 1), (at.y, 2)].map(|(v, i)| seeded(v, values.len() + i));
+            let pose = Pose2::new(x, y, heading);
+            self.program.watched(&duals, &at.at_pose(&pose), &still, |i, value| {
+                if !(value.re.is_finite() && value.eps.iter().all(|e| e.is_finite())) {
+                    first = Some(first.map_or(i, |first| first.min(i)));
+                }
+            });
         }
-        let heading = duals[values.len()];
-        let mut first = None;
-        self.program.watched(&duals, &at.headed(heading), heading, |i, value| {
-            if !(value.re.is_finite() && value.eps.iter().all(|e| e.is_finite())) && first.is_none() {
-                first = Some(i);
-            }
-        });
         first.map_or(Ok(()), |op| Err(self.singular(op, values, at)))
     }
 
@@ -283,8 +310,9 @@ impl Formula {
             let own = self.program.span(i);
             let text = match inside {
                 Op::Variable(variable) => {
-                    let (name, unit) = variable.described();
-                    format!("{name} = {} {unit}", variable.of(at, at.heading)).trim_end().to_owned()
+                    let (about, value) =
+                        (variable.described(), variable.of(at, &mut Middle::new(at, &Displacement2::NONE)));
+                    format!("{} = {value} {}", about.name, about.dimension).trim_end().to_owned()
                 }
                 Op::Parameter(p) => format!("{} = {}", self.parameters[*p].name, values[*p]),
                 _ => continue,

@@ -53,6 +53,12 @@ impl Law {
         self.entry().is_none_or(|entry| (entry.varies)(values))
     }
 
+    /// Whether it may depend on where the robot is in the room: a formula that has x or y, or an effect that is not in the
+    /// catalogue, of which nothing is known.
+    pub(super) fn reads_place(&self) -> bool {
+        self.formula().map_or_else(|| self.order() == CATALOGUE.len(), Formula::reads_place)
+    }
+
     /// What it changes.
     pub(crate) fn changes(&self) -> Changes {
         self.entry().map_or(Changes::WHEELS.and(Changes::BODY), |entry| entry.changes)

@@ -75,7 +75,7 @@ pub enum ModelError {
     /// A formula that is no number somewhere on the way.
     #[error(
         "{effect}: \"{part}\", or its derivative, is not finite {time:.2} s after START in run {run}, where {values}; change \
-         the formula so that it is finite there too, for instance x / max(y, 0.01) instead of x / y"
+         the formula so that it is finite there too, for instance a / max(b, 0.01) instead of a / b"
     )]
     Singular {
         /// The effect.
@@ -275,7 +275,14 @@ impl Model {
         self.parts.iter().any(|part| part.effect.formula().is_some())
     }
 
-    /// Refuses formulas that are no finite numbers somewhere along the way.
+    /// Whether some effect may depend on where the robot is in the room, [`Context::x`] and [`Context::y`]: a formula that has
+    /// them, or an effect of a program's own.
+    pub(crate) fn reads_place(&self) -> bool {
+        self.parts.iter().any(|part| part.effect.reads_place())
+    }
+
+    /// Refuses formulas that are no finite numbers in some of these contexts. Those of a track have no place in the room: see
+    /// [`Track::check`](crate::replay::Track::check).
     pub fn check_along<'a>(&self, contexts: impl IntoIterator<Item = &'a Context>) -> Result<(), ModelError> {
         let formulas: Vec<_> =
             self.parts.iter().filter_map(|part| Some((part.effect.formula()?, &part.values))).collect();
@@ -376,7 +383,7 @@ impl Model {
             count: part.values.len(),
             values: [T::from(0.0); MAX_PARAMETERS],
         });
-        let mut chain = Chain { drive: *self.robot.drive, links: links.collect() };
+        let mut chain = Chain { drive: *self.robot.drive, links: links.collect(), reads_place: self.reads_place() };
         chain.set_values(values);
         chain
     }
@@ -392,7 +399,7 @@ mod tests {
     use super::*;
     use crate::drive::WheelTravel;
     use crate::effect::CATALOGUE;
-    use crate::geometry::seeded;
+    use crate::geometry::{Pose2, seeded};
 
     #[test]
     fn effects_stand_in_the_order_of_the_catalogue_however_they_were_added() {
@@ -439,7 +446,9 @@ mod tests {
         let values: Vec<f64> = model.values().collect();
         for i in 0..3 {
             let duals = seeded(values.iter().copied(), &[0, 1, 2]);
-            let exact = model.chain_with(&duals).displacement(&Context::default().headed(duals[0]), &believed);
+            let exact = model
+                .chain_with(&duals)
+                .displacement(&Context::default().at_pose(&Pose2::new(duals[0], duals[0], duals[0])), &believed);
             let at = |step: f64| {
                 let mut v = values.clone();
                 v[i] += step;

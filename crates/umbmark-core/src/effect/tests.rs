@@ -300,7 +300,7 @@ fn derivatives_of_every_effect_have_the_same_bits_in_registers_of_every_width() 
         let values: Vec<Dual> =
             entry.about.parameters.iter().enumerate().map(|(k, p)| number(p.usual(&Robot::labmate()), k)).collect();
         for (k, at) in contexts().iter().enumerate() {
-            let at = at.headed(number(0.7, k));
+            let at = at.at_pose(&Pose2::new(number(1.5, k + 6), number(-0.8, k + 7), number(0.7, k)));
             let acted = |mean: &Mean<Dual>| {
                 let mut travel = WheelTravel { left: number(0.01, k + 1), right: number(-0.02, k + 2) };
                 let mut motion = Displacement2 {
@@ -342,6 +342,8 @@ fn each_number_acts_linearly_where_the_effect_does_nothing() {
 fn contexts() -> [Context; 2] {
     let turn = Context {
         heading: 1.0,
+        x: 2.0,
+        y: -1.5,
         duration: 0.1,
         speed: 0.2,
         turn_rate: 0.9,

@@ -56,8 +56,8 @@ pub struct Trucks<T = f64> {
 
 /// What makes true motion of believed travel, and readings of the link.
 pub trait Floor<T: Real> {
-    /// True motion of a truck that believes to roll so and truly heads so \[rad\].
-    fn moved(&mut self, step: &Step, truck: usize, believed: WheelTravel<T>, heading: T) -> Displacement2<T>;
+    /// True motion of a truck that believes to roll so and is truly there.
+    fn moved(&mut self, step: &Step, truck: usize, believed: WheelTravel<T>, real: &Pose2<T>) -> Displacement2<T>;
 
     /// What the link's encoders show of it.
     fn shown(&mut self, link: LinkReading<T>) -> LinkReading<T>;
@@ -78,8 +78,8 @@ impl<'a, T: Evaluate> Predicted<'a, T> {
 
 impl<T: Evaluate> Floor<T> for Predicted<'_, T> {
     #[inline]
-    fn moved(&mut self, step: &Step, truck: usize, believed: WheelTravel<T>, heading: T) -> Displacement2<T> {
-        let at = step.contexts[truck].headed(heading);
+    fn moved(&mut self, step: &Step, truck: usize, believed: WheelTravel<T>, real: &Pose2<T>) -> Displacement2<T> {
+        let at = step.contexts[truck].at_pose(real);
         self.chain.body(&at, &self.chain.rolled(&at, believed))
     }
 
@@ -166,7 +166,7 @@ impl Convoy {
     pub(crate) fn roll<T: Real>(&self, step: &Step, trucks: &mut Trucks<T>, floor: &mut impl Floor<T>) {
         for truck in 0..2 {
             let (motion, travel) = self.steered(&trucks.believed[truck], step, truck);
-            let moved = floor.moved(step, truck, travel, trucks.real[truck].heading);
+            let moved = floor.moved(step, truck, travel, &trucks.real[truck]);
             trucks.real[truck] = trucks.real[truck].moved(&moved);
             trucks.believed[truck] = trucks.believed[truck].moved(&motion);
         }
@@ -360,7 +360,7 @@ pub(crate) mod tests {
     struct Even;
 
     impl Floor<f64> for Even {
-        fn moved(&mut self, _: &Step, _: usize, believed: WheelTravel, _: f64) -> Displacement2 {
+        fn moved(&mut self, _: &Step, _: usize, believed: WheelTravel, _: &Pose2) -> Displacement2 {
             let truck = DifferentialDrive::new(0.34, 0.15, 0.15).unwrap();
             truck.displacement(&believed)
         }

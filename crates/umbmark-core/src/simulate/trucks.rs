@@ -5,7 +5,7 @@ use crate::dataset::ReturnError;
 use crate::drive::{ClapperDrive, Drive, LinkReading, Robot, Wheel, WheelTravel};
 use crate::effect::{Bump, Sight, Stretch, TestKind};
 use crate::engine::{Convoy, Floor, Step};
-use crate::geometry::Displacement2;
+use crate::geometry::{Displacement2, Pose2};
 use crate::path::{Direction, Path};
 
 /// The plans of both directions.
@@ -50,7 +50,7 @@ struct Met<'a> {
 }
 
 impl Floor<f64> for Met<'_> {
-    fn moved(&mut self, step: &Step, truck: usize, believed: WheelTravel, heading: f64) -> Displacement2 {
+    fn moved(&mut self, step: &Step, truck: usize, believed: WheelTravel, real: &Pose2) -> Displacement2 {
         if self.begun != Some(step.index) {
             let leg = &self.legs[step.index];
             let stretch = Stretch { index: step.index, direction: self.direction, test: self.test, travel: leg.travel };
@@ -59,7 +59,7 @@ impl Floor<f64> for Met<'_> {
         }
         // The cable lies under the front truck.
         let lost = if truck == 0 { lost_between(&self.bumps, step.shares) } else { WheelTravel::default() };
-        self.truth.rolled(&step.contexts[truck], heading, &believed, &lost)
+        self.truth.rolled(&step.contexts[truck], real, &believed, &lost)
     }
 
     fn shown(&mut self, link: LinkReading) -> LinkReading {
@@ -79,8 +79,9 @@ fn lost_between(bumps: &[Bump], [from, to]: [f64; 2]) -> WheelTravel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Model;
+    use crate::effect::{Formula, Model, Target};
     use crate::engine::convoy_tests::{clapper, path};
+    use crate::replay::{Track, check_on_path};
     use crate::simulate::{Odometry, Phase, Simulator};
 
     fn returned(robot: &Robot, values: &[(&str, &str, f64)], direction: Direction, test: TestKind) -> ReturnError {
@@ -129,5 +130,37 @@ mod tests {
             plain.heading.unwrap().abs() > 0.1 && corrected.heading.unwrap().abs() < 0.01,
             "{plain:?} {corrected:?}"
         );
+    }
+
+    /// Oracle: dx/ds = 1 + kx, so that x = (e^(ks) - 1)/k after the first leg; what the trucks believe is not changed by it.
+    #[test]
+    fn a_formula_of_the_place_acts_on_each_truck_where_that_one_is() {
+        for (robot, k) in [(clapper(false), 0.02), (clapper(false), -0.02), (clapper(true), 1e-3)] {
+            let mut model = Model::new(&robot);
+            model.add_formula(Formula::new("own", Target::ForwardScale, "k * x", &["k"]).unwrap(), &[k]).unwrap();
+            for direction in Direction::BOTH {
+                let track = Track::with_stops(&path(), direction, &robot);
+                let mut simulator = Simulator::new(&robot, &path(), Odometry::of(&robot), Phase::Random).unwrap();
+                let mut truth = Truth::new(&model);
+                simulator.open(&mut truth, 1, 0);
+                let driven = simulator.run(&mut truth, direction, TestKind::Systematic);
+                let predicted = return_error(&track.end(&model.chain()), &track.end(&Model::new(&robot).chain()));
+                let gap = libm::hypot(driven.x - predicted.x, driven.y - predicted.y);
+                assert!(gap < 2e-3 && libm::hypot(driven.x, driven.y) > 0.02, "{driven:?} {predicted:?}");
+                if k.abs() > 0.01 {
+                    let leg = track.poses(&model.chain())[0];
+                    assert!((leg.x - libm::expm1(k * 7.0) / k).abs() < 1.5e-4, "{leg:?}");
+                }
+            }
+        }
+        // The rear truck begins a metre behind START, where the front one never is.
+        let broken = |text: &str| {
+            let mut model = Model::new(&clapper(false));
+            model.add_formula(Formula::new("own", Target::ForwardScale, text, &["k"]).unwrap(), &[1e-3]).unwrap();
+            check_on_path(&model, &path()).map_err(|error| error.to_string())
+        };
+        assert_eq!(broken("k * sqrt(x + 1.5)"), Ok(()));
+        let said = broken("k * sqrt(x + 0.5)").unwrap_err();
+        assert!(said.contains("\"sqrt(x + 0.5)\"") && said.contains("x = -1 m"), "{said}");
     }
 }

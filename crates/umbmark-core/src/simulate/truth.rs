@@ -97,7 +97,7 @@ impl Truth {
             rotation_per_metre: 0.0,
             noisy: false,
             varies: false,
-            way: Way::new(model.robot()),
+            way: Way::new(model.robot(), model.reads_place()),
             noise: Stream::new(0, 0, 0),
             draws: Vec::new(),
             anywhere: Context::default(),
@@ -178,20 +178,20 @@ impl Truth {
         std::mem::take(&mut self.ahead)
     }
 
-    /// True motion of one of two trucks for a small believed travel, of which one wheel or both lose some at bumps; wheel noise
+    /// True motion of one of two trucks, which is truly there, for a small believed travel, of which one wheel or both lose some at bumps; wheel noise
     /// included.
     #[inline]
     pub(super) fn rolled(
         &mut self,
         at: &Context,
-        heading: f64,
+        real: &Pose2,
         believed: &WheelTravel,
         lost: &WheelTravel,
     ) -> Displacement2 {
         let here;
         let at = if self.varies {
             let session_distance = self.trucks_drove + at.session_distance;
-            here = Context { run: self.trucks_run, session_distance, ..at.headed(heading) };
+            here = Context { run: self.trucks_run, session_distance, ..at.at_pose(real) };
             &here
         } else {
             &self.anywhere
@@ -230,7 +230,7 @@ impl Truth {
         if self.varies {
             // Room for the pieces of one run, not of all.
             self.pieces.settle(self.rotation_per_metre);
-            self.way.start(direction, recorded, start.heading);
+            self.way.start(direction, recorded, start);
         }
         self.make_pieces();
         self.pieces.start(start);
@@ -323,7 +323,7 @@ impl Truth {
         while let Some((at, believed)) = self.way.until(share) {
             let travel = self.chain.wheel_travel(&at, &believed);
             let motion = self.chain.body(&at, &travel);
-            self.way.turn(motion.rotation);
+            self.way.advance(&motion);
             self.pieces.push(&Piece { motion, noise: Noise::None });
             rolled = WheelTravel { left: rolled.left + travel.left, right: rolled.right + travel.right };
             moved = Displacement2 {
@@ -336,9 +336,9 @@ impl Truth {
             // Drawn as seen from where all this began, and added as seen from where it ends.
             let [x, y, turned] = self.diffusion(&rolled, &moved).scatter(normals(&mut self.noise));
             let (sine, cosine) = moved.rotation.sine_cosine();
-            let noise = Noise::Moves([cosine * x + sine * y, cosine * y - sine * x, turned]);
-            self.way.turn(turned);
-            self.pieces.push(&Piece { motion: Displacement2::NONE, noise });
+            let moves = [cosine * x + sine * y, cosine * y - sine * x, turned];
+            self.way.put(moves);
+            self.pieces.push(&Piece { motion: Displacement2::NONE, noise: Noise::Moves(moves) });
         }
     }
 
@@ -363,7 +363,7 @@ impl Truth {
             return self.rolls.push(WheelTravel::default(), Roll::Bump(travel));
         }
         let motion = self.chain.body(&self.way.moment(), &travel);
-        self.way.turn(motion.rotation);
+        self.way.advance(&motion);
         self.pieces.push(&Piece { motion, noise: Noise::None });
     }
 
@@ -394,4 +394,40 @@ fn measured(chain: &Chain<f64>, random: &mut [RandomPart], at: &Sight, pose: &Po
         (part.scatter.measured)(&part.values, &mut part.stream, &mut seen);
     }
     seen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::Robot;
+    use crate::effect::{Formula, Target, TestKind};
+    use crate::path::Path;
+    use crate::simulate::{Odometry, Phase, Simulator};
+
+    #[test]
+    fn the_place_that_formulas_see_is_the_true_one_through_bumps_and_noise_in_every_run_of_a_session() {
+        let mut model = Model::new(&Robot::labmate());
+        let formula = Formula::new("own", Target::HeadingPerMetre, "k * x + q * y", &["k", "q"]).unwrap();
+        model.add_formula(formula, &[1e-2, -2e-2]).unwrap();
+        for (effect, parameter, value) in [
+            ("crab", "angle_rad", 0.01),
+            ("wheel_noise", "k_sqrt_m", 2e-3),
+            ("placed_bumps", "count", 10.0),
+            ("start_pose", "position_sd_m", 0.3),
+        ] {
+            model.set(effect, parameter, value).unwrap();
+        }
+        let path = Path::umbmark();
+        let mut simulator = Simulator::new(&Robot::labmate(), &path, Odometry::Continuous, Phase::Random).unwrap();
+        let mut truth = Truth::new(&model);
+        simulator.open(&mut truth, 7, 0);
+        for direction in [Direction::Ccw, Direction::Ccw, Direction::Cw] {
+            simulator.run(&mut truth, direction, TestKind::Bumps);
+            let (seen, real) = (truth.way.moment(), truth.pose());
+            assert!(libm::hypot(real.x, real.y) > 0.01, "it errs: {real:?}");
+            for (seen, real) in [(seen.x, real.x), (seen.y, real.y), (seen.heading, real.heading)] {
+                assert!((seen - real).abs() < 1e-11, "{seen} {real}");
+            }
+        }
+    }
 }

@@ -3,9 +3,10 @@
 use super::Leg;
 use crate::drive::{Robot, WheelTravel};
 use crate::effect::{Context, Place, Progress};
+use crate::geometry::{Displacement2, Pose2};
 use crate::path::{Direction, Pieces, SpeedProfile};
 
-/// How far a run has come, in the robot's own terms but for its true heading.
+/// How far a run has come, in the robot's own terms but for its true pose.
 #[derive(Clone, Debug)]
 pub(super) struct Way {
     robot: Robot,
@@ -13,8 +14,9 @@ pub(super) struct Way {
     pieces: Pieces,
     /// The last piece.
     at: Context,
-    /// True heading \[rad\].
-    heading: f64,
+    /// True pose; of its place nothing but where the run began, unless that `follows`.
+    pose: Pose2,
+    follows: bool,
     /// Number of the run that comes next in its session.
     next_run: usize,
     /// Time since START at which the course goes on \[s\].
@@ -22,14 +24,15 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// No session yet: [`Way::open`] comes first.
-    pub(super) fn new(robot: &Robot) -> Way {
+    /// No session yet: [`Way::open`] comes first. The true place, beside the heading, is followed where `follows`.
+    pub(super) fn new(robot: &Robot, follows: bool) -> Way {
         Way {
             robot: robot.clone(),
             progress: Progress::new(robot, Place::default(), false),
             pieces: Pieces::of(&WheelTravel::default(), &SpeedProfile::default()),
             at: Context::default(),
-            heading: 0.0,
+            pose: Pose2::IDENTITY,
+            follows,
             next_run: 0,
             clock: 0.0,
         }
@@ -40,15 +43,15 @@ impl Way {
         self.next_run = 0;
     }
 
-    /// Begins the session's next run with the robot truly heading so \[rad\]. Whether encoders record it decides what
+    /// Begins the session's next run with the robot truly there. Whether encoders record it decides what
     /// [`Context::recorded`] says.
     #[inline(never)]
-    pub(super) fn start(&mut self, direction: Direction, recorded: bool, heading: f64) {
+    pub(super) fn start(&mut self, direction: Direction, recorded: bool, pose: Pose2) {
         let session_distance = if self.next_run == 0 { 0.0 } else { self.progress.session_distance() };
         let place = Place { run: self.next_run, session_distance, direction: Some(direction) };
         self.progress = Progress::new(&self.robot, place, recorded);
         self.at = Context::default();
-        self.heading = heading;
+        self.pose = pose;
         self.next_run += 1;
         self.clock = 0.0;
     }
@@ -70,18 +73,32 @@ impl Way {
     pub(super) fn until(&mut self, share: f64) -> Option<(Context, WheelTravel)> {
         let piece = self.pieces.until(share)?;
         let at = self.progress.piece(&piece.travel, piece.duration, piece.from, piece.to);
-        self.at = Context { heading: self.heading, ..at };
+        self.at = at.at_pose(&self.pose);
         Some((self.at, piece.travel))
     }
 
     /// This moment of the way, of no length and no duration.
     pub(super) fn moment(&self) -> Context {
-        Context { heading: self.heading, length: 0.0, duration: 0.0, wheel_rotation: [0.0; 2], ..self.at }
+        Context { length: 0.0, duration: 0.0, wheel_rotation: [0.0; 2], ..self.at.at_pose(&self.pose) }
     }
 
-    /// The robot has truly turned \[rad\].
-    pub(super) fn turn(&mut self, rotation: f64) {
-        self.heading += rotation;
+    /// The robot has truly moved so.
+    #[inline]
+    pub(super) fn advance(&mut self, motion: &Displacement2) {
+        if self.follows {
+            self.pose.advance(motion);
+        } else {
+            self.pose.heading += motion.rotation;
+        }
+    }
+
+    /// Noise has put the robot there, as seen from where it was.
+    pub(super) fn put(&mut self, [x, y, turned]: [f64; 3]) {
+        if self.follows {
+            self.pose = self.pose.compose(&Pose2::new(x, y, turned));
+        } else {
+            self.pose.heading += turned;
+        }
     }
 }
 
@@ -97,14 +114,14 @@ mod tests {
         let robot = Robot::labmate();
         for direction in Direction::BOTH {
             let course = Course::new(&robot, &Path::umbmark(), direction).unwrap();
-            let mut way = Way::new(&robot);
+            let mut way = Way::new(&robot, false);
             way.open();
-            way.start(direction, false, 0.0);
+            way.start(direction, false, Pose2::IDENTITY);
             let mut driven = Vec::new();
             for leg in &course.legs {
                 way.begin(leg, &leg.travel);
                 while let Some((at, travel)) = way.until(1.0) {
-                    way.turn(robot.drive.displacement(&travel).rotation);
+                    way.advance(&robot.drive.displacement(&travel));
                     driven.push(at);
                 }
             }

@@ -75,7 +75,7 @@ struct Even<'a> {
 }
 
 impl<T: Real> Floor<T> for Even<'_> {
-    fn moved(&mut self, _step: &Step, _truck: usize, believed: WheelTravel<T>, _heading: T) -> Displacement2<T> {
+    fn moved(&mut self, _step: &Step, _truck: usize, believed: WheelTravel<T>, _real: &Pose2<T>) -> Displacement2<T> {
         self.truck.displacement(&believed)
     }
 

@@ -259,7 +259,7 @@ impl<'a> Seen<'a> {
         let one = |(travel, seconds): &(WheelTravel, f64)| {
             let speeds = [travel.left / seconds, travel.right / seconds];
             let at = progress.piece(travel, *seconds, speeds, speeds);
-            pose = pose.moved(&self.chain.displacement(&at.headed(pose.heading), travel));
+            pose = pose.moved(&self.chain.displacement(&at.at_pose(&pose), travel));
             let way = 0.5 * (travel.left + travel.right).abs();
             let turned = (travel.right - travel.left).abs() / self.robot.drive.wheelbase();
             Piece { pose: pose.value(), slopes: [0, 1, 2].map(|lane| pose.slope(lane)), way, turned }

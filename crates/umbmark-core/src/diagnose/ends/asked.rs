@@ -324,6 +324,8 @@ fn moves_means(entry: &'static Entry, model: &Model) -> bool {
     }
     let at = Context {
         heading: 0.7,
+        x: 1.5,
+        y: -0.8,
         duration: 0.1,
         speed: 0.3,
         turn_rate: 0.4,

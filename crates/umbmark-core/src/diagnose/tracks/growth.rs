@@ -46,9 +46,15 @@ fn fitted(exam: &Examination, model: &Model, effect: &str) -> Result<Fitted, Dia
         return Ok(sized);
     }
     let both = Fitted { taken: taken(), ..observed.fit(&sized.model, &sized.noise, &[])? };
-    let contexts = observed.tracks().flat_map(|track| track.contexts());
     let determined = estimates(&both).iter().all(|e| e.standard_error.is_finite());
-    Ok(if determined && both.model.check_along(contexts).is_ok() { both } else { sized })
+    let allowed = observed.tracks().all(|track| track.check(&both.model).is_ok());
+    Ok(if determined && allowed && keeps_signs(model, &both.model, effect) { both } else { sized })
+}
+
+/// Whether the lengths, times and thresholds of an effect have the signs with which a fit began: what dies away has not become what grows.
+fn keeps_signs(begun: &Model, fitted: &Model, effect: &str) -> bool {
+    let scale = |model: &Model| model.get(effect, "c");
+    scale(begun).zip(scale(fitted)).is_none_or(|(then, now)| then * now > 0.0)
 }
 
 /// The model with a suspect at its one-step size, free.

@@ -67,7 +67,7 @@ pub struct UnlistedLaw {
     pub per: &'static str,
     /// Whether it turns over with the sense of the run.
     pub with_sense: bool,
-    /// By what, in words, with {c} for the number that shapes it.
+    /// By what, in words, with {c} for the value of its parameter c.
     pub(super) follows: String,
     /// What the length that shapes it is of the robot or of its path: "the circumference of a wheel".
     pub means: Option<String>,
@@ -92,8 +92,11 @@ impl UnlistedLaw {
 
     /// What it follows, in words: "a wave of the time with a period of 18.9 s".
     pub fn by(&self) -> String {
-        let c = self.model.as_ref().and_then(|model| model.get(model.parts().first()?.effect.name(), "c"));
-        c.map_or_else(|| self.follows.clone(), |c| self.follows.replace("{c}", &three_digits(c)))
+        let part = self.model.as_ref().and_then(|model| model.parts().first());
+        let numbers = part.into_iter().flat_map(|part| part.effect.parameters().iter().zip(&part.values));
+        numbers.fold(self.follows.clone(), |words, (parameter, value)| {
+            words.replace(&format!("{{{}}}", parameter.name), &three_digits(*value))
+        })
     }
 
     /// In words: "the yaw motion for each metre follows the speed".
@@ -152,7 +155,7 @@ impl UnlistedLaw {
     pub(super) fn fitted(self, name: &'static str, exam: &Examination) -> UnlistedLaw {
         let model = exam.fitted.model.only(name);
         let c = estimates(&exam.fitted).into_iter().find(|e| e.effect == name && e.parameter == "c");
-        let is_way = self.follows.contains("{c} m");
+        let is_way = self.follows.contains("period of {c} m");
         let means = c.filter(|_| is_way).and_then(|c| lengths::meaning(&exam.fitted.observed, &c));
         UnlistedLaw { model: Some(model), means, ..self }
     }
@@ -305,8 +308,7 @@ fn front(
         let after = errors.misses_of(&squares);
         let motion = Motion::ALL[pick.motion];
         let model = laws.model(pick.term, sizes.as_slice(), motion, pick.with_sense, &observed.robot);
-        let contexts = observed.tracks().flat_map(|track| track.contexts());
-        let model = model.filter(|law| law.check_along(contexts).is_ok());
+        let model = model.filter(|law| observed.tracks().all(|track| track.check(law).is_ok()));
         let formula = model.as_ref().and_then(|model| model.parts().first()?.effect.formula());
         let law = UnlistedLaw {
             length: formula.map_or(usize::MAX, |formula| formula.length()),

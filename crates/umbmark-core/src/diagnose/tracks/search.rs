@@ -14,6 +14,9 @@ use crate::effect::{Law, Model, Part};
 use crate::likelihood::{Fitted, Noise};
 use crate::watch::Watch;
 
+/// A law that no catalogue lists is added where errors of runs left out fall by this share, and so many laws at most.
+const WORTH_A_LAW: f64 = 0.05;
+const MOST_LAWS: usize = 3;
 /// A law that no catalogue lists comes before an effect that explains less than this share of what it does.
 const OUTDONE: f64 = 0.5;
 /// A fit with an effect more went astray where its error is so many times as large.
@@ -313,9 +316,12 @@ impl Search {
 
     /// The model grown by the law that what repeats follows, where it counts and a fit bears it out.
     fn law(&mut self, options: &Options) -> Result<Option<(Examination, Vec<&'static str>, Added)>, DiagnoseError> {
-        while let Some(repeated) = self.repeats(options).cloned().filter(|repeated| repeated.counts(LEAST_GAIN)) {
+        while let Some(repeated) = self.repeats(options).cloned().filter(|repeated| repeated.counts(WORTH_A_LAW)) {
             let tried =
                 |law: &UnlistedLaw| law.model.as_ref().is_none_or(|model| self.refused_laws.contains(&text_of(model)));
+            if self.added.iter().filter(|added| matches!(added.by, Found::Unlisted(_))).count() >= MOST_LAWS {
+                return Ok(None);
+            }
             let wanted = if self.has_law() { 1 } else { options.law };
             let Some(mut repeated) = repeated.taking(wanted, tried) else { return Ok(None) };
             let Some(model) = repeated.law.model.clone() else { return Ok(None) };
@@ -336,7 +342,7 @@ impl Search {
         let Some((finding, _)) = &self.left.effect else { return false };
         let drop = finding.answer.drop;
         let law_failed = self.law_failed;
-        let repeated = self.repeats(options).filter(|repeated| repeated.counts(LEAST_GAIN));
+        let repeated = self.repeats(options).filter(|repeated| repeated.counts(WORTH_A_LAW));
         !law_failed && repeated.is_some_and(|repeated| drop < OUTDONE * repeated.law.drop)
     }
 

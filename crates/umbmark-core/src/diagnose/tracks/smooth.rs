@@ -288,7 +288,7 @@ fn of_run(run: &ObservedRun, chain: &Chain<f64>, scales: &Scales) -> Vec<Column>
     for (index, block) in run.blocks.iter().enumerate() {
         let until = run.made_at(block);
         for (travel, at) in track.travel()[made..until].iter().zip(&track.contexts()[made..until]) {
-            let motion = chain.displacement(&at.headed(pose.heading), travel);
+            let motion = chain.displacement(&at.at_pose(&pose), travel);
             let middle = pose.moved(&crate::geometry::Displacement2 {
                 forward: 0.5 * motion.forward,
                 sideways: 0.5 * motion.sideways,

@@ -123,8 +123,7 @@ fn own_model(exam: &Examination, target: Target, member: &Member) -> Option<Mode
     let formula = Formula::new(NAME, target, &member.text, &names).ok()?;
     let mut model = Model::new(&exam.fitted.observed.robot);
     model.add_formula(formula, &values).ok()?.free = true;
-    let contexts = exam.fitted.observed.tracks().flat_map(|track| track.contexts());
-    model.check_along(contexts).ok().map(|()| model)
+    exam.fitted.observed.tracks().try_for_each(|track| track.check(&model)).ok().map(|()| model)
 }
 
 /// The base's columns, those of each member's sizes, and the residual.

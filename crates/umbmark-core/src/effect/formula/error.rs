@@ -1,6 +1,7 @@
 //! What makes a formula impossible.
 
 use super::program::LONGEST;
+use super::variable::VARIABLES;
 use crate::effect::MAX_PARAMETERS;
 
 /// What makes a formula impossible. Columns count characters, from 1.
@@ -26,7 +27,7 @@ pub enum FormulaError {
         found: String,
     },
     /// A name that nothing has.
-    #[error("column {column}: there is no \"{name}\"{}", nearest.as_ref().map_or(format!("; {OFFERED}"), |n| format!("; did you mean \"{n}\"?")))]
+    #[error("column {column}: there is no \"{name}\"{}", nearest.as_ref().map_or_else(|| format!("; {}", offered()), |n| format!("; did you mean \"{n}\"?")))]
     Name {
         /// Where.
         column: usize,
@@ -118,9 +119,11 @@ pub enum FormulaError {
 }
 
 /// What formulas are made of.
-const OFFERED: &str = "name it among the parameters, or use speed, turn_rate, acceleration, turn_acceleration, heading, wheel_angle_left, \
-                       wheel_angle_right, distance, time, session_distance, since_turn, last_turn, direction, pi and the \
-                       functions sin, cos, tan, exp, log, sqrt, abs, sign, min, max, tanh";
+fn offered() -> String {
+    let variables: Vec<&str> = VARIABLES.iter().map(|variable| variable.name).collect();
+    let functions = "sin, cos, tan, exp, log, sqrt, abs, sign, min, max, tanh";
+    format!("name it among the parameters, or use {}, pi and the functions {functions}", variables.join(", "))
+}
 
 /// The column of a byte of the text.
 pub(super) fn column(text: &str, byte: usize) -> usize {

@@ -10,7 +10,7 @@
 use super::error::{FormulaError, column};
 use super::program::{Function, Op, Program};
 use super::tokens::{Placed, Token, tokens};
-use super::variable::Variable;
+use super::variable::VARIABLES;
 use crate::parameter::nearest;
 use std::ops::Range;
 
@@ -45,7 +45,7 @@ pub(super) fn is_taken(name: &str) -> bool {
 }
 
 fn builtin_names() -> impl Iterator<Item = &'static str> {
-    let variables = Variable::ALL.iter().map(|(name, ..)| *name);
+    let variables = VARIABLES.iter().map(|variable| variable.name);
     let functions = Function::ALL.iter().map(|(name, _)| *name).chain(OF_TWO.iter().map(|(name, _)| *name));
     variables.chain(functions).chain(NUMBERS.iter().map(|(name, _)| *name))
 }
@@ -159,7 +159,7 @@ impl<'a> Parser<'a> {
         if let Some((op, takes)) = function {
             return self.call(op, takes, span);
         }
-        let variable = || Variable::ALL.iter().find(|(known, ..)| *known == name).map(|(_, v, _)| Op::Variable(*v));
+        let variable = || VARIABLES.iter().find(|known| known.name == name).map(|known| Op::Variable(known.variable));
         let number = || NUMBERS.iter().find(|(known, _)| *known == name).map(|(_, value)| Op::Number(*value));
         let parameter = self.parameters.iter().position(|known| *known == name).map(Op::Parameter);
         let column = column(self.text, span.start);

@@ -1,8 +1,8 @@
 //! A formula compiled into operations on a stack.
 
-use super::variable::Variable;
+use super::variable::{Middle, Variable};
 use crate::effect::Context;
-use crate::geometry::Real;
+use crate::geometry::{Displacement2, Real};
 use std::ops::Range;
 
 /// The most values that wait on the stack at once.
@@ -134,10 +134,10 @@ impl Program {
         self.spans[i].clone()
     }
 
-    /// The value, for values or derivatives; `heading` is that of the middle of the piece.
+    /// The value in the middle of a piece with this motion, for values or derivatives.
     #[inline]
-    pub fn evaluate<T: Real>(&self, parameters: &[T], at: &Context<T>, heading: T) -> T {
-        self.watched(parameters, at, heading, |_, _| ())
+    pub fn evaluate<T: Real>(&self, parameters: &[T], at: &Context<T>, motion: &Displacement2<T>) -> T {
+        self.watched(parameters, at, motion, |_, _| ())
     }
 
     /// [`Program::evaluate`], telling `watch` each operation's number and result.
@@ -146,9 +146,10 @@ impl Program {
         &self,
         parameters: &[T],
         at: &Context<T>,
-        heading: T,
+        motion: &Displacement2<T>,
         mut watch: impl FnMut(usize, T),
     ) -> T {
+        let mut middle = Middle::new(at, motion);
         // The topmost value is in `top`, those below it in `below`.
         let mut below = [T::from(0.0); DEPTH];
         let (mut count, mut top) = (0, T::from(0.0));
@@ -164,7 +165,7 @@ impl Program {
             top = match *op {
                 Op::Number(number) => T::from(number),
                 Op::Parameter(index) => parameters[index],
-                Op::Variable(variable) => variable.of(at, heading),
+                Op::Variable(variable) => variable.of(at, &mut middle),
                 Op::Negate => -top,
                 Op::Add => below[count] + top,
                 Op::Subtract => below[count] - top,

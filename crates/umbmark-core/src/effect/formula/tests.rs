@@ -5,7 +5,6 @@ use crate::effect::{Model, ModelError};
 use crate::geometry::{LANES, seeded};
 use crate::random::Stream;
 use program::Function;
-use variable::Variable;
 
 /// What a formula acts on, its text, and its parameters with their values.
 type Own<'a> = (Target, &'a str, &'a [(&'a str, f64)]);
@@ -85,10 +84,13 @@ fn every_target_does_what_its_law_says() {
 fn each_variable_is_what_its_name_says() {
     let at = Context {
         heading: 0.3,
+        x: 4.0,
+        y: 5.0,
         duration: 2.0,
         speed: 0.5,
         turn_rate: 0.1,
         speed_change: [0.2, 0.6],
+        turn_rate_change: 1.2,
         wheel_angle: [1.0, 2.0],
         wheel_rotation: [0.2, 0.4],
         distance: 3.0,
@@ -100,11 +102,23 @@ fn each_variable_is_what_its_name_says() {
         direction: 1.0,
         ..Context::default()
     };
+    // Half of an arc: a chord of 2 r sin(angle/2), turned by half of the angle; here half of the arc turns by 0.4.
+    let motion = Displacement2 { forward: 0.5, sideways: 0.1, rotation: 0.8 };
+    let chord = libm::sin(0.2) / 0.2 * 0.5;
+    let middle = at.pose().compose(&Pose2::new(
+        chord * (0.5 * libm::cos(0.2) - 0.1 * libm::sin(0.2)),
+        chord * (0.5 * libm::sin(0.2) + 0.1 * libm::cos(0.2)),
+        0.4,
+    ));
+    let mut told = Vec::new();
     for (name, value) in [
         ("speed", 0.5),
         ("turn_rate", 0.1),
         ("acceleration", 0.2),
+        ("turn_acceleration", 0.6),
         ("heading", 0.7),
+        ("x", middle.x),
+        ("y", middle.y),
         ("wheel_angle_left", 1.1),
         ("wheel_angle_right", 2.2),
         ("distance", 3.25),
@@ -116,9 +130,15 @@ fn each_variable_is_what_its_name_says() {
         ("pi", std::f64::consts::PI),
     ] {
         let program = parser::parse(name, &[]).unwrap();
-        assert!((program.evaluate(&[], &at, 0.7) - value).abs() < 1e-15, "{name}");
+        assert!((program.evaluate(&[], &at, &motion) - value).abs() < 1e-15, "{name}");
+        told.push(name);
     }
-    assert!(Variable::ALL.iter().enumerate().all(|(i, (_, variable, _))| *variable as usize == i));
+    for (i, known) in VARIABLES.iter().enumerate() {
+        assert!(known.variable as usize == i && told.contains(&known.name), "{}", known.name);
+        // What people read is the unit that is checked; an angle is a plain number.
+        let plain = known.unit.replace('²', "^2").replace("rad/", "1/").replace("rad", "");
+        assert_eq!(plain, known.dimension.to_string(), "{}", known.name);
+    }
 }
 
 /// An expression by itself, its text and its value for k = 0.7, heading 0.4.
@@ -214,6 +234,16 @@ fn tree(stream: &mut Stream, depth: u32) -> Tree {
     }
 }
 
+/// At the origin with this heading.
+fn headed(heading: f64) -> Context {
+    Context { heading, ..Context::default() }
+}
+
+/// No motion.
+fn still<T: Real>() -> Displacement2<T> {
+    Displacement2 { forward: T::from(0.0), sideways: T::from(0.0), rotation: T::from(0.0) }
+}
+
 fn pick(stream: &mut Stream, count: usize) -> usize {
     (stream.uniform() * count as f64) as usize
 }
@@ -235,12 +265,13 @@ fn a_formula_has_the_value_of_the_tree_that_it_was_written_from() {
     for (tree, text, program) in trees(1) {
         let (mut largest, mut steepest) = (0.0_f64, 0.0_f64);
         let [k, heading] = [0.7, 0.4].map(|value| Dual { eps: [1.0; LANES], re: value });
-        program.watched(&[k], &Context::default().headed(heading), heading, |_, part| {
+        let pose = Pose2::new(Dual::from(0.0), Dual::from(0.0), heading);
+        program.watched(&[k], &Context::default().at_pose(&pose), &still(), |_, part| {
             // Sums keep what is no number.
             largest += part.re.abs();
             steepest += part.eps[0].abs();
         });
-        let (value, expected) = (program.evaluate(&[0.7], &Context::default(), 0.4), tree.value());
+        let (value, expected) = (program.evaluate(&[0.7], &headed(0.4), &still()), tree.value());
         // Where a part is huge or steep, rounding decides: nothing is compared.
         if largest < 1e3 && steepest < 1e3 {
             compared += 1;
@@ -256,10 +287,10 @@ fn derivatives_are_those_of_finite_differences() {
     for (_, text, program) in trees(2) {
         // Where a part is huge, rounding decides.
         let mut tame = true;
-        program.watched(&[0.7], &Context::default(), 0.4, |_, part: f64| tame &= part.abs() < 1e6);
-        let at = |k: f64| program.evaluate(&[k], &Context::default(), 0.4);
-        let still = Dual::from(0.4);
-        let dual = program.evaluate(&seeded([0.7], &[0]), &Context::default().headed(still), still);
+        program.watched(&[0.7], &headed(0.4), &still(), |_, part: f64| tame &= part.abs() < 1e6);
+        let at = |k: f64| program.evaluate(&[k], &headed(0.4), &still());
+        let here = headed(0.4).at_pose(&headed(0.4).pose().lift());
+        let dual = program.evaluate(&seeded([0.7], &[0]), &here, &still());
         assert!(!tame || (dual.re - at(0.7)).abs() <= 1e-7 * (1.0 + at(0.7).abs()), "{text}: {} {}", dual.re, at(0.7));
         let numeric = |h: f64| (at(0.7 + h) - at(0.7 - h)) / (2.0 * h);
         let (fine, coarse) = (numeric(1e-5), numeric(2e-5));
@@ -306,7 +337,7 @@ fn signs_powers_and_order_are_those_of_arithmetic() {
         ("sign(-3) + sign(0) + abs(-2)", 1.0),
     ] {
         let program = parser::parse(text, &[]).unwrap();
-        assert_eq!(program.evaluate(&[], &Context::default(), 0.0), value, "{text}");
+        assert_eq!(program.evaluate(&[], &headed(0.0), &still()), value, "{text}");
     }
 }
 
@@ -342,7 +373,7 @@ fn what_cannot_be_meant_is_refused_with_its_column() {
     }
     let unknown = Formula::new("own", Target::ForwardScale, "zzzzzz", &[]).unwrap_err().to_string();
     assert!(unknown.starts_with("column 1: there is no \"zzzzzz\"; name it among the parameters, or use speed"));
-    assert!(Variable::ALL.iter().all(|(name, ..)| unknown.contains(name)));
+    assert!(VARIABLES.iter().all(|known| unknown.contains(&format!(" {},", known.name))));
     assert!(Function::ALL.iter().all(|(name, _)| unknown.contains(name)));
 }
 
@@ -373,6 +404,8 @@ fn names_are_letters_and_nobody_elses() {
             "\"a b\" cannot be the name of an effect: it takes letters, digits and _, and begins with a letter",
         ),
         ("own", &["speed"], "\"speed\" cannot be the name of a parameter: it has a meaning in every formula"),
+        ("own", &["x"], "\"x\" cannot be the name of a parameter: it has a meaning in every formula"),
+        ("own", &["a", "y"], "\"y\" cannot be the name of a parameter: it has a meaning in every formula"),
         ("own", &["sin"], "\"sin\" cannot be the name of a parameter: it has a meaning in every formula"),
         ("own", &["a", "a"], "\"a\" cannot be the name of a parameter: another one has it"),
     ] {
@@ -429,14 +462,31 @@ fn a_place_where_a_formula_is_no_number_is_named_with_what_is_there() {
         model_of(&[(target, text, &[("k", k)])]).check_along([at]).map_err(|error| error.to_string())
     };
     let said = "own_0: \"k / since_turn\", or its derivative, is not finite 3.00 s after START in run 2, where k = 0.001, \
-                since_turn = 0 m; change the formula so that it is finite there too, for instance x / max(y, 0.01) instead \
-                of x / y";
+                since_turn = 0 m; change the formula so that it is finite there too, for instance a / max(b, 0.01) instead \
+                of a / b";
     assert_eq!(check(Target::ForwardScale, "2 + k / since_turn", 1e-3, &at), Err(said.to_owned()));
     assert_eq!(check(Target::ForwardScale, "k / max(since_turn, 0.01)", 1e-3, &at), Ok(()));
     assert_eq!(check(Target::HeadingPerMetre, "k / since_turn", 1e-3, &at), Ok(()), "nothing is driven there");
     assert!(check(Target::ForwardScale, "sqrt(k)", 0.0, &at).is_err(), "the derivative is infinite");
     assert!(check(Target::ForwardScale, "k * sqrt(heading)", 1.0, &at).is_err(), "that by the heading is");
     assert!(check(Target::ForwardScale, "log(k - 1)", 0.5, &at).is_err());
+    // The derivatives by x and by y, where the formula has them.
+    let there = Context { x: 2.0, y: 1.0, heading: 0.5, ..at };
+    for (name, here) in [("x", Context { x: 0.0, ..there }), ("y", Context { y: 0.0, ..there })] {
+        let text = format!("k * sqrt({name})");
+        let said = check(Target::ForwardScale, &text, 1.0, &here).unwrap_err();
+        assert!(said.contains(&format!("\"sqrt({name})\"")) && said.contains(&format!("{name} = 0 m;")), "{said}");
+        assert_eq!(check(Target::ForwardScale, &text, 1.0, &there), Ok(()));
+        assert_eq!(check(Target::ForwardScale, "k * heading", 1.0, &here), Ok(()));
+    }
+    assert!(check(Target::ForwardScale, "k * sqrt(x - y)", 1.0, &Context { y: 2.0, ..there }).is_err());
+    // With as many parameters as there may be, every derivative is looked at.
+    for (name, here) in [("x", Context { x: 0.0, ..there }), ("y", Context { y: 0.0, ..there })] {
+        let text = format!("a + b + c + d + e + f * sqrt({name})");
+        let all = ["a", "b", "c", "d", "e", "f"].map(|name| (name, 1.0));
+        let model = model_of(&[(Target::ForwardScale, &text, &all)]);
+        assert!(model.check_along([&there]).is_ok() && model.check_along([&here]).is_err(), "{name}");
+    }
     assert_eq!(check(Target::ForwardScale, "k * sqrt(speed)", 1.0, &at), Ok(()));
 }
 

@@ -132,7 +132,7 @@ impl Units<'_> {
         Ok(match self.program.ops()[i] {
             Op::Number(_) => self.unknown(parameters + i),
             Op::Parameter(index) => self.unknown(index),
-            Op::Variable(variable) => self.known(variable.described().1),
+            Op::Variable(variable) => self.known(variable.described().dimension),
             Op::Negate | Op::Apply(Function::Abs) => all[of[0]].clone(),
             Op::Add | Op::Subtract | Op::Smaller | Op::Larger => {
                 if !self.unify(&all[of[0]], &all[of[1]]) {

@@ -29,7 +29,7 @@ impl Walk {
         let (mut pose, mut way, mut turned) = (track.start(chain), 0.0, 0.0);
         let mut walk = Walk { places: vec![pose], way: vec![way], turned: vec![turned] };
         for (travel, at) in track.travel().iter().zip(track.contexts()) {
-            let motion = chain.displacement(&at.headed(pose.heading), travel);
+            let motion = chain.displacement(&at.at_pose(&pose), travel);
             pose.advance(&motion);
             way += motion.forward.abs();
             turned += motion.rotation.abs();

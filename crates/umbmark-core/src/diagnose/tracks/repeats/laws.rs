@@ -103,7 +103,7 @@ pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
                 };
                 (wheels, change) = ([0.0; 2], [0.0; 2]);
             }
-            let motion = chain.displacement(&at.headed(pose.heading), travel);
+            let motion = chain.displacement(&at.at_pose(&pose), travel);
             pose = pose.moved(&motion);
             step.duration += at.duration;
             step.way += at.length.abs();
@@ -145,19 +145,22 @@ pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
 struct Function {
     /// What it is: "a wave of the time with a period of {c} s".
     words: String,
-    /// The same as a formula of the user's own, with a parameter c where it has a value; none where formulas lack what it depends on.
-    formula: Option<(String, Option<f64>)>,
+    /// The same as a formula.
+    formula: Written,
     value: Box<dyn Fn(&Step) -> f64 + Send + Sync>,
 }
 
+/// A formula of the user's own, and the parameters that shape it, with start values.
+type Written = (String, Vec<(&'static str, f64)>);
+
 /// A formula without a parameter.
-fn written(text: impl Into<String>) -> Option<(String, Option<f64>)> {
-    Some((text.into(), None))
+fn written(text: impl Into<String>) -> Written {
+    (text.into(), Vec::new())
 }
 
 /// A formula of a parameter c.
-fn shaped(text: &str, c: f64) -> Option<(String, Option<f64>)> {
-    Some((text.to_owned(), Some(c)))
+fn shaped(text: &str, c: f64) -> Written {
+    (text.to_owned(), vec![("c", c)])
 }
 
 /// What is above c counts, what is below does not, and about c it passes from the one to the other: a place where it jumps could not be fitted.
@@ -230,6 +233,13 @@ struct Extent {
     turn_acceleration: f64,
     low: [f64; 2],
     high: [f64; 2],
+    /// How far the runs reach against each of eight [directions](direction) \[m\].
+    edges: [f64; 8],
+}
+
+/// One of eight directions in the room \[rad\].
+fn direction(k: usize) -> f64 {
+    TAU * k as f64 / 8.0
 }
 
 impl Extent {
@@ -246,6 +256,11 @@ impl Extent {
             turn_rate: most(|s| s.turn_rate.abs()),
             acceleration: most(|s| s.acceleration.abs()),
             turn_acceleration: most(|s| s.turn_acceleration.abs()),
+            edges: std::array::from_fn(|k| {
+                let (sine, cosine) = libm::sincos(direction(k));
+                let along = |s: &Step| s.middle.x * cosine + s.middle.y * sine;
+                steps.iter().flatten().map(along).fold(f64::INFINITY, f64::min)
+            }),
             low: [least(|s| s.middle.x), least(|s| s.middle.y)],
             high: [most(|s| s.middle.x), most(|s| s.middle.y)],
         }
@@ -279,7 +294,7 @@ impl Laws {
     fn add(
         &mut self,
         words: String,
-        formula: Option<(String, Option<f64>)>,
+        formula: Written,
         per: &[Per],
         value: impl Fn(&Step) -> f64 + Send + Sync + 'static,
     ) {
@@ -298,13 +313,11 @@ impl Laws {
         angle: impl Fn(&Step) -> f64 + Copy + Send + Sync + 'static,
     ) {
         let first = self.terms.len();
-        let formula = |wave: &str| Some((format!("{size_text}{wave}({angle_text})"), value));
+        let shapes: Vec<_> = value.map(|c| ("c", c)).into_iter().collect();
+        let formula = |wave: &str| (format!("{size_text}{wave}({angle_text})"), shapes.clone());
         self.add(words.clone(), formula("cos"), per, move |s| size(s) * libm::cos(angle(s)));
         self.add(words, formula("sin"), per, move |s| size(s) * libm::sin(angle(s)));
-        for k in 0..per.len() {
-            self.terms[first + k].twin = Some(first + per.len() + k);
-            self.terms[first + per.len() + k].twin = Some(first + k);
-        }
+        self.join(first, per.len());
     }
 
     fn fill(&mut self, extent: &Extent) {
@@ -466,17 +479,27 @@ impl Laws {
         if wide.max(deep) < HUMPS.0 {
             return;
         }
-        self.add("x in the room".into(), None, &[Metre, Second], |s| s.middle.x);
-        self.add("y in the room".into(), None, &[Metre, Second], |s| s.middle.y);
-        self.add("the square of x in the room".into(), None, &[Metre], |s| s.middle.x * s.middle.x);
-        self.add("the square of y in the room".into(), None, &[Metre], |s| s.middle.y * s.middle.y);
-        self.add("x times y in the room".into(), None, &[Metre], |s| s.middle.x * s.middle.y);
-        for c in NEAR {
-            let words = |wall: &str| format!("what dies away within {c} m of the {wall}");
-            self.add(words("least x"), None, &[Metre], move |s| libm::exp(-(s.middle.x - x0) / c));
-            self.add(words("greatest x"), None, &[Metre], move |s| libm::exp(-(x1 - s.middle.x) / c));
-            self.add(words("least y"), None, &[Metre], move |s| libm::exp(-(s.middle.y - y0) / c));
-            self.add(words("greatest y"), None, &[Metre], move |s| libm::exp(-(y1 - s.middle.y) / c));
+        self.pair("the place in the room, along a line", ["x", "y"], &[Metre, Second], |s| [s.middle.x, s.middle.y]);
+        self.pair("the squares of the place in the room", ["x^2", "y^2"], &[Metre], |s| {
+            [s.middle.x * s.middle.x, s.middle.y * s.middle.y]
+        });
+        self.add("the square of x in the room".into(), written("x^2"), &[Metre], |s| s.middle.x * s.middle.x);
+        self.add("the square of y in the room".into(), written("y^2"), &[Metre], |s| s.middle.y * s.middle.y);
+        self.add("x times y in the room".into(), written("x * y"), &[Metre], |s| s.middle.x * s.middle.y);
+        for (k, edge) in extent.edges.iter().copied().enumerate() {
+            let towards = direction(k);
+            let (sine, cosine) = libm::sincos(towards);
+            for c in NEAR {
+                self.add(
+                    format!("what dies away within {{c}} m of the edge of the room at {:.0} deg", towards.to_degrees() - 180.0),
+                    (
+                        format!("exp(-(x * cos(h) + y * sin(h) - {edge:.3}) / c)"),
+                        vec![("c", c), ("h", towards)],
+                    ),
+                    &[Metre],
+                    move |s| libm::exp(-(s.middle.x * cosine + s.middle.y * sine - edge) / c),
+                );
+            }
         }
         let apart = HUMPS.0.max((wide * deep / HUMPS.1 as f64).sqrt()).max(wide.max(deep) / HUMPS.1 as f64);
         let along = |from: f64, length: f64| {
@@ -486,21 +509,54 @@ impl Laws {
         };
         for x in along(x0, wide) {
             for y in along(y0, deep) {
-                self.add(format!("a place on the floor near ({x:.1}, {y:.1}) m"), None, &[Metre], move |s| {
-                    let square = (s.middle.x - x).powi(2) + (s.middle.y - y).powi(2);
-                    libm::exp(-0.5 * square / (0.6 * apart).powi(2))
-                });
+                self.add(
+                    "a place on the floor near ({p}, {q}) m, {c} m wide".to_owned(),
+                    (
+                        "exp(-((x - p)^2 + (y - q)^2) / (2 * c^2))".to_owned(),
+                        vec![("c", 0.6 * apart), ("p", x), ("q", y)],
+                    ),
+                    &[Metre],
+                    move |s| {
+                        let square = (s.middle.x - x).powi(2) + (s.middle.y - y).powi(2);
+                        libm::exp(-0.5 * square / (0.6 * apart).powi(2))
+                    },
+                );
             }
+        }
+    }
+
+    /// Two functions that go together, with their formulas.
+    fn pair(
+        &mut self,
+        words: &str,
+        formulas: [&str; 2],
+        per: &[Per],
+        values: impl Fn(&Step) -> [f64; 2] + Copy + Send + Sync + 'static,
+    ) {
+        let first = self.terms.len();
+        for (k, formula) in formulas.into_iter().enumerate() {
+            self.add(words.to_owned(), written(formula), per, move |s| values(s)[k]);
+        }
+        self.join(first, per.len());
+    }
+
+    /// Makes twins of so many terms and as many behind them.
+    fn join(&mut self, first: usize, count: usize) {
+        for k in 0..count {
+            self.terms[first + k].twin = Some(first + count + k);
+            self.terms[first + count + k].twin = Some(first + k);
         }
     }
 
     /// The name that a term has as an effect: "periodic_yaw", "forward_by_speed".
     fn name(&self, term: usize, motion: Motion) -> String {
-        let text = self.functions[self.terms[term].function].formula.as_ref().map_or("", |(text, _)| text);
-        let by = Formula::variables().into_iter().filter(|variable| text.contains(variable)).max_by_key(|v| v.len());
+        let text = &self.functions[self.terms[term].function].formula.0;
+        let words: Vec<&str> = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').collect();
+        let by = Formula::variables().iter().map(|variable| variable.name).find(|name| words.contains(name));
         let motion = motion.name();
         match by {
             Some("time" | "distance") if text.contains("pi") => format!("periodic_{motion}"),
+            Some("x" | "y") => format!("{motion}_by_place"),
             Some(variable) => format!("{motion}_by_{variable}"),
             None => format!("steady_{motion}"),
         }
@@ -509,16 +565,13 @@ impl Laws {
     /// A word for the shape of a term's function, whatever its numbers are.
     pub fn shape(&self, term: usize) -> String {
         let Function { words, formula, .. } = &self.functions[self.terms[term].function];
-        match formula {
-            Some((text, Some(_))) => text.replace("sin(", "cos("),
-            _ => words.chars().filter(|c| !c.is_ascii_digit() && !"-.".contains(*c)).collect(),
-        }
+        if formula.1.is_empty() { words.clone() } else { formula.0.chars().filter(|c| !c.is_ascii_digit()).collect() }
     }
 
     /// How many numbers a term and its twin have as a law.
     pub fn numbers(&self, term: usize) -> usize {
-        let shaped = self.functions[self.terms[term].function].formula.as_ref().is_some_and(|(_, c)| c.is_some());
-        1 + usize::from(self.terms[term].twin.is_some()) + usize::from(shaped)
+        let shapes = self.functions[self.terms[term].function].formula.1.len();
+        1 + usize::from(self.terms[term].twin.is_some()) + shapes
     }
 
     /// A model that holds a term alone, and its twin, with these sizes: for each motion, with the sense of the run or without.
@@ -539,16 +592,17 @@ impl Laws {
             (Motion::Sideways, Per::Second) => (Target::SidewaysPerSecond, ""),
         };
         let sense = if with_sense { "direction * " } else { "" };
-        let (first, shape) = self.functions[about.function].formula.as_ref()?;
-        let second = about.twin.and_then(|twin| self.functions[self.terms[twin].function].formula.as_ref());
+        let (first, shapes) = &self.functions[about.function].formula;
+        let second = about.twin.map(|twin| &self.functions[self.terms[twin].function].formula);
         let text = match second {
             Some((second, _)) if sense.is_empty() && factor.is_empty() => format!("a * {first} + b * {second}"),
             Some((second, _)) => format!("{sense}{factor}(a * {first} + b * {second})"),
             None if first == "1" => format!("a * {sense}{factor}").trim_end_matches(" * ").to_owned(),
             None => format!("a * {sense}{factor}{first}"),
         };
-        let names: Vec<&str> = ["a", "b"].into_iter().take(sizes.len()).chain(shape.map(|_| "c")).collect();
-        let rounded = sizes.iter().copied().chain(*shape).map(|value| format!("{value:.4e}").parse().unwrap_or(value));
+        let names: Vec<&str> = ["a", "b"].into_iter().take(sizes.len()).chain(shapes.iter().map(|s| s.0)).collect();
+        let values = sizes.iter().copied().chain(shapes.iter().map(|s| s.1));
+        let rounded = values.map(|value| format!("{value:.4e}").parse().unwrap_or(value));
         let formula = Formula::new(&self.name(term, motion), target, &text, &names).ok()?;
         let mut model = Model::new(robot);
         model.add_formula(formula, &rounded.collect::<Vec<f64>>()).ok()?.free = true;
