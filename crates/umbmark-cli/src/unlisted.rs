@@ -48,7 +48,8 @@ pub fn laws_text(repeated: &Repeated) -> String {
         vec![format!("{:<2} {}", number + 1, formula_of(law)), length, format!("{:.1}", 1e3 * law.left_out[1])]
     };
     let laws = std::iter::once(&repeated.law).chain(&repeated.others).take(MOST_SHOWN).enumerate();
-    text += &format!("\n{}\n", table(&["laws tried (--law N takes another)", "length", "left out [mm]"], laws.map(row)));
+    text +=
+        &format!("\n{}\n", table(&["laws tried (--law N takes another)", "length", "left out [mm]"], laws.map(row)));
     text
 }
 

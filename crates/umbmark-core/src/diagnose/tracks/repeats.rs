@@ -30,6 +30,8 @@ use signs::{Asked, Sums, of_run, p_of_all};
 /// So many laws are fitted, and so many of one shape at most.
 const TRIED: usize = 16;
 const OF_A_SHAPE: usize = 2;
+/// A law by which errors of runs left out fall by less than this share of what the best of them does is none to take.
+const WORSE: f64 = 0.5;
 /// A law that is as good as another takes off the sum of squares as much as that, but for so much.
 const AS_LIKELY: f64 = 40.0;
 /// p at which something repeats: the other certificates together take the rest of one in twenty. Where it stands out as far as the second says
@@ -37,6 +39,8 @@ const AS_LIKELY: f64 = 40.0;
 const SIZE: f64 = 0.01;
 const LOUD: (f64, f64) = (1e-6, 0.1);
 const SIZE_IF_LOUD: f64 = 0.05;
+/// The same where runs left out are predicted so much better, however wide the noise is: noise that was fitted may be what repeats.
+const PLAIN: f64 = 0.4;
 /// The same by the noise model, and how many times as wide as that has it noise that remembers makes a drift of the heading.
 const SIZE_BY_NOISE: f64 = 0.05;
 const REMEMBERS: f64 = 2.6;
@@ -115,10 +119,10 @@ fn three_digits(value: f64) -> String {
 impl Repeated {
     /// Whether it is no chance, and makes errors of runs left out fall by this share.
     pub(super) fn counts(&self, least: f64) -> bool {
-        let by_noise = self.p_by_noise();
-        let is_loud = by_noise <= LOUD.0 && self.law.gain >= LOUD.1;
-        let size = if is_loud { SIZE_IF_LOUD } else { SIZE };
-        self.p <= size && by_noise <= SIZE_BY_NOISE && self.law.gain >= least
+        let (by_noise, gain) = (self.p_by_noise(), self.law.gain);
+        let is_loud = (by_noise <= LOUD.0 && gain >= LOUD.1) || gain >= PLAIN;
+        let is_certain = self.p <= SIZE && by_noise <= SIZE_BY_NOISE;
+        gain >= least && (is_certain || (is_loud && self.p <= SIZE_IF_LOUD))
     }
 
     /// p of all laws together by the noise model (Bonferroni): flips of few runs are few, and one of them is as far out once in a while. Noise
@@ -325,6 +329,8 @@ fn front(
         };
         tried.push((law, squares, own));
     }
+    let gain = tried.iter().map(|(law, ..)| law.gain).fold(0.0, f64::max);
+    let (mut tried, worse): (Vec<_>, Vec<_>) = tried.into_iter().partition(|(law, ..)| law.gain >= WORSE * gain);
     let total = |squares: &[[f64; 3]]| squares.iter().map(|fold| fold[2]).sum::<f64>();
     tried.sort_by(|a, b| total(&a.1).total_cmp(&total(&b.1)));
     let most = tried.iter().map(|(law, ..)| law.drop).fold(0.0, f64::max);
@@ -332,10 +338,12 @@ fn front(
         is_as_good(&other.1, &tried[0].1) && other.0.drop >= most - AS_LIKELY
     };
     let written = tried.iter().filter(as_good).min_by_key(|(law, ..)| law.length);
-    let Some(first) = written.or(tried.first()).and_then(|written| tried.iter().position(|other| other.2 == written.2)) else {
+    let Some(first) = written.or(tried.first()).and_then(|written| tried.iter().position(|other| other.2 == written.2))
+    else {
         return Vec::new();
     };
     let chosen = tried.remove(first);
+    tried.extend(worse);
     let values = projected.drop(&chosen.2).map(|(_, values, _)| values);
     let others = tried.into_iter().map(|(law, _, own)| {
         let likeness = values.as_ref().map_or(0.0, |values| projected.likeness(&chosen.2, values, &own));

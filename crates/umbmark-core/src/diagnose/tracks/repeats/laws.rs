@@ -211,7 +211,7 @@ pub struct Laws {
 
 /// The periods to ask about where runs last so long, or go so far.
 fn periods((low, high): (f64, f64), extent: f64) -> Vec<f64> {
-    let longest = high.min(1.5 * extent);
+    let longest = high.min(extent);
     let mut periods: Vec<f64> = (0..PERIODS).map(|k| 1.0 / (1.0 / longest + k as f64 / (2.0 * extent))).collect();
     while let Some(last) = periods.last().filter(|last| **last > low) {
         periods.push(last / SHORTER);
@@ -346,7 +346,7 @@ impl Laws {
         self.add("the way in the session".into(), written("session_distance"), &[Metre], |s| s.session_distance);
         for n in 1..=4 {
             let times = if n == 1 { String::new() } else { format!("{n} times ") };
-            let angle = |of: &str| format!("{n} * {of}");
+            let angle = |of: &str| if n == 1 { of.to_owned() } else { format!("{n} * {of}") };
             let n = f64::from(n);
             let words = format!("a wave of {times}the heading");
             let about = angle("heading");
@@ -394,12 +394,9 @@ impl Laws {
                 &[Radian],
                 move |s| s.turn_rate.signum() * beyond(s.turn_rate.abs(), w),
             );
-            self.add(
-                "tanh(turn rate / {c} rad/s)".into(),
-                shaped("tanh(turn_rate / c)", w),
-                &[Second],
-                move |s| libm::tanh(s.turn_rate / w),
-            );
+            self.add("tanh(turn rate / {c} rad/s)".into(), shaped("tanh(turn_rate / c)", w), &[Second], move |s| {
+                libm::tanh(s.turn_rate / w)
+            });
         }
         self.add("the sense of the turn".into(), written("sign(turn_rate)"), &[Radian], |s| s.turn_rate.signum());
         self.add("the turn rate".into(), written("turn_rate"), &[Radian], |s| s.turn_rate);
@@ -480,22 +477,28 @@ impl Laws {
             return;
         }
         self.pair("the place in the room, along a line", ["x", "y"], &[Metre, Second], |s| [s.middle.x, s.middle.y]);
-        self.pair("the squares of the place in the room", ["x^2", "y^2"], &[Metre], |s| {
-            [s.middle.x * s.middle.x, s.middle.y * s.middle.y]
-        });
-        self.add("the square of x in the room".into(), written("x^2"), &[Metre], |s| s.middle.x * s.middle.x);
-        self.add("the square of y in the room".into(), written("y^2"), &[Metre], |s| s.middle.y * s.middle.y);
-        self.add("x times y in the room".into(), written("x * y"), &[Metre], |s| s.middle.x * s.middle.y);
+        for k in 0..4 {
+            let (sine, cosine) = libm::sincos(direction(k));
+            let (from, to) = (extent.edges[k], -extent.edges[k + 4]);
+            for d in [from, 0.5 * (from + to), to] {
+                self.add(
+                    "the square of the distance from a line in the room".into(),
+                    ("(x * cos(h) + y * sin(h) - d)^2".to_owned(), vec![("d", d), ("h", direction(k))]),
+                    &[Metre],
+                    move |s| (s.middle.x * cosine + s.middle.y * sine - d).powi(2),
+                );
+            }
+        }
         for (k, edge) in extent.edges.iter().copied().enumerate() {
             let towards = direction(k);
             let (sine, cosine) = libm::sincos(towards);
             for c in NEAR {
                 self.add(
-                    format!("what dies away within {{c}} m of the edge of the room at {:.0} deg", towards.to_degrees() - 180.0),
-                    (
-                        format!("exp(-(x * cos(h) + y * sin(h) - {edge:.3}) / c)"),
-                        vec![("c", c), ("h", towards)],
+                    format!(
+                        "what dies away within {{c}} m of the edge of the room at {:.0} deg",
+                        towards.to_degrees() - 180.0
                     ),
+                    (format!("exp(-(x * cos(h) + y * sin(h) - {edge:.3}) / c)"), vec![("c", c), ("h", towards)]),
                     &[Metre],
                     move |s| libm::exp(-(s.middle.x * cosine + s.middle.y * sine - edge) / c),
                 );

@@ -36,7 +36,8 @@ fn known(observed: &Observed) -> Vec<(f64, String)> {
     }
     if let Some(path) = &observed.path {
         for (parameter, value) in path.shape().parameters.iter().zip(path.values()).filter(|(p, _)| p.unit == "m") {
-            known.push((*value, format!("the {} of the path", parameter.name.trim_end_matches("_m").replace('_', " "))));
+            known
+                .push((*value, format!("the {} of the path", parameter.name.trim_end_matches("_m").replace('_', " "))));
         }
     }
     known
@@ -58,8 +59,12 @@ mod tests {
 
     #[test]
     fn a_length_means_what_it_is_near_to_and_nothing_where_it_is_vague() {
-        let observed =
-            Observed { robot: Robot::labmate(), runs: Vec::new(), path: Some(Path::umbmark()), setup: Default::default() };
+        let observed = Observed {
+            robot: Robot::labmate(),
+            runs: Vec::new(),
+            path: Some(Path::umbmark()),
+            setup: Default::default(),
+        };
         let of = |value: f64, standard_error: f64| {
             let length = Estimate { effect: "own", parameter: "c", value, standard_error, degrees_of_freedom: 9.0 };
             meaning(&observed, &length)
