@@ -39,6 +39,8 @@ const AS_LIKELY: f64 = 40.0;
 const SIZE: f64 = 0.01;
 const LOUD: (f64, f64) = (1e-6, 0.1);
 const SIZE_IF_LOUD: f64 = 0.05;
+/// Fewer runs do not show whether it is the same in all.
+const ENOUGH_RUNS: usize = 4;
 /// The same where runs left out are predicted so much better, however wide the noise is: noise that was fitted may be what repeats.
 const PLAIN: f64 = 0.4;
 /// The same by the noise model, and how many times as wide as that has it noise that remembers makes a drift of the heading.
@@ -54,6 +56,8 @@ pub struct Repeated {
     pub deviations: f64,
     /// How many laws there are that the data could show.
     pub laws: usize,
+    /// In how many runs it was looked for.
+    pub runs: usize,
     /// The law that it is taken for.
     pub law: UnlistedLaw,
     /// Others that stand out, the one that predicts runs left out best first.
@@ -120,7 +124,7 @@ impl Repeated {
     /// Whether it is no chance, and makes errors of runs left out fall by this share.
     pub(super) fn counts(&self, least: f64) -> bool {
         let (by_noise, gain) = (self.p_by_noise(), self.law.gain);
-        let is_loud = (by_noise <= LOUD.0 && gain >= LOUD.1) || gain >= PLAIN;
+        let is_loud = self.runs >= ENOUGH_RUNS && ((by_noise <= LOUD.0 && gain >= LOUD.1) || gain >= PLAIN);
         let is_certain = self.p <= SIZE && by_noise <= SIZE_BY_NOISE;
         gain >= least && (is_certain || (is_loud && self.p <= SIZE_IF_LOUD))
     }
@@ -222,6 +226,7 @@ pub(super) fn look(
         p,
         deviations: square.sqrt(),
         laws: asked.iter().map(|asked| asked.shown()).sum(),
+        runs: observed.runs.len(),
         law,
         others: front,
     })
