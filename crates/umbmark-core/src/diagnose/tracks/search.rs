@@ -122,6 +122,13 @@ pub(crate) enum Found {
     Unlisted(Box<Repeated>),
 }
 
+/// A model that has grown by an effect.
+struct Grown {
+    exam: Examination,
+    /// Effects that no longer helped and were taken out.
+    removed: Vec<&'static str>,
+}
+
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wanted {
@@ -260,26 +267,26 @@ impl Search {
             let outdone = wanted == Wanted::All && self.is_outdone(options);
             if let Some((finding, suspect)) = self.left.effect.clone().filter(|_| !outdone) {
                 let exam = self.last().of_grown(growth::grown(self.last(), &suspect)?)?;
-                let Some((exam, removed)) = self.borne_out(exam, suspect.best)? else {
+                let Some(grown) = self.borne_out(exam, suspect.best)? else {
                     self.removed.push(suspect.best);
                     self.left = missing(self.last(), options, &self.passed(refused));
                     continue;
                 };
-                if !self.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&exam, smooth, options)) {
-                    self.take(exam, removed, Added { suspect, by: Found::Listed(finding) })?;
+                if !self.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&grown.exam, smooth, options)) {
+                    self.take(grown, Added { suspect, by: Found::Listed(finding) })?;
                     self.left = missing(self.last(), options, &self.passed(refused));
                     continue;
                 }
             }
             let next = if wanted == Wanted::All { self.law(options)? } else { None };
-            let Some((exam, removed, added)) = next else {
+            let Some((grown, added)) = next else {
                 if outdone {
                     self.law_failed = true;
                     continue;
                 }
                 break;
             };
-            self.take(exam, removed, added)?;
+            self.take(grown, added)?;
             self.left = missing(self.last(), options, &self.passed(refused));
         }
         Ok(())
@@ -287,11 +294,7 @@ impl Search {
 
     /// A model grown by an effect, less those that no longer help beside it, and which they are; `None` where a fit without approximation
     /// does not bear the effect out.
-    fn borne_out(
-        &self,
-        mut exam: Examination,
-        effect: &'static str,
-    ) -> Result<Option<(Examination, Vec<&'static str>)>, DiagnoseError> {
+    fn borne_out(&self, mut exam: Examination, effect: &'static str) -> Result<Option<Grown>, DiagnoseError> {
         if astray(&exam, self.last()) || idle(&exam, |asked| asked == effect).is_some() {
             return Ok(None);
         }
@@ -311,11 +314,11 @@ impl Search {
                 removed.push(effect);
             }
         }
-        Ok(Some((exam, removed)))
+        Ok(Some(Grown { exam, removed }))
     }
 
     /// The model grown by the law that what repeats follows, where it counts and a fit bears it out.
-    fn law(&mut self, options: &Options) -> Result<Option<(Examination, Vec<&'static str>, Added)>, DiagnoseError> {
+    fn law(&mut self, options: &Options) -> Result<Option<(Grown, Added)>, DiagnoseError> {
         while let Some(repeated) = self.repeats(options).cloned().filter(|repeated| repeated.counts(WORTH_A_LAW)) {
             let tried =
                 |law: &UnlistedLaw| law.model.as_ref().is_none_or(|model| self.refused_laws.contains(&text_of(model)));
@@ -327,10 +330,10 @@ impl Search {
             let Some(model) = repeated.law.model.clone() else { return Ok(None) };
             let (fitted, name) = growth::grown_by_law(self.last(), &model)?;
             let exam = self.last().of_grown(fitted)?;
-            if let Some((exam, removed)) = self.borne_out(exam, name)? {
-                let suspect = repeats::suspect(&repeated, name, &exam);
-                repeated.law = repeated.law.fitted(name, &exam);
-                return Ok(Some((exam, removed, Added { suspect, by: Found::Unlisted(Box::new(repeated)) })));
+            if let Some(grown) = self.borne_out(exam, name)? {
+                let suspect = repeats::suspect(&repeated, name, &grown.exam);
+                repeated.law = repeated.law.fitted(name, &grown.exam);
+                return Ok(Some((grown, Added { suspect, by: Found::Unlisted(Box::new(repeated)) })));
             }
             self.refused_laws.push(text_of(&model));
         }
@@ -360,7 +363,7 @@ impl Search {
     }
 
     /// Goes on from a model that has grown.
-    fn take(&mut self, exam: Examination, removed: Vec<&'static str>, added: Added) -> Result<(), DiagnoseError> {
+    fn take(&mut self, Grown { exam, removed }: Grown, added: Added) -> Result<(), DiagnoseError> {
         let before = self.last().fitted.model.clone();
         for effect in removed {
             self.refuse(&before, effect);

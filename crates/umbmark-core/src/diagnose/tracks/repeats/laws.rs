@@ -57,8 +57,6 @@ pub struct Step {
     /// Since the run began \[s\] and \[m\], in its middle.
     time: f64,
     distance: f64,
-    /// Way driven in all runs of the session \[m\].
-    session_distance: f64,
     /// \[m/s\], ahead positive.
     speed: f64,
     /// \[rad/s\]; nothing where both wheels roll nearly alike.
@@ -95,7 +93,6 @@ pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
                     block,
                     time: at.time,
                     distance: at.distance,
-                    session_distance: at.session_distance,
                     wheel_angle: at.wheel_angle,
                     since_turn: at.since_turn,
                     last_turn: at.last_turn,
@@ -126,7 +123,6 @@ pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
                 step.turn_rate = step.rotation / duration;
                 (step.acceleration, step.turn_acceleration) = (change[0] / duration, change[1] / duration);
                 (step.time, step.distance) = (step.time + 0.5 * duration, step.distance + 0.5 * way);
-                step.session_distance += 0.5 * way;
                 (0..2).for_each(|wheel| {
                     step.wheel_angle[wheel] +=
                         0.5 * (at.wheel_angle[wheel] + at.wheel_rotation[wheel] - step.wheel_angle[wheel]);
@@ -343,7 +339,6 @@ impl Laws {
         }
         self.add("the time in the run".into(), written("time"), &[Second, Metre], |s| s.time);
         self.add("the square of the time in the run".into(), written("time^2"), &[Second, Metre], |s| s.time * s.time);
-        self.add("the way in the session".into(), written("session_distance"), &[Metre], |s| s.session_distance);
         for n in 1..=4 {
             let times = if n == 1 { String::new() } else { format!("{n} times ") };
             let angle = |of: &str| if n == 1 { of.to_owned() } else { format!("{n} * {of}") };
