@@ -142,6 +142,16 @@ fn the_list_of_effects_names_each_entry_of_the_catalogue() {
         assert!(text.contains(&format!("\n  {name} ")), "{name}");
         fits_the_terminal(&said(&["effects", name]));
     }
+    let variables = document["formula_variables"].as_array().unwrap();
+    let (_, own) = text.split_once("variables").unwrap();
+    assert_eq!(variables.len(), umbmark_core::effect::Formula::variables().len());
+    for variable in variables {
+        let name = variable["name"].as_str().unwrap();
+        assert!(own.split([' ', ',', '\n']).any(|word| word == name), "{name}");
+        // The files' table has them all.
+        let files = include_str!("../../../docs/files.md");
+        assert!(files.lines().any(|line| line.starts_with("| ") && line.contains(&format!("`{name}`"))), "{name}");
+    }
 }
 
 #[test]

@@ -24,7 +24,7 @@ mod sweep;
 mod tolerance;
 mod track_comparison;
 
-pub use about::about;
+pub use about::{about, formula_variables};
 pub use calibration::calibration;
 pub use clock::clock;
 pub use comparison::comparison;

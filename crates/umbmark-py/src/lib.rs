@@ -48,7 +48,7 @@ mod _umbmark {
     #[pymodule_export]
     use super::diagnose::{compare, diagnose, fit, learn};
     #[pymodule_export]
-    use super::effect::effects;
+    use super::effect::{effects, formula_variables};
     #[pymodule_export]
     use super::figure::{Figure, figure, kinds};
     #[pymodule_export]

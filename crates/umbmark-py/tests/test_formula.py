@@ -11,6 +11,7 @@ import pytest
 import umbmark
 from hypothesis import given
 from hypothesis import strategies as st
+from umbmark import _umbmark
 
 PARAMETERS = {"k": 0.25, "q": 2.0}
 
@@ -147,6 +148,36 @@ def test_what_a_formula_cannot_do_is_a_type_error_that_says_so(
         umbmark.Model().add(
             "mine", acts_on="heading_per_metre", formula=function, parameters=PARAMETERS
         )
+
+
+def test_every_variable_of_a_formula_can_be_traced() -> None:
+    names = _umbmark.formula_variables()
+    assert {"speed", "turn_acceleration", "x", "y"} <= set(names)
+    assert len(set(names)) == len(names)
+    for name in names:
+
+        def law(at: Any, k: Any, name: str = name) -> Any:
+            return k * getattr(at, name)
+
+        assert umbmark.formula_of(law, {"k": 1.0}) == f"k * {name}"
+        model = umbmark.Model().add(
+            "mine", acts_on="forward_scale", formula=law, parameters={"k": 0.0}
+        )
+        assert f'formula = "k * {name}"' in model.to_toml()
+    with pytest.raises(TypeError, match="there are " + ", ".join(names)):
+        umbmark.formula_of(lambda at: at.hedding, {})
+
+
+def test_a_function_of_the_place_drives_as_its_law_says() -> None:
+    model = umbmark.Model().add(
+        "mine", acts_on="forward_scale", formula=lambda at, k: k * at.x, parameters={"k": 0.02}
+    )
+    path = umbmark.Path(side_m=4.0)
+    data = umbmark.simulate(model, path, runs=1, seed=1, reference_rate_hz=2)
+    returned = next(run for run in data.runs if run.direction == "ccw").returned
+    assert returned is not None
+    # The second leg is longer than the fourth by (e^(kL) - 1) L; ticks round.
+    assert returned[1] == pytest.approx(math.expm1(0.02 * 4.0) * 4.0, abs=1e-3)
 
 
 def test_a_function_and_its_formula_drive_to_the_same_bits_and_are_fitted_back() -> None:

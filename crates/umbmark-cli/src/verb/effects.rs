@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use serde_json::{Value, json};
 use umbmark_core::document;
 use umbmark_core::drive::Robot;
-use umbmark_core::effect::{ActsOn, CATALOGUE, Entry, find};
+use umbmark_core::effect::{ActsOn, CATALOGUE, Entry, Formula, FormulaVariable, find};
 use umbmark_core::parameter::{DefaultValue, Parameter};
 
 use crate::Session;
@@ -34,7 +34,12 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         }
         None => {
             let entries: Vec<Value> = CATALOGUE.iter().map(document::about).collect();
-            (json!({ "effects": entries, "version": umbmark_core::VERSION }), list())
+            let document = json!({
+                "effects": entries,
+                "formula_variables": document::formula_variables(),
+                "version": umbmark_core::VERSION,
+            });
+            (document, list())
         }
     };
     if session.json() {
@@ -58,6 +63,18 @@ fn list() -> String {
     text + &own()
 }
 
+/// What formulas may depend on: "speed [m/s], ... x, y, distance [m] ... (+1 left, -1 right)".
+fn variables() -> String {
+    let variables = Formula::variables();
+    let next = variables.iter().skip(1).map(Some).chain([None]);
+    let one = |(variable, next): (&FormulaVariable, Option<&FormulaVariable>)| match variable.unit {
+        unit if next.is_some_and(|next| next.unit == unit) => variable.name.to_owned(),
+        "" => format!("{} (+1 left, -1 right)", variable.name),
+        unit => format!("{} [{unit}]", variable.name),
+    };
+    variables.iter().zip(next).map(one).collect::<Vec<_>>().join(", ")
+}
+
 /// How to write an effect that is not listed.
 fn own() -> String {
     let mut text = String::from(
@@ -75,8 +92,7 @@ fn own() -> String {
         ),
         (
             "variables",
-            "speed [m/s], turn_rate [rad/s], acceleration [m/s²], heading, wheel_angle_left, wheel_angle_right [rad], distance, \
-             session_distance, since_turn [m], time [s], last_turn, direction (+1 left, -1 right)",
+            &format!("{}; heading, x and y are those in the room, from START, as the model predicts them", variables()),
         ),
         ("besides", "+ - * /, ^ with a whole number, ( ), pi, sin cos tan exp log sqrt abs sign min max tanh"),
     ] {

@@ -2,7 +2,7 @@
 
 use super::finite;
 use crate::drive::Kind;
-use crate::effect::Entry;
+use crate::effect::{Entry, Formula, FormulaVariable};
 use crate::parameter::{DefaultValue, Parameter};
 use serde_json::{Value, json};
 
@@ -23,6 +23,12 @@ pub fn about(entry: &Entry) -> Value {
         "source": about.source,
         "parameters": parameters,
     })
+}
+
+/// What formulas may depend on, as a document.
+pub fn formula_variables() -> Value {
+    let one = |variable: &FormulaVariable| json!({ "name": variable.name, "unit": variable.unit, "meaning": variable.meaning });
+    Formula::variables().iter().map(one).collect()
 }
 
 fn parameter_json(parameter: &Parameter) -> Value {

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-VARIABLES = (
-    "speed turn_rate acceleration heading wheel_angle_left wheel_angle_right distance time"
-    " session_distance since_turn last_turn direction"
-).split()
+from umbmark import _umbmark
+
+# What a formula may depend on, as the core has it.
+VARIABLES = tuple(_umbmark.formula_variables())
 
 # Formulas of NumPy's functions; a number is how tightly what it makes holds together.
 _ATOM, _POWER, _MINUS, _PRODUCT, _SUM = 5, 4, 3, 2, 1
@@ -255,7 +255,8 @@ def formula_of(function: Callable[..., Any], parameters: Mapping[str, float]) ->
     ----------
     function : callable
         ``function(at, **parameters)``: ``at`` has the quantities that an effect may depend on
-        (``at.speed``, ``at.heading``, ...), as arrays or numbers.
+        (``at.speed``, ``at.heading``, ``at.x``, ...), as arrays or numbers. `umbmark effects` lists
+        them.
     parameters : mapping of str to float
         Its parameters.
 
