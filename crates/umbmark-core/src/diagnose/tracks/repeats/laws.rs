@@ -550,7 +550,8 @@ impl Laws {
     fn name(&self, term: usize, motion: Motion) -> String {
         let text = &self.functions[self.terms[term].function].formula.0;
         let words: Vec<&str> = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').collect();
-        let by = Formula::variables().iter().map(|variable| variable.name).find(|name| words.contains(name));
+        let known = |word: &&str| Formula::variables().iter().any(|variable| variable.name == *word);
+        let by = words.into_iter().find(known);
         let motion = motion.name();
         match by {
             Some("time" | "distance") if text.contains("pi") => format!("periodic_{motion}"),
