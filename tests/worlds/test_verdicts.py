@@ -45,22 +45,19 @@ def test_a_robot_that_drives_tail_first_may_be_wired_so_and_is_not_explained() -
     assert said["verdict"] == "not_explained"
 
 
-def test_a_law_that_no_catalogue_lists_is_not_explained_and_its_formula_finds_its_period(
-    tmp_path: File,
-) -> None:
+def test_a_law_that_no_catalogue_lists_is_added_with_its_period(tmp_path: File) -> None:
     made = make("time_wave", 3, [*SMALL, "wave_period_s=7.3", "wave_rad_s=0.02"])
     write(made, tmp_path)
     words = [str(COMMAND), "learn", str(tmp_path), "--json"]
-    before = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
-    assert before["verdict"] == "not_explained"
-    assert (before["repeats"]["acts_on"], before["repeats"]["per"]) == ("yaw", "second")
-    law = tmp_path / "law.toml"
-    law.write_text(before["repeats"]["toml"])
-    words += ["--model", str(law)]
-    after = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
-    period = next(one for one in after["fitted"] if one["parameter"] == "c")
+    said = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
+    assert said["verdict"] == "unlisted_effect"
+    before, last = said["steps"][-2:]
+    assert last["added"] == "periodic_yaw"
+    assert (last["law"]["acts_on"], last["law"]["per"]) == ("yaw", "second")
+    period = next(one for one in said["fitted"] if one["parameter"] == "c")
     assert period["value"] == pytest.approx(7.3, rel=0.01)
-    assert after["steps"][-1]["heldout_rmse_m"] < 0.5 * before["steps"][-1]["heldout_rmse_m"]
+    assert last["heldout_rmse_m"] < 0.5 * before["heldout_rmse_m"]
+    assert all(law["heldout_rmse_with_law_m"] > 0 for law in last["law"]["others"])
 
 
 @pytest.mark.parametrize("delay_s", [-0.12, 0.06])
