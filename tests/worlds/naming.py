@@ -96,7 +96,7 @@ def in_repeats(learn: Json, origin: Pose) -> Iterator[Said]:
         text = in_words(repeats["by"])
         sense = "direction * " if repeats.get("with_sense") else ""
         formula = read(sense + text, {}, origin) if text else None
-        yield from said_of(repeats["acts_on"], repeats["per"], formula)
+        yield from said_of(repeats["motion"], repeats["per"], formula)
 
 
 def in_words(by: str) -> str | None:

@@ -201,7 +201,7 @@ def truth_of(setting: Setting) -> dict[str, Any]:
 
 
 BUMP = {
-    "acts_on": "yaw",
+    "motion": "yaw",
     "per": "metre",
     "by": "a place on the floor near (1.2, 2.1) m",
     "with_sense": False,

@@ -1,6 +1,6 @@
 //! What was found of an experiment before anything was fitted, for people.
 
-use umbmark_core::diagnose::Reason;
+use umbmark_core::diagnose::{Reason, Remains};
 use umbmark_core::likelihood::Taken;
 use umbmark_core::setup::{Measured, OutlyingReturn, RunSetup, Setup};
 
@@ -91,6 +91,13 @@ pub fn returns_text(setup: &Setup) -> String {
         text += &hanging("", 10, &format!("and {rest} more (--json)"));
     }
     text
+}
+
+/// What a model leaves, a paragraph for what repeats, for chance and for disturbances.
+pub fn remains_text(remains: Option<&Remains>) -> String {
+    let sentences = remains.map(Remains::sentences).unwrap_or_default();
+    let heads = std::iter::once("left").chain(std::iter::repeat(""));
+    heads.zip(sentences).map(|(head, sentence)| hanging(head, 10, &sentence)).collect()
 }
 
 /// Why a model is not called explained.

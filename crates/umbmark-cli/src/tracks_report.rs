@@ -1,7 +1,7 @@
 //! A comparison of models on tracks, for people and for machines.
 
 use umbmark_core::compare::tracks::{Against, By, COVARIATES, Mean, Part, Rate, TrackComparison, TracksJudged};
-use umbmark_core::diagnose::Options;
+use umbmark_core::diagnose::{Options, Remains};
 use umbmark_core::stats::Interval;
 
 use crate::model_report::p_text;
@@ -38,6 +38,9 @@ pub fn text(comparison: &TrackComparison, options: &Options, terminal: bool) -> 
         text += &format!("\n{}\n\n", judged.name);
         text += &taken_text(&judged.taken);
         for sentence in &judged.sentences {
+            text += &hanging("", 2, &format!("  {sentence}"));
+        }
+        for sentence in judged.remains.iter().flat_map(Remains::sentences) {
             text += &hanging("", 2, &format!("  {sentence}"));
         }
         text += &parts_text(judged, options.size);

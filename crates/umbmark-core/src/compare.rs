@@ -10,7 +10,7 @@ pub mod tracks;
 use crate::calibrate::CalibrateError;
 use crate::dataset::Dataset;
 use crate::diagnose::ends::{self, Asked, Ends, Fitted};
-use crate::diagnose::{Contrast, DiagnoseError, Level, OnCircle, Options, base_model, first_model, level};
+use crate::diagnose::{Contrast, DiagnoseError, Level, OnCircle, Options, Remains, base_model, first_model, level};
 use crate::effect::Model;
 use crate::learn::{Evidence, fit};
 use crate::path::Direction;
@@ -76,6 +76,8 @@ pub struct Judged {
     pub rmse: f64,
     /// The same of headings \[rad\].
     pub heading_rmse: Option<f64>,
+    /// What it leaves, and how much of that is the same in every run of a direction.
+    pub remains: Remains,
     /// What is explained and what not, a sentence each.
     pub sentences: Vec<String>,
     /// Whether the return errors themselves are in doubt, by faults, outlying runs or jumps: then no model explains them.
@@ -155,6 +157,7 @@ fn judge(name: &str, model: &Model, ends: &Ends, fitted: &Fitted, options: &Opti
         in_doubt,
         statistics,
         p,
+        remains: ends::remains(ends, &residuals, options),
         rmse: rms(residuals.iter().map(|r| r.xy().norm_squared()).sum()),
         heading_rmse: ends.with_heading.then(|| rms(residuals.iter().map(|r| r.z * r.z).sum())),
     }

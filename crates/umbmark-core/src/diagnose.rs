@@ -11,6 +11,7 @@ pub(crate) mod experiments;
 mod identifiability;
 mod likeness;
 mod reason;
+mod remains;
 pub(crate) mod tracks;
 
 use crate::calibrate::CalibrateError;
@@ -28,6 +29,8 @@ pub use ends::{Contrast, OnCircle};
 pub use identifiability::{Identifiability, Share, identifiability};
 pub use likeness::Likeness;
 pub use reason::Reason;
+pub(crate) use remains::Trail;
+pub use remains::{Chance, Left, Remains, Repeating};
 pub use tracks::{Repeated, Suggestion, UnlistedLaw};
 
 /// What was observed of the runs.
@@ -285,6 +288,8 @@ pub struct Diagnosis {
     pub reasons: Vec<Reason>,
     /// What repeats most beside the model, whether it counts or not; from tracks only.
     pub repeats: Option<Repeated>,
+    /// What the model leaves; none where the columns are not what they are called.
+    pub remains: Option<Remains>,
     /// What else should be said, a sentence each.
     pub remarks: Vec<String>,
 }
@@ -358,6 +363,7 @@ impl Diagnosis {
             taken: Vec::new(),
             reasons: faults.cloned().map(Reason::Fault).collect(),
             repeats: None,
+            remains: None,
             remarks: Vec::new(),
         }
     }

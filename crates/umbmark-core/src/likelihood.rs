@@ -27,4 +27,4 @@ pub use noise::Noise;
 pub use observed::{Block, Growth, Observed, ObservedRun, Stretch};
 pub use outliers::Outlier;
 pub(crate) use products::{ABSORBED, ScaledCholesky, gram, scaled_cholesky, share_left, solver};
-pub use whiten::Whitened;
+pub use whiten::{Disturbance, Whitened};

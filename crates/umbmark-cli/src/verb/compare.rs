@@ -15,7 +15,7 @@ use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::model_report::{circle_table, contrasts_table, p_text, read_model};
 use crate::prose::hanging;
-use crate::setup_report::{faults_text, returns_text};
+use crate::setup_report::{faults_text, remains_text, returns_text};
 use crate::table::table;
 use crate::test_arguments::TestArguments;
 use crate::tracks_report;
@@ -117,6 +117,7 @@ fn text(comparison: &Comparison, options: &Options) -> String {
             text += &hanging("", 2, sentence);
         }
         text += &hanging("", 2, noise(judged.noise));
+        text += &remains_text(Some(&judged.remains));
     }
     if !comparison.contrasts.is_empty() {
         text += &format!("\n{}\n", contrasts_table(&comparison.contrasts));

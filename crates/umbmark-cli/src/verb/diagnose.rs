@@ -16,7 +16,7 @@ use crate::model_report::{
     circle_table, contrasts_table, estimates_table, meaning_text, model_of, outliers_text, p_text, unit_of,
 };
 use crate::prose::hanging;
-use crate::setup_report::{disturbances_text, faults_text, reasons_text, taken_text};
+use crate::setup_report::{disturbances_text, faults_text, reasons_text, remains_text, taken_text};
 use crate::table::{table, with_precision_of};
 use crate::test_arguments::TestArguments;
 use crate::unlisted::{law_text, unlisted_text};
@@ -88,6 +88,7 @@ fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, terminal: bool
     }
     text += &(taken_text(&diagnosis.taken) + &disturbances_text(&diagnosis.setup));
     text += &outliers_text(&diagnosis.outliers, &diagnosis.setup);
+    text += &remains_text(diagnosis.remains.as_ref());
     for remark in &diagnosis.remarks {
         text += &hanging("note", 10, remark);
     }

@@ -15,7 +15,7 @@ use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::model_report::{estimates_table, meaning_text, outliers_text, p_text, read_model, write_model};
 use crate::prose::hanging;
-use crate::setup_report::{disturbances_text, faults_text, reasons_text, taken_text};
+use crate::setup_report::{disturbances_text, faults_text, reasons_text, remains_text, taken_text};
 use crate::table::table;
 use crate::test_arguments::TestArguments;
 use crate::unlisted::{law_text, laws_text, unlisted_text};
@@ -116,6 +116,7 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     if let Some(experiment) = learnt.diagnosis.next_experiments.iter().find(tells) {
         text += &hanging("next", 10, &experiment_text(experiment));
     }
+    text += &remains_text(diagnosis.remains.as_ref());
     text += &disturbances_text(&diagnosis.setup);
     text += &outliers_text(&diagnosis.outliers, &diagnosis.setup);
     for remark in &learnt.remarks {

@@ -17,7 +17,7 @@ mod tests;
 use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, moves_of};
 use crate::diagnose::tracks::doubts_as_written;
-use crate::diagnose::{DiagnoseError, Options, Reason, tracks_of};
+use crate::diagnose::{DiagnoseError, Options, Reason, Remains, tracks_of};
 use crate::effect::Model;
 use crate::geometry::Pose2;
 use crate::likelihood::{Observed, Taken};
@@ -82,6 +82,8 @@ pub struct TracksJudged {
     pub taken: Vec<Taken>,
     /// Why the model does not explain the runs, whatever the tests say.
     pub reasons: Vec<Reason>,
+    /// What it leaves: how much of that is the same in every run, and what chance there is.
+    pub remains: Option<Remains>,
     /// What is explained and what not, a sentence each.
     pub sentences: Vec<String>,
 }
@@ -154,6 +156,7 @@ fn judge(name: &str, data: &Dataset, observed: &Observed, model: &Model, options
     let against = rates::against(&runs, &overall, &observed.robot, confidence);
     let tests: Vec<f64> = overall.iter().map(|o| o.p).chain(against.iter().map(|a| a.p)).flatten().collect();
     let smallest = tests.iter().copied().reduce(f64::min);
+    let (reasons, remains) = doubts_as_written(observed, model, options);
     let mut judged = TracksJudged {
         name: name.to_owned(),
         along: rms(&runs, |_| 0),
@@ -165,7 +168,8 @@ fn judge(name: &str, data: &Dataset, observed: &Observed, model: &Model, options
         parts: parts(data, observed, &runs, confidence),
         residuals: runs.iter().map(residuals).collect(),
         taken: Vec::new(),
-        reasons: doubts_as_written(observed, model, options),
+        reasons,
+        remains,
         sentences: Vec::new(),
     };
     judged.sentences = sentences::of(&judged, options.size);

@@ -31,7 +31,7 @@ pub(crate) use contrasts::{circle, contrasts};
 pub(crate) use family::{Family, statistics};
 pub(crate) use fitted::{Fitted, names};
 pub(crate) use moments::Moments;
-pub(crate) use verdict::{Beside, contradiction, diagnose, likeliest};
+pub(crate) use verdict::{Beside, contradiction, diagnose, likeliest, remains};
 
 /// The least number of runs a direction for any test.
 pub(crate) const FEWEST_RUNS: usize = 3;

@@ -1,5 +1,6 @@
 //! Why a model is not called explained though nothing further is certified.
 
+use super::remains::{Remains, Repeating};
 use super::tracks::Repeated;
 use crate::setup::{Fault, Jump, OutlyingReturn};
 
@@ -55,6 +56,15 @@ pub enum Reason {
     },
     /// What is left repeats from run to run.
     Repeats(Box<Repeated>),
+    /// Some of what is left is the same in every run of one path, as pairs of runs show it.
+    SameInEveryRun {
+        /// How much \[m\] or \[rad\].
+        repeats: Repeating,
+        /// Of how much.
+        left: f64,
+        /// Whether both are headings.
+        heading: bool,
+    },
     /// The headings of the reference are half a turn from the way the wheels drive: two robots do that.
     TailFirst {
         /// Heading of the tracked body less that of the robot, as the columns are read \[rad\].
@@ -79,6 +89,17 @@ pub enum Reason {
 }
 
 impl Reason {
+    /// The reason that what a model leaves is, where some of it is the same in every run.
+    pub(crate) fn of_remains(remains: &Remains) -> Option<Reason> {
+        let parts = [(Some(remains.position), false), (remains.heading, true)];
+        let mut shown = parts.into_iter().filter_map(|(left, heading)| {
+            let left = left?;
+            let repeats = left.repeats.filter(Repeating::is_shown)?;
+            Some(Reason::SameInEveryRun { repeats, left: left.rms, heading })
+        });
+        shown.next()
+    }
+
     /// Whether it is of the data, and not of the model: nothing that is fitted to such data is written.
     pub fn is_of_data(&self) -> bool {
         matches!(
@@ -97,6 +118,15 @@ impl Reason {
             Reason::NoiseTooLarge { what, value, most, unit } => format!(
                 "the {what} is {value:.2} {unit}; robots like this have {most:.2} {unit} at most, so the model leaves something that is not noise"
             ),
+            Reason::SameInEveryRun { repeats, left, heading } => {
+                let (scale, unit) = if *heading { (1f64.to_degrees(), "deg") } else { (1e3, "mm") };
+                let low = repeats.interval.map_or(0.0, |interval| interval.low);
+                format!(
+                    "{:.2} {unit} are left, and at least {:.2} {unit} of them are the same in every run of one path",
+                    scale * left,
+                    scale * low
+                )
+            }
             Reason::LargerThanNoise { place, left, expected, heading } => {
                 let (scale, unit) = if *heading { (1f64.to_degrees(), "deg") } else { (1e3, "mm") };
                 format!(

@@ -10,6 +10,7 @@
 //! effect does, something is missing that the catalogue does not list.
 
 mod alone;
+mod chance;
 mod curve;
 mod doubts;
 mod errors;
@@ -27,11 +28,11 @@ mod system;
 
 use super::{
     Dependence, Detectable, DiagnoseError, Diagnosis, Estimate, Experiment, GoodnessOfFit, Identifiability, Level,
-    Likeness, Options, Reason, Suspect, Unseen, Verdict, Why, experiments::worth,
+    Likeness, Options, Reason, Remains, Suspect, Unseen, Verdict, Why, experiments::worth,
 };
 use crate::diagnose::likeness::correlations;
 use crate::effect::Model;
-use crate::likelihood::{Fitted, Noise, Observed};
+use crate::likelihood::{Column, Fitted, Noise, Observed};
 use crate::stats::{chi_squared_upper_tail, normal_quantile};
 use crate::watch::Watch;
 use responses::Question;
@@ -88,6 +89,9 @@ pub(crate) fn diagnose(fitted: Fitted, options: &Options) -> Result<Diagnosis, D
     reasons.extend(reason_to_doubt(repeats.as_ref()));
     let Search { mut exams, added, left, .. } = search;
     let last = exams.len() - 1;
+    let at_last = remains_of(&exams[last], options);
+    reasons.extend(Reason::of_remains(&at_last));
+    let remains = if last > 0 { remains_of(&exams[0], options) } else { at_last };
     let told = left.smooth.as_ref().and_then(|finding| dependence(&exams[last], finding, &left.asked));
     let mut certified: Vec<Suspect> = Vec::new();
     let mut experiments = Vec::new();
@@ -106,7 +110,36 @@ pub(crate) fn diagnose(fitted: Fitted, options: &Options) -> Result<Diagnosis, D
     let mut next_experiments = [experiments, diagnosis.next_experiments].concat();
     next_experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     let verdict = if verdict == Verdict::Explained && !reasons.is_empty() { Verdict::NotExplained } else { verdict };
-    Ok(Diagnosis { verdict, ranking, certified: certified.len(), next_experiments, reasons, repeats, ..diagnosis })
+    Ok(Diagnosis {
+        verdict,
+        ranking,
+        certified: certified.len(),
+        next_experiments,
+        reasons,
+        repeats,
+        remains: Some(remains),
+        ..diagnosis
+    })
+}
+
+/// What the model of an examination leaves.
+pub(crate) fn remains_of(exam: &Examination, options: &Options) -> Remains {
+    let base = exam.base(None);
+    let values = Projected::fit(&exam.system.whole, &base);
+    let own = exam.some_columns(&[&base[..], &[exam.system.residual()]].concat());
+    let left: Vec<Column> = own.iter().map(|columns| less(columns, values.as_slice())).collect();
+    let Fitted { observed, noise, .. } = &exam.fitted;
+    chance::remains(observed, noise, &left, &exam.errors.in_sample(), options)
+}
+
+/// The last of some columns less the others, each times its value.
+fn less(columns: &[Column], values: &[f64]) -> Column {
+    let Some((left, others)) = columns.split_last() else { return Column::new() };
+    let mut left = left.clone();
+    for (column, value) in others.iter().zip(values) {
+        left.iter_mut().zip(column).for_each(|(left, own)| (0..3).for_each(|k| left[k] -= value * own[k]));
+    }
+    left
 }
 
 /// What speaks against the model of an examination as a whole.
@@ -122,9 +155,13 @@ pub(crate) fn reason_to_doubt(repeated: Option<&Repeated>) -> Option<Reason> {
 
 /// The same of a model with the values that it has, nothing but START fitted: under the noise that would make what it leaves
 /// likeliest.
-pub(crate) fn doubts_as_written(observed: &Observed, model: &Model, options: &Options) -> Vec<Reason> {
+pub(crate) fn doubts_as_written(
+    observed: &Observed,
+    model: &Model,
+    options: &Options,
+) -> (Vec<Reason>, Option<Remains>) {
     if observed.runs.is_empty() {
-        return Vec::new();
+        return (Vec::new(), None);
     }
     let fixed = observed.whole().unfitted(model, &Noise::default());
     let chain = fixed.model.chain();
@@ -137,7 +174,10 @@ pub(crate) fn doubts_as_written(observed: &Observed, model: &Model, options: &Op
     reasons.extend(
         repeated.filter(|repeated| repeated.counts(TELLING)).map(|repeated| Reason::Repeats(Box::new(repeated))),
     );
-    reasons
+    let left: Vec<Column> = columns.iter().map(|columns| less(columns, &[])).collect();
+    let remains = chance::remains(&fixed.observed, &noise, &left, &errors.in_sample(), options);
+    reasons.extend(Reason::of_remains(&remains));
+    (reasons, Some(remains))
 }
 
 /// Drives that would tell apart the members of a certified class, and for those that none does, what their own pages say.
@@ -218,6 +258,7 @@ pub(crate) fn conclude(
         taken: exam.fitted.taken.clone(),
         reasons: Vec::new(),
         repeats: None,
+        remains: None,
         dependence,
         model: exam.fitted.model,
     })

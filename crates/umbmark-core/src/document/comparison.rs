@@ -1,5 +1,6 @@
 //! `compare`.
 
+use super::remains::{least_left, with_remains};
 use super::setup::setup;
 use super::square::square;
 use crate::compare::{Comparison, Judged, NoiseSource};
@@ -23,7 +24,7 @@ pub fn comparison(comparison: &Comparison, options: &Options) -> Value {
     if let Some(map) = document.as_object_mut() {
         map.extend(square(&comparison.contrasts, &comparison.circle));
     }
-    document
+    with_remains(document, least_left(comparison.models.iter().map(|model| &model.remains)))
 }
 
 fn model_json(judged: &Judged, options: &Options) -> Value {
@@ -35,7 +36,7 @@ fn model_json(judged: &Judged, options: &Options) -> Value {
             map.insert(s.quantity.key().to_owned(), told);
         }
     }
-    json!({
+    let document = json!({
         "name": judged.name,
         "explains": judged.explains(options.size),
         "p": judged.p,
@@ -44,5 +45,6 @@ fn model_json(judged: &Judged, options: &Options) -> Value {
         "heading_rmse_rad": judged.heading_rmse,
         "statistics": statistics,
         "sentences": judged.sentences,
-    })
+    });
+    with_remains(document, Some(&judged.remains))
 }

@@ -1,7 +1,9 @@
 //! `diagnose`.
 
 use super::fitted::{estimates, meaning, outliers};
-use super::setup::{reasons, repeats, setup, taken};
+use super::law::repeats;
+use super::remains::with_remains;
+use super::setup::{reasons, setup, taken};
 use super::square::square;
 use super::{finite, model::model};
 use crate::dataset::effects_text;
@@ -53,7 +55,7 @@ pub fn diagnosis(diagnosis: &Diagnosis, options: &Options) -> Value {
     if let Some(map) = document.as_object_mut() {
         map.extend(square(&diagnosis.contrasts, &diagnosis.circle));
     }
-    document
+    with_remains(document, diagnosis.remains.as_ref())
 }
 
 /// What is missing and not in the catalogue; null where nothing is.

@@ -2,7 +2,9 @@
 
 use super::diagnosis::{experiments, unlisted};
 use super::fitted::{estimates, meaning, outliers};
-use super::setup::{reasons, repeats, setup, taken};
+use super::law::repeats;
+use super::remains::with_remains;
+use super::setup::{reasons, setup, taken};
 use super::{finite, model::model};
 use crate::diagnose::Options;
 use crate::learn::{Learnt, Step};
@@ -24,7 +26,7 @@ pub fn learnt(learnt: &Learnt, options: &Options) -> Value {
             "bic": s.bic,
         })
     };
-    json!({
+    let document = json!({
         "steps": learnt.steps.iter().map(step).collect::<Vec<_>>(),
         "verdict": learnt.verdict.name(),
         "unlisted": unlisted(learnt.diagnosis.dependence.as_ref()),
@@ -43,5 +45,6 @@ pub fn learnt(learnt: &Learnt, options: &Options) -> Value {
         "draws": options.draws,
         "seed": options.seed,
         "version": crate::VERSION,
-    })
+    });
+    with_remains(document, learnt.diagnosis.remains.as_ref())
 }

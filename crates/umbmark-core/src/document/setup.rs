@@ -1,9 +1,7 @@
 //! What was found of an experiment before anything was fitted.
 
 use super::{ends, finite};
-use crate::dataset::effects_text;
-use crate::diagnose::{Reason, Repeated, UnlistedLaw};
-use crate::effect::Formula;
+use crate::diagnose::Reason;
 use crate::likelihood::Taken;
 use crate::setup::{Deviant, Jump, Measured, OutlyingReturn, RunSetup, Setup, WrongPose};
 use serde_json::{Map, Value, json};
@@ -82,38 +80,6 @@ pub(super) fn taken(taken: &[Taken]) -> Value {
         json!({ "effect": own.effect, "parameters": Map::from_iter(numbers), "p": own.p })
     };
     json!(taken.iter().map(one).collect::<Vec<_>>())
-}
-
-/// What repeats most beside a model.
-pub(super) fn repeats(repeated: &Repeated) -> Value {
-    let Value::Object(mut all) = law(&repeated.law) else { return Value::Null };
-    all.extend([
-        ("p".to_owned(), json!(repeated.p)),
-        ("standard_deviations".to_owned(), json!(repeated.deviations)),
-        ("laws".to_owned(), json!(repeated.laws)),
-        ("others".to_owned(), json!(repeated.others.iter().map(law).collect::<Vec<_>>())),
-    ]);
-    Value::Object(all)
-}
-
-/// A law that no catalogue lists.
-fn law(law: &UnlistedLaw) -> Value {
-    let formula = law.model.as_ref().and_then(|model| model.parts().first()?.effect.formula());
-    json!({
-        "toml": law.model.as_ref().map(effects_text),
-        "formula": formula.map(Formula::text),
-        "target": formula.map(|formula| formula.target().name()),
-        "acts_on": law.acts_on,
-        "per": law.per,
-        "by": law.by(),
-        "means": law.means,
-        "with_sense": law.with_sense,
-        "length": formula.map(|_| law.length),
-        "heldout_rmse_m": law.left_out[0],
-        "heldout_rmse_with_law_m": law.left_out[1],
-        "gain": law.gain,
-        "likeness": law.likeness,
-    })
 }
 
 /// Why a model is not called explained, a sentence each.

@@ -1,6 +1,7 @@
 //! `compare` along the way.
 
 use super::finite;
+use super::remains::{least_left, with_remains};
 use super::setup::{reasons, setup, taken};
 use crate::compare::tracks::{Against, Bin, By, Mean, Part, Rms, TrackComparison, TracksJudged};
 use crate::diagnose::Options;
@@ -11,7 +12,7 @@ use serde_json::{Map, Value, json};
 /// Models beside tracks.
 pub fn track_comparison(comparison: &TrackComparison, options: &Options) -> Value {
     let [cw, ccw, neither] = comparison.runs;
-    json!({
+    let document = json!({
         "observed": "tracks",
         "n_cw": cw,
         "n_ccw": ccw,
@@ -22,7 +23,8 @@ pub fn track_comparison(comparison: &TrackComparison, options: &Options) -> Valu
         "setup": setup(&comparison.setup),
         "size": options.size,
         "version": crate::VERSION,
-    })
+    });
+    with_remains(document, least_left(comparison.models.iter().filter_map(|model| model.remains.as_ref())))
 }
 
 fn model_json(judged: &TracksJudged, options: &Options) -> Value {
@@ -36,7 +38,7 @@ fn model_json(judged: &TracksJudged, options: &Options) -> Value {
         told["p"] = json!(o.p);
         (o.rate.key().to_owned(), told)
     });
-    json!({
+    let document = json!({
         "name": judged.name,
         "explains": judged.explains(options.size),
         "p": judged.p,
@@ -49,7 +51,8 @@ fn model_json(judged: &TracksJudged, options: &Options) -> Value {
         "sentences": judged.sentences,
         "taken": taken(&judged.taken),
         "reasons": reasons(&judged.reasons),
-    })
+    });
+    with_remains(document, judged.remains.as_ref())
 }
 
 fn mean_json(mean: &Mean) -> Value {

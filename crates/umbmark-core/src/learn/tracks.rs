@@ -132,6 +132,8 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     let mut reasons = tracks::doubts_of(search.last(), options);
     let repeats = search.repeats(options).cloned();
     reasons.extend(tracks::reason_to_doubt(repeats.as_ref()));
+    let remains = tracks::remains_of(search.last(), options);
+    reasons.extend(Reason::of_remains(&remains));
     let has_law = search.has_law();
     hints.extend(search.harmful.iter().map(|effect| {
         format!("{effect} is significant, and with it runs that are left out are predicted worse; it was not added.")
@@ -179,6 +181,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         ranking,
         reasons,
         repeats,
+        remains: Some(remains),
         fitted,
         model: model.clone(),
         next_experiments: experiments,

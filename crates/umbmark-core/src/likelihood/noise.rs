@@ -67,6 +67,24 @@ impl Noise {
     /// How many sizes are estimated.
     pub const SIZES: usize = 8;
 
+    /// No noise at all.
+    pub fn silent() -> Noise {
+        Noise {
+            heading_per_metre: 0.0,
+            heading_per_radian: 0.0,
+            forward_per_metre: 0.0,
+            sideways_per_metre: 0.0,
+            reference_position: 0.0,
+            reference_heading: 0.0,
+            reference_time: 0.0,
+            reference_delay: 0.0,
+            within_position: 0.0,
+            within_heading: 0.0,
+            start_position: 0.0,
+            start_heading: 0.0,
+        }
+    }
+
     /// The largest sizes that are searched.
     pub fn largest() -> Noise {
         let usual = Noise::default();

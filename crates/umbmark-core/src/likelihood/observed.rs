@@ -237,6 +237,15 @@ impl ObservedRun {
         self.lay_measured(chain);
     }
 
+    /// How far each block is along the run \[m\]: way driven, and way of the wheels in turns.
+    pub fn rolled(&self, wheelbase: f64) -> Vec<f64> {
+        let along = |way: &mut f64, block: &Block| {
+            *way += block.growth.way + 0.5 * wheelbase * block.growth.heading_per_radian[5];
+            Some(*way)
+        };
+        self.blocks.iter().scan(0.0, along).collect()
+    }
+
     /// How many pieces of the track are made at the middle of a block.
     pub fn made_at(&self, block: &Block) -> usize {
         self.moments[block.first + (block.count - 1) / 2].made

@@ -67,7 +67,7 @@ impl Fitted {
     pub(super) fn beyond_noise(&self) -> BTreeSet<(Place, u64)> {
         let wheelbase = self.observed.robot.drive.wheelbase();
         let runs: Vec<Vec<f64>> = self.observed.runs.par_iter().map(|run| self.deviations(run)).collect();
-        let ways: Vec<Vec<f64>> = self.observed.runs.iter().map(|run| ways(run, wheelbase)).collect();
+        let ways: Vec<Vec<f64>> = self.observed.runs.iter().map(|run| run.rolled(wheelbase)).collect();
         let shared = |run: usize, way: f64| {
             let there = |other: usize| {
                 let mut blocks = ways[other].iter().zip(&runs[other]);
@@ -130,15 +130,6 @@ fn least_beyond(runs: &[Vec<f64>]) -> f64 {
     }
     let power = libm::log(TAIL[0] / TAIL[1]) / libm::log(few / some);
     BEYOND.max(few * libm::pow((TAIL[1] * count / LEVEL).max(1.0), 1.0 / power))
-}
-
-/// How far each block is along its run: way driven, and way of the wheels in turns.
-fn ways(run: &ObservedRun, wheelbase: f64) -> Vec<f64> {
-    let along = |way: &mut f64, block: &super::Block| {
-        *way += block.growth.way + 0.5 * wheelbase * block.growth.heading_per_radian[5];
-        Some(*way)
-    };
-    run.blocks.iter().scan(0.0, along).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,10 @@
 //! Residuals and Jacobian columns of a run, made independent by a Kalman filter along it.
 
+mod disturbances;
 #[cfg(target_arch = "x86_64")]
 mod x86;
+
+pub use disturbances::Disturbance;
 
 use super::noise::Noise;
 use super::observed::{Block, ObservedRun};

@@ -20,11 +20,18 @@ pub(super) fn quality(study: &Study) -> Vec<List> {
         table("What the data can determine", &["quantity", "", "because"], determined.collect()),
     ];
     lists.extend(models(study));
+    lists.extend(left(study));
     if !inspection.warnings.is_empty() {
         let (title, sentences) = ("Noticed while reading".into(), inspection.warnings.clone());
         lists.push(List { title, sentences, table: None });
     }
     lists
+}
+
+/// What the model of the diagnosis leaves.
+fn left(study: &Study) -> Option<List> {
+    let sentences = study.diagnosis().ok()?.remains.as_ref()?.sentences();
+    Some(List { title: "What the fitted model leaves".into(), sentences, table: None })
 }
 
 /// Models beside the return poses.

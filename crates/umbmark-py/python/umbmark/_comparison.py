@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import msgspec
 
 from umbmark import _umbmark
+from umbmark._remains import Remains, Repeats
 from umbmark._result import Interval, Record, Result, Row
 from umbmark._scores import Data, data_of
 from umbmark._setup import Setup, Taken
@@ -60,6 +61,9 @@ class Judged(Record, frozen=True):
     heading_rmse_rad: float | None
     statistics: dict[str, dict[str, Statistic]]
     sentences: tuple[str, ...]
+    left_m: float | None
+    repeats_m: Repeats | None
+    remains: Remains | None
 
 
 class Comparison(Result, frozen=True):
@@ -80,6 +84,12 @@ class Comparison(Result, frozen=True):
         What else should be said.
     contrasts, circle
         What the closure of a square says.
+    left_m : float or None
+        Error that the model leaves which leaves least.
+    repeats_m : Repeats or None
+        How much of it is the same in every run of one path.
+    remains : Remains or None
+        The same in detail, with what chance there is.
     """
 
     observed: str
@@ -94,6 +104,9 @@ class Comparison(Result, frozen=True):
     version: str
     contrasts: tuple[Contrast, ...]
     circle: tuple[OnCircle, ...]
+    left_m: float | None
+    repeats_m: Repeats | None
+    remains: Remains | None
 
     def table(self) -> list[Row]:
         """Give every statistic of every model, one dict a row."""
@@ -201,6 +214,9 @@ class JudgedAlong(Record, frozen=True):
     sentences: tuple[str, ...]
     taken: tuple[Taken, ...]
     reasons: tuple[str, ...]
+    left_m: float | None
+    repeats_m: Repeats | None
+    remains: Remains | None
 
 
 class TrackComparison(Result, frozen=True):
@@ -221,6 +237,12 @@ class TrackComparison(Result, frozen=True):
     setup : Setup
         What was found of the data before anything was fitted: faults, clock and mounting of the
         reference, jumps, wrong poses, runs far from the others.
+    left_m : float or None
+        Error that the model leaves which leaves least.
+    repeats_m : Repeats or None
+        How much of it is the same in every run of one path.
+    remains : Remains or None
+        The same in detail, with what chance there is.
     """
 
     observed: str
@@ -233,6 +255,9 @@ class TrackComparison(Result, frozen=True):
     setup: Setup
     size: float
     version: str
+    left_m: float | None
+    repeats_m: Repeats | None
+    remains: Remains | None
 
     def table(self) -> list[Row]:
         """Give the errors of each model, one dict a row."""

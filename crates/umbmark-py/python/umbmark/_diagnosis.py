@@ -10,6 +10,7 @@ import msgspec
 from umbmark import _umbmark
 from umbmark._comparison import Contrast, OnCircle
 from umbmark._monte_carlo import Bar, Progress
+from umbmark._remains import Remains, Repeats
 from umbmark._result import Interval, Record, Result, Row
 from umbmark._scores import Data, data_of
 from umbmark._setup import Setup, Taken
@@ -156,12 +157,16 @@ class UnlistedLaw(Record, frozen=True):
     toml : str or None
         The law as an effect of a model file, with start values or, once it was added, the fitted
         ones; None where formulas lack what it depends on.
-    formula, target : str or None
+    formula, acts_on : str or None
         Its formula, and what that acts on.
-    acts_on : str
+    parameters : dict of str to float, or None
+        The numbers of the formula.
+    motion : str
         "forward", "sideways" or "yaw".
     per : str
         What the motion is in proportion to: "second", "metre" or "radian turned".
+    meaning : str
+        The law in words.
     by : str
         What it follows, in words.
     means : str or None
@@ -183,9 +188,11 @@ class UnlistedLaw(Record, frozen=True):
 
     toml: str | None
     formula: str | None
-    target: str | None
-    acts_on: str
+    parameters: dict[str, float | None] | None
+    acts_on: str | None
+    motion: str
     per: str
+    meaning: str
     by: str
     means: str | None
     with_sense: bool
@@ -207,6 +214,8 @@ class Repeated(UnlistedLaw, frozen=True):
         Size of the greatest score of a law, in standard deviations of the noise model.
     laws : int
         How many laws there are that the data could show.
+    class_ : tuple of str
+        Formulas of those that these runs cannot tell from it.
     others : tuple of UnlistedLaw
         Others that stand out, the one that predicts runs left out best first.
     """
@@ -214,6 +223,7 @@ class Repeated(UnlistedLaw, frozen=True):
     p: float
     standard_deviations: float
     laws: int
+    class_: tuple[str, ...] = msgspec.field(name="class")
     others: tuple[UnlistedLaw, ...]
 
 
@@ -247,6 +257,13 @@ class Diagnosis(Result, frozen=True):
         Why the model is not called explained, a sentence each.
     repeats : Repeated or None
         What repeats most beside the model, whether it counts or not; None without tracks.
+    left_m : float or None
+        Error that is left.
+    repeats_m : Repeats or None
+        How much of it is the same in every run of one path.
+    remains : Remains or None
+        The same in detail, with what chance there is; None where columns are not what they are
+        called.
     """
 
     verdict: str
@@ -269,6 +286,9 @@ class Diagnosis(Result, frozen=True):
     taken: tuple[Taken, ...]
     reasons: tuple[str, ...]
     repeats: Repeated | None
+    left_m: float | None
+    repeats_m: Repeats | None
+    remains: Remains | None
     remarks: tuple[str, ...]
     size: float
     draws: int
@@ -383,6 +403,13 @@ class Learnt(Result, frozen=True):
         Why the model is not called explained, a sentence each.
     repeats : Repeated or None
         What repeats most beside the model, whether it counts or not; None without tracks.
+    left_m : float or None
+        Error that is left.
+    repeats_m : Repeats or None
+        How much of it is the same in every run of one path.
+    remains : Remains or None
+        The same in detail, with what chance there is; None where columns are not what they are
+        called.
     partial : bool
         Whether it was stopped while an effect was still missing.
     """
@@ -399,6 +426,9 @@ class Learnt(Result, frozen=True):
     taken: tuple[Taken, ...]
     reasons: tuple[str, ...]
     repeats: Repeated | None
+    left_m: float | None
+    repeats_m: Repeats | None
+    remains: Remains | None
     remarks: tuple[str, ...]
     partial: bool
     size: float

@@ -4,15 +4,17 @@ use super::asked::{Asked, Unit};
 use super::family::Family;
 use super::flips::certificate;
 use super::moments::Whitened;
-use super::{Contrast, Ends, FEWEST_RUNS, Fitted, circle, contrasts};
+use super::{Contrast, End, Ends, FEWEST_RUNS, Fitted, circle, contrasts};
 use crate::diagnose::experiments::next_experiments;
 use crate::diagnose::identifiability::of_ends;
 use crate::diagnose::likeness::correlations;
 use crate::diagnose::{
-    Detectable, DiagnoseError, Diagnosis, Estimate, GoodnessOfFit, Level, Likeness, OnCircle, Options, Suspect, Verdict,
+    Detectable, DiagnoseError, Diagnosis, Estimate, GoodnessOfFit, Level, Likeness, OnCircle, Options, Remains,
+    Suspect, Trail, Verdict,
 };
 use crate::effect::Model;
 use crate::stats::{normal_quantile, student_t_quantile};
+use nalgebra::Vector3;
 use std::sync::Arc;
 
 /// Probability with which an effect of the minimum detectable size is seen.
@@ -43,6 +45,7 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
         taken: Vec::new(),
         reasons: ends.doubts.clone(),
         repeats: None,
+        remains: Some(remains(ends, &fitted.residuals, options)),
         remarks: Vec::new(),
     };
     diagnosis.remarks.extend(remarks_on_data(ends, &fitted));
@@ -71,6 +74,19 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
     }
     diagnosis.next_experiments = next_experiments(ends, &fitted, &asked, &diagnosis.ranking)?;
     Ok(diagnosis)
+}
+
+/// What a model leaves of return poses, and what of that is the same in every run of a direction.
+pub(crate) fn remains(ends: &Ends, residuals: &[Vector3<f64>], options: &Options) -> Remains {
+    let trail = |(run, left): (&End, &Vector3<f64>)| Trail {
+        sense: run.direction.sign(),
+        rolled: vec![0.0],
+        places: vec![[0.0; 2]],
+        left: vec![[left.x, left.y, left.z]],
+        with_heading: ends.with_heading,
+    };
+    let trails: Vec<Trail> = ends.runs.iter().zip(residuals).map(trail).collect();
+    Remains::of(&trails, 1.0 - options.size)
 }
 
 /// What the return poses of runs that were observed on the way say of the model by themselves.

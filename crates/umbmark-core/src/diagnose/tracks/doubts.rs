@@ -1,13 +1,10 @@
 //! What speaks against a fitted model as a whole, though no effect that it lacks is certified.
 
+use super::chance;
 use super::errors::Misses;
 use crate::diagnose::Reason;
 use crate::effect::Model;
-use crate::likelihood::{Growth, Noise, Observed, ObservedRun, Stretch};
-use crate::random::Stream;
-use crate::setup::PoseNoise;
-use nalgebra::{Matrix3, Vector3};
-use rayon::prelude::*;
+use crate::likelihood::{Growth, Noise, Observed};
 
 /// Sizes of the noise beyond which it is none, for a robot with [`USUAL_BASE`]: on carpet, with worn wheels and a reference of
 /// centimetres.
@@ -36,8 +33,6 @@ const SETS: (usize, usize) = (100, 2_000_000);
 /// Errors may be larger than the largest of nineteen in twenty simulated sets by this factor: noise that remembers over metres makes
 /// drifts 2.6 times as wide as the noise model believes.
 const REMEMBERS: f64 = 2.5;
-/// Purpose of the stream.
-const DOUBTS: u64 = 0x646f_7562;
 
 /// The reasons by noise, jumps and the size of what is left.
 pub(super) fn of_model(observed: &Observed, model: &Model, noise: &Noise, left: &Misses, seed: u64) -> Vec<Reason> {
@@ -85,32 +80,7 @@ fn of_noise(observed: &Observed, noise: &Noise, wheelbase: f64) -> Vec<Reason> {
 fn of_size(observed: &Observed, noise: &Noise, left: &Misses, seed: u64) -> Vec<Reason> {
     let blocks: usize = observed.runs.iter().map(|run| run.blocks.len()).sum();
     let sets = SETS.0.min(SETS.1 / blocks.max(1)).max(20);
-    let stretches: Vec<Vec<Stretch>> = observed
-        .runs
-        .iter()
-        .map(|run| run.stretches([observed.setup.noise.position, observed.setup.noise.heading]))
-        .collect();
-    let simulated: Vec<[f64; 2]> = (0..sets)
-        .into_par_iter()
-        .map(|set| {
-            let mut sums = [[0.0; 2]; 2];
-            for (index, (run, stretches)) in observed.runs.iter().zip(&stretches).enumerate() {
-                let mut stream = Stream::new(seed, DOUBTS, (set * observed.runs.len() + index) as u64);
-                let errors = random_walk(run, noise, observed.setup.noise, &mut stream);
-                for stretch in stretches {
-                    let left = stretch.less_start(run, &errors);
-                    for block in stretch.told() {
-                        let [x, y, heading] = left[block - stretch.blocks.start];
-                        sums[0] = [sums[0][0] + x * x + y * y, sums[0][1] + 1.0];
-                        if run.blocks[block].headings > 0 {
-                            sums[1] = [sums[1][0] + heading * heading, sums[1][1] + 1.0];
-                        }
-                    }
-                }
-            }
-            sums.map(|[sum, count]| (sum / f64::max(count, 1.0)).sqrt())
-        })
-        .collect();
+    let simulated = chance::simulated(observed, noise, observed.setup.noise, sets, seed);
     let most = |k: usize| {
         let mut sorted: Vec<f64> = simulated.iter().map(|s| s[k]).collect();
         sorted.sort_by(f64::total_cmp);
@@ -124,31 +94,4 @@ fn of_size(observed: &Observed, noise: &Noise, left: &Misses, seed: u64) -> Vec<
         }
     }
     reasons
-}
-
-/// Errors of a run as its noise alone would make them: (x, y, heading) a block.
-fn random_walk(run: &ObservedRun, noise: &Noise, single: PoseNoise, stream: &mut Stream) -> Vec<[f64; 3]> {
-    let mut state = Vector3::zeros();
-    let late = noise.reference_delay * stream.normal();
-    let draw = |stream: &mut Stream| Vector3::from_fn(|_, _| stream.normal());
-    let block = |block: &crate::likelihood::Block| {
-        let growth = noise.growth(&block.growth);
-        let covariance = Matrix3::from_fn(|i, j| growth[i][j]);
-        if let Some(root) = (covariance + Matrix3::identity() * 1e-18).cholesky() {
-            state += root.l() * draw(stream);
-        }
-        let (x, y) = (block.place.x, block.place.y);
-        let measured = draw(stream);
-        let own =
-            |shared: f64, single: f64, count: usize| (shared * shared + single * single / count.max(1) as f64).sqrt();
-        let position = own(noise.reference_position, noise.within_position.max(single.position), block.count);
-        let heading = own(noise.reference_heading, noise.within_heading.max(single.heading), block.headings);
-        let time = late + noise.reference_time * stream.normal();
-        [
-            state[0] - y * state[2] + position * measured[0] + time * block.velocity[0],
-            state[1] + x * state[2] + position * measured[1] + time * block.velocity[1],
-            state[2] + heading * measured[2] + time * block.velocity[2],
-        ]
-    };
-    run.blocks.iter().map(block).collect()
 }

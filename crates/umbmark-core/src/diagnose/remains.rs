@@ -1,0 +1,340 @@
+//! What a model leaves: how much of it is the same in every run, and where the rest comes from.
+//!
+//! Two runs of one path see the same law and different chance. So the mean, over pairs of runs, of the product of what is left in both at
+//! the same share of the way estimates the square of what repeats, and trusts no noise model:
+//!
+//! repeats² = Σ dᵢ(s)·dⱼ(s) / n,  i ≠ j of one path and sense,
+//!
+//! with an interval by the jackknife over runs. It is a lower bound: what runs do differently (one speed each, say) is not in it, nor what
+//! the model's own values were fitted to.
+//!
+//! Source: U-statistics and their jackknife, Arvesen (1969).
+
+use crate::likelihood::Disturbance;
+use crate::stats::{Interval, student_t_quantile};
+use rayon::prelude::*;
+
+/// Runs drive one path where their lengths differ by no more than this share, and they are apart by no more than this share of how far
+/// they go from START, and this \[m\].
+const SAME_LENGTH: f64 = 0.05;
+const SAME_PLACE: (f64, f64) = (0.1, 0.05);
+/// A run is held against so many runs before it at most.
+const MOST_PARTNERS: usize = 50;
+/// Fewer runs have no interval.
+const FEWEST: usize = 3;
+
+/// What is left of an error, in one unit: metres of the position, or radians of the heading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Left {
+    /// Root mean square over all measurements.
+    pub rms: f64,
+    /// How much of it is the same in every run, at least; `None` where no two runs drive one path.
+    pub repeats: Option<Repeating>,
+}
+
+/// How much is the same in every run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Repeating {
+    /// Root mean square; 0 where the mean of products is negative, as half of all are where nothing repeats.
+    pub value: f64,
+    /// Its 95 % interval; `None` below three runs.
+    pub interval: Option<Interval>,
+}
+
+impl Repeating {
+    /// Whether it is no chance.
+    pub fn is_shown(&self) -> bool {
+        self.interval.is_some_and(|interval| interval.low > 0.0)
+    }
+}
+
+/// What chance there is, and how much of the error it makes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chance {
+    /// Its name.
+    pub source: &'static str,
+    /// Root mean square of positions \[m\] and headings \[rad\] that it alone would leave.
+    pub position: f64,
+    /// \[rad\]
+    pub heading: f64,
+}
+
+/// A source of chance is told where it makes this share of all.
+const TOLD: f64 = 0.1;
+/// So many disturbances are told.
+const NAMED: usize = 3;
+
+/// A unit for people.
+#[derive(Clone, Copy)]
+struct Unit {
+    scale: f64,
+    name: &'static str,
+    decimals: usize,
+}
+
+const MILLIMETRES: Unit = Unit { scale: 1e3, name: "mm", decimals: 1 };
+const DEGREES: Unit = Unit { scale: 180.0 / std::f64::consts::PI, name: "deg", decimals: 2 };
+
+impl Unit {
+    fn number(&self, value: f64) -> String {
+        let text = format!("{:.*}", self.decimals, self.scale * value);
+        if text.trim_start_matches('-').chars().all(|digit| matches!(digit, '0' | '.')) {
+            text.trim_start_matches('-').to_owned()
+        } else {
+            text
+        }
+    }
+
+    fn text(&self, value: f64) -> String {
+        format!("{} {}", self.number(value), self.name)
+    }
+
+    fn between(&self, low: f64, high: f64) -> String {
+        format!("{} to {}", self.number(low), self.text(high))
+    }
+}
+
+/// What a model leaves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Remains {
+    /// Of positions \[m\].
+    pub position: Left,
+    /// Of headings \[rad\]; `None` where none were measured.
+    pub heading: Option<Left>,
+    /// How many pairs of runs drive one path.
+    pub pairs: usize,
+    /// What chance would leave, by where it comes from; empty for return poses.
+    pub chance: Vec<Chance>,
+    /// Places where a run is disturbed by more than that: bumps met by chance, and poses that are off.
+    pub disturbances: Vec<Disturbance>,
+}
+
+/// What is left of one run along its way.
+#[derive(Clone, Debug)]
+pub(crate) struct Trail {
+    /// Runs of another sense follow another path: +1 counter-clockwise, -1 clockwise, 0 neither.
+    pub sense: f64,
+    /// How far the wheels have rolled at each measurement \[m\].
+    pub rolled: Vec<f64>,
+    /// Where the model has the robot \[m\].
+    pub places: Vec<[f64; 2]>,
+    /// Measured minus predicted: x, y \[m\], heading \[rad\].
+    pub left: Vec<[f64; 3]>,
+    /// Whether headings were measured.
+    pub with_heading: bool,
+}
+
+impl Trail {
+    fn length(&self) -> f64 {
+        self.rolled.last().copied().unwrap_or(0.0)
+    }
+
+    /// Values at the same share of the way as the measurement of another run, between neighbours in proportion.
+    fn at<const N: usize>(&self, values: &[[f64; N]], share: f64) -> [f64; N] {
+        let way = share * self.length();
+        let after = self.rolled.partition_point(|rolled| *rolled < way).min(values.len() - 1);
+        let before = after.saturating_sub(1);
+        let between = self.rolled[after] - self.rolled[before];
+        let weight = if between > 0.0 { ((way - self.rolled[before]) / between).clamp(0.0, 1.0) } else { 1.0 };
+        std::array::from_fn(|k| values[before][k] + weight * (values[after][k] - values[before][k]))
+    }
+
+    /// Shares of the way at its measurements.
+    fn shares(&self) -> impl Iterator<Item = f64> + '_ {
+        let length = self.length();
+        self.rolled.iter().map(move |rolled| if length > 0.0 { rolled / length } else { 0.0 })
+    }
+
+    fn is_of_one_path(&self, other: &Trail) -> bool {
+        let (a, b) = (self.length(), other.length());
+        if self.sense != other.sense || (a - b).abs() > SAME_LENGTH * a.max(b) {
+            return false;
+        }
+        let square = |[x, y]: [f64; 2]| x * x + y * y;
+        let (mut apart, mut gone) = (0.0, 0.0);
+        for (share, place) in self.shares().zip(&self.places) {
+            let there = other.at(&other.places, share);
+            apart += square([place[0] - there[0], place[1] - there[1]]);
+            gone += square([place[0] - self.places[0][0], place[1] - self.places[0][1]]);
+        }
+        let root = |sum: f64| (sum / self.places.len() as f64).sqrt();
+        root(apart) <= SAME_PLACE.0 * root(gone) + SAME_PLACE.1
+    }
+}
+
+/// Sums of products of a pair of runs: of positions and of headings.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    runs: [usize; 2],
+    sums: [f64; 2],
+    counts: [f64; 2],
+}
+
+impl Pair {
+    fn new(runs: [usize; 2], trails: &[Trail]) -> Pair {
+        let mut pair = Pair { runs, sums: [0.0; 2], counts: [0.0; 2] };
+        for (own, other) in [(runs[0], runs[1]), (runs[1], runs[0])] {
+            let (own, other) = (&trails[own], &trails[other]);
+            for (share, a) in own.shares().zip(&own.left) {
+                let b = other.at(&other.left, share);
+                pair.sums[0] += a[0] * b[0] + a[1] * b[1];
+                pair.counts[0] += 1.0;
+                if own.with_heading && other.with_heading {
+                    pair.sums[1] += a[2] * b[2];
+                    pair.counts[1] += 1.0;
+                }
+            }
+        }
+        pair
+    }
+}
+
+impl Remains {
+    /// What is left along some runs, the interval with this confidence.
+    pub(crate) fn of(trails: &[Trail], confidence: f64) -> Remains {
+        let trails: Vec<Trail> = trails.iter().filter(|trail| !trail.left.is_empty()).cloned().collect();
+        let partners = |j: usize| (j.saturating_sub(MOST_PARTNERS)..j).map(move |i| [i, j]);
+        let all: Vec<[usize; 2]> = (0..trails.len()).flat_map(partners).collect();
+        let pairs: Vec<Pair> = all
+            .into_par_iter()
+            .filter(|[i, j]| trails[*i].is_of_one_path(&trails[*j]))
+            .map(|runs| Pair::new(runs, &trails))
+            .collect();
+        let left = |which: usize| {
+            let repeats = repeating(&pairs, which, confidence);
+            Left { rms: rms(&trails, which), repeats }
+        };
+        let with_heading = trails.iter().any(|trail| trail.with_heading);
+        Remains {
+            position: left(0),
+            heading: with_heading.then(|| left(1)),
+            pairs: pairs.len(),
+            chance: Vec::new(),
+            disturbances: Vec::new(),
+        }
+    }
+
+    /// In sentences: how much is left and is the same in every run, what chance there is, and where runs are disturbed.
+    pub fn sentences(&self) -> Vec<String> {
+        let told = [Some(self.of_runs()), self.of_chance(), self.of_disturbances()];
+        told.into_iter().flatten().map(|sentence| format!("{sentence}.")).collect()
+    }
+
+    fn of_runs(&self) -> String {
+        let parts: Vec<(Left, Unit)> =
+            std::iter::once((self.position, MILLIMETRES)).chain(self.heading.map(|left| (left, DEGREES))).collect();
+        let join = |told: Vec<String>| told.join(" and ");
+        let left = join(parts.iter().map(|(left, unit)| unit.text(left.rms)).collect());
+        let repeats: Vec<(Repeating, Unit)> =
+            parts.iter().filter_map(|(left, unit)| Some((left.repeats?, *unit))).collect();
+        let between = |(repeats, unit): &(Repeating, Unit)| {
+            repeats.interval.map_or_else(|| unit.text(repeats.value), |i| unit.between(i.low, i.high))
+        };
+        let pairs = if self.pairs == 1 { "one pair".to_owned() } else { format!("{} pairs", self.pairs) };
+        if repeats.is_empty() {
+            return format!(
+                "{left} are left; no two runs drive one path, so pairs of runs cannot tell what is the same in all from chance"
+            );
+        }
+        let shown: Vec<String> = repeats
+            .iter()
+            .filter(|(repeats, _)| repeats.is_shown())
+            .map(|(repeats, unit)| unit.text(repeats.interval.map_or(0.0, |interval| interval.low)))
+            .collect();
+        let range = join(repeats.iter().map(between).collect());
+        if shown.is_empty() {
+            return format!(
+                "{left} are left; {pairs} of runs of one path show none of it to be the same in every run ({range})"
+            );
+        }
+        format!(
+            "{left} are left; at least {} of it are the same in every run ({range} by {pairs} of runs of one path), the rest is chance \
+             or differs between runs",
+            join(shown)
+        )
+    }
+
+    fn of_chance(&self) -> Option<String> {
+        let total = self.chance.iter().map(|chance| chance.position.powi(2)).sum::<f64>().sqrt();
+        let mut told: Vec<&Chance> =
+            self.chance.iter().filter(|chance| chance.position >= TOLD * total && chance.position > 0.0).collect();
+        told.sort_by(|a, b| b.position.total_cmp(&a.position));
+        let one = |chance: &&Chance| format!("the {} leaves {}", chance.source, MILLIMETRES.text(chance.position));
+        let told: Vec<String> = told.iter().map(one).collect();
+        (!told.is_empty()).then(|| format!("By itself, {}", told.join(", ")))
+    }
+
+    fn of_disturbances(&self) -> Option<String> {
+        let (lasting, passing): (Vec<&Disturbance>, Vec<&Disturbance>) =
+            self.disturbances.iter().partition(|d| d.lasts);
+        let mut parts = Vec::new();
+        if !lasting.is_empty() {
+            let mut largest = lasting.clone();
+            largest.sort_by(|a, b| b.deviations.total_cmp(&a.deviations));
+            let one = |at: &&Disturbance| {
+                let [ahead, left, turned] = at.by;
+                format!(
+                    "{} after {:.2} m by {} ahead, {} and {} to the left",
+                    at.run,
+                    at.rolled,
+                    MILLIMETRES.text(ahead),
+                    MILLIMETRES.text(left),
+                    DEGREES.text(turned)
+                )
+            };
+            let told: Vec<String> = largest.iter().take(NAMED).map(one).collect();
+            let (bumps, are) = if lasting.len() == 1 { ("bump", "is") } else { ("bumps", "are") };
+            let among = if lasting.len() > NAMED { ", among them" } else { ":" };
+            parts.push(format!("{} {bumps} or slips {are} larger than that{among} {}", lasting.len(), told.join("; ")));
+        }
+        if !passing.is_empty() {
+            let most = passing.iter().map(|at| at.by[0].hypot(at.by[1])).fold(0.0, f64::max);
+            parts.push(format!(
+                "{} poses of the reference are off for a moment, by up to {}",
+                passing.len(),
+                MILLIMETRES.text(most)
+            ));
+        }
+        (!parts.is_empty()).then(|| parts.join("; "))
+    }
+
+    /// Whether some of it is the same in every run.
+    pub fn repeats(&self) -> bool {
+        [Some(self.position), self.heading].into_iter().flatten().filter_map(|left| left.repeats).any(|r| r.is_shown())
+    }
+}
+
+fn rms(trails: &[Trail], which: usize) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for trail in trails.iter().filter(|trail| which == 0 || trail.with_heading) {
+        for [x, y, heading] in &trail.left {
+            sum += if which == 0 { x * x + y * y } else { heading * heading };
+            count += 1.0;
+        }
+    }
+    if count > 0.0 { f64::sqrt(sum / count) } else { 0.0 }
+}
+
+/// The root of the mean of products, with the interval of the mean by the jackknife over runs.
+fn repeating(pairs: &[Pair], which: usize, confidence: f64) -> Option<Repeating> {
+    let mean = |without: Option<usize>| {
+        let kept = pairs.iter().filter(|pair| without.is_none_or(|run| !pair.runs.contains(&run)));
+        let (sum, count) =
+            kept.fold((0.0, 0.0), |(sum, count), pair| (sum + pair.sums[which], count + pair.counts[which]));
+        (count > 0.0).then(|| sum / count)
+    };
+    let square = mean(None)?;
+    let mut runs: Vec<usize> = pairs.iter().flat_map(|pair| pair.runs).collect();
+    runs.sort_unstable();
+    runs.dedup();
+    let without: Option<Vec<f64>> = runs.iter().map(|run| mean(Some(*run))).collect();
+    let interval = without.filter(|without| without.len() >= FEWEST).map(|without| {
+        let n = without.len() as f64;
+        let middle = without.iter().sum::<f64>() / n;
+        let variance = (n - 1.0) / n * without.iter().map(|value| (value - middle).powi(2)).sum::<f64>();
+        let half = student_t_quantile(0.5 + 0.5 * confidence, n - 1.0) * variance.sqrt();
+        let root = |square: f64| square.max(0.0).sqrt();
+        Interval { low: root(square - half), high: root(square + half) }
+    });
+    Some(Repeating { value: square.max(0.0).sqrt(), interval })
+}

@@ -1,0 +1,159 @@
+//! What is left of tracks: what of it repeats, what each source of chance would leave, and where runs are disturbed.
+
+use super::errors::Misses;
+use crate::diagnose::Options;
+use crate::diagnose::remains::{Chance, Remains, Trail};
+use crate::likelihood::{Column, Noise, Observed, ObservedRun, Stretch};
+use crate::random::Stream;
+use crate::setup::PoseNoise;
+use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
+
+/// Simulated sets from which a source of chance is told: so many, fewer where there are more blocks in all than this.
+const SETS: (usize, usize) = (40, 400_000);
+const FEWEST_SETS: usize = 4;
+/// Purpose of the stream.
+const DOUBTS: u64 = 0x646f_7562;
+const NOTHING: PoseNoise = PoseNoise { position: 0.0, heading: 0.0 };
+
+/// What is left of tracks: `misses` in all, and `left` of each run without what effects of the reference do that are not in the model.
+pub(super) fn remains(
+    observed: &Observed,
+    noise: &Noise,
+    left: &[Column],
+    misses: &Misses,
+    options: &Options,
+) -> Remains {
+    let wheelbase = observed.robot.drive.wheelbase();
+    let runs = observed.runs.par_iter().zip(left);
+    let trails: Vec<Trail> =
+        runs.clone().map(|(run, left)| trail(run, left, observed.setup.noise, wheelbase)).collect();
+    let mut remains = Remains::of(&trails, 1.0 - options.size);
+    remains.position.rms = misses.position;
+    remains.heading.iter_mut().zip(misses.heading).for_each(|(left, rms)| left.rms = rms);
+    remains.chance = chance(observed, noise, options.seed);
+    remains.disturbances = runs.flat_map_iter(|(run, left)| noise.disturbances(run, left, wheelbase)).collect();
+    remains
+}
+
+/// What is left of a run where it is told.
+fn trail(run: &ObservedRun, left: &Column, noise: PoseNoise, wheelbase: f64) -> Trail {
+    let rolled = run.rolled(wheelbase);
+    let mut trail = Trail {
+        sense: run.track.contexts().first().map_or(0.0, |at| at.direction),
+        rolled: Vec::new(),
+        places: Vec::new(),
+        left: Vec::new(),
+        with_heading: run.blocks.iter().all(|block| block.headings > 0),
+    };
+    for stretch in run.stretches([noise.position, noise.heading]) {
+        let own = stretch.less_start(run, left);
+        for block in stretch.told() {
+            let place = &run.blocks[block].place;
+            trail.rolled.push(rolled[block]);
+            trail.places.push([place.x, place.y]);
+            trail.left.push(own[block - stretch.blocks.start]);
+        }
+    }
+    trail
+}
+
+/// What each source of a noise would leave by itself.
+fn chance(observed: &Observed, noise: &Noise, seed: u64) -> Vec<Chance> {
+    let blocks: usize = observed.runs.iter().map(|run| run.blocks.len()).sum();
+    let sets = SETS.0.min(SETS.1 / blocks.max(1)).max(FEWEST_SETS);
+    let silent = Noise::silent();
+    let Noise { reference_position, reference_heading, reference_time, reference_delay, .. } = *noise;
+    let Noise { within_position, within_heading, .. } = *noise;
+    let wheels = [
+        ("heading noise of the wheels", Noise { heading_per_metre: noise.heading_per_metre, ..silent }),
+        ("heading noise in turns", Noise { heading_per_radian: noise.heading_per_radian, ..silent }),
+        (
+            "noise of the wheels ahead and aside",
+            Noise {
+                forward_per_metre: noise.forward_per_metre,
+                sideways_per_metre: noise.sideways_per_metre,
+                ..silent
+            },
+        ),
+    ];
+    let reference = Noise {
+        reference_position,
+        reference_heading,
+        reference_time,
+        reference_delay,
+        within_position,
+        within_heading,
+        ..silent
+    };
+    let of = |(source, noise, single): (&'static str, Noise, PoseNoise)| {
+        let simulated = simulated(observed, &noise, single, sets, seed);
+        let root = |k: usize| (simulated.iter().map(|set| set[k] * set[k]).sum::<f64>() / sets as f64).sqrt();
+        Chance { source, position: root(0), heading: root(1) }
+    };
+    let wheels = wheels.into_iter().map(|(source, noise)| (source, noise, NOTHING));
+    wheels.chain([("noise of the reference", reference, observed.setup.noise)]).map(of).collect()
+}
+
+/// Root mean square of positions \[m\] and headings \[rad\] in simulated sets in which there is a noise alone.
+pub(super) fn simulated(
+    observed: &Observed,
+    noise: &Noise,
+    single: PoseNoise,
+    sets: usize,
+    seed: u64,
+) -> Vec<[f64; 2]> {
+    let stretches: Vec<Vec<Stretch>> = observed
+        .runs
+        .iter()
+        .map(|run| run.stretches([observed.setup.noise.position, observed.setup.noise.heading]))
+        .collect();
+    (0..sets)
+        .into_par_iter()
+        .map(|set| {
+            let mut sums = [[0.0; 2]; 2];
+            for (index, (run, stretches)) in observed.runs.iter().zip(&stretches).enumerate() {
+                let mut stream = Stream::new(seed, DOUBTS, (set * observed.runs.len() + index) as u64);
+                let errors = random_walk(run, noise, single, &mut stream);
+                for stretch in stretches {
+                    let left = stretch.less_start(run, &errors);
+                    for block in stretch.told() {
+                        let [x, y, heading] = left[block - stretch.blocks.start];
+                        sums[0] = [sums[0][0] + x * x + y * y, sums[0][1] + 1.0];
+                        if run.blocks[block].headings > 0 {
+                            sums[1] = [sums[1][0] + heading * heading, sums[1][1] + 1.0];
+                        }
+                    }
+                }
+            }
+            sums.map(|[sum, count]| (sum / f64::max(count, 1.0)).sqrt())
+        })
+        .collect()
+}
+
+/// Errors of a run as its noise alone would make them: (x, y, heading) a block.
+fn random_walk(run: &ObservedRun, noise: &Noise, single: PoseNoise, stream: &mut Stream) -> Vec<[f64; 3]> {
+    let mut state = Vector3::zeros();
+    let late = noise.reference_delay * stream.normal();
+    let draw = |stream: &mut Stream| Vector3::from_fn(|_, _| stream.normal());
+    let block = |block: &crate::likelihood::Block| {
+        let growth = noise.growth(&block.growth);
+        let covariance = Matrix3::from_fn(|i, j| growth[i][j]);
+        if let Some(root) = (covariance + Matrix3::identity() * 1e-18).cholesky() {
+            state += root.l() * draw(stream);
+        }
+        let (x, y) = (block.place.x, block.place.y);
+        let measured = draw(stream);
+        let own =
+            |shared: f64, single: f64, count: usize| (shared * shared + single * single / count.max(1) as f64).sqrt();
+        let position = own(noise.reference_position, noise.within_position.max(single.position), block.count);
+        let heading = own(noise.reference_heading, noise.within_heading.max(single.heading), block.headings);
+        let time = late + noise.reference_time * stream.normal();
+        [
+            state[0] - y * state[2] + position * measured[0] + time * block.velocity[0],
+            state[1] + x * state[2] + position * measured[1] + time * block.velocity[1],
+            state[2] + heading * measured[2] + time * block.velocity[2],
+        ]
+    };
+    run.blocks.iter().map(block).collect()
+}
