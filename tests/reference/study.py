@@ -42,6 +42,8 @@ class Answer:
     before_m: float
     after_m: float
     outliers: int
+    repeats: bool
+    """Whether pairs of runs show something of what is left to be the same in every run."""
 
     @property
     def right(self) -> bool:
@@ -76,6 +78,7 @@ def learn(command: File, case: str, seed: int, noise: str = "gaussian") -> Answe
     answer: dict[str, Any] = json.loads(done.stdout)
     steps = answer["steps"]
     added = [step for step in steps if step["p_adjusted"] is not None]
+    repeats = [answer["remains"][key] for key in ("repeats_m", "repeats_rad")]
     begun = [step for step in steps if step["p_adjusted"] is None]
     causes = [set(one["acceptable"]) for one in sealed["causes"] if one["kind"] in ADDED]
     return Answer(
@@ -87,6 +90,7 @@ def learn(command: File, case: str, seed: int, noise: str = "gaussian") -> Answe
         begun[-1]["heldout_rmse_m"],
         steps[-1]["heldout_rmse_m"],
         len(answer.get("outliers", [])),
+        any(one and (one["low"] or 0) > 0 for one in repeats),
     )
 
 
@@ -125,8 +129,8 @@ def hidden(command: File, seeds: list[int], threads: int) -> Iterator[str]:
 
 def nulls(command: File, sets: int, threads: int) -> Iterator[str]:
     """A line for each model of the noise, of so many sets in all, and one for each addition."""
-    yield "| noise | sets | something added | called unlisted | an outlier named |"
-    yield "|---|---|---|---|---|"
+    yield "| noise | sets | something added | called unlisted | an outlier named | said to repeat |"
+    yield "|---|---|---|---|---|---|"
     added: list[tuple[str, Answer]] = []
     with ThreadPoolExecutor(threads) as pool:
         for index, noise in enumerate(NOISE_MODELS):
@@ -136,7 +140,8 @@ def nulls(command: File, sets: int, threads: int) -> Iterator[str]:
             yield (
                 f"| {noise} | {each} | {sum(bool(one.classes) for one in answers)} "
                 f"| {sum(one.verdict == 'unlisted_effect' for one in answers)} "
-                f"| {sum(one.outliers > 0 for one in answers)} |"
+                f"| {sum(one.outliers > 0 for one in answers)} "
+                f"| {sum(one.repeats for one in answers)} |"
             )
             added.extend((noise, one) for one in answers if one.classes)
     if added:

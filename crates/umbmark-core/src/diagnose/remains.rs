@@ -5,7 +5,7 @@
 //!
 //! repeats² = Σ dᵢ(s)·dⱼ(s) / n,  i ≠ j of one path and sense,
 //!
-//! with an interval by the jackknife over runs. It is a lower bound: what runs do differently (one speed each, say) is not in it, nor what
+//! with an interval by the jackknife over the runs of each path. It is a lower bound: what runs do differently (one speed each, say) is not in it, nor what
 //! the model's own values were fitted to.
 //!
 //! Source: U-statistics and their jackknife, Arvesen (1969).
@@ -13,6 +13,7 @@
 use crate::likelihood::Disturbance;
 use crate::stats::{Interval, student_t_quantile};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Runs drive one path where their lengths differ by no more than this share, and they are apart by no more than this share of how far
 /// they go from START, and this \[m\].
@@ -61,6 +62,8 @@ pub struct Chance {
 
 /// A source of chance is told where it makes this share of all.
 const TOLD: f64 = 0.1;
+/// Chance that is so many times what is left does not add up.
+const UNDONE: f64 = 1.5;
 /// So many disturbances are told.
 const NAMED: usize = 3;
 
@@ -88,10 +91,6 @@ impl Unit {
     fn text(&self, value: f64) -> String {
         format!("{} {}", self.number(value), self.name)
     }
-
-    fn between(&self, low: f64, high: f64) -> String {
-        format!("{} to {}", self.number(low), self.text(high))
-    }
 }
 
 /// What a model leaves.
@@ -116,9 +115,9 @@ pub(crate) struct Trail {
     pub sense: f64,
     /// How far the wheels have rolled at each measurement \[m\].
     pub rolled: Vec<f64>,
-    /// Where the model has the robot \[m\].
+    /// Where the model has the robot, in the frame of START \[m\].
     pub places: Vec<[f64; 2]>,
-    /// Measured minus predicted: x, y \[m\], heading \[rad\].
+    /// Measured minus predicted, in the frame of START: x, y \[m\], heading \[rad\].
     pub left: Vec<[f64; 3]>,
     /// Whether headings were measured.
     pub with_heading: bool,
@@ -200,15 +199,17 @@ impl Remains {
             .filter(|[i, j]| trails[*i].is_of_one_path(&trails[*j]))
             .map(|runs| Pair::new(runs, &trails))
             .collect();
+        let count = pairs.len();
+        let paths = by_path(pairs, trails.len());
         let left = |which: usize| {
-            let repeats = repeating(&pairs, which, confidence);
+            let repeats = repeating(&paths, which, confidence);
             Left { rms: rms(&trails, which), repeats }
         };
         let with_heading = trails.iter().any(|trail| trail.with_heading);
         Remains {
             position: left(0),
             heading: with_heading.then(|| left(1)),
-            pairs: pairs.len(),
+            pairs: count,
             chance: Vec::new(),
             disturbances: Vec::new(),
         }
@@ -223,39 +224,41 @@ impl Remains {
     fn of_runs(&self) -> String {
         let parts: Vec<(Left, Unit)> =
             std::iter::once((self.position, MILLIMETRES)).chain(self.heading.map(|left| (left, DEGREES))).collect();
-        let join = |told: Vec<String>| told.join(" and ");
-        let left = join(parts.iter().map(|(left, unit)| unit.text(left.rms)).collect());
-        let repeats: Vec<(Repeating, Unit)> =
-            parts.iter().filter_map(|(left, unit)| Some((left.repeats?, *unit))).collect();
-        let between = |(repeats, unit): &(Repeating, Unit)| {
-            repeats.interval.map_or_else(|| unit.text(repeats.value), |i| unit.between(i.low, i.high))
+        let told = |of: &dyn Fn(&Repeating) -> Option<f64>| {
+            let parts = parts.iter().filter_map(|(left, unit)| Some(unit.text(of(&left.repeats?)?)));
+            parts.collect::<Vec<_>>().join(" and ")
         };
-        let pairs = if self.pairs == 1 { "one pair".to_owned() } else { format!("{} pairs", self.pairs) };
-        if repeats.is_empty() {
-            return format!(
-                "{left} are left; no two runs drive one path, so pairs of runs cannot tell what is the same in all from chance"
-            );
-        }
-        let shown: Vec<String> = repeats
-            .iter()
-            .filter(|(repeats, _)| repeats.is_shown())
-            .map(|(repeats, unit)| unit.text(repeats.interval.map_or(0.0, |interval| interval.low)))
-            .collect();
-        let range = join(repeats.iter().map(between).collect());
+        let left = parts.iter().map(|(left, unit)| unit.text(left.rms)).collect::<Vec<_>>().join(" and ");
+        let pairs = match self.pairs {
+            0 => {
+                return format!(
+                    "{left} are left. No two runs drive one path, so pairs of runs cannot tell what is the same in all from chance"
+                );
+            }
+            1 => "one pair of runs of one path".to_owned(),
+            pairs => format!("{pairs} pairs of runs of one path"),
+        };
+        let most = told(&|repeats| Some(repeats.interval.map_or(repeats.value, |interval| interval.high)));
+        let shown = told(&|repeats| Some(repeats.interval?.low).filter(|low| *low > 0.0));
         if shown.is_empty() {
             return format!(
-                "{left} are left; {pairs} of runs of one path show none of it to be the same in every run ({range})"
+                "{left} are left. Nothing of that is shown to be the same in every run (at most {most}; {pairs})"
             );
         }
         format!(
-            "{left} are left; at least {} of it are the same in every run ({range} by {pairs} of runs of one path), the rest is chance \
-             or differs between runs",
-            join(shown)
+            "{left} are left. At least {shown} of that are the same in every run (at most {most}; {pairs}); the rest is chance, or differs \
+             between runs"
         )
     }
 
     fn of_chance(&self) -> Option<String> {
         let total = self.chance.iter().map(|chance| chance.position.powi(2)).sum::<f64>().sqrt();
+        if total > UNDONE * self.position.rms {
+            return Some(format!(
+                "The noise that was found would leave {}: from pose to pose there is more of it than adds up, as with counts of whole ticks",
+                MILLIMETRES.text(total)
+            ));
+        }
         let mut told: Vec<&Chance> =
             self.chance.iter().filter(|chance| chance.position >= TOLD * total && chance.position > 0.0).collect();
         told.sort_by(|a, b| b.position.total_cmp(&a.position));
@@ -273,25 +276,34 @@ impl Remains {
             largest.sort_by(|a, b| b.deviations.total_cmp(&a.deviations));
             let one = |at: &&Disturbance| {
                 let [ahead, left, turned] = at.by;
+                let to = |value: f64| if value < 0.0 { "right" } else { "left" };
                 format!(
-                    "{} after {:.2} m by {} ahead, {} and {} to the left",
+                    "{} after {:.2} m by {} ahead, {} to the {}, turned {} to the {}",
                     at.run,
                     at.rolled,
                     MILLIMETRES.text(ahead),
-                    MILLIMETRES.text(left),
-                    DEGREES.text(turned)
+                    MILLIMETRES.text(left.abs()),
+                    to(left),
+                    DEGREES.text(turned.abs()),
+                    to(turned)
                 )
             };
             let told: Vec<String> = largest.iter().take(NAMED).map(one).collect();
-            let (bumps, are) = if lasting.len() == 1 { ("bump", "is") } else { ("bumps", "are") };
-            let among = if lasting.len() > NAMED { ", among them" } else { ":" };
-            parts.push(format!("{} {bumps} or slips {are} larger than that{among} {}", lasting.len(), told.join("; ")));
+            let (times, among) = match lasting.len() {
+                1 => ("Once".to_owned(), ""),
+                count => (format!("{count} times"), if count > NAMED { "among them " } else { "" }),
+            };
+            parts.push(format!(
+                "{times} a bump or a slip met by chance moves a run by more than that: {among}{}",
+                told.join("; ")
+            ));
         }
         if !passing.is_empty() {
             let most = passing.iter().map(|at| at.by[0].hypot(at.by[1])).fold(0.0, f64::max);
+            let poses = if passing.len() == 1 { "pose" } else { "poses" };
+            let count = passing.len();
             parts.push(format!(
-                "{} poses of the reference are off for a moment, by up to {}",
-                passing.len(),
+                "{count} {poses} of the reference off for a moment, by up to {}",
                 MILLIMETRES.text(most)
             ));
         }
@@ -315,26 +327,141 @@ fn rms(trails: &[Trail], which: usize) -> f64 {
     if count > 0.0 { f64::sqrt(sum / count) } else { 0.0 }
 }
 
-/// The root of the mean of products, with the interval of the mean by the jackknife over runs.
-fn repeating(pairs: &[Pair], which: usize, confidence: f64) -> Option<Repeating> {
-    let mean = |without: Option<usize>| {
-        let kept = pairs.iter().filter(|pair| without.is_none_or(|run| !pair.runs.contains(&run)));
-        let (sum, count) =
-            kept.fold((0.0, 0.0), |(sum, count), pair| (sum + pair.sums[which], count + pair.counts[which]));
-        (count > 0.0).then(|| sum / count)
+/// The root of the mean of products, with the interval of the mean by the jackknife over the runs of each path.
+fn repeating(paths: &[Vec<Pair>], which: usize, confidence: f64) -> Option<Repeating> {
+    let sums = |path: &[Pair], without: Option<usize>| {
+        let kept = path.iter().filter(|pair| without.is_none_or(|run| !pair.runs.contains(&run)));
+        kept.fold((0.0, 0.0), |(sum, count), pair| (sum + pair.sums[which], count + pair.counts[which]))
     };
-    let square = mean(None)?;
+    let all: Vec<(f64, f64)> = paths.iter().map(|path| sums(path, None)).collect();
+    let count: f64 = all.iter().map(|(_, count)| count).sum();
+    if count <= 0.0 {
+        return None;
+    }
+    let square = all.iter().map(|(sum, _)| sum).sum::<f64>() / count;
+    let (mut variance, mut freedom) = (0.0, 0.0);
+    for (path, (_, weight)) in paths.iter().zip(&all) {
+        let runs = runs_of(path);
+        let n = runs.len() as f64;
+        let without: Vec<f64> = runs
+            .iter()
+            .map(|run| sums(path, Some(*run)))
+            .filter(|(_, count)| *count > 0.0)
+            .map(|(s, c)| s / c)
+            .collect();
+        if without.len() < runs.len() {
+            return Some(Repeating { value: square.max(0.0).sqrt(), interval: None });
+        }
+        let middle = without.iter().sum::<f64>() / n;
+        let own = (n - 1.0) / n * without.iter().map(|value| (value - middle).powi(2)).sum::<f64>();
+        variance += (weight / count).powi(2) * own;
+        freedom += n - 1.0;
+    }
+    let half = student_t_quantile(0.5 + 0.5 * confidence, freedom) * variance.sqrt();
+    let root = |square: f64| square.max(0.0).sqrt();
+    let interval = Some(Interval { low: root(square - half), high: root(square + half) });
+    Some(Repeating { value: root(square), interval })
+}
+
+/// The runs of some pairs.
+fn runs_of(pairs: &[Pair]) -> Vec<usize> {
     let mut runs: Vec<usize> = pairs.iter().flat_map(|pair| pair.runs).collect();
     runs.sort_unstable();
     runs.dedup();
-    let without: Option<Vec<f64>> = runs.iter().map(|run| mean(Some(*run))).collect();
-    let interval = without.filter(|without| without.len() >= FEWEST).map(|without| {
-        let n = without.len() as f64;
-        let middle = without.iter().sum::<f64>() / n;
-        let variance = (n - 1.0) / n * without.iter().map(|value| (value - middle).powi(2)).sum::<f64>();
-        let half = student_t_quantile(0.5 + 0.5 * confidence, n - 1.0) * variance.sqrt();
-        let root = |square: f64| square.max(0.0).sqrt();
-        Interval { low: root(square - half), high: root(square + half) }
-    });
-    Some(Repeating { value: square.max(0.0).sqrt(), interval })
+    runs
+}
+
+/// Pairs of runs path by path: of one path are runs that a chain of pairs joins. Where some paths have three runs or more, those of two are
+/// left out, since nothing says how sure they are.
+fn by_path(pairs: Vec<Pair>, runs: usize) -> Vec<Vec<Pair>> {
+    let mut path_of: Vec<usize> = (0..runs).collect();
+    let find = |path_of: &[usize], mut run: usize| {
+        while path_of[run] != run {
+            run = path_of[run];
+        }
+        run
+    };
+    for pair in &pairs {
+        let [a, b] = pair.runs.map(|run| find(&path_of, run));
+        path_of[a.max(b)] = a.min(b);
+    }
+    let mut paths: BTreeMap<usize, Vec<Pair>> = BTreeMap::new();
+    for pair in pairs {
+        paths.entry(find(&path_of, pair.runs[0])).or_default().push(pair);
+    }
+    if paths.values().any(|path| runs_of(path).len() >= FEWEST) {
+        paths.retain(|_, path| runs_of(path).len() >= FEWEST);
+    }
+    paths.into_values().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Stream;
+
+    const STEPS: usize = 60;
+
+    /// Runs of `count` each way around a circle, each with a drift of its own, and all with a law of this size \[m\].
+    fn trails(count: usize, law: f64, seed: u64) -> Vec<Trail> {
+        let one = |index: usize| {
+            let mut stream = Stream::new(seed, 0, index as u64);
+            let sense = if index < count { 1.0 } else { -1.0 };
+            let length = 8.0 * (1.0 + 0.004 * stream.normal());
+            let (mut heading, mut left) = (0.0, [0.0; 3]);
+            let mut trail =
+                Trail { sense, rolled: Vec::new(), places: Vec::new(), left: Vec::new(), with_heading: true };
+            for step in 0..STEPS {
+                let share = (step + 1) as f64 / STEPS as f64;
+                let (sine, cosine) = libm::sincos(sense * 6.0 * share);
+                heading += 1e-3 * stream.normal();
+                left = [left[0] - sine * heading * 0.13, left[1] + cosine * heading * 0.13, heading];
+                trail.rolled.push(length * share);
+                trail.places.push([1.3 * sine.abs(), sense * 1.3 * (1.0 - cosine)]);
+                trail.left.push([left[0] + law * sine, left[1] + law * sense * cosine, left[2]]);
+            }
+            trail
+        };
+        (0..2 * count).map(one).collect()
+    }
+
+    #[test]
+    fn what_is_the_same_in_every_run_is_found_with_its_size() {
+        let held = (0..40).filter(|seed| {
+            let remains = Remains::of(&trails(5, 0.02, *seed), 0.95);
+            assert_eq!(remains.pairs, 20);
+            let repeats = remains.position.repeats.unwrap();
+            assert!(repeats.is_shown() && remains.repeats(), "{remains:?}");
+            repeats.interval.unwrap().contains(0.02)
+        });
+        let held = held.count();
+        assert!(held >= 34, "{held}");
+        let remains = Remains::of(&trails(5, 0.02, 1), 0.95);
+        let said = &remains.sentences()[0];
+        assert!(said.contains("of that are the same in every run") && said.contains("20 pairs"), "{said}");
+    }
+
+    #[test]
+    fn chance_is_seldom_said_to_be_the_same_in_every_run() {
+        for count in [3, 5] {
+            let shown = (0..400).filter(|seed| Remains::of(&trails(count, 0.0, 1000 + seed), 0.95).repeats()).count();
+            assert!(shown <= 20, "{count}: {shown} of 400");
+        }
+    }
+
+    #[test]
+    fn runs_of_other_paths_are_no_pairs_and_two_runs_have_no_interval() {
+        let mut few = trails(1, 0.02, 1);
+        assert_eq!(Remains::of(&few, 0.95).pairs, 0);
+        assert!(Remains::of(&few, 0.95).sentences()[0].contains("No two runs drive one path"));
+        few.push(trails(1, 0.02, 2).remove(0));
+        let remains = Remains::of(&few, 0.95);
+        let repeats = remains.position.repeats.unwrap();
+        assert!(remains.pairs == 1 && repeats.interval.is_none() && !remains.repeats(), "{remains:?}");
+        few[2].places.iter_mut().for_each(|[x, _]| *x *= -1.0);
+        assert_eq!(Remains::of(&few, 0.95).pairs, 0);
+        few[2].places.iter_mut().for_each(|[x, _]| *x *= -1.0);
+        few[2].rolled.iter_mut().for_each(|rolled| *rolled *= 1.2);
+        assert_eq!(Remains::of(&few, 0.95).pairs, 0);
+    }
 }

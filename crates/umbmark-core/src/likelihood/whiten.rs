@@ -347,7 +347,7 @@ mod tests {
     use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
     /// A run of a few blocks here and there; one of them without headings.
-    fn run(start_seen: bool) -> ObservedRun {
+    pub(super) fn run(start_seen: bool) -> ObservedRun {
         let track = Track::from_path(&Path::umbmark(), Direction::Ccw, &Robot::labmate());
         let places = [(0.0, 0.0), (1.0, 0.1), (2.0, -0.3), (2.5, 1.0), (2.4, 2.0)];
         let blocks: Vec<Block> = places
@@ -390,7 +390,7 @@ mod tests {
         }
     }
 
-    fn noise() -> Noise {
+    pub(super) fn noise() -> Noise {
         Noise {
             heading_per_metre: 0.02,
             heading_per_radian: 0.01,

@@ -46,13 +46,16 @@ fn trail(run: &ObservedRun, left: &Column, noise: PoseNoise, wheelbase: f64) -> 
         left: Vec::new(),
         with_heading: run.blocks.iter().all(|block| block.headings > 0),
     };
+    let Some(start) = run.blocks.first().map(|block| block.place) else { return trail };
+    let (sine, cosine) = libm::sincos(start.heading);
     for stretch in run.stretches([noise.position, noise.heading]) {
         let own = stretch.less_start(run, left);
         for block in stretch.told() {
-            let place = &run.blocks[block].place;
+            let place = start.between(&run.blocks[block].place);
+            let [x, y, heading] = own[block - stretch.blocks.start];
             trail.rolled.push(rolled[block]);
             trail.places.push([place.x, place.y]);
-            trail.left.push(own[block - stretch.blocks.start]);
+            trail.left.push([cosine * x + sine * y, cosine * y - sine * x, heading]);
         }
     }
     trail
