@@ -43,6 +43,10 @@ pub fn laws_text(repeated: &Repeated) -> String {
     if !alike.is_empty() {
         text += &hanging("alike", 10, &format!("these runs cannot tell it from: {}", alike.join("; ")));
     }
+    if let Some((effect, share)) = repeated.law.nearest {
+        let said = format!("{effect} is the nearest effect of the catalogue, and makes {:.0} % of it", 100.0 * share);
+        text += &hanging("nearest", 10, &said);
+    }
     let row = |(number, law): (usize, &UnlistedLaw)| {
         let length = if law.model.is_some() { law.length.to_string() } else { "-".to_owned() };
         vec![format!("{:<2} {}", number + 1, formula_of(law)), length, format!("{:.1}", 1e3 * law.left_out[1])]

@@ -116,6 +116,10 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     if let Some(experiment) = learnt.diagnosis.next_experiments.iter().find(tells) {
         text += &hanging("next", 10, &experiment_text(experiment));
     }
+    for law in learnt.steps.iter().filter(|step| step.law.is_some()) {
+        let told = diagnosis.next_experiments.iter().find(|experiment| Some(experiment.separates[0]) == law.added);
+        text += &told.map_or_else(String::new, |told| hanging("next", 10, &experiment_text(told)));
+    }
     text += &remains_text(diagnosis.remains.as_ref());
     text += &disturbances_text(&diagnosis.setup);
     text += &outliers_text(&diagnosis.outliers, &diagnosis.setup);

@@ -43,7 +43,7 @@ use system::Projected;
 pub(crate) use alone::{Alone, trusted};
 pub use errors::Misses;
 pub(crate) use examination::Examination;
-pub(crate) use look::{Finding, class_of_own};
+pub(crate) use look::{Finding, class_of_own, p_of_own};
 pub use repeats::{Repeated, UnlistedLaw};
 pub(crate) use search::{Added, Found, Search, Wanted, search};
 pub use suggestion::Suggestion;
@@ -185,7 +185,11 @@ pub(crate) fn next_experiments(
     exam: &Examination,
     added: &Added,
 ) -> Result<(Vec<Experiment>, Vec<String>), DiagnoseError> {
-    let Added { suspect, by: Found::Listed(finding) } = added else { return Ok((Vec::new(), Vec::new())) };
+    let Added { suspect, by } = added;
+    let finding = match by {
+        Found::Listed(finding) => finding,
+        Found::Unlisted(repeated) => return Ok((experiments::of_laws(exam, repeated)?, Vec::new())),
+    };
     let told = experiments::next(exam, &[finding], &[])?;
     let mut hints = Vec::new();
     for other in suspect.class.iter().filter(|name| **name != suspect.best) {

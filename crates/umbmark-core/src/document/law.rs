@@ -38,6 +38,7 @@ fn law(law: &UnlistedLaw) -> Value {
         "meaning": law.words(),
         "by": law.by(),
         "means": law.means,
+        "nearest": law.nearest.map(|(effect, share)| json!({ "effect": effect, "share": share })),
         "with_sense": law.with_sense,
         "length": formula.map(|_| law.length),
         "heldout_rmse_m": law.left_out[0],

@@ -53,7 +53,9 @@ pub(super) fn learn(
     }
     let known =
         |part: &Part| first.contains(&part.effect.name()) || taken.iter().any(|own| own.effect == part.effect.name());
-    for part in start.parts().iter().filter(|part| !known(part)) {
+    let given: Vec<&Part> = start.parts().iter().filter(|part| !known(part)).collect();
+    let own: Vec<&str> = given.iter().filter(|part| part.free).map(|part| part.effect.name()).collect();
+    for part in given {
         model.adopt(part);
         let fitted = tracks::fit(observed, &model)?;
         add(&mut model, part.effect.name(), None, fitted);
@@ -66,6 +68,15 @@ pub(super) fn learn(
     };
     for step in steps.iter_mut().filter(of_reference) {
         step.class = step.added.map_or(Vec::new(), |effect| tracks::class_of_own(&search.exams[0], effect));
+    }
+    let mut remarks = Vec::new();
+    for index in 1..steps.len() {
+        let before = steps[index - 1].held_out;
+        let step = &mut steps[index];
+        let Some(effect) = step.added.filter(|effect| own.contains(effect)) else { continue };
+        step.class = tracks::class_of_own(&search.exams[0], effect);
+        step.p_adjusted = tracks::p_of_own(&search.exams[0], effect, options);
+        remarks.extend(uncertified(effect, step, &before, options));
     }
     let partial = watch.is_stopped() && search.left.effect.is_some();
     // What was fitted at the beginning is written as it is where nothing was added.
@@ -81,7 +92,25 @@ pub(super) fn learn(
         };
         steps.push(Step { law, ..step_of(written, Some(told)) });
     }
-    Ok(Learnt { partial, ..finish(search, steps, options)? })
+    let learnt = finish(search, steps, options)?;
+    Ok(Learnt { partial, remarks: [remarks, learnt.remarks.clone()].concat(), ..learnt })
+}
+
+/// What is to be said of an effect of the model given where it has not the certificate that one has to have which is added: it may be
+/// nothing, or runs left out are predicted no better with it.
+fn uncertified(effect: &str, step: &Step, before: &Error, options: &Options) -> Option<String> {
+    let p = step.p_adjusted?;
+    let fall = |now: f64, then: f64| 1.0 - now / then;
+    let heading = step.held_out.heading.zip(before.heading).map_or(0.0, |(now, then)| fall(now, then));
+    let gain = fall(step.held_out.position, before.position).max(heading);
+    (p > options.size || gain < LEAST_GAIN).then(|| {
+        format!(
+            "{effect}, of the model given, has no certificate: p = {p:.3}, and runs left out are predicted to {:.1} mm with it, {:.1} mm \
+             without.",
+            1e3 * step.held_out.position,
+            1e3 * before.position
+        )
+    })
 }
 
 /// Those of the first effects of the robot's drive that the runs say anything of, beside what is in a model.

@@ -171,6 +171,9 @@ class UnlistedLaw(Record, frozen=True):
         What it follows, in words.
     means : str or None
         What its length is of the robot or of its path, such as the circumference of a wheel.
+    nearest : Nearest or None
+        The effect of the catalogue that comes nearest to it once it was added, and the share of
+        its response that this makes, as a cosine.
     with_sense : bool
         Whether it turns over with the sense of the run.
     length : int or None
@@ -195,6 +198,7 @@ class UnlistedLaw(Record, frozen=True):
     meaning: str
     by: str
     means: str | None
+    nearest: Nearest | None
     with_sense: bool
     length: int | None
     heldout_rmse_m: float

@@ -6,12 +6,13 @@
 
 use super::examination::{Answer, Examination};
 use super::look::{Finding, rivals};
+use super::repeats::{Repeated, SHAPE, UnlistedLaw};
 use super::responses::{Asked, Question};
 use super::system::Projected;
 use crate::diagnose::experiments::design::{MINUTES_A_RUN, minutes};
 use crate::diagnose::experiments::{best, worth};
 use crate::diagnose::{DiagnoseError, Experiment, Unseen, Why};
-use crate::effect::{Model, ModelError, Number};
+use crate::effect::{Law, Model, ModelError, Number, Part};
 use crate::likelihood::{Noise, ObservedRun, gram};
 use crate::parameter::Parameter;
 use crate::path::{CIRCLE, Direction, FIGURE_EIGHT, Path, SPIN, SQUARE, STRAIGHT, Shape, SpeedProfile, WAYPOINTS};
@@ -19,9 +20,12 @@ use crate::replay::Track;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 /// Runs of a new drive, each way.
 const RUNS: usize = 3;
+/// What laws that cannot be told from the one that is taken are called, as their table has them.
+const LAWS: [&str; 7] = ["law_2", "law_3", "law_4", "law_5", "law_6", "law_7", "law_8"];
 /// What a size below the noise is told from.
 const NOISE: &str = "noise";
 
@@ -40,7 +44,7 @@ struct Doubt {
     separates: [&'static str; 2],
     truth: Vec<usize>,
     values: DVector<f64>,
-    /// Columns of the model and of the rival.
+    /// Columns of the model and of the rival; all of them those of an examination, or of a [`Basis`].
     against: Vec<usize>,
 }
 
@@ -49,7 +53,7 @@ struct Doubt {
 pub fn next(exam: &Examination, certified: &[&Finding], unseen: &[Unseen]) -> Result<Vec<Experiment>, DiagnoseError> {
     let mut doubts: Vec<Doubt> = certified.iter().flat_map(|finding| of_class(exam, finding)).collect();
     doubts.extend(unseen.iter().flat_map(|unseen| of_unseen(exam, unseen)));
-    let mut experiments: Vec<Experiment> = offers(exam, &doubts)?.into_iter().filter_map(best).collect();
+    let mut experiments: Vec<Experiment> = offers_of(exam, &doubts)?.into_iter().filter_map(best).collect();
     experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     Ok(experiments)
 }
@@ -74,30 +78,94 @@ pub fn separating(exam: &Examination, pair: [&'static str; 2]) -> Result<Vec<Exp
         columns.iter().zip(parameters).map(doubt).collect::<Vec<Doubt>>()
     };
     let doubts = [of(asked[0], asked[1]), of(asked[1], asked[0])].concat();
-    let mut experiments = offers(exam, &doubts)?.pop().unwrap_or_default();
+    let mut experiments = offers_of(exam, &doubts)?.pop().unwrap_or_default();
     experiments.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     Ok(experiments)
 }
 
-/// Every drive on offer, for each pair in doubt.
-fn offers(exam: &Examination, doubts: &[Doubt]) -> Result<Vec<Vec<Experiment>>, DiagnoseError> {
+/// Drives that would tell a law from others that these tracks cannot tell from it, the most telling per minute for each: `exam` is of the
+/// model that had none of them yet.
+pub fn of_laws(exam: &Examination, repeated: &Repeated) -> Result<Vec<Experiment>, DiagnoseError> {
+    let mut model = exam.fitted.model.clone();
+    let own_numbers: Vec<Number> = exam.base(None).iter().filter_map(|column| exam.number(*column)).collect();
+    let mut numbers = own_numbers.clone();
+    // The places of the numbers of a law, those that change nothing but its shape left out, and their values.
+    let mut adopt = |law: &UnlistedLaw, name: Option<&'static str>| -> Option<(Vec<usize>, Vec<f64>, &'static str)> {
+        let part = law.model.as_ref()?.parts().first()?.clone();
+        let Law::Formula(formula) = &part.effect else { return None };
+        let effect = name.map_or_else(|| Arc::clone(formula), |name| Arc::new(formula.named(name)));
+        let part = Part { effect: Law::Formula(effect), ..part };
+        model.adopt(&part);
+        let sizes = part.effect.parameters().iter().zip(&part.values).filter(|(parameter, _)| parameter.name != SHAPE);
+        let (mut places, mut values) = (Vec::new(), Vec::new());
+        for (parameter, value) in sizes {
+            places.push(numbers.len());
+            values.push(*value);
+            numbers.push(Number { effect: part.effect.name(), parameter: parameter.name, shape: None });
+        }
+        Some((places, values, part.effect.name()))
+    };
+    let Some((truth, values, own)) = adopt(&repeated.law, None) else { return Ok(Vec::new()) };
+    let alike = repeated.others.iter().enumerate().filter(|(_, other)| other.is_alike());
+    let named = alike.filter_map(|(index, other)| Some((LAWS.get(index)?, other)));
+    let doubt = |(name, other): (&&'static str, &UnlistedLaw)| {
+        let (rival, ..) = adopt(other, Some(name))?;
+        let against = (0..own_numbers.len()).chain(rival).collect();
+        let values = DVector::from_column_slice(&values);
+        Some(Doubt { separates: [own, name], truth: truth.clone(), values, against })
+    };
+    let doubts: Vec<Doubt> = named.filter_map(doubt).collect();
+    if doubts.is_empty() {
+        return Ok(Vec::new());
+    }
+    let derived = model.derived(&numbers)?;
+    let of_run = |run: &ObservedRun| {
+        let made = run.columns_of(&derived, numbers.len());
+        let white = exam.fitted.noise.whiten(run, &made.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        gram(&white.values, white.columns)
+    };
+    let parts: Vec<DMatrix<f64>> = exam.fitted.observed.runs.par_iter().map(of_run).collect();
+    let today = parts.iter().fold(DMatrix::zeros(numbers.len(), numbers.len()), |sum, part| sum + part);
+    let basis = Basis { model: &model, numbers, today };
+    Ok(offers(exam, &basis, &doubts)?.into_iter().filter_map(best).collect())
+}
+
+/// What predicts the drives on offer.
+struct Basis<'a> {
+    model: &'a Model,
+    /// What its columns are derivatives by.
+    numbers: Vec<Number>,
+    /// Products of these columns over today's runs.
+    today: DMatrix<f64>,
+}
+
+/// Every drive on offer, for each pair in doubt by columns of an examination.
+fn offers_of(exam: &Examination, doubts: &[Doubt]) -> Result<Vec<Vec<Experiment>>, DiagnoseError> {
     let mut columns: Vec<usize> = doubts.iter().flat_map(|d| d.truth.iter().chain(&d.against)).copied().collect();
     columns.sort_unstable();
     columns.dedup();
     let today = DMatrix::from_fn(columns.len(), columns.len(), |i, j| exam.system.whole[(columns[i], columns[j])]);
+    let numbers = columns.iter().filter_map(|column| exam.number(*column)).collect();
+    let basis = Basis { model: &exam.fitted.model, numbers, today };
+    let place = |own: &[usize]| own.iter().filter_map(|column| columns.binary_search(column).ok()).collect();
+    let placed = |doubt: &Doubt| Doubt { truth: place(&doubt.truth), against: place(&doubt.against), ..doubt.clone() };
+    offers(exam, &basis, &doubts.iter().map(placed).collect::<Vec<_>>())
+}
+
+/// Every drive on offer, for each pair in doubt by columns of a basis.
+fn offers(exam: &Examination, basis: &Basis, doubts: &[Doubt]) -> Result<Vec<Vec<Experiment>>, DiagnoseError> {
     let drives = drives(exam);
     let told: Vec<DMatrix<f64>> = drives
         .par_iter()
-        .map(|drive| drive.products(exam, &columns).map(|new| &today + new))
+        .map(|drive| drive.products(exam, basis).map(|new| &basis.today + new))
         .collect::<Result<_, _>>()?;
-    let place = |column: &usize| columns.binary_search(column).unwrap_or(0);
     let of_pair = |separates: [&'static str; 2]| {
         let own: Vec<&Doubt> = doubts.iter().filter(|doubt| doubt.separates == separates).collect();
         let offers = drives.iter().zip(&told).map(|(drive, products)| Experiment {
             separates,
             experiment: drive.what.clone(),
             minutes: drive.minutes(exam),
-            sd: own.iter().map(|doubt| doubt.distance(products, place)).fold(f64::INFINITY, f64::min),
+            sd: own.iter().map(|doubt| doubt.distance(products)).fold(f64::INFINITY, f64::min),
         });
         offers.collect()
     };
@@ -152,10 +220,9 @@ fn of_unseen(exam: &Examination, unseen: &Unseen) -> Vec<Doubt> {
 
 impl Doubt {
     /// How far the truth lies from all that the others can predict, in standard deviations.
-    fn distance(&self, products: &DMatrix<f64>, place: impl Fn(&usize) -> usize) -> f64 {
-        let against: Vec<usize> = self.against.iter().map(&place).filter(|c| products[(*c, *c)] > 0.0).collect();
-        let truth: Vec<usize> = self.truth.iter().map(&place).collect();
-        let left = Projected::new(products, &against).information(&truth);
+    fn distance(&self, products: &DMatrix<f64>) -> f64 {
+        let against: Vec<usize> = self.against.iter().copied().filter(|c| products[(*c, *c)] > 0.0).collect();
+        let left = Projected::new(products, &against).information(&self.truth);
         (&left * &self.values).dot(&self.values).max(0.0).sqrt()
     }
 }
@@ -166,12 +233,12 @@ impl Drive {
         runs * (MINUTES_A_RUN + minutes(&self.path, &exam.fitted.observed.robot))
     }
 
-    /// Products of some of the examination's columns over all runs of this drive.
-    fn products(&self, exam: &Examination, columns: &[usize]) -> Result<DMatrix<f64>, ModelError> {
-        let mut sum = DMatrix::zeros(columns.len(), columns.len());
+    /// Products of the columns of a basis over all runs of this drive.
+    fn products(&self, exam: &Examination, basis: &Basis) -> Result<DMatrix<f64>, ModelError> {
+        let mut sum = DMatrix::zeros(basis.numbers.len(), basis.numbers.len());
         for direction in self.directions {
             let track = Track::watched(&self.path, *direction, &exam.fitted.observed.robot);
-            sum += self.of_run(exam, columns, track, *direction)? * RUNS as f64;
+            sum += self.of_run(exam, basis, track, *direction)? * RUNS as f64;
         }
         Ok(sum)
     }
@@ -179,16 +246,15 @@ impl Drive {
     fn of_run(
         &self,
         exam: &Examination,
-        columns: &[usize],
+        basis: &Basis,
         track: Track,
         direction: Direction,
     ) -> Result<DMatrix<f64>, ModelError> {
         let headings = exam.fitted.observed.runs.iter().any(|run| run.blocks.iter().any(|block| block.headings > 0));
-        let model = self.at_start(&exam.fitted.model)?;
+        let model = self.at_start(basis.model)?;
         let run = ObservedRun::planned(track, direction, headings, &model);
         let noise: &Noise = &exam.fitted.noise;
-        let numbers: Vec<Number> = columns.iter().filter_map(|column| exam.number(*column)).collect();
-        let made = run.columns_of(&model.derived(&numbers)?, numbers.len());
+        let made = run.columns_of(&model.derived(&basis.numbers)?, basis.numbers.len());
         let white = noise.whiten(&run, &made.iter().map(Vec::as_slice).collect::<Vec<_>>());
         Ok(gram(&white.values, white.columns))
     }
@@ -260,12 +326,11 @@ mod tests {
         let mut rows = DMatrix::from_fn(20, 5, |_, _| stream.normal());
         rows.column_mut(1).fill(0.0);
         let values = DVector::from_column_slice(&[0.7, -2.0]);
-        let doubt =
-            Doubt { separates: ["a", "b"], truth: vec![13, 14], values: values.clone(), against: vec![10, 11, 12] };
+        let doubt = Doubt { separates: ["a", "b"], truth: vec![3, 4], values: values.clone(), against: vec![0, 1, 2] };
         let against = rows.select_columns(&[0, 2]);
         let response = rows.select_columns(&[3, 4]) * values;
         let left = &response - &against * against.clone().svd(true, true).solve(&response, 1e-12).unwrap();
-        let distance = doubt.distance(&rows.tr_mul(&rows), |column| column - 10);
+        let distance = doubt.distance(&rows.tr_mul(&rows));
         assert!((distance - left.norm()).abs() < 1e-9, "{distance}");
     }
 

@@ -1,6 +1,7 @@
 //! A model grown by an effect that it was missing, fitted without approximation.
 
 use super::examination::Examination;
+use super::repeats::SHAPE;
 use super::{DiagnoseError, Estimate, Suspect, estimates};
 use crate::effect::{Law, Model, Part};
 use crate::likelihood::{Fitted, Noise};
@@ -53,7 +54,7 @@ fn fitted(exam: &Examination, model: &Model, effect: &str) -> Result<Fitted, Dia
 
 /// Whether the lengths, times and thresholds of an effect have the signs with which a fit began: what dies away has not become what grows.
 fn keeps_signs(begun: &Model, fitted: &Model, effect: &str) -> bool {
-    let scale = |model: &Model| model.get(effect, "c");
+    let scale = |model: &Model| model.get(effect, SHAPE);
     scale(begun).zip(scale(fitted)).is_none_or(|(then, now)| then * now > 0.0)
 }
 

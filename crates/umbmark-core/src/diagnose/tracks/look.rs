@@ -2,8 +2,8 @@
 
 use super::examination::{ALIKE, Answer, Examination, worth};
 use super::flips::{Family, Scores};
-use super::responses::Question;
-use super::system::Projected;
+use super::responses::{Asked, Question};
+use super::system::{Projected, Unit};
 use crate::diagnose::{Estimate, Options, Suspect};
 use crate::effect::{Entry, find};
 use crate::stats::f_upper_tail;
@@ -99,8 +99,9 @@ fn look(exam: &Examination, smooths: bool, options: &Options) -> Vec<Finding> {
 /// The p-values of findings that come from the scores of runs, or of quarters of runs where too few runs show a group.
 fn certify(exam: &Examination, findings: &mut [Finding], options: &Options) {
     let few = exam.fitted.observed.runs.len() < ENOUGH_RUNS;
-    let all =
-        |by_quarter: bool| findings.par_iter().map(|finding| scores(exam, finding, by_quarter)).collect::<Vec<_>>();
+    let units = &exam.system.units;
+    let of = |finding: &Finding, by_quarter| scores(units, &finding.projected, &finding.answer.columns, by_quarter);
+    let all = |by_quarter: bool| findings.par_iter().map(|finding| of(finding, by_quarter)).collect::<Vec<_>>();
     let by_run = all(few);
     let by_quarter = if by_run.iter().all(|own| own.carrying() >= ENOUGH_CARRYING) { Vec::new() } else { all(true) };
     let asked = findings.len() as f64;
@@ -127,15 +128,38 @@ pub fn possible(exam: &Examination, finding: &Finding) -> bool {
     })
 }
 
-/// Scores of a group by run or by quarter of a run.
-fn scores(exam: &Examination, finding: &Finding, by_quarter: bool) -> Scores {
-    let columns = &finding.answer.columns;
-    let information = finding.projected.information(columns);
+/// p of an effect that the model has, as if it lacked it and that alone were asked: the greatest of those by F, by the scatter of the runs,
+/// and by flips. `None` where none of its values was fitted, or the others do all that it does.
+pub fn p_of_own(exam: &Examination, effect: &str, options: &Options) -> Option<f64> {
+    let own: Vec<usize> = exam.free.iter().copied().filter(|column| exam.name(*column) == Some(effect)).collect();
+    let values: Vec<f64> = own.iter().map(|column| exam.departure(*column)).collect();
+    let without = exam.system.with_added(&own, &values);
+    let base: Vec<usize> = exam.base(None).into_iter().filter(|column| !own.contains(column)).collect();
+    let projected = Projected::new(&without.whole, &base);
+    let shown: Vec<usize> = own.into_iter().filter(|column| !projected.absorbed(&without.whole, *column)).collect();
+    if shown.is_empty() {
+        return None;
+    }
+    let (drop, step, _) = projected.drop(&shown)?;
+    let residual = without.residual();
+    let q = shown.len() as f64;
+    let spare = without.rows as f64 - base.len() as f64 - q;
+    let f = drop / q / ((projected.products[(residual, residual)] - drop) / spare);
+    let by_run = scores(&without.units, &projected, &shown, exam.fitted.observed.runs.len() < ENOUGH_RUNS);
+    let is_by_few = by_run.carrying() < ENOUGH_CARRYING;
+    let scores = if is_by_few { scores(&without.units, &projected, &shown, true) } else { by_run };
+    let flips = Family::new(std::slice::from_ref(&scores), options.seed).p(&scores);
+    Some(f_upper_tail(f.max(0.0), [q, spare]).max(scores.p_by_units(&step)).max(flips))
+}
+
+/// Scores of a group of columns by run or by quarter of a run.
+fn scores(units: &[Unit], projected: &Projected, columns: &[usize], by_quarter: bool) -> Scores {
+    let information = projected.information(columns);
     let mut scores = Scores { units: Vec::new(), held: Vec::new(), parts: Vec::new(), information };
     let mut before = None;
-    for unit in &exam.system.units {
-        let (score, held) = finding.projected.score(&unit.white, columns);
-        let part = finding.projected.information_of(&unit.white, columns);
+    for unit in units {
+        let (score, held) = projected.score(&unit.white, columns);
+        let part = projected.information_of(&unit.white, columns);
         match (scores.units.last_mut(), scores.held.last_mut(), scores.parts.last_mut()) {
             (Some(units), Some(all), Some(parts)) if !by_quarter && before == Some(unit.run) => {
                 *units += score;
@@ -168,6 +192,22 @@ pub fn class_of_own(exam: &Examination, effect: &'static str) -> Vec<&'static st
     let rivals = alike(exam, find(effect).ok(), (&own, &values), &beside);
     let names = rivals.iter().filter_map(|rival| exam.asked[rival.asked].effect()).map(|rival| rival.about.name);
     std::iter::once(effect).chain(names).collect()
+}
+
+/// The effect of the catalogue that comes nearest to what one of the model does, and the share of it that this makes, as a cosine.
+pub fn nearest(exam: &Examination, effect: &str) -> Option<(&'static str, f64)> {
+    let (own, others): (Vec<usize>, Vec<usize>) = exam
+        .base(None)
+        .into_iter()
+        .partition(|column| exam.free.contains(column) && exam.name(*column) == Some(effect));
+    let values = DVector::from_iterator(own.len(), own.iter().map(|column| exam.departure(*column)));
+    let beside = Projected::new(&exam.system.whole, &others);
+    let effects = exam.asked.iter().enumerate().filter(|(_, asked)| !asked.nuisance);
+    let share = |(index, asked): (usize, &Asked)| {
+        let answer = exam.answer(&beside, &exam.system.whole, index)?;
+        Some((asked.effect()?.about.name, beside.likeness(&own, &values, &answer.columns)))
+    };
+    effects.filter_map(share).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// The effects that can make the response of some columns, `own` not among them: the best shape of each.
@@ -233,9 +273,10 @@ pub fn suspect(exam: &Examination, finding: &Finding) -> Option<Suspect> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::complete;
+    use super::super::tests::{complete, fitted_to, on_grain};
     use super::*;
-    use crate::effect::find;
+    use crate::diagnose::tests::robot_with;
+    use crate::effect::{Formula, Model, Target, find};
     use nalgebra::{DMatrix, DVector};
 
     #[test]
@@ -243,7 +284,8 @@ mod tests {
         let exam = complete();
         let runs = exam.fitted.observed.runs.len();
         for finding in &effects(exam, &Options::default()) {
-            let (by_run, by_quarter) = (scores(exam, finding, false), scores(exam, finding, true));
+            let of = |by_quarter| scores(&exam.system.units, &finding.projected, &finding.answer.columns, by_quarter);
+            let (by_run, by_quarter) = (of(false), of(true));
             assert_eq!((by_run.units.len(), by_quarter.units.len()), (runs, 4 * runs));
             for (run, (score, part)) in by_run.units.iter().zip(&by_run.parts).enumerate() {
                 let own = 4 * run..4 * run + 4;
@@ -267,5 +309,25 @@ mod tests {
         let expected: Vec<bool> = expected.collect();
         assert_eq!(findings.iter().map(|finding| possible(exam, finding)).collect::<Vec<_>>(), expected);
         assert!(expected.contains(&true) && expected.contains(&false), "{expected:?}");
+    }
+
+    /// The wave of a grain is there or is not.
+    #[test]
+    fn an_effect_of_the_model_is_as_certain_as_if_it_were_asked() {
+        let p_on = |truth: &Model| {
+            let mut model = fitted_to(truth).model;
+            let law = Formula::new(
+                "mine",
+                Target::HeadingPerMetre,
+                "a * cos(2 * heading) + b * sin(2 * heading)",
+                &["a", "b"],
+            );
+            model.add_formula(law.unwrap(), &[0.0; 2]).unwrap().free = true;
+            let observed = fitted_to(truth).observed;
+            let exam = Examination::new(super::super::fit(&observed.whole(), &model).unwrap()).unwrap();
+            p_of_own(&exam, "mine", &Options::default()).unwrap()
+        };
+        let (there, not) = (p_on(&on_grain()), p_on(&robot_with(&[])));
+        assert!(there < 0.01 && not > 0.05, "{there} {not}");
     }
 }

@@ -17,6 +17,7 @@ mod signs;
 use super::errors::Errors;
 use super::estimates;
 use super::examination::{ALIKE, Examination};
+use super::look;
 use super::smooth::Motion;
 use super::system::{Projected, System};
 use crate::diagnose::Suspect;
@@ -39,6 +40,8 @@ const AS_LIKELY: f64 = 40.0;
 const SIZE: f64 = 0.01;
 const LOUD: (f64, f64) = (1e-6, 0.1);
 const SIZE_IF_LOUD: f64 = 0.05;
+/// The name of the number that shapes a law: a period, a scale, a threshold.
+pub(super) const SHAPE: &str = "c";
 /// Fewer runs do not show whether it is the same in all.
 const ENOUGH_RUNS: usize = 4;
 /// The same where runs left out are predicted so much better, however wide the noise is: noise that was fitted may be what repeats.
@@ -79,6 +82,8 @@ pub struct UnlistedLaw {
     pub(super) follows: String,
     /// What the length that shapes it is of the robot or of its path: "the circumference of a wheel".
     pub means: Option<String>,
+    /// The effect of the catalogue that comes nearest to it once it is fitted, and the share of its response that this makes, as a cosine.
+    pub nearest: Option<(&'static str, f64)>,
     /// How long its formula is: operations, variables and numbers.
     pub length: usize,
     /// Root mean square error of runs left out \[m\], and with the law.
@@ -162,10 +167,11 @@ impl UnlistedLaw {
     /// The law of this name as it was fitted in a model, and what its length means there.
     pub(super) fn fitted(self, name: &'static str, exam: &Examination) -> UnlistedLaw {
         let model = exam.fitted.model.only(name);
-        let c = estimates(&exam.fitted).into_iter().find(|e| e.effect == name && e.parameter == "c");
+        let c = estimates(&exam.fitted).into_iter().find(|e| e.effect == name && e.parameter == SHAPE);
+        let nearest = look::nearest(exam, name);
         let is_way = self.follows.contains("period of {c} m");
         let means = c.filter(|_| is_way).and_then(|c| lengths::meaning(&exam.fitted.observed, &c));
-        UnlistedLaw { model: Some(model), means, ..self }
+        UnlistedLaw { model: Some(model), means, nearest, ..self }
     }
 }
 
@@ -327,6 +333,7 @@ fn front(
             with_sense: pick.with_sense,
             follows: laws.words(pick.term).to_owned(),
             means: None,
+            nearest: None,
             left_out: [before.position, after.position],
             gain: (after.gain(&before) - (after.position / before.position - 1.0).max(0.0)).max(0.0),
             drop,

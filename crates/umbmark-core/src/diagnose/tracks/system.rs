@@ -6,6 +6,7 @@ use crate::likelihood::{
 };
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use std::ops::AddAssign;
 
 /// A part of a run that is taken as independent of the others.
 #[derive(Clone, Debug)]
@@ -69,6 +70,25 @@ impl System {
         let mut whole = DMatrix::zeros(width, width);
         units.iter().for_each(|unit| whole += &unit.white);
         System { rows: units.iter().map(|unit| unit.rows).sum(), units, width, whole }
+    }
+
+    /// The same columns with a residual to which some of them are added, so many times each.
+    pub fn with_added(&self, columns: &[usize], times: &[f64]) -> System {
+        let residual = self.residual();
+        let added = |products: &DMatrix<f64>| {
+            let mut products = products.clone();
+            for (column, times) in columns.iter().zip(times) {
+                let own = products.column(*column) * *times;
+                products.column_mut(residual).add_assign(&own);
+            }
+            for (column, times) in columns.iter().zip(times) {
+                let own = products.row(*column) * *times;
+                products.row_mut(residual).add_assign(&own);
+            }
+            products
+        };
+        let units = self.units.iter().map(|unit| Unit { white: added(&unit.white), ..unit.clone() }).collect();
+        System { units, whole: added(&self.whole), ..*self }
     }
 
     /// The residual's column.
