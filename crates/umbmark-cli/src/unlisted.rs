@@ -5,7 +5,7 @@ use umbmark_core::diagnose::{Curve, CurvePoint, Dependence, Reason, Repeated, Un
 
 use crate::model_report::p_text;
 use crate::prose::hanging;
-use crate::table::{table, with_precision_of};
+use crate::table::with_precision_of;
 
 /// Characters from the lower to the upper edge of a figure.
 const WIDTH: usize = 41;
@@ -43,27 +43,31 @@ pub fn laws_text(repeated: &Repeated) -> String {
     if !alike.is_empty() {
         text += &hanging("alike", 10, &format!("these runs cannot tell it from: {}", alike.join("; ")));
     }
-    if let Some((effect, share)) = repeated.law.nearest {
-        let said = format!("{effect} is the nearest effect of the catalogue, and makes {:.0} % of it", 100.0 * share);
+    if let Some((effect, share)) = repeated.law.nearest.filter(|(_, share)| *share >= NEAR) {
+        let said = format!("{effect} of the catalogue comes nearest, and makes {:.0} % of it", 100.0 * share);
         text += &hanging("nearest", 10, &said);
     }
-    let row = |(number, law): (usize, &UnlistedLaw)| {
+    text += "\n --law  left out [mm]  length  formula\n";
+    let laws = std::iter::once(&repeated.law).chain(&repeated.others).take(MOST_SHOWN);
+    for (number, law) in laws.enumerate() {
         let length = if law.model.is_some() { law.length.to_string() } else { "-".to_owned() };
-        vec![format!("{:<2} {}", number + 1, formula_of(law)), length, format!("{:.1}", 1e3 * law.left_out[1])]
-    };
-    let laws = std::iter::once(&repeated.law).chain(&repeated.others).take(MOST_SHOWN).enumerate();
-    text +=
-        &format!("\n{}\n", table(&["laws tried (--law N takes another)", "length", "left out [mm]"], laws.map(row)));
+        let head = format!("{:>6}  {:>13.1}  {length:>6}", number + 1, 1e3 * law.left_out[1]);
+        text += &hanging(&head, 31, &formula_of(law));
+    }
     text
 }
 
+/// An effect of the catalogue that makes less than this share of a law is not near.
+const NEAR: f64 = 0.5;
 /// So many laws are shown.
 const MOST_SHOWN: usize = 8;
 
-/// A law as a formula, or in words.
+/// A law as a formula with the number that shapes it, or in words.
 fn formula_of(law: &UnlistedLaw) -> String {
-    let formula = law.model.as_ref().and_then(|model| model.parts().first()?.effect.formula());
-    formula.map_or_else(|| law.words(), |formula| format!("{} = {}", formula.target().name(), formula.text()))
+    let part = law.model.as_ref().and_then(|model| model.parts().first());
+    let Some(formula) = part.and_then(|part| part.effect.formula()) else { return law.words() };
+    let shape = law.shape().map_or_else(String::new, |shape| format!(", c = {shape}"));
+    format!("{} = {}{shape}", formula.target().name(), formula.text())
 }
 
 /// The law that repeats as a formula, where it counts and can be written as one.

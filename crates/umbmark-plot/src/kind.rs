@@ -3,6 +3,7 @@
 mod circle;
 mod confusability;
 mod correlations;
+mod laws;
 mod learning;
 mod monte_carlo;
 mod parameters;
@@ -29,7 +30,7 @@ pub struct Kind {
 }
 
 /// All kinds, in the order of a report.
-pub const KINDS: [Kind; 15] = [
+pub const KINDS: [Kind; 16] = [
     Kind {
         name: "return_errors",
         about: "return errors, centres of gravity, E_max,sys: the paper's Fig. 5",
@@ -52,6 +53,7 @@ pub const KINDS: [Kind; 15] = [
         build: residuals::by_heading,
     },
     Kind { name: "learning", about: "the error falling as effects are added", build: learning::figure },
+    Kind { name: "laws", about: "laws that no catalogue lists: error left out against length", build: laws::figure },
     Kind { name: "confusability", about: "which effects look alike in these runs", build: confusability::figure },
     Kind { name: "parameters", about: "the model's numbers with their intervals", build: parameters::figure },
     Kind { name: "correlations", about: "how far the model's numbers are tied", build: correlations::figure },

@@ -103,6 +103,13 @@ impl UnlistedLaw {
         self.likeness > ALIKE
     }
 
+    /// The number that shapes it, with three digits: a period, a scale, a threshold.
+    pub fn shape(&self) -> Option<String> {
+        let part = self.model.as_ref()?.parts().first()?;
+        let mut numbers = part.effect.parameters().iter().zip(&part.values);
+        numbers.find(|(parameter, _)| parameter.name == SHAPE).map(|(_, value)| three_digits(*value))
+    }
+
     /// What it follows, in words: "a wave of the time with a period of 18.9 s".
     pub fn by(&self) -> String {
         let part = self.model.as_ref().and_then(|model| model.parts().first());

@@ -1,0 +1,124 @@
+//! Laws that no catalogue lists: error left out against length.
+
+use umbmark_core::diagnose::{Repeated, UnlistedLaw};
+use umbmark_core::learn::Learnt;
+
+use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
+use crate::kind::p_is;
+use crate::study::{Absent, Study};
+use crate::tone::Tone;
+
+const MM: f64 = 1e3;
+/// Laws by which the error rises beyond so many times that without are not drawn.
+const HIGHEST: f64 = 1.2;
+/// Numbers stand so far apart, in lengths and in shares of the height, and so far to the right of their marks.
+const APART: (f64, f64) = (1.2, 0.05);
+const BESIDE: f64 = 0.3;
+
+pub(super) fn figure(study: &Study) -> Result<Figure, Absent> {
+    let learnt = study.learnt()?;
+    let laws = added(learnt);
+    if laws.is_empty() {
+        return Err(Absent("No law that the catalogue does not list was added.".into()));
+    }
+    Ok(Figure {
+        kind: "laws",
+        title: "Laws that were tried".into(),
+        told: told(&laws),
+        panels: laws.iter().map(|(name, repeated)| panel(name, repeated)).collect(),
+        table: table(&laws),
+    })
+}
+
+/// Steps of which a law was added, with their names.
+fn added(learnt: &Learnt) -> Vec<(&'static str, &Repeated)> {
+    learnt.steps.iter().filter_map(|step| Some((step.added?, step.law.as_deref()?))).collect()
+}
+
+/// The law that was taken and the others, each with its number.
+fn tried(repeated: &Repeated) -> impl Iterator<Item = (usize, &UnlistedLaw)> {
+    std::iter::once(&repeated.law).chain(&repeated.others).enumerate().map(|(index, law)| (index + 1, law))
+}
+
+fn panel(name: &str, repeated: &Repeated) -> Panel {
+    let before = repeated.law.left_out[0];
+    let most = HIGHEST * before;
+    let shown: Vec<(usize, &UnlistedLaw)> =
+        tried(repeated).filter(|(_, law)| law.model.is_some() && law.left_out[1] <= most).collect();
+    let place = |law: &UnlistedLaw| [law.length as f64, MM * law.left_out[1]];
+    let longest = shown.iter().map(|(_, law)| law.length).max().unwrap_or(1) as f64 + 4.0;
+    let said = shown.iter().map(|(number, law)| format!("{number}: {}, {:.1} mm", law.words(), MM * law.left_out[1]));
+    let mut labels: Vec<(String, [f64; 2])> = Vec::new();
+    for (number, law) in &shown {
+        let [x, y] = place(law);
+        if labels.iter().all(|(_, [u, v])| (x - u).abs() > APART.0 || (y - v).abs() > APART.1 * MM * most) {
+            labels.push((number.to_string(), [x, y]));
+        }
+    }
+    let (labels, beside): (Vec<String>, Vec<[f64; 2]>) = labels.into_iter().unzip();
+    let layers = vec![
+        Layer::new("without a law", Tone::Quiet, Mark::Dashes, [[0.0, MM * before], [longest, MM * before]]),
+        Layer::new("least error of a law as short", Tone::Model, Mark::Line, front(&shown, longest)),
+        Layer::new("laws", Tone::Computed, Mark::Rings, shown.iter().map(|(_, law)| place(law))).saying(said.collect()),
+        Layer::new("the law that was taken", Tone::Model, Mark::Dots, [place(&repeated.law)]),
+        Layer::new("", Tone::Quiet, Mark::Words(labels), beside.into_iter().map(|[x, y]| [x + BESIDE, y])),
+    ];
+    Panel {
+        title: name.to_owned(),
+        x: Axis::of("length of the formula").from_to(0.0, longest),
+        y: Axis::of("error of runs left out [mm]").from_to(0.0, 1.05 * MM * most),
+        equal: false,
+        layers,
+    }
+}
+
+/// The least error among laws that are no longer than each, as stairs.
+fn front(shown: &[(usize, &UnlistedLaw)], longest: f64) -> Vec<[f64; 2]> {
+    let mut sorted: Vec<&UnlistedLaw> = shown.iter().map(|(_, law)| *law).collect();
+    sorted.sort_by(|a, b| a.length.cmp(&b.length).then(a.left_out[1].total_cmp(&b.left_out[1])));
+    let mut stairs: Vec<[f64; 2]> = Vec::new();
+    for law in sorted {
+        let (length, error) = (law.length as f64, MM * law.left_out[1]);
+        match stairs.last().copied() {
+            Some([_, least]) if least <= error => {}
+            Some([_, least]) => stairs.extend([[length, least], [length, error]]),
+            None => stairs.push([length, error]),
+        }
+    }
+    stairs.extend(stairs.last().map(|[_, least]| [longest, *least]));
+    stairs
+}
+
+fn told(laws: &[(&'static str, &Repeated)]) -> Told {
+    let one = |(name, repeated): &(&str, &Repeated)| {
+        let [before, after] = repeated.law.left_out.map(|error| MM * error);
+        let law = repeated.law.words();
+        format!("{name}: {law} ({}; runs left out {before:.1} to {after:.1} mm).", p_is(repeated.p))
+    };
+    Told {
+        shows: "The error of runs left out with each law that was tried, by the length of its formula: operations, variables and numbers. \
+                The numbers are those of `umbmark learn --law`."
+            .into(),
+        good: "One short law far below the rest. Where several are as low, the shortest is taken, and a drive that tells them apart is \
+               worth more than their order."
+            .into(),
+        says: laws.iter().map(one).collect::<Vec<_>>().join(" "),
+    }
+}
+
+fn table(laws: &[(&'static str, &Repeated)]) -> Table {
+    let rows = laws.iter().flat_map(|(name, repeated)| {
+        tried(repeated).map(move |(number, law)| {
+            let formula = law.model.as_ref().and_then(|model| model.parts().first()?.effect.formula());
+            [
+                (*name).to_owned(),
+                number.to_string(),
+                formula
+                    .map_or_else(|| law.words(), |formula| format!("{} = {}", formula.target().name(), formula.text())),
+                formula.map_or("–".into(), |_| law.length.to_string()),
+                format!("{:.1}", MM * law.left_out[1]),
+            ]
+        })
+    });
+    Table::new(["added as", "law", "formula", "length", "left out [mm]"], rows)
+}
