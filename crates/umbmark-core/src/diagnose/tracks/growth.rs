@@ -9,6 +9,8 @@ use std::sync::Arc;
 
 /// A shape (a length, a threshold) is fitted where its size stands out by so many standard errors.
 const SHOWN: f64 = 8.0;
+/// Its size still stands out by so many once they are fitted along; else they keep their values.
+const SURE: f64 = 4.0;
 
 /// The model of an examination with a suspect more, fitted: its sizes first, then its shapes too where its size stands out.
 pub(crate) fn grown(exam: &Examination, suspect: &Suspect) -> Result<Fitted, DiagnoseError> {
@@ -49,7 +51,15 @@ fn fitted(exam: &Examination, model: &Model, effect: &str) -> Result<Fitted, Dia
     let both = Fitted { taken: taken(), ..observed.fit(&sized.model, &sized.noise, &[])? };
     let determined = estimates(&both).iter().all(|e| e.standard_error.is_finite());
     let allowed = observed.tracks().all(|track| track.check(&both.model).is_ok());
-    Ok(if determined && allowed && keeps_signs(model, &both.model, effect) { both } else { sized })
+    // Where a shape can take a size's place (how far off the way a bump lies), neither is known.
+    let sure = estimates(&both).iter().any(|e| e.effect == effect && is_size(e) && departs(&both.model, e) > SURE);
+    Ok(if determined && allowed && sure && keeps_signs(model, &both.model, effect) { both } else { sized })
+}
+
+/// How many standard errors a size is from nothing.
+fn departs(model: &Model, e: &Estimate) -> f64 {
+    let nothing = model.place_of(e.effect, e.parameter).and_then(|place| model.nothing(place));
+    nothing.map_or(0.0, |nothing| ((e.value - nothing) / e.standard_error).abs())
 }
 
 /// Whether the lengths, times and thresholds of an effect have the signs with which a fit began: what dies away has not become what grows.

@@ -12,6 +12,7 @@
 
 mod laws;
 mod lengths;
+mod shaping;
 mod signs;
 
 use super::errors::Errors;
@@ -201,11 +202,24 @@ pub(super) fn suspect(repeated: &Repeated, name: &'static str, exam: &Examinatio
 }
 
 /// A law that is tried: its term, which motion it acts on, and whether it turns over with the sense of the run.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Pick {
     term: usize,
+    /// The numbers that shape it.
+    shapes: Vec<f64>,
     motion: usize,
     with_sense: bool,
+}
+
+impl Pick {
+    /// The columns of its term, and of its twin, in a run: for each of some numbers that shape it.
+    fn columns(&self, shapes: &[&[f64]], run: &ObservedRun, laws: &Laws, steps: &[Step]) -> Vec<Column> {
+        let sense = if self.with_sense { sense_of(run) } else { 1.0 };
+        let shaped = shapes.iter().flat_map(|by| laws.both(self.term).map(move |term| (term, *by)));
+        let columns = laws.shaped_columns(&shaped.collect::<Vec<_>>(), run, steps);
+        let own = columns.into_iter().skip(self.motion).step_by(Motion::ALL.len());
+        own.map(|column| column.into_iter().map(|c| c.map(|value| sense * value)).collect()).collect()
+    }
 }
 
 /// Looks for what repeats beside a model under a noise. `own` holds, run by run, the columns that are fitted along and last the residual.
@@ -229,7 +243,8 @@ pub(super) fn look(
     drop(sums);
     let asked: Vec<&Asked> = std::iter::once(&plain).chain(&turned).collect();
     let p = p_of_all(&asked, seed)?;
-    let (picks, square) = picks(&asked, &laws);
+    let (mut picks, square) = picks(&asked, &laws);
+    shaping::shape(&mut picks, (observed, noise, own), &laws, &steps);
     let mut front = front(observed, noise, own, &laws, &steps, &picks);
     if front.is_empty() {
         return None;
@@ -268,7 +283,7 @@ fn picks(asked: &[&Asked], laws: &Laws) -> (Vec<Pick>, f64) {
                 greatest = greatest.max(of(term)).max(twin);
                 if about.twin.is_none_or(|twin| twin > term) {
                     let worth = of(term) + twin - 3.0 * laws.numbers(term) as f64;
-                    all.push((worth, Pick { term, motion, with_sense: group > 0 }));
+                    all.push((worth, Pick { term, shapes: Vec::new(), motion, with_sense: group > 0 }));
                 }
             }
         }
@@ -281,7 +296,7 @@ fn picks(asked: &[&Asked], laws: &Laws) -> (Vec<Pick>, f64) {
         let known = shapes.iter().filter(|known| **known == shape).count();
         if picks.len() < TRIED && known < OF_A_SHAPE && (worth > 0.0 || picks.is_empty()) {
             shapes.push(shape);
-            picks.push(pick);
+            picks.push(Pick { shapes: laws.shapes(pick.term), ..pick });
         }
     }
     (picks, greatest)
@@ -297,15 +312,9 @@ fn front(
     steps: &[Vec<Step>],
     picks: &[Pick],
 ) -> Vec<UnlistedLaw> {
-    let terms = |pick: &Pick| std::iter::once(pick.term).chain(laws.terms[pick.term].twin).collect::<Vec<_>>();
     let of_run = |((run, own), steps): ((&ObservedRun, &Vec<Column>), &Vec<Step>)| {
         let (residual, base) = own.split_last().map_or((Column::new(), own.as_slice()), |(r, b)| (r.clone(), b));
-        let laws = picks.iter().flat_map(|pick| {
-            let sense = if pick.with_sense { sense_of(run) } else { 1.0 };
-            let columns = laws.columns(&terms(pick), run, steps);
-            let own = columns.into_iter().skip(pick.motion).step_by(Motion::ALL.len());
-            own.map(move |column| column.into_iter().map(|c| c.map(|value| sense * value)).collect::<Column>())
-        });
+        let laws = picks.iter().flat_map(|pick| pick.columns(&[&pick.shapes], run, laws, steps));
         base.iter().cloned().chain(laws).chain([residual]).collect()
     };
     let columns: Vec<Vec<Column>> = observed.runs.iter().zip(own).zip(steps).map(of_run).collect();
@@ -322,14 +331,14 @@ fn front(
     let mut next = base.len();
     let mut tried: Vec<(UnlistedLaw, Vec<[f64; 3]>, Vec<usize>)> = Vec::new();
     for pick in picks {
-        let terms = terms(pick);
-        let own: Vec<usize> = (next..next + terms.len()).collect();
-        next += terms.len();
+        let own: Vec<usize> = (next..next + laws.both(pick.term).count()).collect();
+        next += own.len();
         let Some((drop, sizes, _)) = projected.drop(&own) else { continue };
         let squares = left_out(&own);
         let after = errors.misses_of(&squares);
         let motion = Motion::ALL[pick.motion];
-        let model = laws.model(pick.term, sizes.as_slice(), motion, pick.with_sense, &observed.robot);
+        let (numbers, how) = ((sizes.as_slice(), &pick.shapes[..]), (motion, pick.with_sense));
+        let model = laws.model(pick.term, numbers, how, &observed.robot);
         let model = model.filter(|law| observed.tracks().all(|track| track.check(law).is_ok()));
         let formula = model.as_ref().and_then(|model| model.parts().first()?.effect.formula());
         let law = UnlistedLaw {
@@ -466,7 +475,10 @@ mod tests {
             }
             for (which, motion) in Motion::ALL.into_iter().enumerate() {
                 let sizes = vec![0.0; terms.len()];
-                let Some(formula) = laws.model(term, &sizes, motion, false, &observed.robot) else { continue };
+                let Some(formula) = laws.model(term, (&sizes, &laws.shapes(term)), (motion, false), &observed.robot)
+                else {
+                    continue;
+                };
                 written += 1;
                 let numbers: Vec<usize> = (0..sizes.len()).collect();
                 let derivatives = observed.columns(&formula, &numbers);

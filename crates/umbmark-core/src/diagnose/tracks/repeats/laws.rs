@@ -1,6 +1,7 @@
 //! The laws that are asked about: functions of how and where the robot drives, for each second, metre or radian.
 
 use super::super::smooth::Motion;
+use super::SHAPE;
 use crate::drive::Robot;
 use crate::effect::{Chain, Formula, Model, Target};
 use crate::geometry::{Displacement2, Pose2};
@@ -143,8 +144,12 @@ struct Function {
     words: String,
     /// The same as a formula.
     formula: Written,
-    value: Box<dyn Fn(&Step) -> f64 + Send + Sync>,
+    /// Of a step and of the numbers that shape it, in the order of the formula's.
+    value: Box<Value>,
 }
+
+/// A number for a step and the numbers that shape a function.
+type Value = dyn Fn(&Step, &[f64]) -> f64 + Send + Sync;
 
 /// A formula of the user's own, and the parameters that shape it, with start values.
 type Written = (String, Vec<(&'static str, f64)>);
@@ -156,7 +161,7 @@ fn written(text: impl Into<String>) -> Written {
 
 /// A formula of a parameter c.
 fn shaped(text: &str, c: f64) -> Written {
-    (text.to_owned(), vec![("c", c)])
+    (text.to_owned(), vec![(SHAPE, c)])
 }
 
 /// What is above c counts, what is below does not, and about c it passes from the one to the other: a place where it jumps could not be fitted.
@@ -233,6 +238,12 @@ struct Extent {
     edges: [f64; 8],
 }
 
+/// How far along a direction in the room a step is \[m\].
+fn along(step: &Step, direction: f64) -> f64 {
+    let (sine, cosine) = libm::sincos(direction);
+    step.middle.x * cosine + step.middle.y * sine
+}
+
 /// One of eight directions in the room \[rad\].
 fn direction(k: usize) -> f64 {
     TAU * k as f64 / 8.0
@@ -253,9 +264,7 @@ impl Extent {
             acceleration: most(|s| s.acceleration.abs()),
             turn_acceleration: most(|s| s.turn_acceleration.abs()),
             edges: std::array::from_fn(|k| {
-                let (sine, cosine) = libm::sincos(direction(k));
-                let along = |s: &Step| s.middle.x * cosine + s.middle.y * sine;
-                steps.iter().flatten().map(along).fold(f64::INFINITY, f64::min)
+                steps.iter().flatten().map(|s| along(s, direction(k))).fold(f64::INFINITY, f64::min)
             }),
             low: [least(|s| s.middle.x), least(|s| s.middle.y)],
             high: [most(|s| s.middle.x), most(|s| s.middle.y)],
@@ -294,6 +303,17 @@ impl Laws {
         per: &[Per],
         value: impl Fn(&Step) -> f64 + Send + Sync + 'static,
     ) {
+        self.add_shaped(words, formula, per, move |step, _| value(step));
+    }
+
+    /// The same of a function with numbers that shape it.
+    fn add_shaped(
+        &mut self,
+        words: String,
+        formula: Written,
+        per: &[Per],
+        value: impl Fn(&Step, &[f64]) -> f64 + Send + Sync + 'static,
+    ) {
         let function = self.functions.len();
         self.functions.push(Function { words, formula, value: Box::new(value) });
         self.terms.extend(per.iter().map(|per| Term { function, per: *per, twin: None }));
@@ -306,13 +326,13 @@ impl Laws {
         (size_text, angle_text, value): (&str, &str, Option<f64>),
         per: &[Per],
         size: impl Fn(&Step) -> f64 + Copy + Send + Sync + 'static,
-        angle: impl Fn(&Step) -> f64 + Copy + Send + Sync + 'static,
+        angle: impl Fn(&Step, &[f64]) -> f64 + Copy + Send + Sync + 'static,
     ) {
         let first = self.terms.len();
-        let shapes: Vec<_> = value.map(|c| ("c", c)).into_iter().collect();
+        let shapes: Vec<_> = value.map(|c| (SHAPE, c)).into_iter().collect();
         let formula = |wave: &str| (format!("{size_text}{wave}({angle_text})"), shapes.clone());
-        self.add(words.clone(), formula("cos"), per, move |s| size(s) * libm::cos(angle(s)));
-        self.add(words, formula("sin"), per, move |s| size(s) * libm::sin(angle(s)));
+        self.add_shaped(words.clone(), formula("cos"), per, move |s, by| size(s) * libm::cos(angle(s, by)));
+        self.add_shaped(words, formula("sin"), per, move |s, by| size(s) * libm::sin(angle(s, by)));
         self.join(first, per.len());
     }
 
@@ -322,19 +342,19 @@ impl Laws {
         for period in periods(TIMES, extent.time) {
             let words = "a wave of the time with a period of {c} s".to_owned();
             let about = ("", "2 * pi * time / c", Some(period));
-            self.wave(words, about, &[Second, Metre], |_| 1.0, move |s| TAU * s.time / period);
+            self.wave(words, about, &[Second, Metre], |_| 1.0, |s, by| TAU * s.time / by[0]);
         }
         for period in periods(WAYS, extent.distance) {
             let words = "a wave of the way with a period of {c} m".to_owned();
             let about = ("", "2 * pi * distance / c", Some(period));
-            self.wave(words, about, &[Metre], |_| 1.0, move |s| TAU * s.distance / period);
+            self.wave(words, about, &[Metre], |_| 1.0, |s, by| TAU * s.distance / by[0]);
         }
         for c in DECAYS {
-            self.add(
+            self.add_shaped(
                 "what dies away within {c} s of the start".into(),
                 shaped("exp(-time / c)", c),
                 &[Second, Metre],
-                move |s| libm::exp(-s.time / c),
+                |s, by| libm::exp(-s.time / by[0]),
             );
         }
         self.add("the time in the run".into(), written("time"), &[Second, Metre], |s| s.time);
@@ -345,16 +365,16 @@ impl Laws {
             let n = f64::from(n);
             let words = format!("a wave of {times}the heading");
             let about = angle("heading");
-            self.wave(words, ("", &about, None), &[Second, Metre, Radian], |_| 1.0, move |s| n * s.middle.heading);
+            self.wave(words, ("", &about, None), &[Second, Metre, Radian], |_| 1.0, move |s, _| n * s.middle.heading);
             for (wheel, name) in ["left", "right"].into_iter().enumerate() {
                 let words = format!("a wave of {times}the angle of the {name} wheel");
                 let about = angle(&format!("wheel_angle_{name}"));
-                self.wave(words, ("", &about, None), &[Metre], |_| 1.0, move |s| n * s.wheel_angle[wheel]);
+                self.wave(words, ("", &about, None), &[Metre], |_| 1.0, move |s, _| n * s.wheel_angle[wheel]);
             }
             if n < 3.0 {
                 let words = format!("the speed times a wave of {times}the heading");
                 let about = ("abs(speed) * ", &*about, None);
-                self.wave(words, about, &[Metre], |s| s.speed.abs(), move |s| n * s.middle.heading);
+                self.wave(words, about, &[Metre], |s| s.speed.abs(), move |s, _| n * s.middle.heading);
             }
         }
         self.of_motion(extent);
@@ -370,28 +390,37 @@ impl Laws {
         self.add("the root of the speed".into(), written("sqrt(abs(speed))"), &[Metre], |s| s.speed.abs().sqrt());
         for share in SHARES {
             let v = share * fastest;
-            self.add("a speed above {c} m/s".into(), shaped(&above("abs(speed)"), v), &[Metre], move |s| {
-                beyond(s.speed.abs(), v)
+            self.add_shaped("a speed above {c} m/s".into(), shaped(&above("abs(speed)"), v), &[Metre], |s, by| {
+                beyond(s.speed.abs(), by[0])
             });
-            self.add("the speed beyond {c} m/s".into(), shaped("max(abs(speed) - c, 0)", v), &[Metre], move |s| {
-                (s.speed.abs() - v).max(0.0)
-            });
-            self.add("tanh(speed / {c} m/s)".into(), shaped("tanh(abs(speed) / c)", v), &[Metre], move |s| {
-                libm::tanh(s.speed.abs() / v)
+            self.add_shaped(
+                "the speed beyond {c} m/s".into(),
+                shaped("max(abs(speed) - c, 0)", v),
+                &[Metre],
+                |s, by| (s.speed.abs() - by[0]).max(0.0),
+            );
+            self.add_shaped("tanh(speed / {c} m/s)".into(), shaped("tanh(abs(speed) / c)", v), &[Metre], |s, by| {
+                libm::tanh(s.speed.abs() / by[0])
             });
             let w = share * quickest;
-            self.add("a turn rate above {c} rad/s".into(), shaped(&above("abs(turn_rate)"), w), &[Radian], move |s| {
-                beyond(s.turn_rate.abs(), w)
-            });
-            self.add(
+            self.add_shaped(
+                "a turn rate above {c} rad/s".into(),
+                shaped(&above("abs(turn_rate)"), w),
+                &[Radian],
+                |s, by| beyond(s.turn_rate.abs(), by[0]),
+            );
+            self.add_shaped(
                 "a turn rate above {c} rad/s, with its sense".into(),
                 shaped(&format!("sign(turn_rate) * {}", above("abs(turn_rate)")), w),
                 &[Radian],
-                move |s| s.turn_rate.signum() * beyond(s.turn_rate.abs(), w),
+                |s, by| s.turn_rate.signum() * beyond(s.turn_rate.abs(), by[0]),
             );
-            self.add("tanh(turn rate / {c} rad/s)".into(), shaped("tanh(turn_rate / c)", w), &[Second], move |s| {
-                libm::tanh(s.turn_rate / w)
-            });
+            self.add_shaped(
+                "tanh(turn rate / {c} rad/s)".into(),
+                shaped("tanh(turn_rate / c)", w),
+                &[Second],
+                |s, by| libm::tanh(s.turn_rate / by[0]),
+            );
         }
         self.add("the sense of the turn".into(), written("sign(turn_rate)"), &[Radian], |s| s.turn_rate.signum());
         self.add("the turn rate".into(), written("turn_rate"), &[Radian], |s| s.turn_rate);
@@ -416,17 +445,17 @@ impl Laws {
         self.add("the size of the acceleration".into(), written("abs(acceleration)"), &[Second, Metre], |s| {
             s.acceleration.abs()
         });
-        self.add(
+        self.add_shaped(
             "braking by more than {c} m/s²".into(),
             shaped(&above("-acceleration * sign(speed)"), sharp),
             &[Second, Metre],
-            move |s| beyond(-s.acceleration * s.speed.signum(), sharp),
+            |s, by| beyond(-s.acceleration * s.speed.signum(), by[0]),
         );
-        self.add(
+        self.add_shaped(
             "speeding up by more than {c} m/s²".into(),
             shaped(&above("acceleration * sign(speed)"), sharp),
             &[Second, Metre],
-            move |s| beyond(s.acceleration * s.speed.signum(), sharp),
+            |s, by| beyond(s.acceleration * s.speed.signum(), by[0]),
         );
         let sharp = 0.25 * extent.turn_acceleration;
         self.add("the change of the turn rate".into(), written("turn_acceleration"), &[Second], |s| {
@@ -435,31 +464,31 @@ impl Laws {
         self.add("the size of the change of the turn rate".into(), written("abs(turn_acceleration)"), &[Second], |s| {
             s.turn_acceleration.abs()
         });
-        self.add(
+        self.add_shaped(
             "turns that grow by more than {c} rad/s², with their sense".into(),
             shaped(&format!("sign(turn_rate) * {}", above("turn_acceleration * sign(turn_rate)")), sharp),
             &[Second],
-            move |s| s.turn_rate.signum() * beyond(s.turn_acceleration * s.turn_rate.signum(), sharp),
+            |s, by| s.turn_rate.signum() * beyond(s.turn_acceleration * s.turn_rate.signum(), by[0]),
         );
-        self.add(
+        self.add_shaped(
             "turns that end by more than {c} rad/s², with their sense".into(),
             shaped(&format!("sign(turn_rate) * {}", above("-turn_acceleration * sign(turn_rate)")), sharp),
             &[Second],
-            move |s| s.turn_rate.signum() * beyond(-s.turn_acceleration * s.turn_rate.signum(), sharp),
+            |s, by| s.turn_rate.signum() * beyond(-s.turn_acceleration * s.turn_rate.signum(), by[0]),
         );
         self.add("the sense of the last turn".into(), written("last_turn"), &[Metre], |s| s.last_turn);
         for c in NEAR {
-            self.add(
+            self.add_shaped(
                 "what dies away within {c} m of a turn".into(),
                 shaped("exp(-since_turn / c)", c),
                 &[Metre],
-                move |s| libm::exp(-s.since_turn / c),
+                |s, by| libm::exp(-s.since_turn / by[0]),
             );
-            self.add(
+            self.add_shaped(
                 "what dies away within {c} m of a turn, with its sense".into(),
                 shaped("last_turn * exp(-since_turn / c)", c),
                 &[Metre],
-                move |s| s.last_turn * libm::exp(-s.since_turn / c),
+                |s, by| s.last_turn * libm::exp(-s.since_turn / by[0]),
             );
         }
     }
@@ -473,50 +502,48 @@ impl Laws {
         }
         self.pair("the place in the room, along a line", ["x", "y"], &[Metre, Second], |s| [s.middle.x, s.middle.y]);
         for k in 0..4 {
-            let (sine, cosine) = libm::sincos(direction(k));
             let (from, to) = (extent.edges[k], -extent.edges[k + 4]);
             for d in [from, 0.5 * (from + to), to] {
-                self.add(
+                self.add_shaped(
                     "the square of the distance from a line in the room".into(),
                     ("(x * cos(h) + y * sin(h) - d)^2".to_owned(), vec![("d", d), ("h", direction(k))]),
                     &[Metre],
-                    move |s| (s.middle.x * cosine + s.middle.y * sine - d).powi(2),
+                    |s, by| (along(s, by[1]) - by[0]).powi(2),
                 );
             }
         }
         for (k, edge) in extent.edges.iter().copied().enumerate() {
             let towards = direction(k);
-            let (sine, cosine) = libm::sincos(towards);
             for c in NEAR {
-                self.add(
+                self.add_shaped(
                     format!(
                         "what dies away within {{c}} m of the edge of the room at {:.0} deg",
                         towards.to_degrees() - 180.0
                     ),
                     (format!("exp(-(x * cos(h) + y * sin(h) - {edge:.3}) / c)"), vec![("c", c), ("h", towards)]),
                     &[Metre],
-                    move |s| libm::exp(-(s.middle.x * cosine + s.middle.y * sine - edge) / c),
+                    move |s, by| libm::exp(-(along(s, by[1]) - edge) / by[0]),
                 );
             }
         }
         let apart = HUMPS.0.max((wide * deep / HUMPS.1 as f64).sqrt()).max(wide.max(deep) / HUMPS.1 as f64);
-        let along = |from: f64, length: f64| {
+        let grid = |from: f64, length: f64| {
             let count = (length / apart).floor() as usize;
             let margin = 0.5 * (length - count as f64 * apart);
             (0..=count).map(move |k| from + margin + k as f64 * apart)
         };
-        for x in along(x0, wide) {
-            for y in along(y0, deep) {
-                self.add(
+        for x in grid(x0, wide) {
+            for y in grid(y0, deep) {
+                self.add_shaped(
                     "a place on the floor near ({p}, {q}) m, {c} m wide".to_owned(),
                     (
                         "exp(-((x - p)^2 + (y - q)^2) / (2 * c^2))".to_owned(),
                         vec![("c", 0.6 * apart), ("p", x), ("q", y)],
                     ),
                     &[Metre],
-                    move |s| {
-                        let square = (s.middle.x - x).powi(2) + (s.middle.y - y).powi(2);
-                        libm::exp(-0.5 * square / (0.6 * apart).powi(2))
+                    |s, by| {
+                        let square = (s.middle.x - by[1]).powi(2) + (s.middle.y - by[2]).powi(2);
+                        libm::exp(-0.5 * square / (by[0] * by[0]))
                     },
                 );
             }
@@ -573,8 +600,29 @@ impl Laws {
         1 + usize::from(self.terms[term].twin.is_some()) + shapes
     }
 
-    /// A model that holds a term alone, and its twin, with these sizes: for each motion, with the sense of the run or without.
-    pub fn model(&self, term: usize, sizes: &[f64], motion: Motion, with_sense: bool, robot: &Robot) -> Option<Model> {
+    /// The numbers that shape a term, as it was asked about.
+    pub fn shapes(&self, term: usize) -> Vec<f64> {
+        self.functions[self.terms[term].function].formula.1.iter().map(|shape| shape.1).collect()
+    }
+
+    /// Which of these numbers are lengths, times or thresholds, and no places or directions.
+    pub fn scales(&self, term: usize) -> Vec<bool> {
+        self.functions[self.terms[term].function].formula.1.iter().map(|shape| shape.0 == SHAPE).collect()
+    }
+
+    /// A term and its twin.
+    pub fn both(&self, term: usize) -> impl Iterator<Item = usize> {
+        std::iter::once(term).chain(self.terms[term].twin)
+    }
+
+    /// A model that holds a term alone, and its twin, with these sizes and shapes: for each motion, with the sense of the run or without.
+    pub fn model(
+        &self,
+        term: usize,
+        (sizes, by): (&[f64], &[f64]),
+        (motion, with_sense): (Motion, bool),
+        robot: &Robot,
+    ) -> Option<Model> {
         let about = self.terms[term];
         let (target, factor) = match (motion, about.per) {
             (Motion::Yaw, Per::Metre) => (Target::HeadingPerMetre, ""),
@@ -600,7 +648,7 @@ impl Laws {
             None => format!("a * {sense}{factor}{first}"),
         };
         let names: Vec<&str> = ["a", "b"].into_iter().take(sizes.len()).chain(shapes.iter().map(|s| s.0)).collect();
-        let values = sizes.iter().copied().chain(shapes.iter().map(|s| s.1));
+        let values = sizes.iter().chain(by).copied();
         let rounded = values.map(|value| format!("{value:.4e}").parse().unwrap_or(value));
         let formula = Formula::new(&self.name(term, motion), target, &text, &names).ok()?;
         let mut model = Model::new(robot);
@@ -615,19 +663,26 @@ impl Laws {
 
     /// The columns of some terms for each motion in turn, in the [`steps`] of a run.
     pub fn columns(&self, terms: &[usize], run: &ObservedRun, steps: &[Step]) -> Vec<Column> {
-        let own: Vec<Term> = terms.iter().map(|term| self.terms[*term]).collect();
+        let shapes: Vec<Vec<f64>> = terms.iter().map(|term| self.shapes(*term)).collect();
+        let shaped: Vec<(usize, &[f64])> = terms.iter().copied().zip(shapes.iter().map(Vec::as_slice)).collect();
+        self.shaped_columns(&shaped, run, steps)
+    }
+
+    /// The same of terms with the numbers that shape each.
+    pub fn shaped_columns(&self, terms: &[(usize, &[f64])], run: &ObservedRun, steps: &[Step]) -> Vec<Column> {
+        let own: Vec<(Term, &[f64])> = terms.iter().map(|(term, by)| (self.terms[*term], *by)).collect();
         let mut sums: [Vec<f64>; 5] = std::array::from_fn(|_| vec![0.0; own.len()]);
         let mut columns = vec![vec![[0.0; 3]; run.blocks.len()]; 3 * own.len()];
         let mut values = vec![0.0; own.len()];
         let mut next = 0;
         for (block, about) in run.blocks.iter().enumerate() {
             while let Some(step) = steps.get(next).filter(|step| step.block == block) {
-                let mut last = (usize::MAX, 0.0);
-                for (value, term) in values.iter_mut().zip(&own) {
-                    if last.0 != term.function {
-                        last = (term.function, (self.functions[term.function].value)(step));
+                let mut last: (usize, &[f64], f64) = (usize::MAX, &[], 0.0);
+                for (value, (term, by)) in values.iter_mut().zip(&own) {
+                    if last.0 != term.function || last.1 != *by {
+                        last = (term.function, by, (self.functions[term.function].value)(step, by));
                     }
-                    *value = last.1 * term.per.of(step);
+                    *value = last.2 * term.per.of(step);
                 }
                 let (sine, cosine) = libm::sincos(step.middle.heading);
                 for (sum, by) in sums.iter_mut().zip([cosine, sine, step.middle.x, step.middle.y, 1.0]) {
