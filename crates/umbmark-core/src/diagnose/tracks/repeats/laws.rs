@@ -610,6 +610,18 @@ impl Laws {
         self.functions[self.terms[term].function].formula.1.iter().map(|shape| shape.0 == SHAPE).collect()
     }
 
+    /// The most that these numbers may be: no wave is longer than the longest that is asked about, which is as long as a run.
+    pub fn most(&self, term: usize) -> f64 {
+        let text = |function: usize| &self.functions[function].formula.0;
+        let own = self.terms[term].function;
+        if self.terms[term].twin.is_none() {
+            return f64::INFINITY;
+        }
+        let alike = (0..self.functions.len()).filter(|function| text(*function) == text(own));
+        let shapes = alike.flat_map(|function| self.functions[function].formula.1.iter().map(|shape| shape.1));
+        shapes.fold(0.0, f64::max)
+    }
+
     /// A term and its twin.
     pub fn both(&self, term: usize) -> impl Iterator<Item = usize> {
         std::iter::once(term).chain(self.terms[term].twin)

@@ -133,7 +133,7 @@ impl<'a> Ground<'a> {
     /// The numbers with which a law takes off most, from those that it has.
     fn best(&self, pick: &Pick) -> Vec<f64> {
         let mut shapes = pick.shapes.clone();
-        let scales = self.laws.scales(pick.term);
+        let (scales, most) = (self.laws.scales(pick.term), self.laws.most(pick.term));
         let Some((mut drop, mut sizes)) = self.drop(pick, &shapes) else { return shapes };
         for _ in 0..ROUNDS {
             let Some(step) = self.step(pick, &shapes, &sizes) else { break };
@@ -142,7 +142,7 @@ impl<'a> Ground<'a> {
                 let share = 0.5f64.powi(halving as i32);
                 let moved = |which: usize| {
                     let (shape, step, first) = (shapes[which], share * step[which], pick.shapes[which]);
-                    let range = (RANGE.0 * first, RANGE.1 * first);
+                    let range = (RANGE.0 * first, (RANGE.1 * first).min(most));
                     if scales[which] { (shape + step).clamp(range.0, range.1) } else { shape + step.clamp(-FAR, FAR) }
                 };
                 let next: Vec<f64> = (0..shapes.len()).map(moved).collect();
