@@ -84,13 +84,14 @@ pub(super) fn learn(
         let Step { added, class, p_adjusted, law, .. } = own.clone();
         *own = Step { added, class, p_adjusted, law, ..step_of(&search.written[0], None) };
     }
-    for (written, Added { suspect, by }) in search.written[1..].iter().zip(&search.added) {
+    steps.retain(|step| step.added.is_none_or(|effect| search.keeps(effect)));
+    for (Added { suspect, by }, written) in search.story()? {
         let told = (suspect.best, suspect.class.clone(), Some(suspect.p_adjusted));
         let law = match by {
             Found::Listed(_) => None,
             Found::Unlisted(repeated) => Some(repeated.clone()),
         };
-        steps.push(Step { law, ..step_of(written, Some(told)) });
+        steps.push(Step { law, ..step_of(&written, Some(told)) });
     }
     let learnt = finish(search, steps, options)?;
     Ok(Learnt { partial, remarks: [remarks, learnt.remarks.clone()].concat(), ..learnt })

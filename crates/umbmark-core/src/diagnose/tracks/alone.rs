@@ -12,6 +12,7 @@ use rayon::prelude::*;
 const FEWEST_FOLDS: usize = 6;
 
 /// A fitted model, its residuals, and the columns of its free values and of the effects of the reference that are fitted along.
+#[derive(Clone)]
 pub(crate) struct Alone {
     fitted: Fitted,
     columns: Vec<Vec<Column>>,
@@ -53,6 +54,11 @@ impl Alone {
     fn own(&self, values: &DVector<f64>) -> (Vec<usize>, DVector<f64>) {
         let own = self.fitted.free.len();
         ((0..own).collect(), values.rows(0, own).into_owned())
+    }
+
+    /// What was fitted.
+    pub fn fitted(&self) -> &Fitted {
+        &self.fitted
     }
 
     /// What was fitted, by itself.

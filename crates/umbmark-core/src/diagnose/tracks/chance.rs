@@ -3,7 +3,7 @@
 use super::errors::Misses;
 use crate::diagnose::Options;
 use crate::diagnose::remains::{Chance, Remains, Trail};
-use crate::likelihood::{Column, Noise, Observed, ObservedRun, Stretch};
+use crate::likelihood::{Column, Disturbance, Noise, Observed, ObservedRun, Stretch};
 use crate::random::Stream;
 use crate::setup::PoseNoise;
 use nalgebra::{Matrix3, Vector3};
@@ -12,6 +12,8 @@ use rayon::prelude::*;
 /// Simulated sets from which a source of chance is told: so many, fewer where there are more blocks in all than this.
 const SETS: (usize, usize) = (40, 400_000);
 const FEWEST_SETS: usize = 4;
+/// What counters of whole ticks do not show is less than so many of them.
+const TICKS: f64 = 2.0;
 /// Purpose of the stream.
 const DOUBTS: u64 = 0x646f_7562;
 const NOTHING: PoseNoise = PoseNoise { position: 0.0, heading: 0.0 };
@@ -32,7 +34,11 @@ pub(super) fn remains(
     remains.position.rms = misses.position;
     remains.heading.iter_mut().zip(misses.heading).for_each(|(left, rms)| left.rms = rms);
     remains.chance = chance(observed, noise, options.seed);
-    remains.disturbances = runs.flat_map_iter(|(run, left)| noise.disturbances(run, left, wheelbase)).collect();
+    let tick = observed.robot.metres_per_tick();
+    let least = TICKS * tick.left.abs().max(tick.right.abs());
+    let is_large = |at: &Disturbance| at.by[0].hypot(at.by[1]) > least || at.by[2].abs() > least / wheelbase;
+    let all = runs.flat_map_iter(|(run, left)| noise.disturbances(run, left, wheelbase));
+    remains.disturbances = all.filter(is_large).collect();
     remains
 }
 

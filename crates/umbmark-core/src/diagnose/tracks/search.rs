@@ -13,6 +13,7 @@ use crate::diagnose::{DiagnoseError, Estimate, Options, Suspect};
 use crate::effect::{Law, Model, Part};
 use crate::likelihood::{Fitted, Noise};
 use crate::watch::Watch;
+use std::borrow::Cow;
 
 /// A law that no catalogue lists is added where errors of runs left out fall by this share, and so many laws at most.
 const WORTH_A_LAW: f64 = 0.05;
@@ -355,6 +356,33 @@ impl Search {
             self.repeats = Some(repeats::beside(self.last(), options.seed));
         }
         self.repeats.as_ref().and_then(Option::as_ref)
+    }
+
+    /// What was added and is in the last model, each with the fit that it led to: without what was added on the way and taken out again.
+    pub fn story(&self) -> Result<Vec<(&Added, Cow<'_, Alone>)>, DiagnoseError> {
+        let mut told = Vec::new();
+        for (written, added) in self.written[1..].iter().zip(&self.added) {
+            if !self.keeps(added.suspect.best) {
+                continue;
+            }
+            let parts = written.fitted().model.parts().iter().map(|part| part.effect.name());
+            let mut gone = parts.filter(|effect| !self.keeps(effect)).peekable();
+            if gone.peek().is_none() {
+                told.push((added, Cow::Borrowed(written)));
+                continue;
+            }
+            let mut fitted = written.fitted().clone();
+            for effect in gone {
+                fitted = without(&fitted, effect)?;
+            }
+            told.push((added, Cow::Owned(trusted(fitted)?)));
+        }
+        Ok(told)
+    }
+
+    /// Whether an effect is in the last model.
+    pub fn keeps(&self, effect: &str) -> bool {
+        self.last().fitted.model.parts().iter().any(|part| part.effect.name() == effect)
     }
 
     /// Whether a law that no catalogue lists was added.
