@@ -6,7 +6,7 @@ from umbmark._result import Record
 
 
 class Repeats(Record, frozen=True):
-    """How much of an error is the same in every run of one path, at least, and its 95 % interval."""
+    """How much of an error is the same in every run of a path, at least, and its 95 % interval."""
 
     value: float
     low: float | None

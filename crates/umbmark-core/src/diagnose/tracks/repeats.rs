@@ -339,7 +339,6 @@ fn front(
         let motion = Motion::ALL[pick.motion];
         let (numbers, how) = ((sizes.as_slice(), &pick.shapes[..]), (motion, pick.with_sense));
         let model = laws.model(pick.term, numbers, how, &observed.robot);
-        let model = model.filter(|law| observed.tracks().all(|track| track.check(law).is_ok()));
         let formula = model.as_ref().and_then(|model| model.parts().first()?.effect.formula());
         let law = UnlistedLaw {
             length: formula.map_or(usize::MAX, |formula| formula.length()),
