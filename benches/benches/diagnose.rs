@@ -1,15 +1,16 @@
 //! What a model is missing: from ten end poses with 999 simulated null tests (fit, the whole catalogue, certificates, next
-//! experiments), and from the tracks of ten runs of 10,000 samples, a pose with each fifth.
+//! experiments), and from the tracks of ten runs of 10,000 samples, a pose with each fifth; the test for whatever repeats by itself too.
 //!
 //! `cargo bench -p umbmark-benches --bench diagnose`; throughput of the tracks is in samples per second.
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use std::time::Duration;
 use umbmark_core::dataset::{Dataset, Run};
-use umbmark_core::diagnose::{Options, base_model, diagnose};
+use umbmark_core::diagnose::{Options, base_model, diagnose, what_repeats};
 use umbmark_core::drive::{Encoder, Robot};
 use umbmark_core::effect::{Model, TestKind};
 use umbmark_core::learn::{fit, learn};
+use umbmark_core::likelihood::{Column, Fitted, Noise, Observed};
 use umbmark_core::path::{Direction, Path};
 use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth, record_test};
 
@@ -66,6 +67,21 @@ fn tracks(rate: f64) -> Dataset {
     record_test(&model, &Path::umbmark(), &[TestKind::Systematic], [5, 5], rate / 5.0, [1, 0]).expect("a test")
 }
 
+/// The tracks of a dataset as they are fitted to.
+fn observed(data: &Dataset) -> Observed {
+    Observed::new(data, &Robot::labmate()).expect("tracks")
+}
+
+/// Of a fit, run by run: the columns of what was fitted, and the residual.
+fn columns_of(fitted: &Fitted) -> Vec<Vec<Column>> {
+    let Fitted { observed, model, .. } = fitted;
+    let mut columns = observed.columns(model, &fitted.free);
+    for (columns, run) in columns.iter_mut().zip(&observed.runs) {
+        columns.push(run.residuals_along(&model.chain()));
+    }
+    columns
+}
+
 /// The same three steps as on the command line: what is missing, six parameters fitted, the whole loop.
 fn tracked(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("tracks of ten runs");
@@ -90,6 +106,12 @@ fn tracked(criterion: &mut Criterion) {
             on_two.install(|| bencher.iter(|| fit(&data, &six).expect("tracks")));
         });
         if rate == 100.0 {
+            let fitted = observed(&data).fit(&six, &Noise::default(), &[]).expect("tracks");
+            let columns = columns_of(&fitted);
+            group.bench_function(format!("what repeats, {rate} Hz"), |bencher| {
+                let Fitted { observed, model, noise, .. } = &fitted;
+                on_two.install(|| bencher.iter(|| what_repeats(observed, model, noise, &columns, 1).expect("laws")));
+            });
             let steps = learn(&data, &Options::default()).expect("tracks").steps.len() - 1;
             group.bench_function(format!("learn, {steps} steps"), |bencher| {
                 on_two.install(|| bencher.iter(|| learn(&data, &Options::default()).expect("tracks")));

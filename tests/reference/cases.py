@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+import numpy as np
 from catalogue import OUTSIDE, TYPICAL, Sizes
 from robot import SQUARE, Path, Robot
 from schedule import Pace
@@ -114,3 +115,45 @@ RETURNS = {
 }
 
 CASES: dict[str, Case] = ABSENT | ALONE | SIZES | PAIRS | UNLISTED | RETURNS
+
+DRAWN = "drawn"
+"""The case in which the seed draws causes, sizes, paces and path."""
+
+ALIKE = (
+    ("crab",),
+    ("wheel_eccentricity_left", "wheel_eccentricity_right"),
+    ("turn_slip_rate",),
+    ("speed_slip", "speed_slip_left", "speed_slip_right", "missed_counts"),
+    ("acceleration_slip",),
+    ("direction_dependent_wheelbase",),
+    ("caster_kick", "backlash", "leg_kick"),
+    ("floor_slope", "carpet_nap"),
+    ("floor_slope_yaw",),
+    ("diameter_drift",),
+    ("encoder_skew",),
+)
+"""Causes that may be drawn; at most one of a group, whose members look alike in some drives."""
+
+
+def drawn(seed: int) -> Case:
+    """One to three causes beside each other, each 0.7 to 3 times as large as usual."""
+    rng = np.random.default_rng((seed, 2))
+    groups = rng.permutation(len(ALIKE))[: rng.integers(1, 4)]
+    causes: dict[str, Sizes] = {}
+    for group in groups:
+        causes |= sized(str(rng.choice(ALIKE[group])), float(np.exp(rng.uniform(-0.36, 1.1))))
+    paces = [
+        Pace(
+            speed_m_s=float(rng.uniform(0.2, 0.8)),
+            turn_rate_rad_s=float(rng.uniform(0.3, 1.4)),
+            acceleration_m_s2=float(rng.uniform(0.2, 0.8)),
+        )
+        for _ in range(5)
+    ]
+    paths = (SQUARE, SQUARE, RECTANGLE, WAYPOINTS)
+    return Case(causes, paths[rng.integers(len(paths))], paces)
+
+
+def case_of(name: str, seed: int) -> Case:
+    """A case by its name; the seed matters to the one that is drawn."""
+    return drawn(seed) if name == DRAWN else CASES[name]

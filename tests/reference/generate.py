@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path as File
 
-from cases import CASES, Case
+from cases import CASES, DRAWN, Case, case_of
 from measure import NOISE_MODELS, Terms, end_poses, measure
 from sensors import Reference
 from write import write_dataset, write_returns, write_truth
@@ -43,7 +43,7 @@ def arguments(words: list[str]) -> argparse.Namespace:
         if chosen.case is None:
             parser.error("OUTFOLDER is missing")
         chosen.case, chosen.out, chosen.sets = "none", File(chosen.case), chosen.nulls
-    if not chosen.list and (chosen.case not in CASES or chosen.out is None):
+    if not chosen.list and (chosen.case not in (*CASES, DRAWN) or chosen.out is None):
         parser.error("a CASE of --list and an OUTFOLDER are needed")
     return chosen
 
@@ -74,7 +74,7 @@ def main(words: list[str]) -> None:
     """Do what the command line says."""
     chosen = arguments(words)
     if chosen.list:
-        print("\n".join(CASES))
+        print("\n".join((*CASES, DRAWN)))
         return
     k = chosen.wheel_noise
     if k is None:
@@ -86,9 +86,11 @@ def main(words: list[str]) -> None:
     else:
         folders = {chosen.seed + i: chosen.out / f"{i + 1:04}" for i in range(chosen.sets)}
     seeds = list(folders)
-    for first in range(0, len(seeds), SIDE_BY_SIDE):
-        batch = seeds[first : first + SIDE_BY_SIDE]
-        write_batch(CASES[chosen.case], terms, chosen, {seed: folders[seed] for seed in batch})
+    together = 1 if chosen.case == DRAWN else SIDE_BY_SIDE
+    for first in range(0, len(seeds), together):
+        batch = seeds[first : first + together]
+        case = case_of(chosen.case, batch[0])
+        write_batch(case, terms, chosen, {seed: folders[seed] for seed in batch})
 
 
 if __name__ == "__main__":

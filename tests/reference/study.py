@@ -17,7 +17,7 @@ from functools import partial
 from pathlib import Path as File
 from typing import Any
 
-from cases import CASES, RETURNS, UNLISTED
+from cases import CASES, DRAWN, RETURNS, UNLISTED
 from generate import main as generate
 from measure import NOISE_MODELS
 
@@ -28,6 +28,7 @@ ADDED = ("physics", "nuisance")
 FITTED = {"wheel_diameter_ratio", "wheelbase", "scale", "start_pose"}
 """What every fit has: what looks like it need not be added."""
 FIRST_NULL = 1001
+FIRST_DRAWN = 5001
 
 
 @dataclass
@@ -48,8 +49,14 @@ class Answer:
     @property
     def right(self) -> bool:
         """Whether each cause is in a class that was added, and nothing else was."""
-        named = all(any(one & acceptable for acceptable in self.hidden) for one in self.classes)
-        return self.found and named and len(self.classes) <= len(self.hidden)
+        return self.found and not self.besides
+
+    @property
+    def besides(self) -> bool:
+        """Whether something was added that is none of the causes."""
+        return any(
+            not any(one & acceptable for acceptable in self.hidden) for one in self.classes
+        ) or len(self.classes) > len(self.hidden)
 
     @property
     def found(self) -> bool:
@@ -127,6 +134,29 @@ def hidden(command: File, seeds: list[int], threads: int) -> Iterator[str]:
     )
 
 
+def drawn(command: File, sets: int, threads: int) -> Iterator[str]:
+    """A line for each set of one to three causes drawn at random in which not just these are found,
+    and what all come to by the number of causes.
+    """
+    seeds = range(FIRST_DRAWN, FIRST_DRAWN + sets)
+    with ThreadPoolExecutor(threads) as pool:
+        answers = list(pool.map(partial(learn, command, DRAWN), seeds))
+    yield "| seed | hidden | added | verdict | left out [mm] |\n|---|---|---|---|---|"
+    for one in answers:
+        if not one.right:
+            hidden = ", ".join(" or ".join(sorted(names)) for names in one.hidden)
+            classes = ", ".join(" or ".join(sorted(names)) for names in one.classes) or "nothing"
+            yield (
+                f"| {one.seed} | {hidden} | {classes} | {one.verdict} "
+                f"| {1e3 * one.before_m:.1f} to {1e3 * one.after_m:.1f} |"
+            )
+    yield "\n| causes | sets | all found | something besides |\n|---|---|---|---|"
+    for count in sorted({len(one.hidden) for one in answers}):
+        own = [one for one in answers if len(one.hidden) == count]
+        found, besides = sum(one.found for one in own), sum(one.besides for one in own)
+        yield f"| {count} | {len(own)} | {found} | {besides} |"
+
+
 def nulls(command: File, sets: int, threads: int) -> Iterator[str]:
     """A line for each model of the noise, of so many sets in all, and one for each addition."""
     yield "| noise | sets | something added | called unlisted | an outlier named | said to repeat |"
@@ -159,13 +189,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, nargs="*", default=[7], help="of the hidden cases")
     parser.add_argument("--nulls", type=int, default=500, metavar="N", help="sets in all")
+    parser.add_argument("--drawn", type=int, default=0, metavar="N", help="sets of drawn causes")
+    parser.add_argument("--command", type=File, help="the umbmark to ask")
     parser.add_argument("--threads", type=int, default=2)
     chosen = parser.parse_args()
-    command = next((one for one in COMMANDS if one.exists()), None)
+    command = chosen.command or next((one for one in COMMANDS if one.exists()), None)
     if command is None:
         sys.exit("the command is not built: cargo build --release")
     if chosen.seeds:
         for line in hidden(command, chosen.seeds, chosen.threads):
+            print(line, flush=True)
+    if chosen.drawn:
+        for line in drawn(command, chosen.drawn, chosen.threads):
             print(line, flush=True)
     if chosen.nulls:
         for line in nulls(command, chosen.nulls, chosen.threads):

@@ -31,7 +31,7 @@ pub use likeness::Likeness;
 pub use reason::Reason;
 pub(crate) use remains::Trail;
 pub use remains::{Chance, Left, Remains, Repeating};
-pub use tracks::{Repeated, Suggestion, UnlistedLaw};
+pub use tracks::{Repeated, Suggestion, UnlistedLaw, what_repeats};
 
 /// What was observed of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

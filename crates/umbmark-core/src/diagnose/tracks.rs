@@ -44,7 +44,7 @@ pub(crate) use alone::{Alone, trusted};
 pub use errors::Misses;
 pub(crate) use examination::Examination;
 pub(crate) use look::{Finding, class_of_own, p_of_own};
-pub use repeats::{Repeated, UnlistedLaw};
+pub use repeats::{Repeated, UnlistedLaw, what_repeats};
 pub(crate) use search::{Added, Found, Search, Wanted, search};
 pub use suggestion::Suggestion;
 
@@ -170,7 +170,7 @@ pub(crate) fn doubts_as_written(
     let system = system::System::new(&fixed.observed, &noise, &columns);
     let errors = errors::Errors::new(&fixed.observed, &system, &columns, vec![0]);
     let mut reasons = doubts::of_model(&fixed.observed, model, &noise, &errors.in_sample(), options.seed);
-    let repeated = repeats::look(&fixed.observed, model, &noise, &columns, options.seed);
+    let repeated = what_repeats(&fixed.observed, model, &noise, &columns, options.seed);
     reasons.extend(
         repeated.filter(|repeated| repeated.counts(TELLING)).map(|repeated| Reason::Repeats(Box::new(repeated))),
     );

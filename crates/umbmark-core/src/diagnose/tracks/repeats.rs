@@ -222,8 +222,9 @@ impl Pick {
     }
 }
 
-/// Looks for what repeats beside a model under a noise. `own` holds, run by run, the columns that are fitted along and last the residual.
-pub(super) fn look(
+/// Looks for what repeats beside a model under a noise: the law that stands out most, whether it counts or not; `None` where the runs could
+/// show no law. `own` holds, run by run, the columns that are fitted along, one (x, y, heading) \[m, m, rad\] a block each, and last the residual.
+pub fn what_repeats(
     observed: &Observed,
     model: &Model,
     noise: &Noise,
@@ -263,7 +264,7 @@ pub(super) fn look(
 /// The same beside the model of an examination and the effects of the reference.
 pub(super) fn beside(exam: &Examination, seed: u64) -> Option<Repeated> {
     let own = exam.some_columns(&[&exam.base(None)[..], &[exam.system.residual()]].concat());
-    look(&exam.fitted.observed, &exam.fitted.model, &exam.fitted.noise, &own, seed)
+    what_repeats(&exam.fitted.observed, &exam.fitted.model, &exam.fitted.noise, &own, seed)
 }
 
 fn sense_of(run: &ObservedRun) -> f64 {
