@@ -124,7 +124,7 @@ def called_unlisted(answer: dict[str, Any], told: tuple[str, str | None]) -> Non
     assert answer["verdict"] == "unlisted_effect"
     acts_on, depends_on = told
     laws = [step["law"] for step in added_in(answer) if step["law"]]
-    assert laws[0]["acts_on"] == acts_on
+    assert laws[0]["motion"] == acts_on
     assert depends_on is None or depends_on in laws[0]["formula"]
 
 

@@ -12,8 +12,9 @@ use rayon::prelude::*;
 /// Simulated sets from which a source of chance is told: so many, fewer where there are more blocks in all than this.
 const SETS: (usize, usize) = (40, 400_000);
 const FEWEST_SETS: usize = 4;
-/// What counters of whole ticks do not show is less than so many of them.
+/// A disturbance moves the robot by more than so many whole ticks, and by more than so many standard deviations of a single pose.
 const TICKS: f64 = 2.0;
+const POSES: f64 = 4.0;
 /// Purpose of the stream.
 const DOUBTS: u64 = 0x646f_7562;
 const NOTHING: PoseNoise = PoseNoise { position: 0.0, heading: 0.0 };
@@ -29,16 +30,18 @@ pub(super) fn remains(
     let wheelbase = observed.robot.drive.wheelbase();
     let runs = observed.runs.par_iter().zip(left);
     let trails: Vec<Trail> =
-        runs.clone().map(|(run, left)| trail(run, left, observed.setup.noise, wheelbase)).collect();
+        runs.map(|(run, left)| trail(run, left, observed.setup.noise, wheelbase)).collect();
     let mut remains = Remains::of(&trails, 1.0 - options.size);
     remains.position.rms = misses.position;
     remains.heading.iter_mut().zip(misses.heading).for_each(|(left, rms)| left.rms = rms);
     remains.chance = chance(observed, noise, options.seed);
     let tick = observed.robot.metres_per_tick();
-    let least = TICKS * tick.left.abs().max(tick.right.abs());
-    let is_large = |at: &Disturbance| at.by[0].hypot(at.by[1]) > least || at.by[2].abs() > least / wheelbase;
-    let all = runs.flat_map_iter(|(run, left)| noise.disturbances(run, left, wheelbase));
-    remains.disturbances = all.filter(is_large).collect();
+    let ticks = TICKS * tick.left.abs().max(tick.right.abs());
+    let least =
+        [ticks.max(POSES * observed.setup.noise.position), (ticks / wheelbase).max(POSES * observed.setup.noise.heading)];
+    let is_large = |at: &Disturbance| at.by[0].hypot(at.by[1]) > least[0] || at.by[2].abs() > least[1];
+    remains.disturbances = noise.disturbances(&observed.runs, left, wheelbase);
+    remains.disturbances.retain(is_large);
     remains
 }
 

@@ -1,5 +1,6 @@
 //! A model grown by an effect that it was missing, fitted without approximation.
 
+use super::alone::Alone;
 use super::examination::Examination;
 use super::repeats::SHAPE;
 use super::{DiagnoseError, Estimate, Suspect, estimates};
@@ -9,8 +10,9 @@ use std::sync::Arc;
 
 /// A shape (a length, a threshold) is fitted where its size stands out by so many standard errors.
 const SHOWN: f64 = 8.0;
-/// Its size still stands out by so many once they are fitted along; else they keep their values.
+/// Its size still stands out by so many once they are fitted along, or AICc falls by this; else they keep their values.
 const SURE: f64 = 4.0;
+const LIKELIER: f64 = 10.0;
 
 /// The model of an examination with a suspect more, fitted: its sizes first, then its shapes too where its size stands out.
 pub(crate) fn grown(exam: &Examination, suspect: &Suspect) -> Result<Fitted, DiagnoseError> {
@@ -51,8 +53,10 @@ fn fitted(exam: &Examination, model: &Model, effect: &str) -> Result<Fitted, Dia
     let both = Fitted { taken: taken(), ..observed.fit(&sized.model, &sized.noise, &[])? };
     let determined = estimates(&both).iter().all(|e| e.standard_error.is_finite());
     let allowed = observed.tracks().all(|track| track.check(&both.model).is_ok());
-    // Where a shape can take a size's place (how far off the way a bump lies), neither is known.
-    let sure = estimates(&both).iter().any(|e| e.effect == effect && is_size(e) && departs(&both.model, e) > SURE);
+    // Where a shape can take a size's place (how far off the way a bump lies), neither is known, and the shape makes nothing likelier.
+    let aicc = |fitted: &Fitted| Alone::new(fitted.clone()).criteria().0;
+    let sure = estimates(&both).iter().any(|e| e.effect == effect && is_size(e) && departs(&both.model, e) > SURE)
+        || aicc(&both) < aicc(&sized) - LIKELIER;
     Ok(if determined && allowed && sure && keeps_signs(model, &both.model, effect) { both } else { sized })
 }
 

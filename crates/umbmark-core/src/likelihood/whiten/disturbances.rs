@@ -11,9 +11,11 @@
 //! Source: auxiliary residuals, Harvey & Koopman (1992); de Jong & Penzer (1998).
 
 use super::{NOT_MEASURED, Stage, States, add};
+use crate::likelihood::outliers::beyond_tails;
 use crate::likelihood::{Column, Noise, ObservedRun};
 use crate::stats::chi_squared_upper_tail;
 use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
 
 /// Probability with which anything is named in a run in which there is noise alone.
 const SIZE: f64 = 0.005;
@@ -48,42 +50,14 @@ struct Standing {
 }
 
 impl Noise {
-    /// Where what is left of a run stands out of this noise.
-    pub fn disturbances(&self, run: &ObservedRun, left: &Column, wheelbase: f64) -> Vec<Disturbance> {
-        let mut all = self.scores(run, left);
-        let rows: f64 = if run.blocks.iter().any(|block| block.headings > 0) { 3.0 } else { 2.0 };
-        let mut squares: Vec<f64> = all.iter().map(|standing| standing.square).collect();
-        squares.sort_by(f64::total_cmp);
-        // The greater of two: the median of all is that of a χ² or above it, unless this run is noisier than the others.
-        let usual = squares.get(squares.len() / 2).map_or(1.0, |middle| middle / MEDIAN).max(1.0);
-        all.retain(|standing| chi_squared_upper_tail(standing.square / usual, rows) * run.blocks.len() as f64 <= SIZE);
-        all.sort_by(|a, b| b.square.total_cmp(&a.square));
-        let rolled = run.rolled(wheelbase);
-        let mut named: Vec<Standing> = Vec::new();
-        for standing in all {
-            let is_near = |known: &Standing| {
-                (rolled[known.block] - rolled[standing.block]).abs() <= NEAR
-                    || known.block.abs_diff(standing.block) <= 1
-            };
-            if !named.iter().any(is_near) {
-                named.push(standing);
-            }
-        }
-        named.sort_by_key(|standing| standing.block);
-        let told = named.into_iter().map(|standing| {
-            let block = &run.blocks[standing.block];
-            let (sine, cosine) = libm::sincos(block.place.heading);
-            let [x, y, turned] = [standing.by[0], standing.by[1], standing.by[2]];
-            Disturbance {
-                run: run.name.clone(),
-                time: run.track.sights()[block.first].time,
-                rolled: rolled[standing.block],
-                lasts: standing.lasts,
-                by: [cosine * x + sine * y, cosine * y - sine * x, if block.headings > 0 { turned } else { 0.0 }],
-                deviations: (standing.square / usual).sqrt(),
-            }
-        });
-        told.collect()
+    /// Where what is left of some runs stands out of this noise, and beyond the tails that what is left has.
+    pub fn disturbances(&self, runs: &[ObservedRun], left: &[Column], wheelbase: f64) -> Vec<Disturbance> {
+        let scores: Vec<Vec<Standing>> =
+            runs.par_iter().zip(left).map(|(run, left)| less_usual(self.scores(run, left))).collect();
+        let deviations = |own: &Vec<Standing>| own.iter().map(|standing| standing.square.sqrt()).collect();
+        let tails = beyond_tails(&scores.iter().map(deviations).collect::<Vec<_>>());
+        let of_run = |(run, scores)| named(run, scores, tails, wheelbase);
+        runs.iter().zip(scores).flat_map(of_run).collect()
     }
 
     /// Of each block the greater of two scores: that of a kick before it, and that of its pose being off.
@@ -131,6 +105,50 @@ impl Noise {
         }
         standing
     }
+}
+
+/// Scores in units of what is usual in their run, where that is more than noise makes: the median of all is that of a χ² then.
+fn less_usual(mut scores: Vec<Standing>) -> Vec<Standing> {
+    let mut squares: Vec<f64> = scores.iter().map(|standing| standing.square).collect();
+    squares.sort_by(f64::total_cmp);
+    let usual = squares.get(squares.len() / 2).map_or(1.0, |middle| middle / MEDIAN).max(1.0);
+    scores.iter_mut().for_each(|standing| standing.square /= usual);
+    scores
+}
+
+/// Those of a run that are beyond noise and `tails`, of neighbours the one that stands out most.
+fn named(run: &ObservedRun, mut scores: Vec<Standing>, tails: f64, wheelbase: f64) -> Vec<Disturbance> {
+    let rows: f64 = if run.blocks.iter().any(|block| block.headings > 0) { 3.0 } else { 2.0 };
+    let blocks = run.blocks.len() as f64;
+    scores.retain(|standing| {
+        standing.square > tails * tails && chi_squared_upper_tail(standing.square, rows) * blocks <= SIZE
+    });
+    scores.sort_by(|a, b| b.square.total_cmp(&a.square));
+    let rolled = run.rolled(wheelbase);
+    let mut named: Vec<Standing> = Vec::new();
+    for standing in scores {
+        let is_near = |known: &Standing| {
+            (rolled[known.block] - rolled[standing.block]).abs() <= NEAR || known.block.abs_diff(standing.block) <= 1
+        };
+        if !named.iter().any(is_near) {
+            named.push(standing);
+        }
+    }
+    named.sort_by_key(|standing| standing.block);
+    let told = named.into_iter().map(|standing| {
+        let block = &run.blocks[standing.block];
+        let (sine, cosine) = libm::sincos(block.place.heading);
+        let [x, y, turned] = [standing.by[0], standing.by[1], standing.by[2]];
+        Disturbance {
+            run: run.name.clone(),
+            time: run.track.sights()[block.first].time,
+            rolled: rolled[standing.block],
+            lasts: standing.lasts,
+            by: [cosine * x + sine * y, cosine * y - sine * x, if block.headings > 0 { turned } else { 0.0 }],
+            deviations: standing.square.sqrt(),
+        }
+    });
+    told.collect()
 }
 
 /// Median of the greater of two χ² of three degrees of freedom that are nearly one.
@@ -228,14 +246,9 @@ mod tests {
     /// What stands out of the runs of a fit, of which one block of the first run is off by this.
     fn disturbances(fitted: &Fitted, off: [f64; 3]) -> Vec<Disturbance> {
         let chain = fitted.model.chain();
-        let of_run = |(index, run): (usize, &ObservedRun)| {
-            let mut left = run.residuals_along(&chain);
-            if index == 0 {
-                (0..3).for_each(|k| left[40][k] += off[k]);
-            }
-            fitted.noise.disturbances(run, &left, 0.34)
-        };
-        fitted.observed.runs.iter().enumerate().flat_map(of_run).collect()
+        let mut left: Vec<Column> = fitted.observed.runs.iter().map(|run| run.residuals_along(&chain)).collect();
+        (0..3).for_each(|k| left[0][40][k] += off[k]);
+        fitted.noise.disturbances(&fitted.observed.runs, &left, 0.34)
     }
 
     #[test]

@@ -1,0 +1,123 @@
+"""What all methods learn from: by how much the robot moves otherwise than the fitted robot.
+
+Poses within 3 cm and 0.05 rad of the way are one place, their mean, as in `umbmark compare`. A
+step goes on until the robot has driven 10 cm or turned by 0.2 rad.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from drives import POSE, Array, Run, mean_pose, seen_from
+from predicted import Fitted, driven
+
+BLOCK = (0.03, 0.05)
+STEP = (0.10, 0.20)
+LONGEST_S = 2.0
+"""A step that takes longer says nothing of how the robot drove in it."""
+PARTS = 4
+"""Validation takes each run in so many parts."""
+
+
+@dataclass
+class Increments:
+    """Steps of all runs, one below the other."""
+
+    features: Array
+    """[steps x variables]; means over the step."""
+    moved: Array
+    """[steps x 3] forward, sideways [m] and yaw [rad], beyond the fitted robot, as seen from it."""
+    seconds: Array
+    run: npt.NDArray[np.int64]
+    part: npt.NDArray[np.int64]
+    """The quarter of the run, counted through all runs."""
+
+    def take(self, rows: npt.NDArray[np.bool_] | npt.NDArray[np.int64]) -> "Increments":
+        """Some of the steps."""
+        return Increments(
+            self.features[rows],
+            self.moved[rows],
+            self.seconds[rows],
+            self.run[rows],
+            self.part[rows],
+        )
+
+    def sample(self, most: int) -> "Increments":
+        """Not more than so many of the steps, at random."""
+        if len(self.run) <= most:
+            return self
+        chosen = np.random.default_rng(0).choice(len(self.run), most, replace=False)
+        return self.take(np.sort(chosen))
+
+
+def blocks_of(run: Run, robot_wheelbase_m: float) -> list[npt.NDArray[np.int64]]:
+    """The poses of a run, as indices into its measured ones, in places."""
+    left, right = np.diff(run.travel)
+    way = np.concatenate([[0.0], np.abs((left + right) / 2).cumsum()])[run.seen]
+    turned = np.concatenate([[0.0], np.abs((right - left) / robot_wheelbase_m).cumsum()])[run.seen]
+    begins = [0]
+    for pose in range(len(run.seen)):
+        first = begins[-1]
+        if way[pose] - way[first] >= BLOCK[0] or turned[pose] - turned[first] >= BLOCK[1]:
+            begins.append(pose)
+    return np.split(np.arange(len(run.seen)), begins[1:])
+
+
+def means(poses: Array, blocks: list[npt.NDArray[np.int64]]) -> Array:
+    """The mean pose of each place."""
+    return np.stack([mean_pose(poses[block]) for block in blocks])
+
+
+def increments_of(runs: list[Run], fitted: Fitted) -> Increments:
+    """The steps of some runs."""
+    parts = [of_run(run, fitted, number) for number, run in enumerate(runs)]
+    return Increments(
+        np.concatenate([one.features for one in parts]),
+        np.concatenate([one.moved for one in parts]),
+        np.concatenate([one.seconds for one in parts]),
+        np.concatenate([one.run for one in parts]),
+        np.concatenate([one.part for one in parts]),
+    )
+
+
+def of_run(run: Run, fitted: Fitted, number: int) -> Increments:
+    """The steps of a run."""
+    blocks = blocks_of(run, fitted.robot.wheelbase_m)
+    start = run.at_start
+    predicted = means(fitted.shown(run, driven(run, fitted, start)), blocks)
+    measured = means(run.measured, blocks)
+    row = np.array([run.seen[block[len(block) // 2]] for block in blocks])
+    features = run.features.copy()
+    # The pose of the robot, where it was measured.
+    body = [np.interp(run.time, run.time[run.seen], column) for column in run.measured.T]
+    poses = np.stack(body, axis=1) - [0.0, 0.0, fitted.yaw]
+    features[:, POSE] = (poses[1:] + poses[:-1]) / 2
+    ends = steps_of(predicted)
+    first, last = ends[:-1], ends[1:]
+    own = seen_from(predicted[first], predicted[last])
+    true = seen_from(measured[first], measured[last])
+    moved = seen_from(own, true)
+    over = [slice(row[a], max(row[b], row[a] + 1)) for a, b in zip(first, last, strict=True)]
+    weight = np.diff(run.time) * run.moves
+    moving = np.array([weight[one].sum() for one in over])
+    keep = (moving > 0) & (run.time[row[last]] - run.time[row[first]] < LONGEST_S)
+    mean = np.stack(
+        [
+            np.average(features[one], axis=0, weights=np.maximum(weight[one], 1e-9))
+            for one in over
+        ]
+    )
+    part = np.arange(len(over)) * PARTS // max(len(over), 1) + PARTS * number
+    whole = Increments(mean, moved, moving, np.full(len(over), number), part)
+    return whole.take(keep)
+
+
+def steps_of(places: Array) -> npt.NDArray[np.int64]:
+    """The places at which steps end."""
+    ends = [0]
+    for place in range(1, len(places)):
+        before = places[ends[-1]]
+        way = np.hypot(*(places[place] - before)[:2])
+        if way >= STEP[0] or abs(places[place, 2] - before[2]) >= STEP[1]:
+            ends.append(place)
+    return np.array(ends)
