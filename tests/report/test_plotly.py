@@ -13,6 +13,9 @@ pytestmark = pytest.mark.skipif(
     not COMMAND.exists(), reason=f"{COMMAND} is not built (cargo build)"
 )
 
+UNNAMED = Path(__file__).parents[2] / "examples" / "unnamed"
+"""Runs with a law that no catalogue lists."""
+
 
 def kinds() -> list[str]:
     if not COMMAND.exists():
@@ -34,7 +37,8 @@ def test_plotly_knows_every_attribute_of_every_kind(
     kind: str, tracks: Path, tmp_path: Path
 ) -> None:
     drawn = 0
-    for number, data in enumerate([DATA / "slope", DATA / "tracked", tracks]):
+    sets = [UNNAMED] if kind == "laws" else [DATA / "slope", DATA / "tracked", tracks]
+    for number, data in enumerate(sets):
         file = tmp_path / f"{number}.json"
         words = [
             str(COMMAND),

@@ -1,7 +1,7 @@
 //! What is missing and not in the catalogue: as a curve, and as a formula to try.
 
 use umbmark_core::dataset::effects_text;
-use umbmark_core::diagnose::{Curve, CurvePoint, Dependence, Reason, Repeated, UnlistedLaw};
+use umbmark_core::diagnose::{Curve, CurvePoint, Dependence, Diagnosis, Reason, Repeated, UnlistedLaw};
 
 use crate::model_report::p_text;
 use crate::prose::hanging;
@@ -10,9 +10,17 @@ use crate::table::with_precision_of;
 /// Characters from the lower to the upper edge of a figure.
 const WIDTH: usize = 41;
 
-/// For people: the curve with its band, and the formula; nothing where nothing is unlisted.
-pub fn unlisted_text(unlisted: Option<&Dependence>, terminal: bool) -> String {
-    let Some(told) = unlisted else { return String::new() };
+/// What is missing and not in the catalogue: the law that repeats, or the curve where that has a formula or no law counts.
+pub fn missing_text(diagnosis: &Diagnosis, terminal: bool) -> String {
+    let law = law_text(&diagnosis.reasons);
+    match &diagnosis.dependence {
+        Some(told) if law.is_empty() || told.suggestion.is_some() => unlisted_text(told, terminal),
+        _ => law,
+    }
+}
+
+/// For people: the curve with its band, and the formula.
+fn unlisted_text(told: &Dependence, terminal: bool) -> String {
     let mut text = format!("\nwhat is added to the {} motion, by {}\n\n", told.acts_on, told.title);
     text += &figure(&told.curve, told.depends_on, terminal);
     text += &match &told.suggestion {
@@ -28,7 +36,8 @@ pub fn unlisted_text(unlisted: Option<&Dependence>, terminal: bool) -> String {
     text
 }
 
-/// The law that was added, and the others that were tried: a longer formula has to predict runs left out better.
+/// The law that was added, and the others that were tried, the one that was taken marked where it is not the first: a longer formula has to
+/// predict runs left out better.
 pub fn laws_text(repeated: &Repeated) -> String {
     let [before, after] = repeated.law.left_out.map(|error| 1e3 * error);
     let said = format!(
@@ -48,11 +57,18 @@ pub fn laws_text(repeated: &Repeated) -> String {
         text += &hanging("nearest", 10, &said);
     }
     text += "\n --law  left out [mm]  length  formula\n";
-    let laws = std::iter::once(&repeated.law).chain(&repeated.others).take(MOST_SHOWN);
-    for (number, law) in laws.enumerate() {
+    let mut laws: Vec<&UnlistedLaw> = std::iter::once(&repeated.law).chain(&repeated.others).collect();
+    laws.sort_by_key(|law| law.number);
+    let taken = repeated.law.number;
+    for law in laws.iter().take(MOST_SHOWN).chain(laws.iter().skip(MOST_SHOWN).filter(|law| law.number == taken)) {
         let length = if law.model.is_some() { law.length.to_string() } else { "-".to_owned() };
-        let head = format!("{:>6}  {:>13.1}  {length:>6}", number + 1, 1e3 * law.left_out[1]);
+        let number = if law.number == taken && taken > 1 { format!("*{taken}") } else { law.number.to_string() };
+        let head = format!("{number:>6}  {:>13.1}  {length:>6}", 1e3 * law.left_out[1]);
         text += &hanging(&head, 31, &formula_of(law));
+    }
+    let more = laws.iter().skip(MOST_SHOWN).filter(|law| law.number != taken).count();
+    if more > 0 {
+        text += &format!("        and {more} more: `umbmark plot laws`\n");
     }
     text
 }
@@ -62,16 +78,16 @@ const NEAR: f64 = 0.5;
 /// So many laws are shown.
 const MOST_SHOWN: usize = 8;
 
-/// A law as a formula with the number that shapes it, or in words.
+/// A law as a formula with the numbers that shape it, or in words.
 fn formula_of(law: &UnlistedLaw) -> String {
     let part = law.model.as_ref().and_then(|model| model.parts().first());
     let Some(formula) = part.and_then(|part| part.effect.formula()) else { return law.words() };
-    let shape = law.shape().map_or_else(String::new, |shape| format!(", c = {shape}"));
-    format!("{} = {}{shape}", formula.target().name(), formula.text())
+    let shapes: String = law.shapes().iter().map(|(name, value)| format!(", {name} = {value}")).collect();
+    format!("{} = {}{shapes}", formula.target().name(), formula.text())
 }
 
 /// The law that repeats as a formula, where it counts and can be written as one.
-pub fn law_text(reasons: &[Reason]) -> String {
+fn law_text(reasons: &[Reason]) -> String {
     let law = reasons.iter().find_map(|reason| match reason {
         Reason::Repeats(repeated) => repeated.law.model.as_ref(),
         _ => None,

@@ -19,7 +19,7 @@ use crate::prose::hanging;
 use crate::setup_report::{disturbances_text, faults_text, reasons_text, remains_text, taken_text};
 use crate::table::{table, with_precision_of};
 use crate::test_arguments::TestArguments;
-use crate::unlisted::{law_text, unlisted_text};
+use crate::unlisted::missing_text;
 
 /// So many experiments are printed; --json has all.
 const EXPERIMENTS: usize = 3;
@@ -93,10 +93,7 @@ fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, terminal: bool
         text += &hanging("note", 10, remark);
     }
     text += &next_text(diagnosis);
-    text += &unlisted_text(diagnosis.dependence.as_ref(), terminal);
-    if diagnosis.dependence.is_none() {
-        text += &law_text(&diagnosis.reasons);
-    }
+    text += &missing_text(diagnosis, terminal);
     if !diagnosis.fitted.is_empty() {
         text += &format!("\n{}\n", estimates_table(&diagnosis.fitted, 1.0 - options.size));
         text += &meaning_text(&diagnosis.fitted, &diagnosis.model);
@@ -240,6 +237,10 @@ fn experiments_text(experiments: &[Experiment]) -> String {
 
 /// An experiment with what it tells, in a line.
 pub(super) fn experiment_text(e: &Experiment) -> String {
-    let what = format!("tells {} from {}: {:.1} sd in {:.0} min", e.separates[0], e.separates[1], e.sd, e.minutes);
-    format!("{}; {what}", e.experiment)
+    let [own, other] = e.separates.map(|name| match name.strip_prefix("law_") {
+        Some(number) => format!("law {number} of the table"),
+        None => name.to_owned(),
+    });
+    let sure = format!("{:.1} standard deviations expected, {:.0} min of driving", e.sd, e.minutes);
+    format!("{}; separates {own} from {other} ({sure})", e.experiment)
 }

@@ -18,7 +18,7 @@ use crate::prose::hanging;
 use crate::setup_report::{disturbances_text, faults_text, reasons_text, remains_text, taken_text};
 use crate::table::table;
 use crate::test_arguments::TestArguments;
-use crate::unlisted::{law_text, laws_text, unlisted_text};
+use crate::unlisted::{laws_text, missing_text};
 
 /// Arguments of `learn`.
 #[derive(Debug, clap::Args)]
@@ -129,10 +129,7 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     for step in &learnt.steps {
         text += &step.law.as_deref().map(laws_text).unwrap_or_default();
     }
-    text += &unlisted_text(learnt.diagnosis.dependence.as_ref(), terminal);
-    if learnt.diagnosis.dependence.is_none() {
-        text += &law_text(&learnt.diagnosis.reasons);
-    }
+    text += &missing_text(diagnosis, terminal);
     if !learnt.diagnosis.fitted.is_empty() {
         text += &format!("\n{}\n", estimates_table(&learnt.diagnosis.fitted, 1.0 - options.size));
         text += &meaning_text(&learnt.diagnosis.fitted, &learnt.model);

@@ -58,6 +58,8 @@ const TELLING: f64 = 0.1;
 const TRIES: usize = 4;
 /// p by F below which a suspect is spoken of though no flips certify it.
 const LOUD: f64 = 1e-20;
+/// An effect of the catalogue that explains less than this share of what is unlisted is not near.
+const NEAR: f64 = 0.5;
 /// A diagnosis names at most so many classes.
 const MOST: usize = 3;
 /// Fewer runs give no certificate.
@@ -388,7 +390,7 @@ fn remarks(exam: &Examination, unlisted: Option<&Dependence>) -> Vec<String> {
             "Something that the catalogue does not list acts on the {} motion; it depends on {} (p = {:.2e}).",
             told.acts_on, told.title, told.p_adjusted
         ));
-        if let Some((effect, share)) = told.nearest {
+        if let Some((effect, share)) = told.nearest.filter(|(_, share)| *share >= NEAR) {
             remarks.push(format!(
                 "The nearest effect of the catalogue is {effect}: it explains {:.0} % of that.",
                 100.0 * share

@@ -29,6 +29,7 @@ fn law(law: &UnlistedLaw) -> Value {
         Map::from_iter(numbers.map(|(parameter, value)| (parameter.name.to_owned(), finite(*value))))
     });
     json!({
+        "number": law.number,
         "toml": law.model.as_ref().map(effects_text),
         "formula": formula.map(Formula::text),
         "parameters": parameters,

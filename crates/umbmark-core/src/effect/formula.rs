@@ -19,6 +19,7 @@
 //! before it make, from where the model predicts that the piece begins. So a formula that is 0 does nothing.
 
 mod error;
+mod meaning;
 mod parser;
 mod program;
 mod tokens;
@@ -210,6 +211,11 @@ impl Formula {
     /// How long it is: the number of its operations, variables and numbers.
     pub(crate) fn length(&self) -> usize {
         self.program.ops().len()
+    }
+
+    /// What it means for the robot with these values, in a sentence of its own; `None` where it is no wave of the time or of the way.
+    pub fn meaning(&self, values: &[f64]) -> Option<String> {
+        meaning::meaning(self, values)
     }
 
     /// What it acts on.

@@ -263,9 +263,12 @@ impl Model {
     }
 
     /// What an effect of the model means for the robot, in a sentence of its own; `None` where it is not in the model or says
-    /// nothing, as formulas do.
+    /// nothing, as most formulas do.
     pub fn meaning(&self, effect: &str) -> Option<String> {
         let part = self.parts.iter().find(|part| part.effect.name() == effect)?;
+        if let Some(formula) = part.effect.formula() {
+            return formula.meaning(&part.values);
+        }
         let said = (part.effect.entry()?.means)(&part.values, &self.robot);
         (!said.is_empty()).then_some(said)
     }

@@ -2,7 +2,7 @@
 
 use super::{Error, Learnt, MOST, Step};
 use crate::diagnose::tracks::{self, Added, Alone, Found, LEAST_GAIN, Misses, Search, Wanted};
-use crate::diagnose::{DiagnoseError, Diagnosis, Level, Options, Reason, Verdict};
+use crate::diagnose::{DiagnoseError, Diagnosis, Estimate, Level, Options, Reason, Verdict};
 use crate::effect::{Model, Part, find};
 use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE};
 use crate::watch::Watch;
@@ -92,6 +92,15 @@ pub(super) fn learn(
             Found::Unlisted(repeated) => Some(repeated.clone()),
         };
         steps.push(Step { law, ..step_of(&written, Some(told)) });
+    }
+    remarks.extend(own.iter().filter(|effect| search.is_needless(effect)).map(|effect| {
+        format!("{effect}, of the model given, is not needed beside the others: the interval of each of its sizes holds zero.")
+    }));
+    if options.law > 1 && search.has_law() && !search.laws().any(|number| number == options.law) {
+        remarks.push(format!(
+            "Law {} of the table was not added, since the fit does not bear it out: another was taken.",
+            options.law
+        ));
     }
     let learnt = finish(search, steps, options)?;
     Ok(Learnt { partial, remarks: [remarks, learnt.remarks.clone()].concat(), ..learnt })
@@ -206,6 +215,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     }
     experiments.extend(diagnosis.next_experiments);
     let (model, fitted) = (written.model.clone(), tracks::estimates(&written));
+    remarks.extend(kept(&model, &fitted));
     let diagnosis = Diagnosis {
         verdict,
         ranking,
@@ -218,6 +228,30 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         ..diagnosis
     };
     Ok(Learnt { steps, verdict, model, remarks, diagnosis, partial: false })
+}
+
+/// What is to be said of lengths, times and thresholds that the runs do not show: they keep the values with which they began.
+fn kept<'a>(model: &'a Model, fitted: &'a [Estimate]) -> impl Iterator<Item = String> + 'a {
+    let shapes = model.shapes();
+    let of_part = move |part: &'a Part| {
+        let name = part.effect.name();
+        let shapes = shapes.clone();
+        let is_fitted = move |parameter: &str| fitted.iter().any(|e| e.effect == name && e.parameter == parameter);
+        let is_kept = move |parameter: &str| {
+            !is_fitted(parameter) && model.place_of(name, parameter).is_some_and(|place| shapes.contains(&place))
+        };
+        let numbers = part.effect.parameters().iter().zip(&part.values);
+        numbers.filter(move |(parameter, _)| is_kept(parameter.name)).map(move |(parameter, value)| {
+            let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
+            format!(
+                "{} of {name} is kept at {value:.4}{unit}: fitted with all the others, these runs do not determine it.",
+                parameter.name
+            )
+        })
+    };
+    let fitted_parts =
+        model.parts().iter().filter(move |part| part.free && fitted.iter().any(|e| e.effect == part.effect.name()));
+    fitted_parts.flat_map(of_part)
 }
 
 /// A model fitted under noise of the usual size: enough for its errors.

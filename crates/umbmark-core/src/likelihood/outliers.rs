@@ -76,7 +76,7 @@ impl Fitted {
             let others = (0..runs.len()).filter(|other| *other != run);
             others.clone().filter(|other| there(*other)).count() as f64 >= (SHARED * others.count() as f64).max(1.0)
         };
-        let least = BEYOND.max(beyond_tails(&runs));
+        let least = BEYOND.max(beyond_tails(&runs, LEVEL));
         let beyond = |run: usize| runs[run].iter().enumerate().filter(|(_, d)| **d > least).map(|(block, _)| block);
         let places = (0..runs.len()).flat_map(|run| beyond(run).map(move |block| (run, block)));
         let alone = places.filter(|(run, block)| !shared(*run, ways[*run][*block]));
@@ -119,8 +119,8 @@ impl Fitted {
 }
 
 /// How many standard deviations are beyond the tails of all blocks: as many as a power law through two of their quantiles would reach in
-/// this many blocks with probability [`LEVEL`]; 0 where there are too few.
-pub(super) fn beyond_tails(runs: &[Vec<f64>]) -> f64 {
+/// this many blocks with probability `level`; 0 where there are too few.
+pub(super) fn beyond_tails(runs: &[Vec<f64>], level: f64) -> f64 {
     let mut all: Vec<f64> = runs.iter().flatten().copied().filter(|d| *d > 0.0).collect();
     all.sort_by(|a, b| b.total_cmp(a));
     let count = all.len() as f64;
@@ -129,7 +129,7 @@ pub(super) fn beyond_tails(runs: &[Vec<f64>]) -> f64 {
         return 0.0;
     }
     let power = libm::log(TAIL[0] / TAIL[1]) / libm::log(few / some);
-    few * libm::pow((TAIL[1] * count / LEVEL).max(1.0), 1.0 / power)
+    few * libm::pow((TAIL[1] * count / level).max(1.0), 1.0 / power)
 }
 
 #[cfg(test)]

@@ -14,6 +14,8 @@ const HIGHEST: f64 = 1.2;
 /// Numbers stand so far apart, in lengths and in shares of the height, and so far to the right of their marks.
 const APART: (f64, f64) = (1.2, 0.05);
 const BESIDE: f64 = 0.3;
+/// A digit is so wide, in lengths.
+const WIDE: f64 = 0.35;
 
 pub(super) fn figure(study: &Study) -> Result<Figure, Absent> {
     let learnt = study.learnt()?;
@@ -37,7 +39,7 @@ fn added(learnt: &Learnt) -> Vec<(&'static str, &Repeated)> {
 
 /// The law that was taken and the others, each with its number.
 fn tried(repeated: &Repeated) -> impl Iterator<Item = (usize, &UnlistedLaw)> {
-    std::iter::once(&repeated.law).chain(&repeated.others).enumerate().map(|(index, law)| (index + 1, law))
+    std::iter::once(&repeated.law).chain(&repeated.others).map(|law| (law.number, law))
 }
 
 fn panel(name: &str, repeated: &Repeated) -> Panel {
@@ -51,17 +53,19 @@ fn panel(name: &str, repeated: &Repeated) -> Panel {
     let mut labels: Vec<(String, [f64; 2])> = Vec::new();
     for (number, law) in &shown {
         let [x, y] = place(law);
-        if labels.iter().all(|(_, [u, v])| (x - u).abs() > APART.0 || (y - v).abs() > APART.1 * MM * most) {
-            labels.push((number.to_string(), [x, y]));
-        }
+        let is_free = |[x, y]: [f64; 2]| {
+            labels.iter().all(|(_, [u, v])| (x - u).abs() > APART.0 || (y - v).abs() > APART.1 * MM * most)
+        };
+        let sides = [[x + BESIDE, y], [x - BESIDE - number.to_string().len() as f64 * WIDE, y]];
+        labels.extend(sides.into_iter().find(|side| is_free(*side)).map(|side| (number.to_string(), side)));
     }
     let (labels, beside): (Vec<String>, Vec<[f64; 2]>) = labels.into_iter().unzip();
     let layers = vec![
         Layer::new("without a law", Tone::Quiet, Mark::Dashes, [[0.0, MM * before], [longest, MM * before]]),
-        Layer::new("least error of a law as short", Tone::Model, Mark::Line, front(&shown, longest)),
+        Layer::new("best law up to this length", Tone::Model, Mark::Line, front(&shown, longest)),
         Layer::new("laws", Tone::Computed, Mark::Rings, shown.iter().map(|(_, law)| place(law))).saying(said.collect()),
         Layer::new("the law that was taken", Tone::Model, Mark::Dots, [place(&repeated.law)]),
-        Layer::new("", Tone::Quiet, Mark::Words(labels), beside.into_iter().map(|[x, y]| [x + BESIDE, y])),
+        Layer::new("", Tone::Quiet, Mark::Words(labels), beside),
     ];
     Panel {
         title: name.to_owned(),

@@ -1,6 +1,6 @@
 //! The study in one sentence.
 
-use umbmark_core::diagnose::{Diagnosis, Verdict};
+use umbmark_core::diagnose::{Diagnosis, Level, Verdict};
 
 use crate::study::Study;
 
@@ -22,10 +22,19 @@ pub fn verdict(study: &Study) -> String {
         }
         Err(why) => format!("has no score ({why})"),
     };
-    let cause = study.diagnosis().map_or_else(|why| format!("what is missing cannot be said: {why}"), cause);
-    let left = study.exact().and_then(|exact| exact.e_max_sys_after);
-    let left = left.map(|after| format!("; calibrated, {:.0} mm would be left", 1e3 * after)).unwrap_or_default();
+    let diagnosis = study.diagnosis();
+    let left = diagnosis.as_ref().ok().and_then(|diagnosis| left_by(diagnosis)).unwrap_or_default();
+    let cause = diagnosis.map_or_else(|why| format!("what is missing cannot be said: {why}"), cause);
     format!("{robot} {missed}; {cause}{left}.")
+}
+
+/// What the model of a diagnosis leaves: of return poses, or along tracks.
+fn left_by(diagnosis: &Diagnosis) -> Option<String> {
+    let left = 1e3 * diagnosis.remains.as_ref()?.position.rms;
+    Some(match diagnosis.level {
+        Level::Tracks => format!("; {left:.1} mm are left along the way"),
+        Level::Ends => format!("; {left:.0} mm are left of the return errors"),
+    })
 }
 
 fn cause(diagnosis: &Diagnosis) -> String {
@@ -39,6 +48,10 @@ fn cause(diagnosis: &Diagnosis) -> String {
         }
         Verdict::MissingEffect => format!("beside {model} one class of effects is missing: {}", missing()),
         Verdict::SeveralMissing => format!("beside {model} several classes of effects are missing: {}", missing()),
+        Verdict::UnlistedEffect if diagnosis.dependence.is_none() && has_formula(diagnosis) => format!(
+            "{model} {} what these runs can show, by a law that the catalogue does not list and with no sign of a further effect",
+            explains(&names)
+        ),
         Verdict::UnlistedEffect => {
             let on = diagnosis.dependence.as_ref().map(|told| format!("; it depends on {}", told.title));
             format!("beside {model} something is missing that the catalogue does not list{}", on.unwrap_or_default())
@@ -48,6 +61,11 @@ fn cause(diagnosis: &Diagnosis) -> String {
         }
         Verdict::NotEnoughData => "these runs are not enough to say what is missing".into(),
     }
+}
+
+/// Whether a formula is fitted.
+fn has_formula(diagnosis: &Diagnosis) -> bool {
+    diagnosis.model.parts().iter().any(|part| part.free && part.effect.formula().is_some())
 }
 
 /// The verb for one subject or for many.

@@ -154,6 +154,8 @@ class UnlistedLaw(Record, frozen=True):
 
     Attributes
     ----------
+    number : int
+        Its number in the table of laws, as `--law` of `umbmark learn` takes it.
     toml : str or None
         The law as an effect of a model file, with start values or, once it was added, the fitted
         ones; None where formulas lack what it depends on.
@@ -189,6 +191,7 @@ class UnlistedLaw(Record, frozen=True):
         Share of its response that the law which is taken makes as well, as a cosine.
     """
 
+    number: int
     toml: str | None
     formula: str | None
     parameters: dict[str, float | None] | None

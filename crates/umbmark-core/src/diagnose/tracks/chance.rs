@@ -29,16 +29,17 @@ pub(super) fn remains(
 ) -> Remains {
     let wheelbase = observed.robot.drive.wheelbase();
     let runs = observed.runs.par_iter().zip(left);
-    let trails: Vec<Trail> =
-        runs.map(|(run, left)| trail(run, left, observed.setup.noise, wheelbase)).collect();
+    let trails: Vec<Trail> = runs.map(|(run, left)| trail(run, left, observed.setup.noise, wheelbase)).collect();
     let mut remains = Remains::of(&trails, 1.0 - options.size);
     remains.position.rms = misses.position;
     remains.heading.iter_mut().zip(misses.heading).for_each(|(left, rms)| left.rms = rms);
     remains.chance = chance(observed, noise, options.seed);
     let tick = observed.robot.metres_per_tick();
     let ticks = TICKS * tick.left.abs().max(tick.right.abs());
-    let least =
-        [ticks.max(POSES * observed.setup.noise.position), (ticks / wheelbase).max(POSES * observed.setup.noise.heading)];
+    let least = [
+        ticks.max(POSES * observed.setup.noise.position),
+        (ticks / wheelbase).max(POSES * observed.setup.noise.heading),
+    ];
     let is_large = |at: &Disturbance| at.by[0].hypot(at.by[1]) > least[0] || at.by[2].abs() > least[1];
     remains.disturbances = noise.disturbances(&observed.runs, left, wheelbase);
     remains.disturbances.retain(is_large);

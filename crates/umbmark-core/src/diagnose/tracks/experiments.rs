@@ -25,7 +25,7 @@ use std::sync::Arc;
 /// Runs of a new drive, each way.
 const RUNS: usize = 3;
 /// What laws that cannot be told from the one that is taken are called, as their table has them.
-const LAWS: [&str; 7] = ["law_2", "law_3", "law_4", "law_5", "law_6", "law_7", "law_8"];
+const LAWS: [&str; 8] = ["law_1", "law_2", "law_3", "law_4", "law_5", "law_6", "law_7", "law_8"];
 /// What a size below the noise is told from.
 const NOISE: &str = "noise";
 
@@ -106,8 +106,8 @@ pub fn of_laws(exam: &Examination, repeated: &Repeated) -> Result<Vec<Experiment
         Some((places, values, part.effect.name()))
     };
     let Some((truth, values, own)) = adopt(&repeated.law, None) else { return Ok(Vec::new()) };
-    let alike = repeated.others.iter().enumerate().filter(|(_, other)| other.is_alike());
-    let named = alike.filter_map(|(index, other)| Some((LAWS.get(index)?, other)));
+    let alike = repeated.others.iter().filter(|other| other.is_alike());
+    let named = alike.filter_map(|other| Some((LAWS.get(other.number.checked_sub(1)?)?, other)));
     let doubt = |(name, other): (&&'static str, &UnlistedLaw)| {
         let (rival, ..) = adopt(other, Some(name))?;
         let against = (0..own_numbers.len()).chain(rival).collect();
@@ -287,7 +287,7 @@ fn drives(exam: &Examination) -> Vec<Drive> {
         of("5 turns on the spot", &SPIN, &[5.0], speed, 0.0),
         of("5 turns on the spot at double rate", &SPIN, &[5.0], at(2.0), 0.0),
         of("a circle of 1 m radius, twice round", &CIRCLE, &[1.0, 2.0], speed, 0.0),
-        of("the same circle at double speed", &CIRCLE, &[1.0, 2.0], at(2.0), 0.0),
+        of("a circle of 1 m radius, twice round, at double speed", &CIRCLE, &[1.0, 2.0], at(2.0), 0.0),
         of("a figure-eight of 1 m radius", &FIGURE_EIGHT, &[1.0], speed, 0.0),
     ];
     if let Some(path) = path {

@@ -41,12 +41,16 @@ const AS_LIKELY: f64 = 40.0;
 const SIZE: f64 = 0.01;
 const LOUD: (f64, f64) = (1e-6, 0.1);
 const SIZE_IF_LOUD: f64 = 0.05;
+/// The names of the sizes of a law.
+const SIZES: [&str; 2] = ["a", "b"];
 /// The name of the number that shapes a law: a period, a scale, a threshold.
 pub(super) const SHAPE: &str = "c";
 /// Fewer runs do not show whether it is the same in all.
 const ENOUGH_RUNS: usize = 4;
-/// The same where runs left out are predicted so much better, however wide the noise is: noise that was fitted may be what repeats.
+/// Where runs left out are predicted so much better, noise as wide as it was fitted may be what repeats, and is not taken as wider still. p need
+/// only be this then: it is of the flips alone, and of few runs, of which some carry most, these are few.
 const PLAIN: f64 = 0.4;
+const SIZE_IF_PLAIN: f64 = 0.2;
 /// The same by the noise model, and how many times as wide as that has it noise that remembers makes a drift of the heading.
 const SIZE_BY_NOISE: f64 = 0.05;
 const REMEMBERS: f64 = 2.6;
@@ -71,6 +75,8 @@ pub struct Repeated {
 /// A law that no catalogue lists.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnlistedLaw {
+    /// Its number in the table of laws, from 1.
+    pub number: usize,
     /// A model that holds it alone, with start values, where it can be written as a formula.
     pub model: Option<Model>,
     /// What it acts on: "forward", "sideways" or "yaw".
@@ -104,11 +110,12 @@ impl UnlistedLaw {
         self.likeness > ALIKE
     }
 
-    /// The number that shapes it, with three digits: a period, a scale, a threshold.
-    pub fn shape(&self) -> Option<String> {
-        let part = self.model.as_ref()?.parts().first()?;
-        let mut numbers = part.effect.parameters().iter().zip(&part.values);
-        numbers.find(|(parameter, _)| parameter.name == SHAPE).map(|(_, value)| three_digits(*value))
+    /// The numbers that shape it, each with its name and three digits: a period, a scale, a threshold, a place.
+    pub fn shapes(&self) -> Vec<(&'static str, String)> {
+        let part = self.model.as_ref().and_then(|model| model.parts().first());
+        let numbers = part.into_iter().flat_map(|part| part.effect.parameters().iter().zip(&part.values));
+        let shapes = numbers.filter(|(parameter, _)| !SIZES.contains(&parameter.name));
+        shapes.map(|(parameter, value)| (parameter.name, three_digits(*value))).collect()
     }
 
     /// What it follows, in words: "a wave of the time with a period of 18.9 s".
@@ -136,16 +143,18 @@ fn three_digits(value: f64) -> String {
 impl Repeated {
     /// Whether it is no chance, and makes errors of runs left out fall by this share.
     pub(super) fn counts(&self, least: f64) -> bool {
-        let (by_noise, gain) = (self.p_by_noise(), self.law.gain);
-        let is_loud = self.runs >= ENOUGH_RUNS && ((by_noise <= LOUD.0 && gain >= LOUD.1) || gain >= PLAIN);
+        let (by_noise, gain) = (self.p_by_noise(REMEMBERS), self.law.gain);
+        let is_plain = gain >= PLAIN && self.p_by_noise(1.0) <= LOUD.0;
+        let is_loud = by_noise <= LOUD.0 && gain >= LOUD.1;
+        let is_clear = (is_loud && self.p <= SIZE_IF_LOUD) || (is_plain && self.p <= SIZE_IF_PLAIN);
         let is_certain = self.p <= SIZE && by_noise <= SIZE_BY_NOISE;
-        gain >= least && (is_certain || (is_loud && self.p <= SIZE_IF_LOUD))
+        gain >= least && (is_certain || (is_clear && self.runs >= ENOUGH_RUNS))
     }
 
-    /// p of all laws together by the noise model (Bonferroni): flips of few runs are few, and one of them is as far out once in a while. Noise
-    /// that remembers makes drifts as many times as wide as the model has them.
-    fn p_by_noise(&self) -> f64 {
-        let square = (self.deviations / REMEMBERS).powi(2);
+    /// p of all laws together by the noise model (Bonferroni), with scores so many times as wide as that has them: flips of few runs are few, and
+    /// one of them is as far out once in a while.
+    fn p_by_noise(&self, wider: f64) -> f64 {
+        let square = (self.deviations / wider).powi(2);
         (self.laws as f64 * chi_squared_upper_tail(square, 1.0)).min(1.0)
     }
 
@@ -153,8 +162,8 @@ impl Repeated {
     pub(crate) fn sentence(&self) -> String {
         let [before, after] = self.law.left_out;
         format!(
-            "what is left repeats (p = {:.1e} among {} laws): {}; with that, runs left out would be predicted to {:.1} mm instead of {:.1} mm",
-            self.p,
+            "what is left repeats (p {} among {} laws): {}; with that, runs left out would be predicted to {:.1} mm instead of {:.1} mm",
+            if self.p < 0.001 { "< 0.001".to_owned() } else { format!("= {:.3}", self.p) },
             self.laws,
             self.law.words(),
             1e3 * after,
@@ -193,7 +202,7 @@ pub(super) fn suspect(repeated: &Repeated, name: &'static str, exam: &Examinatio
         best: name,
         f: square / freedom[0].max(1.0),
         degrees_of_freedom: freedom,
-        p: repeated.p_by_noise(),
+        p: repeated.p_by_noise(REMEMBERS),
         p_adjusted: repeated.p,
         p_flips: Some(repeated.p),
         estimate,
@@ -250,6 +259,7 @@ pub fn what_repeats(
     if front.is_empty() {
         return None;
     }
+    front.iter_mut().zip(1..).for_each(|(law, number)| law.number = number);
     let law = front.remove(0);
     Some(Repeated {
         p,
@@ -342,6 +352,7 @@ fn front(
         let model = laws.model(pick.term, numbers, how, &observed.robot);
         let formula = model.as_ref().and_then(|model| model.parts().first()?.effect.formula());
         let law = UnlistedLaw {
+            number: 0,
             length: formula.map_or(usize::MAX, |formula| formula.length()),
             model,
             acts_on: motion.name(),
@@ -515,6 +526,6 @@ mod tests {
         let repeated = beside(&exam, 1).unwrap();
         assert!(repeated.counts(0.02), "{repeated:?}");
         let said = repeated.sentence();
-        assert!(said.starts_with("what is left repeats (p = ") && said.contains(&repeated.law.by()), "{said}");
+        assert!(said.starts_with("what is left repeats (p ") && said.contains(&repeated.law.by()), "{said}");
     }
 }

@@ -385,6 +385,19 @@ impl Search {
         self.last().fitted.model.parts().iter().any(|part| part.effect.name() == effect)
     }
 
+    /// Whether an effect is in the last model, and no size of it is known to be other than nothing.
+    pub fn is_needless(&self, effect: &str) -> bool {
+        silent(self.last(), |asked| asked == effect).is_some()
+    }
+
+    /// The numbers in the table of laws of those that were added.
+    pub fn laws(&self) -> impl Iterator<Item = usize> {
+        self.added.iter().filter_map(|added| match &added.by {
+            Found::Unlisted(repeated) => Some(repeated.law.number),
+            Found::Listed(_) => None,
+        })
+    }
+
     /// Whether a law that no catalogue lists was added.
     pub fn has_law(&self) -> bool {
         self.added.iter().any(|added| matches!(added.by, Found::Unlisted(_)))

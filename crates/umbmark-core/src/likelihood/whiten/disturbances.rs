@@ -19,6 +19,8 @@ use rayon::prelude::*;
 
 /// Probability with which anything is named in a run in which there is noise alone.
 const SIZE: f64 = 0.005;
+/// Probability with which the tails that what is left has reach as far as what is named, in one block of all.
+const LEVEL: f64 = 0.05;
 /// Disturbances nearer to each other than this are one \[m\].
 const NEAR: f64 = 0.15;
 /// Blocks that are spent on START.
@@ -55,7 +57,7 @@ impl Noise {
         let scores: Vec<Vec<Standing>> =
             runs.par_iter().zip(left).map(|(run, left)| less_usual(self.scores(run, left))).collect();
         let deviations = |own: &Vec<Standing>| own.iter().map(|standing| standing.square.sqrt()).collect();
-        let tails = beyond_tails(&scores.iter().map(deviations).collect::<Vec<_>>());
+        let tails = beyond_tails(&scores.iter().map(deviations).collect::<Vec<_>>(), LEVEL);
         let of_run = |(run, scores)| named(run, scores, tails, wheelbase);
         runs.iter().zip(scores).flat_map(of_run).collect()
     }

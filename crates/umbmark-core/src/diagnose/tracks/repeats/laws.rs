@@ -1,7 +1,7 @@
 //! The laws that are asked about: functions of how and where the robot drives, for each second, metre or radian.
 
 use super::super::smooth::Motion;
-use super::SHAPE;
+use super::{SHAPE, SIZES};
 use crate::drive::Robot;
 use crate::effect::{Chain, Formula, Model, Target};
 use crate::geometry::{Displacement2, Pose2};
@@ -242,6 +242,11 @@ struct Extent {
 fn along(step: &Step, direction: f64) -> f64 {
     let (sine, cosine) = libm::sincos(direction);
     step.middle.x * cosine + step.middle.y * sine
+}
+
+/// A number taken off, as a formula has it.
+fn less(number: f64) -> String {
+    if number < 0.0 { format!("+ {:.3}", -number) } else { format!("- {number:.3}") }
 }
 
 /// One of eight directions in the room \[rad\].
@@ -520,7 +525,7 @@ impl Laws {
                         "what dies away within {{c}} m of the edge of the room at {:.0} deg",
                         towards.to_degrees() - 180.0
                     ),
-                    (format!("exp(-(x * cos(h) + y * sin(h) - {edge:.3}) / c)"), vec![("c", c), ("h", towards)]),
+                    (format!("exp(-(x * cos(h) + y * sin(h) {}) / c)", less(edge)), vec![("c", c), ("h", towards)]),
                     &[Metre],
                     move |s, by| libm::exp(-(along(s, by[1]) - edge) / by[0]),
                 );
@@ -659,7 +664,7 @@ impl Laws {
             None if first == "1" => format!("a * {sense}{factor}").trim_end_matches(" * ").to_owned(),
             None => format!("a * {sense}{factor}{first}"),
         };
-        let names: Vec<&str> = ["a", "b"].into_iter().take(sizes.len()).chain(shapes.iter().map(|s| s.0)).collect();
+        let names: Vec<&str> = SIZES.into_iter().take(sizes.len()).chain(shapes.iter().map(|s| s.0)).collect();
         let values = sizes.iter().chain(by).copied();
         let rounded = values.map(|value| format!("{value:.4e}").parse().unwrap_or(value));
         let formula = Formula::new(&self.name(term, motion), target, &text, &names).ok()?;
