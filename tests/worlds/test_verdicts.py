@@ -53,7 +53,7 @@ def test_a_law_that_no_catalogue_lists_is_added_with_its_period(tmp_path: File) 
     assert said["verdict"] == "unlisted_effect"
     before, last = said["steps"][-2:]
     assert last["added"] == "periodic_yaw"
-    assert (last["law"]["acts_on"], last["law"]["per"]) == ("yaw", "second")
+    assert (last["law"]["motion"], last["law"]["per"]) == ("yaw", "second")
     period = next(one for one in said["fitted"] if one["parameter"] == "c")
     assert period["value"] == pytest.approx(7.3, rel=0.01)
     assert last["heldout_rmse_m"] < 0.5 * before["heldout_rmse_m"]
