@@ -31,9 +31,20 @@ impl Misses {
 
     /// Whether positions or headings are worse than `before` by a share that is not chance, and neither is better.
     pub fn harms(&self, before: &Misses) -> bool {
+        let [least, most] = self.falls(before);
+        most < LEAST_GAIN && least < -HARM
+    }
+
+    /// By what share positions or headings are smaller than `before`: of the two that which falls less, and that which falls more.
+    pub fn falls(&self, before: &Misses) -> [f64; 2] {
         let position = fall(self.position, before.position);
         let heading = self.heading.zip(before.heading).map_or(position, |(now, then)| fall(now, then));
-        position.max(heading) < LEAST_GAIN && position.min(heading) < -HARM
+        [position.min(heading), position.max(heading)]
+    }
+
+    /// By what share what is new from pose to pose is smaller than `before`, both in standard deviations of one noise.
+    pub fn white_fall(&self, before: &Misses) -> f64 {
+        fall(self.white, before.white)
     }
 }
 

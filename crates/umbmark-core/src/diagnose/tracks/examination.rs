@@ -8,7 +8,7 @@ use super::system::{Projected, System};
 use crate::diagnose::ends::names;
 use crate::effect::{Changes, Entry, Law, Model, ModelError, Number};
 use crate::geometry::Pose2;
-use crate::likelihood::{ABSORBED, Column, Fitted, Noise, share_left};
+use crate::likelihood::{ABSORBED, Column, Fitted, Noise, share_left, solver};
 use nalgebra::{DMatrix, DVector};
 use std::sync::{Arc, OnceLock};
 
@@ -160,6 +160,27 @@ impl Examination {
             }
         }
         base
+    }
+
+    /// How many times as wide the standard errors of what every robot is asked for become where a group's columns are fitted along, at most.
+    pub fn widening(&self, columns: &[usize]) -> f64 {
+        let first = self.fitted.model.robot().drive.first_effects();
+        let is_first = |column: &usize| self.name(*column).is_some_and(|name| first.contains(&name));
+        let base = self.base(None);
+        let rest: Vec<usize> = base.iter().copied().filter(|column| !columns.contains(column)).collect();
+        let all = [&rest[..], columns].concat();
+        let error = |base: &[usize], column: usize| {
+            let own = base.iter().position(|other| *other == column)?;
+            let unit = DMatrix::from_fn(base.len(), 1, |i, _| f64::from(i == own));
+            Some(solver(&self.system.whole, base)?.solve(&unit)[(own, 0)].sqrt())
+        };
+        let wider = |column: usize| Some(error(&all, column).unwrap_or(f64::INFINITY) / error(&rest, column)?);
+        rest.iter().copied().filter(is_first).filter_map(wider).fold(1.0, f64::max)
+    }
+
+    /// The columns of an effect of the model that were fitted.
+    pub fn columns_of(&self, effect: &str) -> Vec<usize> {
+        self.free.iter().copied().filter(|column| self.name(*column) == Some(effect)).collect()
     }
 
     /// The effect that a column belongs to.

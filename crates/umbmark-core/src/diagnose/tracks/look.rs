@@ -131,7 +131,7 @@ pub fn possible(exam: &Examination, finding: &Finding) -> bool {
 /// p of an effect that the model has, as if it lacked it and that alone were asked: the greatest of those by F, by the scatter of the runs,
 /// and by flips. `None` where none of its values was fitted, or the others do all that it does.
 pub fn p_of_own(exam: &Examination, effect: &str, options: &Options) -> Option<f64> {
-    let own: Vec<usize> = exam.free.iter().copied().filter(|column| exam.name(*column) == Some(effect)).collect();
+    let own = exam.columns_of(effect);
     let values: Vec<f64> = own.iter().map(|column| exam.departure(*column)).collect();
     let without = exam.system.with_added(&own, &values);
     let base: Vec<usize> = exam.base(None).into_iter().filter(|column| !own.contains(column)).collect();

@@ -15,11 +15,17 @@ use crate::likelihood::{Fitted, Noise};
 use crate::watch::Watch;
 use std::borrow::Cow;
 
-/// A law that no catalogue lists is added where errors of runs left out fall by this share, and so many laws at most.
+/// A law that no catalogue lists is added where positions or headings of runs left out fall by this share, or what is new from pose to pose by
+/// the second, and so many laws at most.
 const WORTH_A_LAW: f64 = 0.05;
+const WORTH_BY_POSES: f64 = 0.15;
 const MOST_LAWS: usize = 3;
 /// A law that no catalogue lists comes before an effect that explains less than this share of what it does.
 const OUTDONE: f64 = 0.5;
+/// An effect by which the standard error of E_d, E_b or E_s grows by more than this has to have a p of at most this share of the usual one; a
+/// law is none then that these runs can tell from them.
+const WIDE: f64 = 2.0;
+const SURE: f64 = 0.2;
 /// A fit with an effect more went astray where its error is so many times as large.
 const ASTRAY: f64 = 2.0;
 
@@ -72,7 +78,7 @@ fn first_with_gain<'a>(
         let own = findings.iter().filter(|f| nuisance(f) == of_reference && f.certified(options));
         let is_refused =
             |f: &Finding| exam.asked[f.answer.asked].effect().is_some_and(|e| refused.contains(&e.about.name));
-        let own = own.filter(|f| look::possible(exam, f) && !is_refused(f));
+        let own = own.filter(|f| look::possible(exam, f) && !is_refused(f) && is_sure(exam, f, options));
         for finding in own.take(TRIES) {
             let wanted = |asked: &Asked| {
                 let name = asked.effect().map_or("", |effect| effect.about.name);
@@ -89,6 +95,12 @@ fn first_with_gain<'a>(
         }
     }
     None
+}
+
+/// Whether an effect beside which E_d, E_b or E_s are known far less well is certain enough for that: what it is told from them by may be
+/// little, as the ramps of turns that are all alike, and a mistake then spoils what every other drive is predicted by.
+fn is_sure(exam: &Examination, finding: &Finding, options: &Options) -> bool {
+    finding.p_adjusted() <= SURE * options.size || exam.widening(&finding.answer.columns) <= WIDE
 }
 
 /// Whether runs left out are predicted better with a smooth.
@@ -126,6 +138,8 @@ pub(crate) enum Found {
 /// A model that has grown by an effect.
 struct Grown {
     exam: Examination,
+    /// As it is written.
+    written: Alone,
     /// Effects that no longer helped and were taken out.
     removed: Vec<&'static str>,
 }
@@ -245,13 +259,16 @@ fn last_part(
 
 /// Whether runs left out are predicted better with an effect of the model than without it.
 fn helps(exam: &Examination, effect: &str) -> bool {
-    let own: Vec<usize> = exam.free.iter().copied().filter(|column| exam.name(*column) == Some(effect)).collect();
-    if own.is_empty() {
-        return true;
-    }
+    let [with, without] = with_and_without(exam, effect);
+    exam.columns_of(effect).is_empty() || with.gain(&without) >= LEAST_GAIN
+}
+
+/// Errors of runs left out with an effect of the model, and without it, the others fitted anew.
+fn with_and_without(exam: &Examination, effect: &str) -> [Misses; 2] {
+    let own = exam.columns_of(effect);
     let beside: Vec<usize> = exam.base(None).into_iter().filter(|column| !own.contains(column)).collect();
-    let with = exam.left_out(&beside.iter().copied().filter(|c| !exam.free.contains(c)).collect::<Vec<_>>());
-    with.gain(&exam.left_out_without(&own, &beside)) >= LEAST_GAIN
+    let of_reference: Vec<usize> = beside.iter().copied().filter(|column| !exam.free.contains(column)).collect();
+    [exam.left_out(&of_reference), exam.left_out_without(&own, &beside)]
 }
 
 impl Search {
@@ -274,7 +291,7 @@ impl Search {
                     continue;
                 };
                 if !self.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&grown.exam, smooth, options)) {
-                    self.take(grown, Added { suspect, by: Found::Listed(finding) })?;
+                    self.take(grown, Added { suspect, by: Found::Listed(finding) });
                     self.left = missing(self.last(), options, &self.passed(refused));
                     continue;
                 }
@@ -287,7 +304,7 @@ impl Search {
                 }
                 break;
             };
-            self.take(grown, added)?;
+            self.take(grown, added);
             self.left = missing(self.last(), options, &self.passed(refused));
         }
         Ok(())
@@ -315,7 +332,8 @@ impl Search {
                 removed.push(effect);
             }
         }
-        Ok(Some(Grown { exam, removed }))
+        let written = trusted(exam.fitted.clone())?;
+        Ok(Some(Grown { exam, written, removed }))
     }
 
     /// The model grown by the law that what repeats follows, where it counts and a fit bears it out.
@@ -331,7 +349,9 @@ impl Search {
             let Some(model) = repeated.law.model.clone() else { return Ok(None) };
             let (fitted, name) = growth::grown_by_law(self.last(), &model)?;
             let exam = self.last().of_grown(fitted)?;
-            if let Some(grown) = self.borne_out(exam, name)? {
+            let is_told = exam.widening(&exam.columns_of(name)) <= WIDE;
+            let borne_out = if is_told { self.borne_out(exam, name)? } else { None };
+            if let Some(grown) = borne_out.filter(|grown| self.is_worth_a_law(grown, name)) {
                 let suspect = repeats::suspect(&repeated, name, &grown.exam);
                 repeated.law = repeated.law.fitted(name, &grown.exam);
                 return Ok(Some((grown, Added { suspect, by: Found::Unlisted(Box::new(repeated)) })));
@@ -339,6 +359,15 @@ impl Search {
             self.refused_laws.push(text_of(&model));
         }
         Ok(None)
+    }
+
+    /// Whether a law that a model has grown by predicts runs left out better: positions or headings, or by far what is new from pose to pose,
+    /// and neither positions nor headings worse. No physics speaks for such a law, so what it predicts has to.
+    fn is_worth_a_law(&self, grown: &Grown, name: &str) -> bool {
+        let before = self.written[self.written.len() - 1].left_out();
+        let [least, most] = grown.written.left_out().falls(&before);
+        let [with, without] = with_and_without(&grown.exam, name);
+        least >= -LEAST_GAIN && (most >= WORTH_A_LAW || with.white_fall(&without) >= WORTH_BY_POSES)
     }
 
     /// Whether a law that no catalogue lists explains far more than the effect that would be added.
@@ -404,17 +433,16 @@ impl Search {
     }
 
     /// Goes on from a model that has grown.
-    fn take(&mut self, Grown { exam, removed }: Grown, added: Added) -> Result<(), DiagnoseError> {
+    fn take(&mut self, Grown { exam, written, removed }: Grown, added: Added) {
         let before = self.last().fitted.model.clone();
         for effect in removed {
             self.refuse(&before, effect);
             self.removed.push(effect);
         }
-        self.written.push(trusted(exam.fitted.clone())?);
+        self.written.push(written);
         self.exams.push(exam);
         self.added.push(added);
         (self.repeats, self.law_failed) = (None, false);
-        Ok(())
     }
 
     /// Remembers a formula of a model that is taken out of it.
