@@ -28,9 +28,9 @@ class Command:
         answer: dict[str, Any] = json.loads(done.stdout)
         return answer
 
-    def fit(self, folder: Path, model: Path) -> None:
-        """Fit E_d, E_b and E_s, and what the motion shows of the reference."""
-        added = [word for effect in FITS for word in ("--add", effect)]
+    def fit(self, folder: Path, model: Path, more: tuple[str, ...] = ()) -> None:
+        """Fit E_d, E_b and E_s, what the motion shows of the reference, and more effects of it."""
+        added = [word for effect in (*FITS, *more) for word in ("--add", effect)]
         self.ask("fit", folder, *added, "-o", model, "--force")
 
     def learn(self, folder: Path, model: Path) -> tuple[dict[str, Any], float]:
@@ -50,5 +50,5 @@ class Command:
 
     def convert(self, folder: Path, out: Path) -> None:
         """A dataset of another layout as CSV."""
-        call = [self.program, "convert", folder, "-o", out, "--to", "csv"]
+        call: list[str | Path] = [self.program, "convert", folder, "-o", out, "--to", "csv"]
         subprocess.run(call, check=True, capture_output=True)

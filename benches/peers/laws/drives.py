@@ -10,6 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Rows: TypeAlias = npt.NDArray[np.int64]
+"""Places in an array."""
 
 VARIABLES = (
     "speed",
@@ -66,7 +68,7 @@ class Run:
     """Of each row, since the first one [s]."""
     travel: Array
     """Of the left and the right wheel since START, by the nominal robot, [2 x rows, m]."""
-    seen: npt.NDArray[np.int64]
+    seen: Rows
     """Rows with a pose."""
     measured: Array
     """Poses at these rows, [poses x 3], in the frame of the room."""
@@ -86,8 +88,8 @@ class Run:
     def rest(self) -> npt.NDArray[np.bool_]:
         """Which poses were measured before the first motion."""
         gone = np.abs(self.travel[:, self.seen]).max(axis=0)
-        still = gone <= 1e-9
-        return still if still.any() else np.arange(len(self.seen)) == 0
+        still = gone <= max(1e-9, float(gone[0]))
+        return np.asarray(still)
 
 
 def read_runs(

@@ -78,5 +78,3 @@ def rms_m(runs: Sequence[Run], predict: Prediction, noise: PoseNoise, fitted: Fi
     wheelbase_m = fitted.robot.wheelbase_m
     all_squares = [squares(run, predict(run), noise, wheelbase_m) for run in runs]
     return float(np.sqrt(np.concatenate(all_squares).mean()))
-
-

@@ -15,9 +15,11 @@ from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 from validated import Gain, folds, gain
 
-TUNED_ON, LEARNT_FROM = 200, 700
+TUNED_ON, LEARNT_FROM = 300, 1000
 """Steps that hyperparameters are tuned on, and steps that the process rests on."""
-MOST_STEPS = 30
+MERGED = (1, 5)
+"""So many steps are one to learn from: short ones show more, long ones have less noise."""
+MOST_STEPS = 50
 """Of the search for hyperparameters."""
 LEAST_SHARE = 0.3
 """Steps with less than this share of the median exposure say little of a law of it."""
@@ -70,8 +72,8 @@ class Law:
 
 def tuned(objective: Callable[..., Any], first: Array, bounds: Array) -> tuple[Array, float]:
     """Hyperparameters of the greatest likelihood, in not too many steps."""
-    options = {"maxiter": MOST_STEPS}
-    found = minimize(objective, first, method="L-BFGS-B", jac=True, bounds=bounds, options=options)
+    how: dict[str, Any] = {"jac": True, "bounds": bounds, "options": {"maxiter": MOST_STEPS}}
+    found = minimize(objective, first, method="L-BFGS-B", **how)
     return found.x, float(found.fun)
 
 
@@ -98,24 +100,28 @@ def fitted_part(data: Increments, motion: int, exposure: str, known: Part | None
     return Part(process, exposure, mean, scale, unit, motion)
 
 
-def validated(data: Increments, motion: int, part: Part) -> Gain:
-    """The gain in runs left out, hyperparameters kept."""
+def validated(data: Increments, motion: int, part: Part, count: int) -> Gain:
+    """The gain in runs left out, hyperparameters kept; so many steps are one to learn from."""
     predicted = np.zeros(len(data.run))
     for learnt, out in folds(data.run):
-        own = fitted_part(data.take(learnt), motion, part.exposure, part)
+        own = fitted_part(data.take(learnt).merged(count), motion, part.exposure, part)
         rest = data.take(out)
         predicted[out] = own.rate(rest.features) * rest.seconds
-    return gain(data.moved[:, motion], predicted, data.part)
+    return gain(data, motion, predicted)
 
 
 def learn(data: Increments) -> Law:
     """A process for each motion that one predicts in runs left out."""
     law = Law()
     for motion in range(3):
-        tried = [fitted_part(data, motion, one, None) for one in ("metre", "second", "radian")]
-        gains = [validated(data, motion, part) for part in tried]
+        tried = [
+            (fitted_part(data.merged(count), motion, one, None), count)
+            for one in ("metre", "second", "radian")
+            for count in MERGED
+        ]
+        gains = [validated(data, motion, *one) for one in tried]
         best = int(np.argmax([one.mean for one in gains]))
         if gains[best].is_real:
-            part = tried[best]
-            law.parts[motion] = fitted_part(data, motion, part.exposure, part)
+            part, count = tried[best]
+            law.parts[motion] = fitted_part(data.merged(count), motion, part.exposure, part)
     return law

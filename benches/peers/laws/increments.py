@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from drives import POSE, Array, Run, mean_pose, seen_from
+from drives import POSE, Array, Rows, Run, mean_pose, seen_from
 from predicted import Fitted, driven
 
 BLOCK = (0.03, 0.05)
 STEP = (0.10, 0.20)
-LONGEST_S = 2.0
+LONGEST_S = 10.0
 """A step that takes longer says nothing of how the robot drove in it."""
 PARTS = 4
 """Validation takes each run in so many parts."""
@@ -26,13 +26,13 @@ class Increments:
     features: Array
     """[steps x variables]; means over the step."""
     moved: Array
-    """[steps x 3] forward, sideways [m] and yaw [rad], beyond the fitted robot, as seen from it."""
+    """[steps x 3] forward, sideways [m] and yaw [rad], less those of the fitted robot."""
     seconds: Array
-    run: npt.NDArray[np.int64]
-    part: npt.NDArray[np.int64]
+    run: Rows
+    part: Rows
     """The quarter of the run, counted through all runs."""
 
-    def take(self, rows: npt.NDArray[np.bool_] | npt.NDArray[np.int64]) -> "Increments":
+    def take(self, rows: npt.NDArray[np.bool_] | Rows) -> "Increments":
         """Some of the steps."""
         return Increments(
             self.features[rows],
@@ -42,6 +42,34 @@ class Increments:
             self.part[rows],
         )
 
+    def summed(self, values: Array) -> Array:
+        """Values [steps x ...] of the steps, added up from the beginning of each part.
+
+        Noise of a pose is in two steps, once with each sign: in sums it cancels.
+        """
+        begins = np.flatnonzero(np.diff(self.part, prepend=-1))
+        sums = np.concatenate([np.zeros_like(values[:1]), values.cumsum(axis=0)])
+        return np.asarray(sums[1:] - np.repeat(sums[begins], np.diff([*begins, len(values)]), 0))
+
+    def merged(self, count: int) -> "Increments":
+        """So many neighbouring steps of a part as one; their features are means."""
+        place = np.arange(len(self.part))
+        begins = np.flatnonzero(np.diff(self.part, prepend=-1))
+        since = place - np.repeat(begins, np.diff([*begins, len(place)]))
+        first = np.flatnonzero(since % count == 0)
+        seconds = np.add.reduceat(self.seconds, first)
+        features = np.add.reduceat(self.features * self.seconds[:, None], first, axis=0)
+        moved = np.add.reduceat(self.moved, first, axis=0)
+        return Increments(
+            features / seconds[:, None], moved, seconds, self.run[first], self.part[first]
+        )
+
+    def sample_parts(self, most: int) -> "Increments":
+        """Whole parts at random, with not many more steps than so many."""
+        drawn = np.random.default_rng(0).permutation(np.unique(self.part))
+        counts = np.array([(self.part == part).sum() for part in drawn])
+        return self.take(np.isin(self.part, drawn[: np.searchsorted(counts.cumsum(), most) + 1]))
+
     def sample(self, most: int) -> "Increments":
         """Not more than so many of the steps, at random."""
         if len(self.run) <= most:
@@ -50,7 +78,7 @@ class Increments:
         return self.take(np.sort(chosen))
 
 
-def blocks_of(run: Run, robot_wheelbase_m: float) -> list[npt.NDArray[np.int64]]:
+def blocks_of(run: Run, robot_wheelbase_m: float) -> list[Rows]:
     """The poses of a run, as indices into its measured ones, in places."""
     left, right = np.diff(run.travel)
     way = np.concatenate([[0.0], np.abs((left + right) / 2).cumsum()])[run.seen]
@@ -63,7 +91,7 @@ def blocks_of(run: Run, robot_wheelbase_m: float) -> list[npt.NDArray[np.int64]]
     return np.split(np.arange(len(run.seen)), begins[1:])
 
 
-def means(poses: Array, blocks: list[npt.NDArray[np.int64]]) -> Array:
+def means(poses: Array, blocks: list[Rows]) -> Array:
     """The mean pose of each place."""
     return np.stack([mean_pose(poses[block]) for block in blocks])
 
@@ -94,25 +122,35 @@ def of_run(run: Run, fitted: Fitted, number: int) -> Increments:
     features[:, POSE] = (poses[1:] + poses[:-1]) / 2
     ends = steps_of(predicted)
     first, last = ends[:-1], ends[1:]
-    own = seen_from(predicted[first], predicted[last])
-    true = seen_from(measured[first], measured[last])
-    moved = seen_from(own, true)
+    own = motions(seen_from(predicted[first], predicted[last]))
+    true = motions(seen_from(measured[first], measured[last]))
+    moved = true - own
     over = [slice(row[a], max(row[b], row[a] + 1)) for a, b in zip(first, last, strict=True)]
     weight = np.diff(run.time) * run.moves
     moving = np.array([weight[one].sum() for one in over])
     keep = (moving > 0) & (run.time[row[last]] - run.time[row[first]] < LONGEST_S)
     mean = np.stack(
-        [
-            np.average(features[one], axis=0, weights=np.maximum(weight[one], 1e-9))
-            for one in over
-        ]
+        [np.average(features[one], axis=0, weights=np.maximum(weight[one], 1e-9)) for one in over]
     )
     part = np.arange(len(over)) * PARTS // max(len(over), 1) + PARTS * number
     whole = Increments(mean, moved, moving, np.full(len(over), number), part)
     return whole.take(keep)
 
 
-def steps_of(places: Array) -> npt.NDArray[np.int64]:
+def motions(seen: Array) -> Array:
+    """Forward, sideways and yaw motion that leads at a steady pace to a pose, as seen before it.
+
+    A yaw that is off moves the robot aside in the same step; as a motion it is yaw alone.
+    """
+    half = seen[:, 2] / 2
+    stretched = half / np.where(np.abs(half) < 1e-9, 1.0, np.tan(half))
+    stretched = np.where(np.abs(half) < 1e-9, 1.0, stretched)
+    forward = stretched * seen[:, 0] + half * seen[:, 1]
+    sideways = stretched * seen[:, 1] - half * seen[:, 0]
+    return np.stack([forward, sideways, seen[:, 2]], axis=1)
+
+
+def steps_of(places: Array) -> Rows:
     """The places at which steps end."""
     ends = [0]
     for place in range(1, len(places)):

@@ -58,13 +58,14 @@ def main() -> None:
         default=ROOT / "target" / "peers-laws.jsonl",
         help="all results, one line a set",
     )
+    parser.add_argument("--table", action="store_true", help="print the tables of --json again")
     chosen = parser.parse_args()
     if not chosen.binary.exists():
         sys.exit(f"{chosen.binary} is not there: cargo build --release, or say --binary")
     words = [str(install()), str(HERE / "study.py")]
     for name in ("sets", "nulls", "first_seed", "binary", "json"):
         words += [f"--{name.replace('_', '-')}", str(getattr(chosen, name))]
-    words += ["--optiodom"] if chosen.optiodom else []
+    words += [f"--{name}" for name in ("optiodom", "table") if getattr(chosen, name)]
     sys.exit(subprocess.run(words, check=False, env=os.environ | ONE_THREAD).returncode)
 
 

@@ -22,6 +22,8 @@ wheel_diameter_m = 0.084
 ticks_per_revolution = 2796.8
 """
 """OptiOdom's robot, whatever its controller was told."""
+MARKERS = ("marker_offset", "marker_yaw")
+"""Markers on top of a robot are not exactly above the middle of its axle."""
 DAYS = {"June": "0620", "December": "1220"}
 """How the names of the sets of OptiOdom of each month have their month and year."""
 
@@ -37,6 +39,8 @@ class Split:
     """Folder of the runs that are judged."""
     made: Path | None = None
     """The folder that was made, with truth.json."""
+    fitted: tuple[str, ...] = ()
+    """Effects of the reference that are fitted besides E_d, E_b and E_s, for all methods."""
 
 
 def names_in(folder: Path) -> list[str]:
@@ -48,8 +52,8 @@ def made(world: str, seed: int, folder: Path) -> Split:
     """A set of a world; some runs that the seed draws are left out, of each sense alike."""
     name = f"{world}-{seed}"
     whole = folder / name / "whole"
-    make = [sys.executable, WORLDS / "make.py", world, "--seed", str(seed), "--out", whole]
-    subprocess.run(make, check=True)
+    make = [sys.executable, str(WORLDS / "make.py"), world, "--seed", str(seed)]
+    subprocess.run([*make, "--out", str(whole)], check=True)
     names = names_in(whole)
     random = np.random.default_rng(seed)
     count = max(2, round(LEFT_OUT * len(names)))
@@ -84,7 +88,7 @@ def optiodom(command: Command, folder: Path) -> Iterator[Split]:
         squares = gathered(command, folder, "square", digits)
         for kind, name in (("circular", "circles"), ("ivanjko", "straights and spins")):
             others = gathered(command, folder, kind, digits)
-            yield Split(f"OptiOdom, {month}: {name}", squares, others)
+            yield Split(f"OptiOdom, {month}: {name}", squares, others, fitted=MARKERS)
 
 
 def gathered(command: Command, folder: Path, kind: str, digits: str) -> Path:
@@ -95,9 +99,11 @@ def gathered(command: Command, folder: Path, kind: str, digits: str) -> Path:
     (out / "robot.toml").write_text(ROBOT)
     for source in sorted((OPTIODOM / kind).glob(f"??{digits}*")):
         with_names = folder / "converted" / source.name
+        with_names.parent.mkdir(exist_ok=True)
         shutil.rmtree(with_names, ignore_errors=True)
         command.convert(source, with_names)
         for file in sorted((with_names / "runs").glob("*.csv")):
-            sense, _, rest = file.stem.partition("_")
-            shutil.copy(file, out / "runs" / f"{sense}_{source.name}_{rest}.csv")
+            sense = file.stem.partition("_")[0]
+            number = len(list((out / "runs").glob(f"{sense}_*"))) + 1
+            shutil.copy(file, out / "runs" / f"{sense}_{number:02}.csv")
     return out

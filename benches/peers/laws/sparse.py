@@ -22,8 +22,9 @@ MOST_KEPT = 30
 """A solution with more terms than this is not sparse, and is left aside."""
 RIDGE = 1e-2
 LEARNT_FROM = 4000
-PERIODS_S = np.geomspace(4, 50, 14)
-PERIODS_M = np.geomspace(0.4, 8, 18)
+PERIODS_S = np.geomspace(4, 50, 33)
+PERIODS_M = np.geomspace(0.4, 8, 39)
+"""Eight per cent apart."""
 SCALES = (0.25, 0.5, 0.75)
 """Thresholds and knees stand at these shares of the largest value."""
 
@@ -119,16 +120,15 @@ def paths(columns: Array, target: Array) -> list[npt.NDArray[np.int64]]:
     """Sets of columns that the optimisers propose, some of them empty, always as many."""
     size = np.maximum(np.linalg.norm(columns, axis=0), 1e-12)
     scaled = columns / size
-    # The same inner products in as few rows as there are columns.
-    products = np.linalg.qr(np.column_stack([scaled, target]), mode="r")
-    scaled, rotated = products[:, :-1], products[:, -1:]
-    # A little ridge, without which FROLS refuses columns that depend on others.
-    scaled = np.concatenate([scaled, RIDGE * np.eye(scaled.shape[1])])
-    rotated = np.concatenate([rotated, np.zeros((scaled.shape[1], 1))])
+    # The same inner products in as few rows as there are columns, and a little ridge, without which
+    # FROLS refuses columns that depend on others.
+    scaled_t = np.linalg.cholesky(scaled.T @ scaled + RIDGE**2 * np.eye(scaled.shape[1]))
+    rotated = np.linalg.solve(scaled_t, scaled.T @ target)[:, None]
     rotated = rotated / max(float(np.linalg.norm(rotated)), 1e-12)
+    scaled = scaled_t.T
     forward = FROLS(max_iter=MOST_TERMS, alpha=1e-9, unbias=False).fit(scaled, rotated)
     found = [np.flatnonzero(one[0]) for one in forward.history_[1:]]
-    first = np.linalg.solve(scaled.T @ scaled, scaled.T @ rotated)
+    first = np.linalg.solve(scaled, rotated)
     for share in THRESHOLDS:
         threshold = share * float(np.abs(first).max())
         optimiser = STLSQ(threshold, alpha=1e-9, unbias=False, initial_guess=first.T)
@@ -148,22 +148,27 @@ def solved(columns: Array, target: Array, chosen: npt.NDArray[np.int64]) -> Arra
 
 def learn(data: Increments) -> Law:
     """The terms of each motion that predict runs left out."""
-    data = data.sample(LEARNT_FROM)
+    sample = np.arange(len(data.run))
+    if len(sample) > LEARNT_FROM:
+        sample = np.sort(np.random.default_rng(0).choice(sample, LEARNT_FROM, replace=False))
     library = Columns(np.abs(data.features).max(axis=0))
     names = library.names(data.features)
     law = Law(library, np.zeros((len(names), 3)))
     for motion, kind in enumerate(MOTIONS):
-        columns = library.values(data.features, motion) * data.seconds[:, None]
-        target = data.moved[:, motion]
+        # The integral form: sums of columns against sums of motion.
+        each = library.values(data.features, motion) * data.seconds[:, None]
+        columns = data.summed(each)[sample]
+        target = data.summed(data.moved[:, motion])[sample]
         whole = paths(columns, target)
-        predicted = np.zeros((len(whole), len(target)))
+        predicted = np.zeros((len(whole), len(each)))
         for learnt, out in folds(data.run):
-            own = paths(columns[learnt], target[learnt])
+            rows = np.isin(sample, learnt)
+            own = paths(columns[rows], target[rows])
             for place, chosen in enumerate(own):
-                values = solved(columns[learnt], target[learnt], chosen)
-                predicted[place, out] = columns[out] @ values
+                values = solved(columns[rows], target[rows], chosen)
+                predicted[place, out] = each[out] @ values
         order = sorted(range(len(whole)), key=lambda place: len(whole[place]))
-        gains: list[Gain] = [gain(target, predicted[place], data.part) for place in order]
+        gains: list[Gain] = [gain(data, motion, predicted[place]) for place in order]
         best = simplest(gains)
         if best is not None:
             chosen = whole[order[best]]

@@ -23,7 +23,7 @@ from increments import blocks_of, increments_of
 from learnt import law_of
 from predicted import Fitted, Law, driven
 from table import table
-from truth import Truth
+from truth import ALWAYS, Truth
 
 Json: TypeAlias = dict[str, Any]
 
@@ -52,9 +52,7 @@ def predicts(fitted: Fitted, law: Law | None) -> Prediction:
     return prediction
 
 
-def by_command(
-    command: Command, split: sets.Split, first: str, model: Path, folder: Path
-) -> float:
+def by_command(command: Command, split: sets.Split, first: str, model: Path, folder: Path) -> float:
     """The error of a model along the judged runs by `umbmark compare` alone [m].
 
     Formulas have their origin at START of the first run that was learnt from: it goes along, and
@@ -83,7 +81,7 @@ def studied(split: sets.Split, command: Command, folder: Path) -> Json:
     """All methods on one set."""
     truth = Truth(split) if split.made else None
     fit, learnt = folder / "fit.toml", folder / "learnt.toml"
-    command.fit(split.train, fit)
+    command.fit(split.train, fit, split.fitted)
     answer, seconds = command.learn(split.train, learnt)
     robot = Robot.read(split.train)
     fitted = Fitted.read(robot, fit)
@@ -144,19 +142,18 @@ def checked(ours_m: float, answer: Json, name: str) -> Json:
 
 def added(answer: Json) -> list[str]:
     """The steps of `umbmark learn` beyond E_d, E_b and E_s."""
-    from truth import judge
-
     steps = [step["added"] for step in answer["steps"]]
-    return [name for name in steps if name and name not in judge.words.ALWAYS]
+    return [name for name in steps if name and name not in ALWAYS]
 
 
 def noise_of(inspected: Json) -> PoseNoise:
     """The noise of single poses, by `umbmark inspect`."""
     references = [log["reference"] for log in inspected["logs"]]
-    return PoseNoise(
-        median(one["noise_m"] for one in references),
-        median(one["heading_noise_rad"] for one in references),
-    )
+
+    def of(key: str) -> float:
+        return float(median(one[key] for one in references if one[key] is not None))
+
+    return PoseNoise(of("noise_m"), of("heading_noise_rad"))
 
 
 def splits(chosen: argparse.Namespace, command: Command, folder: Path) -> Iterator[sets.Split]:
@@ -181,6 +178,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--optiodom", action="store_true")
     parser.add_argument("--binary", type=Path, required=True)
     parser.add_argument("--json", type=Path, required=True)
+    parser.add_argument("--table", action="store_true")
     return parser.parse_args()
 
 
@@ -188,6 +186,9 @@ def main() -> None:
     """Do the study."""
     warnings.simplefilter("ignore")
     chosen = arguments()
+    if chosen.table:
+        print(table([json.loads(line) for line in chosen.json.read_text().splitlines()]))
+        return
     command = Command(chosen.binary)
     results: list[Json] = []
     chosen.json.parent.mkdir(parents=True, exist_ok=True)

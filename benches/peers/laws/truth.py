@@ -11,10 +11,13 @@ from sets import WORLDS, Split
 
 sys.path.append(str(WORLDS))
 
-import judge  # noqa: E402
-import naming  # noqa: E402
-import replay  # noqa: E402
+import judge
+import naming
+import replay
+import words
 
+ALWAYS = words.ALWAYS
+"""Steps of `umbmark learn` on every robot."""
 EXPOSURES = {"speed", "turn_rate"}
 """Variables that every law per metre or radian has in it when it is written per second."""
 ALIKE = ({"x", "y"}, {"wheel_angle_left", "wheel_angle_right"})
