@@ -150,9 +150,12 @@ pub(crate) fn doubts_of(exam: &Examination, options: &Options) -> Vec<Reason> {
     doubts::of_model(&fitted.observed, &fitted.model, &fitted.noise, &errors.in_sample(), options.seed)
 }
 
-/// The reason that what repeats beside a fitted model is, where it counts.
+/// The reason that what repeats beside a fitted model is, where it is a doubt.
 pub(crate) fn reason_to_doubt(repeated: Option<&Repeated>) -> Option<Reason> {
-    repeated.filter(|repeated| repeated.counts(LEAST_GAIN)).cloned().map(|repeated| Reason::Repeats(Box::new(repeated)))
+    repeated
+        .filter(|repeated| repeated.is_doubt(LEAST_GAIN))
+        .cloned()
+        .map(|repeated| Reason::Repeats(Box::new(repeated)))
 }
 
 /// The same of a model with the values that it has, nothing but START fitted: under the noise that would make what it leaves
@@ -174,7 +177,7 @@ pub(crate) fn doubts_as_written(
     let mut reasons = doubts::of_model(&fixed.observed, model, &noise, &errors.in_sample(), options.seed);
     let repeated = what_repeats(&fixed.observed, model, &noise, &columns, options.seed);
     reasons.extend(
-        repeated.filter(|repeated| repeated.counts(TELLING)).map(|repeated| Reason::Repeats(Box::new(repeated))),
+        repeated.filter(|repeated| repeated.is_doubt(TELLING)).map(|repeated| Reason::Repeats(Box::new(repeated))),
     );
     let left: Vec<Column> = columns.iter().map(|columns| less(columns, &[])).collect();
     let remains = chance::remains(&fixed.observed, &noise, &left, &errors.in_sample(), options);

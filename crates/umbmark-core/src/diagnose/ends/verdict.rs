@@ -9,7 +9,7 @@ use crate::diagnose::experiments::next_experiments;
 use crate::diagnose::identifiability::of_ends;
 use crate::diagnose::likeness::correlations;
 use crate::diagnose::{
-    Detectable, DiagnoseError, Diagnosis, Estimate, GoodnessOfFit, Level, Likeness, OnCircle, Options, Remains,
+    Detectable, DiagnoseError, Diagnosis, Estimate, GoodnessOfFit, Level, Likeness, OnCircle, Options, Reason, Remains,
     Suspect, Trail, Verdict,
 };
 use crate::effect::Model;
@@ -69,8 +69,12 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
     diagnosis.invisible = asked.unseen.clone();
     diagnosis.likeness = asked.likeness();
     judge(&mut diagnosis, &asked, &family, options);
-    if diagnosis.verdict == Verdict::Explained && !diagnosis.reasons.is_empty() {
-        diagnosis.verdict = Verdict::NotExplained;
+    if diagnosis.verdict == Verdict::Explained {
+        let repeats = diagnosis.remains.as_ref().and_then(Reason::of_remains);
+        diagnosis.reasons.extend(repeats);
+        if !diagnosis.reasons.is_empty() {
+            diagnosis.verdict = Verdict::NotExplained;
+        }
     }
     diagnosis.next_experiments = next_experiments(ends, &fitted, &asked, &diagnosis.ranking)?;
     Ok(diagnosis)

@@ -176,6 +176,17 @@ mod tests {
     use super::*;
     use crate::random::Stream;
 
+    #[test]
+    fn of_positions_and_headings_the_one_that_falls_less_is_told_first() {
+        let misses = |position: f64, heading: Option<f64>| Misses { position, heading, white: 1.0 };
+        let before = misses(10.0, Some(0.2));
+        let near = |[a, b]: [f64; 2], [c, d]: [f64; 2]| (a - c).abs() < 1e-12 && (b - d).abs() < 1e-12;
+        assert!(near(misses(8.0, Some(0.22)).falls(&before), [-0.1, 0.2]));
+        assert!(near(misses(11.0, Some(0.15)).falls(&before), [-0.1, 0.25]));
+        assert!(near(misses(9.0, None).falls(&before), [0.1, 0.1]));
+        assert!((Misses { white: 0.8, ..before }.white_fall(&before) - 0.2).abs() < 1e-12);
+    }
+
     const WHICH: [usize; 4] = [1, 3, 4, 7];
 
     /// Rows of position and heading of three runs, four columns each, the residual last, and the errors made of them.

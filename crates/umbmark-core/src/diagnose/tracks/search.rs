@@ -22,8 +22,8 @@ const WORTH_BY_POSES: f64 = 0.15;
 const MOST_LAWS: usize = 3;
 /// A law that no catalogue lists comes before an effect that explains less than this share of what it does.
 const OUTDONE: f64 = 0.5;
-/// An effect by which the standard error of E_d, E_b or E_s grows by more than this has to have a p of at most this share of the usual one; a
-/// law is none then that these runs can tell from them.
+/// An effect by which the standard error of E_d, E_b or E_s grows by more than this factor needs a p of at most this share of the usual one. A
+/// law that is not in the catalogue is not added then: these runs hardly separate it from them.
 const WIDE: f64 = 2.0;
 const SURE: f64 = 0.2;
 /// A fit with an effect more went astray where its error is so many times as large.
@@ -97,8 +97,8 @@ fn first_with_gain<'a>(
     None
 }
 
-/// Whether an effect beside which E_d, E_b or E_s are known far less well is certain enough for that: what it is told from them by may be
-/// little, as the ramps of turns that are all alike, and a mistake then spoils what every other drive is predicted by.
+/// Whether an effect is certain enough. One that doubles the standard error of E_d, E_b or E_s is separated from them by little, such as the
+/// ramps of turns that are all alike; a mistake there makes every other drive worse, so it needs a smaller p.
 fn is_sure(exam: &Examination, finding: &Finding, options: &Options) -> bool {
     finding.p_adjusted() <= SURE * options.size || exam.widening(&finding.answer.columns) <= WIDE
 }
@@ -347,6 +347,11 @@ impl Search {
             let wanted = if self.has_law() { 1 } else { options.law };
             let Some(mut repeated) = repeated.taking(wanted, tried) else { return Ok(None) };
             let Some(model) = repeated.law.model.clone() else { return Ok(None) };
+            let observed = &self.last().fitted.observed;
+            if observed.tracks().any(|track| track.check(&model).is_err()) {
+                self.refused_laws.push(text_of(&model));
+                continue;
+            }
             let (fitted, name) = growth::grown_by_law(self.last(), &model)?;
             let exam = self.last().of_grown(fitted)?;
             let is_told = exam.widening(&exam.columns_of(name)) <= WIDE;

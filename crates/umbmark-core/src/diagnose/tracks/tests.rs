@@ -7,6 +7,7 @@ use crate::diagnose::tests::robot_with;
 use crate::drive::Robot;
 use crate::effect::{Formula, Model, Target};
 use crate::likelihood::watched::watched;
+use nalgebra::DMatrix;
 use std::sync::LazyLock;
 
 /// The first model fitted to three squares each way of a robot like the paper's, with more causes.
@@ -49,6 +50,32 @@ fn of_a_complete_model_nothing_is_said_to_be_missing() {
     let diagnosis = diagnose(fitted(&[]), &Options::default()).unwrap();
     assert_eq!((diagnosis.verdict, diagnosis.certified), (Verdict::Explained, 0));
     assert!(diagnosis.dependence.is_none() && diagnosis.ranking[0].p_adjusted > 0.05, "{:?}", diagnosis.ranking[0]);
+}
+
+/// Oracle: standard errors by the inverse of the products of the columns, scaled to a unit diagonal.
+#[test]
+fn what_is_told_from_e_b_by_ramps_alone_widens_it_and_a_slope_widens_nothing() {
+    let exam = complete();
+    let columns = |effect: &str| {
+        let mut groups = exam.asked.iter();
+        groups.find(|group| group.effect().is_some_and(|e| e.about.name == effect)).unwrap().columns.clone()
+    };
+    let products = &exam.system.whole;
+    let errors = |columns: &[usize]| {
+        let length = |k: usize| products[(columns[k], columns[k])].sqrt();
+        let of = |i: usize, j: usize| products[(columns[i], columns[j])] / (length(i) * length(j));
+        let inverse = DMatrix::from_fn(columns.len(), columns.len(), of).try_inverse().unwrap();
+        (0..exam.free.len()).map(|k| inverse[(k, k)].sqrt()).collect::<Vec<_>>()
+    };
+    let base = exam.base(None);
+    for (effect, range) in [("turn_slip_rate", 2.0..f64::INFINITY), ("floor_slope", 1.0..1.2)] {
+        let own = columns(effect);
+        let (with, without) = (errors(&[&base[..], &own].concat()), errors(&base));
+        let expected = with.iter().zip(&without).map(|(with, without)| with / without).fold(1.0, f64::max);
+        let widening = exam.widening(&own);
+        assert!((widening / expected - 1.0).abs() < 1e-3, "{effect}: {widening} {expected}");
+        assert!(range.contains(&widening), "{effect}: {widening}");
+    }
 }
 
 /// A robot on a floor that turns it one way along two sides of the square and the other way along the others.

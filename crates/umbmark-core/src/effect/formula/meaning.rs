@@ -15,7 +15,9 @@ pub(super) fn meaning(formula: &Formula, values: &[f64]) -> Option<String> {
         let place = formula.parameters().iter().position(|parameter| parameter.name == name)?;
         values.get(place).copied()
     };
-    let (a, b, period) = (number("a")?, number("b")?, number("c")?.abs());
+    let (a, period) = (number("a")?, number("c")?);
+    // A period below zero turns the sine over.
+    let (b, period) = (number("b")? * period.signum(), period.abs());
     let size = a.hypot(b);
     let first = (b.atan2(a) / TAU).rem_euclid(1.0) * period;
     let (what, most) = match formula.target() {
@@ -61,6 +63,10 @@ mod tests {
         );
         let said = meaning(&wave("distance", Target::ForwardScale), &[0.0, -2e-3, 4.0]).unwrap();
         assert!(said.contains("up to 2.000 mm longer") && said.ends_with("longest 3.0 m behind START."), "{said}");
+        assert_eq!(
+            meaning(&wave("distance", Target::ForwardScale), &[0.0, 2e-3, -4.0]),
+            meaning(&wave("distance", Target::ForwardScale), &[0.0, -2e-3, 4.0])
+        );
         let other = Formula::new("other", Target::HeadingPerMetre, "a * time", &["a"]).unwrap();
         assert_eq!(meaning(&other, &[1.0]), None);
         assert_eq!(meaning(&wave("time", Target::TurnScale), &[0.1, 0.1, 8.0]), None);
