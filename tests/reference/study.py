@@ -1,7 +1,7 @@
 """What `umbmark learn` finds on tracks: every hidden case, and sets with nothing hidden.
 
 Makes the data, runs the command on each set as a user would, holds its answer against the sealed
-one and prints the tables of docs/diagnosis.md:
+one and prints the tables of docs/studies/tracks.md:
 `python tests/reference/study.py --seeds 7 8 --nulls 500`.
 """
 

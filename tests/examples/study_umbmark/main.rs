@@ -1,10 +1,10 @@
-//! The paper put to the test: the figures and numbers of `docs/study_umbmark.md`.
+//! The paper put to the test: the figures and numbers of `docs/studies/umbmark_paper.md`.
 //!
 //! ```sh
 //! cargo run --release -p umbmark-tests --example study_umbmark
 //! ```
 //!
-//! prints every table and draws the figures into `docs/study`. A number after it is a factor on the numbers of simulated tests;
+//! prints every table and draws the figures into `docs/studies`. A number after it is a factor on the numbers of simulated tests;
 //! a second one is another seed.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
@@ -51,8 +51,8 @@ fn main() {
     let mut arguments = std::env::args().skip(1);
     let factor = arguments.next().map_or(1.0, |text| text.parse().expect("a factor on the numbers of tests"));
     let seed = arguments.next().map_or(1, |text| text.parse().expect("a seed"));
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/study");
-    std::fs::create_dir_all(&folder).expect("docs/study can be made");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/studies");
+    std::fs::create_dir_all(&folder).expect("docs/studies can be made");
     let study = Study { factor, seed, folder: &folder };
     println!("seed {seed}, numbers of tests times {factor}\n");
     bias::study(&study);

@@ -4,7 +4,7 @@
 //! checksums of chunks: whole files, records inside of chunks that are packed anew, schemas, and messages. A short run is
 //! part of every test run; `UMBMARK_MUTATIONS=1500000` sets how many inputs a layer gets. That many were run: 12 million
 //! schemas and messages, 1.5 million of JSON and 3 million of protobuf; and 200 000 whole files with
-//! `UMBMARK_MUTATIONS=4000000`. They found one panic in a library, which is guarded against (DESIGN.md).
+//! `UMBMARK_MUTATIONS=4000000`. They found one panic in a library, which is guarded against (docs/studies/mutations.md).
 
 use super::super::mutated_input::damage;
 use super::cdr::Plan;
