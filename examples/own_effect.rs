@@ -6,7 +6,6 @@
 
 use std::error::Error;
 
-use umbmark_core::dataset::Dataset;
 use umbmark_core::effect::{About, ActsOn, Context, Effect, Entry, Model};
 use umbmark_core::geometry::{Displacement2, Real};
 use umbmark_core::learn::fit;
@@ -51,7 +50,7 @@ impl Effect for Tilt {
 static TILT: Entry = Entry::of::<Tilt>();
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let data = Dataset::load("examples/hidden")?;
+    let data = umbmark_io::load("examples/hidden")?;
     let mut model = Model::new(data.robot.as_ref().ok_or("robot.toml is missing")?);
     for known in ["wheel_diameter_ratio", "wheelbase", "scale"] {
         model.add(known)?.free = true;

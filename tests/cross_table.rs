@@ -53,7 +53,7 @@ fn optiodom() -> Option<PathBuf> {
 fn load(folder: &Path, kind: &str, sets: &[&str]) -> Dataset {
     let mut all: Option<Dataset> = None;
     for set in sets {
-        let mut data = Dataset::load(folder.join("raw").join(kind).join(set)).unwrap();
+        let mut data = umbmark_io::load(folder.join("raw").join(kind).join(set)).unwrap();
         let robot = data.robot.take().unwrap();
         data.robot = Some(Robot { drive: DifferentialDrive::new(0.200, 0.084, 0.084).unwrap().into(), ..robot });
         data.runs.iter_mut().for_each(|run| run.name = format!("{set} {}", run.name));

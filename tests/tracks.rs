@@ -4,7 +4,6 @@
 
 use std::io::Write;
 use std::path::PathBuf;
-use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Options, Verdict};
 use umbmark_core::learn::{Learnt, learn};
 
@@ -15,7 +14,7 @@ fn learnt(place: &str) -> Option<Learnt> {
         let _ = writeln!(std::io::stderr(), "skipped: {} is not there", folder.display());
         return None;
     }
-    let data = Dataset::load(&folder).unwrap();
+    let data = umbmark_io::load(&folder).unwrap();
     Some(learn(&data, &Options::default()).unwrap())
 }
 

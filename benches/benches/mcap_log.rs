@@ -4,7 +4,6 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use mcap::Compression;
 use umbmark_benches::mcap_logs::{READ, message_bytes, rewrite, write};
-use umbmark_core::dataset::Dataset;
 
 fn reading(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -20,7 +19,7 @@ fn reading(criterion: &mut Criterion) {
             rewrite(&all, &file, topics, compression);
             group.throughput(Throughput::Bytes(message_bytes(&file)));
             group.bench_function(format!("{what}, {packing}"), |bencher| {
-                bencher.iter(|| Dataset::load(&file).expect("a good log"));
+                bencher.iter(|| umbmark_io::load(&file).expect("a good log"));
             });
         }
     }

@@ -1,11 +1,10 @@
-//! Files into the dataset type: reading, checking, mending and the return error, all that `Dataset::load` does.
+//! Files into the dataset type: reading, checking, mending and the return error, all that `umbmark_io::load` does.
 //!
 //! `cargo bench -p umbmark-benches --bench read`; throughput is in bytes of text per second.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::time::Duration;
 use umbmark_benches::logs::{ROBOT, log_text};
-use umbmark_core::dataset::Dataset;
 
 fn read(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -16,7 +15,7 @@ fn read(criterion: &mut Criterion) {
     std::fs::write(runs.join("ccw_01.csv"), &text).expect("a log");
     let mut group = criterion.benchmark_group("read");
     group.throughput(Throughput::Bytes(text.len() as u64));
-    group.bench_function("csv", |bencher| bencher.iter(|| Dataset::load(folder.path()).expect("a dataset")));
+    group.bench_function("csv", |bencher| bencher.iter(|| umbmark_io::load(folder.path()).expect("a dataset")));
     group.finish();
 }
 

@@ -5,7 +5,6 @@ use std::io::{self, Write as _};
 use std::path::Path;
 use std::time::Instant;
 use umbmark_benches::mcap_logs::{READ, message_bytes, rewrite, write};
-use umbmark_core::dataset::Dataset;
 
 fn main() -> io::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -23,7 +22,7 @@ fn main() -> io::Result<()> {
         [verb, file, rounds] if verb == "read" => {
             for _ in 0..rounds.parse::<u32>().map_err(io::Error::other)? {
                 let began = Instant::now();
-                let data = Dataset::load(file).map_err(io::Error::other)?;
+                let data = umbmark_io::load(file).map_err(io::Error::other)?;
                 let log = data.runs[0].log.as_ref();
                 let counts = log.map_or((0, 0), |log| (log.time.len(), log.reference.len()));
                 writeln!(out, "{} {} {}", began.elapsed().as_secs_f64(), counts.0, counts.1)?;

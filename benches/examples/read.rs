@@ -3,7 +3,6 @@
 
 use std::path::PathBuf;
 use umbmark_benches::logs::{ROBOT, log_text};
-use umbmark_core::dataset::Dataset;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().collect();
@@ -16,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Ok(());
     }
     for _ in 0..number {
-        let data = Dataset::load(&folder)?;
+        let data = umbmark_io::load(&folder)?;
         let log = data.runs[0].log.as_ref().ok_or("no log")?;
         print_line(&format!("{} {}", log.time.len(), log.reference.len()));
     }

@@ -4,9 +4,10 @@ use crate::Draws;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
-use umbmark_core::dataset::{Dataset, Existing, ReferencePose, Run, TickLog};
+use umbmark_core::dataset::{Dataset, ReferencePose, Run, TickLog};
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::TestKind;
+use umbmark_io::Existing;
 
 /// Ten minutes and more at 100 Hz, with poses at 20 Hz.
 pub const SAMPLES: usize = 100_000;
@@ -43,7 +44,7 @@ pub fn write(file: &Path) {
         returned: None,
     };
     let data = Dataset { robot: Some(Robot::labmate()), runs: vec![run], ..Dataset::default() };
-    data.save_mcap(file, Existing::Replace).expect("a log that can be written");
+    umbmark_io::save_mcap(&data, file, Existing::Replace).expect("a log that can be written");
 }
 
 /// Writes the messages of some topics of a log into another, packed or not.
@@ -59,7 +60,7 @@ pub fn rewrite(from: &Path, to: &Path, topics: &[&str], compression: Option<mcap
     }
     writer.finish().expect("room");
     writer.into_inner().flush().expect("room");
-    let robot = umbmark_core::dataset::RobotFile::new(Robot::labmate(), None).text();
+    let robot = umbmark_io::RobotFile::new(Robot::labmate(), None).text();
     std::fs::write(to.with_file_name("robot.toml"), robot).expect("room");
 }
 

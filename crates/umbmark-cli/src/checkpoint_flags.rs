@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use umbmark_core::checkpoint::{Checkpoint, CheckpointError, Found};
+use umbmark_io::checkpoint::{Checkpoint, CheckpointError, Found};
 
 use crate::numbers::number;
 

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use umbmark_core::dataset::{Dataset, DatasetError, Topics};
+use umbmark_core::dataset::Dataset;
+use umbmark_io::{DatasetError, Topics};
 
 /// Where the measurements are.
 #[derive(Debug, clap::Args)]
@@ -24,6 +25,6 @@ pub struct DataArguments {
 impl DataArguments {
     /// Reads them.
     pub fn load(&self) -> Result<Dataset, DatasetError> {
-        Dataset::load_with(&self.data, &Topics { ticks: self.ticks.clone(), reference: self.reference.clone() })
+        umbmark_io::load_with(&self.data, &Topics { ticks: self.ticks.clone(), reference: self.reference.clone() })
     }
 }

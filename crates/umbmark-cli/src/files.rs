@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use anyhow::Context;
-use umbmark_core::dataset::Existing;
-use umbmark_core::whole_file::{FileError, WholeFile};
+use umbmark_io::Existing;
+use umbmark_io::whole_file::{FileError, WholeFile};
 
 /// A file that appears under its name only when it is whole.
 #[derive(Debug)]

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use umbmark_core::dataset::{Dataset, DatasetError, Existing, LAYOUTS, Layout};
+use umbmark_core::dataset::Dataset;
+use umbmark_io::{DatasetError, Existing, LAYOUTS, Layout};
 
 use crate::prose::hanging;
 
@@ -42,6 +43,6 @@ impl OutputArguments {
     /// Writes a dataset; says what is lost.
     pub fn write(&self, data: &Dataset) -> Result<Vec<String>, DatasetError> {
         let existing = if self.force { Existing::Replace } else { Existing::Keep };
-        data.convert(self.layout(), &self.output, existing)
+        self.layout().write(data, &self.output, existing)
     }
 }

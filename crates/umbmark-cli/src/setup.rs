@@ -2,13 +2,13 @@
 
 use std::path::{Path as FilePath, PathBuf};
 
-use umbmark_core::dataset::{ModelFile, RobotFile};
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::Model;
 use umbmark_core::monte_carlo::Draw;
 use umbmark_core::path::Path;
 use umbmark_core::preset::{PRESETS, Preset, Published};
 use umbmark_core::replay::check_on_path;
+use umbmark_io::{ModelFile, RobotFile};
 
 use crate::effect_flags::EffectFlags;
 use crate::robot_flags::RobotFlags;

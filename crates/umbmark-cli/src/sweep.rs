@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use umbmark_core::checkpoint::{Checkpoint, Keeper};
 use umbmark_core::document;
 use umbmark_core::monte_carlo::{Axis, Metric, MetricSummary, Quantity, Study, Sweep, SweepPoint};
+use umbmark_io::checkpoint::{Checkpoint, Keeper};
 
 use crate::Session;
 use crate::checkpoint_flags::with_remedy;

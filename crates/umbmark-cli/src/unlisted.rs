@@ -1,7 +1,7 @@
 //! What is missing and not in the catalogue: as a curve, and as a formula to try.
 
-use umbmark_core::dataset::effects_text;
 use umbmark_core::diagnose::{Curve, CurvePoint, Dependence, Diagnosis, Reason, Repeated, UnlistedLaw};
+use umbmark_core::effect::effects_text;
 
 use crate::model_report::p_text;
 use crate::prose::hanging;

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use umbmark_core::dataset::read_parameters;
 use umbmark_core::monte_carlo::{Distribution, Quantity, Study};
 use umbmark_core::sensitivity::Correlation;
+use umbmark_io::read_parameters;
 
 use crate::distribution_text::{Named, named};
 use crate::numbers::number;

@@ -4,7 +4,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-#[path = "../../umbmark-core/tests/bad_input/mod.rs"]
+#[path = "../../umbmark-io/tests/bad_input/mod.rs"]
 mod bad_input;
 
 use snapbox::{assert_data_eq, file};
@@ -167,7 +167,7 @@ fn the_model_file_of_an_explanation_is_one() {
         let text = said(&["effects", entry.about.name]);
         let model = text.split("in a model.toml\n").nth(1).unwrap();
         let robot = umbmark_core::drive::Robot::labmate();
-        let file = umbmark_core::dataset::ModelFile::parse("model.toml", model, Some(&robot)).unwrap();
+        let file = umbmark_io::ModelFile::parse("model.toml", model, Some(&robot)).unwrap();
         assert_eq!(file.model.parts()[0].effect, entry);
     }
 }

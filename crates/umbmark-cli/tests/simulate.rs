@@ -3,7 +3,6 @@
 use snapbox::cmd::{Command, OutputAssert, cargo_bin};
 use snapbox::str;
 use std::path::Path;
-use umbmark_core::dataset::Dataset;
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::Direction;
 
@@ -19,7 +18,7 @@ fn the_dataset_reads_back_with_the_return_errors_that_were_printed() {
     let arguments = ["-o", name, "--side", "1", "--runs", "3", "--eb", "1.01", "--bumps", "10", "--json"];
     let assert = simulate(&arguments).success();
     let document: serde_json::Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
-    let dataset = Dataset::load(&place).unwrap();
+    let dataset = umbmark_io::load(&place).unwrap();
     assert_eq!(dataset.runs.len(), 12);
     let printed = document["runs"].as_array().unwrap();
     for test in [TestKind::Systematic, TestKind::Bumps] {
@@ -59,7 +58,7 @@ fn with_a_tape_measure_only_the_end_pose_is_known() {
     let place = folder.path().join("tape");
     let arguments = ["-o", place.to_str().unwrap(), "--side", "0.5", "--runs", "1", "--reference-rate", "0"];
     simulate(&arguments).success();
-    let dataset = Dataset::load(&place).unwrap();
+    let dataset = umbmark_io::load(&place).unwrap();
     for run in &dataset.runs {
         let log = run.log.as_ref().unwrap();
         assert_eq!(log.reference.iter().map(|r| r.sample).collect::<Vec<_>>(), [log.time.len() - 1]);
@@ -79,7 +78,7 @@ fn a_narrow_counter_rolls_over_in_the_file_and_is_unrolled_when_it_is_read() {
     let sheet = std::fs::read_to_string(place.join("runs/cw_01.csv")).unwrap();
     let counts = sheet.lines().skip(1).map(|line| line.split(',').nth(1).unwrap().parse::<i64>().unwrap());
     assert_eq!((counts.clone().min(), counts.max()), (Some(0), Some(255)));
-    let log = Dataset::load(&place).unwrap().runs.remove(0).log.unwrap();
+    let log = umbmark_io::load(&place).unwrap().runs.remove(0).log.unwrap();
     // Four legs of 2122 ticks, and a turn to the right at each corner.
     assert!(*log.left.last().unwrap() > 10_000.0, "{:?}", log.left.last());
 }
@@ -93,7 +92,7 @@ fn one_run_can_be_written_as_a_log_of_ros_2_which_brings_its_robot_along() {
         simulate(&["-o", name, "--side", "0.5", "--wheelbase", "0.4", "--direction", "cw", "--json"]).success();
     let document: serde_json::Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
     assert_eq!(document["runs"].as_array().unwrap().len(), 1);
-    let dataset = Dataset::load(&place).unwrap();
+    let dataset = umbmark_io::load(&place).unwrap();
     assert_eq!(dataset.nominal_robot().unwrap().drive.wheelbase(), 0.4);
     assert_eq!(dataset.runs[0].direction, Some(Direction::Cw));
     let log = dataset.runs[0].log.as_ref().unwrap();
@@ -136,7 +135,7 @@ fn a_test_written_as_mcap_is_converted_to_csv_with_the_topics_that_were_asked_fo
     }
     assert!(Path::new(&place("mcap/runs/ccw_02.mcap")).is_file() && Path::new(&place("mcap/returns.csv")).is_file());
     run(&["convert", &place("mcap"), "-o", &place("back")]);
-    let (written, back) = (Dataset::load(place("csv")).unwrap(), Dataset::load(place("back")).unwrap());
+    let (written, back) = (umbmark_io::load(place("csv")).unwrap(), umbmark_io::load(place("back")).unwrap());
     assert_eq!(written.runs.len(), 4);
     for (a, b) in written.runs.iter().zip(&back.runs) {
         let (log, read) = (a.log.as_ref().unwrap(), b.log.as_ref().unwrap());
@@ -148,5 +147,5 @@ fn a_test_written_as_mcap_is_converted_to_csv_with_the_topics_that_were_asked_fo
         }
     }
     run(&["convert", &place("mcap"), "-o", &place("without"), "--reference", "none"]);
-    assert!(Dataset::load(place("without")).unwrap().runs[0].log.as_ref().unwrap().reference.is_empty());
+    assert!(umbmark_io::load(place("without")).unwrap().runs[0].log.as_ref().unwrap().reference.is_empty());
 }

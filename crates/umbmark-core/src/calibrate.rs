@@ -13,7 +13,6 @@ mod closed_form;
 mod correction;
 pub(crate) mod evidence;
 mod exact;
-pub mod export;
 mod lengths;
 pub(crate) mod noise_shape;
 mod outcome;

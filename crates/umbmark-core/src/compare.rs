@@ -114,7 +114,7 @@ impl Judged {
 ///
 /// ```no_run
 /// use umbmark_core::{compare::compare, dataset::Dataset, diagnose::Options, effect::Model};
-/// let data = Dataset::load("my_robot")?;
+/// # let data = Dataset::default();
 /// let nominal = Model::new(data.nominal_robot()?);
 /// let comparison = compare(&data, &[("nominal".into(), nominal)], &Options::default())?;
 /// println!("{}", comparison.models[0].sentences.join("\n"));

@@ -1,71 +1,19 @@
-//! Measured (or simulated) robots: what a dataset folder holds, in memory, and its files.
+//! Measured (or simulated) robots in memory: runs, how measured poses are counted, clocks set by the motion, inspection.
 //!
-//! [`Dataset::load`] takes a folder (`robot.toml`, `returns.csv`, `runs/*.csv`, `runs/*.mcap`; or one of OptiOdom) or one
-//! file of it. Inside, one file per layout reads rows (`returns`, `tick_log`, `optiodom`, `motive`, `tum`, `mcap`), a
-//! `Recording` mends rows and counts, `synchronise` sets the clock of a track by the motion, `place` puts its poses into the
-//! log, `start_frame` moves them into the frame of START, and an `Assembly` matches returns with logs.
-//!
-//! ```no_run
-//! use umbmark_core::dataset::Dataset;
-//! let data = Dataset::load("my_robot")?;
-//! println!("{} runs of {}", data.runs.len(), data.nominal_robot()?.name);
-//! # Ok::<(), umbmark_core::dataset::DatasetError>(())
-//! ```
+//! Files are read and written by the crate `umbmark-io`.
 
-mod assembly;
-mod columns;
-mod decimal;
-mod distribution_table;
-mod document;
-mod error;
-mod folder;
 mod inspect;
-mod label;
-mod layout;
-mod lines;
-mod mcap;
-mod model_file;
-mod model_text;
-mod motive;
-#[cfg(test)]
-mod mutated_input;
-mod optiodom;
-mod packed;
-mod parameter_file;
 mod place;
-mod recording;
-mod reference_file;
 mod reference_frame;
 mod reference_track;
-mod returns;
-mod robot_file;
-mod robot_text;
-mod save;
-mod sheet;
-mod sheets;
-mod stale;
-mod start_frame;
 mod synchronise;
-mod template;
-mod text;
-mod tick_log;
-mod tum;
 
-pub use error::DatasetError;
 pub use inspect::{Check, Coverage, Determined, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, Wheels};
 pub(crate) use inspect::{Done, MoveDone, moves_of};
-pub use layout::{LAYOUTS, Layout};
-pub use mcap::{McapProblem, Topics};
-pub use model_file::ModelFile;
-pub use model_text::effects_text;
-pub use parameter_file::{Grade, ParameterFile, Varied, parse_parameters, read_parameters};
+pub use place::{PoseRow, place};
 pub use reference_frame::ReferenceFrame;
 pub use reference_track::ReferenceTrack;
-pub use returns::HEADER as RETURNS_COLUMNS;
-pub use robot_file::RobotFile;
-pub use save::Existing;
 pub use synchronise::{Alignment, BLOCKS, Measured, SynchroniseError, synchronise};
-pub use template::{template, write_template};
 
 pub use crate::run::{Mended, ReferencePose, ReturnError, Run, TickLog};
 
@@ -115,27 +63,18 @@ pub struct Dataset {
     pub warnings: Vec<String>,
 }
 
+/// A dataset without the robot that the question needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the nominal robot is not known: no robot.toml beside the data; `umbmark init` writes one to fill in")]
+pub struct NoRobot;
+
+/// The columns of a return sheet: what is measured at the end of each run.
+pub const RETURNS_COLUMNS: &str = "direction,run,x_abs_m,y_abs_m,theta_abs_rad,x_calc_m,y_calc_m,theta_calc_rad";
+
 impl Dataset {
-    /// Reads a dataset folder, an OptiOdom folder, or one file of either. Never touches what it reads.
-    ///
-    /// A single file is taken with the `robot.toml` beside it, if there is one.
-    pub fn load(path: impl AsRef<std::path::Path>) -> Result<Dataset, DatasetError> {
-        Dataset::load_with(path, &Topics::default())
-    }
-
-    /// Reads a dataset whose MCAP logs hold wheels and reference on the given topics.
-    pub fn load_with(path: impl AsRef<std::path::Path>, topics: &Topics) -> Result<Dataset, DatasetError> {
-        folder::load(path.as_ref(), topics)
-    }
-
-    /// What a `robot.toml` beside the same logs has to say, with `robot` in the place of the nominal one.
-    pub fn robot_file(&self, robot: Robot) -> RobotFile {
-        RobotFile { robot, path: self.path.clone(), reference: self.reference_frame }
-    }
-
     /// The nominal robot, for questions that need one.
-    pub fn nominal_robot(&self) -> Result<&Robot, DatasetError> {
-        self.robot.as_ref().ok_or(DatasetError::NoRobot)
+    pub fn nominal_robot(&self) -> Result<&Robot, NoRobot> {
+        self.robot.as_ref().ok_or(NoRobot)
     }
 
     /// The known return errors of one test and direction, in the order of the runs.

@@ -62,6 +62,7 @@ mod steer_coupling;
 mod steer_scale;
 mod steering_gain;
 mod steering_zero;
+mod text;
 mod turn_slip;
 mod turn_slip_rate;
 mod understeer;
@@ -84,13 +85,13 @@ pub use bumps::extra_travel;
 pub use chain::Chain;
 pub use changes::Changes;
 pub use context::{Context, Place, Progress, Sight};
-pub(crate) use conversion::CONVERTED;
-pub use conversion::Conversion;
+pub use conversion::{CONVERTED, Conversion};
 pub use formula::{Formula, FormulaError, FormulaVariable, Target};
 pub use law::Law;
 pub(crate) use model::is_shape;
 pub use model::{Model, ModelError, Part};
 pub use number::{Derived, Number};
+pub use text::{effects_text, effects_text_with};
 
 /// The largest number of parameters of one effect.
 pub const MAX_PARAMETERS: usize = 6;

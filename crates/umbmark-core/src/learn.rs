@@ -142,7 +142,8 @@ pub(crate) trait Evidence: Sized + Sync {
 ///
 /// ```no_run
 /// use umbmark_core::{dataset::Dataset, diagnose::Options, learn::learn};
-/// let learnt = learn(&Dataset::load("my_robot")?, &Options::default())?;
+/// # let data = Dataset::default();
+/// let learnt = learn(&data, &Options::default())?;
 /// for step in &learnt.steps {
 ///     println!("{:?}: {:.1} mm held out", step.added, 1e3 * step.held_out.position);
 /// }

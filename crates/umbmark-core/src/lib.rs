@@ -9,10 +9,9 @@
 //! Inside, everything is SI: metres, radians, seconds, ticks. Headings and rotations are counter-clockwise positive.
 //! A text boundary (file column, TOML key, JSON key, flag) carries the unit in its name.
 //!
-//! Nothing here prints, parses flags or knows Python.
+//! Nothing here reads or writes files, prints, parses flags or knows Python.
 
 pub mod calibrate;
-pub mod checkpoint;
 pub mod compare;
 pub mod dataset;
 pub mod diagnose;
@@ -39,7 +38,6 @@ pub mod setup;
 pub mod simulate;
 pub mod stats;
 pub mod watch;
-pub mod whole_file;
 
 /// The version of this crate, printed beside every result.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,6 +1,6 @@
 //! One drive of a robot: its wheel counts, the absolute poses measured on the way, and its return error.
 
-pub(crate) mod dead_reckoning;
+pub mod dead_reckoning;
 
 use crate::effect::TestKind;
 use crate::geometry::Pose2;

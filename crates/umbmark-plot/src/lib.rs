@@ -7,7 +7,7 @@
 //! ```no_run
 //! use umbmark_core::dataset::Dataset;
 //! use umbmark_plot::{kind, render::svg, study::{Options, Study}};
-//! let study = Study::new("my robot", Dataset::load("my_robot")?, None, Options::default());
+//! let study = Study::new("my robot", umbmark_io::load("my_robot")?, None, Options::default());
 //! let figure = (kind::find("return_errors").unwrap().build)(&study)?;
 //! println!("{}", svg::svg(&figure, &svg::Style::default()));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -8,7 +8,6 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use snapbox::{Data, assert_data_eq};
-use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose;
 use umbmark_plot::figure::Figure;
 use umbmark_plot::kind::{KINDS, find};
@@ -19,7 +18,7 @@ use umbmark_plot::study::{Options, Study};
 fn study(name: &str) -> Study {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../umbmark-cli/tests/data").join(name);
     let diagnose = diagnose::Options { draws: 99, ..diagnose::Options::default() };
-    Study::new(name, Dataset::load(folder).unwrap(), None, Options { diagnose, trials: 200 })
+    Study::new(name, umbmark_io::load(folder).unwrap(), None, Options { diagnose, trials: 200 })
 }
 
 /// Return poses of a robot on a slope.

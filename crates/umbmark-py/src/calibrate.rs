@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use umbmark_core::calibrate::{self as core, Correction, Options, RadiusWheelbase, export as texts};
-use umbmark_core::dataset::RobotFile;
+use umbmark_core::calibrate::{self as core, Correction, Options, RadiusWheelbase};
 use umbmark_core::document;
 use umbmark_core::drive::Kind;
 use umbmark_core::learn;
+use umbmark_io::{RobotFile, export as texts};
 
 use crate::dataset::Dataset;
 use crate::model::Model;

@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use umbmark_core::checkpoint::{Checkpoint, CheckpointError, Found, Written};
 use umbmark_core::document;
-use umbmark_core::whole_file::WholeFile;
+use umbmark_io::checkpoint::{Checkpoint, CheckpointError, Found, Written};
+use umbmark_io::whole_file::WholeFile;
 
 use crate::monte_carlo::Ensemble;
 use crate::work::watched;

@@ -8,8 +8,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 use serde::{Deserialize, Serialize};
-use umbmark_core::dataset::{self as core, LAYOUTS, Layout, RunClock, RunTopics, Topics, write_template};
+use umbmark_core::dataset::{self as core, RunClock, RunTopics};
 use umbmark_core::document;
+use umbmark_io::{LAYOUTS, Layout, Topics, write_template};
 
 use crate::path::{DIRECTIONS, Path};
 use crate::robot::Robot;
@@ -138,7 +139,7 @@ impl Dataset {
             Some(name) => choice("layout", name, &LAYOUTS.iter().map(named).collect::<Vec<_>>())?,
             None => Layout::of_place(&place),
         };
-        detached(py, || self.0.convert(layout, &place, existing(replace)))?.map_err(unwritten)
+        detached(py, || layout.write(&self.0, &place, existing(replace)))?.map_err(unwritten)
     }
 
     /// Draw the return errors, cw and ccw, or the tracks.
@@ -233,7 +234,7 @@ pub fn load_dataset(
     reference: Option<String>,
 ) -> PyResult<Dataset> {
     let topics = Topics { ticks, reference };
-    let read = watched(py, 0, None, move |_| core::Dataset::load_with(&place, &topics))?;
+    let read = watched(py, 0, None, move |_| umbmark_io::load_with(&place, &topics))?;
     read.map(Dataset::from).map_err(refused)
 }
 

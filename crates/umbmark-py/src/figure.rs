@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use umbmark_core::whole_file::WholeFile;
+use umbmark_io::whole_file::WholeFile;
 use umbmark_plot::figure as core;
 use umbmark_plot::kind::{KINDS, find};
 use umbmark_plot::render::file::{DOTS_PER_INCH, Format, WIDTHS_MM};

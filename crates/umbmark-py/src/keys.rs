@@ -4,7 +4,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use toml::{Table, Value};
-use umbmark_core::dataset::DatasetError;
+use umbmark_io::DatasetError;
 
 /// The keywords of a call as a table; what is None is left out.
 pub fn table(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Table> {

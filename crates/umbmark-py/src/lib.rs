@@ -32,7 +32,7 @@ mod work;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use umbmark_core::dataset::Existing;
+use umbmark_io::Existing;
 
 /// The odometry error of wheeled robots: UMBmark.
 #[pymodule]

@@ -6,9 +6,9 @@ use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use toml::{Table, Value};
-use umbmark_core::dataset::ModelFile;
 use umbmark_core::monte_carlo::Draw;
 use umbmark_core::{dataset, document, drive, effect};
+use umbmark_io::ModelFile;
 
 use crate::robot::Robot;
 use crate::{as_python, keys, refused};

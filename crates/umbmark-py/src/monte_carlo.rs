@@ -10,12 +10,12 @@ use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde_json::{Map, Value};
-use umbmark_core::checkpoint::Keeper;
 use umbmark_core::document::{self, Theory, Told};
 use umbmark_core::engine::Update;
 use umbmark_core::monte_carlo::{self as core, Batch, Metric, Shard, Statistics};
 use umbmark_core::replay::check_on_path;
 use umbmark_core::simulate::{Odometry, Phase};
+use umbmark_io::checkpoint::Keeper;
 
 use crate::checkpoint::{Place, unusable};
 use crate::model::Model;

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use umbmark_core::dataset::{ParameterFile, parse_parameters, read_parameters};
 use umbmark_core::monte_carlo::Study;
 use umbmark_core::sensitivity::Correlation;
+use umbmark_io::{ParameterFile, parse_parameters, read_parameters};
 
 use crate::{keys, refused};
 

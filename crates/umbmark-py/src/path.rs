@@ -3,9 +3,9 @@
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use toml::{Table, Value};
-use umbmark_core::dataset::RobotFile;
 use umbmark_core::path::{Direction, SHAPES};
 use umbmark_core::{document, drive, path};
+use umbmark_io::RobotFile;
 
 use crate::{as_python, choice, keys};
 

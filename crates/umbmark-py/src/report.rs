@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use serde_json::json;
-use umbmark_core::whole_file::WholeFile;
+use umbmark_io::whole_file::WholeFile;
 use umbmark_plot::page::{Origin, Provenance, notices, page, verdict};
 use umbmark_plot::study::Study;
 

@@ -3,8 +3,8 @@
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use toml::{Table, Value};
-use umbmark_core::dataset::RobotFile;
 use umbmark_core::{document, drive};
+use umbmark_io::RobotFile;
 
 use crate::{as_python, keys, refused};
 

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use pyo3::prelude::*;
-use umbmark_core::checkpoint::Keeper;
 use umbmark_core::document;
 use umbmark_core::monte_carlo::{Axis, Quantity, Sweep};
+use umbmark_io::checkpoint::Keeper;
 
 use crate::checkpoint::{Place, unusable};
 use crate::monte_carlo::Study;

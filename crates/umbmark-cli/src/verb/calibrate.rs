@@ -7,12 +7,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use umbmark_core::calibrate::{
-    Calibration, Estimate, Level, Method, Options, RadiusWheelbase, Ratio, calibrate, export,
-};
+use umbmark_core::calibrate::{Calibration, Estimate, Level, Method, Options, RadiusWheelbase, Ratio, calibrate};
 use umbmark_core::dataset::Dataset;
 use umbmark_core::document;
 use umbmark_core::drive::{Kind, Robot};
+use umbmark_io::{RobotFile, export};
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
@@ -158,7 +157,7 @@ fn export_files(
     let correction = &estimate.correction;
     let texts = [
         export::ros2_control(robot, correction, &arguments.controller),
-        export::robot_toml(&data.robot_file(robot.clone()), correction)?,
+        export::robot_toml(&RobotFile::beside(data, robot.clone()), correction)?,
         export::c_header(robot, correction)?,
     ];
     let mut written = Vec::new();

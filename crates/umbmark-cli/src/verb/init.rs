@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use serde_json::json;
-use umbmark_core::dataset::{Existing, write_template};
+use umbmark_io::{Existing, write_template};
 
 use crate::Session;
 

@@ -8,9 +8,9 @@ use std::time::Instant;
 
 use anyhow::Context;
 use serde_json::{Map, Value};
-use umbmark_core::checkpoint::{Keeper, Written};
 use umbmark_core::document::{self, Theory};
 use umbmark_core::monte_carlo::{Ensemble, Metric, Row, Shard, Statistics, Study};
+use umbmark_io::checkpoint::{Keeper, Written};
 
 use crate::checkpoint_flags::{CheckpointFlags, with_remedy};
 use crate::ensemble_report::Report;

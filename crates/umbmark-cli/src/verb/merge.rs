@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use umbmark_core::checkpoint::Written;
+use umbmark_io::checkpoint::Written;
 
 use crate::Session;
 use crate::ensemble_report::Report;

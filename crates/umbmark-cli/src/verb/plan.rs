@@ -116,7 +116,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     anyhow::ensure!(arguments.power > arguments.size, "--power must be greater than --size, {}", arguments.size);
     let options =
         Options { size: arguments.size, draws: arguments.draws as usize, seed: session.seed(), ..Options::default() };
-    let data = arguments.data.as_ref().map(Dataset::load).transpose()?;
+    let data = arguments.data.as_ref().map(umbmark_io::load).transpose()?;
     if !arguments.separate.is_empty() {
         if !arguments.output.is_empty() {
             let (setting, ..) = session.on_threads(|| arguments.setting(data.as_ref(), session.seed()))??;

@@ -6,7 +6,6 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use serde_json::json;
-use umbmark_core::dataset::Dataset;
 use umbmark_plot::kind::KINDS;
 use umbmark_plot::page::{Origin, Provenance, notices, page, verdict};
 use umbmark_plot::study::Study;
@@ -108,7 +107,7 @@ impl Arguments {
     /// One study for each dataset or model.
     fn studies(&self, session: &Session) -> anyhow::Result<Vec<Study>> {
         let of = |place: &Path, model: Option<&Path>, name: &str| {
-            let data = Dataset::load(place)?;
+            let data = umbmark_io::load(place)?;
             for warning in data.warnings.iter().filter(|_| !session.json()) {
                 session.message("warning", warning);
             }

@@ -4,11 +4,11 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use umbmark_core::dataset::{ParameterFile, read_parameters};
 use umbmark_core::document::{self, Wanted};
 use umbmark_core::monte_carlo::Metric;
 use umbmark_core::sensitivity::tolerance::{Choice, Findings, Target, Tolerances};
 use umbmark_core::sensitivity::{Correlation, Noise, Tests};
+use umbmark_io::{ParameterFile, read_parameters};
 
 use crate::Session;
 use crate::distribution_text::distribution_words;

@@ -114,7 +114,7 @@ impl TracksJudged {
 ///
 /// ```no_run
 /// use umbmark_core::{compare::compare_tracks, dataset::Dataset, diagnose::Options, effect::Model};
-/// let data = Dataset::load("my_robot")?;
+/// # let data = Dataset::default();
 /// let nominal = Model::new(data.nominal_robot()?);
 /// let comparison = compare_tracks(&data, &[("nominal".into(), nominal)], &Options::default())?;
 /// for part in &comparison.models[0].parts {

@@ -1,8 +1,10 @@
 //! Poses that have times of their own, put into a log.
 
-use super::reference_track::PoseRow;
 use super::{ReferencePose, TickLog};
 use crate::geometry::wrap;
+
+/// x, y \[m\], and the heading \[rad\] where it was measured.
+pub type PoseRow = (f64, f64, Option<f64>);
 
 /// Counts are not interpolated over more than so many usual steps, or `SHORT` where that is more.
 const GAP: f64 = 5.0;
@@ -13,7 +15,7 @@ const SHORT: f64 = 0.1;
 /// increasing, a sample is put in, its counts interpolated between its neighbours. A pose that falls into a gap of the ticks
 /// in which the wheels turned, or outside of them, belongs nowhere and is left out; says how many were. The first sample is
 /// START: where no pose belongs to it, it has one between the poses before and after it.
-pub(super) fn place(log: &mut TickLog, times: &[f64], poses: &[PoseRow]) -> usize {
+pub fn place(log: &mut TickLog, times: &[f64], poses: &[PoseRow]) -> usize {
     let longest = (GAP * usual_step(&log.time)).max(SHORT);
     let old = std::mem::take(log);
     let start = old.time.first().and_then(|first| start_pose(times, poses, *first));

@@ -1,8 +1,6 @@
 //! How measured poses are counted, where it is not as it is meant: y to the left of x, headings counter-clockwise.
 
 use super::ReferenceTrack;
-use super::document::Table;
-use super::error::DatasetError;
 use crate::run::ReferencePose;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -20,7 +18,7 @@ pub struct ReferenceFrame {
 
 impl ReferenceFrame {
     /// Each key with what it says here and what it means.
-    pub(super) fn keys(&self) -> [(&'static str, bool, &'static str); 3] {
+    pub fn keys(&self) -> [(&'static str, bool, &'static str); 3] {
         [
             ("y_mirrored", self.y_mirrored, "y_ref grows to the right of x_ref"),
             ("heading_clockwise", self.heading_clockwise, "theta_ref grows clockwise"),
@@ -28,27 +26,15 @@ impl ReferenceFrame {
         ]
     }
 
-    pub(super) fn of_table(table: &Table) -> Result<ReferenceFrame, DatasetError> {
-        let keys = ReferenceFrame::default().keys().map(|(key, ..)| key);
-        table.only(&keys)?;
-        let [y_mirrored, heading_clockwise, heading_backward] =
-            keys.map(|key| table.get(key).map_or(Ok(false), |entry| entry.flag()));
-        Ok(ReferenceFrame {
-            y_mirrored: y_mirrored?,
-            heading_clockwise: heading_clockwise?,
-            heading_backward: heading_backward?,
-        })
-    }
-
     /// Poses as they are meant.
-    pub(super) fn mend(&self, poses: &mut [ReferencePose]) {
+    pub fn mend(&self, poses: &mut [ReferencePose]) {
         for pose in poses {
             self.mend_one(&mut pose.y, pose.heading.as_mut());
         }
     }
 
     /// The same of a track with a clock of its own.
-    pub(super) fn mend_track(&self, track: &mut ReferenceTrack) {
+    pub fn mend_track(&self, track: &mut ReferenceTrack) {
         track.y.iter_mut().for_each(|y| self.mend_one(y, None));
         track.heading.iter_mut().flatten().for_each(|heading| self.mend_one(&mut 0.0, Some(heading)));
     }

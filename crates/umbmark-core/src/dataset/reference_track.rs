@@ -1,10 +1,5 @@
 //! Absolute poses with a clock of their own, as a tracking system writes them.
 
-use super::error::DatasetError;
-use super::lines::Lines;
-use super::recording::time_error;
-use std::f64::consts::TAU;
-
 /// Poses of a tracked body in the frame of a room, in the order of their own clock.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReferenceTrack {
@@ -16,84 +11,4 @@ pub struct ReferenceTrack {
     pub y: Vec<f64>,
     /// Headings \[rad\], full turns counted, where they were measured: in every pose, or none.
     pub heading: Option<Vec<f64>>,
-}
-
-/// x, y \[m\], and the heading \[rad\] where it was measured.
-pub(super) type PoseRow = (f64, f64, Option<f64>);
-
-/// The rows of a track.
-#[derive(Clone, Debug, Default)]
-pub(super) struct TrackRows {
-    pub file: String,
-    /// Name of the time column.
-    pub column: String,
-    pub lines: Lines,
-    pub time: Vec<f64>,
-    pub poses: Vec<PoseRow>,
-    /// Rows where the body was not seen.
-    pub lost: usize,
-}
-
-/// More late rows than this share are no accident.
-const MOST_LATE: f64 = 0.05;
-
-impl TrackRows {
-    /// Puts late rows where they belong, leaves repeated time stamps out, and says so.
-    pub fn put_in_order(&mut self, warnings: &mut Vec<String>) -> Result<(), DatasetError> {
-        let mut order: Vec<usize> = (0..self.time.len()).collect();
-        order.sort_by(|a, b| self.time[*a].total_cmp(&self.time[*b]));
-        let mut latest = f64::NEG_INFINITY;
-        let late: Vec<usize> = (0..self.time.len())
-            .filter(|i| {
-                let is_late = self.time[*i] < latest;
-                latest = latest.max(self.time[*i]);
-                is_late
-            })
-            .collect();
-        if late.len() as f64 > MOST_LATE * self.time.len() as f64 {
-            let remedy = "too many rows are out of order for late arrivals; cut the track where its clock was set back";
-            return Err(time_error(&self.file, &self.column, &self.lines, &self.time, late[0], remedy));
-        }
-        let rows = order.len();
-        order.dedup_by(|b, a| self.time[*b] == self.time[*a]);
-        let mut note = |n: usize, what: &str| {
-            if n > 0 {
-                warnings.push(format!("{}: {n} {what}", self.file));
-            }
-        };
-        note(late.len(), "rows out of order were put where their time stamps say");
-        note(rows - order.len(), "rows that repeat a time stamp were left out");
-        note(self.lost, "frames without a pose (the body was not seen) are gaps");
-        self.lines = order.iter().map(|i| self.lines.of(*i)).collect();
-        self.time = order.iter().map(|i| self.time[*i]).collect();
-        self.poses = order.iter().map(|i| self.poses[*i]).collect();
-        Ok(())
-    }
-
-    /// Counts full turns of the headings.
-    pub fn count_turns(&mut self) {
-        count_turns(self.poses.iter_mut().filter_map(|pose| pose.2.as_mut()));
-    }
-
-    /// The rows in order, as a track.
-    pub fn into_track(mut self, warnings: &mut Vec<String>) -> Result<ReferenceTrack, DatasetError> {
-        self.put_in_order(warnings)?;
-        self.count_turns();
-        let heading: Option<Vec<f64>> = self.poses.iter().map(|pose| pose.2).collect();
-        Ok(ReferenceTrack {
-            time: self.time,
-            x: self.poses.iter().map(|pose| pose.0).collect(),
-            y: self.poses.iter().map(|pose| pose.1).collect(),
-            heading,
-        })
-    }
-}
-
-/// Adds full turns, so that headings that follow each other differ by less than half a turn.
-pub(super) fn count_turns<'h>(headings: impl Iterator<Item = &'h mut f64>) {
-    let mut before = None;
-    for heading in headings {
-        *heading += TAU * ((before.unwrap_or(*heading) - *heading) / TAU).round();
-        before = Some(*heading);
-    }
 }

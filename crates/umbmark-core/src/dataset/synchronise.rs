@@ -13,13 +13,11 @@ mod coarse;
 mod motion;
 mod windows;
 
-use super::place::place;
-use super::reference_track::{PoseRow, ReferenceTrack};
-use super::{DatasetError, TickLog};
+use super::{PoseRow, ReferenceTrack, TickLog};
 use crate::drive::Robot;
 use crate::fit::{Options, jackknife_covariance, least_squares};
 use crate::geometry::Pose2;
-use crate::run::dead_reckoning::{computed_poses, standing_at_start};
+use crate::run::dead_reckoning::computed_poses;
 pub use crate::setup::Measured;
 use crate::stats::{Interval, student_t_quantile};
 use motion::Motion;
@@ -69,7 +67,7 @@ impl Alignment {
 
     /// The poses of the axle's centre, with the robot's headings, where the alignment shows how the tracked body sits on the
     /// robot. Without headings the tracked point stays what it is.
-    pub(super) fn of_axle(&self, track: &ReferenceTrack) -> Vec<PoseRow> {
+    pub fn of_axle(&self, track: &ReferenceTrack) -> Vec<PoseRow> {
         let positions = track.x.iter().zip(&track.y);
         let Some(headings) = &track.heading else { return positions.map(|(x, y)| (*x, *y, None)).collect() };
         let value = |measured: &Option<Measured>| measured.map_or(0.0, |m| m.value);
@@ -198,33 +196,6 @@ fn refine(mut windows: Windows, guess: &coarse::Guess) -> Result<Alignment, Sync
 fn standard_error(covariance: &DMatrix<f64>, weights: &[(usize, f64)]) -> f64 {
     let products = weights.iter().flat_map(|a| weights.iter().map(move |b| (a, b)));
     products.map(|((i, a), (j, b))| a * b * covariance[(*i, *j)]).sum::<f64>().max(0.0).sqrt()
-}
-
-/// Puts a track that has its own clock into a log: its poses, those of the axle's centre now, belong to samples of the log.
-pub(super) fn attach(
-    file: &str,
-    log: &mut TickLog,
-    track: &ReferenceTrack,
-    robot: &Robot,
-    warnings: &mut Vec<String>,
-) -> Result<Alignment, DatasetError> {
-    let found = synchronise(log, track, robot)
-        .map_err(|reason| DatasetError::Clocks { file: file.to_owned(), reason: reason.to_string() })?;
-    let times: Vec<f64> = track.time.iter().map(|time| found.tick_time(*time)).collect();
-    let dropped = place(log, &times, &found.of_axle(track));
-    if standing_at_start(log).is_empty() {
-        let reason =
-            "it does not see the robot before it moves, so START is not known; record some seconds of rest first";
-        return Err(DatasetError::Clocks { file: file.to_owned(), reason: reason.to_owned() });
-    }
-    let of_axle = if found.yaw.is_some() { ", and its poses turned into those of the axle's centre" } else { "" };
-    warnings.push(format!("{file}: its clock was set by the motion{of_axle}"));
-    if dropped > 0 {
-        warnings.push(format!(
-            "{file}: {dropped} poses fall into gaps of the ticks, or outside of them, and were left out"
-        ));
-    }
-    Ok(found)
 }
 
 #[cfg(test)]

@@ -6,12 +6,12 @@ use super::remains::with_remains;
 use super::setup::{reasons, setup, taken};
 use super::square::square;
 use super::{finite, model::model};
-use crate::dataset::effects_text;
 use crate::diagnose::{
     CurvePoint, Dependence, Detectable, Diagnosis, Estimate, Experiment, Identifiability, Level, Options, Suspect,
     Unseen, Why,
 };
 use crate::drive::Robot;
+use crate::effect::effects_text;
 use serde_json::{Map, Value, json};
 
 /// A diagnosis.

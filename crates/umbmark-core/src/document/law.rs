@@ -1,9 +1,9 @@
 //! What repeats beside a model, and the laws that it may follow.
 
 use super::finite;
-use crate::dataset::effects_text;
 use crate::diagnose::{Repeated, UnlistedLaw};
 use crate::effect::Formula;
+use crate::effect::effects_text;
 use serde_json::{Map, Value, json};
 
 /// What repeats most beside a model.

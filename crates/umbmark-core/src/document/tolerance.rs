@@ -1,9 +1,8 @@
 //! `tolerance`.
 
 use super::study::distribution;
-use crate::dataset::Varied;
 use crate::monte_carlo::Metric;
-use crate::sensitivity::tolerance::{Choice, Findings, Target};
+use crate::sensitivity::tolerance::{Choice, Findings, Target, Varied};
 use crate::sensitivity::{Estimate, Noise};
 use serde_json::{Map, Value, json};
 

@@ -9,7 +9,7 @@ const SAME: f64 = 1e-9;
 /// off by as much.
 const NEAR: f64 = 0.05;
 /// The effects that are converted.
-pub(crate) const CONVERTED: [&str; 3] = ["wheel_diameter_ratio", "wheelbase", "scale"];
+pub const CONVERTED: [&str; 3] = ["wheel_diameter_ratio", "wheelbase", "scale"];
 
 /// What was done to a model of another nominal robot.
 #[derive(Clone, Debug, PartialEq)]

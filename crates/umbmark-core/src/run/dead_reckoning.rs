@@ -6,7 +6,7 @@ use crate::geometry::{Pose2, mean_angle, wrap};
 
 /// Which measurement says where the robot stands at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum EndPose {
+pub enum EndPose {
     /// The last one.
     Last,
     /// The mean of those taken while both counters rest at the end, but for the first half of them, in which the robot
@@ -15,7 +15,7 @@ pub(crate) enum EndPose {
 }
 
 /// Pose after each sample, every step an exact circular arc.
-pub(crate) fn computed_poses(log: &TickLog, robot: &Robot) -> Vec<Pose2> {
+pub fn computed_poses(log: &TickLog, robot: &Robot) -> Vec<Pose2> {
     let mut poses = Vec::with_capacity(log.time.len());
     for_each_pose(log, robot, |pose| poses.push(*pose));
     poses
@@ -23,7 +23,7 @@ pub(crate) fn computed_poses(log: &TickLog, robot: &Robot) -> Vec<Pose2> {
 
 /// The computed pose at the end of the track, if it has one, and how much the robot has turned by the end of the log
 /// \[rad\].
-pub(crate) fn computed_end(log: &TickLog, robot: &Robot) -> (Option<Pose2>, f64) {
+pub fn computed_end(log: &TickLog, robot: &Robot) -> (Option<Pose2>, f64) {
     let last = log.reference.last().map(|last| last.sample);
     let (mut sample, mut computed, mut turned) = (0, None, 0.0);
     for_each_pose(log, robot, |pose| {
@@ -48,7 +48,7 @@ fn for_each_pose(log: &TickLog, robot: &Robot, mut visit: impl FnMut(&Pose2)) {
 }
 
 /// Absolute minus computed pose at the end of the track, if it has one.
-pub(crate) fn return_error(log: &TickLog, computed: &Pose2, end: EndPose) -> Option<ReturnError> {
+pub fn return_error(log: &TickLog, computed: &Pose2, end: EndPose) -> Option<ReturnError> {
     let last = log.reference.last()?;
     let absolute = match end {
         EndPose::Last => *last,
@@ -65,14 +65,14 @@ pub(crate) fn return_error(log: &TickLog, computed: &Pose2, end: EndPose) -> Opt
 }
 
 /// The measurements taken before the first count moved.
-pub(crate) fn standing_at_start(log: &TickLog) -> &[ReferencePose] {
+pub fn standing_at_start(log: &TickLog) -> &[ReferencePose] {
     let moved = (0..log.time.len()).find(|i| log.left[*i] != log.left[0] || log.right[*i] != log.right[0]);
     let end = log.reference.partition_point(|pose| moved.is_none_or(|moved| pose.sample < moved));
     &log.reference[..end]
 }
 
 /// The measurements taken at the same counts as the last one, up to it.
-pub(crate) fn standing_at_end(log: &TickLog) -> &[ReferencePose] {
+pub fn standing_at_end(log: &TickLog) -> &[ReferencePose] {
     let Some(last) = log.reference.last() else { return &[] };
     let counts = |i: usize| (log.left[i], log.right[i]);
     let moving = (0..last.sample).rev().find(|i| counts(*i) != counts(last.sample));
@@ -85,7 +85,7 @@ const NEAR: f64 = 8.0;
 const AT_LEAST: (f64, f64) = (0.02, 0.02);
 
 /// The mean of poses that differ little, but for some that are wrong; its heading counts full turns as the first one does.
-pub(crate) fn mean_pose(poses: &[ReferencePose]) -> Option<ReferencePose> {
+pub fn mean_pose(poses: &[ReferencePose]) -> Option<ReferencePose> {
     let middle = |of: &dyn Fn(&ReferencePose) -> f64| {
         let mut values: Vec<f64> = poses.iter().map(of).collect();
         values.sort_by(f64::total_cmp);

@@ -7,7 +7,7 @@ use std::sync::atomic;
 use statrs::distribution::{Beta, Binomial, ContinuousCDF, DiscreteCDF};
 
 use super::{Correlation, Estimate, Evaluator, Inputs, Response, SensitivityError, Tests, Watch, evaluate};
-use crate::dataset::Varied;
+use crate::monte_carlo::{Distribution, Quantity};
 use crate::random::Stream;
 use crate::stats::Interval;
 
@@ -16,6 +16,24 @@ const ROBOTS: u64 = 22;
 
 /// Robots that one thread draws at a time.
 const CHUNK: u64 = 256;
+
+/// A parameter and the grades of tolerance that it can be had in.
+#[derive(Clone, Debug)]
+pub struct Varied {
+    /// The parameter.
+    pub quantity: Quantity,
+    /// Its grades; the first is what it is now.
+    pub grades: Vec<Grade>,
+}
+
+/// A grade of tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grade {
+    /// How the parameter is distributed over robots of this grade.
+    pub distribution: Distribution,
+    /// What the grade costs, in any unit.
+    pub cost: f64,
+}
 
 /// The goal: a share of robots with an output of at most some size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -290,10 +308,9 @@ impl Iterator for ByCost {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dataset::Grade;
     use crate::drive::Robot;
     use crate::effect::Model;
-    use crate::monte_carlo::{Distribution, Quantity, Study};
+    use crate::monte_carlo::Study;
     use crate::sensitivity::Noise;
     use crate::stats::normal_quantile;
 

@@ -8,6 +8,7 @@ use umbmark_core::dataset::Dataset;
 use umbmark_core::document;
 use umbmark_core::drive::Robot;
 use umbmark_core::learn::{GearCalibration, calibrate_gears};
+use umbmark_io::RobotFile;
 
 use super::Arguments;
 use crate::Session;
@@ -31,7 +32,7 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
         );
     }
     if let Some(file) = &arguments.export_toml {
-        let text = data.robot_file(calibration.corrected.clone()).text();
+        let text = RobotFile::beside(data, calibration.corrected.clone()).text();
         Pending::write_whole(file, arguments.force, &text).context("the corrected robot was not written")?;
     }
     if session.json() {

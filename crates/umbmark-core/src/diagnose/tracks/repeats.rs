@@ -419,8 +419,8 @@ fn is_as_good(squares: &[[f64; 3]], least: &[[f64; 3]]) -> bool {
 mod tests {
     use super::super::tests::{complete, fitted, on_grain};
     use super::*;
-    use crate::dataset::effects_text;
     use crate::drive::Robot;
+    use crate::effect::effects_text;
     use crate::effect::{Formula, Target};
     use crate::likelihood::watched::watched;
 

@@ -1,0 +1,242 @@
+//! Runs put together from return rows and logs.
+
+use super::RobotFile;
+use super::error::DatasetError;
+use super::label::{self, Named};
+use super::recording::Recording;
+use super::returns::ReturnRow;
+use super::stale::drop_stale;
+use super::start_frame::move_to_start;
+use std::collections::BTreeMap;
+use umbmark_core::dataset::ReferenceFrame;
+use umbmark_core::dataset::{Alignment, NoRobot, ReferenceTrack, place, synchronise};
+use umbmark_core::dataset::{Dataset, Run, RunClock, RunTopics, TickLog};
+use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::effect::TestKind;
+use umbmark_core::path::{Direction, Path};
+use umbmark_core::run::StartKnown;
+use umbmark_core::run::dead_reckoning::{EndPose, computed_end, return_error, standing_at_start};
+
+/// A log that turns by less than this has no direction \[rad\].
+const LEAST_TURN: f64 = 0.5;
+
+/// A dataset in the making.
+pub(super) struct Assembly {
+    robot: Option<Robot>,
+    path: Option<Path>,
+    reference_frame: ReferenceFrame,
+    runs: Vec<Run>,
+    /// The place of each test, direction and number among the runs.
+    index: BTreeMap<(TestKind, Option<Direction>, u32), usize>,
+    /// Where each run comes from.
+    places: Vec<String>,
+    has_returns: bool,
+    clocks: Vec<RunClock>,
+    pub topics: Vec<RunTopics>,
+    pub warnings: Vec<String>,
+}
+
+/// Poses with a clock of their own, and the file they were in.
+pub(super) struct Tracked {
+    pub file: String,
+    pub track: ReferenceTrack,
+}
+
+impl Assembly {
+    pub fn new(file: Option<RobotFile>) -> Assembly {
+        let reference_frame = file.as_ref().map(|file| file.reference).unwrap_or_default();
+        let (robot, path) = file.map_or((None, None), |file| (Some(file.robot), file.path));
+        let (runs, places, warnings) = (Vec::new(), Vec::new(), Vec::new());
+        let (index, clocks, topics) = (BTreeMap::new(), Vec::new(), Vec::new());
+        let has_returns = false;
+        Assembly { robot, path, reference_frame, runs, index, places, has_returns, clocks, topics, warnings }
+    }
+
+    /// The nominal robot, where it is known.
+    pub fn robot(&self) -> Option<&Robot> {
+        self.robot.as_ref()
+    }
+
+    /// Adds the rows of a return sheet; they come before the logs.
+    pub fn add_returns(&mut self, file: &str, rows: &[ReturnRow]) -> Result<(), DatasetError> {
+        self.has_returns = true;
+        for row in rows {
+            let test = row.test.unwrap_or(TestKind::Systematic);
+            let name = label::label(test, row.direction, row.number);
+            let (number, direction, returned) = (row.number, row.direction, Some(row.error));
+            self.push(Run { name, number, direction, test, log: None, returned }, file, row.line)?;
+        }
+        Ok(())
+    }
+
+    /// The robot's drive; differential where there is no robot.
+    pub fn kind(&self) -> Kind {
+        self.robot.as_ref().map_or(Kind::Differential, |robot| robot.drive.kind())
+    }
+
+    /// Adds the recording of a file that is called `stem`, with the poses that a tracking system saw of it, where there are some.
+    pub fn add_recording(
+        &mut self,
+        recording: Recording,
+        tracked: Option<Tracked>,
+        stem: &str,
+        named: Named,
+        end: EndPose,
+    ) -> Result<(), DatasetError> {
+        let file = recording.file.clone();
+        let bits = self.robot.as_ref().and_then(|robot| robot.encoder.counter_bits());
+        let log = recording.into_log(self.robot.as_ref(), bits, &mut self.warnings)?;
+        self.add_log(file, log, tracked, stem, named, end)
+    }
+
+    /// Adds the ticks of a file that is called `stem`, with the poses in it or those of a track.
+    pub fn add_log(
+        &mut self,
+        file: String,
+        mut log: TickLog,
+        tracked: Option<Tracked>,
+        stem: &str,
+        named: Named,
+        end: EndPose,
+    ) -> Result<(), DatasetError> {
+        self.reference_frame.mend(&mut log.reference);
+        if let Some(mut tracked) = tracked {
+            self.reference_frame.mend_track(&mut tracked.track);
+            self.set_clock(&mut log, tracked, stem)?;
+        }
+        if let Some(robot) = &self.robot {
+            drop_stale(&file, &mut log, robot, &mut self.warnings);
+        }
+        move_to_start(&file, &mut log, self.robot.as_ref(), &mut self.warnings)?;
+        let (computed, turned) = self.robot.as_ref().map_or((None, 0.0), |robot| computed_end(&log, robot));
+        let measured = log.start.known != StartKnown::OnTheWay;
+        let returned = computed.filter(|_| measured).and_then(|computed| return_error(&log, &computed, end));
+        let direction = self.direction(&file, named, turned);
+        if let Some(row) = self.row_of(named, direction) {
+            return self.attach(row, log, stem, &file);
+        }
+        if self.has_returns {
+            let follows = if returned.is_some() { "follows from its log" } else { "is not known" };
+            self.warnings.push(format!("{file}: has no row in the return sheet; its return error {follows}"));
+        }
+        let test = named.test.unwrap_or(TestKind::Systematic);
+        let number = named.number.unwrap_or_else(|| self.next_number(test, direction));
+        let run = Run { name: stem.to_owned(), number, direction, test, log: Some(log), returned };
+        self.push(run, &file, 1)
+    }
+
+    /// Sets the clock of a track by the motion, and puts its poses into the log.
+    fn set_clock(&mut self, log: &mut TickLog, tracked: Tracked, stem: &str) -> Result<(), DatasetError> {
+        let robot = self.robot.as_ref().ok_or(NoRobot)?;
+        if !log.reference.is_empty() {
+            self.warnings.push(format!("{}: was not used: the log {stem} has poses of its own", tracked.file));
+            return Ok(());
+        }
+        let alignment = attach(&tracked.file, log, &tracked.track, robot, &mut self.warnings)?;
+        self.clocks.push(RunClock { run: stem.to_owned(), track: tracked.file, alignment });
+        Ok(())
+    }
+
+    /// The dataset, its runs in order.
+    pub fn finish(self) -> Dataset {
+        let Assembly { robot, path, reference_frame, mut runs, clocks, topics, warnings, .. } = self;
+        runs.sort_by_key(|run| (run.test, run.direction, run.number));
+        Dataset { robot, path, reference_frame, runs, clocks, topics, warnings }
+    }
+
+    fn push(&mut self, run: Run, file: &str, line: usize) -> Result<(), DatasetError> {
+        let key = (run.test, run.direction, run.number);
+        if let Some(&first) = self.index.get(&key) {
+            return Err(DatasetError::DuplicateRun {
+                file: file.to_owned(),
+                line,
+                run: label::spoken(run.test, run.direction, run.number),
+                first: self.places[first].clone(),
+            });
+        }
+        self.index.insert(key, self.runs.len());
+        self.runs.push(run);
+        self.places.push(format!("{file}:{line}"));
+        Ok(())
+    }
+
+    /// What the name says, else what the ticks say.
+    fn direction(&mut self, file: &str, named: Named, turned: f64) -> Option<Direction> {
+        let driven = match turned {
+            _ if turned > LEAST_TURN => Some(Direction::Ccw),
+            _ if turned < -LEAST_TURN => Some(Direction::Cw),
+            _ => None,
+        };
+        let Some(told) = named.direction else { return driven };
+        if let (Some(name), Some(ticks)) = (told, driven)
+            && name != ticks
+        {
+            let (name, ticks) = (name.name(), ticks.name());
+            self.warnings.push(format!(
+                "{file}: its name says {name}, its ticks turn {ticks}; taken as {name}. Look whether left and right are exchanged"
+            ));
+        }
+        told
+    }
+
+    /// The return row that a log belongs to.
+    fn row_of(&self, named: Named, direction: Option<Direction>) -> Option<usize> {
+        let number = named.number?;
+        let of = |test| {
+            let place = *self.index.get(&(test, direction, number))?;
+            (self.has_returns && self.runs[place].returned.is_some()).then_some(place)
+        };
+        match named.test {
+            Some(test) => of(test),
+            None => of(TestKind::Systematic).or_else(|| of(TestKind::Bumps)),
+        }
+    }
+
+    fn attach(&mut self, row: usize, log: TickLog, stem: &str, file: &str) -> Result<(), DatasetError> {
+        let run = &mut self.runs[row];
+        if run.log.is_some() {
+            return Err(DatasetError::DuplicateRun {
+                file: file.to_owned(),
+                line: 1,
+                run: label::spoken(run.test, run.direction, run.number),
+                first: self.places[row].clone(),
+            });
+        }
+        run.log = Some(log);
+        run.name = stem.to_owned();
+        self.places[row] = file.to_owned();
+        Ok(())
+    }
+
+    fn next_number(&self, test: TestKind, direction: Option<Direction>) -> u32 {
+        let of_kind = self.runs.iter().filter(|run| run.test == test && run.direction == direction);
+        of_kind.map(|run| run.number).max().map_or(1, |most| most.saturating_add(1))
+    }
+}
+
+/// Puts a track that has its own clock into a log: its poses, those of the axle's centre now, belong to samples of the log.
+fn attach(
+    file: &str,
+    log: &mut TickLog,
+    track: &ReferenceTrack,
+    robot: &Robot,
+    warnings: &mut Vec<String>,
+) -> Result<Alignment, DatasetError> {
+    let found = synchronise(log, track, robot)
+        .map_err(|reason| DatasetError::Clocks { file: file.to_owned(), reason: reason.to_string() })?;
+    let times: Vec<f64> = track.time.iter().map(|time| found.tick_time(*time)).collect();
+    let dropped = place(log, &times, &found.of_axle(track));
+    if standing_at_start(log).is_empty() {
+        let reason =
+            "it does not see the robot before it moves, so START is not known; record some seconds of rest first";
+        return Err(DatasetError::Clocks { file: file.to_owned(), reason: reason.to_owned() });
+    }
+    let of_axle = if found.yaw.is_some() { ", and its poses turned into those of the axle's centre" } else { "" };
+    warnings.push(format!("{file}: its clock was set by the motion{of_axle}"));
+    if dropped > 0 {
+        warnings.push(format!(
+            "{file}: {dropped} poses fall into gaps of the ticks, or outside of them, and were left out"
+        ));
+    }
+    Ok(found)
+}

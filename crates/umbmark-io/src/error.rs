@@ -1,0 +1,423 @@
+//! What can be wrong with measurements, and what to do about it.
+
+use super::mcap::McapProblem;
+use umbmark_core::dataset::NoRobot;
+
+/// What makes a dataset, a robot file or a model file unusable.
+///
+/// Each message names the file, the line where there is one, the column or key, the value, what is allowed, and what to
+/// do. `file` is the path as it was given.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DatasetError {
+    /// A file or folder that the system does not let us read.
+    #[error("{file}: cannot be read: {reason}")]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// What the system says.
+        reason: String,
+    },
+    /// A file or folder that the system does not let us write.
+    #[error("{file}: cannot be written: {reason}")]
+    Unwritable {
+        /// The file.
+        file: String,
+        /// What the system says, or what cannot be expressed in the file.
+        reason: String,
+    },
+    /// A file that would be overwritten.
+    #[error("{file}: is there already; {remedy}")]
+    AlreadyThere {
+        /// The file.
+        file: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A file or folder that is no dataset.
+    #[error("{file}: is not a dataset: {found}; {remedy}")]
+    NotADataset {
+        /// The file or folder.
+        file: String,
+        /// What is there.
+        found: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A dataset without the robot that the question needs.
+    #[error(transparent)]
+    NoRobot(#[from] NoRobot),
+    /// An MCAP log that cannot be used.
+    #[error("{file}: {problem}")]
+    Mcap {
+        /// The file.
+        file: String,
+        /// What is wrong with it.
+        problem: Box<McapProblem>,
+    },
+    /// Something that the format allows and this version does not do.
+    #[error("{file}:{line}: {key} {value} is not supported yet; {remedy}")]
+    NotYet {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// The key.
+        key: String,
+        /// What it was given, quoted.
+        value: String,
+        /// What can be done instead.
+        remedy: String,
+    },
+
+    /// Bytes that are not UTF-8.
+    #[error("{file}:{line}: {found}; save the file as UTF-8 text")]
+    NotUtf8 {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// What it looks like.
+        found: &'static str,
+    },
+    /// No rows.
+    #[error("{file}: {found}; {remedy}")]
+    NoRows {
+        /// The file.
+        file: String,
+        /// What is there.
+        found: &'static str,
+        /// What to do.
+        remedy: String,
+    },
+    /// The first line is not a header.
+    #[error(
+        "{file}:{line}: the first row is data ({value}); put a header line with the column names above it, not behind a #"
+    )]
+    NoHeader {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// Its first cell, quoted.
+        value: String,
+    },
+    /// Cells that are not separated by commas.
+    #[error(
+        "{file}:{line}: the cells are separated by {found}; separate them by commas and write decimals with a point (0.123, not 0,123)"
+    )]
+    Separator {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// What separates them.
+        found: &'static str,
+    },
+    /// A row with more or fewer cells than the header.
+    #[error("{file}:{line}: {got} cells where the header has {expected}; {remedy}")]
+    Ragged {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// Cells in the row.
+        got: usize,
+        /// Columns of the header.
+        expected: usize,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A column that is needed and not there.
+    #[error("{file}:{line}: there is no column {column}; {remedy}")]
+    MissingColumn {
+        /// The file.
+        file: String,
+        /// The line of the header.
+        line: usize,
+        /// The column, with its unit.
+        column: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// A column that nobody knows but that resembles one.
+    #[error("{file}:{line}: unknown column {column}; did you mean \"{nearest}\"?")]
+    UnknownColumn {
+        /// The file.
+        file: String,
+        /// The line of the header.
+        line: usize,
+        /// The column, quoted.
+        column: String,
+        /// What may have been meant.
+        nearest: String,
+    },
+    /// A column without a unit, or with one that nobody knows.
+    #[error("{file}:{line}: column {column}: {found}; end its name in {allowed}")]
+    Unit {
+        /// The file.
+        file: String,
+        /// The line of the header.
+        line: usize,
+        /// The column, quoted.
+        column: String,
+        /// What is there.
+        found: String,
+        /// What may stand there.
+        allowed: String,
+    },
+    /// Two units of the same quantity in one file.
+    #[error(
+        "{file}:{line}: column \"{first}\" and column \"{second}\" have different units; use one unit of {quantity} in the whole file"
+    )]
+    MixedUnits {
+        /// The file.
+        file: String,
+        /// The line of the header.
+        line: usize,
+        /// A column.
+        first: String,
+        /// Another column.
+        second: String,
+        /// "length" or "angle".
+        quantity: &'static str,
+    },
+    /// Two columns for the same thing.
+    #[error("{file}:{line}: column \"{first}\" and column \"{second}\" say the same; keep one of them")]
+    ColumnTwice {
+        /// The file.
+        file: String,
+        /// The line of the header.
+        line: usize,
+        /// A column.
+        first: String,
+        /// Another column.
+        second: String,
+    },
+    /// Two ways of saying the same return.
+    #[error(
+        "{file}:{line}: both end poses (\"{poses}\") and their errors (\"{errors}\") are given; keep the poses or the errors, not both"
+    )]
+    BothConventions {
+        /// The file.
+        file: String,
+        /// The line of the header.
+        line: usize,
+        /// A column of a pose.
+        poses: String,
+        /// A column of an error.
+        errors: String,
+    },
+    /// A cell that cannot be what it is.
+    #[error("{file}:{line}: column \"{column}\" must be {allowed}, got {value}{}", after(remedy))]
+    Cell {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// The column.
+        column: String,
+        /// What it holds, quoted.
+        value: String,
+        /// What it may hold, with the unit.
+        allowed: Box<str>,
+        /// What to do; may be empty.
+        remedy: Box<str>,
+    },
+    /// The same run twice.
+    #[error(
+        "{file}:{line}: {run} stands twice, first in {first}; number the runs of each direction and test without repeating"
+    )]
+    DuplicateRun {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// The run, in words.
+        run: String,
+        /// Where it stands already.
+        first: String,
+    },
+    /// Time that does not go forward.
+    #[error("{file}:{line}: column \"{column}\" must increase, got {after} s after {before} s; {remedy}")]
+    Time {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// The column.
+        column: String,
+        /// Time of the row before \[s\].
+        before: f64,
+        /// Time of this row \[s\].
+        after: f64,
+        /// What to do.
+        remedy: Box<str>,
+    },
+    /// A track with a clock of its own that the motion does not set.
+    #[error("{file}: {reason}")]
+    Clocks {
+        /// The file of the track.
+        file: String,
+        /// Why, and what to do.
+        reason: String,
+    },
+    /// A second track of a log.
+    #[error("{file}: is a track of the same log as {first}; keep one of them")]
+    TwoTracks {
+        /// The file of the second one.
+        file: String,
+        /// That of the first.
+        first: String,
+    },
+    /// A compressed file that cannot be unpacked.
+    #[error("{file}: {reason}")]
+    Packed {
+        /// The file.
+        file: String,
+        /// Why, and what to do.
+        reason: String,
+    },
+    /// A wheel that moved faster than a wheel can.
+    #[error(
+        "{file}:{line}: column \"{column}\" goes from {before} to {after} ticks in {seconds} s, {speed} m/s at the wheel where {limit} m/s is allowed; {remedy}"
+    )]
+    Jump {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// The column.
+        column: String,
+        /// Count of the row before.
+        before: f64,
+        /// Count of this row.
+        after: f64,
+        /// Time between them \[s\].
+        seconds: f64,
+        /// What that makes \[m/s\], rounded.
+        speed: f64,
+        /// What is allowed \[m/s\].
+        limit: f64,
+        /// What to do.
+        remedy: Box<str>,
+    },
+    /// A count that jumps as a counter does that rolls over.
+    #[error(
+        "{file}:{line}: column \"{column}\" goes from {before} to {after} ticks, as a counter of {bits} bits does when it rolls over; say counter_bits = {bits} in robot.toml"
+    )]
+    RolledOver {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// The column.
+        column: String,
+        /// Count of the row before.
+        before: f64,
+        /// Count of this row.
+        after: f64,
+        /// The counter that it may be.
+        bits: u32,
+    },
+    /// Poses in the frame of the room that cannot be turned into the frame of START.
+    #[error(
+        "{file}: the track starts {distance} m from the origin and has no heading, so it cannot be turned into the frame of START; add theta_ref_rad, or write the poses as seen from START"
+    )]
+    NoStartHeading {
+        /// The file.
+        file: String,
+        /// How far from the origin \[m\], rounded.
+        distance: f64,
+    },
+
+    /// Not TOML.
+    #[error("{file}:{line}: not valid TOML at character {column}: {reason}")]
+    Syntax {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// The character in the line, from 1.
+        column: usize,
+        /// What the parser says.
+        reason: String,
+    },
+    /// A key that nobody knows.
+    #[error("{file}:{line}: unknown key {key} in {table}; {remedy}")]
+    UnknownKey {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// The table, in brackets.
+        table: String,
+        /// The key, quoted.
+        key: String,
+        /// The nearest key, or all of them.
+        remedy: String,
+    },
+    /// A key that is needed and not there.
+    #[error("{file}:{line}: {table} has no {key}; add {example}")]
+    MissingKey {
+        /// The file.
+        file: String,
+        /// The line of the table, from 1.
+        line: usize,
+        /// The table, in brackets.
+        table: String,
+        /// The key.
+        key: String,
+        /// How it may look.
+        example: String,
+    },
+    /// Two keys for the same thing.
+    #[error("{file}:{line}: {second} says what {first} in line {first_line} says already; keep one of them")]
+    KeyTwice {
+        /// The file.
+        file: String,
+        /// The line of the second, from 1.
+        line: usize,
+        /// The second.
+        second: String,
+        /// The first.
+        first: String,
+        /// The line of the first.
+        first_line: usize,
+    },
+    /// A value that cannot be.
+    #[error("{file}:{line}: {key} must be {allowed}, got {value}{}", after(remedy))]
+    Value {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// The key.
+        key: String,
+        /// What it was given.
+        value: String,
+        /// What it may be, with the unit.
+        allowed: Box<str>,
+        /// What to do; may be empty.
+        remedy: Box<str>,
+    },
+}
+
+fn after(remedy: &str) -> String {
+    if remedy.is_empty() { String::new() } else { format!("; {remedy}") }
+}
+
+/// A piece of a file as it may be shown: quoted, without control characters, and not longer than a few words.
+pub(super) fn quoted(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let mut shown: String = text.chars().take(LONGEST).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        shown.push('…');
+    }
+    format!("{shown:?}")
+}
+
+/// "did you mean ...?", where something is near.
+pub(super) fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    umbmark_core::parameter::nearest(word, names).map(|name| format!("did you mean \"{name}\"?")).unwrap_or_default()
+}

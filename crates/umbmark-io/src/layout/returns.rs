@@ -1,0 +1,29 @@
+//! The return sheet alone.
+
+use super::super::error::DatasetError;
+use super::super::folder::RETURNS;
+use super::super::save::{Existing, put};
+use super::super::sheets::returns_text;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use umbmark_core::dataset::Dataset;
+
+pub(super) fn write(data: &Dataset, folder: &Path, existing: Existing) -> Result<Vec<String>, DatasetError> {
+    let text = returns_text(&data.runs).ok_or_else(|| DatasetError::Unwritable {
+        file: folder.display().to_string(),
+        reason: "no run has a return error".into(),
+    })?;
+    put(folder, &BTreeMap::from([(PathBuf::from(RETURNS), text)]), existing, |_| Ok(()))?;
+    let mut lost = Vec::new();
+    let (logs, unknown) = (super::logs(data).count(), data.runs.iter().filter(|run| run.returned.is_none()).count());
+    if logs > 0 {
+        lost.push(format!("{logs} logs: a return sheet holds end poses only"));
+    }
+    if unknown > 0 {
+        lost.push(format!("{unknown} runs without a return error"));
+    }
+    if data.robot.is_some() {
+        lost.push("robot and path: copy robot.toml beside the sheet".into());
+    }
+    Ok(lost)
+}

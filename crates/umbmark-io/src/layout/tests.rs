@@ -1,0 +1,261 @@
+use super::*;
+use umbmark_core::dataset::{ReferencePose, ReturnError, Run};
+use umbmark_core::drive::Robot;
+use umbmark_core::effect::TestKind;
+use umbmark_core::geometry::wrap;
+use umbmark_core::path::{Direction, Path as DrivenPath};
+
+/// Both ways round, twice each, with awkward numbers and a pose with heading at every sample, or at every `every`-th.
+fn dataset(every: usize) -> Dataset {
+    let run = |direction: Direction, number: u32| {
+        let sign = direction.sign();
+        let ticks = |i: usize, sign: f64| 37.0 * i as f64 + sign * (i * i) as f64;
+        let pose = |sample: usize| ReferencePose {
+            sample,
+            x: 0.001 / 3.0 * sample as f64,
+            y: sign * 1e-5 * (sample * sample) as f64,
+            heading: Some(sign * 0.031 * sample as f64),
+        };
+        let log = TickLog {
+            time: (0..120).map(|i| 0.1 * i as f64 + f64::from(number)).collect(),
+            left: (0..120).map(|i| ticks(i, -sign)).collect(),
+            right: (0..120).map(|i| ticks(i, sign)).collect(),
+            reference: (0..120).step_by(every).map(pose).collect(),
+            ..TickLog::default()
+        };
+        let name = format!("{}_{number:02}", direction.name());
+        let returned = Some(ReturnError { x: 0.1, y: -0.2 / 3.0, heading: Some(0.01) });
+        Run { name, number, direction: Some(direction), test: TestKind::Systematic, log: Some(log), returned }
+    };
+    let runs = [(Direction::Cw, 1), (Direction::Cw, 2), (Direction::Ccw, 1), (Direction::Ccw, 2)];
+    let mut robot = Robot::labmate();
+    robot.encoder = Encoder::new(2796.8, Some(20.0), None).unwrap();
+    Dataset {
+        robot: Some(robot),
+        path: Some(DrivenPath::umbmark()),
+        runs: runs.into_iter().map(|(direction, number)| run(direction, number)).collect(),
+        ..Dataset::default()
+    }
+}
+
+fn layout(name: &str) -> &'static Layout {
+    Layout::named(name).unwrap()
+}
+
+/// What is read back, and what was lost.
+fn round_trip(data: &Dataset, name: &str) -> (Dataset, Vec<String>) {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("out");
+    let lost = layout(name).write(&data, &folder, Existing::Keep).unwrap();
+    (crate::load(&folder).unwrap_or_else(|error| panic!("{name}: {error}")), lost)
+}
+
+fn logs(data: &Dataset) -> Vec<&TickLog> {
+    super::logs(data).map(|(_, log)| log).collect()
+}
+
+#[test]
+fn every_layout_keeps_what_is_there_unless_it_may_be_replaced() {
+    let data = dataset(1);
+    for layout in LAYOUTS {
+        let place = tempfile::tempdir().unwrap();
+        let convert = |existing| layout.write(&data, place.path().join("out"), existing);
+        convert(Existing::Keep).unwrap();
+        assert!(convert(Existing::Keep).is_err(), "{}", layout.name);
+        convert(Existing::Replace).unwrap();
+    }
+}
+
+#[test]
+fn the_own_layout_loses_nothing() {
+    let data = dataset(3);
+    let (read, lost) = round_trip(&data, "csv");
+    assert!(lost.is_empty());
+    assert_eq!(read.runs, {
+        let mut runs = data.runs.clone();
+        runs.sort_by_key(|run| (run.test, run.direction, run.number));
+        runs
+    });
+    assert_eq!(read.robot, data.robot);
+}
+
+#[test]
+fn optiodom_holds_every_log_with_a_pose_in_every_row() {
+    let data = dataset(1);
+    let (read, lost) = round_trip(&data, "optiodom");
+    assert_eq!(logs(&read), logs(&data));
+    assert_eq!(read.robot.as_ref().unwrap().drive, data.robot.as_ref().unwrap().drive);
+    assert_eq!(read.robot.unwrap().encoder.ticks_per_revolution(), 2796.8);
+    assert_eq!(read.path.unwrap().values(), data.path.as_ref().unwrap().values());
+    let said = lost.join("; ");
+    assert_eq!(
+        said,
+        "the numbers of the runs: they are counted through both directions; encoder rate and counter width; return errors: \
+         they follow from the last row of each log"
+    );
+}
+
+#[test]
+fn optiodom_says_how_many_rows_had_no_pose_and_keeps_their_ticks() {
+    let data = dataset(4);
+    let (read, lost) = round_trip(&data, "optiodom");
+    assert!(lost.contains(&"360 rows without a pose: their ticks are in the next row with one".into()), "{lost:?}");
+    for (ours, theirs) in logs(&data).iter().zip(logs(&read)) {
+        assert_eq!(theirs.left.last(), Some(&ours.left[116]));
+        assert_eq!(theirs.reference.len(), ours.reference.len());
+    }
+    assert!(lost.iter().any(|text| text.ends_with("ticks after the last poses")), "{lost:?}");
+}
+
+#[test]
+fn tum_holds_the_measured_poses() {
+    let data = dataset(2);
+    let place = tempfile::tempdir().unwrap();
+    layout("tum").write(&data, place.path().join("out"), Existing::Keep).unwrap();
+    let text = std::fs::read_to_string(place.path().join("out/cw_02_reference.tum")).unwrap();
+    let rows = crate::tum::parse_tum("file", &text).unwrap();
+    let log = data.runs[1].log.as_ref().unwrap();
+    assert_eq!(rows.time.len(), log.reference.len());
+    for ((time, (x, y, heading)), pose) in rows.time.iter().zip(&rows.poses).zip(&log.reference) {
+        assert_eq!((*time, *x, *y), (log.time[pose.sample], pose.x, pose.y));
+        assert!(wrap(heading.unwrap() - pose.heading.unwrap()).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn the_return_sheet_holds_the_return_errors() {
+    let data = dataset(1);
+    let place = tempfile::tempdir().unwrap();
+    let lost = layout("returns").write(&data, place.path().join("out"), Existing::Keep).unwrap();
+    let read = crate::load(place.path().join("out/returns.csv")).unwrap();
+    let errors = |data: &Dataset| {
+        let mut found: Vec<_> = data.runs.iter().map(|run| (run.direction, run.number, run.returned)).collect();
+        found.sort_by_key(|(direction, number, _)| (*direction, *number));
+        found
+    };
+    assert_eq!(errors(&read), errors(&data));
+    assert_eq!(lost[0], "4 logs: a return sheet holds end poses only");
+}
+
+#[test]
+fn counts_between_readings_of_a_counter_that_rolls_over_are_written_unrolled() {
+    let mut data = dataset(1);
+    let encoder = Encoder::new(2000.0, None, Some(12)).unwrap();
+    data.robot.as_mut().unwrap().encoder = encoder;
+    for run in &mut data.runs {
+        run.log.as_mut().unwrap().left[7] += 0.5;
+    }
+    let (read, lost) = round_trip(&data, "csv");
+    assert!(lost[0].starts_with("counter_bits"));
+    assert_eq!(logs(&read).len(), 4);
+    assert_eq!(read.robot.unwrap().encoder.counter_bits(), None);
+}
+
+#[test]
+fn what_a_layout_cannot_hold_at_all_is_refused() {
+    let mut data = dataset(1);
+    for run in &mut data.runs {
+        run.log.as_mut().unwrap().reference.clear();
+        run.returned = None;
+    }
+    let place = tempfile::tempdir().unwrap();
+    for name in ["optiodom", "returns"] {
+        let error = layout(name).write(&data, place.path().join("out"), Existing::Keep).unwrap_err();
+        assert!(matches!(error, DatasetError::Unwritable { .. }), "{error}");
+        assert!(!place.path().join("out").exists());
+    }
+}
+
+/// Logs as they differ after a way through MCAP: counts, positions and samples to the last bit, times and headings nearly.
+fn assert_near(ours: &Dataset, theirs: &Dataset, origin: impl Fn(&TickLog) -> f64) {
+    let mut runs = ours.runs.clone();
+    runs.sort_by_key(|run| (run.test, run.direction, run.number));
+    assert_eq!(runs.len(), theirs.runs.len());
+    for (a, b) in runs.iter().zip(&theirs.runs) {
+        assert_eq!((&a.name, a.number, a.direction, a.returned), (&b.name, b.number, b.direction, b.returned));
+        let (a, b) = (a.log.as_ref().unwrap(), b.log.as_ref().unwrap());
+        assert_eq!((&a.left, &a.right, a.reference.len()), (&b.left, &b.right, b.reference.len()));
+        let zero = origin(a);
+        assert!(a.time.iter().zip(&b.time).all(|(a, b)| (a - zero - b).abs() <= 1e-9));
+        for (a, b) in a.reference.iter().zip(&b.reference) {
+            assert_eq!((a.sample, a.x, a.y, a.heading.is_some()), (b.sample, b.x, b.y, b.heading.is_some()));
+            let (a, b) = (a.heading.unwrap_or(0.0), b.heading.unwrap_or(0.0));
+            assert!((a - b).abs() <= 4e-15 * (1.0 + a.abs()), "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn mcap_loses_nothing_but_last_digits_from_csv_to_mcap_to_csv() {
+    let mut data = dataset(3);
+    for pose in &mut data.runs[0].log.as_mut().unwrap().reference {
+        pose.heading = pose.heading.map(|heading| 7.0 * heading).filter(|_| pose.sample % 9 == 0);
+    }
+    let place = tempfile::tempdir().unwrap();
+    let [first, logs, second] = ["first", "logs", "second"].map(|name| place.path().join(name));
+    assert!(layout("csv").write(&data, &first, Existing::Keep).unwrap().is_empty());
+    let read = crate::load(&first).unwrap();
+    let lost = layout("mcap").write(&read, &logs, Existing::Keep).unwrap();
+    let known = ["times are rounded to the nanosecond", "headings are rounded in their last digits (4e-15 rad)"];
+    assert!(lost.len() == 2 && lost.iter().zip(known).all(|(said, known)| said.ends_with(known)), "{lost:?}");
+    let read = crate::load(&logs).unwrap();
+    assert_eq!(read.topics.len(), 4);
+    assert_eq!(
+        (&*read.topics[0].wheels, read.topics[0].reference.as_deref()),
+        ("/joint_states", Some("/ground_truth"))
+    );
+    assert_near(&data, &read, |_| 0.0);
+    layout("csv").write(&read, &second, Existing::Keep).unwrap();
+    let read = crate::load(&second).unwrap();
+    assert_near(&data, &read, |_| 0.0);
+    assert_eq!((&read.robot, read.path.unwrap().values()), (&data.robot, data.path.as_ref().unwrap().values()));
+    for name in ["robot.toml", "returns.csv"] {
+        let text = |folder: &Path| std::fs::read_to_string(folder.join(name)).unwrap();
+        assert_eq!((text(&first), text(&second)), (text(&logs), text(&logs)), "{name}");
+    }
+}
+
+#[test]
+fn mcap_counts_times_of_a_calendar_and_times_below_zero_from_the_first_row_and_says_so() {
+    for origin in [1.7e9, -20.0] {
+        let mut data = dataset(3);
+        for run in &mut data.runs {
+            run.log.as_mut().unwrap().time.iter_mut().for_each(|time| *time += origin);
+        }
+        let (read, lost) = round_trip(&data, "mcap");
+        assert_eq!(lost[0], "4 logs keep no date: their times are counted from the first row");
+        assert_near(&data, &read, |log| log.time[0]);
+    }
+}
+
+#[test]
+fn mcap_keeps_counts_between_readings_but_for_their_last_digits_and_says_how_many() {
+    let mut data = dataset(1);
+    for run in &mut data.runs {
+        run.log.as_mut().unwrap().left.iter_mut().skip(7).step_by(2).for_each(|count| *count += 1.0 / 3.0);
+    }
+    let (read, lost) = round_trip(&data, "mcap");
+    assert!(
+        lost.iter().any(|said| said.ends_with("counts between readings are rounded in their last digits")),
+        "{lost:?}"
+    );
+    let mut ours: Vec<&TickLog> = logs(&data);
+    ours.rotate_left(if data.runs[0].direction == read.runs[0].direction { 0 } else { 2 });
+    for (a, b) in ours.iter().zip(logs(&read)) {
+        assert!(a.left.iter().zip(&b.left).all(|(a, b)| (a - b).abs() <= 4e-15 * a.abs()));
+    }
+}
+
+#[test]
+fn a_place_that_ends_in_mcap_holds_one_run() {
+    let mut data = dataset(1);
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("one.MCAP");
+    assert_eq!((Layout::of_place(&file).name, Layout::of_place(place.path()).name), ("mcap", "csv"));
+    let error = Layout::of_place(&file).write(&data, &file, Existing::Keep).unwrap_err().to_string();
+    assert!(error.contains("there are 4 runs, and an MCAP file holds one"), "{error}");
+    data.runs.truncate(1);
+    let lost = Layout::of_place(&file).write(&data, &file, Existing::Keep).unwrap();
+    assert_eq!(lost.last().unwrap(), "the return error: it follows from the log");
+    assert_eq!(logs(&crate::load(&file).unwrap())[0].left, data.runs[0].log.as_ref().unwrap().left);
+}

@@ -1,0 +1,81 @@
+//! `model.toml` as text.
+
+use super::ModelFile;
+use super::robot_text::robot_text;
+use umbmark_core::effect::{Model, effects_text_with};
+use umbmark_core::monte_carlo::{Distribution, Draw};
+
+impl ModelFile {
+    /// A model whose parameters are not drawn.
+    pub fn new(model: Model) -> ModelFile {
+        ModelFile { model, draws: Vec::new(), conversion: None }
+    }
+
+    /// A `model.toml` that reads back as this, to the last bit, with its nominal robot. Effects that a program has added to the
+    /// catalogue's are read by nobody.
+    ///
+    /// ```
+    /// use umbmark_core::{drive::Robot, effect::Model};
+    /// use umbmark_io::ModelFile;
+    /// let mut model = Model::new(&Robot::labmate());
+    /// model.set("wheelbase", "e_b", 1.01)?;
+    /// let file = ModelFile::new(model);
+    /// assert!(file.text().ends_with("\n[[effect]]\nname = \"wheelbase\"\ne_b = 1.01\n"));
+    /// assert_eq!(ModelFile::parse("model.toml", &file.text(), None)?, file);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn text(&self) -> String {
+        let robot = robot_text(self.model.robot());
+        let effects = effects_with(&self.model, &self.draws);
+        if effects.is_empty() { robot } else { format!("{robot}\n{effects}") }
+    }
+}
+
+/// The effects of a model, with the distributions of what is drawn.
+fn effects_with(model: &Model, draws: &[Draw]) -> String {
+    effects_text_with(model, |part, parameter| {
+        let drawn = draws.iter().find(|d| d.effect() == part.effect.name() && d.parameter().name == parameter.name)?;
+        Some(match drawn.distribution() {
+            Distribution::Normal { mean, sd } => format!("{{ mean = {mean:?}, sd = {sd:?} }}"),
+            Distribution::Uniform { min, max } => format!("{{ min = {min:?}, max = {max:?} }}"),
+            Distribution::Triangular { min, mode, max } => {
+                format!("{{ min = {min:?}, mode = {mode:?}, max = {max:?} }}")
+            }
+            Distribution::LogUniform { min, max } => format!("{{ min = {min:?}, max = {max:?}, scale = \"log\" }}"),
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use umbmark_core::drive::Robot;
+    use umbmark_core::effect::{CATALOGUE, Formula, Target, effects_text};
+
+    #[test]
+    fn a_model_of_every_effect_reads_back_to_the_last_bit() {
+        let robot = Robot::labmate();
+        let mut model = Model::new(&robot);
+        for (i, entry) in CATALOGUE.iter().enumerate() {
+            model.add(entry.about.name).unwrap().free = i % 2 == 0;
+            for parameter in entry.about.parameters.iter().filter(|p| p.choices.is_empty()) {
+                let value = parameter.default.resolve(&robot) + parameter.typical / 3.0;
+                model.set(entry.about.name, parameter.name, value).unwrap();
+            }
+        }
+        let own = Formula::new("own", Target::LeftWheelScale, "a *\tsin(heading / b)", &["b", "a"]).unwrap();
+        model.add_formula(own, &[1.0 / 3.0, -1e-300]).unwrap().free = true;
+        let bare = Formula::new("bare", Target::ForwardScale, "0.001", &[]).unwrap();
+        model.add_formula(bare, &[]).unwrap();
+        let file = ModelFile::new(model);
+        assert_eq!(ModelFile::parse("model.toml", &file.text(), None).unwrap(), file);
+        assert_eq!(ModelFile::parse("model.toml", &effects_text(&file.model), Some(&robot)).unwrap(), file);
+    }
+    #[test]
+    fn what_is_drawn_reads_back_with_its_distribution() {
+        let text = "[[effect]]\nname = \"scale\"\ne_s = { mean = 1.002, sd = 0.0005 }\n\n\
+                    [[effect]]\nname = \"crab\"\nangle_rad = { min = 0.0, max = 0.01 }\n";
+        let file = ModelFile::parse("model.toml", text, None).unwrap();
+        assert!(file.text().starts_with("[robot]\nname = \"TRC LabMate\"\n") && file.text().ends_with(text));
+    }
+}

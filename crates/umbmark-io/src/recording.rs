@@ -1,0 +1,283 @@
+//! Raw counts as a reader found them, and how they become a [`TickLog`].
+
+mod order;
+
+use super::error::DatasetError;
+use super::lines::Lines;
+use umbmark_core::dataset::{Mended, ReferencePose, TickLog};
+use umbmark_core::drive::{Kind, Robot, roll_over};
+
+/// No wheel of a robot rolls faster \[m/s\].
+const FASTEST: f64 = 100.0;
+/// Counters that are looked for where a count jumps.
+const USUAL_BITS: [u32; 5] = [8, 12, 16, 24, 32];
+/// A counter that was set back shows no more than so many usual steps, after more than so many.
+const AFTER_RESET: f64 = 2.0;
+const BEFORE_RESET: f64 = 20.0;
+
+/// The rows of one log, before anything is mended.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Recording {
+    pub file: String,
+    /// Names of the time, left and right columns.
+    pub columns: [String; 3],
+    /// Line of each row.
+    pub lines: Lines,
+    /// \[s\]
+    pub time: Vec<f64>,
+    /// Readings of the left and the right counter.
+    pub counts: [Vec<f64>; 2],
+    /// Whether a reading is what was counted since the row before, rather than in all.
+    pub per_cycle: bool,
+    pub reference: Vec<ReferencePose>,
+}
+
+impl Recording {
+    /// Puts rows in order, undoes roll-overs of a counter of `bits` bits and resets, and counts from START.
+    pub fn into_log(
+        mut self,
+        robot: Option<&Robot>,
+        bits: Option<u32>,
+        warnings: &mut Vec<String>,
+    ) -> Result<TickLog, DatasetError> {
+        let mut mended = Mended::default();
+        order::put_in_order(&mut self, &mut mended, warnings)?;
+        if self.per_cycle {
+            self.add_up();
+        }
+        let mut reset_rows = Vec::new();
+        let mut unroll = |wheel| self.unroll(wheel, robot, bits, &mut mended.roll_overs, &mut reset_rows);
+        let ticks = [unroll(0)?, unroll(1)?];
+        if let (Some(bits), 1..) = (bits, mended.roll_overs) {
+            warnings.push(format!("{}: {} roll-overs of the {bits}-bit counters undone", self.file, mended.roll_overs));
+        }
+        reset_rows.sort_unstable();
+        reset_rows.dedup();
+        mended.resets = reset_rows.len();
+        if let [first, ..] = reset_rows[..] {
+            warnings.push(format!(
+                "{}:{}: {} counter resets: counted on from zero; what the wheels turned between the rows around each is lost",
+                self.file, self.lines.of(first), mended.resets
+            ));
+        }
+        let [left, right] = match robot {
+            Some(robot) => robot.axle_ticks(robot.encoder.wiring().counters(ticks)),
+            None => ticks,
+        };
+        Ok(TickLog { time: self.time, left, right, reference: self.reference, mended, ..TickLog::default() })
+    }
+
+    fn add_up(&mut self) {
+        for counts in &mut self.counts {
+            let mut total = 0.0;
+            for count in counts {
+                total += *count;
+                *count = total;
+            }
+        }
+    }
+
+    /// Takes the readings of a wheel and makes cumulative ticks of them, from the first on; counts roll-overs and lists the
+    /// rows before which it was reset.
+    fn unroll(
+        &mut self,
+        wheel: usize,
+        robot: Option<&Robot>,
+        bits: Option<u32>,
+        roll_overs: &mut usize,
+        reset_rows: &mut Vec<usize>,
+    ) -> Result<Vec<f64>, DatasetError> {
+        let usual = self.usual_rate(wheel);
+        let mut readings = std::mem::take(&mut self.counts[wheel]);
+        if wheel == 1 && robot.is_some_and(|robot| robot.drive.kind() == Kind::Ackermann) {
+            // An angle, and no sum of steps.
+            let signed = |reading: f64| bits.map_or(reading, |bits| roll_over(0, reading as i64, bits) as f64);
+            return Ok(readings.into_iter().map(signed).collect());
+        }
+        if bits.is_some()
+            && let Some(at) = readings.iter().position(|reading| reading.fract() != 0.0)
+        {
+            return Err(self.fractional(wheel, at, readings[at]));
+        }
+        // A steering counter has no speed over ground.
+        let robot = robot.filter(|robot| wheel == 0 || robot.drive.kind() == Kind::Differential);
+        let fastest = robot.map_or(f64::INFINITY, |robot| FASTEST / metres_per_tick(robot, wheel));
+        let mut before = readings.first().copied().unwrap_or(0.0);
+        let widths = widths_of(&readings);
+        let (mut total, mut before_reset, mut origin) = (0.0, 0.0, before);
+        for (at, reading) in readings.iter_mut().enumerate() {
+            let after = *reading;
+            let seconds = self.time[at] - self.time[at.saturating_sub(1)];
+            let expected = (usual * seconds).max(1.0);
+            let plain = after - before;
+            let mut step = bits.map_or(plain, |bits| roll_over(before as i64, after as i64, bits) as f64);
+            if was_reset(before, after, expected, bits, &widths) {
+                reset_rows.push(at);
+                (before_reset, origin, step) = (total, 0.0, after);
+            } else {
+                *roll_overs += usize::from(step != plain);
+            }
+            if let (None, Some(bits)) = (bits, rolled_bits(step.abs(), expected, &widths)) {
+                return Err(self.rolled_over(wheel, at, [before, after], bits));
+            }
+            if let Some(robot) = robot.filter(|_| step.abs() > fastest * seconds) {
+                let speed = step.abs() * metres_per_tick(robot, wheel) / seconds;
+                return Err(self.jump(wheel, at, [before, after], speed, bits));
+            }
+            // Sums of whole numbers are exact; of others, the difference from the first reading is.
+            total = if bits.is_some() { total + step } else { before_reset + (after - origin) };
+            (*reading, before) = (total, after);
+        }
+        Ok(readings)
+    }
+
+    /// The rate of a wheel that all but one step in a hundred stay below \[ticks/s\]: the least of the largest hundredth, and
+    /// no more than twice as many rates are kept at a time.
+    fn usual_rate(&self, wheel: usize) -> f64 {
+        let Some(last) = self.counts[wheel].len().checked_sub(2) else { return 0.0 };
+        let hundredth = last + 1 - last * 99 / 100;
+        let cut = |rates: &mut Vec<f64>| {
+            let least = *rates.select_nth_unstable_by(hundredth - 1, |a, b| b.total_cmp(a)).1;
+            rates.truncate(hundredth);
+            least
+        };
+        let (mut largest, mut least) = (Vec::with_capacity(2 * hundredth), f64::NEG_INFINITY);
+        for (count, time) in self.counts[wheel].windows(2).zip(self.time.windows(2)) {
+            let rate = (count[1] - count[0]).abs() / (time[1] - time[0]);
+            if !(rate <= least) {
+                largest.push(rate);
+                if largest.len() == 2 * hundredth {
+                    least = cut(&mut largest);
+                }
+            }
+        }
+        cut(&mut largest)
+    }
+
+    fn fractional(&self, wheel: usize, at: usize, reading: f64) -> DatasetError {
+        DatasetError::Cell {
+            file: self.file.clone(),
+            line: self.lines.of(at),
+            column: self.columns[wheel + 1].clone(),
+            value: reading.to_string(),
+            allowed: "a whole number of ticks where the robot has counter_bits".into(),
+            remedy: "".into(),
+        }
+    }
+
+    fn rolled_over(&self, wheel: usize, at: usize, [before, after]: [f64; 2], bits: u32) -> DatasetError {
+        DatasetError::RolledOver {
+            file: self.file.clone(),
+            line: self.lines.of(at),
+            column: self.columns[wheel + 1].clone(),
+            before,
+            after,
+            bits,
+        }
+    }
+
+    fn jump(&self, wheel: usize, at: usize, [before, after]: [f64; 2], speed: f64, bits: Option<u32>) -> DatasetError {
+        let cause = bits.map_or("rolled over (say counter_bits in robot.toml)".to_owned(), |bits| {
+            format!("has another width than {bits} bits")
+        });
+        DatasetError::Jump {
+            file: self.file.clone(),
+            line: self.lines.of(at),
+            column: self.columns[wheel + 1].clone(),
+            before,
+            after,
+            seconds: ((self.time[at] - self.time[at - 1]) * 1e9).round() / 1e9,
+            speed: speed.round(),
+            limit: FASTEST,
+            remedy: format!("look whether the counter was set back or {cause}, or rows are missing").into(),
+        }
+    }
+}
+
+/// Whether a counter was set back to zero: it showed many steps and shows next to none, and it did not roll over, after
+/// which it would show next to none as well, but before which it would have been full.
+fn was_reset(before: f64, after: f64, expected: f64, bits: Option<u32>, widths: &[u32]) -> bool {
+    let fell = after.abs() <= AFTER_RESET * expected && before.abs() > BEFORE_RESET * expected;
+    let full = |bits: u32| (f64::from(bits).exp2() - before).abs() <= 4.0 * expected;
+    fell && !match bits {
+        Some(bits) => full(bits),
+        None => widths.iter().copied().any(full),
+    }
+}
+
+/// The usual widths of a counter that can show all of some readings, unsigned or signed.
+fn widths_of(readings: &[f64]) -> Vec<u32> {
+    let (least, most) = readings.iter().fold((0.0_f64, 0.0_f64), |(l, m), reading| (l.min(*reading), m.max(*reading)));
+    let fits = |bits: &u32| {
+        let range = f64::from(*bits).exp2();
+        (least >= 0.0 && most < range) || (least >= -0.5 * range && most < 0.5 * range)
+    };
+    USUAL_BITS.into_iter().filter(fits).collect()
+}
+
+/// The width of the counter that rolled over where a wheel went `size` ticks and about `expected` are usual, among the widths that
+/// can show all of its readings.
+fn rolled_bits(size: f64, expected: f64, widths: &[u32]) -> Option<u32> {
+    let near = |bits: &u32| (size - f64::from(*bits).exp2()).abs() <= 4.0 * expected;
+    if size > 10.0 * expected { widths.iter().copied().find(near) } else { None }
+}
+
+/// The error of time that goes back, or stands still, at row `at`.
+pub(super) fn time_error(
+    file: &str,
+    column: &str,
+    lines: &Lines,
+    time: &[f64],
+    at: usize,
+    remedy: &str,
+) -> DatasetError {
+    DatasetError::Time {
+        file: file.to_owned(),
+        line: lines.of(at),
+        column: column.to_owned(),
+        before: time[at.saturating_sub(1)],
+        after: time[at],
+        remedy: remedy.into(),
+    }
+}
+
+fn metres_per_tick(robot: &Robot, wheel: usize) -> f64 {
+    let per_tick = robot.metres_per_tick();
+    [per_tick.left, per_tick.right][wheel]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use umbmark_core::random::Stream;
+
+    #[test]
+    fn a_width_is_named_only_where_all_readings_fit_it() {
+        // Readings from 1251429 down by about 4096 at once: no counter of 12 bits shows such numbers.
+        let large = [1_251_429.0, 1_251_430.0, 1_247_334.0];
+        assert_eq!(rolled_bits(4096.0, 1.0, &widths_of(&large)), None);
+        assert!(USUAL_BITS.contains(&12) && USUAL_BITS.contains(&16));
+        for (readings, bits) in [
+            (vec![4090.0, 4095.0, 2.0], Some(12)),
+            (vec![2040.0, 2047.0, -2046.0], Some(12)),
+            (vec![4090.0, 4096.0, 2.0], None),
+            (vec![2040.0, 2049.0, -2046.0], None),
+        ] {
+            assert_eq!(rolled_bits(4094.0, 1.0, &widths_of(&readings)), bits, "{readings:?}");
+        }
+    }
+
+    #[test]
+    fn the_usual_rate_is_the_one_that_a_sorted_list_has_at_ninety_nine_per_cent() {
+        let mut stream = Stream::new(5, 1, 0);
+        for rows in [0, 1, 2, 3, 100, 101, 102, 103, 202, 5000] {
+            let counts: Vec<f64> = (0..rows).map(|_| (stream.uniform() * 50.0).floor()).collect();
+            let time = (0..rows).map(f64::from).collect();
+            let mut rates: Vec<f64> = counts.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+            rates.sort_by(f64::total_cmp);
+            let expected = if rates.is_empty() { 0.0 } else { rates[(rates.len() - 1) * 99 / 100] };
+            let recording = Recording { time, counts: [counts, Vec::new()], ..Recording::default() };
+            assert_eq!(recording.usual_rate(0), expected, "{rows}");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! `robot.toml` as text.
+
+use super::RobotFile;
+use super::robot_file::{EXCHANGED, is_waypoints};
+use std::fmt::Write;
+use umbmark_core::dataset::{Dataset, ReferenceFrame};
+use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::path::{Path, SpeedProfile};
+
+impl RobotFile {
+    /// A robot and its path, whose measured poses are counted as they are meant to be.
+    pub fn new(robot: Robot, path: Option<Path>) -> RobotFile {
+        RobotFile { robot, path, reference: ReferenceFrame::default() }
+    }
+
+    /// What a `robot.toml` beside the logs of a dataset has to say, with `robot` in the place of the nominal one.
+    pub fn beside(data: &Dataset, robot: Robot) -> RobotFile {
+        RobotFile { robot, path: data.path.clone(), reference: data.reference_frame }
+    }
+
+    /// A commented `robot.toml` that reads back as this, to the last bit.
+    ///
+    /// ```
+    /// use umbmark_core::{drive::Robot, path::Path};
+    /// use umbmark_io::RobotFile;
+    /// let file = RobotFile::new(Robot::labmate(), Some(Path::umbmark()));
+    /// assert_eq!(RobotFile::parse("robot.toml", &file.text())?.robot, Robot::labmate());
+    /// # Ok::<(), umbmark_io::DatasetError>(())
+    /// ```
+    pub fn text(&self) -> String {
+        let mut text = robot_text(&self.robot);
+        if let Some(path) = &self.path {
+            text.push_str("\n[path]\n");
+            push_path(&mut text, path);
+        }
+        let said: Vec<_> = self.reference.keys().into_iter().filter(|(_, is, _)| *is).collect();
+        if !said.is_empty() {
+            text.push_str("\n[reference]\n");
+            said.into_iter().for_each(|(key, _, meaning)| line(&mut text, key, "true", meaning));
+        }
+        text
+    }
+}
+
+/// The table `[robot]` of a nominal robot, which reads back to the last bit.
+pub(super) fn robot_text(robot: &Robot) -> String {
+    let mut text = String::from("[robot]\n");
+    let name = toml::Value::from(robot.name.as_str()).to_string();
+    line(&mut text, "name", &name, "");
+    line(&mut text, "drive", &format!("\"{}\"", robot.drive.kind().name()), "");
+    push_lengths(&mut text, robot);
+    let encoder = &robot.encoder;
+    let ticks = number(encoder.ticks_per_revolution());
+    line(&mut text, "ticks_per_revolution", &ticks, "of the wheel, after gearing and quadrature");
+    let rate = encoder.rate().map_or("\"every tick\"".to_owned(), number);
+    line(&mut text, "encoder_rate_hz", &rate, "how often the counters are read");
+    if let Some(bits) = encoder.counter_bits() {
+        line(&mut text, "counter_bits", &bits.to_string(), "the counters roll over");
+    }
+    let wiring = encoder.wiring();
+    for (counter, backward) in robot.drive.kind().counters().iter().zip(wiring.backward) {
+        if backward {
+            line(
+                &mut text,
+                &format!("{counter}_counts_backward"),
+                "true",
+                &format!("the column ticks_{counter} counts down ahead"),
+            );
+        }
+    }
+    if wiring.exchanged {
+        line(&mut text, EXCHANGED, "true", "the columns of the counters are exchanged");
+    }
+    text
+}
+
+fn push_lengths(text: &mut String, robot: &Robot) {
+    if robot.drive.kind() != Kind::Differential {
+        for (parameter, value) in robot.drive.kind().parameters().iter().zip(robot.drive.values()) {
+            let word = parameter.choices.get(value as usize).map(|word| format!("\"{word}\""));
+            line(text, parameter.name, &word.unwrap_or_else(|| number(value)), parameter.meaning);
+        }
+        return;
+    }
+    line(text, "wheelbase_m", &number(robot.drive.wheelbase()), "b: distance of the wheels' contact points");
+    let (left, right) = (robot.drive.wheel_diameter_left(), robot.drive.wheel_diameter_right());
+    if left == right {
+        line(text, "wheel_diameter_m", &number(left), "both wheels");
+    } else {
+        line(text, "wheel_diameter_left_m", &number(left), "");
+        line(text, "wheel_diameter_right_m", &number(right), "");
+    }
+}
+
+fn push_path(text: &mut String, path: &Path) {
+    let shape = path.shape();
+    line(text, "shape", &format!("\"{}\"", shape.name), "");
+    if is_waypoints(shape) {
+        let points: Vec<String> =
+            path.values().chunks_exact(2).map(|p| format!("[{}, {}]", number(p[0]), number(p[1]))).collect();
+        line(text, "points_m", &format!("[{}]", points.join(", ")), "x, y as seen from START");
+    }
+    for (parameter, value) in shape.parameters.iter().zip(path.values()) {
+        line(text, parameter.name, &number(*value), parameter.meaning);
+    }
+    for (parameter, value) in SpeedProfile::PARAMETERS.iter().zip(path.speed.values()) {
+        line(text, parameter.name, &number(value), parameter.meaning);
+    }
+}
+
+/// The shortest text that reads back as the same number, as TOML wants it.
+fn number(value: f64) -> String {
+    format!("{value:?}")
+}
+
+fn line(text: &mut String, key: &str, value: &str, comment: &str) {
+    let entry = format!("{key} = {value}");
+    // Writing to a string does not fail.
+    let _ = match comment {
+        "" => writeln!(text, "{entry}"),
+        _ => writeln!(text, "{entry:<33} # {comment}"),
+    };
+}

@@ -1,0 +1,134 @@
+//! `runs/*.csv`: one tick log per run, with the absolute poses that were measured on the way.
+
+use super::columns::{Column, Columns, Quantity};
+use super::error::DatasetError;
+use super::recording::Recording;
+use super::sheet::{Row, Sheet};
+use super::text::{Pieces, without_mark};
+use Quantity::{Angle, Bare, Length, Time};
+use std::io::Read;
+use umbmark_core::dataset::ReferencePose;
+use umbmark_core::drive::Kind;
+
+/// The header of messages and of files that are written.
+pub(super) const HEADER: &str = "t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad";
+
+pub(super) struct ReferenceColumns {
+    x: Column,
+    y: Column,
+    heading: Option<Column>,
+}
+
+/// The columns of a log.
+struct LogColumns {
+    time: Column,
+    counts: [Column; 2],
+    reference: Option<ReferenceColumns>,
+}
+
+/// The rows of a log.
+pub(super) fn parse_tick_log(
+    file: &str,
+    text: &str,
+    kind: Kind,
+    warnings: &mut Vec<String>,
+) -> Result<Recording, DatasetError> {
+    if !kind.has_tick_logs() {
+        let (file, value) = (file.to_owned(), format!("\"{}\"", kind.name()));
+        let remedy = "logs of its two trucks are not read; give its returns in returns.csv".into();
+        return Err(DatasetError::NotYet { file, line: 1, key: "drive".into(), value, remedy });
+    }
+    let sheet = Sheet::open(file, text, HEADER)?;
+    let columns = LogColumns::find(&sheet, kind, warnings)?;
+    let mut recording = columns.recording(file);
+    sheet.for_each(|row| columns.read(row, &mut recording))?;
+    Ok(recording)
+}
+
+/// The same of a text in pieces, where nothing is wrong with it; else [`parse_tick_log`] says what.
+pub(super) fn tick_log_in_pieces(
+    file: &str,
+    mut pieces: Pieces<impl Read>,
+    kind: Kind,
+    warnings: &mut Vec<String>,
+) -> Option<Recording> {
+    let head = pieces.next().ok().filter(|_| kind.has_tick_logs())?.to_owned();
+    let sheet = Sheet::open(file, without_mark(&head), HEADER).ok()?;
+    let mut noticed = Vec::new();
+    let columns = LogColumns::find(&sheet, kind, &mut noticed).ok()?;
+    let mut recording = columns.recording(file);
+    let mut line = sheet.for_each_of(sheet.body(), |row| columns.read(row, &mut recording)).ok()?;
+    loop {
+        let piece = pieces.next().ok()?;
+        if piece.is_empty() {
+            break;
+        }
+        let rows = sheet.body_after(line, piece);
+        line = sheet.for_each_of(rows, |row| columns.read(row, &mut recording)).ok()?;
+    }
+    warnings.append(&mut noticed);
+    Some(recording).filter(|recording| !recording.time.is_empty())
+}
+
+impl LogColumns {
+    fn find(sheet: &Sheet, kind: Kind, warnings: &mut Vec<String>) -> Result<LogColumns, DatasetError> {
+        let mut columns = Columns::of(sheet);
+        let [first, second] = kind.counters().map(|counter| format!("ticks_{counter}"));
+        let needs = match kind {
+            Kind::Differential => "a tick log needs t_s, ticks_left and ticks_right".to_owned(),
+            _ => format!("a tick log of a robot with drive = \"{}\" needs t_s, {first} and {second}", kind.name()),
+        };
+        let time = columns.need("t", Time, &needs)?;
+        let counts = [columns.need(&first, Bare, &needs)?, columns.need(&second, Bare, &needs)?];
+        let reference = ReferenceColumns::find(&mut columns)?;
+        columns.finish(warnings)?;
+        Ok(LogColumns { time, counts, reference })
+    }
+
+    /// The recording of a file, before its first row.
+    fn recording(&self, file: &str) -> Recording {
+        let columns = [&self.time, &self.counts[0], &self.counts[1]].map(|column| column.name.clone());
+        Recording { file: file.to_owned(), columns, ..Recording::default() }
+    }
+
+    fn read(&self, row: &Row, recording: &mut Recording) -> Result<(), DatasetError> {
+        recording.lines.push(row.line);
+        recording.time.push(row.number(&self.time)?);
+        for (counts, column) in recording.counts.iter_mut().zip(&self.counts) {
+            counts.push(row.number(column)?);
+        }
+        if let Some(columns) = &self.reference
+            && let Some(pose) = columns.read(row, recording.time.len() - 1)?
+        {
+            recording.reference.push(pose);
+        }
+        Ok(())
+    }
+}
+
+impl ReferenceColumns {
+    pub fn find(columns: &mut Columns) -> Result<Option<ReferenceColumns>, DatasetError> {
+        let x = columns.find("x_ref", Length)?;
+        let y = columns.find("y_ref", Length)?;
+        let heading = columns.find("theta_ref", Angle)?;
+        let needs = "a reference needs both x_ref_m and y_ref_m";
+        match (x, y) {
+            (Some(x), Some(y)) => Ok(Some(ReferenceColumns { x, y, heading })),
+            (None, None) if heading.is_none() => Ok(None),
+            (None, _) => Err(columns.missing("x_ref", Length, needs)),
+            (_, None) => Err(columns.missing("y_ref", Length, needs)),
+        }
+    }
+
+    /// The pose of a row, if one was measured there.
+    #[inline]
+    pub fn read(&self, row: &Row, sample: usize) -> Result<Option<ReferencePose>, DatasetError> {
+        let heading = self.heading.as_ref().map(|column| row.number_or(column)).transpose()?.flatten();
+        match (row.number_or(&self.x)?, row.number_or(&self.y)?) {
+            (Some(x), Some(y)) => Ok(Some(ReferencePose { sample, x, y, heading })),
+            (None, None) if heading.is_none() => Ok(None),
+            (None, _) => Err(row.wrong(&self.x, "a finite number", "fill in the pose, or leave all its cells empty")),
+            (_, None) => Err(row.wrong(&self.y, "a finite number", "fill in the pose, or leave all its cells empty")),
+        }
+    }
+}
