@@ -134,7 +134,7 @@ pub fn compare_tracks(
         observed.tracks().try_for_each(|track| track.check(model))?;
     }
     let judge = |(name, model): &(String, Model)| {
-        let (model, taken) = observed.with_reference(model)?;
+        let (model, taken) = with_reference(&observed, model)?;
         Ok(TracksJudged { taken, ..judge(name, data, &observed.along(&model), &model, options) })
     };
     let of = |direction| observed.runs.iter().filter(|run| run.direction == direction).count();
@@ -145,6 +145,27 @@ pub fn compare_tracks(
         remarks: remarks(&observed),
         setup: Arc::clone(&observed.setup),
     })
+}
+
+/// A model with what the motion says of the reference, where the model says nothing of it and then predicts the steps between
+/// measurements better: what looks like a lever arm may be a sideways motion that the model has already.
+fn with_reference(observed: &Observed, model: &Model) -> Result<(Model, Vec<Taken>), DiagnoseError> {
+    let (mut model, mut taken) = (model.clone(), Vec::new());
+    for found in observed.reference_beside(&model) {
+        let mut with = model.clone();
+        found.put_on(&mut with)?;
+        if step_errors(observed, &with) < step_errors(observed, &model) {
+            (model, taken) = (with, [taken, vec![found]].concat());
+        }
+    }
+    Ok((model, taken))
+}
+
+/// Sum of the squared errors of position that single steps add \[m²\].
+fn step_errors(observed: &Observed, model: &Model) -> f64 {
+    let (observed, chain) = (observed.along(model), model.chain());
+    let followed = observed.runs.iter().map(|run| Followed::new(run, &chain, observed.setup.noise));
+    followed.flat_map(|run| run.steps).map(|step| step.own[0].powi(2) + step.own[1].powi(2)).sum()
 }
 
 fn judge(name: &str, data: &Dataset, observed: &Observed, model: &Model, options: &Options) -> TracksJudged {

@@ -36,6 +36,17 @@ pub struct Taken {
     pub p: f64,
 }
 
+impl Taken {
+    /// Sets the effect's numbers in a model, free to be fitted.
+    pub fn put_on(&self, model: &mut Model) -> Result<(), ModelError> {
+        for (parameter, measured) in self.values.into_iter().flatten() {
+            model.set(self.effect, parameter, measured.value)?;
+        }
+        model.add(self.effect)?.free = true;
+        Ok(())
+    }
+}
+
 impl Observed {
     /// Where the fit of a model begins: with clock and mounting of the reference as the motion has them, and with start values near the
     /// robot's sizes.
@@ -48,33 +59,28 @@ impl Observed {
     }
 
     /// A model with what the motion says of clock and mounting of the reference, where the model says nothing and it is large.
-    pub fn with_reference(&self, model: &Model) -> Result<(Model, Vec<Taken>), ModelError> {
-        let (start, mut model, mut taken) = (model, model.clone(), Vec::new());
-        let Some(mounting) = self.setup.mounting else { return Ok((model, taken)) };
+    fn with_reference(&self, model: &Model) -> Result<(Model, Vec<Taken>), ModelError> {
+        let found = self.reference_beside(model);
+        let mut begun = model.clone();
+        found.iter().try_for_each(|found| found.put_on(&mut begun))?;
+        let is_new = |found: &Taken| model.parts().iter().all(|part| part.effect.name() != found.effect);
+        Ok((begun, found.into_iter().filter(is_new).collect()))
+    }
+
+    /// What the motion says of clock and mounting of the reference where it is large and the model says nothing.
+    pub fn reference_beside(&self, model: &Model) -> Vec<Taken> {
+        let Some(mounting) = self.setup.mounting else { return Vec::new() };
         let sights = self.runs.iter().filter_map(|run| run.track.sights().last());
         let duration = sights.map(|sight| sight.time).fold(0.0, f64::max);
-        let at_work = |part: &&Part| part.values.iter().any(|value| *value != 0.0);
-        let said: Vec<&str> = start.parts().iter().filter(at_work).map(|part| part.effect.name()).collect();
-        let says_of_clock = CLOCKS.iter().any(|effect| said.contains(effect));
-        for found in of_reference(&mounting, duration) {
-            // A delay that the motion shows is what one of these does already.
-            if says_of_clock && CLOCKS.contains(&found.effect) {
-                continue;
-            }
-            let own = model.parts().iter().find(|part| part.effect.name() == found.effect);
+        let at_work = |part: &Part| part.values.iter().any(|value| *value != 0.0);
+        let clock_at_work = model.parts().iter().any(|part| at_work(part) && CLOCKS.contains(&part.effect.name()));
+        let is_said = |found: &Taken| {
             // What the model says of the reference stands, but for a start value that says nothing.
-            if own.is_some_and(|part| !part.free || part.values.iter().any(|value| *value != 0.0)) {
-                continue;
-            }
-            if own.is_none() {
-                taken.push(found);
-            }
-            for (parameter, measured) in found.values.into_iter().flatten() {
-                model.set(found.effect, parameter, measured.value)?;
-            }
-            model.add(found.effect)?.free = true;
-        }
-        Ok((model, taken))
+            let says = |part: &Part| part.effect.name() == found.effect && (!part.free || at_work(part));
+            // A delay that the motion shows is what one of these does already.
+            clock_at_work && CLOCKS.contains(&found.effect) || model.parts().iter().any(says)
+        };
+        of_reference(&mounting, duration).into_iter().filter(|found| !is_said(found)).collect()
     }
 
     /// The ratio that a first effect of a differential drive has by the motion alone; `None` where that does not show it.

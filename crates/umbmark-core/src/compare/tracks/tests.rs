@@ -5,6 +5,7 @@ use crate::dataset::ReferencePose;
 use crate::diagnose::first_model;
 use crate::diagnose::tests::{margin, trials};
 use crate::drive::Robot;
+use crate::effect::{Formula, Target};
 use crate::likelihood::watched::{watched, watched_on};
 use crate::path::{CIRCLE, Path, SQUARE, SpeedProfile};
 use rayon::prelude::*;
@@ -189,6 +190,20 @@ fn without_headings_the_way_is_still_told_and_yaw_is_not() {
     assert!(judged.along.heading.is_none() && judged.overall.iter().all(|o| o.rate == Rate::Forward));
     assert!(p_adjusted(judged, Rate::Forward, "heading") < 0.01);
     assert!(comparison.remarks.iter().any(|remark| remark.starts_with("Headings were not measured")));
+}
+
+/// A sideways motion in turns moves the poses as a marker ahead of the axle does: to a model that has it nothing is added, to one that
+/// has neither the marker's place is.
+#[test]
+fn the_place_of_the_marker_is_taken_from_the_motion_only_where_the_model_does_not_move_sideways_already() {
+    let mut truth = robot_with(&[]);
+    let crab = Formula::new("own", Target::SidewaysPerRadian, "a * sign(turn_rate)", &["a"]).unwrap();
+    truth.add_formula(crab, &[0.03]).unwrap();
+    let data = watched(&truth, 5, 11);
+    let [right, without] = [&truth, &robot_with(&[])].map(|model| judged(&data, model));
+    assert_eq!(right.taken, []);
+    assert_eq!(without.taken.iter().map(|taken| taken.effect).collect::<Vec<_>>(), ["marker_offset"]);
+    assert!(right.along.position < 1.1 * without.along.position, "{} {}", right.along.position, without.along.position);
 }
 
 /// Seeds 100 on. p of each test and of all together, for the true model and for one fitted to the same runs; on squares and on
