@@ -2,7 +2,8 @@
 
 use umbmark_core::diagnose::{Reason, Remains};
 use umbmark_core::likelihood::Taken;
-use umbmark_core::setup::{Measured, OutlyingReturn, RunSetup, Setup};
+use umbmark_core::setup::{OutlyingReturn, RunSetup, Setup};
+use umbmark_core::stats::Measured;
 
 use crate::prose::hanging;
 use crate::table::with_precision_of;

@@ -1,25 +1,17 @@
-//! Measured (or simulated) robots in memory: runs, how measured poses are counted, clocks set by the motion, inspection.
+//! Measured (or simulated) robots in memory: runs, and how measured poses are counted.
 //!
 //! Files are read and written by the crate `umbmark-io`.
 
-mod inspect;
-mod place;
 mod reference_frame;
-mod reference_track;
-mod synchronise;
 
-pub use inspect::{Check, Coverage, Determined, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, Wheels};
-pub(crate) use inspect::{Done, MoveDone, moves_of};
-pub use place::{PoseRow, place};
 pub use reference_frame::ReferenceFrame;
-pub use reference_track::ReferenceTrack;
-pub use synchronise::{Alignment, BLOCKS, Measured, SynchroniseError, synchronise};
 
 pub use crate::run::{Mended, ReferencePose, ReturnError, Run, TickLog};
 
 use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::path::{Direction, Path};
+use crate::synchronise::Alignment;
 use serde::{Deserialize, Serialize};
 
 /// How the clock of a track ran against that of a run's ticks.

@@ -21,6 +21,7 @@ pub mod effect;
 pub mod engine;
 pub mod fit;
 pub mod geometry;
+pub mod inspect;
 pub mod learn;
 pub mod likelihood;
 pub mod monte_carlo;
@@ -37,6 +38,7 @@ pub mod sensitivity;
 pub mod setup;
 pub mod simulate;
 pub mod stats;
+pub mod synchronise;
 pub mod watch;
 
 /// The version of this crate, printed beside every result.

@@ -1,6 +1,11 @@
 //! One drive of a robot: its wheel counts, the absolute poses measured on the way, and its return error.
 
 pub mod dead_reckoning;
+mod place;
+mod reference_track;
+
+pub use place::{PoseRow, place};
+pub use reference_track::ReferenceTrack;
 
 use crate::effect::TestKind;
 use crate::geometry::Pose2;

@@ -18,23 +18,23 @@ mod faults;
 mod returns;
 mod robust;
 mod stretches;
+mod suspicion;
 mod windows;
 
-use crate::diagnose::Reason;
 use crate::drive::{Kind, Robot};
 use crate::effect::TestKind;
 use crate::geometry::{Displacement2, Pose2, wrap};
 use crate::path::Path;
 use crate::run::{Run, TickLog};
-use crate::stats::{Interval, student_t_quantile};
+use crate::stats::Measured;
 use agreement::{Agreement, Beside, Reading};
 use clock::Late;
 use disturbances::{Found, Sighting};
-use serde::{Deserialize, Serialize};
 use windows::{Rolled, Window, windows};
 
 pub use faults::Fault;
 pub use returns::{Coordinate, Deviant, OutlyingReturn, Returned};
+pub use suspicion::Suspicion;
 
 /// Rounds in which the clocks are found by the agreement of all runs, and the agreement by the clocks.
 const ROUNDS: usize = 3;
@@ -42,37 +42,6 @@ const ROUNDS: usize = 3;
 const FEWEST: usize = 20;
 /// Values of so many parts of the data tell how sure one is.
 const PARTS: usize = 8;
-
-/// A quantity with its standard error and its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Measured {
-    /// The estimate.
-    pub value: f64,
-    /// Its standard error.
-    pub std_error: f64,
-    /// Its 95 % interval.
-    pub interval: Interval,
-}
-
-impl Measured {
-    /// A value with the standard error of `parts` independent ones.
-    fn of_parts(value: f64, std_error: f64, parts: usize) -> Measured {
-        let half = student_t_quantile(0.975, parts.max(2) as f64 - 1.0) * std_error;
-        Measured { value, std_error, interval: Interval::around(value, half) }
-    }
-
-    /// The quantity less a number that is known.
-    pub(crate) fn less(&self, known: f64) -> Measured {
-        let Interval { low, high } = self.interval;
-        let interval = Interval { low: low - known, high: high - known };
-        Measured { value: self.value - known, interval, ..*self }
-    }
-
-    /// Whether it is farther from zero than so many standard errors.
-    pub fn is_beyond(&self, std_errors: f64) -> bool {
-        self.value.abs() > std_errors * self.std_error
-    }
-}
 
 /// How the measured poses lie against the wheels, over all runs.
 ///
@@ -268,29 +237,29 @@ impl Setup {
     }
 
     /// What speaks against the return errors of the regular runs: outlying ones, and jumps of the tracks that end in them.
-    pub(crate) fn doubts(&self, runs: &[Run]) -> Vec<Reason> {
+    pub(crate) fn suspicions(&self, runs: &[Run]) -> Vec<Suspicion> {
         let returned = |name: &str| runs.iter().any(|run| run.name == name && run.returned.is_some());
         let jumps = self.runs.iter().filter(|run| returned(&run.run));
         let jumped = jumps.filter_map(|run| {
             let (run, jump) = (run.run.clone(), run.jumps.first()?.clone());
-            Some(Reason::JumpBeforeReturn { run, jump })
+            Some(Suspicion::JumpBeforeReturn { run, jump })
         });
-        self.outlying().cloned().map(Reason::OutlyingReturn).chain(jumped).collect()
+        self.outlying().cloned().map(Suspicion::OutlyingReturn).chain(jumped).collect()
     }
 
     /// That more of all poses jump or are wrong than by accident.
-    pub(crate) fn many_jumps(&self) -> Option<Reason> {
+    pub(crate) fn many_jumps(&self) -> Option<Suspicion> {
         let poses: usize = self.runs.iter().map(|run| run.poses).sum();
         let lost = |run: &RunSetup| run.jumps.len() + (0..run.poses).filter(|pose| run.is_lost(*pose)).count();
         let count = self.runs.iter().map(lost).sum();
-        (count as f64 > ACCIDENTS * poses as f64).then_some(Reason::ManyJumps { count, poses })
+        (count as f64 > ACCIDENTS * poses as f64).then_some(Suspicion::ManyJumps { count, poses })
     }
 
     /// That the tracked body faces backward, or the wheels are exchanged and both count backward: the motion is the same.
-    pub(crate) fn tail_first(&self, robot: &Robot) -> Option<Reason> {
+    pub(crate) fn tail_first(&self, robot: &Robot) -> Option<Suspicion> {
         let yaw = self.mounting?.yaw?.value;
         let half = robot.drive.kind() == Kind::Differential && wrap(yaw - std::f64::consts::PI).abs() < HALF_TURN;
-        half.then_some(Reason::TailFirst { yaw })
+        half.then_some(Suspicion::TailFirst { yaw })
     }
 
     /// What has to be known before the return errors are believed, a sentence each without a full stop: faults, jumps and wrong poses

@@ -29,6 +29,37 @@ impl Interval {
     }
 }
 
+/// A quantity with its standard error and its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Measured {
+    /// The estimate.
+    pub value: f64,
+    /// Its standard error.
+    pub std_error: f64,
+    /// Its 95 % interval.
+    pub interval: Interval,
+}
+
+impl Measured {
+    /// A value with the standard error of `parts` independent ones.
+    pub(crate) fn of_parts(value: f64, std_error: f64, parts: usize) -> Measured {
+        let half = student_t_quantile(0.975, parts.max(2) as f64 - 1.0) * std_error;
+        Measured { value, std_error, interval: Interval::around(value, half) }
+    }
+
+    /// The quantity less a number that is known.
+    pub(crate) fn less(&self, known: f64) -> Measured {
+        let Interval { low, high } = self.interval;
+        let interval = Interval { low: low - known, high: high - known };
+        Measured { value: self.value - known, interval, ..*self }
+    }
+
+    /// Whether it is farther from zero than so many standard errors.
+    pub fn is_beyond(&self, std_errors: f64) -> bool {
+        self.value.abs() > std_errors * self.std_error
+    }
+}
+
 /// The value that Student's t with `degrees_of_freedom` stays below with `probability`.
 ///
 /// NaN for a probability outside (0, 1) or degrees of freedom that are not positive.

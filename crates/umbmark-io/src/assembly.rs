@@ -8,14 +8,16 @@ use super::returns::ReturnRow;
 use super::stale::drop_stale;
 use super::start_frame::move_to_start;
 use std::collections::BTreeMap;
+use umbmark_core::dataset::NoRobot;
 use umbmark_core::dataset::ReferenceFrame;
-use umbmark_core::dataset::{Alignment, NoRobot, ReferenceTrack, place, synchronise};
 use umbmark_core::dataset::{Dataset, Run, RunClock, RunTopics, TickLog};
 use umbmark_core::drive::{Kind, Robot};
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::{Direction, Path};
 use umbmark_core::run::StartKnown;
 use umbmark_core::run::dead_reckoning::{EndPose, computed_end, return_error, standing_at_start};
+use umbmark_core::run::{ReferenceTrack, place};
+use umbmark_core::synchronise::{Alignment, synchronise};
 
 /// A log that turns by less than this has no direction \[rad\].
 const LEAST_TURN: f64 = 0.5;

@@ -45,9 +45,9 @@ use decoder::Decoder;
 use fields::Fields;
 use topics::{Chosen, shown};
 use track::Track;
-use umbmark_core::dataset::place;
 use umbmark_core::dataset::{RunTopics, TickLog};
 use umbmark_core::drive::Robot;
+use umbmark_core::run::place;
 use wheels::Wheels;
 
 /// More messages of a topic are not kept: hours of a fast robot, and 300 MB.

@@ -11,11 +11,11 @@ use super::stale::drop_stale;
 use super::start_frame::move_to_start;
 use super::{motive, optiodom, packed, reference_file, returns, text, tick_log, tum};
 use umbmark_core::dataset::TickLog;
-use umbmark_core::dataset::place;
-use umbmark_core::dataset::synchronise;
-use umbmark_core::dataset::{PoseRow, ReferenceTrack};
 use umbmark_core::drive::Robot;
 use umbmark_core::random::Stream;
+use umbmark_core::run::place;
+use umbmark_core::run::{PoseRow, ReferenceTrack};
+use umbmark_core::synchronise::synchronise;
 
 /// How often each file is damaged.
 fn rounds() -> u64 {

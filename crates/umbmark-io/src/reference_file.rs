@@ -7,7 +7,7 @@ use super::sheet::{Rows, Sheet};
 use super::tick_log::ReferenceColumns;
 use super::track_rows::TrackRows;
 use super::tum::parse_tum;
-use umbmark_core::dataset::ReferenceTrack;
+use umbmark_core::run::ReferenceTrack;
 
 const HEADER: &str = "t_s,x_ref_m,y_ref_m,theta_ref_rad";
 

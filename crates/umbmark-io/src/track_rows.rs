@@ -4,7 +4,7 @@ use super::error::DatasetError;
 use super::lines::Lines;
 use super::recording::time_error;
 use std::f64::consts::TAU;
-use umbmark_core::dataset::{PoseRow, ReferenceTrack};
+use umbmark_core::run::{PoseRow, ReferenceTrack};
 
 /// The rows of a track.
 #[derive(Clone, Debug, Default)]

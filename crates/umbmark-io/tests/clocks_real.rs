@@ -6,8 +6,10 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use umbmark_core::calibrate::{ClosedForm, Method, Options, Ratio, calibrate};
-use umbmark_core::dataset::{Alignment, Dataset, ReferencePose, ReferenceTrack, RunClock, TickLog, synchronise};
+use umbmark_core::dataset::{Dataset, ReferencePose, RunClock, TickLog};
 use umbmark_core::drive::Robot;
+use umbmark_core::run::ReferenceTrack;
+use umbmark_core::synchronise::{Alignment, synchronise};
 
 /// The folder, or a notice that it is not there.
 fn optiodom() -> Option<PathBuf> {

@@ -4,8 +4,9 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use serde_json::{Value, json};
-use umbmark_core::dataset::{Dataset, Measured, RunClock};
+use umbmark_core::dataset::{Dataset, RunClock};
 use umbmark_core::document::clock;
+use umbmark_core::stats::Measured;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;

@@ -3,9 +3,10 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use umbmark_core::dataset::{Dataset, Determined, Group, Inspection, LogFacts, MovesFound, RunTopics};
+use umbmark_core::dataset::{Dataset, RunTopics};
 use umbmark_core::document;
 use umbmark_core::drive::Robot;
+use umbmark_core::inspect::{Determined, Group, Inspection, LogFacts, MovesFound};
 use umbmark_core::path::Direction;
 
 use crate::Session;

@@ -15,11 +15,12 @@ mod sentences;
 mod tests;
 
 use crate::calibrate::CalibrateError;
-use crate::dataset::{Dataset, moves_of};
+use crate::dataset::Dataset;
 use crate::diagnose::tracks::doubts_as_written;
 use crate::diagnose::{DiagnoseError, Options, Reason, Remains, tracks_of};
 use crate::effect::Model;
 use crate::geometry::Pose2;
+use crate::inspect::moves_of;
 use crate::likelihood::{Observed, Taken};
 use crate::path::Direction;
 use crate::setup::Setup;

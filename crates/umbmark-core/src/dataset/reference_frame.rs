@@ -1,7 +1,6 @@
 //! How measured poses are counted, where it is not as it is meant: y to the left of x, headings counter-clockwise.
 
-use super::ReferenceTrack;
-use crate::run::ReferencePose;
+use crate::run::{ReferencePose, ReferenceTrack};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 

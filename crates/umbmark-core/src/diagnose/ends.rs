@@ -101,7 +101,7 @@ impl Ends {
     pub fn examined(data: &Dataset) -> Result<Ends, CalibrateError> {
         let ends = Ends::new(data)?;
         let setup = Setup::of(&data.runs, &ends.robot, data.path.as_ref());
-        let doubts = setup.doubts(&data.runs);
+        let doubts = setup.suspicions(&data.runs).into_iter().map(Reason::Data).collect();
         Ok(Ends { setup: Arc::new(setup), doubts, ..ends })
     }
 

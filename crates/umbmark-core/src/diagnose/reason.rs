@@ -2,7 +2,7 @@
 
 use super::remains::{Remains, Repeating};
 use super::tracks::Repeated;
-use crate::setup::{Fault, Jump, OutlyingReturn};
+use crate::setup::{Fault, Suspicion};
 
 /// One reason.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,27 +65,8 @@ pub enum Reason {
         /// Whether both are headings.
         heading: bool,
     },
-    /// The headings of the reference are half a turn from the way the wheels drive: two robots do that.
-    TailFirst {
-        /// Heading of the tracked body less that of the robot, as the columns are read \[rad\].
-        yaw: f64,
-    },
-    /// The return error of a run is far from those of the other runs of its direction.
-    OutlyingReturn(OutlyingReturn),
-    /// The track of a run jumps, so that its return error is not the robot's.
-    JumpBeforeReturn {
-        /// The run's name.
-        run: String,
-        /// Its first jump.
-        jump: Jump,
-    },
-    /// The poses jump so often that the reference, or the way the counts are read, is in doubt.
-    ManyJumps {
-        /// How many jumps and wrong poses there are.
-        count: usize,
-        /// Number of all poses.
-        poses: usize,
-    },
+    /// The data are in doubt.
+    Data(Suspicion),
 }
 
 impl Reason {
@@ -102,10 +83,11 @@ impl Reason {
 
     /// Whether it is of the data, and not of the model: nothing that is fitted to such data is written.
     pub fn is_of_data(&self) -> bool {
-        matches!(
-            self,
-            Reason::Fault(_) | Reason::TailFirst { .. } | Reason::OutlyingReturn(_) | Reason::JumpBeforeReturn { .. }
-        )
+        match self {
+            Reason::Fault(_) => true,
+            Reason::Data(suspicion) => suspicion.forbids_writing(),
+            _ => false,
+        }
     }
 
     /// In a sentence, without a full stop.
@@ -145,18 +127,8 @@ impl Reason {
                 1e3 * left_out,
                 1e3 * inside
             ),
-            Reason::TailFirst { yaw } => format!(
-                "the measured heading is {:.1} deg from the way the robot drives: either the tracked body faces backward (write heading_backward = \
-                 true under [reference] in robot.toml), or left and right are exchanged and both count backward (write wheels_exchanged, \
-                 left_counts_backward and right_counts_backward = true under [robot]); E_d of the one is one over E_d of the other",
-                yaw.to_degrees()
-            ),
             Reason::Repeats(repeated) => repeated.sentence(),
-            Reason::OutlyingReturn(run) => format!("{}; {}", run.sentence(), run.remedy()),
-            Reason::JumpBeforeReturn { run, jump } => jump.notice(run),
-            Reason::ManyJumps { count, poses } => format!(
-                "{count} of {poses} poses are wrong or jump: look at the reference, and whether the counts are read as the drive makes them"
-            ),
+            Reason::Data(suspicion) => suspicion.sentence(),
         }
     }
 }

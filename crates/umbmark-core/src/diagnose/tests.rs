@@ -9,6 +9,7 @@ use crate::geometry::wrap;
 use crate::path::{Direction, FIGURE_EIGHT, Path, SpeedProfile};
 use crate::random::Stream;
 use crate::replay::Track;
+use crate::setup::Suspicion;
 use crate::stats::chi_squared_upper_tail;
 use nalgebra::{DVector, Vector3};
 use rayon::prelude::*;
@@ -376,7 +377,7 @@ fn a_typing_error_or_a_wrong_unit_is_never_explained() {
     let told = diagnose(&typed, &base(), &options).unwrap();
     assert_ne!(told.verdict, Verdict::Explained);
     assert!(
-        matches!(&told.reasons[..], [Reason::OutlyingReturn(run)] if run.run == data.runs[3].name),
+        matches!(&told.reasons[..], [Reason::Data(Suspicion::OutlyingReturn(run))] if run.run == data.runs[3].name),
         "{:?}",
         told.reasons
     );

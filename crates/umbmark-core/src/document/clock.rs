@@ -1,7 +1,9 @@
 //! Clocks that were set by the motion.
 
 use super::ends;
-use crate::dataset::{Alignment, Measured, RunClock};
+use crate::dataset::RunClock;
+use crate::stats::Measured;
+use crate::synchronise::Alignment;
 use serde_json::{Value, json};
 
 /// A clock that was set, with its run and its track.

@@ -3,7 +3,8 @@
 use super::clock::clock;
 use super::nominal::{path, robot};
 use super::setup::measured;
-use crate::dataset::{Dataset, Group, Inspection, LogFacts, MovesFound, ReferenceFacts, RunTopics, Wheels};
+use crate::dataset::{Dataset, RunTopics};
+use crate::inspect::{Group, Inspection, LogFacts, MovesFound, ReferenceFacts, Wheels};
 use crate::path::Direction;
 use serde_json::{Value, json};
 

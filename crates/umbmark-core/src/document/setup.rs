@@ -3,7 +3,8 @@
 use super::{ends, finite};
 use crate::diagnose::Reason;
 use crate::likelihood::Taken;
-use crate::setup::{Deviant, Jump, Measured, OutlyingReturn, RunSetup, Setup, WrongPose};
+use crate::setup::{Deviant, Jump, OutlyingReturn, RunSetup, Setup, WrongPose};
+use crate::stats::Measured;
 use serde_json::{Map, Value, json};
 
 /// The findings: faults with what to do, clock and mounting of the reference, jumps and wrong poses, runs whose return is far from the others.

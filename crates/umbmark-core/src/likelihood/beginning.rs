@@ -4,7 +4,8 @@ use super::observed::Observed;
 use crate::drive::Drive;
 use crate::effect::{Model, ModelError, Part};
 use crate::replay::Track;
-use crate::setup::{Measured, Mounting};
+use crate::setup::Mounting;
+use crate::stats::Measured;
 use crate::stats::t_two_sided;
 
 /// The reference's clock and place are taken where they stand out by so many standard errors ...

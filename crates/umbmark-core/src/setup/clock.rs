@@ -1,9 +1,9 @@
 //! By how much the stamps of the reference are late, run by run.
 
-use super::Measured;
 use super::agreement::{Agreement, Beside, Reading};
 use super::robust::{biweight, median};
 use super::windows::{Rolled, Window};
+use crate::stats::Measured;
 
 /// Delays that are looked at \[s\]: both ways up to the farthest, in these steps.
 const FARTHEST: f64 = 1.0;

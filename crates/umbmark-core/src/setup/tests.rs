@@ -166,7 +166,7 @@ fn each_way_to_wire_the_counters_is_named_as_it_is() {
             // Which is what a tracked body that faces backward looks like.
             assert_eq!(found.faults, []);
             assert!(wrap(found.mounting.unwrap().yaw.unwrap().value - std::f64::consts::PI).abs() < 0.01);
-            assert!(matches!(found.tail_first(&robot()), Some(Reason::TailFirst { .. })));
+            assert!(matches!(found.tail_first(&robot()), Some(Suspicion::TailFirst { .. })));
             continue;
         }
         assert_eq!(found.faults.len(), 1, "{put_in:?}: {:?}", found.faults);

@@ -2,8 +2,8 @@
 
 use super::followed::{Followed, rolled};
 use super::mean::Mean;
-use crate::dataset::{Done, MoveDone};
 use crate::geometry::Pose2;
+use crate::inspect::{Done, MoveDone};
 use crate::path::Direction;
 
 /// The end of a move is seen where a measurement lies within this way of the wheels \[m\], or this share of the move.

@@ -165,7 +165,7 @@ fn poses_at_stops_tell_of_moves_and_not_of_rates() {
     let robot = data.robot.clone().unwrap();
     for log in data.runs.iter_mut().filter_map(|run| run.log.as_mut()) {
         let stops = moves_of(log, &robot);
-        let stops = stops.iter().filter(|m| m.done == crate::dataset::Done::Stop).map(|m| (m.from + m.to) / 2);
+        let stops = stops.iter().filter(|m| m.done == crate::inspect::Done::Stop).map(|m| (m.from + m.to) / 2);
         let nearest = |sample: usize| *log.reference.iter().min_by_key(|r| r.sample.abs_diff(sample)).unwrap();
         let kept: Vec<ReferencePose> = stops.map(nearest).collect();
         log.reference = kept;

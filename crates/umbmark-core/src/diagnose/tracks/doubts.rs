@@ -37,8 +37,8 @@ const REMEMBERS: f64 = 2.5;
 /// The reasons by noise, jumps and the size of what is left.
 pub(super) fn of_model(observed: &Observed, model: &Model, noise: &Noise, left: &Misses, seed: u64) -> Vec<Reason> {
     let mut reasons: Vec<Reason> = observed.setup.faults.iter().cloned().map(Reason::Fault).collect();
-    reasons.extend(observed.setup.tail_first(&observed.robot));
-    reasons.extend(observed.setup.many_jumps());
+    reasons.extend(observed.setup.tail_first(&observed.robot).map(Reason::Data));
+    reasons.extend(observed.setup.many_jumps().map(Reason::Data));
     reasons.extend(of_noise(observed, noise, model.robot().drive.wheelbase()));
     reasons.extend(of_size(observed, noise, left, seed));
     reasons

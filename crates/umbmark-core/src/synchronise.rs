@@ -13,13 +13,12 @@ mod coarse;
 mod motion;
 mod windows;
 
-use super::{PoseRow, ReferenceTrack, TickLog};
 use crate::drive::Robot;
 use crate::fit::{Options, jackknife_covariance, least_squares};
 use crate::geometry::Pose2;
 use crate::run::dead_reckoning::computed_poses;
-pub use crate::setup::Measured;
-use crate::stats::{Interval, student_t_quantile};
+use crate::run::{PoseRow, ReferenceTrack, TickLog};
+use crate::stats::{Interval, Measured, student_t_quantile};
 use motion::Motion;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};

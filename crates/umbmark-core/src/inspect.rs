@@ -8,13 +8,15 @@ mod moves;
 mod together;
 mod wheels;
 
-use super::{Dataset, Measured, Mended, ReturnError, Run};
+use crate::dataset::Dataset;
 use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::geometry::{Pose2, wrap};
 use crate::path::{Direction, Path};
 use crate::run::dead_reckoning::{EndPose, computed_end, return_error};
+use crate::run::{Mended, ReturnError, Run};
 use crate::setup::{Fault, Mounting, Setup};
+use crate::stats::Measured;
 
 pub use determine::Determined;
 pub use log_facts::{Coverage, LogFacts, ReferenceFacts};

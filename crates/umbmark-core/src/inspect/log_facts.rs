@@ -1,6 +1,5 @@
 //! What one log is like.
 
-use super::super::{Mended, ReferencePose, Run, TickLog};
 use super::heading_off;
 use super::moves::MovesFound;
 use super::wheels::{Wheels, by_motion, by_path};
@@ -8,7 +7,9 @@ use crate::drive::Robot;
 use crate::geometry::wrap;
 use crate::path::{Direction, Path};
 use crate::run::dead_reckoning::{computed_poses, mean_pose, standing_at_end, standing_at_start};
-use crate::setup::{Measured, Setup};
+use crate::run::{Mended, ReferencePose, Run, TickLog};
+use crate::setup::Setup;
+use crate::stats::Measured;
 
 /// Figures of one log.
 #[derive(Clone, Debug, PartialEq)]

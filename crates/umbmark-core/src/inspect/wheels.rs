@@ -1,8 +1,8 @@
 //! Whether the wheels are what their columns say.
 
-use super::super::TickLog;
 use crate::drive::Robot;
 use crate::path::{Direction, Path};
+use crate::run::TickLog;
 use crate::setup::{Fault, Setup};
 
 /// What the columns of a log are.

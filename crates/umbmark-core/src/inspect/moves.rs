@@ -1,8 +1,8 @@
 //! What the robot did by its ticks: legs, turns, arcs and stops, and the shape that they make.
 
-use super::super::TickLog;
 use crate::drive::Robot;
 use crate::geometry::Pose2;
+use crate::run::TickLog;
 use crate::run::dead_reckoning::computed_poses;
 use std::f64::consts::FRAC_PI_2;
 

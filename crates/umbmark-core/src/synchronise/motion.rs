@@ -1,7 +1,7 @@
 //! A planar motion known at instants, and between them by interpolation.
 
-use super::super::reference_track::ReferenceTrack;
 use crate::geometry::Pose2;
+use crate::run::ReferenceTrack;
 
 /// Steps longer than so many usual ones are gaps.
 const GAP: f64 = 5.0;
