@@ -7,8 +7,8 @@
 use std::error::Error;
 
 use umbmark_core::effect::{About, ActsOn, Context, Effect, Entry, Model};
+use umbmark_core::evidence::fit;
 use umbmark_core::geometry::{Displacement2, Real};
-use umbmark_core::learn::fit;
 use umbmark_core::parameter::Parameter;
 use umbmark_plot::kind;
 use umbmark_plot::render::svg;

@@ -11,8 +11,9 @@ use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Options, first_model};
 use umbmark_core::drive::{DifferentialDrive, Robot};
 use umbmark_core::effect::Model;
+use umbmark_core::evidence::fit;
 use umbmark_core::geometry::wrap;
-use umbmark_core::learn::{fit, learn};
+use umbmark_core::learn::learn;
 use umbmark_core::replay::Track;
 
 /// Squares to learn from, and the sets of other paths that were driven within the same days.

@@ -3,14 +3,14 @@
 #![allow(clippy::unwrap_used)]
 
 use std::ops::ControlFlow;
-use umbmark_core::compare::compare;
+use umbmark_core::compare::compare_returns;
 use umbmark_core::dataset::{Dataset, Run, TickLog};
 use umbmark_core::diagnose::{Options, diagnose};
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::{Formula, Model, Target, TestKind};
 use umbmark_core::engine::Update;
+use umbmark_core::evidence::{Fit, fit};
 use umbmark_core::geometry::{Pose2, seeded};
-use umbmark_core::learn::{Fit, fit};
 use umbmark_core::monte_carlo::{Metric, Study};
 use umbmark_core::path::{CIRCLE, Direction, Move, Path, SQUARE, SpeedProfile};
 use umbmark_core::replay::{Track, check_on_path};
@@ -80,7 +80,7 @@ fn a_formula_that_explains_the_runs_is_told_so_and_nothing_is_missing() {
     assert_eq!(diagnosis.certified().len(), 0, "{:?}", diagnosis.certified());
     let fitted = fit(&data, &start).unwrap().model;
     let models = [("nominal".into(), Model::new(&Robot::labmate())), ("nap".into(), fitted)];
-    let judged = compare(&data, &models, &Options::default()).unwrap().models;
+    let judged = compare_returns(&data, &models, &Options::default()).unwrap().models;
     assert!(!judged[0].explains(0.05) && judged[1].rmse < 0.3 * judged[0].rmse, "{judged:?}");
 }
 
@@ -113,7 +113,9 @@ fn a_formula_that_breaks_down_on_the_way_is_refused_before_anything_is_computed(
         let data = driven(Model::new(&Robot::labmate()), tracked);
         begins(fit(&data, &broken).unwrap_err().to_string());
         begins(diagnose(&data, &broken, &Options::default()).unwrap_err().to_string());
-        begins(compare(&data, &[("slip".into(), broken.clone())], &Options::default()).unwrap_err().to_string());
+        begins(
+            compare_returns(&data, &[("slip".into(), broken.clone())], &Options::default()).unwrap_err().to_string(),
+        );
     }
 }
 

@@ -4,9 +4,10 @@ use std::path::Path;
 
 use anyhow::Context;
 use umbmark_core::dataset::Dataset;
-use umbmark_core::diagnose::{Contrast, Estimate, OnCircle, first_model};
+use umbmark_core::diagnose::{Contrast, OnCircle, first_model};
 use umbmark_core::document::meanings;
 use umbmark_core::effect::{Model, find};
+use umbmark_core::evidence::Estimate;
 use umbmark_core::likelihood::Outlier;
 use umbmark_core::setup::Setup;
 use umbmark_core::stats::Interval;

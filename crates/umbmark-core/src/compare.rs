@@ -7,12 +7,12 @@ mod replicas;
 mod statistics;
 pub mod tracks;
 
-use crate::calibrate::CalibrateError;
 use crate::dataset::Dataset;
-use crate::diagnose::ends::{self, Asked, Ends, Fitted};
-use crate::diagnose::{Contrast, DiagnoseError, Level, OnCircle, Options, Remains, base_model, first_model, level};
+use crate::diagnose::ends::{self, Asked};
+use crate::diagnose::{Contrast, OnCircle, Options, Remains, base_model, first_model};
 use crate::effect::Model;
-use crate::learn::{Evidence, fit};
+use crate::evidence::ends::Fitted;
+use crate::evidence::{AnyEvidence, Ends, Evidence, FitError, Level, robot_of};
 use crate::path::Direction;
 use crate::setup::Setup;
 use replicas::Replicas;
@@ -20,28 +20,22 @@ use std::sync::Arc;
 
 pub use replicas::NoiseSource;
 pub use statistics::Quantity;
-pub use tracks::compare_tracks;
+pub use tracks::{TrackComparison, compare_tracks};
 
 /// The models that are held against data where none is given: the nominal robot, and that with its first effects fitted, where
 /// nothing is wrong with the data. Each has a name.
-pub fn usual_models(data: &Dataset, level: Level) -> Result<Vec<(String, Model)>, DiagnoseError> {
-    let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
+pub fn usual_models(data: &Dataset, options: &Options) -> Result<Vec<(String, Model)>, FitError> {
+    let (robot, level) = (robot_of(data)?, options.level(data));
     let mut models = vec![("nominal robot".to_owned(), Model::new(robot))];
-    match level {
-        Level::Ends => {
-            let ends = Ends::examined(data)?;
-            // What is wrong is told beside the nominal robot.
-            if ends.is_sound() {
-                let fitted = ends.fit(&base_model(robot)?)?.0;
-                models.push(("E_d and E_b, fitted to these runs".into(), fitted));
-            }
-        }
-        Level::Tracks => match fit(data, &first_model(data)?) {
-            Ok(fitted) => models.push(("E_d, E_b, E_s fitted".into(), fitted.model)),
-            // What is wrong is told beside the nominal robot.
-            Err(DiagnoseError::Faulty { .. }) => {}
-            Err(error) => return Err(error),
-        },
+    let (name, first) = match level {
+        Level::Ends => ("E_d and E_b, fitted to these runs", base_model(robot)?),
+        Level::Tracks => ("E_d, E_b, E_s fitted", first_model(data)?),
+    };
+    match AnyEvidence::of(data, level)?.fit(&first) {
+        Ok(fitted) => models.push((name.to_owned(), fitted.model)),
+        // What is wrong is told beside the nominal robot.
+        Err(FitError::Faulty { .. }) => {}
+        Err(error) => return Err(error),
     }
     Ok(models)
 }
@@ -84,11 +78,18 @@ pub struct Judged {
     pub in_doubt: bool,
 }
 
-/// Models side by side.
+/// Models side by side, on either kind of evidence.
+#[derive(Clone, Debug)]
+pub enum Compared {
+    /// On return poses.
+    Ends(Comparison),
+    /// On whole tracks.
+    Tracks(TrackComparison),
+}
+
+/// Models side by side, on return poses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// What was observed.
-    pub level: Level,
     /// Number of runs clockwise and counter-clockwise.
     pub runs: [usize; 2],
     /// In the order in which they were given.
@@ -110,17 +111,27 @@ impl Judged {
     }
 }
 
-/// Holds models, with the values that they have, against measured runs.
+/// Compares the predictions of models, with the values that they have, with measured runs.
 ///
 /// ```no_run
-/// use umbmark_core::{compare::compare, dataset::Dataset, diagnose::Options, effect::Model};
+/// use umbmark_core::{compare::{Compared, compare}, dataset::Dataset, diagnose::Options, effect::Model};
 /// # let data = Dataset::default();
 /// let nominal = Model::new(data.nominal_robot()?);
-/// let comparison = compare(&data, &[("nominal".into(), nominal)], &Options::default())?;
-/// println!("{}", comparison.models[0].sentences.join("\n"));
+/// match compare(&data, &[("nominal".into(), nominal)], &Options::default())? {
+///     Compared::Ends(comparison) => println!("{}", comparison.models[0].sentences.join("\n")),
+///     Compared::Tracks(comparison) => println!("{}", comparison.models[0].sentences.join("\n")),
+/// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn compare(data: &Dataset, models: &[(String, Model)], options: &Options) -> Result<Comparison, DiagnoseError> {
+pub fn compare(data: &Dataset, models: &[(String, Model)], options: &Options) -> Result<Compared, FitError> {
+    Ok(match options.level(data) {
+        Level::Ends => Compared::Ends(compare_returns(data, models, options)?),
+        Level::Tracks => Compared::Tracks(compare_tracks(data, models, options)?),
+    })
+}
+
+/// [`compare`] with the return poses alone, even where the runs were observed on the way.
+pub fn compare_returns(data: &Dataset, models: &[(String, Model)], options: &Options) -> Result<Comparison, FitError> {
     let ends = Ends::examined(data)?;
     models.iter().try_for_each(|(_, model)| model.check_robot(&ends.robot))?;
     models.iter().try_for_each(|(_, model)| ends.check(model))?;
@@ -135,12 +146,12 @@ pub fn compare(data: &Dataset, models: &[(String, Model)], options: &Options) ->
         let [cw, ccw] = ends.counts();
         remarks.push(format!("Few runs, {cw} cw and {ccw} ccw: p-values say little below 3 + 3."));
     }
-    if level(data) == Level::Tracks {
+    if Level::of(data) == Level::Tracks {
         remarks.push("The runs were observed on the way; their return poses alone are compared here.".into());
     }
     let models = models.iter().map(|(name, model)| judge(name, model, &ends, &fitted, options)).collect();
     let contrasts = ends::contrasts(&ends, &fitted, confidence);
-    Ok(Comparison { level: Level::Ends, runs: ends.counts(), models, contrasts, circle, remarks, setup: ends.setup })
+    Ok(Comparison { runs: ends.counts(), models, contrasts, circle, remarks, setup: ends.setup })
 }
 
 fn judge(name: &str, model: &Model, ends: &Ends, fitted: &Fitted, options: &Options) -> Judged {

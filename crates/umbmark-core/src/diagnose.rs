@@ -14,14 +14,12 @@ mod reason;
 mod remains;
 pub(crate) mod tracks;
 
-use crate::calibrate::CalibrateError;
-use crate::dataset::{Dataset, Run};
+use crate::dataset::Dataset;
 use crate::drive::Robot;
-use crate::effect::{Model, ModelError, TestKind, find};
-use crate::likelihood::{Observed, Outlier, Taken};
-use crate::replay::ReplayError;
-use crate::setup::{Fault, Setup};
-use crate::stats::{Interval, student_t_quantile};
+use crate::effect::{Model, ModelError, find};
+use crate::evidence::{self, AnyEvidence, Ends, Estimate, Evidence, FitError, Level, robot_of};
+use crate::likelihood::{Outlier, Taken};
+use crate::setup::Setup;
 use std::sync::Arc;
 
 pub use candidates::{Candidate, Size, candidates, columns};
@@ -32,48 +30,6 @@ pub use reason::Reason;
 pub(crate) use remains::Trail;
 pub use remains::{Chance, Left, Remains, Repeating};
 pub use tracks::{Repeated, Suggestion, UnlistedLaw, what_repeats};
-
-/// What was observed of the runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
-    /// Return poses only.
-    Ends,
-    /// Absolute poses on the way: at stops, or all along.
-    Tracks,
-}
-
-/// What leaves nothing to diagnose.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum DiagnoseError {
-    /// Nothing to predict.
-    #[error(transparent)]
-    Evidence(#[from] CalibrateError),
-    /// A log that cannot be replayed.
-    #[error(transparent)]
-    Log(#[from] ReplayError),
-    /// A model that the catalogue or its bounds refuse.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// Columns, units or frames that are not what they are called.
-    #[error("{}", Fault::refusal(.faults))]
-    Faulty {
-        /// Which.
-        faults: Vec<Fault>,
-    },
-    /// A fit that never settled.
-    #[error("the fit of the model {how}; fix some of its parameters (free = false)")]
-    NotConverged {
-        /// How it ended.
-        how: &'static str,
-    },
-    /// A fit that left what is possible.
-    #[error("the fit of the model ran out of bounds ({source}); are signs, units and directions right?")]
-    OutOfBounds {
-        /// Which parameter.
-        source: ModelError,
-    },
-}
 
 /// How to look.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,29 +82,6 @@ impl Verdict {
             Verdict::NotEnoughData => "not_enough_data",
             Verdict::NotExplained => "not_explained",
         }
-    }
-}
-
-/// A number of an effect with its uncertainty.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Estimate {
-    /// The effect.
-    pub effect: &'static str,
-    /// The parameter, as in files: its unit stands in the name.
-    pub parameter: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// Its standard error.
-    pub standard_error: f64,
-    /// ν of Student's t for its interval.
-    pub degrees_of_freedom: f64,
-}
-
-impl Estimate {
-    /// Its interval with probability `level`, Student's t; `None` where it is not finite.
-    pub fn interval(&self, level: f64) -> Option<Interval> {
-        let half = student_t_quantile(0.5 + 0.5 * level, self.degrees_of_freedom) * self.standard_error;
-        half.is_finite().then(|| Interval::around(self.value, half))
     }
 }
 
@@ -339,10 +272,9 @@ pub struct CurvePoint {
 
 impl Diagnosis {
     /// What is said of an experiment whose columns are not what they are called: nothing of the robot.
-    pub(crate) fn of_faults(setup: &Arc<Setup>, model: &Model, level: Level) -> Diagnosis {
-        let faults = setup.all_faults().filter(|fault| level == Level::Ends || setup.faults.contains(fault));
+    pub(crate) fn of_faults(evidence: &dyn Evidence, model: &Model) -> Diagnosis {
         Diagnosis {
-            level,
+            level: evidence.level(),
             verdict: Verdict::NotExplained,
             model: model.clone(),
             fitted: Vec::new(),
@@ -359,9 +291,9 @@ impl Diagnosis {
             identifiability: Identifiability { shares: Vec::new(), rank: 0, hidden: Vec::new() },
             dependence: None,
             outliers: Vec::new(),
-            setup: Arc::clone(setup),
+            setup: Arc::clone(evidence.setup()),
             taken: Vec::new(),
-            reasons: faults.cloned().map(Reason::Fault).collect(),
+            reasons: evidence.faults().into_iter().map(Reason::Fault).collect(),
             repeats: None,
             remains: None,
             remarks: Vec::new(),
@@ -410,10 +342,10 @@ impl Diagnosis {
 }
 
 /// The model that is asked first: E_d and E_b, and where tracks show it E_s, all free.
-pub fn first_model(data: &Dataset) -> Result<Model, DiagnoseError> {
-    let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
+pub fn first_model(data: &Dataset) -> Result<Model, FitError> {
+    let robot = robot_of(data)?;
     let mut model = base_model(robot)?;
-    if level(data) == Level::Tracks {
+    if Level::of(data) == Level::Tracks {
         model.add(robot.drive.first_effects()[2])?.free = true;
     }
     Ok(model)
@@ -426,20 +358,6 @@ pub fn base_model(robot: &Robot) -> Result<Model, ModelError> {
         model.add(effect)?.free = true;
     }
     Ok(model)
-}
-
-/// What was observed: tracks, where every run of the regular test has a log with absolute poses at three places or more.
-pub fn level(data: &Dataset) -> Level {
-    let mut runs = data.runs.iter().filter(|run| run.test == TestKind::Systematic).peekable();
-    let observed = runs.peek().is_some() && runs.all(|run| places(run) >= 3);
-    if observed { Level::Tracks } else { Level::Ends }
-}
-
-/// At how many samples of its log a run was observed.
-fn places(run: &Run) -> usize {
-    let mut samples: Vec<usize> = run.log.iter().flat_map(|log| log.reference.iter().map(|r| r.sample)).collect();
-    samples.dedup();
-    samples.len()
 }
 
 /// Fits a model's free parameters and asks every other effect of the catalogue whether it is missing.
@@ -469,25 +387,20 @@ fn places(run: &Run) -> usize {
 /// assert_eq!(diagnosis.verdict, Verdict::Explained);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diagnosis, DiagnoseError> {
-    model.check_robot(data.robot.as_ref().ok_or(CalibrateError::NoRobot)?)?;
-    if options.evidence(data) == Level::Ends {
-        let ends = ends::Ends::examined(data)?;
-        if !ends.is_sound() {
-            return Ok(Diagnosis::of_faults(&ends.setup, model, Level::Ends));
-        }
-        return ends::diagnose(&ends, model, options);
-    }
-    let of_tracks = || {
-        let observed = tracks_of(data)?;
-        if !observed.setup.is_sound() {
-            return Ok(Diagnosis::of_faults(&observed.setup, model, Level::Tracks));
-        }
-        tracks::diagnose(tracks::fit(&observed, model)?, options)
+pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diagnosis, FitError> {
+    model.check_robot(robot_of(data)?)?;
+    let level = options.level(data);
+    let of_evidence = || match AnyEvidence::of(data, level)? {
+        evidence if !evidence.is_sound() => Ok(Diagnosis::of_faults(&*evidence, model)),
+        AnyEvidence::Ends(ends) => ends::diagnose(&ends, model, options),
+        AnyEvidence::Tracks(observed) => tracks::diagnose(evidence::tracks::fit(&observed, model)?, options),
     };
+    if level == Level::Ends {
+        return of_evidence();
+    }
     // Where return poses tell of the same runs, what they alone would have said stands beside it.
-    let of_returns = || ends::Beside::new(&ends::Ends::new(data)?, &base_model(model.robot())?, options);
-    let (diagnosis, returns) = rayon::join(of_tracks, of_returns);
+    let of_returns = || ends::Beside::new(&Ends::new(data)?, &base_model(model.robot())?, options);
+    let (diagnosis, returns) = rayon::join(of_evidence, of_returns);
     let mut diagnosis = diagnosis?;
     if let Ok(returns) = returns {
         diagnosis.contrasts = returns.contrasts;
@@ -500,8 +413,8 @@ pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diag
 
 impl Options {
     /// What is used of a dataset.
-    pub fn evidence(&self, data: &Dataset) -> Level {
-        if self.ends_only { Level::Ends } else { level(data) }
+    pub fn level(&self, data: &Dataset) -> Level {
+        if self.ends_only { Level::Ends } else { Level::of(data) }
     }
 }
 
@@ -510,22 +423,16 @@ impl Options {
 /// What the model has is fitted to the data: to whole tracks, where the runs were observed on the way, and further drives are then
 /// watched as these were. Each effect is taken at its usual size, the hardest of its sizes. None where the runs have no
 /// scatter to judge by.
-pub fn separating(data: &Dataset, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
-    match level(data) {
-        Level::Ends => experiments::separating(&ends::Ends::new(data)?, model, pair),
+pub fn separating(data: &Dataset, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, FitError> {
+    match Level::of(data) {
+        Level::Ends => experiments::separating(&Ends::new(data)?, model, pair),
         Level::Tracks => {
             let [first, second] = [find(pair[0])?, find(pair[1])?];
             let model = experiments::with_one_of(model, [first, second])?;
-            let fitted = tracks::fit(&tracks_of(data)?, &model)?;
+            let fitted = evidence::tracks::fit(&evidence::tracks::of(data)?, &model)?;
             tracks::separating(fitted, [first.about.name, second.about.name])
         }
     }
-}
-
-/// The tracks of a dataset.
-pub(crate) fn tracks_of(data: &Dataset) -> Result<Observed, DiagnoseError> {
-    let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
-    Ok(Observed::new(data, robot)?)
 }
 
 #[cfg(test)]

@@ -19,6 +19,7 @@ pub mod document;
 pub mod drive;
 pub mod effect;
 pub mod engine;
+pub mod evidence;
 pub mod fit;
 pub mod geometry;
 pub mod inspect;

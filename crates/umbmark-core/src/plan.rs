@@ -21,12 +21,12 @@ mod power;
 mod protocol;
 mod sheet;
 
-use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, ReturnError};
-use crate::diagnose::ends::{Ends, Fitted};
-use crate::diagnose::{DiagnoseError, base_model, experiments};
+use crate::diagnose::{base_model, experiments};
 use crate::drive::Robot;
 use crate::effect::{Model, ModelError, TestKind};
+use crate::evidence::ends::{Ends, Fitted};
+use crate::evidence::{FitError, robot_of};
 use crate::monte_carlo::{Study, StudyError};
 use crate::path::{Direction, Path, PathError};
 use crate::score::{Scatter, score};
@@ -53,7 +53,7 @@ pub enum PlanError {
     Study(#[from] StudyError),
     /// The data cannot be used.
     #[error(transparent)]
-    Diagnose(#[from] DiagnoseError),
+    Diagnose(#[from] FitError),
     /// A path that is none.
     #[error(transparent)]
     Path(#[from] PathError),
@@ -97,12 +97,6 @@ pub enum PlanError {
 impl From<ModelError> for PlanError {
     fn from(error: ModelError) -> PlanError {
         PlanError::Study(error.into())
-    }
-}
-
-impl From<CalibrateError> for PlanError {
-    fn from(error: CalibrateError) -> PlanError {
-        PlanError::Diagnose(error.into())
     }
 }
 
@@ -250,7 +244,7 @@ pub struct Measured {
 impl Measured {
     /// From its runs: 3 or more a direction.
     pub fn new(data: &Dataset) -> Result<Measured, PlanError> {
-        let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
+        let robot = robot_of(data)?;
         let path = data.path.clone().ok_or(PlanError::NoPath)?;
         let ends = Ends::new(data)?;
         let fitted = Fitted::new(&ends, &base_model(robot)?)?;

@@ -1,8 +1,9 @@
 //! Robots of the paper, ready to be driven: geometry, systematic errors and noise, each number with where it is from.
 
-use crate::calibrate::{Correction, noise_shape::end_covariance};
+use crate::calibrate::Correction;
 use crate::drive::{ClapperDrive, DifferentialDrive, Drive, Encoder, Robot, SynchroDrive};
 use crate::effect::{Model, ModelError};
+use crate::evidence::noise_shape::end_covariance;
 use crate::parameter::nearest;
 use crate::path::{Direction, Path, RECTANGLE, SpeedProfile};
 use crate::replay::Track;

@@ -5,9 +5,10 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use umbmark_core::calibrate::{
-    Calibration, ClosedForm, Correction, Estimate, Level, Method, Options, RadiusWheelbase, Ratio, calibrate,
+    Calibration, ClosedForm, Correction, Estimate, Method, Options, RadiusWheelbase, Ratio, calibrate,
 };
 use umbmark_core::drive::Robot;
+use umbmark_core::evidence::Level;
 
 /// The folder, or a notice that it is not there.
 fn optiodom() -> Option<PathBuf> {

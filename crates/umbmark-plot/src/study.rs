@@ -7,8 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use umbmark_core::calibrate::{self, Calibration, Estimate, Method, calibrate};
-use umbmark_core::compare::tracks::TrackComparison;
-use umbmark_core::compare::{Comparison, compare, compare_tracks};
+use umbmark_core::compare::{Comparison, TrackComparison, compare_returns, compare_tracks};
 use umbmark_core::dataset::{Dataset, ReturnError};
 use umbmark_core::diagnose::{self, Diagnosis, diagnose};
 use umbmark_core::effect::{Model, TestKind};
@@ -203,7 +202,7 @@ impl Study {
 
     /// The nominal robot and the model beside the return poses.
     pub fn comparison(&self) -> Result<&Comparison, Absent> {
-        let work = || compare(&self.data, &self.models()?, &self.options.diagnose).map_err(Absent::because);
+        let work = || compare_returns(&self.data, &self.models()?, &self.options.diagnose).map_err(Absent::because);
         self.once(&self.comparison, work)
     }
 

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use umbmark_core::compare as comparing;
-use umbmark_core::diagnose::{self as core, DiagnoseError, Level, Options, first_model};
-use umbmark_core::{document, effect, learn as learning};
+use umbmark_core::compare::{self as comparing, Compared};
+use umbmark_core::diagnose::{self as core, Options, first_model};
+use umbmark_core::evidence::FitError;
+use umbmark_core::{document, effect, evidence, learn as learning};
 
 use crate::dataset::Dataset;
 use crate::model::Model;
@@ -31,14 +32,11 @@ pub fn compare(
     shared.nominal_robot().map_err(refused)?;
     let given = models.into_iter().map(|(name, model)| Ok((name, model.of_data(py, &shared)?)));
     let given: Vec<_> = given.collect::<PyResult<_>>()?;
-    let document = watched(py, threads, None, move |_| -> Result<_, DiagnoseError> {
-        let level = options.evidence(&shared);
-        let models = if given.is_empty() { comparing::usual_models(&shared, level)? } else { given };
-        Ok(match level {
-            Level::Ends => document::comparison(&comparing::compare(&shared, &models, &options)?, &options),
-            Level::Tracks => {
-                document::track_comparison(&comparing::compare_tracks(&shared, &models, &options)?, &options)
-            }
+    let document = watched(py, threads, None, move |_| -> Result<_, FitError> {
+        let models = if given.is_empty() { comparing::usual_models(&shared, &options)? } else { given };
+        Ok(match comparing::compare(&shared, &models, &options)? {
+            Compared::Ends(comparison) => document::comparison(&comparison, &options),
+            Compared::Tracks(comparison) => document::track_comparison(&comparison, &options),
         })
     })?;
     Ok(document.map_err(refused)?.to_string())
@@ -81,7 +79,7 @@ pub fn fit(
         ));
     }
     let shared = Arc::clone(&data.0);
-    let fitted = watched(py, 1, None, move |_| learning::fit(&shared, &model))?.map_err(refused)?;
+    let fitted = watched(py, 1, None, move |_| evidence::fit(&shared, &model))?.map_err(refused)?;
     Ok((document::fitted(&fitted, level).to_string(), fitted.model.into()))
 }
 

@@ -7,10 +7,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use umbmark_core::calibrate::{Calibration, Estimate, Level, Method, Options, RadiusWheelbase, Ratio, calibrate};
+use umbmark_core::calibrate::{Calibration, Estimate, Method, Options, RadiusWheelbase, Ratio, calibrate};
 use umbmark_core::dataset::Dataset;
 use umbmark_core::document;
 use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::evidence::Level;
 use umbmark_io::{RobotFile, export};
 
 use crate::Session;

@@ -4,10 +4,11 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use umbmark_core::compare::tracks::TrackComparison;
-use umbmark_core::compare::{Comparison, Judged, NoiseSource, Statistic, compare, compare_tracks, usual_models};
+use umbmark_core::compare::{
+    Compared, Comparison, Judged, NoiseSource, Statistic, TrackComparison, compare, usual_models,
+};
 use umbmark_core::dataset::Dataset;
-use umbmark_core::diagnose::{Level, Options};
+use umbmark_core::diagnose::Options;
 use umbmark_core::document;
 use umbmark_core::effect::Model;
 
@@ -45,41 +46,32 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     for warning in data.warnings.iter().filter(|_| !session.json()) {
         session.message("warning", warning);
     }
-    let explained = match options.evidence(&data) {
-        Level::Ends => on_return_poses(&arguments, &data, &options, session)?,
-        Level::Tracks => on_tracks(&arguments, &data, &options, session)?,
+    let compared = session
+        .on_threads(|| anyhow::Ok(compare(&data, &models(&arguments, &data, &options, session)?, &options)?))??;
+    let explained = match compared {
+        Compared::Ends(comparison) => on_return_poses(&comparison, &options, session)?,
+        Compared::Tracks(comparison) => on_tracks(&comparison, &options, session)?,
     };
     Ok(if arguments.check && !explained { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }
 
 /// Says whether some model explains the data.
-fn on_return_poses(
-    arguments: &Arguments,
-    data: &Dataset,
-    options: &Options,
-    session: &mut Session,
-) -> anyhow::Result<bool> {
-    let comparison = session.on_threads(|| -> anyhow::Result<Comparison> {
-        Ok(compare(data, &models(arguments, data, Level::Ends, session)?, options)?)
-    })??;
+fn on_return_poses(comparison: &Comparison, options: &Options, session: &mut Session) -> anyhow::Result<bool> {
     if session.json() {
-        session.print_json(&document::comparison(&comparison, options))?;
+        session.print_json(&document::comparison(comparison, options))?;
     } else {
-        write!(session.out(), "{}", text(&comparison, options))?;
+        write!(session.out(), "{}", text(comparison, options))?;
     }
     Ok(comparison.models.iter().any(|model| model.explains(options.size)))
 }
 
 /// Says whether some model explains the data.
-fn on_tracks(arguments: &Arguments, data: &Dataset, options: &Options, session: &mut Session) -> anyhow::Result<bool> {
-    let comparison = session.on_threads(|| -> anyhow::Result<TrackComparison> {
-        Ok(compare_tracks(data, &models(arguments, data, Level::Tracks, session)?, options)?)
-    })??;
+fn on_tracks(comparison: &TrackComparison, options: &Options, session: &mut Session) -> anyhow::Result<bool> {
     if session.json() {
-        session.print_json(&document::track_comparison(&comparison, options))?;
+        session.print_json(&document::track_comparison(comparison, options))?;
     } else {
         let terminal = session.on_terminal();
-        write!(session.out(), "{}", tracks_report::text(&comparison, options, terminal))?;
+        write!(session.out(), "{}", tracks_report::text(comparison, options, terminal))?;
     }
     Ok(comparison.models.iter().any(|model| model.explains(options.size) != Some(false)))
 }
@@ -88,11 +80,11 @@ fn on_tracks(arguments: &Arguments, data: &Dataset, options: &Options, session: 
 fn models(
     arguments: &Arguments,
     data: &Dataset,
-    level: Level,
+    options: &Options,
     session: &Session,
 ) -> anyhow::Result<Vec<(String, Model)>> {
     if arguments.model.is_empty() {
-        return Ok(usual_models(data, level)?);
+        return Ok(usual_models(data, options)?);
     }
     let read = |file: &PathBuf| Ok((file.display().to_string(), read_model(file, data, session)?));
     arguments.model.iter().map(read).collect()

@@ -6,9 +6,10 @@ use std::process::ExitCode;
 
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{
-    Detectable, Diagnosis, Experiment, GoodnessOfFit, Identifiability, Level, Options, Suspect, Verdict, diagnose,
+    Detectable, Diagnosis, Experiment, GoodnessOfFit, Identifiability, Options, Suspect, Verdict, diagnose,
 };
 use umbmark_core::document;
+use umbmark_core::evidence::Level;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use umbmark_core::document;
-use umbmark_core::learn::{Fit, fit};
+use umbmark_core::evidence::{Fit, fit};
 use umbmark_core::likelihood::USUAL_NOISE;
 
 use crate::Session;

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use umbmark_core::dataset::Dataset;
-use umbmark_core::diagnose::{Experiment, Level, Options, Reason, Verdict};
+use umbmark_core::diagnose::{Experiment, Options, Reason, Verdict};
 use umbmark_core::document;
 use umbmark_core::effect::Model;
+use umbmark_core::evidence::Level;
 use umbmark_core::learn::{Learnt, Step, learn_from};
 
 use super::diagnose::{experiment_text, in_words};

@@ -14,10 +14,11 @@
 //! ratios in 95.0 to 95.3 % (5 + 5 runs) and 95.4 to 95.6 % (2 + 2); of 1500 tests by tracks, 3 + 3 runs, in 95.0 to 95.7 %.
 
 use super::correction::Correction;
-use super::evidence::{Drive, Evidence, Level};
+use super::observations::Observations;
 use crate::dataset::ReturnError;
 use crate::drive::Robot;
 use crate::effect::{Evaluate, Model};
+use crate::evidence::{Drive, FAR_FIT, Level, STARTS, is_possible};
 use crate::fit::{self, Fit, Problem, RANK_TOLERANCE, jackknife_covariance, null_directions};
 use crate::geometry::{Dual, Pose2, seeded, wrap};
 use crate::likelihood::Taken;
@@ -43,27 +44,18 @@ pub(super) struct Exact {
     pub rival: Option<Correction>,
 }
 
-/// E_b of further starts, where the fit from the nominal robot ends far from it.
-pub(crate) const STARTS: [f64; 8] = [0.4, 0.5, 0.65, 0.8, 1.25, 1.6, 2.0, 2.5];
-/// E_d or E_b that differ from 1 by more are far.
-pub(crate) const FAR_FIT: f64 = 0.04;
-/// Ratios that a robot can have: the bounds of their effects.
-pub(crate) fn is_possible(ratio: f64) -> bool {
-    (0.2..=5.0).contains(&ratio)
-}
-
-/// Fits what the evidence shows.
-pub(super) fn exact(evidence: &Evidence, robot: &Robot) -> Exact {
-    let model = model(robot, &evidence.taken);
-    let mut problem = Kinematics { evidence, places: places(&model), model, free: vec![0, 1] };
-    if evidence.scale_shows {
+/// Fits the ratios that the observations show.
+pub(super) fn exact(observed: &Observations, robot: &Robot) -> Exact {
+    let model = model(robot, &observed.taken);
+    let mut problem = Kinematics { observed, places: places(&model), model, free: vec![0, 1] };
+    if observed.scale_shows {
         problem.free.push(2);
     }
     problem.keep_what_shows();
     let fit::Searched { fit, rival } = search(&problem);
     let rival = rival.map(|values| Correction::from_values(problem.ratios(&values)));
     let correction = Correction::from_values(problem.ratios(&fit.values));
-    let (covariance, degrees_of_freedom) = match evidence.level {
+    let (covariance, degrees_of_freedom) = match observed.level {
         Level::Ends => end_covariance(&problem, &fit),
         Level::Tracks => {
             let groups = problem.rows_of_drives();
@@ -119,7 +111,7 @@ fn search(problem: &Kinematics) -> fit::Searched {
     let first = fit::least_squares(problem, &nominal, &options);
     let start = |of: [f64; 3]| problem.free.iter().map(|ratio| of[*ratio]).collect::<Vec<f64>>();
     let is_far = first.values.iter().any(|value| !((value - 1.0).abs() <= FAR_FIT)) || !first.termination.converged();
-    let mut starts: Vec<Vec<f64>> = problem.evidence.by_motion.map(start).into_iter().collect();
+    let mut starts: Vec<Vec<f64>> = problem.observed.by_motion.map(start).into_iter().collect();
     if is_far && problem.free.contains(&1) {
         starts.extend(STARTS.map(|e_b| start([1.0, e_b, 1.0])));
     }
@@ -138,7 +130,7 @@ fn spread(covariance: &DMatrix<f64>, free: &[usize]) -> Matrix3<f64> {
 }
 
 struct Kinematics<'a> {
-    evidence: &'a Evidence,
+    observed: &'a Observations,
     model: Model,
     /// Of the three ratios among the model's values.
     places: [usize; 3],
@@ -189,7 +181,7 @@ impl Kinematics<'_> {
             next += drive.seen.iter().map(|s| rows_of(s.heading)).sum::<usize>();
             first..next
         };
-        self.evidence.drives.iter().map(rows).collect()
+        self.observed.drives.iter().map(rows).collect()
     }
 
     fn count(&self) -> usize {
@@ -199,7 +191,7 @@ impl Kinematics<'_> {
     /// Calls `row_of` with drive, observation and predicted pose of each observation.
     fn predict<T: Evaluate>(&self, values: &[T], mut observed: impl FnMut(&Drive, usize, &Pose2<T>)) {
         let chain = self.model.chain_with(values);
-        for drive in &self.evidence.drives {
+        for drive in &self.observed.drives {
             drive.track.replay(&chain, |observation, pose| observed(drive, observation, pose));
         }
     }
@@ -238,7 +230,7 @@ impl Problem for Kinematics<'_> {
 /// Covariance of an estimate with fixed weights from the scatter of the runs about their direction's mean.
 fn end_covariance(problem: &Kinematics, fit: &Fit) -> (Option<DMatrix<f64>>, f64) {
     let mut leftover: [Vec<ReturnError>; 2] = Default::default();
-    let drives = &problem.evidence.drives;
+    let drives = &problem.observed.drives;
     problem.predict::<f64>(&problem.all(&fit.values), |drive, observation, pose| {
         let seen = &drive.seen[observation];
         let heading = seen.heading.map(|h| wrap(h - pose.heading));

@@ -1,6 +1,6 @@
 //! True lengths, from nominal ones and ratios.
 
-use super::Estimate;
+use super::estimate::Estimate;
 use crate::drive::Robot;
 
 /// The true lengths \[m\], as far as the ratios are known.

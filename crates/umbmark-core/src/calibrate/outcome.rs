@@ -1,8 +1,8 @@
 //! What a correction is worth: the test driven again, and the recorded runs computed again.
 
 use super::correction::Correction;
-use super::evidence::Evidence;
 use super::exact::set_taken;
+use super::observations::Observations;
 use crate::dataset::ReturnError;
 use crate::drive::Robot;
 use crate::effect::{Model, TestKind};
@@ -74,13 +74,13 @@ pub struct Replayed {
 }
 
 /// Computes the recorded runs again with a correction; `None` where no ticks were recorded.
-pub(super) fn replayed(evidence: &Evidence, robot: &Robot, applied: &Correction) -> Option<Replayed> {
+pub(super) fn replayed(observed: &Observations, robot: &Robot, applied: &Correction) -> Option<Replayed> {
     let mut model: Model = applied.model(robot).ok()?;
-    set_taken(&mut model, &evidence.taken);
+    set_taken(&mut model, &observed.taken);
     let chain = model.chain();
     let mut errors: [Vec<ReturnError>; 2] = Default::default();
     let mut largest: Option<f64> = None;
-    for drive in evidence.drives.iter().filter(|d| d.recorded) {
+    for drive in observed.drives.iter().filter(|d| d.recorded) {
         let (Some(seen), Some(pose)) = (drive.seen.last(), drive.track.poses(&chain).pop()) else { continue };
         let error = ReturnError { x: seen.x - pose.x, y: seen.y - pose.y, heading: None };
         let distance = libm::hypot(error.x, error.y);

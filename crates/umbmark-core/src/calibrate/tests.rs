@@ -3,9 +3,10 @@ use crate::dataset::Run;
 use crate::drive::DifferentialDrive;
 use crate::effect::{Model, TestKind};
 use crate::geometry::{Displacement2, Pose2, seeded};
-use crate::path::{Direction, RECTANGLE, SPIN, STRAIGHT, SpeedProfile, WAYPOINTS};
+use crate::path::{Direction, RECTANGLE, SPIN, SQUARE, STRAIGHT, SpeedProfile, WAYPOINTS};
 use crate::replay::Track;
-use crate::score::Cluster;
+use crate::score::{Cluster, Scatter};
+use nalgebra::Matrix2;
 
 mod found;
 mod simulated;
@@ -288,9 +289,12 @@ fn impossible_angles_data_and_options_are_refused_with_the_reason() {
     assert!(calibration.warnings.iter().any(|w| w.contains("belong to no robot")), "{:?}", calibration.warnings);
     let mut data = noise_free(&PLAIN);
     data.path = None;
-    assert_eq!(calibrate(&data, &Options::default()).unwrap_err(), CalibrateError::NothingObserved { runs: 2 });
+    assert_eq!(
+        calibrate(&data, &Options::default()).unwrap_err(),
+        CalibrateError::Fit(FitError::NothingObserved { runs: 2 })
+    );
     data.robot = None;
-    assert_eq!(calibrate(&data, &Options::default()).unwrap_err(), CalibrateError::NoRobot);
+    assert_eq!(calibrate(&data, &Options::default()).unwrap_err(), CalibrateError::Fit(FitError::NoRobot));
     for (arm, told) in [(-1.0, "-1"), (0.0, "0"), (f64::INFINITY, "inf")] {
         let options = Options { heading_arm: Some(arm), ..Options::default() };
         let message = calibrate(&noise_free(&PLAIN), &options).unwrap_err().to_string();

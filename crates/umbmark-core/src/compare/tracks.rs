@@ -14,11 +14,11 @@ mod sentences;
 #[cfg(test)]
 mod tests;
 
-use crate::calibrate::CalibrateError;
 use crate::dataset::Dataset;
 use crate::diagnose::tracks::doubts_as_written;
-use crate::diagnose::{DiagnoseError, Options, Reason, Remains, tracks_of};
+use crate::diagnose::{Options, Reason, Remains};
 use crate::effect::Model;
+use crate::evidence::{self, Evidence, FitError, robot_of};
 use crate::geometry::Pose2;
 use crate::inspect::moves_of;
 use crate::likelihood::{Observed, Taken};
@@ -127,12 +127,12 @@ pub fn compare_tracks(
     data: &Dataset,
     models: &[(String, Model)],
     options: &Options,
-) -> Result<TrackComparison, DiagnoseError> {
-    let observed = tracks_of(data)?;
-    let robot = data.robot.as_ref().ok_or(CalibrateError::NoRobot)?;
+) -> Result<TrackComparison, FitError> {
+    let observed = evidence::tracks::of(data)?;
+    let robot = robot_of(data)?;
     for (_, model) in models {
         model.check_robot(robot)?;
-        observed.tracks().try_for_each(|track| track.check(model))?;
+        observed.check(model)?;
     }
     let judge = |(name, model): &(String, Model)| {
         let (model, taken) = with_reference(&observed, model)?;
@@ -142,7 +142,7 @@ pub fn compare_tracks(
     Ok(TrackComparison {
         runs: [of(Some(Direction::Cw)), of(Some(Direction::Ccw)), of(None)],
         poses: observed.runs.iter().map(|run| run.seen.len()).sum(),
-        models: models.iter().map(judge).collect::<Result<_, DiagnoseError>>()?,
+        models: models.iter().map(judge).collect::<Result<_, FitError>>()?,
         remarks: remarks(&observed),
         setup: Arc::clone(&observed.setup),
     })
@@ -150,7 +150,7 @@ pub fn compare_tracks(
 
 /// A model with what the motion says of the reference, where the model says nothing of it and then predicts the steps between
 /// measurements better: what looks like a lever arm may be a sideways motion that the model has already.
-fn with_reference(observed: &Observed, model: &Model) -> Result<(Model, Vec<Taken>), DiagnoseError> {
+fn with_reference(observed: &Observed, model: &Model) -> Result<(Model, Vec<Taken>), FitError> {
     let (mut model, mut taken) = (model.clone(), Vec::new());
     for found in observed.reference_beside(&model) {
         let mut with = model.clone();

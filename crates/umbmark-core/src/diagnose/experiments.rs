@@ -6,9 +6,11 @@
 
 pub(super) mod design;
 
-use super::ends::{Asked, Ends, Fitted};
-use super::{DiagnoseError, Experiment, Suspect};
+use super::ends::Asked;
+use super::{Experiment, Suspect};
 use crate::effect::{Entry, Model, Number, find};
+use crate::evidence::FitError;
+use crate::evidence::ends::{Ends, Fitted, names};
 use crate::parameter::Parameter;
 use crate::stats::normal_quantile;
 use design::{Design, Noise, designs, todays};
@@ -32,7 +34,7 @@ pub(super) fn next_experiments(
     fitted: &Fitted,
     asked: &Asked,
     ranking: &[Suspect],
-) -> Result<Vec<Experiment>, DiagnoseError> {
+) -> Result<Vec<Experiment>, FitError> {
     let (sizes, rivals) = rivals(asked, ranking);
     if rivals.is_empty() {
         return Ok(Vec::new());
@@ -47,7 +49,7 @@ pub(super) fn next_experiments(
 /// scatter to judge by.
 ///
 /// Each effect is taken at its usual size, the hardest of those of its sizes that show at all; what the model has is fitted.
-pub(crate) fn separating(ends: &Ends, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
+pub(crate) fn separating(ends: &Ends, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, FitError> {
     let [first, second] = [find(pair[0])?, find(pair[1])?];
     let model = with_one_of(model, [first, second])?;
     let fitted = Fitted::new(ends, &model)?;
@@ -81,12 +83,12 @@ fn has(model: &Model, entry: &Entry) -> bool {
 }
 
 /// The model with one of two effects at most: of two that are fitted, the first stays.
-pub(super) fn with_one_of(model: &Model, [first, second]: [&Entry; 2]) -> Result<Model, DiagnoseError> {
+pub(super) fn with_one_of(model: &Model, [first, second]: [&Entry; 2]) -> Result<Model, FitError> {
     if has(model, first) && has(model, second) { without(model, second) } else { Ok(model.clone()) }
 }
 
 /// The model without an effect of the catalogue.
-fn without(model: &Model, entry: &Entry) -> Result<Model, DiagnoseError> {
+fn without(model: &Model, entry: &Entry) -> Result<Model, FitError> {
     let mut rest = Model::new(model.robot());
     for part in model.parts().iter().filter(|part| part.effect.name() != entry.about.name) {
         *rest.add(part.effect.name())? = part.clone();
@@ -102,12 +104,12 @@ struct Offer {
 }
 
 impl Offer {
-    fn new(ends: &Ends, fitted: &Fitted, sizes: Vec<SizeOf>) -> Result<Option<Offer>, DiagnoseError> {
+    fn new(ends: &Ends, fitted: &Fitted, sizes: Vec<SizeOf>) -> Result<Option<Offer>, FitError> {
         let Some(noise) = Noise::of(ends, fitted) else { return Ok(None) };
         let today = Columns::of(&todays(ends), fitted, &sizes, &noise)?;
         let designs = designs(ends);
         let together = |design: &Design| Ok(today.with(&Columns::of(design, fitted, &sizes, &noise)?));
-        let columns = designs.par_iter().map(together).collect::<Result<_, DiagnoseError>>()?;
+        let columns = designs.par_iter().map(together).collect::<Result<_, FitError>>()?;
         Ok(Some(Offer { designs, columns, sizes }))
     }
 
@@ -179,10 +181,10 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(design: &Design, fitted: &Fitted, sizes: &[SizeOf], noise: &Noise) -> Result<Columns, DiagnoseError> {
+    fn of(design: &Design, fitted: &Fitted, sizes: &[SizeOf], noise: &Noise) -> Result<Columns, FitError> {
         let model = &fitted.model;
         let stages = design.stages(model.robot(), noise);
-        let names = super::ends::names(model);
+        let names = names(model);
         let own = fitted.free.iter().map(|index| names[*index]);
         let asked = own.chain(sizes.iter().map(|(effect, parameter)| (effect.about.name, parameter.name)));
         let numbers: Vec<Number> = asked.map(|(effect, parameter)| Number { effect, parameter, shape: None }).collect();

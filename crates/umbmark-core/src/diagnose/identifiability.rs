@@ -1,8 +1,9 @@
 //! Which parameters of a model an experiment determines at all, whatever its noise.
 
-use super::ends::{Ends, mirrored};
-use super::{DiagnoseError, candidates};
+use super::candidates;
 use crate::effect::Model;
+use crate::evidence::FitError;
+use crate::evidence::ends::{Ends, mirrored};
 use crate::fit::{RANK_TOLERANCE, null_directions};
 use crate::geometry::Pose2;
 use crate::path::{Direction, Path};
@@ -53,21 +54,21 @@ pub struct Identifiability {
 /// assert_eq!(one_way.rank, 1);
 /// assert!((one_way.hidden[0].ratio.unwrap() + 7.49).abs() < 0.01);
 /// assert_eq!(identifiability(&model, &Path::umbmark(), &Direction::BOTH, true)?.rank, 2);
-/// # Ok::<(), umbmark_core::diagnose::DiagnoseError>(())
+/// # Ok::<(), umbmark_core::diagnose::FitError>(())
 /// ```
 pub fn identifiability(
     model: &Model,
     path: &Path,
     directions: &[Direction],
     with_heading: bool,
-) -> Result<Identifiability, DiagnoseError> {
+) -> Result<Identifiability, FitError> {
     let tracks: Vec<Track> = directions.iter().map(|d| Track::in_pieces(path, *d, model.robot())).collect();
     let ends: Vec<(Direction, usize)> = directions.iter().copied().zip(0..).collect();
     of_tracks(model, &tracks.iter().collect::<Vec<_>>(), &ends, with_heading)
 }
 
 /// The same of measured runs.
-pub(super) fn of_ends(ends: &Ends, model: &Model) -> Result<Identifiability, DiagnoseError> {
+pub(super) fn of_ends(ends: &Ends, model: &Model) -> Result<Identifiability, FitError> {
     let tracks = ends.tracks(model.may_vary());
     let numbers: Vec<usize> = (0..tracks.len()).collect();
     let runs: Vec<(Direction, usize)> = ends.of_runs(&numbers).map(|(d, i)| (d, *i)).collect();
@@ -79,7 +80,7 @@ fn of_tracks(
     tracks: &[&Track],
     runs: &[(Direction, usize)],
     with_heading: bool,
-) -> Result<Identifiability, DiagnoseError> {
+) -> Result<Identifiability, FitError> {
     let nominal = model.at_rest();
     let mut asked = Vec::new();
     for part in model.parts() {

@@ -1,15 +1,16 @@
 //! Diagnoses of simulated tests, whose cause is known.
 
-use super::ends::{Asked, Ends, Family, Fitted, Moments};
+use super::ends::{Asked, Family, Moments};
 use super::*;
-use crate::calibrate::noise_shape;
-use crate::dataset::ReturnError;
-use crate::effect::Changes;
+use crate::dataset::{ReturnError, Run};
+use crate::effect::{Changes, TestKind};
+use crate::evidence::ends::Fitted;
+use crate::evidence::noise_shape;
 use crate::geometry::wrap;
 use crate::path::{Direction, FIGURE_EIGHT, Path, SpeedProfile};
 use crate::random::Stream;
 use crate::replay::Track;
-use crate::setup::Suspicion;
+use crate::setup::{Fault, Suspicion};
 use crate::stats::chi_squared_upper_tail;
 use nalgebra::{DVector, Vector3};
 use rayon::prelude::*;
@@ -384,12 +385,12 @@ fn a_typing_error_or_a_wrong_unit_is_never_explained() {
     let learnt = crate::learn::learn(&typed, &options).unwrap();
     assert!(learnt.verdict != Verdict::Explained && learnt.diagnosis.reasons[0].is_of_data());
     let models = [("fitted".to_owned(), told.model)];
-    let compared = crate::compare::compare(&typed, &models, &options).unwrap();
+    let compared = crate::compare::compare_returns(&typed, &models, &options).unwrap();
     assert!(!compared.models[0].explains(0.05) && compared.models[0].in_doubt);
     let in_mm = changed(&|_, own| (own.x, own.y) = (1e3 * own.x, 1e3 * own.y));
     let told = diagnose(&in_mm, &base(), &options).unwrap();
     assert_eq!(told.verdict, Verdict::NotExplained);
     assert!(matches!(told.reasons[..], [Reason::Fault(Fault::ReturnsIn { .. })]), "{:?}", told.reasons);
-    assert!(matches!(crate::learn::fit(&in_mm, &base()), Err(DiagnoseError::Faulty { .. })));
+    assert!(matches!(evidence::fit(&in_mm, &base()), Err(FitError::Faulty { .. })));
     assert_eq!(crate::learn::learn(&in_mm, &options).unwrap().verdict, Verdict::NotExplained);
 }

@@ -9,11 +9,9 @@
 //! Smooth functions of how the robot drives stand beside the catalogue: where one explains clearly more than the best
 //! effect does, something is missing that the catalogue does not list.
 
-mod alone;
 mod chance;
 mod curve;
 mod doubts;
-mod errors;
 mod examination;
 mod experiments;
 mod flips;
@@ -24,32 +22,28 @@ mod responses;
 mod search;
 mod smooth;
 mod suggestion;
-mod system;
 
 use super::{
-    Dependence, Detectable, DiagnoseError, Diagnosis, Estimate, Experiment, GoodnessOfFit, Identifiability, Level,
-    Likeness, Options, Reason, Remains, Suspect, Unseen, Verdict, Why, experiments::worth,
+    Dependence, Detectable, Diagnosis, Experiment, GoodnessOfFit, Identifiability, Likeness, Options, Reason, Remains,
+    Suspect, Unseen, Verdict, Why, experiments::worth,
 };
 use crate::diagnose::likeness::correlations;
 use crate::effect::Model;
+use crate::evidence::tracks::{Errors, LEAST_GAIN, Projected, System, estimates};
+use crate::evidence::{FitError, Level};
 use crate::likelihood::{Column, Fitted, Noise, Observed};
 use crate::stats::{chi_squared_upper_tail, normal_quantile};
 use crate::watch::Watch;
 use responses::Question;
 use smooth::Motion;
 use std::sync::Arc;
-use system::Projected;
 
-pub(crate) use alone::{Alone, trusted};
-pub use errors::Misses;
 pub(crate) use examination::Examination;
 pub(crate) use look::{Finding, class_of_own, p_of_own};
 pub use repeats::{Repeated, UnlistedLaw, what_repeats};
 pub(crate) use search::{Added, Found, Search, Wanted, search};
 pub use suggestion::Suggestion;
 
-/// Share by which errors in runs left out must fall for an effect to count: less is not worth a parameter.
-pub const LEAST_GAIN: f64 = 0.02;
 /// A smooth speaks for an unlisted effect where the best effect of the catalogue explains less than this share of it.
 const EXPLAINED: f64 = 0.85;
 /// Share by which errors in runs left out must fall for an unlisted effect to be spoken of.
@@ -83,7 +77,7 @@ pub(crate) fn dependence(exam: &Examination, finding: &Finding, asked: &[Suspect
 }
 
 /// Fits a model's free parameters to tracks and asks every other effect, and every smooth, whether it is missing.
-pub(crate) fn diagnose(fitted: Fitted, options: &Options) -> Result<Diagnosis, DiagnoseError> {
+pub(crate) fn diagnose(fitted: Fitted, options: &Options) -> Result<Diagnosis, FitError> {
     let mut search = Watch::nobody(|watch| search(fitted, options, (MOST, Wanted::Listed), Vec::new(), watch))?;
     let verdict = verdict(&search);
     let repeats = search.repeats(options).cloned();
@@ -172,8 +166,8 @@ pub(crate) fn doubts_as_written(
     let chain = fixed.model.chain();
     let columns: Vec<Vec<_>> = fixed.observed.runs.iter().map(|run| vec![run.residuals_along(&chain)]).collect();
     let noise = Noise::estimate(&fixed.observed, &chain, &columns, &fixed.noise);
-    let system = system::System::new(&fixed.observed, &noise, &columns);
-    let errors = errors::Errors::new(&fixed.observed, &system, &columns, vec![0]);
+    let system = System::new(&fixed.observed, &noise, &columns);
+    let errors = Errors::new(&fixed.observed, &system, &columns, vec![0]);
     let mut reasons = doubts::of_model(&fixed.observed, model, &noise, &errors.in_sample(), options.seed);
     let repeated = what_repeats(&fixed.observed, model, &noise, &columns, options.seed);
     reasons.extend(
@@ -186,10 +180,7 @@ pub(crate) fn doubts_as_written(
 }
 
 /// Drives that would tell apart the members of a certified class, and for those that none does, what their own pages say.
-pub(crate) fn next_experiments(
-    exam: &Examination,
-    added: &Added,
-) -> Result<(Vec<Experiment>, Vec<String>), DiagnoseError> {
+pub(crate) fn next_experiments(exam: &Examination, added: &Added) -> Result<(Vec<Experiment>, Vec<String>), FitError> {
     let Added { suspect, by } = added;
     let finding = match by {
         Found::Listed(finding) => finding,
@@ -212,7 +203,7 @@ pub(crate) fn next_experiments(
 }
 
 /// Every drive on offer for telling two effects apart, together with these tracks.
-pub(crate) fn separating(fitted: Fitted, pair: [&'static str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
+pub(crate) fn separating(fitted: Fitted, pair: [&'static str; 2]) -> Result<Vec<Experiment>, FitError> {
     experiments::separating(&Examination::new(fitted)?, pair)
 }
 
@@ -244,7 +235,7 @@ pub(crate) fn conclude(
     exam: Examination,
     dependence: Option<Dependence>,
     options: &Options,
-) -> Result<Diagnosis, DiagnoseError> {
+) -> Result<Diagnosis, FitError> {
     let (invisible, minimum_detectable) = visibility(&exam);
     Ok(Diagnosis {
         level: Level::Tracks,
@@ -271,24 +262,6 @@ pub(crate) fn conclude(
         dependence,
         model: exam.fitted.model,
     })
-}
-
-/// The fitted parameters with their standard errors.
-pub(crate) fn estimates(fitted: &Fitted) -> Vec<Estimate> {
-    let model = &fitted.model;
-    let names = model
-        .parts()
-        .iter()
-        .flat_map(|part| part.effect.parameters().iter().map(|parameter| (part.effect.name(), parameter.name)));
-    let (names, values): (Vec<_>, Vec<f64>) = (names.collect(), model.values().collect());
-    let of = |(k, index): (usize, &usize)| Estimate {
-        effect: names[*index].0,
-        parameter: names[*index].1,
-        value: values[*index],
-        standard_error: fitted.covariance.as_ref().map_or(f64::NAN, |c| c[(k, k)].max(0.0).sqrt()),
-        degrees_of_freedom: (system::folds_of(&fitted.observed).max(2) - 1) as f64,
-    };
-    fitted.free.iter().enumerate().map(of).collect()
 }
 
 /// What the data cannot see, and the least that it would see.
@@ -419,20 +392,5 @@ fn remarks(exam: &Examination, unlisted: Option<&Dependence>) -> Vec<String> {
     remarks
 }
 
-/// Fits the free parameters of a model to what is new from pose to pose, beginning with what the motion says of the reference.
-pub(crate) fn fit(observed: &Observed, model: &Model) -> Result<Fitted, DiagnoseError> {
-    if !observed.setup.is_sound() {
-        return Err(DiagnoseError::Faulty { faults: observed.setup.faults.clone() });
-    }
-    observed.tracks().try_for_each(|track| track.check(model))?;
-    let (model, taken) = observed.begin(model)?;
-    let fitted = Fitted { taken, ..observed.fit(&model, &Noise::default(), &[])? };
-    // Where the size of a formula began at 0, its shape shows only now.
-    if model.has_formulas() && observed.free_values(&fitted.model).len() > fitted.free.len() {
-        return Ok(Fitted { taken: fitted.taken, ..observed.fit(&fitted.model, &fitted.noise, &[])? });
-    }
-    Ok(fitted)
-}
-
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -2,7 +2,7 @@
 
 use super::ends;
 use super::setup::{setup, taken};
-use crate::calibrate::{Calibration, Estimate, Level, Method, Ratio, Replayed};
+use crate::calibrate::{Calibration, Estimate, Method, Ratio, Replayed};
 use crate::drive::Robot;
 use serde_json::{Map, Value, json};
 
@@ -14,7 +14,7 @@ pub fn calibration(robot: &Robot, calibration: &Calibration, level: f64) -> Valu
         .collect();
     json!({
         "methods": methods,
-        "observed": level_name(calibration.level),
+        "observed": calibration.level.name(),
         "heading_arm_m": calibration.heading_arm,
         "level": level,
         "setup": setup(&calibration.setup),
@@ -23,13 +23,6 @@ pub fn calibration(robot: &Robot, calibration: &Calibration, level: f64) -> Valu
         "warnings": calibration.warnings,
         "version": crate::VERSION,
     })
-}
-
-fn level_name(level: Level) -> &'static str {
-    match level {
-        Level::Ends => "end_poses",
-        Level::Tracks => "tracks",
-    }
 }
 
 fn estimate_json(robot: &Robot, estimate: &Estimate, level: f64) -> Value {

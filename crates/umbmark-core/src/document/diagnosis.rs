@@ -7,25 +7,21 @@ use super::setup::{reasons, setup, taken};
 use super::square::square;
 use super::{finite, model::model};
 use crate::diagnose::{
-    CurvePoint, Dependence, Detectable, Diagnosis, Estimate, Experiment, Identifiability, Level, Options, Suspect,
-    Unseen, Why,
+    CurvePoint, Dependence, Detectable, Diagnosis, Experiment, Identifiability, Options, Suspect, Unseen, Why,
 };
 use crate::drive::Robot;
 use crate::effect::effects_text;
+use crate::evidence::Estimate;
 use serde_json::{Map, Value, json};
 
 /// A diagnosis.
 pub fn diagnosis(diagnosis: &Diagnosis, options: &Options) -> Value {
-    let level = match diagnosis.level {
-        Level::Ends => "end_poses",
-        Level::Tracks => "tracks",
-    };
     let gof = diagnosis.goodness_of_fit.iter().map(
         |g| json!({ "name": g.name, "statistic": g.statistic, "degrees_of_freedom": g.degrees_of_freedom, "p": g.p }),
     );
     let mut document = json!({
         "verdict": diagnosis.verdict.name(),
-        "observed": level,
+        "observed": diagnosis.level.name(),
         "fitted": estimates(&diagnosis.fitted, 1.0 - options.size),
         "goodness_of_fit": gof.collect::<Vec<_>>(),
         "ranking": diagnosis.ranking.iter().map(|s| suspect_json(s, diagnosis.model.robot())).collect::<Vec<_>>(),

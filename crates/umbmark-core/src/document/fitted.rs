@@ -2,9 +2,9 @@
 
 use super::setup::{setup, taken};
 use super::{ends, finite, model::model};
-use crate::diagnose::Estimate;
 use crate::effect::Model;
-use crate::learn::Fit;
+use crate::evidence::Estimate;
+use crate::evidence::Fit;
 use crate::likelihood::Outlier;
 use serde_json::{Map, Value, json};
 

@@ -1,76 +1,240 @@
-//! Learning from return poses.
+//! Learning from return poses: the model is fitted anew to all runs and without each of them.
 
-use super::{Evidence, Squares};
-use crate::diagnose::ends::{self, Ends, Fitted, Moments};
-use crate::diagnose::{self, DiagnoseError, Diagnosis, Estimate};
-use crate::effect::Model;
+use super::{Error, Learnt, MOST, Step};
+use crate::diagnose::ends::{self, Moments};
+use crate::diagnose::{Diagnosis, Options, Suspect};
+use crate::drive::Robot;
+use crate::effect::{Model, Part};
+use crate::evidence::ends::Fitted;
+use crate::evidence::{Ends, Evidence, FitError};
+use crate::watch::Watch;
 use nalgebra::DVector;
+use rayon::prelude::*;
+use std::sync::Arc;
 
-impl Evidence for Ends {
-    fn nominal(&self) -> Model {
-        Model::new(&self.robot)
+/// Learns which effects the robot of some return poses has, beside those of a `start`.
+pub(super) fn learn(ends: &Ends, start: &Model, options: &Options, watch: &Watch) -> Result<Learnt, FitError> {
+    let mut story = Story::new(ends);
+    if !ends.is_sound() {
+        return Ok(Learnt::of_faults(ends, story.steps));
+    }
+    if ends.counts().iter().all(|n| *n > 1) {
+        let first = story.model.robot().drive.first_effects();
+        for effect in &first[..2] {
+            story.add(&free_part(&ends.robot, effect)?)?;
+        }
+    }
+    for part in start.parts().iter().filter(|part| !story.has(part)).cloned().collect::<Vec<_>>() {
+        story.add(&part)?;
+    }
+    let mut remarks = Vec::new();
+    let mut diagnosis = ends::diagnose(ends, &story.model, options)?;
+    let mut partial = false;
+    while story.model.parts().len() < MOST {
+        (watch.progress)(story.model.parts().len() as f64 / MOST as f64);
+        let Some(suspect) = diagnosis.certified().first().cloned() else { break };
+        partial = watch.is_stopped();
+        if partial {
+            break;
+        }
+        let why = match story.grown_by(&suspect, options) {
+            Ok(Some(further)) => {
+                (story, diagnosis) = further;
+                continue;
+            }
+            Ok(None) => "runs that are left out are predicted no better with it".to_owned(),
+            // A model that cannot be fitted or tested is skipped.
+            Err(error @ (FitError::NotConverged { .. } | FitError::OutOfBounds { .. })) => error.to_string(),
+            Err(error) => return Err(error),
+        };
+        let class = suspect.class.join(" or ");
+        remarks.push(format!("{class} is certified (p = {:.3}) but was not added: {why}.", suspect.p_adjusted));
+        break;
+    }
+    remarks.extend(diagnosis.remarks.iter().cloned());
+    let (steps, model, verdict) = (story.steps, story.model, diagnosis.verdict);
+    Ok(Learnt { steps, verdict, model, diagnosis, remarks, partial })
+}
+
+/// A model as it grows, on all runs and without each of them.
+pub(super) struct Story<'a> {
+    ends: &'a Ends,
+    folds: Arc<Vec<Ends>>,
+    model: Model,
+    fold_models: Vec<Model>,
+    steps: Vec<Step>,
+}
+
+impl<'a> Story<'a> {
+    pub fn new(ends: &'a Ends) -> Story<'a> {
+        let nominal = Model::new(&ends.robot);
+        let folds: Vec<Ends> = (0..ends.runs.len()).map(|run| without(ends, run)).collect();
+        let fold_models = vec![nominal.clone(); folds.len()];
+        let folds = Arc::new(folds);
+        let mut story = Story { ends, folds, model: nominal, fold_models, steps: Vec::new() };
+        story.tell(None, Vec::new(), None);
+        story
     }
 
-    fn runs(&self) -> usize {
-        self.runs.len()
+    pub fn last(&self) -> &Step {
+        &self.steps[self.steps.len() - 1]
     }
 
-    fn without(&self, run: usize) -> Ends {
-        let mut rest = self.clone();
-        rest.runs.remove(run);
-        rest
+    /// Whether the model has an effect of this name.
+    fn has(&self, part: &Part) -> bool {
+        self.model.parts().iter().any(|own| own.effect.name() == part.effect.name())
     }
 
-    fn both_ways(&self) -> bool {
-        self.counts().iter().all(|n| *n > 1)
+    /// Adds an effect everywhere, without asking.
+    pub fn add(&mut self, part: &Part) -> Result<(), FitError> {
+        let folds = self.folds.par_iter().zip(&self.fold_models);
+        self.fold_models = folds.map(|(fold, model)| grown(fold, model, part)).collect::<Result<_, _>>()?;
+        self.model = grown(self.ends, &self.model, part)?;
+        let effect = part.effect.name();
+        self.tell(Some(effect), vec![effect], None);
+        Ok(())
     }
 
-    fn fit(&self, model: &Model) -> Result<(Model, Vec<Estimate>), DiagnoseError> {
-        Fitted::new(self, model).map(|fitted| (fitted.model, fitted.estimates))
+    /// The story with a certified effect more, and what is then missing, where runs left out are predicted better with it.
+    fn grown_by(&self, suspect: &Suspect, options: &Options) -> Result<Option<(Story<'a>, Diagnosis)>, FitError> {
+        let candidate = self.with_likeliest(suspect.best, suspect.class.clone(), suspect.p_adjusted)?;
+        if candidate.last().held_out.weighted >= self.last().held_out.weighted {
+            return Ok(None);
+        }
+        let diagnosis = ends::diagnose(self.ends, &candidate.model, options)?;
+        Ok(Some((candidate, diagnosis)))
     }
 
-    fn diagnose(&self, model: &Model, options: &diagnose::Options) -> Result<Diagnosis, DiagnoseError> {
-        ends::diagnose(self, model, options)
+    /// The story in which all runs add `effect`, and each fold what it finds likeliest on its own.
+    fn with_likeliest(&self, effect: &'static str, class: Vec<&'static str>, p: f64) -> Result<Story<'a>, FitError> {
+        let folds = self.folds.par_iter().zip(&self.fold_models);
+        let choose = |(fold, model): (&Ends, &Model)| match ends::likeliest(fold, model)? {
+            Some(own) => match grown(fold, model, &free_part(&fold.robot, own)?) {
+                // Without this run, that effect cannot be fitted.
+                Err(FitError::NotConverged { .. } | FitError::OutOfBounds { .. }) => Ok(model.clone()),
+                fitted => fitted,
+            },
+            None => Ok(model.clone()),
+        };
+        let mut further = Story {
+            ends: self.ends,
+            folds: self.folds.clone(),
+            model: grown(self.ends, &self.model, &free_part(&self.ends.robot, effect)?)?,
+            fold_models: folds.map(choose).collect::<Result<_, _>>()?,
+            steps: self.steps.clone(),
+        };
+        further.tell(Some(effect), class, Some(p));
+        Ok(further)
     }
 
-    fn likeliest(&self, model: &Model) -> Result<Option<&'static str>, DiagnoseError> {
-        ends::likeliest(self, model)
+    fn tell(&mut self, added: Option<&'static str>, class: Vec<&'static str>, p_adjusted: Option<f64>) {
+        let total = |squares: &dyn Fn(usize) -> Squares| {
+            (0..self.ends.runs.len()).map(squares).fold(Squares::default(), Squares::add).error()
+        };
+        let criteria = criteria(self.ends, &self.model);
+        self.steps.push(Step {
+            added,
+            class,
+            p_adjusted,
+            law: None,
+            error: total(&|run| squares(self.ends, &self.model, run)),
+            held_out: total(&|run| squares(self.ends, &self.fold_models[run], run)),
+            aicc: criteria.map(|c| c[0]),
+            bic: criteria.map(|c| c[1]),
+        });
     }
+}
 
-    fn squares(&self, model: &Model, run: usize) -> Squares {
-        let residual = self.residuals(model)[run];
-        let weighted = self.runs[run].weight * residual;
+/// An effect of the catalogue, free, at the values where it does nothing.
+pub(super) fn free_part(robot: &Robot, effect: &str) -> Result<Part, FitError> {
+    let mut model = Model::new(robot);
+    let part = model.add(effect).map_err(FitError::Model)?;
+    part.free = true;
+    Ok(part.clone())
+}
+
+/// A model with an effect more, fitted.
+fn grown(ends: &Ends, model: &Model, part: &Part) -> Result<Model, FitError> {
+    let mut grown = model.clone();
+    grown.adopt(part);
+    Ok(Fitted::new(ends, &grown)?.model)
+}
+
+/// Sums of squared errors of some poses.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Squares {
+    positions: usize,
+    position: f64,
+    headings: usize,
+    heading: f64,
+    /// Σ |W r|² and the number of its terms.
+    weighted: f64,
+    weights: usize,
+}
+
+impl Squares {
+    fn add(self, other: Squares) -> Squares {
         Squares {
-            positions: 1,
-            position: residual.xy().norm_squared(),
-            headings: usize::from(self.with_heading),
-            heading: residual.z * residual.z,
-            weighted: weighted.rows(0, self.coordinates()).norm_squared(),
-            weights: self.coordinates(),
+            positions: self.positions + other.positions,
+            position: self.position + other.position,
+            headings: self.headings + other.headings,
+            heading: self.heading + other.heading,
+            weighted: self.weighted + other.weighted,
+            weights: self.weights + other.weights,
         }
     }
 
-    /// From the normal likelihood of N runs with one unknown covariance: N ln |Σ̂| and 2k or k ln N for k parameters.
-    fn criteria(&self, model: &Model) -> Option<[f64; 2]> {
-        let d = self.coordinates();
-        let fitted = Fitted::new(self, model).ok()?;
-        let of_run = |r: &nalgebra::Vector3<f64>| DVector::from_column_slice(&r.as_slice()[..d]);
-        let runs: Vec<_> =
-            self.runs.iter().zip(&fitted.residuals).map(|(run, r)| (run.direction as usize, of_run(r))).collect();
-        let moments = Moments::of(&runs);
-        let n = runs.len() as f64;
-        let mut covariance = moments.scatter.clone();
-        for group in 0..2 {
-            covariance.ger(moments.count(group), &moments.means[group], &moments.means[group], 1.0);
+    fn error(&self) -> Error {
+        let root = |sum: f64, count: usize| (sum / count.max(1) as f64).sqrt();
+        Error {
+            position: root(self.position, self.positions),
+            heading: (self.headings > 0).then(|| root(self.heading, self.headings)),
+            weighted: root(self.weighted, self.weights),
         }
-        let determinant = (covariance / n).cholesky()?.determinant();
-        let (values, parameters) = (n * d as f64, (fitted.free.len() + d * (d + 1) / 2) as f64);
-        let spare = values - parameters - 1.0;
-        if !(determinant > 0.0) || spare <= 0.0 {
-            return None;
-        }
-        let deviance = n * libm::log(determinant);
-        let aicc = deviance + 2.0 * parameters * values / spare;
-        Some([aicc, deviance + parameters * libm::log(n)])
     }
+}
+
+/// The same return poses without one run.
+fn without(ends: &Ends, run: usize) -> Ends {
+    let mut rest = ends.clone();
+    rest.runs.remove(run);
+    rest
+}
+
+/// Errors of one run.
+fn squares(ends: &Ends, model: &Model, run: usize) -> Squares {
+    let residual = ends.residuals(model)[run];
+    let weighted = ends.runs[run].weight * residual;
+    Squares {
+        positions: 1,
+        position: residual.xy().norm_squared(),
+        headings: usize::from(ends.with_heading),
+        heading: residual.z * residual.z,
+        weighted: weighted.rows(0, ends.coordinates()).norm_squared(),
+        weights: ends.coordinates(),
+    }
+}
+
+/// AICc and BIC, where there are runs enough. From the normal likelihood of N runs with one unknown covariance: N ln |Σ̂| and 2k or k ln N for k parameters.
+fn criteria(ends: &Ends, model: &Model) -> Option<[f64; 2]> {
+    let d = ends.coordinates();
+    let fitted = Fitted::new(ends, model).ok()?;
+    let of_run = |r: &nalgebra::Vector3<f64>| DVector::from_column_slice(&r.as_slice()[..d]);
+    let runs: Vec<_> =
+        ends.runs.iter().zip(&fitted.residuals).map(|(run, r)| (run.direction as usize, of_run(r))).collect();
+    let moments = Moments::of(&runs);
+    let n = runs.len() as f64;
+    let mut covariance = moments.scatter.clone();
+    for group in 0..2 {
+        covariance.ger(moments.count(group), &moments.means[group], &moments.means[group], 1.0);
+    }
+    let determinant = (covariance / n).cholesky()?.determinant();
+    let (values, parameters) = (n * d as f64, (fitted.free.len() + d * (d + 1) / 2) as f64);
+    let spare = values - parameters - 1.0;
+    if !(determinant > 0.0) || spare <= 0.0 {
+        return None;
+    }
+    let deviance = n * libm::log(determinant);
+    let aicc = deviance + 2.0 * parameters * values / spare;
+    Some([aicc, deviance + parameters * libm::log(n)])
 }

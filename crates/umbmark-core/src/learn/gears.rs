@@ -1,11 +1,10 @@
 //! Calibration of any drive: its first effects fitted, and the robot that follows.
 
-use super::{Fit, fit};
-use crate::calibrate::CalibrateError;
 use crate::dataset::{Dataset, ReturnError};
-use crate::diagnose::{DiagnoseError, Estimate, Identifiability, first_model, identifiability};
+use crate::diagnose::{Identifiability, first_model, identifiability};
 use crate::drive::{DriveError, Robot};
 use crate::effect::{Model, TestKind};
+use crate::evidence::{Estimate, Fit, FitError, fit, robot_of};
 use crate::path::{Direction, Path};
 use crate::replay::Track;
 use crate::score::summarise;
@@ -44,7 +43,7 @@ impl GearCalibration {
 pub enum GearError {
     /// The fit.
     #[error(transparent)]
-    Fit(#[from] DiagnoseError),
+    Fit(#[from] FitError),
     /// A correction that leaves no possible robot.
     #[error("the fitted values belong to no robot ({0}); are signs, units and directions right?")]
     Drive(#[from] DriveError),
@@ -52,7 +51,7 @@ pub enum GearError {
 
 /// Calibrates a robot of any drive from its regular runs.
 pub fn calibrate_gears(data: &Dataset) -> Result<GearCalibration, GearError> {
-    let robot = data.robot.as_ref().ok_or(DiagnoseError::Evidence(CalibrateError::NoRobot))?;
+    let robot = robot_of(data)?;
     let asked = first_model(data)?;
     let Fit { model, estimates, .. } = fit(data, &asked)?;
     let shown = |effect: &str| estimates.iter().any(|e| e.effect == effect);
@@ -60,7 +59,7 @@ pub fn calibrate_gears(data: &Dataset) -> Result<GearCalibration, GearError> {
     let mut all = model.clone();
     let mut values = [0.0; 3];
     for (value, effect) in values.iter_mut().zip(first) {
-        *value = all.add(effect).map_err(DiagnoseError::from)?.values[0];
+        *value = all.add(effect).map_err(FitError::from)?.values[0];
     }
     let corrected = Robot { drive: robot.drive.corrected(values)?, ..robot.clone() };
     let directions: Vec<Direction> = Direction::BOTH

@@ -1,12 +1,14 @@
 //! What is learnt from simulated tests, whose cause is known.
 
+use super::ends::{Story, free_part};
 use super::*;
-use crate::diagnose::ends::Ends;
 use crate::diagnose::tests::{margin, robot_with, simulated, trials};
 use crate::diagnose::{Options, base_model};
 use crate::drive::Robot;
+use crate::evidence::{Ends, Fit, fit};
 use crate::likelihood::watched::watched;
 use crate::path::Path;
+use rayon::prelude::*;
 use std::io::Write;
 use std::sync::atomic::AtomicBool;
 
@@ -16,7 +18,7 @@ fn nothing_is_added_to_a_complete_model_but_for_one_in_twenty() {
     let trials = trials(100);
     let data = simulated(&robot_with(&[]), &Path::umbmark(), 5, 29, 0..trials);
     let options = Options { draws: 499, ..Options::default() };
-    let learnt: Vec<Result<Learnt, DiagnoseError>> = data.par_iter().map(|data| learn(data, &options)).collect();
+    let learnt: Vec<Result<Learnt, FitError>> = data.par_iter().map(|data| learn(data, &options)).collect();
     let failed: Vec<_> = learnt.iter().enumerate().filter_map(|(trial, l)| Some((trial, l.as_ref().err()?))).collect();
     let added = learnt.iter().flatten().filter(|learnt| learnt.steps.len() > 3).count();
     let share = added as f64 / trials as f64;
@@ -37,9 +39,9 @@ fn an_effect_after_which_nothing_can_be_asked_is_not_added_and_the_story_is_told
 /// Held-out error of a model with some effects more, the same in every fold.
 fn held_out(data: &Dataset, effects: &[&'static str]) -> Error {
     let ends = Ends::new(data).unwrap();
-    let mut story = Story::new(&ends, ends.nominal()).unwrap();
+    let mut story = Story::new(&ends);
     for effect in ["wheel_diameter_ratio", "wheelbase"].iter().chain(effects) {
-        story.add(&free_part(&ends, effect).unwrap()).unwrap();
+        story.add(&free_part(&ends.robot, effect).unwrap()).unwrap();
     }
     story.last().held_out
 }
@@ -58,7 +60,7 @@ fn adding_the_true_effect_lowers_the_error_left_out_and_adding_a_wrong_one_does_
             let ends = Ends::new(data).unwrap();
             let model = base_model(&Robot::labmate()).unwrap();
             let options = Options { draws: 299, ..Options::default() };
-            let found = ends.diagnose(&model, &options).unwrap().certified().first().cloned()?;
+            let found = diagnose::ends::diagnose(&ends, &model, &options).unwrap().certified().first().cloned()?;
             let error = |effects: &[&'static str]| held_out(data, effects).weighted;
             let (before, with, other) = (error(&[]), error(&["floor_slope"]), wrong[i % wrong.len()]);
             let alone = error(&[other]);
@@ -93,7 +95,7 @@ fn the_story_goes_from_the_nominal_robot_by_e_d_and_e_b_to_the_class() {
     // Fresh runs of the same robot are explained by what was learnt; E_d and E_b alone do not explain them.
     let fresh = simulated(&truth, &Path::umbmark(), 5, 38, 0..1).remove(0);
     let models = [("learnt".into(), learnt.model.clone()), ("nominal".into(), Model::new(&Robot::labmate()))];
-    let compared = crate::compare::compare(&fresh, &models, &Options::default()).unwrap();
+    let compared = crate::compare::compare_returns(&fresh, &models, &Options::default()).unwrap();
     assert!(compared.models[0].explains(0.05), "{:?}", compared.models[0]);
     assert!(!compared.models[1].explains(0.05) && compared.models[0].rmse < compared.models[1].rmse);
     assert!(compared.models[1].sentences[1].starts_with("ccw runs: not explained: mean x"));

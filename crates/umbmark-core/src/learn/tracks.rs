@@ -1,9 +1,11 @@
 //! Learning from tracks: the same story, told from products of columns instead of one fit for each fold.
 
 use super::{Error, Learnt, MOST, Step};
-use crate::diagnose::tracks::{self, Added, Alone, Found, LEAST_GAIN, Misses, Search, Wanted};
-use crate::diagnose::{DiagnoseError, Diagnosis, Estimate, Level, Options, Reason, Verdict};
+use crate::diagnose::tracks::{self, Added, Found, Search, Wanted};
+use crate::diagnose::{Diagnosis, Options, Reason, Verdict};
 use crate::effect::{Model, Part, find};
+use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit};
+use crate::evidence::{Estimate, Evidence, FitError};
 use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE};
 use crate::watch::Watch;
 
@@ -19,17 +21,11 @@ const WORSE: f64 = 1.5;
 const ENOUGH_RUNS: usize = 5;
 
 /// Learns which effects the robot of some tracks has, beside those of a `start`.
-pub(super) fn learn(
-    observed: &Observed,
-    start: &Model,
-    options: &Options,
-    watch: &Watch,
-) -> Result<Learnt, DiagnoseError> {
+pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch: &Watch) -> Result<Learnt, FitError> {
     let mut model = Model::new(&observed.robot);
     let mut steps = vec![step(plainly(observed, &model)?, None)];
-    if !observed.setup.is_sound() {
-        let diagnosis = Diagnosis::of_faults(&observed.setup, &model, Level::Tracks);
-        return Ok(Learnt { steps, verdict: diagnosis.verdict, model, diagnosis, remarks: Vec::new(), partial: false });
+    if !observed.is_sound() {
+        return Ok(Learnt::of_faults(observed, steps));
     }
     let mut add = |model: &mut Model, effect: &'static str, p: Option<f64>, fitted: Fitted| {
         *model = fitted.model.clone();
@@ -57,10 +53,10 @@ pub(super) fn learn(
     let own: Vec<&str> = given.iter().filter(|part| part.free).map(|part| part.effect.name()).collect();
     for part in given {
         model.adopt(part);
-        let fitted = tracks::fit(observed, &model)?;
+        let fitted = fit(observed, &model)?;
         add(&mut model, part.effect.name(), None, fitted);
     }
-    let fitted = Fitted { taken, ..tracks::fit(observed, &model)? };
+    let fitted = Fitted { taken, ..fit(observed, &model)? };
     let not_shown = observed.robot.drive.first_effects().into_iter().filter(|effect| !first.contains(effect));
     let search = tracks::search(fitted, options, (MOST, Wanted::All), not_shown.collect(), watch)?;
     let of_reference = |step: &&mut Step| {
@@ -124,7 +120,7 @@ fn uncertified(effect: &str, step: &Step, before: &Error, options: &Options) -> 
 }
 
 /// Those of the first effects of the robot's drive that the runs say anything of, beside what is in a model.
-fn shown(observed: &Observed, model: &Model) -> Result<Vec<&'static str>, DiagnoseError> {
+fn shown(observed: &Observed, model: &Model) -> Result<Vec<&'static str>, FitError> {
     let mut first = observed.robot.drive.first_effects().to_vec();
     loop {
         let mut with = model.clone();
@@ -140,7 +136,7 @@ fn shown(observed: &Observed, model: &Model) -> Result<Vec<&'static str>, Diagno
 /// Whether the runs say anything of an effect that every robot is asked for: that it is something, or that it is less than
 /// so many times its usual size.
 fn is_shown(fitted: &Fitted, effect: &str) -> bool {
-    let own = tracks::estimates(fitted).into_iter().find(|e| e.effect == effect);
+    let own = estimates(fitted).into_iter().find(|e| e.effect == effect);
     let parameter = find(effect).ok().and_then(|entry| entry.about.parameters.first());
     let Some((own, parameter)) = own.zip(parameter) else { return false };
     let nothing = parameter.default.resolve(fitted.model.robot());
@@ -155,7 +151,7 @@ fn is_shown(fitted: &Fitted, effect: &str) -> bool {
 const FAR_WORSE: f64 = 5.0;
 
 /// The story's end: the diagnosis of the model that was learnt.
-fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Learnt, DiagnoseError> {
+fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Learnt, FitError> {
     let told = search.left.smooth.as_ref().and_then(|f| tracks::dependence(search.last(), f, &search.left.asked));
     let more = search.left.effect.is_some();
     let (mut experiments, mut hints) = (Vec::new(), Vec::new());
@@ -178,7 +174,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         format!("{effect} is significant, and with it runs that are left out are predicted worse; it was not added.")
     }));
     let (left, harmful, runs) = (search.left, search.harmful, search.exams[0].fitted.observed.runs.len());
-    let Some(last) = search.exams.pop() else { return Err(DiagnoseError::NotConverged { how: "has no model" }) };
+    let Some(last) = search.exams.pop() else { return Err(FitError::NotConverged { how: "has no model" }) };
     let written = search.written.pop().map_or_else(|| last.fitted.clone(), Alone::into_fitted);
     let (first, end) = (&steps[0], &steps[steps.len() - 1]);
     if runs >= ENOUGH_RUNS && end.held_out.position > WORSE * first.held_out.position {
@@ -214,7 +210,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         remarks.push(USUAL_NOISE.to_owned());
     }
     experiments.extend(diagnosis.next_experiments);
-    let (model, fitted) = (written.model.clone(), tracks::estimates(&written));
+    let (model, fitted) = (written.model.clone(), estimates(&written));
     remarks.extend(kept(&model, &fitted));
     let diagnosis = Diagnosis {
         verdict,
@@ -255,7 +251,7 @@ fn kept<'a>(model: &'a Model, fitted: &'a [Estimate]) -> impl Iterator<Item = St
 }
 
 /// A model fitted under noise of the usual size: enough for its errors.
-fn plainly(observed: &Observed, model: &Model) -> Result<Fitted, DiagnoseError> {
+fn plainly(observed: &Observed, model: &Model) -> Result<Fitted, FitError> {
     let mut fitted = observed.unfitted(model, &Noise::default());
     // The second time the noise grows along the poses of the first.
     fitted.refit()?;

@@ -2,8 +2,8 @@
 
 use super::Setting;
 use crate::dataset::{Dataset, ReturnError, Run};
-use crate::diagnose::ends::mirrored;
 use crate::effect::TestKind;
+use crate::evidence::ends::mirrored;
 use crate::path::Direction;
 use nalgebra::Vector3;
 

@@ -2,7 +2,7 @@
 
 use super::Setting;
 use crate::dataset::ReturnError;
-use crate::diagnose::ends::mirrored;
+use crate::evidence::ends::mirrored;
 use crate::path::Direction;
 use crate::random::Stream;
 use crate::score::{Scatter, e_max_sys_interval, noise_band, summarise};

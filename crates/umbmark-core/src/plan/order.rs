@@ -3,7 +3,7 @@
 use super::expected::displaced;
 use super::{PlanError, Setting, Sought, means};
 use crate::diagnose::base_model;
-use crate::diagnose::ends::{Ends, Fitted};
+use crate::evidence::ends::{Ends, Fitted};
 use crate::geometry::wrap;
 use crate::path::Direction;
 use nalgebra::Vector3;

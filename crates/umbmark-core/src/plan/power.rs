@@ -10,10 +10,12 @@
 
 use super::expected::expected_dataset;
 use super::{Options, PlanError, Setting};
-use crate::diagnose::ends::{Asked, Ends, Family, Fitted, Moments, Unit, statistics};
-use crate::diagnose::{Estimate, Unseen, Why, base_model};
+use crate::diagnose::ends::{Asked, Family, Moments, Unit, statistics};
+use crate::diagnose::{Unseen, Why, base_model};
 use crate::drive::Robot;
 use crate::effect::{CATALOGUE, Entry, ModelError};
+use crate::evidence::Estimate;
+use crate::evidence::ends::{Ends, Fitted};
 use crate::parameter::{Parameter, nearest};
 use crate::random::Stream;
 use crate::score::FEWEST_RUNS;

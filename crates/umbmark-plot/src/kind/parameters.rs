@@ -1,7 +1,7 @@
 //! The numbers of a model with their intervals.
 
-use umbmark_core::diagnose::Estimate;
 use umbmark_core::effect::{Model, find};
+use umbmark_core::evidence::Estimate;
 use umbmark_core::stats::student_t_quantile;
 
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};

@@ -1,6 +1,7 @@
 //! The study in one sentence.
 
-use umbmark_core::diagnose::{Diagnosis, Level, Verdict};
+use umbmark_core::diagnose::{Diagnosis, Verdict};
+use umbmark_core::evidence::Level;
 
 use crate::study::Study;
 

@@ -33,7 +33,10 @@ fn exchanged_wheels_are_refused_with_the_line_that_mends_them() {
         std::mem::swap(&mut log.left, &mut log.right);
     }
     let error = calibrate(&data, &Options::default()).unwrap_err();
-    assert!(matches!(&error, CalibrateError::Faulty { faults } if faults[0] == Fault::Exchanged), "{error}");
+    assert!(
+        matches!(&error, CalibrateError::Fit(FitError::Faulty { faults }) if faults[0] == Fault::Exchanged),
+        "{error}"
+    );
     assert!(error.to_string().contains("wheels_exchanged = true"), "{error}");
 }
 
@@ -83,7 +86,7 @@ fn a_wheelbase_that_is_off_by_two_is_found() {
         let found = exact(&tracked).1;
         assert!((found.e_b / e_b - 1.0).abs() < 5e-3, "{e_b}: {found:?}");
         let first = crate::diagnose::first_model(&tracked).unwrap();
-        let fitted = crate::learn::fit(&tracked, &first).unwrap().model;
+        let fitted = crate::evidence::fit(&tracked, &first).unwrap().model;
         assert!((fitted.get("wheelbase", "e_b").unwrap() / e_b - 1.0).abs() < 5e-3, "{e_b}");
     }
     // At 0.5 a square is a line there and back, and its ends are those of another robot too.
@@ -93,7 +96,7 @@ fn a_wheelbase_that_is_off_by_two_is_found() {
         assert!((found.e_b / e_b - 1.0).abs() < 1e-6 && (found.e_d - 1.003).abs() < 1e-6, "{e_b}: {found:?}");
         assert!(calibration.doubts.is_empty(), "{:?}", calibration.doubts);
         let mut model = crate::diagnose::base_model(&Robot::labmate()).unwrap();
-        model = crate::learn::fit(&noise_free(&truth), &model).unwrap().model;
+        model = crate::evidence::fit(&noise_free(&truth), &model).unwrap().model;
         assert!((model.get("wheelbase", "e_b").unwrap() / e_b - 1.0).abs() < 1e-6, "{e_b}");
     }
 }

@@ -223,7 +223,7 @@ fn a_right_model_is_accused_no_more_often_than_is_asked() {
                     watched(&truth, 5, 100 + trial)
                 };
                 let model = if fitted {
-                    crate::learn::fit(&data, &first_model(&data).unwrap()).unwrap().model
+                    evidence::fit(&data, &first_model(&data).unwrap()).unwrap().model
                 } else {
                     truth.clone()
                 };

@@ -1,12 +1,13 @@
 //! What a test of n + n return poses is asked: the residuals of a fitted model, and every size of every missing effect.
 
 use super::exact::{Pattern, wilks};
-use super::fitted::names;
 use super::moments::{Moments, Whitened};
-use super::{Ends, Fitted, mirrored};
-use crate::diagnose::{DiagnoseError, Likeness, Size, Unseen, Why, candidates, classes};
+use crate::diagnose::{Likeness, Size, Unseen, Why, candidates, classes};
 use crate::drive::{LinkReading, WheelTravel};
 use crate::effect::{Context, Entry, Model, Sight, of_drive};
+use crate::evidence::FitError;
+use crate::evidence::ends::names;
+use crate::evidence::ends::{Ends, Fitted, mirrored};
 use crate::fit::RANK_TOLERANCE;
 use crate::geometry::Pose2;
 use crate::parameter::Parameter;
@@ -68,7 +69,7 @@ struct Frame {
 
 impl Asked {
     /// `None` where the runs have too little scatter for any test.
-    pub fn new(ends: &Ends, fitted: &Fitted) -> Result<Option<Asked>, DiagnoseError> {
+    pub fn new(ends: &Ends, fitted: &Fitted) -> Result<Option<Asked>, FitError> {
         let Some((mut asked, frame)) = Asked::residuals(ends, fitted) else { return Ok(None) };
         asked.ask(ends, fitted, &frame)?;
         Ok(Some(asked))
@@ -115,7 +116,7 @@ impl Asked {
         Some((asked, Frame { groups, counts, coordinates: d, whitener, maps, of_model }))
     }
 
-    fn ask(&mut self, ends: &Ends, fitted: &Fitted, frame: &Frame) -> Result<(), DiagnoseError> {
+    fn ask(&mut self, ends: &Ends, fitted: &Fitted, frame: &Frame) -> Result<(), FitError> {
         let Some(whitened) = Whitened::new(&self.moments, &self.base) else { return Ok(()) };
         let moved = candidates::of_tracks(&fitted.model, |varies| ends.tracks(varies))?;
         for candidate in &moved {

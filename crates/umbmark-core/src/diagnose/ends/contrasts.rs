@@ -3,7 +3,8 @@
 //! Whatever repeats on every side turns the end point about the centre of the square by the return heading error. Four of the
 //! six mean values must then vanish, c1 to c4, and every end point lies on a circle through START.
 
-use super::{Ends, Fitted, Moments, mirrored};
+use super::Moments;
+use crate::evidence::ends::{Ends, Fitted, mirrored};
 use crate::path::{Direction, SQUARE};
 use crate::stats::{Interval, student_t_quantile};
 use nalgebra::{DVector, Vector3};

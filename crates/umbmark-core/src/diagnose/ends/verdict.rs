@@ -4,15 +4,16 @@ use super::asked::{Asked, Unit};
 use super::family::Family;
 use super::flips::certificate;
 use super::moments::Whitened;
-use super::{Contrast, End, Ends, FEWEST_RUNS, Fitted, circle, contrasts};
+use super::{Contrast, circle, contrasts};
 use crate::diagnose::experiments::next_experiments;
 use crate::diagnose::identifiability::of_ends;
 use crate::diagnose::likeness::correlations;
 use crate::diagnose::{
-    Detectable, DiagnoseError, Diagnosis, Estimate, GoodnessOfFit, Level, Likeness, OnCircle, Options, Reason, Remains,
-    Suspect, Trail, Verdict,
+    Detectable, Diagnosis, GoodnessOfFit, Likeness, OnCircle, Options, Reason, Remains, Suspect, Trail, Verdict,
 };
 use crate::effect::Model;
+use crate::evidence::ends::{End, Ends, FEWEST_RUNS, Fitted};
+use crate::evidence::{Estimate, FitError, Level};
 use crate::stats::{normal_quantile, student_t_quantile};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -21,7 +22,7 @@ use std::sync::Arc;
 const POWER: f64 = 0.8;
 
 /// Fits the model and asks all that is missing.
-pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<Diagnosis, DiagnoseError> {
+pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<Diagnosis, FitError> {
     let fitted = Fitted::new(ends, model)?;
     let mut diagnosis = Diagnosis {
         level: Level::Ends,
@@ -43,7 +44,7 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
         outliers: Vec::new(),
         setup: Arc::clone(&ends.setup),
         taken: Vec::new(),
-        reasons: ends.doubts.clone(),
+        reasons: ends.doubts.iter().cloned().map(Reason::Data).collect(),
         repeats: None,
         remains: Some(remains(ends, &fitted.residuals, options)),
         remarks: Vec::new(),
@@ -102,7 +103,7 @@ pub(crate) struct Beside {
 
 impl Beside {
     /// Of a model that is fitted to them.
-    pub fn new(ends: &Ends, model: &Model, options: &Options) -> Result<Beside, DiagnoseError> {
+    pub fn new(ends: &Ends, model: &Model, options: &Options) -> Result<Beside, FitError> {
         let fitted = Fitted::new(ends, model)?;
         let asked = if ends.enough() { Asked::nothing(ends, &fitted) } else { None };
         let family = asked.and_then(|asked| Family::new(&asked, options));
@@ -115,7 +116,7 @@ impl Beside {
 }
 
 /// The effect that a diagnosis without any gate would add: the one by which the misfit falls most.
-pub(crate) fn likeliest(ends: &Ends, model: &Model) -> Result<Option<&'static str>, DiagnoseError> {
+pub(crate) fn likeliest(ends: &Ends, model: &Model) -> Result<Option<&'static str>, FitError> {
     let fitted = Fitted::new(ends, model)?;
     let Some(asked) = Asked::new(ends, &fitted)? else { return Ok(None) };
     let possible = asked.units.iter().zip(asked.drops()).filter(|(unit, _)| possible(&asked, unit));
@@ -263,7 +264,7 @@ fn remarks_on_data(ends: &Ends, fitted: &Fitted) -> Vec<String> {
                 .into(),
         );
     }
-    let names = super::fitted::names(&fitted.model);
+    let names = crate::evidence::ends::names(&fitted.model);
     if cw > 0 && ccw > 0 && !fitted.open.is_empty() {
         let open: Vec<String> = fitted.open.iter().map(|i| format!("{} of {}", names[*i].1, names[*i].0)).collect();
         remarks.push(format!("Not fitted, since this data does not show it apart from the rest: {}.", open.join(", ")));

@@ -1,9 +1,9 @@
 //! Experiments that people with a tape measure can do, and how their poses scatter.
 
-use crate::calibrate::noise_shape::trucks;
-use crate::diagnose::ends::{Ends, Fitted};
 use crate::drive::{Drive, Robot};
 use crate::effect::{Chain, Derived, Evaluate};
+use crate::evidence::ends::{Ends, Fitted};
+use crate::evidence::noise_shape::trucks;
 use crate::geometry::{Dual, Pose2};
 use crate::path::{CIRCLE, Direction, Path, SPIN, SQUARE, STRAIGHT, Shape, SpeedProfile};
 use crate::replay::Track;

@@ -1,8 +1,8 @@
 //! What is left of tracks: what of it repeats, what each source of chance would leave, and where runs are disturbed.
 
-use super::errors::Misses;
 use crate::diagnose::Options;
 use crate::diagnose::remains::{Chance, Remains, Trail};
+use crate::evidence::tracks::Misses;
 use crate::likelihood::{Column, Disturbance, Noise, Observed, ObservedRun, Stretch};
 use crate::random::Stream;
 use crate::setup::PoseNoise;

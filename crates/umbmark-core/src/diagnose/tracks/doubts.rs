@@ -1,9 +1,9 @@
 //! What speaks against a fitted model as a whole, though no effect that it lacks is certified.
 
 use super::chance;
-use super::errors::Misses;
 use crate::diagnose::Reason;
 use crate::effect::Model;
+use crate::evidence::tracks::Misses;
 use crate::likelihood::{Growth, Noise, Observed};
 
 /// Sizes of the noise beyond which it is none, for a robot with [`USUAL_BASE`]: on carpet, with worn wheels and a reference of

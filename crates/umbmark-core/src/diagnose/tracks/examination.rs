@@ -1,12 +1,12 @@
 //! A fitted model on tracks beside everything that it may be missing.
 
-use super::errors::Errors;
-use super::errors::Misses;
 use super::look::Finding;
 use super::responses::{self, Asked, Question, Responses};
-use super::system::{Projected, System};
-use crate::diagnose::ends::names;
 use crate::effect::{Changes, Entry, Law, Model, ModelError, Number};
+use crate::evidence::ends::names;
+use crate::evidence::tracks::Errors;
+use crate::evidence::tracks::Misses;
+use crate::evidence::tracks::{Projected, System};
 use crate::geometry::Pose2;
 use crate::likelihood::{ABSORBED, Column, Fitted, Noise, share_left, solver};
 use nalgebra::{DMatrix, DVector};

@@ -8,11 +8,12 @@ use super::examination::{Answer, Examination};
 use super::look::{Finding, rivals};
 use super::repeats::{Repeated, SHAPE, UnlistedLaw};
 use super::responses::{Asked, Question};
-use super::system::Projected;
 use crate::diagnose::experiments::design::{MINUTES_A_RUN, minutes};
 use crate::diagnose::experiments::{best, worth};
-use crate::diagnose::{DiagnoseError, Experiment, Unseen, Why};
+use crate::diagnose::{Experiment, Unseen, Why};
 use crate::effect::{Law, Model, ModelError, Number, Part};
+use crate::evidence::FitError;
+use crate::evidence::tracks::Projected;
 use crate::likelihood::{Noise, ObservedRun, gram};
 use crate::parameter::Parameter;
 use crate::path::{CIRCLE, Direction, FIGURE_EIGHT, Path, SPIN, SQUARE, STRAIGHT, Shape, SpeedProfile, WAYPOINTS};
@@ -50,7 +51,7 @@ struct Doubt {
 
 /// Drives that would tell apart the members of certified classes, and drives that would show what is hidden; the most telling per
 /// minute first.
-pub fn next(exam: &Examination, certified: &[&Finding], unseen: &[Unseen]) -> Result<Vec<Experiment>, DiagnoseError> {
+pub fn next(exam: &Examination, certified: &[&Finding], unseen: &[Unseen]) -> Result<Vec<Experiment>, FitError> {
     let mut doubts: Vec<Doubt> = certified.iter().flat_map(|finding| of_class(exam, finding)).collect();
     doubts.extend(unseen.iter().flat_map(|unseen| of_unseen(exam, unseen)));
     let mut experiments: Vec<Experiment> = offers_of(exam, &doubts)?.into_iter().filter_map(best).collect();
@@ -60,7 +61,7 @@ pub fn next(exam: &Examination, certified: &[&Finding], unseen: &[Unseen]) -> Re
 
 /// Every drive on offer for telling two effects apart, together with these tracks, at the hardest of their usual sizes; the most
 /// telling per minute first.
-pub fn separating(exam: &Examination, pair: [&'static str; 2]) -> Result<Vec<Experiment>, DiagnoseError> {
+pub fn separating(exam: &Examination, pair: [&'static str; 2]) -> Result<Vec<Experiment>, FitError> {
     let asked = pair.map(|name| exam.asked.iter().position(|a| a.effect().is_some_and(|e| e.about.name == name)));
     let of = |truth: Option<usize>, rival: Option<usize>| {
         let Some(Asked { question: Question::Effect(_, parameters), columns, .. }) = truth.map(|i| &exam.asked[i])
@@ -85,7 +86,7 @@ pub fn separating(exam: &Examination, pair: [&'static str; 2]) -> Result<Vec<Exp
 
 /// Drives that would tell a law from others that these tracks cannot tell from it, the most telling per minute for each: `exam` is of the
 /// model that had none of them yet.
-pub fn of_laws(exam: &Examination, repeated: &Repeated) -> Result<Vec<Experiment>, DiagnoseError> {
+pub fn of_laws(exam: &Examination, repeated: &Repeated) -> Result<Vec<Experiment>, FitError> {
     let mut model = exam.fitted.model.clone();
     let own_numbers: Vec<Number> = exam.base(None).iter().filter_map(|column| exam.number(*column)).collect();
     let mut numbers = own_numbers.clone();
@@ -140,7 +141,7 @@ struct Basis<'a> {
 }
 
 /// Every drive on offer, for each pair in doubt by columns of an examination.
-fn offers_of(exam: &Examination, doubts: &[Doubt]) -> Result<Vec<Vec<Experiment>>, DiagnoseError> {
+fn offers_of(exam: &Examination, doubts: &[Doubt]) -> Result<Vec<Vec<Experiment>>, FitError> {
     let mut columns: Vec<usize> = doubts.iter().flat_map(|d| d.truth.iter().chain(&d.against)).copied().collect();
     columns.sort_unstable();
     columns.dedup();
@@ -153,7 +154,7 @@ fn offers_of(exam: &Examination, doubts: &[Doubt]) -> Result<Vec<Vec<Experiment>
 }
 
 /// Every drive on offer, for each pair in doubt by columns of a basis.
-fn offers(exam: &Examination, basis: &Basis, doubts: &[Doubt]) -> Result<Vec<Vec<Experiment>>, DiagnoseError> {
+fn offers(exam: &Examination, basis: &Basis, doubts: &[Doubt]) -> Result<Vec<Vec<Experiment>>, FitError> {
     let drives = drives(exam);
     let told: Vec<DMatrix<f64>> = drives
         .par_iter()

@@ -1,10 +1,12 @@
 //! A model grown by an effect that it was missing, fitted without approximation.
 
-use super::alone::Alone;
 use super::examination::Examination;
 use super::repeats::SHAPE;
-use super::{DiagnoseError, Estimate, Suspect, estimates};
+use super::{FitError, Suspect};
 use crate::effect::{Law, Model, Part};
+use crate::evidence::Estimate;
+use crate::evidence::tracks::Alone;
+use crate::evidence::tracks::estimates;
 use crate::likelihood::{Fitted, Noise};
 use std::sync::Arc;
 
@@ -15,12 +17,12 @@ const SURE: f64 = 4.0;
 const LIKELIER: f64 = 10.0;
 
 /// The model of an examination with a suspect more, fitted: its sizes first, then its shapes too where its size stands out.
-pub(crate) fn grown(exam: &Examination, suspect: &Suspect) -> Result<Fitted, DiagnoseError> {
+pub(crate) fn grown(exam: &Examination, suspect: &Suspect) -> Result<Fitted, FitError> {
     fitted(exam, &with(exam.fitted.model.clone(), suspect)?, suspect.best)
 }
 
 /// The model of an examination with a law more that no catalogue lists, fitted in the same way, and the name that the law has there.
-pub(crate) fn grown_by_law(exam: &Examination, law: &Model) -> Result<(Fitted, &'static str), DiagnoseError> {
+pub(crate) fn grown_by_law(exam: &Examination, law: &Model) -> Result<(Fitted, &'static str), FitError> {
     let mut model = exam.fitted.model.clone();
     let mut name = "";
     for part in law.parts() {
@@ -38,7 +40,7 @@ pub(crate) fn grown_by_law(exam: &Examination, law: &Model) -> Result<(Fitted, &
 }
 
 /// A model with an effect more fitted: its sizes first, then its shapes too where its size stands out.
-fn fitted(exam: &Examination, model: &Model, effect: &str) -> Result<Fitted, DiagnoseError> {
+fn fitted(exam: &Examination, model: &Model, effect: &str) -> Result<Fitted, FitError> {
     let observed = &exam.fitted.observed;
     let shapes = model.shapes();
     let taken = || exam.fitted.taken.clone();
@@ -73,7 +75,7 @@ fn keeps_signs(begun: &Model, fitted: &Model, effect: &str) -> bool {
 }
 
 /// The model with a suspect at its one-step size, free.
-fn with(mut model: Model, suspect: &Suspect) -> Result<Model, DiagnoseError> {
+fn with(mut model: Model, suspect: &Suspect) -> Result<Model, FitError> {
     model.add(suspect.best)?.free = true;
     for Estimate { effect, parameter, value, .. } in &suspect.estimate {
         let about = &crate::effect::find(effect)?.about;

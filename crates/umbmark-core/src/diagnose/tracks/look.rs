@@ -3,9 +3,10 @@
 use super::examination::{ALIKE, Answer, Examination, worth};
 use super::flips::{Family, Scores};
 use super::responses::{Asked, Question};
-use super::system::{Projected, Unit};
-use crate::diagnose::{Estimate, Options, Suspect};
+use crate::diagnose::{Options, Suspect};
 use crate::effect::{Entry, find};
+use crate::evidence::Estimate;
+use crate::evidence::tracks::{Projected, Unit};
 use crate::stats::f_upper_tail;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -324,7 +325,7 @@ mod tests {
             );
             model.add_formula(law.unwrap(), &[0.0; 2]).unwrap().free = true;
             let observed = fitted_to(truth).observed;
-            let exam = Examination::new(super::super::fit(&observed.whole(), &model).unwrap()).unwrap();
+            let exam = Examination::new(crate::evidence::tracks::fit(&observed.whole(), &model).unwrap()).unwrap();
             p_of_own(&exam, "mine", &Options::default()).unwrap()
         };
         let (there, not) = (p_on(&on_grain()), p_on(&robot_with(&[])));

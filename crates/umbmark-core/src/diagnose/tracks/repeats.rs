@@ -15,14 +15,14 @@ mod lengths;
 mod shaping;
 mod signs;
 
-use super::errors::Errors;
-use super::estimates;
 use super::examination::{ALIKE, Examination};
 use super::look;
 use super::smooth::Motion;
-use super::system::{Projected, System};
 use crate::diagnose::Suspect;
 use crate::effect::Model;
+use crate::evidence::tracks::Errors;
+use crate::evidence::tracks::estimates;
+use crate::evidence::tracks::{Projected, System};
 use crate::likelihood::{Column, Noise, Observed, ObservedRun};
 use crate::stats::chi_squared_upper_tail;
 use laws::{Laws, Step, steps};

@@ -161,7 +161,8 @@ mod tests {
         truth.set("reference_noise", "position_sd_m", 5e-4).unwrap();
         truth.set("reference_noise", "heading_sd_rad", 5e-4).unwrap();
         let data = watched(&truth, 6, 4);
-        let fitted = super::super::fit(&Observed::new(&data, &robot).unwrap(), &first_model(&data).unwrap()).unwrap();
+        let fitted =
+            crate::evidence::tracks::fit(&Observed::new(&data, &robot).unwrap(), &first_model(&data).unwrap()).unwrap();
         let exam = Examination::new(fitted).unwrap();
         let findings = super::super::look::effects(&exam, &Options::default());
         let suspect = super::super::look::suspect(&exam, &findings[0]).unwrap();

@@ -1,16 +1,19 @@
 //! What a model is missing, and a model that grows by it: one effect after the other, and what no longer helps taken out again. Where no
 //! effect of the catalogue is certified and something repeats all the same, the law that it follows is added.
 
-use super::alone::{Alone, trusted};
-use super::errors::Misses;
 use super::examination::Examination;
 use super::look::{self, Finding};
 use super::repeats::{self, Repeated, UnlistedLaw};
 use super::responses::Asked;
-use super::system::Projected;
-use super::{EXPLAINED, FEWEST, LEAST_GAIN, TELLING, TRIES, estimates, growth};
-use crate::diagnose::{DiagnoseError, Estimate, Options, Suspect};
+use super::{EXPLAINED, FEWEST, TELLING, TRIES, growth};
+use crate::diagnose::{Options, Suspect};
 use crate::effect::{Law, Model, Part};
+use crate::evidence::tracks::LEAST_GAIN;
+use crate::evidence::tracks::Misses;
+use crate::evidence::tracks::Projected;
+use crate::evidence::tracks::estimates;
+use crate::evidence::tracks::{Alone, trusted};
+use crate::evidence::{Estimate, FitError};
 use crate::likelihood::{Fitted, Noise};
 use crate::watch::Watch;
 use std::borrow::Cow;
@@ -183,7 +186,7 @@ pub(crate) fn search(
     (most, wanted): (usize, Wanted),
     refused: Vec<&'static str>,
     watch: &Watch,
-) -> Result<Search, DiagnoseError> {
+) -> Result<Search, FitError> {
     let mut exam = Examination::new(fitted)?;
     // What was taken from the motion is asked whether it helps, as all that is added here is; what the user's model says stands.
     let taken: Vec<&str> = exam.fitted.taken.iter().map(|taken| taken.effect).collect();
@@ -214,7 +217,7 @@ pub(crate) fn search(
 }
 
 /// A fit without one of its effects.
-fn without(fitted: &Fitted, effect: &str) -> Result<Fitted, DiagnoseError> {
+fn without(fitted: &Fitted, effect: &str) -> Result<Fitted, FitError> {
     let taken = fitted.taken.iter().filter(|taken| taken.effect != effect).copied().collect();
     let again = fitted.observed.fit(&fitted.model.without(effect), &Noise::default(), &[])?;
     Ok(Fitted { taken, ..again })
@@ -279,7 +282,7 @@ impl Search {
         (most, wanted): (usize, Wanted),
         refused: &[&'static str],
         watch: &Watch,
-    ) -> Result<(), DiagnoseError> {
+    ) -> Result<(), FitError> {
         while self.added.len() < most && !watch.is_stopped() {
             (watch.progress)((self.added.len() + 1) as f64 / (most + 1) as f64);
             let outdone = wanted == Wanted::All && self.is_outdone(options);
@@ -312,7 +315,7 @@ impl Search {
 
     /// A model grown by an effect, less those that no longer help beside it, and which they are; `None` where a fit without approximation
     /// does not bear the effect out.
-    fn borne_out(&self, mut exam: Examination, effect: &'static str) -> Result<Option<Grown>, DiagnoseError> {
+    fn borne_out(&self, mut exam: Examination, effect: &'static str) -> Result<Option<Grown>, FitError> {
         if astray(&exam, self.last()) || idle(&exam, |asked| asked == effect).is_some() {
             return Ok(None);
         }
@@ -337,7 +340,7 @@ impl Search {
     }
 
     /// The model grown by the law that what repeats follows, where it counts and a fit bears it out.
-    fn law(&mut self, options: &Options) -> Result<Option<(Grown, Added)>, DiagnoseError> {
+    fn law(&mut self, options: &Options) -> Result<Option<(Grown, Added)>, FitError> {
         while let Some(repeated) = self.repeats(options).cloned().filter(|repeated| repeated.counts(WORTH_A_LAW)) {
             let tried =
                 |law: &UnlistedLaw| law.model.as_ref().is_none_or(|model| self.refused_laws.contains(&text_of(model)));
@@ -393,7 +396,7 @@ impl Search {
     }
 
     /// What was added and is in the last model, each with the fit that it led to: without what was added on the way and taken out again.
-    pub fn story(&self) -> Result<Vec<(&Added, Cow<'_, Alone>)>, DiagnoseError> {
+    pub fn story(&self) -> Result<Vec<(&Added, Cow<'_, Alone>)>, FitError> {
         let mut told = Vec::new();
         for (written, added) in self.written[1..].iter().zip(&self.added) {
             if !self.keeps(added.suspect.best) {

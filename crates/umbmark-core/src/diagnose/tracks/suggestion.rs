@@ -6,8 +6,8 @@
 use super::examination::{Examination, worth_of};
 use super::look::Finding;
 use super::smooth::{Covariate, Exposure, Motion, Scales};
-use super::system::{Projected, System};
 use crate::effect::{Formula, Model, Target};
+use crate::evidence::tracks::{Projected, System};
 use crate::likelihood::Column;
 
 /// A formula is suggested where it explains at least this share of what the smooth does.

@@ -6,12 +6,13 @@ use crate::diagnose::first_model;
 use crate::diagnose::tests::robot_with;
 use crate::drive::Robot;
 use crate::effect::{Formula, Model, Target};
+use crate::evidence::tracks::fit;
 use crate::likelihood::watched::watched;
 use nalgebra::DMatrix;
 use std::sync::LazyLock;
 
 /// The first model fitted to three squares each way of a robot like the paper's, with more causes.
-pub(super) fn fitted(effects: &[(&str, &str, f64)]) -> Fitted {
+pub(crate) fn fitted(effects: &[(&str, &str, f64)]) -> Fitted {
     fitted_to(&robot_with(effects))
 }
 

@@ -1,6 +1,6 @@
 //! Lengths that a robot and its path have: a period that is one of them says where to look.
 
-use crate::diagnose::Estimate;
+use crate::evidence::Estimate;
 use crate::likelihood::Observed;
 use std::f64::consts::PI;
 

@@ -8,7 +8,7 @@
 
 use super::Pick;
 use super::laws::{Laws, Step};
-use crate::diagnose::tracks::system::Projected;
+use crate::evidence::tracks::Projected;
 use crate::likelihood::{Column, Noise, Observed, Whitened};
 use nalgebra::DMatrix;
 use rayon::prelude::*;

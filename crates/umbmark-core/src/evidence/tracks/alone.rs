@@ -1,6 +1,5 @@
 //! A fitted model by itself: its errors, in the runs it was fitted to and in runs left out, and its criteria.
 
-use super::TELLING;
 use super::errors::{Errors, Misses};
 use super::system::{Projected, System};
 use crate::effect::ModelError;
@@ -10,6 +9,8 @@ use rayon::prelude::*;
 
 /// Fewer folds do not show which of two fits predicts better.
 const FEWEST_FOLDS: usize = 6;
+/// Values under usual noise are taken where they predict runs left out nearer by this share.
+const NEARER: f64 = 0.1;
 
 /// A fitted model, its residuals, and the columns of its free values and of the effects of the reference that are fitted along.
 #[derive(Clone)]
@@ -130,7 +131,7 @@ pub(crate) fn trusted(fitted: Fitted) -> Result<Alone, ModelError> {
     usual.refit()?;
     let other = Alone::new(usual.clone());
     let [left_out, by_likeliest] = [&other, &likeliest].map(|alone| alone.left_out().position);
-    if left_out.is_nan() || left_out >= (1.0 - TELLING) * by_likeliest {
+    if left_out.is_nan() || left_out >= (1.0 - NEARER) * by_likeliest {
         return Ok(likeliest);
     }
     let covariance =
@@ -140,8 +141,8 @@ pub(crate) fn trusted(fitted: Fitted) -> Result<Alone, ModelError> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::fitted;
     use super::*;
+    use crate::diagnose::tracks::tests::fitted;
     use nalgebra::DMatrix;
 
     /// BIC - AICc = k ln n - 2kn/(n - k - 1), here solved for k: the model's values, those of the reference and the sizes of the noise.

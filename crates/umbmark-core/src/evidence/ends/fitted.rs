@@ -5,9 +5,8 @@
 //! pooled scatter that the runs really show.
 
 use super::{Ends, mirrored};
-use crate::calibrate::{FAR_FIT, STARTS, is_possible};
-use crate::diagnose::{DiagnoseError, Estimate};
 use crate::effect::Model;
+use crate::evidence::{Estimate, Evidence, FAR_FIT, FitError, STARTS, is_possible};
 use crate::fit::{self, Problem, RANK_TOLERANCE, null_directions};
 use crate::geometry::{Dual, LANES, Pose2, seeded};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -38,7 +37,7 @@ pub(crate) struct Fitted {
 }
 
 impl Fitted {
-    pub fn new(ends: &Ends, model: &Model) -> Result<Fitted, DiagnoseError> {
+    pub fn new(ends: &Ends, model: &Model) -> Result<Fitted, FitError> {
         ends.check(model)?;
         let (free, open) = what_shows(ends, model);
         let start: Vec<f64> = model.values().collect();
@@ -47,7 +46,7 @@ impl Fitted {
         let fit = fit::least_squares(&problem, &first, &SETTLED);
         let fit = problem.searched(fit, &first);
         if !fit.termination.converged() {
-            return Err(DiagnoseError::NotConverged { how: fit.termination.name() });
+            return Err(FitError::NotConverged { how: fit.termination.name() });
         }
         let fitted = with_values(model, &problem.all(&fit.values))?;
         // Where the size of a formula began at 0, its shape shows only now.
@@ -127,10 +126,10 @@ pub(crate) fn names(model: &Model) -> Vec<(&'static str, &'static str)> {
 }
 
 /// The model with other values, each within its bounds.
-fn with_values(model: &Model, values: &[f64]) -> Result<Model, DiagnoseError> {
+fn with_values(model: &Model, values: &[f64]) -> Result<Model, FitError> {
     let mut changed = model.clone();
     for ((effect, parameter), value) in names(model).into_iter().zip(values) {
-        changed.set(effect, parameter, *value).map_err(|source| DiagnoseError::OutOfBounds { source })?;
+        changed.set(effect, parameter, *value).map_err(|source| FitError::OutOfBounds { source })?;
     }
     Ok(changed)
 }

@@ -87,9 +87,9 @@ impl<T: Real> Floor<T> for Even<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibrate::noise_shape::end_covariance;
     use crate::drive::{ClapperDrive, Drive, Robot};
     use crate::effect::{Model, TestKind};
+    use crate::evidence::noise_shape::end_covariance;
     use crate::path::{Direction, Path, SQUARE, SpeedProfile};
     use crate::preset::Preset;
     use crate::replay::Track;

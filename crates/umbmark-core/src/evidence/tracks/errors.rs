@@ -1,12 +1,13 @@
 //! Errors as people see them: metres and degrees along the way, in the runs at hand and in runs left out.
 
-use super::LEAST_GAIN;
 use super::system::System;
 use crate::likelihood::{Column, Observed, ObservedRun, gram};
 use crate::setup::PoseNoise;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+/// Share by which errors in runs left out must fall for an effect to count: less is not worth a parameter.
+pub(crate) const LEAST_GAIN: f64 = 0.02;
 /// An effect is not kept where positions or headings of runs left out are worse by this share, and neither is better.
 const HARM: f64 = 0.1;
 

@@ -1,0 +1,209 @@
+//! Return poses as evidence: what was measured, in the frame in which both directions scatter alike.
+//!
+//! The noise of a robot's wheels mirrors with its path, so clockwise runs are mirrored (M = diag(1, -1, -1)) and the scatter
+//! of both directions is pooled, with ν = n_cw + n_ccw - 2 degrees of freedom.
+
+mod fitted;
+
+use super::{Drive, Evidence, Fit, FitError, Level, end_poses, noise_shape, robot_of};
+use crate::dataset::Dataset;
+use crate::drive::Robot;
+use crate::effect::{Evaluate, Model, ModelError};
+use crate::geometry::{Pose2, wrap};
+use crate::path::{Direction, Path};
+use crate::replay::Track;
+use crate::setup::{Fault, Setup, Suspicion};
+use nalgebra::{Matrix3, Vector3};
+use std::sync::Arc;
+
+pub(crate) use fitted::{Fitted, names};
+
+/// The least number of runs a direction for any test.
+pub(crate) const FEWEST_RUNS: usize = 3;
+
+/// Return poses, ready to be predicted.
+#[derive(Clone, Debug)]
+pub(crate) struct Ends {
+    pub robot: Robot,
+    pub path: Option<Path>,
+    pub runs: Vec<End>,
+    tracks: Vec<Arc<Believed>>,
+    pub with_heading: bool,
+    /// What was found of the data, where it was [examined](Ends::examined).
+    pub setup: Arc<Setup>,
+    /// Why these return errors are not to be believed.
+    pub doubts: Vec<Suspicion>,
+}
+
+/// One run.
+#[derive(Clone, Debug)]
+pub(crate) struct End {
+    /// The path's sense; runs of paths without one count as counter-clockwise.
+    pub direction: Direction,
+    /// Index of what the robot believed to drive.
+    track: usize,
+    /// Absolute pose at the end.
+    seen: Pose2,
+    /// Multiplies observed minus predicted: the inverse Cholesky factor of the scatter's shape.
+    pub weight: Matrix3<f64>,
+}
+
+/// What the robot believed to drive, cut as coarsely as effects allow.
+#[derive(Debug)]
+struct Believed {
+    whole: Track,
+    /// `None` where the track was recorded, and is in small pieces anyway.
+    pieces: Option<Track>,
+}
+
+impl Believed {
+    fn track(&self, varies: bool) -> &Track {
+        self.pieces.as_ref().filter(|_| varies).unwrap_or(&self.whole)
+    }
+}
+
+impl Ends {
+    pub fn new(data: &Dataset) -> Result<Ends, FitError> {
+        let robot = robot_of(data)?.clone();
+        let drives = end_poses(data, &robot)?;
+        let with_heading = drives.iter().all(|d| d.seen.iter().all(|s| s.heading.is_some()));
+        let mut ends = Ends {
+            robot,
+            path: data.path.clone(),
+            runs: Vec::new(),
+            tracks: Vec::new(),
+            with_heading,
+            setup: Arc::default(),
+            doubts: Vec::new(),
+        };
+        for drive in drives {
+            ends.push(drive);
+        }
+        Ok(ends)
+    }
+
+    /// The return poses of a dataset, with what is found of them before any fit.
+    pub fn examined(data: &Dataset) -> Result<Ends, FitError> {
+        let ends = Ends::new(data)?;
+        let setup = Setup::of(&data.runs, &ends.robot, data.path.as_ref());
+        let doubts = setup.suspicions(&data.runs);
+        Ok(Ends { setup: Arc::new(setup), doubts, ..ends })
+    }
+
+    fn push(&mut self, drive: Drive) {
+        let direction = drive.direction.unwrap_or(Direction::Ccw);
+        let Some(seen) = drive.seen.last() else { return };
+        let known = self.tracks.iter().position(|t| t.whole == drive.track);
+        let track = known.unwrap_or_else(|| {
+            let path = self.path.as_ref().filter(|_| !drive.recorded);
+            let pieces = path.map(|path| Track::in_pieces(path, direction, &self.robot));
+            self.tracks.push(Arc::new(Believed { whole: drive.track, pieces }));
+            self.tracks.len() - 1
+        });
+        let seen = Pose2::new(seen.x, seen.y, seen.heading.unwrap_or(0.0));
+        self.runs.push(End { direction, track, seen, weight: drive.weight });
+    }
+
+    /// The same runs as if their ticks were those of the path, where it is known.
+    fn as_meant(&self) -> Ends {
+        let Some(path) = &self.path else { return self.clone() };
+        let meant = |direction: Direction| Believed {
+            whole: Track::from_path(path, direction, &self.robot),
+            pieces: Some(Track::in_pieces(path, direction, &self.robot)),
+        };
+        let mut ends = self.clone();
+        ends.tracks = Direction::BOTH.map(|direction| Arc::new(meant(direction))).into();
+        ends.runs.iter_mut().for_each(|run| run.track = run.direction as usize);
+        ends
+    }
+
+    /// How many coordinates an end pose has: 3, or 2 where headings were not measured.
+    pub fn coordinates(&self) -> usize {
+        if self.with_heading { 3 } else { 2 }
+    }
+
+    /// Number of runs clockwise and counter-clockwise.
+    pub fn counts(&self) -> [usize; 2] {
+        Direction::BOTH.map(|direction| self.runs.iter().filter(|run| run.direction == direction).count())
+    }
+
+    /// Whether both directions were driven often enough for a test.
+    pub fn enough(&self) -> bool {
+        self.counts().iter().all(|n| *n >= FEWEST_RUNS)
+    }
+
+    /// Tracks that differ, cut as the model needs it.
+    pub fn tracks(&self, varies: bool) -> Vec<&Track> {
+        self.tracks.iter().map(|t| t.track(varies)).collect()
+    }
+
+    /// A value for every run from one for every track.
+    pub fn of_runs<'a, T>(&'a self, of_tracks: &'a [T]) -> impl Iterator<Item = (Direction, &'a T)> + 'a {
+        self.runs.iter().map(|run| (run.direction, &of_tracks[run.track]))
+    }
+
+    /// Predicted end pose of every run, with values or derivatives.
+    pub fn predict<T: Evaluate>(&self, model: &Model, values: &[T]) -> Vec<Pose2<T>> {
+        let chain = model.chain_with(values);
+        let varies = model.may_vary();
+        let ends: Vec<Pose2<T>> = self.tracks.iter().map(|t| t.track(varies).end(&chain)).collect();
+        self.runs.iter().map(|run| ends[run.track]).collect()
+    }
+
+    /// Observed minus predicted, run by run; heading 0 where it was not measured.
+    pub fn residuals(&self, model: &Model) -> Vec<Vector3<f64>> {
+        let values: Vec<f64> = model.values().collect();
+        let predicted = self.predict::<f64>(model, &values);
+        self.runs.iter().zip(predicted).map(|(run, pose)| self.residual(run, &pose)).collect()
+    }
+
+    fn residual(&self, run: &End, predicted: &Pose2) -> Vector3<f64> {
+        let heading = if self.with_heading { wrap(run.seen.heading - predicted.heading) } else { 0.0 };
+        Vector3::new(run.seen.x - predicted.x, run.seen.y - predicted.y, heading)
+    }
+
+    /// Return errors, absolute minus computed with the nominal robot, run by run.
+    pub fn errors(&self) -> Vec<Vector3<f64>> {
+        self.residuals(&Model::new(&self.robot))
+    }
+
+    /// The shape of the scatter of counter-clockwise runs with evenly noisy wheels.
+    pub fn noise_shape(&self) -> Option<Matrix3<f64>> {
+        let run = self.runs.iter().find(|run| run.direction == Direction::Ccw)?;
+        Some(noise_shape::end_covariance(self.tracks[run.track].track(false), &self.robot.drive))
+    }
+}
+
+impl Evidence for Ends {
+    fn level(&self) -> Level {
+        Level::Ends
+    }
+
+    fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    fn setup(&self) -> &Arc<Setup> {
+        &self.setup
+    }
+
+    fn faults(&self) -> Vec<Fault> {
+        self.setup.all_faults().cloned().collect()
+    }
+
+    fn check(&self, model: &Model) -> Result<(), ModelError> {
+        self.tracks(model.varies()).into_iter().try_for_each(|track| track.check(model))
+    }
+
+    fn fit(&self, model: &Model) -> Result<Fit, FitError> {
+        self.check_columns()?;
+        let Fitted { model, estimates, .. } = Fitted::new(self, model)?;
+        let setup = Arc::clone(&self.setup);
+        Ok(Fit { model, estimates, outliers: Vec::new(), usual_noise: false, setup, taken: Vec::new() })
+    }
+}
+
+/// Components of a pose difference as seen in a counter-clockwise run.
+pub(crate) fn mirrored(direction: Direction, v: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::new(v.x, direction.sign() * v.y, direction.sign() * v.z)
+}

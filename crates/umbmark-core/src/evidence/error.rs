@@ -1,0 +1,65 @@
+//! What leaves nothing to fit.
+
+use crate::effect::ModelError;
+use crate::replay::ReplayError;
+use crate::setup::Fault;
+
+/// Why a model cannot be held against the runs of a dataset.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// No nominal robot.
+    #[error("the nominal robot is not known: put a robot.toml beside the data (`umbmark init` writes one)")]
+    NoRobot,
+    /// A path that no robot of the drive can drive.
+    #[error(
+        "a robot with drive = \"{drive}\" cannot drive the path, shape = \"{shape}\": it makes legs and turns on the spot, no arcs"
+    )]
+    Path {
+        /// The kind of the drive.
+        drive: &'static str,
+        /// The shape of the path.
+        shape: &'static str,
+    },
+    /// No run with an observation that can be predicted.
+    #[error(
+        "none of {runs} runs can be predicted: each needs a return error and a path in robot.toml, \
+         or ticks with absolute poses"
+    )]
+    NothingObserved {
+        /// How many runs there are.
+        runs: usize,
+    },
+    /// The log of a run that cannot be replayed.
+    #[error("run {run}: {source}")]
+    Log {
+        /// Name of the run.
+        run: String,
+        /// What is wrong.
+        source: ReplayError,
+    },
+    /// A log that cannot be replayed.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+    /// A model that the catalogue or its bounds refuse.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// Columns, units or frames that are not what they are called.
+    #[error("{}", Fault::refusal(.faults))]
+    Faulty {
+        /// Which.
+        faults: Vec<Fault>,
+    },
+    /// A fit that did not converge.
+    #[error("the fit of the model {how}; fix some of its parameters (free = false)")]
+    NotConverged {
+        /// How it ended.
+        how: &'static str,
+    },
+    /// A fit that left the possible range.
+    #[error("the fit of the model ran out of bounds ({source}); are signs, units and directions right?")]
+    OutOfBounds {
+        /// Which parameter.
+        source: ModelError,
+    },
+}

@@ -1,0 +1,82 @@
+//! Whole tracks as evidence: fits, and how well they predict runs that were left out.
+
+mod alone;
+mod errors;
+mod system;
+
+use super::{Estimate, Evidence, Fit, FitError, Level, robot_of};
+use crate::dataset::Dataset;
+use crate::drive::Robot;
+use crate::effect::{Model, ModelError};
+use crate::likelihood::{Fitted, Noise, Observed};
+use crate::setup::{Fault, Setup};
+use std::sync::Arc;
+
+pub(crate) use alone::{Alone, trusted};
+pub(crate) use errors::{Errors, LEAST_GAIN, Misses};
+pub(crate) use system::{Projected, System, Unit};
+
+/// The tracks of a dataset.
+pub(crate) fn of(data: &Dataset) -> Result<Observed, FitError> {
+    Ok(Observed::new(data, robot_of(data)?)?)
+}
+
+impl Evidence for Observed {
+    fn level(&self) -> Level {
+        Level::Tracks
+    }
+
+    fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    fn setup(&self) -> &Arc<Setup> {
+        &self.setup
+    }
+
+    fn faults(&self) -> Vec<Fault> {
+        self.setup.faults.clone()
+    }
+
+    fn check(&self, model: &Model) -> Result<(), ModelError> {
+        self.tracks().try_for_each(|track| track.check(model))
+    }
+
+    fn fit(&self, model: &Model) -> Result<Fit, FitError> {
+        let fitted = trusted(fit(self, model)?)?.into_fitted();
+        let estimates = estimates(&fitted);
+        let Fitted { model, outliers, usual_noise, taken, observed, .. } = fitted;
+        Ok(Fit { model, estimates, outliers, usual_noise, setup: observed.setup, taken })
+    }
+}
+
+/// Fits the free parameters of a model to what is new from pose to pose, beginning with what the motion says of the reference.
+pub(crate) fn fit(observed: &Observed, model: &Model) -> Result<Fitted, FitError> {
+    observed.check_columns()?;
+    observed.check(model)?;
+    let (model, taken) = observed.begin(model)?;
+    let fitted = Fitted { taken, ..observed.fit(&model, &Noise::default(), &[])? };
+    // Where the size of a formula began at 0, its shape shows only now.
+    if model.has_formulas() && observed.free_values(&fitted.model).len() > fitted.free.len() {
+        return Ok(Fitted { taken: fitted.taken, ..observed.fit(&fitted.model, &fitted.noise, &[])? });
+    }
+    Ok(fitted)
+}
+
+/// The fitted parameters with their standard errors.
+pub(crate) fn estimates(fitted: &Fitted) -> Vec<Estimate> {
+    let model = &fitted.model;
+    let names = model
+        .parts()
+        .iter()
+        .flat_map(|part| part.effect.parameters().iter().map(|parameter| (part.effect.name(), parameter.name)));
+    let (names, values): (Vec<_>, Vec<f64>) = (names.collect(), model.values().collect());
+    let of = |(k, index): (usize, &usize)| Estimate {
+        effect: names[*index].0,
+        parameter: names[*index].1,
+        value: values[*index],
+        standard_error: fitted.covariance.as_ref().map_or(f64::NAN, |c| c[(k, k)].max(0.0).sqrt()),
+        degrees_of_freedom: (system::folds_of(&fitted.observed).max(2) - 1) as f64,
+    };
+    fitted.free.iter().enumerate().map(of).collect()
+}
