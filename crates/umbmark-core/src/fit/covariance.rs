@@ -3,6 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
+/// Singular values of the Jacobian with columns of unit length below this share of the largest count as zero.
+pub const RANK_TOLERANCE: f64 = 1e-3;
+
 /// Combinations of parameters that the data does not show: directions in parameter space along which no residual
 /// changes, to first order.
 ///
@@ -85,7 +88,7 @@ pub fn jackknife_covariance(
         let rest = DMatrix::from_fn(jacobian.nrows() - group.len(), columns, |i, j| {
             jacobian[(if i < group.start { i } else { i + group.len() }, j)]
         });
-        if !null_directions(&rest, super::RANK_TOLERANCE).is_empty() {
+        if !null_directions(&rest, RANK_TOLERANCE).is_empty() {
             return None;
         }
         let score = part.transpose() * residuals.rows(group.start, group.len());

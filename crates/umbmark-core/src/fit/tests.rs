@@ -1,5 +1,6 @@
 use super::*;
 use crate::random::Stream;
+use nalgebra::{DMatrix, DVector};
 use std::cell::Cell;
 use std::ops::Range;
 

@@ -1,0 +1,40 @@
+//! What is to be minimised, and when to stop.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Residuals to be made small.
+pub trait Problem {
+    /// r(p): observed minus predicted, each in units of its standard deviation.
+    fn residuals(&self, parameters: &[f64]) -> DVector<f64>;
+
+    /// ∂r_i/∂p_j, one row a residual.
+    fn jacobian(&self, parameters: &[f64]) -> DMatrix<f64>;
+
+    /// Both, where one calculation gives them for less than two would.
+    fn both(&self, parameters: &[f64]) -> (DVector<f64>, DMatrix<f64>) {
+        (self.residuals(parameters), self.jacobian(parameters))
+    }
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// The largest number of steps tried.
+    pub iterations: usize,
+    /// Stops where a step changes each parameter by less than this share of its size.
+    pub step_tolerance: f64,
+    /// Stops where a step lowers the sum of squares by less than this share of it.
+    pub decrease_tolerance: f64,
+    /// Whether the first steps are damped: needed where the start may be far from the end.
+    pub cautious: bool,
+    /// Whether points are dear: steps learn from those before them, and one that would lower the sum of squares too little to matter is
+    /// not taken.
+    pub frugal: bool,
+}
+
+impl Default for Options {
+    /// 100 steps, 1e-14, 1e-15: to the last digits, and from afar.
+    fn default() -> Self {
+        Options { iterations: 100, step_tolerance: 1e-14, decrease_tolerance: 1e-15, cautious: true, frugal: false }
+    }
+}
