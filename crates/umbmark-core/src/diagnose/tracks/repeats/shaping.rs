@@ -6,8 +6,9 @@
 //!
 //! Source: variable projection, Golub & Pereyra (1973).
 
-use super::Pick;
-use super::laws::{Laws, Step};
+use super::laws::Laws;
+use super::pick::Pick;
+use super::steps::Step;
 use crate::evidence::tracks::Projected;
 use crate::likelihood::{Column, Noise, Observed, Whitened};
 use nalgebra::DMatrix;

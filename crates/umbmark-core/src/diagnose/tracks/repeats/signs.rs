@@ -1,7 +1,8 @@
 //! The test itself: sums over units of every law's column, and the greatest of them as signs are flipped.
 
-use super::super::smooth::Motion;
-use super::laws::{Laws, Step};
+use super::laws::Laws;
+use super::steps::Step;
+use crate::diagnose::tracks::smooth::Motion;
 use crate::likelihood::{Column, Noise, ObservedRun, ScaledCholesky, scaled_cholesky};
 use crate::random::Stream;
 use nalgebra::{DMatrix, DVector};

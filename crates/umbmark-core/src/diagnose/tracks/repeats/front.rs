@@ -1,0 +1,102 @@
+//! The laws that stand out, fitted along with the model, and the one that they are taken for.
+
+use super::law::UnlistedLaw;
+use super::laws::Laws;
+use super::pick::Pick;
+use super::steps::Step;
+use crate::diagnose::tracks::smooth::Motion;
+use crate::evidence::tracks::{Errors, Projected, System};
+use crate::likelihood::{Column, Noise, Observed, ObservedRun};
+
+/// A law by which errors of runs left out fall by less than this share of what the best of them does is none to take.
+const WORSE: f64 = 0.5;
+/// A law that is as good as another takes off the sum of squares as much as that, but for so much.
+const AS_LIKELY: f64 = 40.0;
+
+/// Laws fitted along with the model's own columns: first the shortest of those that predict runs left out as well as the best, within one
+/// standard error, then the others from the best to the worst.
+pub fn front(
+    observed: &Observed,
+    noise: &Noise,
+    own: &[Vec<Column>],
+    laws: &Laws,
+    steps: &[Vec<Step>],
+    picks: &[Pick],
+) -> Vec<UnlistedLaw> {
+    let of_run = |((run, own), steps): ((&ObservedRun, &Vec<Column>), &Vec<Step>)| {
+        let (residual, base) = own.split_last().map_or((Column::new(), own.as_slice()), |(r, b)| (r.clone(), b));
+        let laws = picks.iter().flat_map(|pick| pick.columns(&[&pick.shapes], run, laws, steps));
+        base.iter().cloned().chain(laws).chain([residual]).collect()
+    };
+    let columns: Vec<Vec<Column>> = observed.runs.iter().zip(own).zip(steps).map(of_run).collect();
+    let system = System::new(observed, noise, &columns);
+    let errors = Errors::new(observed, &system, &columns, (0..system.width).collect());
+    let base: Vec<usize> = (0..own.first().map_or(0, |own| own.len() - 1)).collect();
+    let left_out = |extra: &[usize]| {
+        let columns = [&base[..], extra].concat();
+        errors.squares(|fold| (columns.clone(), Projected::fit(&system.without(fold), &columns)))
+    };
+    let plain = left_out(&[]);
+    let before = errors.misses_of(&plain);
+    let projected = Projected::new(&system.whole, &base);
+    let mut next = base.len();
+    let mut tried: Vec<(UnlistedLaw, Vec<[f64; 3]>, Vec<usize>)> = Vec::new();
+    for pick in picks {
+        let own: Vec<usize> = (next..next + laws.both(pick.term).count()).collect();
+        next += own.len();
+        let Some((drop, sizes, _)) = projected.drop(&own) else { continue };
+        let squares = left_out(&own);
+        let after = errors.misses_of(&squares);
+        let motion = Motion::ALL[pick.motion];
+        let (numbers, how) = ((sizes.as_slice(), &pick.shapes[..]), (motion, pick.with_sense));
+        let model = laws.model(pick.term, numbers, how, &observed.robot);
+        let formula = model.as_ref().and_then(|model| model.parts().first()?.effect.formula());
+        let law = UnlistedLaw {
+            number: 0,
+            length: formula.map_or(usize::MAX, |formula| formula.length()),
+            model,
+            acts_on: motion.name(),
+            per: laws.terms[pick.term].per.name(),
+            with_sense: pick.with_sense,
+            follows: laws.words(pick.term).to_owned(),
+            means: None,
+            nearest: None,
+            left_out: [before.position, after.position],
+            gain: (after.gain(&before) - (after.position / before.position - 1.0).max(0.0)).max(0.0),
+            drop,
+            likeness: 1.0,
+        };
+        tried.push((law, squares, own));
+    }
+    let gain = tried.iter().map(|(law, ..)| law.gain).fold(0.0, f64::max);
+    let (mut tried, worse): (Vec<_>, Vec<_>) = tried.into_iter().partition(|(law, ..)| law.gain >= WORSE * gain);
+    let total = |squares: &[[f64; 3]]| squares.iter().map(|fold| fold[2]).sum::<f64>();
+    tried.sort_by(|a, b| total(&a.1).total_cmp(&total(&b.1)));
+    let most = tried.iter().map(|(law, ..)| law.drop).fold(0.0, f64::max);
+    let as_good = |other: &&(UnlistedLaw, Vec<[f64; 3]>, Vec<usize>)| {
+        is_as_good(&other.1, &tried[0].1) && other.0.drop >= most - AS_LIKELY
+    };
+    let written = tried.iter().filter(as_good).min_by_key(|(law, ..)| law.length);
+    let Some(first) = written.or(tried.first()).and_then(|written| tried.iter().position(|other| other.2 == written.2))
+    else {
+        return Vec::new();
+    };
+    let chosen = tried.remove(first);
+    tried.extend(worse);
+    let values = projected.drop(&chosen.2).map(|(_, values, _)| values);
+    let others = tried.into_iter().map(|(law, _, own)| {
+        let likeness = values.as_ref().map_or(0.0, |values| projected.likeness(&chosen.2, values, &own));
+        UnlistedLaw { likeness, ..law }
+    });
+    std::iter::once(chosen.0).chain(others).collect()
+}
+
+/// Whether squares of what is new from pose to pose, fold by fold, are no greater than the least ones, within one standard error of the sum of
+/// their differences.
+fn is_as_good(squares: &[[f64; 3]], least: &[[f64; 3]]) -> bool {
+    let off: Vec<f64> = squares.iter().zip(least).map(|(own, least)| own[2] - least[2]).collect();
+    let count = off.len() as f64;
+    let mean = off.iter().sum::<f64>() / count;
+    let scatter = off.iter().map(|off| (off - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    count * mean <= (count * scatter).sqrt()
+}

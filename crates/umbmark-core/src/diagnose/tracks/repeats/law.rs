@@ -1,0 +1,164 @@
+//! A law that no catalogue lists, and whether what repeats counts.
+
+use super::laws::SIZES;
+use crate::diagnose::tracks::class::ALIKE;
+use crate::effect::Model;
+use crate::stats::chi_squared_upper_tail;
+
+/// p at which something repeats: the other certificates together take the rest of one in twenty. Where it stands out as far as the second says
+/// and runs left out are predicted so much better, p need only be the third: the flips of ten runs, of which the fast ones carry most, are few.
+const SIZE: f64 = 0.01;
+const LOUD: (f64, f64) = (1e-6, 0.1);
+const SIZE_IF_LOUD: f64 = 0.05;
+/// Fewer runs do not show whether it is the same in all.
+const ENOUGH_RUNS: usize = 4;
+/// Where runs left out are predicted so much better, noise as wide as it was fitted may be what repeats, and is not taken as wider still. p need
+/// only be this then: it is of the flips alone, and of few runs, of which some carry most, these are few.
+const PLAIN: f64 = 0.4;
+const SIZE_IF_PLAIN: f64 = 0.2;
+/// The same by the noise model, and how many times as wide as that has it noise that remembers makes a drift of the heading.
+const SIZE_BY_NOISE: f64 = 0.05;
+pub(super) const REMEMBERS: f64 = 2.6;
+
+/// What repeats most.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Repeated {
+    /// p of all laws together.
+    pub p: f64,
+    /// The score of the one that stands out most in standard deviations, as the noise model has them.
+    pub deviations: f64,
+    /// How many laws there are that the data could show.
+    pub laws: usize,
+    /// In how many runs it was looked for.
+    pub runs: usize,
+    /// The law that it is taken for.
+    pub law: UnlistedLaw,
+    /// Others that stand out, the one that predicts runs left out best first.
+    pub others: Vec<UnlistedLaw>,
+}
+
+/// A law that no catalogue lists.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnlistedLaw {
+    /// Its number in the table of laws, from 1.
+    pub number: usize,
+    /// A model that holds it alone, with start values, where it can be written as a formula.
+    pub model: Option<Model>,
+    /// What it acts on: "forward", "sideways" or "yaw".
+    pub acts_on: &'static str,
+    /// What it is in proportion to: "second", "metre" or "radian turned".
+    pub per: &'static str,
+    /// Whether it turns over with the sense of the run.
+    pub with_sense: bool,
+    /// By what, in words, with {c} for the value of its parameter c.
+    pub(in crate::diagnose::tracks) follows: String,
+    /// What the length that shapes it is of the robot or of its path: "the circumference of a wheel".
+    pub means: Option<String>,
+    /// The effect of the catalogue that comes nearest to it once it is fitted, and the share of its response that this makes, as a cosine.
+    pub nearest: Option<(&'static str, f64)>,
+    /// How long its formula is: operations, variables and numbers.
+    pub length: usize,
+    /// Root mean square error of runs left out \[m\], and with the law.
+    pub left_out: [f64; 2],
+    /// By what share errors of runs left out fall, of positions, of headings, or from pose to pose, whichever falls most; less what positions
+    /// rise by.
+    pub gain: f64,
+    /// What it takes off the sum of squares, in units of the noise variance.
+    pub drop: f64,
+    /// Share of its response that the law which is taken makes as well, as a cosine.
+    pub likeness: f64,
+}
+
+impl UnlistedLaw {
+    /// Whether these runs cannot tell it from the law that is taken.
+    pub fn is_alike(&self) -> bool {
+        self.likeness > ALIKE
+    }
+
+    /// The numbers that shape it, each with its name and three digits: a period, a scale, a threshold, a place.
+    pub fn shapes(&self) -> Vec<(&'static str, String)> {
+        let part = self.model.as_ref().and_then(|model| model.parts().first());
+        let numbers = part.into_iter().flat_map(|part| part.effect.parameters().iter().zip(&part.values));
+        let shapes = numbers.filter(|(parameter, _)| !SIZES.contains(&parameter.name));
+        shapes.map(|(parameter, value)| (parameter.name, three_digits(*value))).collect()
+    }
+
+    /// What it follows, in words: "a wave of the time with a period of 18.9 s".
+    pub fn by(&self) -> String {
+        let part = self.model.as_ref().and_then(|model| model.parts().first());
+        let numbers = part.into_iter().flat_map(|part| part.effect.parameters().iter().zip(&part.values));
+        numbers.fold(self.follows.clone(), |words, (parameter, value)| {
+            words.replace(&format!("{{{}}}", parameter.name), &three_digits(*value))
+        })
+    }
+
+    /// In words: "the yaw motion for each metre follows the speed".
+    pub fn words(&self) -> String {
+        let sense = if self.with_sense { ", with the sense of the run" } else { "" };
+        let means = self.means.as_ref().map(|means| format!(" ({means})")).unwrap_or_default();
+        format!("the {} motion for each {} follows {}{means}{sense}", self.acts_on, self.per, self.by())
+    }
+}
+
+fn three_digits(value: f64) -> String {
+    let decimals = (2.0 - value.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
+    format!("{value:.decimals$}")
+}
+
+impl Repeated {
+    /// Whether it is no chance, and makes errors of runs left out fall by this share.
+    pub(in crate::diagnose::tracks) fn counts(&self, least: f64) -> bool {
+        let (by_noise, gain) = (self.p_by_noise(REMEMBERS), self.law.gain);
+        let is_plain = gain >= PLAIN && self.p_by_noise(1.0) <= LOUD.0;
+        let is_loud = by_noise <= LOUD.0 && gain >= LOUD.1;
+        let is_clear = (is_loud && self.p <= SIZE_IF_LOUD) || (is_plain && self.p <= SIZE_IF_PLAIN);
+        let is_certain = self.p <= SIZE && by_noise <= SIZE_BY_NOISE;
+        gain >= least && (is_certain || (is_clear && self.runs >= ENOUGH_RUNS))
+    }
+
+    /// Whether a model beside which it is left is not to be called explained: it counts, or it stands out of the noise as far as chance does
+    /// once in a million and predicts runs left out 10 % better, though the flips of so few runs do not confirm it. A doubt needs less than an
+    /// addition.
+    pub(in crate::diagnose::tracks) fn is_doubt(&self, least: f64) -> bool {
+        let stands_out = self.p_by_noise(1.0) <= LOUD.0 && self.law.gain >= LOUD.1.max(least);
+        self.counts(least) || (stands_out && self.runs >= ENOUGH_RUNS)
+    }
+
+    /// p of all laws together by the noise model (Bonferroni), with scores so many times as wide as that has them: flips of few runs are few, and
+    /// one of them is as far out once in a while.
+    pub(super) fn p_by_noise(&self, wider: f64) -> f64 {
+        let square = (self.deviations / wider).powi(2);
+        (self.laws as f64 * chi_squared_upper_tail(square, 1.0)).min(1.0)
+    }
+
+    /// In a sentence, without a full stop.
+    pub(crate) fn sentence(&self) -> String {
+        let [before, after] = self.law.left_out;
+        let p = if self.p < 0.001 { "p < 0.001".to_owned() } else { format!("p = {:.3}", self.p) };
+        let told = match self.counts(0.0) {
+            true => format!("what is left repeats ({p} among {} laws)", self.laws),
+            false => format!(
+                "what is left may repeat ({:.1} standard deviations, the largest of {} laws; sign flips of these runs do not confirm it, {p})",
+                self.deviations, self.laws
+            ),
+        };
+        format!(
+            "{told}: {}; with that, runs left out would be predicted to {:.1} mm instead of {:.1} mm",
+            self.law.words(),
+            1e3 * after,
+            1e3 * before
+        )
+    }
+
+    /// The same with the law of a number taken, 1 for the one that is, or the first behind it that is not `refused`; `None` where there is none.
+    pub(in crate::diagnose::tracks) fn taking(
+        &self,
+        number: usize,
+        refused: impl Fn(&UnlistedLaw) -> bool,
+    ) -> Option<Repeated> {
+        let mut laws: Vec<UnlistedLaw> = std::iter::once(&self.law).chain(&self.others).cloned().collect();
+        let which = (number.saturating_sub(1)..laws.len()).find(|which| !refused(&laws[*which]))?;
+        let law = laws.remove(which);
+        Some(Repeated { law, others: laws, ..self.clone() })
+    }
+}

@@ -1,0 +1,135 @@
+//! Short parts of runs, with the means of what the robot does in them.
+
+use crate::effect::Chain;
+use crate::geometry::{Displacement2, Pose2};
+use crate::likelihood::ObservedRun;
+
+/// What a law is in proportion to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Per {
+    /// Time, driving or not.
+    Second,
+    /// Way driven, ahead or back.
+    Metre,
+    /// Way ahead, and back against it.
+    Ahead,
+    /// Rotation, either way.
+    Radian,
+}
+
+impl Per {
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Per::Second => "second",
+            Per::Metre => "metre",
+            Per::Ahead => "metre ahead or back, against each other",
+            Per::Radian => "radian turned",
+        }
+    }
+
+    pub fn of(self, step: &Step) -> f64 {
+        match self {
+            Per::Second => step.duration,
+            Per::Metre => step.way,
+            Per::Ahead => step.way * step.speed.signum(),
+            Per::Radian => step.rotation.abs(),
+        }
+    }
+}
+
+/// A short part of a run, with means over it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Step {
+    /// The block that it belongs to.
+    pub block: usize,
+    /// Where the robot is in the middle of it, and how it stands.
+    pub middle: Pose2,
+    /// \[s\]
+    pub duration: f64,
+    /// Way driven, ahead or back \[m\].
+    pub way: f64,
+    /// \[rad\]; nothing where both wheels roll nearly alike: what is left then is made of single counts.
+    pub rotation: f64,
+    /// Since the run began \[s\] and \[m\], in its middle.
+    pub time: f64,
+    pub distance: f64,
+    /// \[m/s\], ahead positive.
+    pub speed: f64,
+    /// \[rad/s\]; nothing where both wheels roll nearly alike.
+    pub turn_rate: f64,
+    /// \[m/s²\] and \[rad/s²\]
+    pub acceleration: f64,
+    pub turn_acceleration: f64,
+    /// Of the left and the right wheel \[rad\].
+    pub wheel_angle: [f64; 2],
+    /// Way since the last turn \[m\], and its sense.
+    pub since_turn: f64,
+    pub last_turn: f64,
+}
+
+/// A step ends after so much way \[m\], rotation \[rad\] or time \[s\].
+const STEP: (f64, f64, f64) = (0.02, 0.05, 0.1);
+/// Wheels roll alike where they differ by less than this share.
+const ALIKE: f64 = 0.05;
+
+/// The steps of a run along a model.
+pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
+    let track = &run.track;
+    let (mut pose, mut made, mut steps) = (track.start(chain), 0, Vec::new());
+    for (block, own) in run.blocks.iter().enumerate() {
+        let until = run.made_at(own).max(made);
+        let (mut step, mut wheels, mut change) = (Step::default(), [0.0; 2], [0.0; 2]);
+        let mut begin = pose;
+        let pieces = track.travel()[made..until].iter().zip(&track.contexts()[made..until]);
+        let count = until - made;
+        for (index, (travel, at)) in pieces.enumerate() {
+            if step.duration == 0.0 {
+                begin = pose;
+                step = Step {
+                    block,
+                    time: at.time,
+                    distance: at.distance,
+                    wheel_angle: at.wheel_angle,
+                    since_turn: at.since_turn,
+                    last_turn: at.last_turn,
+                    ..Step::default()
+                };
+                (wheels, change) = ([0.0; 2], [0.0; 2]);
+            }
+            let motion = chain.displacement(&at.at_pose(&pose), travel);
+            pose = pose.moved(&motion);
+            step.duration += at.duration;
+            step.way += at.length.abs();
+            step.speed += at.speed * at.duration;
+            step.rotation += motion.rotation;
+            wheels = [wheels[0] + travel.left, wheels[1] + travel.right];
+            change = [change[0] + at.acceleration() * at.duration, change[1] + at.turn_acceleration() * at.duration];
+            let full = step.way >= STEP.0 || step.rotation.abs() >= STEP.1 || step.duration >= STEP.2;
+            if (full || index + 1 == count) && step.duration > 0.0 {
+                let Step { duration, way, rotation, .. } = step;
+                let between = begin.between(&pose);
+                step.middle = begin.moved(&Displacement2 {
+                    forward: 0.5 * between.x,
+                    sideways: 0.5 * between.y,
+                    rotation: 0.5 * rotation,
+                });
+                step.speed /= duration;
+                let alike = (wheels[1] - wheels[0]).abs() < ALIKE * wheels[0].abs().max(wheels[1].abs());
+                step.rotation = if alike { 0.0 } else { rotation };
+                step.turn_rate = step.rotation / duration;
+                (step.acceleration, step.turn_acceleration) = (change[0] / duration, change[1] / duration);
+                (step.time, step.distance) = (step.time + 0.5 * duration, step.distance + 0.5 * way);
+                (0..2).for_each(|wheel| {
+                    step.wheel_angle[wheel] +=
+                        0.5 * (at.wheel_angle[wheel] + at.wheel_rotation[wheel] - step.wheel_angle[wheel]);
+                });
+                step.since_turn += 0.5 * way;
+                steps.push(step);
+                step.duration = 0.0;
+            }
+        }
+        made = until;
+    }
+    steps
+}
