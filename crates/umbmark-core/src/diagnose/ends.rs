@@ -3,8 +3,8 @@
 //! The noise of a robot's wheels mirrors with its path, so clockwise runs are mirrored (M = diag(1, -1, -1)) and the scatter
 //! of both directions is pooled, with ν = n_cw + n_ccw - 2 degrees of freedom.
 
-mod asked;
-mod contrasts;
+pub(super) mod asked;
+pub(super) mod contrasts;
 mod exact;
 mod family;
 mod flips;

@@ -1,7 +1,7 @@
 //! Learning from tracks: the same story, told from products of columns instead of one fit for each fold.
 
 use super::{Error, Learnt, MOST, Step};
-use crate::diagnose::tracks::{self, Added, Found, Search, Wanted};
+use crate::diagnose::tracks::{self, Added, Conclusion, Found, Search, Wanted};
 use crate::diagnose::{Diagnosis, Options, Reason, Verdict};
 use crate::effect::{Model, Part, find};
 use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit};
@@ -152,23 +152,12 @@ const FAR_WORSE: f64 = 5.0;
 
 /// The story's end: the diagnosis of the model that was learnt.
 fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Learnt, FitError> {
-    let told = search.left.smooth.as_ref().and_then(|f| tracks::dependence(search.last(), f, &search.left.asked));
+    let told = Conclusion::new(&mut search, options)?;
+    let Conclusion { verdict, mut reasons, repeats, remains, dependence, mut experiments, mut hints } = told;
     let more = search.left.effect.is_some();
-    let (mut experiments, mut hints) = (Vec::new(), Vec::new());
-    for (exam, added) in search.exams.iter().zip(&search.added) {
-        let (told, hint) = tracks::next_experiments(exam, added)?;
-        experiments.extend(told);
-        hints.extend(hint);
-    }
-    let not_enough = tracks::verdict(&search) == Verdict::NotEnoughData;
     hints.extend(search.removed.iter().map(|effect| {
         format!("{effect} was added on the way and taken out again: beside the others it no longer predicts runs that are left out better.")
     }));
-    let mut reasons = tracks::doubts_of(search.last(), options);
-    let repeats = search.repeats(options).cloned();
-    reasons.extend(tracks::reason_to_doubt(repeats.as_ref()));
-    let remains = tracks::remains_of(search.last(), options);
-    reasons.extend(Reason::of_remains(&remains));
     let has_law = search.has_law();
     hints.extend(search.harmful.iter().map(|effect| {
         format!("{effect} is significant, and with it runs that are left out are predicted worse; it was not added.")
@@ -186,14 +175,14 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         reasons.push(Reason::LeftOutFarWorse { left_out, inside });
     }
     let verdict = match (&left.smooth, more) {
-        _ if not_enough => Verdict::NotEnoughData,
+        _ if verdict == Verdict::NotEnoughData => verdict,
         (Some(_), _) => Verdict::UnlistedEffect,
         (None, true) => Verdict::SeveralMissing,
         (None, false) if !reasons.is_empty() => Verdict::NotExplained,
         (None, false) if has_law => Verdict::UnlistedEffect,
         (None, false) => Verdict::Explained,
     };
-    let diagnosis = tracks::conclude(last, told, options)?;
+    let diagnosis = tracks::of_model(last, dependence, options)?;
     hints.extend(tracks::uncertified(&left.asked, options));
     let mut remarks = [diagnosis.remarks.clone(), hints].concat();
     let ranking = left.asked;

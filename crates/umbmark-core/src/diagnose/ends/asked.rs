@@ -2,7 +2,10 @@
 
 use super::exact::{Pattern, wilks};
 use super::moments::{Moments, Whitened};
-use crate::diagnose::{Likeness, Size, Unseen, Why, candidates, classes};
+use crate::diagnose::candidates::Size;
+use crate::diagnose::likeness::Likeness;
+use crate::diagnose::unseen::{Unseen, Why};
+use crate::diagnose::{candidates, classes};
 use crate::drive::{LinkReading, WheelTravel};
 use crate::effect::{Context, Entry, Model, Sight, of_drive};
 use crate::evidence::FitError;

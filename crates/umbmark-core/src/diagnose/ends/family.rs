@@ -7,7 +7,7 @@
 use super::asked::{Asked, Unit};
 use super::exact::wilks;
 use super::moments::{Moments, Whitened};
-use crate::diagnose::Options;
+use crate::diagnose::options::Options;
 use crate::random::Stream;
 use crate::stats::{f_upper_tail, student_t_quantile};
 use rayon::prelude::*;

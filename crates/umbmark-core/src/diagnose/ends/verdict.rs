@@ -5,12 +5,17 @@ use super::family::Family;
 use super::flips::certificate;
 use super::moments::Whitened;
 use super::{Contrast, circle, contrasts};
+use crate::diagnose::diagnosis::{Diagnosis, GoodnessOfFit, Verdict};
+use crate::diagnose::ends::contrasts::OnCircle;
 use crate::diagnose::experiments::next_experiments;
 use crate::diagnose::identifiability::of_ends;
+use crate::diagnose::likeness::Likeness;
 use crate::diagnose::likeness::correlations;
-use crate::diagnose::{
-    Detectable, Diagnosis, GoodnessOfFit, Likeness, OnCircle, Options, Reason, Remains, Suspect, Trail, Verdict,
-};
+use crate::diagnose::options::Options;
+use crate::diagnose::reason::Reason;
+use crate::diagnose::remains::{Remains, Trail};
+use crate::diagnose::suspect::Suspect;
+use crate::diagnose::unseen::Detectable;
 use crate::effect::Model;
 use crate::evidence::ends::{End, Ends, FEWEST_RUNS, Fitted};
 use crate::evidence::{Estimate, FitError, Level};

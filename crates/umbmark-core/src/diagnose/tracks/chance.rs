@@ -1,6 +1,6 @@
 //! What is left of tracks: what of it repeats, what each source of chance would leave, and where runs are disturbed.
 
-use crate::diagnose::Options;
+use crate::diagnose::options::Options;
 use crate::diagnose::remains::{Chance, Remains, Trail};
 use crate::evidence::tracks::Misses;
 use crate::likelihood::{Column, Disturbance, Noise, Observed, ObservedRun, Stretch};

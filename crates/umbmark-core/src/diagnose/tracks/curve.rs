@@ -1,9 +1,8 @@
 //! A smooth as people see it: a curve over what it depends on, with its interval.
 
 use super::examination::Examination;
-use super::look::Finding;
+use super::finding::Finding;
 use super::smooth::{ALONG_THE_WAY, Covariate, Exposure, Motion, Piece, Scales};
-use crate::diagnose::{Curve, CurvePoint};
 use crate::stats::normal_quantile;
 use nalgebra::DVector;
 use std::f64::consts::{PI, TAU};
@@ -12,6 +11,28 @@ use std::f64::consts::{PI, TAU};
 const POINTS: usize = 17;
 /// What happens so far after a turn is not drawn \[m\].
 const FAR_FROM_TURN: f64 = 0.6;
+
+/// A smooth dependence, in numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Unit of what it depends on; empty for a pure number.
+    pub at_unit: &'static str,
+    /// Unit of what it adds.
+    pub unit: String,
+    /// In increasing order.
+    pub points: Vec<CurvePoint>,
+}
+
+/// A place on a [`Curve`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// What it depends on.
+    pub at: f64,
+    /// What it adds.
+    pub value: f64,
+    /// Half the width of its 95 % interval, taken by itself.
+    pub half_width: f64,
+}
 
 /// The curve of a smooth that was found: f(x) = Σ c_k f_k(x), with var f = fᵀ C f.
 pub fn curve(exam: &Examination, finding: &Finding, covariate: &Covariate, motion: Motion) -> Curve {

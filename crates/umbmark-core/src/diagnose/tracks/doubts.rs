@@ -1,7 +1,7 @@
 //! What speaks against a fitted model as a whole, though no effect that it lacks is certified.
 
 use super::chance;
-use crate::diagnose::Reason;
+use crate::diagnose::reason::Reason;
 use crate::effect::Model;
 use crate::evidence::tracks::Misses;
 use crate::likelihood::{Growth, Noise, Observed};

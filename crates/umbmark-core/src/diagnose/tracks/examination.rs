@@ -1,6 +1,6 @@
 //! A fitted model on tracks beside everything that it may be missing.
 
-use super::look::Finding;
+use super::finding::{Answer, Finding, worth};
 use super::responses::{self, Asked, Question, Responses};
 use crate::effect::{Changes, Entry, Law, Model, ModelError, Number};
 use crate::evidence::ends::names;
@@ -14,26 +14,9 @@ use std::sync::{Arc, OnceLock};
 
 /// At its usual size a candidate must move the observations by so many standard deviations to be asked about.
 const VISIBLE: f64 = 0.3;
-/// Response that others must be able to make to be of the same class, as a cosine.
-pub const ALIKE: f64 = 0.95;
 /// Groups that are fitted out for a clean estimate of the noise, and the drop that each must bring a column.
 const CLEANED: usize = 6;
 const WORTH_CLEANING: f64 = 15.0;
-
-/// A group after one step from zero.
-#[derive(Clone, Debug)]
-pub struct Answer {
-    /// Which of [`Examination::asked`].
-    pub asked: usize,
-    /// Its columns that the rest of the model leaves visible.
-    pub columns: Vec<usize>,
-    /// What it takes off the sum of squares.
-    pub drop: f64,
-    /// Values of the columns.
-    pub step: DVector<f64>,
-    /// Their covariance.
-    pub covariance: DMatrix<f64>,
-}
 
 /// A fitted model on tracks, its residuals, and the columns of all that may be missing.
 #[derive(Clone, Debug)]
@@ -297,14 +280,4 @@ impl Examination {
         let (drop, step, covariance) = projected.drop(&columns)?;
         Some(Answer { asked: index, columns, drop, step, covariance })
     }
-}
-
-/// How much better a group makes the fit than as many columns of nothing would.
-pub fn worth(answer: &Answer) -> f64 {
-    worth_of(answer.drop, answer.columns.len())
-}
-
-/// What a drop by so many numbers is worth.
-pub fn worth_of(drop: f64, numbers: usize) -> f64 {
-    drop - 3.0 * numbers as f64
 }

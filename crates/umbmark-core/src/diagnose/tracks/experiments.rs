@@ -4,13 +4,16 @@
 //! deviations "the truth is j" would lie from all that the model with k in its place can predict, by old and new data together. Tracks
 //! that are yet to be driven are whitened with the noise of this robot as fitted, so their products simply add to today's.
 
-use super::examination::{Answer, Examination};
-use super::look::{Finding, rivals};
+use super::class::rivals;
+use super::examination::Examination;
+use super::finding::Answer;
+use super::finding::Finding;
 use super::repeats::{Repeated, SHAPE, UnlistedLaw};
 use super::responses::{Asked, Question};
+use crate::diagnose::experiments::Experiment;
 use crate::diagnose::experiments::design::{MINUTES_A_RUN, minutes};
 use crate::diagnose::experiments::{best, worth};
-use crate::diagnose::{Experiment, Unseen, Why};
+use crate::diagnose::unseen::{Unseen, Why};
 use crate::effect::{Law, Model, ModelError, Number, Part};
 use crate::evidence::FitError;
 use crate::evidence::tracks::Projected;

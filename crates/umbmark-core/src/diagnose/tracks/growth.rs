@@ -2,9 +2,10 @@
 
 use super::examination::Examination;
 use super::repeats::SHAPE;
-use super::{FitError, Suspect};
+use crate::diagnose::suspect::Suspect;
 use crate::effect::{Law, Model, Part};
 use crate::evidence::Estimate;
+use crate::evidence::FitError;
 use crate::evidence::tracks::Alone;
 use crate::evidence::tracks::estimates;
 use crate::likelihood::{Fitted, Noise};

@@ -164,8 +164,8 @@ mod tests {
         let fitted =
             crate::evidence::tracks::fit(&Observed::new(&data, &robot).unwrap(), &first_model(&data).unwrap()).unwrap();
         let exam = Examination::new(fitted).unwrap();
-        let findings = super::super::look::effects(&exam, &Options::default());
-        let suspect = super::super::look::suspect(&exam, &findings[0]).unwrap();
+        let findings = super::super::significance::effects(&exam, &Options::default());
+        let suspect = super::super::class::suspect(&exam, &findings[0]).unwrap();
         assert!(suspect.class.contains(&"caster_kick"), "{:?}", suspect.class);
         let grown = growth::grown(&exam, &suspect).unwrap();
         assert!(hold(&exam.along, &grown.observed));

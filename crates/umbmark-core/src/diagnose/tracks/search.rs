@@ -1,12 +1,15 @@
 //! What a model is missing, and a model that grows by it: one effect after the other, and what no longer helps taken out again. Where no
 //! effect of the catalogue is certified and something repeats all the same, the law that it follows is added.
 
+use super::class;
 use super::examination::Examination;
-use super::look::{self, Finding};
+use super::finding::{Finding, TELLING};
+use super::growth;
 use super::repeats::{self, Repeated, UnlistedLaw};
 use super::responses::Asked;
-use super::{EXPLAINED, FEWEST, TELLING, TRIES, growth};
-use crate::diagnose::{Options, Suspect};
+use super::significance;
+use crate::diagnose::options::Options;
+use crate::diagnose::suspect::Suspect;
 use crate::effect::{Law, Model, Part};
 use crate::evidence::tracks::LEAST_GAIN;
 use crate::evidence::tracks::Misses;
@@ -18,6 +21,12 @@ use crate::likelihood::{Fitted, Noise};
 use crate::watch::Watch;
 use std::borrow::Cow;
 
+/// A smooth speaks for an unlisted effect where the best effect of the catalogue explains less than this share of it.
+const EXPLAINED: f64 = 0.85;
+/// So many certified effects are tried for their gain.
+const TRIES: usize = 4;
+/// Fewer runs give no certificate.
+pub(super) const FEWEST: usize = 2;
 /// A law that no catalogue lists is added where positions or headings of runs left out fall by this share, or what is new from pose to pose by
 /// the second, and so many laws at most.
 const WORTH_A_LAW: f64 = 0.05;
@@ -44,15 +53,15 @@ pub(crate) struct Missing {
 
 /// Looks for what is missing and not refused.
 fn missing(exam: &Examination, options: &Options, refused: &[&str]) -> Missing {
-    let findings = look::effects(exam, options);
-    let smooth = look::smooths(exam, options).iter().find(|s| s.certified(options)).cloned();
+    let findings = significance::effects(exam, options);
+    let smooth = significance::smooths(exam, options).iter().find(|s| s.certified(options)).cloned();
     let enough = exam.fitted.observed.runs.len() >= FEWEST;
     let best = if enough { first_with_gain(exam, &findings, options, refused) } else { None };
     let unexplained = smooth.filter(|smooth| !explains(exam, best, smooth) && smooth_gains(exam, smooth));
     Missing {
-        effect: best.and_then(|finding| look::suspect(exam, finding).map(|suspect| (finding.clone(), suspect))),
+        effect: best.and_then(|finding| class::suspect(exam, finding).map(|suspect| (finding.clone(), suspect))),
         smooth: unexplained,
-        asked: findings.iter().filter_map(|finding| look::suspect(exam, finding)).collect(),
+        asked: findings.iter().filter_map(|finding| class::suspect(exam, finding)).collect(),
     }
 }
 
@@ -81,7 +90,7 @@ fn first_with_gain<'a>(
         let own = findings.iter().filter(|f| nuisance(f) == of_reference && f.certified(options));
         let is_refused =
             |f: &Finding| exam.asked[f.answer.asked].effect().is_some_and(|e| refused.contains(&e.about.name));
-        let own = own.filter(|f| look::possible(exam, f) && !is_refused(f) && is_sure(exam, f, options));
+        let own = own.filter(|f| significance::possible(exam, f) && !is_refused(f) && is_sure(exam, f, options));
         for finding in own.take(TRIES) {
             let wanted = |asked: &Asked| {
                 let name = asked.effect().map_or("", |effect| effect.about.name);
@@ -504,6 +513,6 @@ fn text_of(law: &Model) -> String {
 /// Whether a smooth that an effect seemed not to explain is there after that effect was fitted. What one linear step
 /// leaves of a large effect is gone then; what is not in the catalogue is not.
 pub(super) fn speaks_on(exam: &Examination, smooth: &Finding, options: &Options) -> bool {
-    let mut now = look::smooths(exam, options).iter().filter(|finding| finding.certified(options));
+    let mut now = significance::smooths(exam, options).iter().filter(|finding| finding.certified(options));
     now.any(|finding| finding.answer.drop > (1.0 - EXPLAINED) * smooth.answer.drop)
 }

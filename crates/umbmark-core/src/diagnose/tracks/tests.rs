@@ -4,9 +4,10 @@ use super::search::{explains, speaks_on};
 use super::*;
 use crate::diagnose::first_model;
 use crate::diagnose::tests::robot_with;
+use crate::diagnose::unseen::Why;
 use crate::drive::Robot;
 use crate::effect::{Formula, Model, Target};
-use crate::evidence::tracks::fit;
+use crate::evidence::tracks::{Projected, fit};
 use crate::likelihood::watched::watched;
 use nalgebra::DMatrix;
 use std::sync::LazyLock;
@@ -23,14 +24,24 @@ pub(super) fn complete() -> &'static Examination {
 }
 
 pub(super) fn fitted_to(truth: &Model) -> Fitted {
+    let (observed, model) = observed(truth);
+    fit(&observed, &model).unwrap()
+}
+
+/// Three squares each way, and the first model of them.
+fn observed(truth: &Model) -> (Observed, Model) {
     let data = watched(truth, 3, 5);
-    let observed = Observed::new(&data, &Robot::labmate()).unwrap();
-    fit(&observed, &first_model(&data).unwrap()).unwrap()
+    (Observed::new(&data, &Robot::labmate()).unwrap(), first_model(&data).unwrap())
+}
+
+fn diagnosed(truth: &Model) -> Diagnosis {
+    let (observed, model) = observed(truth);
+    diagnose(&observed, &model, &Options::default()).unwrap()
 }
 
 #[test]
 fn a_slope_that_is_hidden_in_tracks_is_certified_with_its_size() {
-    let diagnosis = diagnose(fitted(&[("floor_slope", "drift_x", 6e-3)]), &Options::default()).unwrap();
+    let diagnosis = diagnosed(&robot_with(&[("floor_slope", "drift_x", 6e-3)]));
     assert_eq!((diagnosis.verdict, diagnosis.certified), (Verdict::MissingEffect, 1));
     let found = &diagnosis.ranking[0];
     assert_eq!((found.best, &found.class[..]), ("floor_slope", &["floor_slope", "carpet_nap"][..]));
@@ -48,7 +59,7 @@ fn a_slope_that_is_hidden_in_tracks_is_certified_with_its_size() {
 
 #[test]
 fn of_a_complete_model_nothing_is_said_to_be_missing() {
-    let diagnosis = diagnose(fitted(&[]), &Options::default()).unwrap();
+    let diagnosis = diagnosed(&robot_with(&[]));
     assert_eq!((diagnosis.verdict, diagnosis.certified), (Verdict::Explained, 0));
     assert!(diagnosis.dependence.is_none() && diagnosis.ranking[0].p_adjusted > 0.05, "{:?}", diagnosis.ranking[0]);
 }
@@ -89,7 +100,7 @@ pub(super) fn on_grain() -> Model {
 
 #[test]
 fn what_no_effect_does_is_told_as_unlisted_with_its_curve_and_a_formula() {
-    let diagnosis = diagnose(fitted_to(&on_grain()), &Options::default()).unwrap();
+    let diagnosis = diagnosed(&on_grain());
     assert_eq!(diagnosis.verdict, Verdict::UnlistedEffect);
     let told = diagnosis.dependence.unwrap();
     assert_eq!((told.depends_on, told.acts_on, &*told.curve.unit), ("heading", "yaw", "rad/m"));
@@ -106,7 +117,7 @@ fn what_no_effect_does_is_told_as_unlisted_with_its_curve_and_a_formula() {
 fn an_effect_explains_a_smooth_whose_fall_beside_the_same_it_reaches_to_85_percent() {
     let options = Options::default();
     let exam = Examination::new(fitted(&[("floor_slope", "drift_x", 6e-3)])).unwrap();
-    let (effects, smooths) = (look::effects(&exam, &options), look::smooths(&exam, &options));
+    let (effects, smooths) = (significance::effects(&exam, &options), significance::smooths(&exam, &options));
     let residual = exam.system.residual();
     let left = |columns: &[usize]| Projected::new(&exam.system.whole, columns).products[(residual, residual)];
     for smooth in smooths.iter().take(5) {
@@ -127,7 +138,7 @@ fn an_effect_explains_a_smooth_whose_fall_beside_the_same_it_reaches_to_85_perce
 fn a_smooth_speaks_on_while_some_certified_one_still_brings_more_than_15_percent_of_what_it_brought() {
     let options = Options::default();
     let exam = Examination::new(fitted_to(&on_grain())).unwrap();
-    let now = look::smooths(&exam, &options).iter().filter(|smooth| smooth.certified(&options));
+    let now = significance::smooths(&exam, &options).iter().filter(|smooth| smooth.certified(&options));
     let now = now.max_by(|a, b| a.answer.drop.total_cmp(&b.answer.drop)).unwrap();
     for (times, expected) in [(1.0, true), (6.6, true), (6.7, false)] {
         let mut before = now.clone();

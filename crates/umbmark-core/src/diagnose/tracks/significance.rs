@@ -1,14 +1,12 @@
 //! Every group asked beside a fitted model: how much it explains, and how sure that is.
 
-use super::examination::{ALIKE, Answer, Examination, worth};
+use super::examination::Examination;
+use super::finding::{Finding, worth};
 use super::flips::{Family, Scores};
-use super::responses::{Asked, Question};
-use crate::diagnose::{Options, Suspect};
-use crate::effect::{Entry, find};
-use crate::evidence::Estimate;
+use super::responses::Question;
+use crate::diagnose::options::Options;
 use crate::evidence::tracks::{Projected, Unit};
 use crate::stats::f_upper_tail;
-use nalgebra::DVector;
 use rayon::prelude::*;
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -17,42 +15,6 @@ use std::sync::Arc;
 const ENOUGH_RUNS: usize = 8;
 /// The same of those runs in which a group shows: the flips of five runs never fall below 1/16.
 const ENOUGH_CARRYING: f64 = 6.0;
-
-/// A group beside the base that it was asked in.
-#[derive(Clone, Debug)]
-pub struct Finding {
-    /// The group after one step.
-    pub answer: Answer,
-    /// Family-wise p by F and Bonferroni, among effects (or among smooths): by the noise model, or by the scatter of the runs,
-    /// whichever is larger.
-    pub p_f: f64,
-    /// Family-wise p by sign flips; 1 where F does not accuse, which no flips can change.
-    pub p_flips: f64,
-    /// Degrees of freedom of F.
-    pub degrees_of_freedom: [f64; 2],
-    /// F.
-    pub f: f64,
-    /// p by F alone.
-    pub p: f64,
-    projected: Arc<Projected>,
-}
-
-impl Finding {
-    /// Whether both tests accuse it.
-    pub fn certified(&self, options: &Options) -> bool {
-        self.p_f <= options.size && self.p_flips <= options.size
-    }
-
-    /// The columns that were fitted out when it was asked.
-    pub fn base(&self) -> &[usize] {
-        &self.projected.base
-    }
-
-    /// The larger of the two.
-    pub fn p_adjusted(&self) -> f64 {
-        self.p_f.max(self.p_flips).min(1.0)
-    }
-}
 
 /// All effects, the worthiest first, beside the model.
 pub fn effects(exam: &Examination, options: &Options) -> Vec<Finding> {
@@ -178,106 +140,14 @@ fn scores(units: &[Unit], projected: &Projected, columns: &[usize], by_quarter: 
     scores
 }
 
-/// The effects whose response could be taken for that of a finding, itself not among them: the best shape of each.
-pub fn rivals(exam: &Examination, finding: &Finding) -> Vec<Answer> {
-    let own = exam.asked[finding.answer.asked].effect();
-    alike(exam, own, (&finding.answer.columns, &finding.answer.step), &finding.projected)
-}
-
-/// The same of an effect that the model has already: its name, and theirs.
-pub fn class_of_own(exam: &Examination, effect: &'static str) -> Vec<&'static str> {
-    let (own, others): (Vec<usize>, Vec<usize>) =
-        exam.free.iter().copied().partition(|column| exam.name(*column) == Some(effect));
-    let values = DVector::from_iterator(own.len(), own.iter().map(|column| exam.departure(*column)));
-    let beside = Projected::new(&exam.system.whole, &others);
-    let rivals = alike(exam, find(effect).ok(), (&own, &values), &beside);
-    let names = rivals.iter().filter_map(|rival| exam.asked[rival.asked].effect()).map(|rival| rival.about.name);
-    std::iter::once(effect).chain(names).collect()
-}
-
-/// The effect of the catalogue that comes nearest to what one of the model does, and the share of it that this makes, as a cosine.
-pub fn nearest(exam: &Examination, effect: &str) -> Option<(&'static str, f64)> {
-    let (own, others): (Vec<usize>, Vec<usize>) = exam
-        .base(None)
-        .into_iter()
-        .partition(|column| exam.free.contains(column) && exam.name(*column) == Some(effect));
-    let values = DVector::from_iterator(own.len(), own.iter().map(|column| exam.departure(*column)));
-    let beside = Projected::new(&exam.system.whole, &others);
-    let effects = exam.asked.iter().enumerate().filter(|(_, asked)| !asked.nuisance);
-    let share = |(index, asked): (usize, &Asked)| {
-        let answer = exam.answer(&beside, &exam.system.whole, index)?;
-        Some((asked.effect()?.about.name, beside.likeness(&own, &values, &answer.columns)))
-    };
-    effects.filter_map(share).max_by(|a, b| a.1.total_cmp(&b.1))
-}
-
-/// The effects that can make the response of some columns, `own` not among them: the best shape of each.
-fn alike(
-    exam: &Examination,
-    own: Option<&Entry>,
-    (columns, values): (&[usize], &DVector<f64>),
-    beside: &Projected,
-) -> Vec<Answer> {
-    let mut alike: Vec<(&str, Answer)> = Vec::new();
-    for (index, other) in exam.asked.iter().enumerate() {
-        let Some(effect) = other.effect().filter(|effect| Some(*effect) != own) else { continue };
-        if alike.iter().any(|(name, _)| *name == effect.about.name) {
-            continue;
-        }
-        // The rival's own place in the base, if it has one, is free while the two are compared.
-        let base: Vec<usize> = beside.base.iter().copied().filter(|column| !other.columns.contains(column)).collect();
-        let freed = (base.len() < beside.base.len()).then(|| Projected::new(&exam.system.whole, &base));
-        let projected = freed.as_ref().unwrap_or(beside);
-        let Some(answer) = exam.answer(projected, &exam.system.whole, index) else { continue };
-        if projected.likeness(columns, values, &answer.columns) > ALIKE {
-            alike.push((effect.about.name, answer));
-        }
-    }
-    alike.into_iter().map(|(_, answer)| answer).collect()
-}
-
-/// A finding about an effect, for people.
-pub fn suspect(exam: &Examination, finding: &Finding) -> Option<Suspect> {
-    let Question::Effect(entry, parameters) = &exam.asked[finding.answer.asked].question else { return None };
-    let columns = &exam.asked[finding.answer.asked].columns;
-    let estimate = finding.answer.columns.iter().enumerate().filter_map(|(k, column)| {
-        let which = columns.iter().position(|c| c == column)?;
-        let zero = parameters[which].default.resolve(exam.fitted.model.robot());
-        Some(Estimate {
-            effect: entry.about.name,
-            parameter: parameters[which].name,
-            value: zero + finding.answer.step[k],
-            standard_error: finding.answer.covariance[(k, k)].max(0.0).sqrt(),
-            degrees_of_freedom: finding.degrees_of_freedom[1],
-        })
-    });
-    let shape = exam.asked[finding.answer.asked].shape.map(|(parameter, value)| Estimate {
-        effect: entry.about.name,
-        parameter: parameter.name,
-        value,
-        standard_error: f64::NAN,
-        degrees_of_freedom: finding.degrees_of_freedom[1],
-    });
-    let others = rivals(exam, finding).into_iter().filter_map(|rival| exam.asked[rival.asked].effect());
-    Some(Suspect {
-        class: std::iter::once(*entry).chain(others).map(|effect| effect.about.name).collect(),
-        best: entry.about.name,
-        f: finding.f,
-        degrees_of_freedom: finding.degrees_of_freedom,
-        p: finding.p,
-        p_adjusted: finding.p_adjusted(),
-        p_flips: Some(finding.p_flips),
-        estimate: estimate.chain(shape).collect(),
-        expected_drop: finding.answer.drop,
-    })
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::class::suspect;
     use super::super::tests::{complete, fitted_to, on_grain};
     use super::*;
     use crate::diagnose::tests::robot_with;
     use crate::effect::{Formula, Model, Target, find};
+    use crate::evidence::Estimate;
     use nalgebra::{DMatrix, DVector};
 
     #[test]

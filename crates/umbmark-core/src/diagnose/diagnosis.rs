@@ -1,0 +1,183 @@
+//! What a diagnosis found.
+
+use super::ends::contrasts::{Contrast, OnCircle};
+use super::experiments::Experiment;
+use super::identifiability::Identifiability;
+use super::likeness::Likeness;
+use super::reason::Reason;
+use super::remains::Remains;
+use super::suspect::Suspect;
+use super::tracks::dependence::Dependence;
+use super::tracks::repeats::Repeated;
+use super::unseen::{Detectable, Unseen, Why};
+use crate::effect::Model;
+use crate::evidence::{Estimate, Evidence, Level};
+use crate::likelihood::{Outlier, Taken};
+use crate::setup::Setup;
+use std::sync::Arc;
+
+/// The answer in one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// No sign of a further effect, as far as this data can see.
+    Explained,
+    /// One class of effects is missing.
+    MissingEffect,
+    /// More than one class is missing.
+    SeveralMissing,
+    /// Something is missing that no effect of the catalogue explains.
+    UnlistedEffect,
+    /// Too few runs, or of one direction only.
+    NotEnoughData,
+    /// Nothing further is certified, and yet the model does not explain the data; the reasons say why.
+    NotExplained,
+}
+
+impl Verdict {
+    /// As in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::Explained => "explained",
+            Verdict::MissingEffect => "missing_effect",
+            Verdict::SeveralMissing => "several_missing",
+            Verdict::UnlistedEffect => "unlisted_effect",
+            Verdict::NotEnoughData => "not_enough_data",
+            Verdict::NotExplained => "not_explained",
+        }
+    }
+}
+
+/// A test of the whole model against what it leaves unexplained.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GoodnessOfFit {
+    /// Which test.
+    pub name: &'static str,
+    /// Its statistic.
+    pub statistic: f64,
+    /// Degrees of freedom, where it is an F; none where p comes from simulation.
+    pub degrees_of_freedom: Option<[f64; 2]>,
+    /// Probability of so large a statistic where the model is complete.
+    pub p: f64,
+}
+
+/// What a diagnosis found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnosis {
+    /// What was observed.
+    pub level: Level,
+    /// In one word.
+    pub verdict: Verdict,
+    /// The model, its free parameters fitted to this data.
+    pub model: Model,
+    /// Those parameters.
+    pub fitted: Vec<Estimate>,
+    /// Their correlations, a row each; empty where they are not known.
+    pub correlations: Vec<Vec<f64>>,
+    /// Tests of the model as a whole.
+    pub goodness_of_fit: Vec<GoodnessOfFit>,
+    /// All classes that were asked: those that may be certified first, and of these the likeliest first.
+    pub ranking: Vec<Suspect>,
+    /// How many of the first of the ranking are certified as missing.
+    pub certified: usize,
+    /// What this data cannot see.
+    pub invisible: Vec<Unseen>,
+    /// How alike the effects that it can see look.
+    pub likeness: Likeness,
+    /// What it would have seen.
+    pub minimum_detectable: Vec<Detectable>,
+    /// What to measure next, the most telling per minute first.
+    pub next_experiments: Vec<Experiment>,
+    /// Closure contrasts of a square driven both ways, after the fit.
+    pub contrasts: Vec<Contrast>,
+    /// End points beside the circle through START, direction by direction; for squares.
+    pub circle: Vec<OnCircle>,
+    /// What of the model this experiment determines.
+    pub identifiability: Identifiability,
+    /// What an effect outside the catalogue acts on and depends on; from tracks only.
+    pub dependence: Option<Dependence>,
+    /// Where runs were disturbed, and what happened there left out; from tracks only.
+    pub outliers: Vec<Outlier>,
+    /// What was found of the experiment before anything was fitted.
+    pub setup: Arc<Setup>,
+    /// What of that was taken into the model.
+    pub taken: Vec<Taken>,
+    /// Why the model is not called explained, or would not be.
+    pub reasons: Vec<Reason>,
+    /// What repeats most beside the model, whether it counts or not; from tracks only.
+    pub repeats: Option<Repeated>,
+    /// What the model leaves; none where the columns are not what they are called.
+    pub remains: Option<Remains>,
+    /// What else should be said, a sentence each.
+    pub remarks: Vec<String>,
+}
+
+impl Diagnosis {
+    /// What is said of an experiment whose columns are not what they are called: nothing of the robot.
+    pub(crate) fn of_faults(evidence: &dyn Evidence, model: &Model) -> Diagnosis {
+        Diagnosis {
+            level: evidence.level(),
+            verdict: Verdict::NotExplained,
+            model: model.clone(),
+            fitted: Vec::new(),
+            correlations: Vec::new(),
+            goodness_of_fit: Vec::new(),
+            ranking: Vec::new(),
+            certified: 0,
+            invisible: Vec::new(),
+            likeness: Likeness::default(),
+            minimum_detectable: Vec::new(),
+            next_experiments: Vec::new(),
+            contrasts: Vec::new(),
+            circle: Vec::new(),
+            identifiability: Identifiability { shares: Vec::new(), rank: 0, hidden: Vec::new() },
+            dependence: None,
+            outliers: Vec::new(),
+            setup: Arc::clone(evidence.setup()),
+            taken: Vec::new(),
+            reasons: evidence.faults().into_iter().map(Reason::Fault).collect(),
+            repeats: None,
+            remains: None,
+            remarks: Vec::new(),
+        }
+    }
+
+    /// The suspects that are certified as missing.
+    pub fn certified(&self) -> &[Suspect] {
+        &self.ranking[..self.certified]
+    }
+
+    /// What this data would have seen, effect by effect: of each parameter the least size, whatever shapes were tried.
+    pub fn least_sizes(&self) -> Vec<Vec<&Detectable>> {
+        let mut effects: Vec<Vec<&Detectable>> = Vec::new();
+        for size in &self.minimum_detectable {
+            let Some(own) = effects.iter_mut().find(|own| own[0].effect == size.effect) else {
+                effects.push(vec![size]);
+                continue;
+            };
+            match own.iter_mut().find(|known| known.parameter == size.parameter) {
+                Some(known) if known.size <= size.size => {}
+                Some(known) => *known = size,
+                None => own.push(size),
+            }
+        }
+        effects
+    }
+
+    /// The effects that this data cannot see because parts of the model do the same, by these parts.
+    pub fn absorbed(&self) -> Vec<(&[&'static str], Vec<&'static str>)> {
+        let mut parts: Vec<(&[&str], Vec<&str>)> = Vec::new();
+        for unseen in &self.invisible {
+            let Why::Absorbed(by) = &unseen.why else { continue };
+            match parts.iter_mut().find(|(own, _)| own == by) {
+                Some((_, names)) => names.push(unseen.effect),
+                None => parts.push((by, vec![unseen.effect])),
+            }
+        }
+        parts
+    }
+
+    /// The effects that at their usual size move nothing by as much as the noise.
+    pub fn below_noise(&self) -> Vec<&'static str> {
+        self.invisible.iter().filter(|unseen| unseen.why == Why::BelowNoise).map(|unseen| unseen.effect).collect()
+    }
+}

@@ -1,0 +1,34 @@
+//! How to look for what is missing.
+
+use crate::dataset::Dataset;
+use crate::evidence::Level;
+
+/// How to look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Probability with which a complete model is accused all the same: the family-wise size of all tests together.
+    pub size: f64,
+    /// Simulated tests that p-values without a closed form are taken from.
+    pub draws: usize,
+    /// Seed of those.
+    pub seed: u64,
+    /// Whether to use return poses alone, even where the runs were observed on the way.
+    pub ends_only: bool,
+    /// Which of the laws that stand out is added first where no effect of the catalogue explains what repeats: 1 for the one that would be
+    /// taken, 2 for the first of its [`Repeated::others`], and so on.
+    pub law: usize,
+}
+
+impl Default for Options {
+    /// 5 %, 999 draws, seed 1, the first law.
+    fn default() -> Self {
+        Options { size: 0.05, draws: 999, seed: 1, ends_only: false, law: 1 }
+    }
+}
+
+impl Options {
+    /// What is used of a dataset.
+    pub fn level(&self, data: &Dataset) -> Level {
+        if self.ends_only { Level::Ends } else { Level::of(data) }
+    }
+}

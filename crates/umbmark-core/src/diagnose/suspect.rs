@@ -1,0 +1,41 @@
+//! A class of effects that may be missing.
+
+use crate::drive::Robot;
+use crate::effect::Model;
+use crate::evidence::Estimate;
+
+/// A class of effects that may be missing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Suspect {
+    /// All effects that this data cannot tell apart from the best, the best included.
+    pub class: Vec<&'static str>,
+    /// The effect of the class that fits best.
+    pub best: &'static str,
+    /// Its F (t² for one size).
+    pub f: f64,
+    /// Degrees of freedom of F.
+    pub degrees_of_freedom: [f64; 2],
+    /// p of this class alone.
+    pub p: f64,
+    /// p of the greatest among all classes that were asked.
+    pub p_adjusted: f64,
+    /// p of the greatest when the signs of the runs' scores are flipped, where there are runs enough: it trusts no
+    /// noise model.
+    pub p_flips: Option<f64>,
+    /// Sizes of the best effect after one step from zero.
+    pub estimate: Vec<Estimate>,
+    /// By how much the misfit would fall, in units of the noise variance: it ranks the classes.
+    pub expected_drop: f64,
+}
+
+impl Suspect {
+    /// What the best effect would mean for the robot at its estimated size, in a sentence; `None` where it says nothing or
+    /// cannot have that size.
+    pub fn meaning(&self, robot: &Robot) -> Option<String> {
+        let mut model = Model::new(robot);
+        for e in &self.estimate {
+            model.set(e.effect, e.parameter, e.value).ok()?;
+        }
+        model.meaning(self.best)
+    }
+}

@@ -1,0 +1,271 @@
+//! What was found, in words: the verdict, the reasons for doubt, what is hidden, and what to drive next.
+
+use super::dependence::{Dependence, dependence};
+use super::examination::Examination;
+use super::experiments;
+use super::left::{doubts_of, reason_to_doubt, remains_of};
+use super::repeats::Repeated;
+use super::responses::Question;
+use super::search::{Added, FEWEST, Found, Search};
+use super::significance;
+use super::smooth::{ALONG_THE_WAY, Motion};
+use crate::diagnose::diagnosis::{Diagnosis, GoodnessOfFit, Verdict};
+use crate::diagnose::experiments::Experiment;
+use crate::diagnose::identifiability::Identifiability;
+use crate::diagnose::likeness::{Likeness, correlations};
+use crate::diagnose::options::Options;
+use crate::diagnose::reason::Reason;
+use crate::diagnose::remains::Remains;
+use crate::diagnose::suspect::Suspect;
+use crate::diagnose::unseen::{Detectable, Unseen, Why};
+use crate::effect::find;
+use crate::evidence::tracks::{Projected, estimates};
+use crate::evidence::{FitError, Level};
+use crate::stats::{chi_squared_upper_tail, normal_quantile};
+use nalgebra::DMatrix;
+use std::sync::Arc;
+
+/// p by F below which a suspect is spoken of though no flips certify it.
+const LOUD: f64 = 1e-20;
+/// An effect of the catalogue that explains less than this share of what is unlisted is not near.
+const NEAR: f64 = 0.5;
+
+/// What is said of a search, whether its effects are named or added to the model.
+pub(crate) struct Conclusion {
+    /// The answer in one word, the reasons for doubt left aside.
+    pub verdict: Verdict,
+    /// What speaks against the last model.
+    pub reasons: Vec<Reason>,
+    /// What repeats most beside the last model.
+    pub repeats: Option<Repeated>,
+    /// What the last model leaves.
+    pub remains: Remains,
+    /// What is missing from the last model and not in the catalogue.
+    pub dependence: Option<Dependence>,
+    /// Drives that would tell apart the members of the classes that were found.
+    pub experiments: Vec<Experiment>,
+    /// What to say of members that no drive tells apart.
+    pub hints: Vec<String>,
+}
+
+impl Conclusion {
+    /// What is said of a search.
+    pub fn new(search: &mut Search, options: &Options) -> Result<Conclusion, FitError> {
+        let repeats = search.repeats(options).cloned();
+        let (last, left) = (search.last(), &search.left);
+        let remains = remains_of(last, options);
+        let mut reasons = doubts_of(last, options);
+        reasons.extend(reason_to_doubt(repeats.as_ref()));
+        reasons.extend(Reason::of_remains(&remains));
+        let (mut experiments, mut hints) = (Vec::new(), Vec::new());
+        for (exam, added) in search.exams.iter().zip(&search.added) {
+            let (told, hint) = next_experiments(exam, added)?;
+            experiments.extend(told);
+            hints.extend(hint);
+        }
+        let dependence = left.smooth.as_ref().and_then(|finding| dependence(last, finding, &left.asked));
+        Ok(Conclusion { verdict: verdict(search), reasons, repeats, remains, dependence, experiments, hints })
+    }
+}
+
+/// The answer to a search in one word.
+fn verdict(search: &Search) -> Verdict {
+    match (&search.left.smooth, search.added.len()) {
+        _ if search.last().fitted.observed.runs.len() < FEWEST => Verdict::NotEnoughData,
+        (Some(_), 0) => Verdict::UnlistedEffect,
+        (None, 0) => Verdict::Explained,
+        (None, 1) => Verdict::MissingEffect,
+        _ => Verdict::SeveralMissing,
+    }
+}
+
+/// Drives that would tell apart the members of a certified class, and for those that none does, what their own pages say.
+fn next_experiments(exam: &Examination, added: &Added) -> Result<(Vec<Experiment>, Vec<String>), FitError> {
+    let Added { suspect, by } = added;
+    let finding = match by {
+        Found::Listed(finding) => finding,
+        Found::Unlisted(repeated) => return Ok((experiments::of_laws(exam, repeated)?, Vec::new())),
+    };
+    let told = experiments::next(exam, &[finding], &[])?;
+    let mut hints = Vec::new();
+    for other in suspect.class.iter().filter(|name| **name != suspect.best) {
+        if told.iter().all(|experiment| !experiment.separates.contains(other)) {
+            let how = [suspect.best, other].map(|name| find(name).map(|effect| effect.about.separated_by));
+            let [own, others] = [how[0].clone()?, how[1].clone()?];
+            let best = suspect.best;
+            hints.push(format!(
+                "No drive that was tried on paper tells {best} from {other}. {best}: {own}. {other}: {others}."
+            ));
+        }
+    }
+    Ok((told, hints))
+}
+
+/// What stands far out by F and is not certified by the flips: these runs are too few, or too unlike, to vouch for it.
+pub(crate) fn uncertified(asked: &[Suspect], options: &Options) -> Option<String> {
+    let loud = asked.first().filter(|s| s.p < LOUD && s.p_adjusted > options.size)?;
+    Some(format!(
+        "{} stands out by F (p = {:.0e}), but with the signs of whole runs flipped as much comes about by chance (p = {:.2}): \
+         more runs would tell.",
+        loud.class.join(" or "),
+        loud.p,
+        loud.p_adjusted
+    ))
+}
+
+/// The diagnosis of a model that nothing is added to: what it cannot see, and what else is to be said of it.
+pub(crate) fn of_model(
+    exam: Examination,
+    dependence: Option<Dependence>,
+    options: &Options,
+) -> Result<Diagnosis, FitError> {
+    let (invisible, minimum_detectable) = visibility(&exam);
+    Ok(Diagnosis {
+        level: Level::Tracks,
+        verdict: Verdict::Explained,
+        fitted: estimates(&exam.fitted),
+        correlations: correlations(exam.fitted.covariance.as_ref()),
+        likeness: likeness(&exam),
+        goodness_of_fit: whole_model(&exam, options),
+        ranking: Vec::new(),
+        certified: 0,
+        next_experiments: experiments::next(&exam, &[], &invisible)?,
+        invisible,
+        minimum_detectable,
+        contrasts: Vec::new(),
+        circle: Vec::new(),
+        identifiability: Identifiability { shares: Vec::new(), rank: exam.free.len(), hidden: Vec::new() },
+        remarks: remarks(&exam, dependence.as_ref()),
+        outliers: exam.fitted.outliers.clone(),
+        setup: Arc::clone(&exam.fitted.observed.setup),
+        taken: exam.fitted.taken.clone(),
+        reasons: Vec::new(),
+        repeats: None,
+        remains: None,
+        dependence,
+        model: exam.fitted.model,
+    })
+}
+
+/// What the data cannot see, and the least that it would see.
+fn visibility(exam: &Examination) -> (Vec<Unseen>, Vec<Detectable>) {
+    let products = &exam.system.whole;
+    let surely = normal_quantile(0.975) + normal_quantile(0.8);
+    let (mut unseen, mut detectable) = (Vec::new(), Vec::new());
+    for (index, asked) in exam.asked.iter().enumerate() {
+        let Question::Effect(effect, parameters) = &asked.question else { continue };
+        // Where shapes were tried, the usual one comes first and speaks for all.
+        if index > 0 && exam.asked[index - 1].effect() == Some(*effect) {
+            continue;
+        }
+        let projected = Projected::new(products, &exam.base(Some(index)));
+        let mut why = None;
+        let mut seen = false;
+        for (column, parameter) in asked.columns.iter().zip(parameters) {
+            if projected.absorbed(products, *column) {
+                why = why.or_else(|| Some(Why::Absorbed(absorbing(exam, products, &projected.base, *column))));
+                continue;
+            }
+            let strength = projected.products[(*column, *column)].sqrt();
+            if strength * parameter.typical < 1.0 {
+                why = Some(Why::BelowNoise);
+            } else {
+                seen = true;
+            }
+            let (effect, parameter) = (effect.about.name, parameter.name);
+            detectable.push(Detectable { effect, parameter, size: surely / strength });
+        }
+        if let (false, Some(why)) = (seen, why) {
+            unseen.push(Unseen { effect: effect.about.name, why });
+        }
+    }
+    (unseen, detectable)
+}
+
+/// How alike the effects look beside the model, each size at its usual value.
+fn likeness(exam: &Examination) -> Likeness {
+    let products = &exam.system.whole;
+    let projected = Projected::new(products, &exam.free);
+    let mut sizes: Vec<(&'static str, usize, f64)> = Vec::new();
+    for asked in &exam.asked {
+        let Question::Effect(effect, parameters) = &asked.question else { continue };
+        let seen = asked.columns.iter().zip(parameters).filter(|(c, _)| !projected.absorbed(products, **c));
+        sizes.extend(seen.map(|(column, parameter)| (effect.about.name, *column, parameter.typical)));
+    }
+    let names: Vec<&'static str> = sizes.iter().map(|(name, _, _)| *name).collect();
+    let of = |i: usize, j: usize| sizes[i].2 * sizes[j].2 * projected.products[(sizes[i].1, sizes[j].1)];
+    Likeness::new(&names, &DMatrix::from_fn(sizes.len(), sizes.len(), of))
+}
+
+/// The effects of the base that a column is most like.
+fn absorbing(exam: &Examination, products: &DMatrix<f64>, base: &[usize], column: usize) -> Vec<&'static str> {
+    let alike = |other: &usize| {
+        let lengths = (products[(*other, *other)] * products[(column, column)]).sqrt();
+        (products[(*other, column)] / lengths.max(f64::MIN_POSITIVE)).abs()
+    };
+    let nearest = base.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
+    nearest.and_then(|column| exam.name(*column)).into_iter().collect()
+}
+
+/// Tests of the model as a whole: errors that repeat themselves along the way, and innovations that remember.
+fn whole_model(exam: &Examination, options: &Options) -> Vec<GoodnessOfFit> {
+    let mut tests: Vec<GoodnessOfFit> = significance::smooths(exam, options)
+        .iter()
+        .filter_map(|finding| {
+            let name = match &exam.asked[finding.answer.asked].question {
+                Question::Smooth(covariate, motion) if covariate.name == ALONG_THE_WAY => match motion {
+                    Motion::Forward => "forward errors repeat along the way",
+                    Motion::Sideways => "sideways errors repeat along the way",
+                    Motion::Yaw => "yaw errors repeat along the way",
+                },
+                _ => return None,
+            };
+            let freedom = Some(finding.degrees_of_freedom);
+            Some(GoodnessOfFit { name, statistic: finding.f, degrees_of_freedom: freedom, p: finding.p_flips })
+        })
+        .collect();
+    tests.sort_by_key(|test| test.name);
+    let (q, lags) = exam.portmanteau();
+    let p = chi_squared_upper_tail(q, lags);
+    tests.push(GoodnessOfFit {
+        name: "innovations are correlated (Ljung-Box)",
+        statistic: q,
+        degrees_of_freedom: None,
+        p,
+    });
+    tests
+}
+
+fn remarks(exam: &Examination, unlisted: Option<&Dependence>) -> Vec<String> {
+    let noise = &exam.fitted.noise;
+    let mut remarks = Vec::new();
+    if let Some(told) = unlisted {
+        remarks.push(format!(
+            "Something that the catalogue does not list acts on the {} motion; it depends on {} (p = {:.2e}).",
+            told.acts_on, told.title, told.p_adjusted
+        ));
+        if let Some((effect, share)) = told.nearest.filter(|(_, share)| *share >= NEAR) {
+            remarks.push(format!(
+                "The nearest effect of the catalogue is {effect}: it explains {:.0} % of that.",
+                100.0 * share
+            ));
+        }
+    }
+    if exam.fitted.observed.runs.iter().any(|run| !run.start_seen) {
+        remarks.push(format!(
+            "START was not measured in every run: a scatter of {:.0} mm and {:.1} deg is assumed there.",
+            1e3 * noise.start_position,
+            noise.start_heading.to_degrees()
+        ));
+    }
+    remarks.push(format!(
+        "Noise found: heading {:.2} mrad per root metre and {:.2} mrad per root radian, forward {:.2} mm per root metre; clock of the \
+         reference {:.1} ms from pose to pose and {:.1} ms from run to run.",
+        1e3 * noise.heading_per_metre,
+        1e3 * noise.heading_per_radian,
+        1e3 * noise.forward_per_metre,
+        1e3 * noise.reference_time,
+        1e3 * noise.reference_delay
+    ));
+    remarks
+}
