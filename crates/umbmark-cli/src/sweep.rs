@@ -113,7 +113,7 @@ pub fn run(
     }
     keeper.keep_points(&sweep, &points)?;
     if let Some(mut file) = output {
-        file.write_all(csv(&sweep, &points).as_bytes()).with_context(|| file.failed())?;
+        file.write_all(&csv(&sweep, &points)?).with_context(|| file.failed())?;
         file.finish()?;
     }
     let count = points.len() as u64;
@@ -131,7 +131,7 @@ pub fn run(
 }
 
 /// One row a point: the values of the axes, then of every metric its mean, standard deviation, standard error and quantiles.
-fn csv(sweep: &Sweep, points: &[SweepPoint]) -> String {
+fn csv(sweep: &Sweep, points: &[SweepPoint]) -> anyhow::Result<Vec<u8>> {
     let mut header: Vec<String> = sweep.axes().iter().map(|axis| axis.quantity.key()).collect();
     header.push("trials".to_owned());
     for summary in points.first().map_or(&[][..], |point| &point.metrics) {
@@ -140,15 +140,17 @@ fn csv(sweep: &Sweep, points: &[SweepPoint]) -> String {
         header.extend(SweepPoint::QUANTILES.map(|q| of(&format!("q{q}"))));
     }
     let cell = |value: Option<f64>| value.map(|v| v.to_string()).unwrap_or_default();
-    let row = |point: &SweepPoint| {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header)?;
+    for point in points {
         let mut cells: Vec<String> = point.values.iter().map(f64::to_string).collect();
         cells.push(sweep.study().trials.to_string());
         for s in &point.metrics {
             cells.extend([s.mean, s.std_dev, s.std_error].into_iter().chain(s.quantiles).map(cell));
         }
-        cells.join(",") + "\n"
-    };
-    header.join(",") + "\n" + &points.iter().map(row).collect::<String>()
+        writer.write_record(cells)?;
+    }
+    Ok(writer.into_inner()?)
 }
 
 struct SweepReport<'a> {

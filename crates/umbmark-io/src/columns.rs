@@ -1,8 +1,8 @@
 //! Columns by name and unit, and the numbers in their cells.
 
-use super::decimal::Decimal;
 use super::error::{DatasetError, did_you_mean, quoted};
-use super::sheet::{Cell, Row, Sheet};
+use super::sheet::{Row, Sheet};
+use super::source::Source;
 use std::collections::BTreeSet;
 
 /// What a column measures.
@@ -58,17 +58,6 @@ pub(super) struct Column {
     pub name: String,
     index: usize,
     unit: Option<Unit>,
-}
-
-impl Column {
-    /// The largest number believed, as it is written.
-    fn largest(&self) -> f64 {
-        self.unit.map_or(LARGEST_COUNT, |unit| unit.largest)
-    }
-
-    fn in_si(&self, value: f64) -> f64 {
-        self.unit.map_or(value, |unit| value / unit.per_si)
-    }
 }
 
 /// The columns of a sheet while they are looked up.
@@ -150,13 +139,13 @@ impl<'s> Columns<'s> {
                     nearest,
                 });
             }
-            warnings.push(format!("{}: column {} is not used", self.sheet.file, quoted(header)));
+            warnings.push(format!("{}: column {} is not used", self.sheet.file(), quoted(header)));
         }
         Ok(())
     }
 
     fn file(&self) -> String {
-        self.sheet.file.to_owned()
+        self.sheet.file().to_owned()
     }
 
     fn take(&mut self, column: &Column, quantity: Quantity) -> Result<(), DatasetError> {
@@ -200,44 +189,47 @@ impl<'s> Columns<'s> {
     }
 }
 
-impl Row<'_> {
+impl<'r> Row<'r> {
     /// The text of a cell.
-    pub fn text(&self, column: &Column) -> &str {
-        self.cells[column.index].text
+    #[inline]
+    pub fn text(&self, column: &Column) -> &'r str {
+        self.cell(column.index)
     }
 
     /// The number in a cell, in SI units.
     #[inline]
     pub fn number(&self, column: &Column) -> Result<f64, DatasetError> {
-        match self.number_or(column)? {
-            Some(number) => Ok(number),
-            None => Err(self.wrong(column, &allowed(column), "fill it in, or leave out the row")),
-        }
+        let text = self.text(column);
+        number(text, column.unit).ok_or_else(|| self.refused(&column.name, text, column.unit))
     }
 
     /// The number in a cell, in SI units, where it is not empty.
     #[inline]
     pub fn number_or(&self, column: &Column) -> Result<Option<f64>, DatasetError> {
-        let Cell { text, value } = self.cells[column.index];
-        if value.abs() <= column.largest() {
-            return Ok(Some(column.in_si(value)));
-        }
-        if text.is_empty() { Ok(None) } else { self.unusual_number(column).map(Some) }
+        if self.text(column).is_empty() { Ok(None) } else { self.number(column).map(Some) }
     }
 
-    /// The number in a cell that is no [`Decimal`], or not believed.
-    fn unusual_number(&self, column: &Column) -> Result<f64, DatasetError> {
-        let (text, largest) = (self.text(column), column.largest());
+    /// A number of a layout that has its own names, in the units of the layout.
+    pub fn own_number(&self, name: &str, text: &str) -> Result<f64, DatasetError> {
+        number(text, None).ok_or_else(|| self.refused(name, text, None))
+    }
+
+    /// The error of a cell that holds no number that is believed.
+    #[cold]
+    fn refused(&self, name: &str, text: &str, unit: Option<Unit>) -> DatasetError {
+        let number = unit.map_or("a finite number".to_owned(), |unit| format!("a finite number in {}", unit.name));
+        let wrong = |remedy| self.wrong_cell(name, text, &number, remedy);
         match text.parse::<f64>() {
-            Ok(value) if value.abs() <= largest => Ok(column.in_si(value)),
-            Ok(value) if !value.is_finite() => {
-                Err(self.wrong(column, &allowed(column), "measure again, or leave out the row"))
+            Ok(value) if value.is_finite() => {
+                let allowed = format!("{number} of at most {:e} either way", largest(unit));
+                self.wrong_cell(name, text, &allowed, "")
             }
-            Ok(_) => Err(self.wrong(column, &format!("{} of at most {largest:e} either way", allowed(column)), "")),
+            Ok(_) => wrong("measure again, or leave out the row"),
+            Err(_) if text.is_empty() => wrong("fill it in, or leave out the row"),
             Err(_) if text.replace(',', ".").parse::<f64>().is_ok() => {
-                Err(self.wrong(column, &allowed(column), "write decimals with a point (0.123, not 0,123)"))
+                wrong("write decimals with a point (0.123, not 0,123)")
             }
-            Err(_) => Err(self.wrong(column, &allowed(column), "")),
+            Err(_) => wrong(""),
         }
     }
 
@@ -256,46 +248,44 @@ impl Row<'_> {
 
     /// The error of a cell that is not what is allowed.
     pub fn wrong(&self, column: &Column, allowed: &str, remedy: &str) -> DatasetError {
-        let value = self.text(column);
+        self.wrong_cell(&column.name, self.text(column), allowed, remedy)
+    }
+
+    fn wrong_cell(&self, name: &str, text: &str, allowed: &str, remedy: &str) -> DatasetError {
         DatasetError::Cell {
             file: self.file.to_owned(),
             line: self.line,
-            column: column.name.clone(),
-            value: if value.is_empty() { "nothing".into() } else { quoted(value) },
+            column: name.to_owned(),
+            value: if text.is_empty() { "nothing".into() } else { quoted(text) },
             allowed: allowed.into(),
             remedy: remedy.into(),
         }
     }
 }
 
-/// The number in a cell of a layout that has its own names, in the units of the layout.
-pub(super) fn number_in(file: &str, line: usize, name: &str, cell: &str) -> Result<f64, DatasetError> {
-    let Decimal { value, length } = Decimal::at_start_of(cell.as_bytes());
-    let value = if length == cell.len() { value } else { f64::NAN };
-    let row = Row { file, line, cells: &[Cell { text: cell, value }] };
-    row.number(&Column { name: name.to_owned(), index: 0, unit: None })
+/// The number that a text is, in SI units, where it is believed.
+#[inline]
+fn number(text: &str, unit: Option<Unit>) -> Option<f64> {
+    let value = text.parse::<f64>().ok().filter(|value| value.abs() <= largest(unit))?;
+    Some(unit.map_or(value, |unit| value / unit.per_si))
 }
 
-/// Not far above this, counts are not told apart any more.
-const LARGEST_COUNT: f64 = 9e15;
-
-fn allowed(column: &Column) -> String {
-    match column.unit {
-        Some(unit) => format!("a finite number in {}", unit.name),
-        None => "a finite number".to_owned(),
-    }
+/// The largest number believed, as it is written.
+fn largest(unit: Option<Unit>) -> f64 {
+    /// Not far above this, counts are not told apart any more.
+    const COUNT: f64 = 9e15;
+    unit.map_or(COUNT, |unit| unit.largest)
 }
 
 /// Visits the rows of a text without header, all of whose cells are numbers in SI units.
 pub(super) fn headless<const N: usize>(
-    file: &str,
-    text: &str,
+    source: Source,
     names: &[&str; N],
     mut visit: impl FnMut(usize, &[f64; N]),
 ) -> Result<(), DatasetError> {
     let columns = std::array::from_fn::<Column, N, _>(|i| Column { name: names[i].to_owned(), index: i, unit: None });
     let mut numbers = [0.0; N];
-    Sheet::headless(file, text, N).for_each(|row| {
+    Sheet::headless(source, N).for_each(|row| {
         for (number, column) in numbers.iter_mut().zip(&columns) {
             *number = row.number(column)?;
         }

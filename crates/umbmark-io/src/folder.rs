@@ -8,11 +8,9 @@ use super::optiodom;
 use super::reference_file::parse_reference;
 use super::returns::parse_returns;
 use super::robot_file::RobotFile;
-use super::sheet::Rows;
-use super::text::{Pieces, read_text, unreadable};
-use super::tick_log::{parse_tick_log, tick_log_in_pieces};
+use super::source::{Source, unreadable};
+use super::tick_log::parse_tick_log;
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::Dataset;
 use umbmark_core::drive::Kind;
@@ -24,8 +22,6 @@ pub(super) const RUNS: &str = "runs";
 pub(super) const REFERENCE: &str = "reference";
 /// Endings of files with poses that have a clock of their own.
 const TRACKS: [&str; 4] = ["csv", "tum", "txt", "tsv"];
-/// How much of a log is read at a time \[bytes\]: what the processor keeps close to itself.
-const PIECE: usize = 1 << 18;
 const EXPECTED: &str =
     "a dataset has robot.toml with returns.csv, runs/*.csv or runs/*.mcap (`umbmark init FOLDER` writes a start)";
 
@@ -88,7 +84,7 @@ fn names_in(folder: &Path) -> Result<Vec<String>, DatasetError> {
 
 fn add_returns(assembly: &mut Assembly, file: &Path) -> Result<(), DatasetError> {
     let name = file.display().to_string();
-    let rows = parse_returns(&name, &read_text(file)?, &mut assembly.warnings)?;
+    let rows = parse_returns(Source::open(file)?, &mut assembly.warnings)?;
     assembly.add_returns(&name, &rows)
 }
 
@@ -135,21 +131,14 @@ fn tracks_beside(runs: &Path, warnings: &mut Vec<String>) -> Result<BTreeMap<Str
 }
 
 fn add_log(assembly: &mut Assembly, file: &Path, track: Option<PathBuf>) -> Result<(), DatasetError> {
-    let name = file.display().to_string();
-    let (kind, warnings) = (assembly.kind(), &mut assembly.warnings);
-    let pieces = File::open(file).ok().map(|file| Pieces::of(file, PIECE));
-    let recording = match pieces.and_then(|pieces| tick_log_in_pieces(&name, pieces, kind, warnings)) {
-        Some(recording) => recording,
-        None => parse_tick_log(&name, &read_text(file)?, kind, warnings)?,
-    };
+    let recording = parse_tick_log(Source::open(file)?, assembly.kind(), &mut assembly.warnings)?;
     let tracked = track.map(|track| read_track(&track, &mut assembly.warnings)).transpose()?;
     let stem = stem(file);
     assembly.add_recording(recording, tracked, &stem, label::parse(&stem), EndPose::Standing)
 }
 
 fn read_track(file: &Path, warnings: &mut Vec<String>) -> Result<Tracked, DatasetError> {
-    let name = file.display().to_string();
-    Ok(Tracked { track: parse_reference(&name, &read_text(file)?, warnings)?, file: name })
+    Ok(Tracked { track: parse_reference(Source::open(file)?, warnings)?, file: file.display().to_string() })
 }
 
 fn add_mcap(assembly: &mut Assembly, survey: Survey, file: &Path, topics: &Topics) -> Result<(), DatasetError> {
@@ -194,29 +183,28 @@ fn load_optiodom(folder: &Path, set: &str, names: &[String]) -> Result<Dataset, 
 
 fn optiodom_assembly(folder: &Path, set: &str) -> Result<Assembly, DatasetError> {
     let metadata = folder.join(format!("{set}_metadata.csv"));
-    let (robot, path) = optiodom::parse_metadata(&metadata.display().to_string(), set, &read_text(&metadata)?)?;
+    let (robot, path) = optiodom::parse_metadata(set, Source::open(&metadata)?)?;
     Ok(Assembly::new(Some(RobotFile::new(robot, path))))
 }
 
 fn add_optiodom_run(assembly: &mut Assembly, folder: &Path, run: &optiodom::RunFiles) -> Result<(), DatasetError> {
     let file = folder.join(&run.ticks);
-    let name = file.display().to_string();
-    let text = read_text(&file)?;
+    let source = Source::open(&file)?;
     let named = Named { number: Some(run.number), ..Named::default() };
     let tricycle = assembly.robot().filter(|robot| robot.drive.kind() == Kind::Ackermann);
     let Some(track) = &run.track else {
         let recording = match tricycle {
-            Some(robot) => optiodom::parse_tricycle_run(&name, &text, robot)?,
-            None => optiodom::parse_run(&name, &text)?,
+            Some(robot) => optiodom::parse_tricycle_run(source, robot)?,
+            None => optiodom::parse_run(source)?,
         };
         return assembly.add_recording(recording, None, &stem(&file), named, EndPose::Last);
     };
     if tricycle.is_some() {
         let (key, value) = ("type".into(), "\"tricyc\"".into());
         let remedy = "of tricycles, runs are read whose two clocks were brought together (*_run-NN.csv)".into();
-        return Err(DatasetError::NotYet { file: name, line: 1, key, value, remedy });
+        return Err(DatasetError::NotYet { file: source.file, line: 1, key, value, remedy });
     }
-    let recording = optiodom::parse_odometry(&name, &text)?;
+    let recording = optiodom::parse_odometry(source)?;
     let tracked = read_track(&folder.join(track), &mut assembly.warnings)?;
     assembly.add_recording(recording, Some(tracked), &stem(&file), named, EndPose::Last)
 }
@@ -238,8 +226,7 @@ fn load_file(file: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
         return load_optiodom_file(file, folder, set);
     }
     let mut assembly = Assembly::new(robot_beside(folder).map(RobotFile::read).transpose()?);
-    let text = read_text(file)?;
-    let is_log = Rows::of(&text).next().is_some_and(|(_, header)| header.to_lowercase().contains("ticks"));
+    let is_log = Source::open(file)?.first_row().to_lowercase().contains("ticks");
     if is_log {
         let in_runs = folder.file_name().is_some_and(|name| name == RUNS);
         let track = if in_runs { tracks_beside(folder, &mut Vec::new())?.remove(&stem(file)) } else { None };

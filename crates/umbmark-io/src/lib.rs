@@ -15,7 +15,8 @@
 mod assembly;
 pub mod checkpoint;
 mod columns;
-mod decimal;
+mod csv_text;
+
 mod distribution_table;
 mod document;
 mod error;
@@ -31,7 +32,7 @@ mod motive;
 #[cfg(test)]
 mod mutated_input;
 mod optiodom;
-mod packed;
+
 mod parameter_file;
 mod recording;
 mod reference_file;
@@ -41,10 +42,11 @@ mod robot_text;
 mod save;
 mod sheet;
 mod sheets;
+mod source;
 mod stale;
 mod start_frame;
 mod template;
-mod text;
+
 mod tick_log;
 mod track_rows;
 mod tum;

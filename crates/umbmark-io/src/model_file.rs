@@ -4,7 +4,7 @@ use super::distribution_table::{DISTRIBUTIONS, read_distribution};
 use super::document::{Entry, Source, Table};
 use super::error::{DatasetError, did_you_mean};
 use super::robot_file::read_robot_table;
-use super::text::read_text;
+use super::source::read_text;
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::{CATALOGUE, CONVERTED, Conversion, Entry as Effect, Formula, FormulaError, Model, Target};
 use umbmark_core::monte_carlo::{Distribution, Draw};

@@ -15,9 +15,9 @@
 //! axis along which the body moves least. The floor's x and y are the two axes that follow it (z, x for y up), so headings stay
 //! counter-clockwise as seen from above.
 
-use super::columns::number_in;
 use super::error::{DatasetError, quoted};
-use super::sheet::{Rows, split};
+use super::sheet::Rows;
+use super::source::Source;
 use super::track_rows::TrackRows;
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
@@ -44,31 +44,30 @@ struct Layout {
 }
 
 /// The poses of the one rigid body in a file.
-pub(super) fn parse_motive(file: &str, text: &str, warnings: &mut Vec<String>) -> Result<TrackRows, DatasetError> {
-    let mut lines = Rows::of(text);
-    let layout = Layout::read(file, &mut lines)?;
-    let mut rows = TrackRows { file: file.to_owned(), column: "Time (Seconds)".into(), ..TrackRows::default() };
+pub(super) fn parse_motive(source: Source, warnings: &mut Vec<String>) -> Result<TrackRows, DatasetError> {
+    let mut lines = Rows::of(source);
+    let file = lines.file().to_owned();
+    let layout = Layout::read(&file, &mut lines)?;
+    let mut rows = TrackRows { file: file.clone(), column: "Time (Seconds)".into(), ..TrackRows::default() };
     let mut found: Vec<(Vector3<f64>, Matrix3<f64>)> = Vec::new();
-    let mut cells = Vec::new();
-    for (line, row) in lines {
-        split(row, &mut cells);
-        let cell = |column: usize| cells.get(column).map_or("", |cell| cell.text);
+    while let Some(row) = lines.next()? {
+        let cell = |column: usize| row.cell(column);
         let columns = || layout.position.into_iter().chain(layout.rotation.into_iter().flatten());
         if columns().all(|column| cell(column).is_empty()) {
             rows.lost += 1;
             continue;
         }
-        let number = |column: usize, name: &str| number_in(file, line, name, cell(column));
+        let number = |column: usize, name: &str| row.own_number(name, cell(column));
         let mut position = Vector3::zeros();
         for (axis, column) in layout.position.into_iter().enumerate() {
             position[axis] = number(column, "Position")? / layout.per_metre;
         }
-        rows.lines.push(line);
+        rows.lines.push(row.line);
         rows.time.push(number(1, "Time (Seconds)")?);
         found.push((position, layout.rotation(|column| number(column, "Rotation"))?));
     }
     if found.is_empty() {
-        return Err(refused(file, "the rigid body is in none of the frames"));
+        return Err(refused(&file, "the rigid body is in none of the frames"));
     }
     let up = up_axis(&found);
     if up != 1 {
@@ -94,16 +93,14 @@ fn refused(file: &str, found: &str) -> DatasetError {
 
 impl Layout {
     fn read(file: &str, lines: &mut Rows) -> Result<Layout, DatasetError> {
-        let mut cells = Vec::new();
         let (mut types, mut names, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
         let (mut per_metre, mut rotation_type) = (1.0, String::from("XYZ"));
-        for (line, row) in lines.by_ref() {
-            split(row, &mut cells);
-            let owned = || cells.iter().map(|cell| cell.text.to_owned()).collect::<Vec<String>>();
-            let after = |key: &str| Some(cells.get(cells.iter().position(|cell| cell.text == key)? + 1)?.text);
-            match (cells[0].text, cells.get(1).map_or("", |cell| cell.text)) {
+        while let Some(row) = lines.next()? {
+            let owned = || row.cells().map(str::to_owned).collect::<Vec<String>>();
+            let after = |key: &str| row.cells().skip_while(|cell| *cell != key).nth(1);
+            match (row.cell(0), row.cell(1)) {
                 (FORMAT, _) => {
-                    per_metre = per_metre_of(file, line, after("Length Units").unwrap_or("Meters"))?;
+                    per_metre = per_metre_of(file, row.line, after("Length Units").unwrap_or("Meters"))?;
                     rotation_type = after("Rotation Type").unwrap_or("XYZ").to_uppercase();
                 }
                 (_, "Type") => types = owned(),

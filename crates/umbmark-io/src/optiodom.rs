@@ -14,7 +14,8 @@
 use super::columns::headless;
 use super::error::DatasetError;
 use super::recording::Recording;
-use super::sheet::{Rows, split};
+use super::sheet::Rows;
+use super::source::Source;
 use std::collections::{BTreeMap, BTreeSet};
 use umbmark_core::dataset::ReferencePose;
 use umbmark_core::drive::{AckermannDrive, DifferentialDrive, Drive, Encoder, Robot};
@@ -66,8 +67,9 @@ pub(super) fn runs(names: &[String], set: &str) -> Vec<RunFiles> {
 }
 
 /// The robot and the path of a metadata file; the encoder's rate is left open.
-pub(super) fn parse_metadata(file: &str, set: &str, text: &str) -> Result<(Robot, Option<Path>), DatasetError> {
-    let metadata = Metadata { file, text };
+pub(super) fn parse_metadata(set: &str, source: Source) -> Result<(Robot, Option<Path>), DatasetError> {
+    let metadata = Metadata::read(source)?;
+    let file = &metadata.file;
     let kind = metadata.find("type");
     if kind.is_some_and(|(_, kind)| kind == TRICYCLE) {
         return Ok((tricycle(&metadata, set)?, None));
@@ -105,30 +107,36 @@ fn tricycle(metadata: &Metadata, set: &str) -> Result<Robot, DatasetError> {
     Ok(Robot { name: format!("OptiOdom {set}"), drive: drive.into(), encoder })
 }
 
-struct Metadata<'a> {
-    file: &'a str,
-    text: &'a str,
+struct Metadata {
+    file: String,
+    rows: Vec<(usize, Vec<String>)>,
 }
 
-impl<'a> Metadata<'a> {
-    fn cells(&self, key: &str) -> Option<(usize, Vec<&'a str>)> {
-        let mut cells = Vec::new();
-        Rows::of(self.text).find_map(|(line, text)| {
-            split(text, &mut cells);
-            (cells[0].text == key).then(|| (line, cells[1..].iter().map(|cell| cell.text).collect()))
-        })
+impl Metadata {
+    fn read(source: Source) -> Result<Metadata, DatasetError> {
+        let mut lines = Rows::of(source);
+        let mut rows = Vec::new();
+        while let Some(row) = lines.next()? {
+            rows.push((row.line, row.cells().map(str::to_owned).collect()));
+        }
+        Ok(Metadata { file: lines.file().to_owned(), rows })
     }
 
-    fn find(&self, key: &str) -> Option<(usize, &'a str)> {
-        self.cells(key).map(|(line, cells)| (line, cells.first().copied().unwrap_or("")))
+    /// The line of a key, and what stands behind it.
+    fn cells(&self, key: &str) -> Option<(usize, &[String])> {
+        self.rows.iter().find(|(_, cells)| cells[0] == key).map(|(line, cells)| (*line, &cells[1..]))
+    }
+
+    fn find(&self, key: &str) -> Option<(usize, &str)> {
+        self.cells(key).map(|(line, cells)| (line, cells.first().map_or("", String::as_str)))
     }
 
     fn positive(&self, key: &str, place: usize) -> Result<f64, DatasetError> {
         let (line, cells) = self.cells(key).ok_or_else(|| self.missing(key, "the row as OptiOdom writes it"))?;
-        let cell = cells.get(place).copied().unwrap_or("");
+        let cell = cells.get(place).map_or("", String::as_str);
         let value = cell.parse().ok().filter(|value: &f64| *value > 0.0 && *value < 1e9);
         value.ok_or_else(|| DatasetError::Value {
-            file: self.file.to_owned(),
+            file: self.file.clone(),
             line,
             key: key.to_owned(),
             value: super::error::quoted(cell),
@@ -141,7 +149,7 @@ impl<'a> Metadata<'a> {
     fn number_or(&self, key: &str, otherwise: f64) -> Result<f64, DatasetError> {
         let Some((line, cell)) = self.find(key).filter(|(_, cell)| !cell.is_empty()) else { return Ok(otherwise) };
         cell.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| DatasetError::Value {
-            file: self.file.to_owned(),
+            file: self.file.clone(),
             line,
             key: key.to_owned(),
             value: super::error::quoted(cell),
@@ -152,7 +160,7 @@ impl<'a> Metadata<'a> {
 
     fn missing(&self, key: &str, example: &str) -> DatasetError {
         DatasetError::MissingKey {
-            file: self.file.to_owned(),
+            file: self.file.clone(),
             line: 1,
             table: "the metadata".into(),
             key: key.to_owned(),
@@ -162,11 +170,11 @@ impl<'a> Metadata<'a> {
 }
 
 /// The rows of the wheel counters alone: time \[s\] and the ticks of this cycle, left wheel before right.
-pub(super) fn parse_odometry(file: &str, text: &str) -> Result<Recording, DatasetError> {
+pub(super) fn parse_odometry(source: Source) -> Result<Recording, DatasetError> {
     let names = ["time (1st)", "odoL (2nd)", "odoR (3rd)"];
     let columns = names.map(str::to_owned);
-    let mut recording = Recording { file: file.to_owned(), columns, per_cycle: true, ..Recording::default() };
-    headless(file, text, &names, |line, [time, left, right]| {
+    let mut recording = Recording { file: source.file.clone(), columns, per_cycle: true, ..Recording::default() };
+    headless(source, &names, |line, [time, left, right]| {
         recording.lines.push(line);
         recording.time.push(*time);
         recording.counts[0].push(*left);
@@ -176,15 +184,15 @@ pub(super) fn parse_odometry(file: &str, text: &str) -> Result<Recording, Datase
 }
 
 /// The rows of a run.
-pub(super) fn parse_run(file: &str, text: &str) -> Result<Recording, DatasetError> {
+pub(super) fn parse_run(source: Source) -> Result<Recording, DatasetError> {
     let names = ["time (1st)", "x (2nd)", "y (3rd)", "theta (4th)", "odoR (5th)", "odoL (6th)"];
     let mut recording = Recording {
-        file: file.to_owned(),
+        file: source.file.clone(),
         columns: [names[0], names[5], names[4]].map(str::to_owned),
         per_cycle: true,
         ..Recording::default()
     };
-    headless(file, text, &names, |line, cells| {
+    headless(source, &names, |line, cells| {
         let [time, x, y, heading, right, left] = *cells;
         let sample = recording.time.len();
         recording.lines.push(line);
@@ -197,16 +205,16 @@ pub(super) fn parse_run(file: &str, text: &str) -> Result<Recording, DatasetErro
 }
 
 /// The rows of a tricycle's run.
-pub(super) fn parse_tricycle_run(file: &str, text: &str, robot: &Robot) -> Result<Recording, DatasetError> {
+pub(super) fn parse_tricycle_run(source: Source, robot: &Robot) -> Result<Recording, DatasetError> {
     let names = ["time (1st)", "x (2nd)", "y (3rd)", "theta (4th)", "odoWh (5th)", "ThWh (6th)"];
     let mut recording = Recording {
-        file: file.to_owned(),
+        file: source.file.clone(),
         columns: [names[0], names[4], names[5]].map(str::to_owned),
         ..Recording::default()
     };
     let zero = if let Drive::Ackermann(drive) = &robot.drive { drive.steering_zero() } else { 0.0 };
     let mut driven = 0.0;
-    headless(file, text, &names, |line, cells| {
+    headless(source, &names, |line, cells| {
         let [time, x, y, heading, ticks, angle] = *cells;
         let sample = recording.time.len();
         driven += ticks * libm::cos(angle + zero);

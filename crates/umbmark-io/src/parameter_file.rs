@@ -3,7 +3,7 @@
 use super::distribution_table::{DISTRIBUTIONS, read_distribution};
 use super::document::{Entry, Source, Table};
 use super::error::DatasetError;
-use super::text::read_text;
+use super::source::read_text;
 use umbmark_core::monte_carlo::{Quantity, Study};
 use umbmark_core::sensitivity::tolerance::{Grade, Varied};
 

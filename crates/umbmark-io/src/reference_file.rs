@@ -3,7 +3,8 @@
 use super::columns::{Columns, Quantity};
 use super::error::DatasetError;
 use super::motive::{is_motive, parse_motive};
-use super::sheet::{Rows, Sheet};
+use super::sheet::Sheet;
+use super::source::Source;
 use super::tick_log::ReferenceColumns;
 use super::track_rows::TrackRows;
 use super::tum::parse_tum;
@@ -12,25 +13,21 @@ use umbmark_core::run::ReferenceTrack;
 const HEADER: &str = "t_s,x_ref_m,y_ref_m,theta_ref_rad";
 
 /// The track of a file: an export of Motive, a TUM trajectory, or `t_s,x_ref_m,y_ref_m,theta_ref_rad`.
-pub(super) fn parse_reference(
-    file: &str,
-    text: &str,
-    warnings: &mut Vec<String>,
-) -> Result<ReferenceTrack, DatasetError> {
-    let first = Rows::of(text).next().map_or("", |(_, row)| row);
-    let rows = if is_motive(first) {
-        parse_motive(file, text, warnings)?
+pub(super) fn parse_reference(source: Source, warnings: &mut Vec<String>) -> Result<ReferenceTrack, DatasetError> {
+    let first = source.first_row();
+    let rows = if is_motive(&first) {
+        parse_motive(source, warnings)?
     } else if first.contains(',') || first.is_empty() || first.contains("x_ref") {
-        parse_columns(file, text, warnings)?
+        parse_columns(source, warnings)?
     } else {
-        parse_tum(file, text)?
+        parse_tum(source)?
     };
     rows.into_track(warnings)
 }
 
 /// Rows without a pose are gaps.
-fn parse_columns(file: &str, text: &str, warnings: &mut Vec<String>) -> Result<TrackRows, DatasetError> {
-    let sheet = Sheet::open(file, text, HEADER)?;
+fn parse_columns(source: Source, warnings: &mut Vec<String>) -> Result<TrackRows, DatasetError> {
+    let sheet = Sheet::open(source, HEADER)?;
     let mut columns = Columns::of(&sheet);
     let needs = "a track needs t_s, x_ref_m and y_ref_m";
     let time = columns.need("t", Quantity::Time, needs)?;
@@ -38,7 +35,7 @@ fn parse_columns(file: &str, text: &str, warnings: &mut Vec<String>) -> Result<T
         return Err(columns.missing("x_ref", Quantity::Length, needs));
     };
     columns.finish(warnings)?;
-    let mut rows = TrackRows { file: file.to_owned(), column: time.name.clone(), ..TrackRows::default() };
+    let mut rows = TrackRows { file: sheet.file().to_owned(), column: time.name.clone(), ..TrackRows::default() };
     sheet.for_each(|row| {
         match reference.read(row, 0)? {
             Some(pose) => {
@@ -52,7 +49,7 @@ fn parse_columns(file: &str, text: &str, warnings: &mut Vec<String>) -> Result<T
     })?;
     if rows.time.is_empty() {
         let remedy = "fill in the poses".into();
-        return Err(DatasetError::NoRows { file: file.to_owned(), found: "none of the rows has a pose", remedy });
+        return Err(DatasetError::NoRows { file: rows.file, found: "none of the rows has a pose", remedy });
     }
     Ok(rows)
 }

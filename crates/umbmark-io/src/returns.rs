@@ -4,6 +4,7 @@ use super::columns::{Column, Columns, Quantity};
 use super::error::DatasetError;
 use super::label::{DIRECTIONS, TESTS};
 use super::sheet::{Row, Sheet};
+use super::source::Source;
 use Quantity::{Angle, Bare, Length};
 use umbmark_core::dataset::{RETURNS_COLUMNS, ReturnError};
 use umbmark_core::effect::TestKind;
@@ -40,12 +41,8 @@ enum Convention {
 }
 
 /// The rows of a file, and what was noticed in it.
-pub(super) fn parse_returns(
-    file: &str,
-    text: &str,
-    warnings: &mut Vec<String>,
-) -> Result<Vec<ReturnRow>, DatasetError> {
-    let sheet = Sheet::open(file, text, RETURNS_COLUMNS)?;
+pub(super) fn parse_returns(source: Source, warnings: &mut Vec<String>) -> Result<Vec<ReturnRow>, DatasetError> {
+    let sheet = Sheet::open(source, RETURNS_COLUMNS)?;
     let mut columns = Columns::of(&sheet);
     let direction = columns.need("direction", Bare, "it says cw or ccw")?;
     let number = columns.need("run", Bare, "it numbers the runs of each direction from 1")?;
@@ -95,7 +92,7 @@ impl Convention {
             |base: &&str| sheet.header.iter().find(|h| h.strip_prefix(*base).is_some_and(|r| r.starts_with('_')));
         match (poses.iter().find_map(stands), errors.iter().find_map(stands)) {
             (Some(poses), Some(errors)) => Err(DatasetError::BothConventions {
-                file: sheet.file.to_owned(),
+                file: sheet.file().to_owned(),
                 line: sheet.header_line,
                 poses: poses.clone(),
                 errors: errors.clone(),

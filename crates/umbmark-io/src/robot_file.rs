@@ -2,7 +2,7 @@
 
 use super::document::{Entry, Source, Table};
 use super::error::{DatasetError, did_you_mean};
-use super::text::read_text;
+use super::source::read_text;
 use umbmark_core::dataset::ReferenceFrame;
 use umbmark_core::drive::{DifferentialDrive, Drive, DriveError, Encoder, Kind, MAX_COUNTER_BITS, Robot, Wiring};
 use umbmark_core::parameter::{DefaultValue, Parameter};

@@ -37,7 +37,7 @@ fn same_record(a: &TickLog, b: &TickLog) -> bool {
 }
 
 fn csv(data: &Dataset, _: &Run, log: &TickLog) -> Result<Vec<u8>, DatasetError> {
-    Ok(tick_log_text(log, data.nominal_robot()?).into_bytes())
+    Ok(tick_log_text(log, data.nominal_robot()?))
 }
 
 /// Writes `robot.toml`, `returns.csv` and `runs/*.csv` into a folder, which is made where it is not there.
@@ -61,7 +61,7 @@ pub(super) fn save_with(
     // The poses are written as they are meant to be.
     let robot_file = RobotFile::new(robot.clone(), data.path.clone());
     files.insert(PathBuf::from(ROBOT), robot_file.text().into_bytes());
-    files.extend(returns_text(&data.runs).map(|text| (PathBuf::from(RETURNS), text.into_bytes())));
+    files.extend(returns_text(&data.runs).map(|text| (PathBuf::from(RETURNS), text)));
     for run in &data.runs {
         let Some(log) = &run.log else { continue };
         let name = format!("{}.{}", label::label(run.test, run.direction, run.number), format.ending);

@@ -4,9 +4,8 @@ use super::columns::{Column, Columns, Quantity};
 use super::error::DatasetError;
 use super::recording::Recording;
 use super::sheet::{Row, Sheet};
-use super::text::{Pieces, without_mark};
+use super::source::Source;
 use Quantity::{Angle, Bare, Length, Time};
-use std::io::Read;
 use umbmark_core::dataset::ReferencePose;
 use umbmark_core::drive::Kind;
 
@@ -28,46 +27,20 @@ struct LogColumns {
 
 /// The rows of a log.
 pub(super) fn parse_tick_log(
-    file: &str,
-    text: &str,
+    source: Source,
     kind: Kind,
     warnings: &mut Vec<String>,
 ) -> Result<Recording, DatasetError> {
     if !kind.has_tick_logs() {
-        let (file, value) = (file.to_owned(), format!("\"{}\"", kind.name()));
+        let (file, value) = (source.file, format!("\"{}\"", kind.name()));
         let remedy = "logs of its two trucks are not read; give its returns in returns.csv".into();
         return Err(DatasetError::NotYet { file, line: 1, key: "drive".into(), value, remedy });
     }
-    let sheet = Sheet::open(file, text, HEADER)?;
+    let sheet = Sheet::open(source, HEADER)?;
     let columns = LogColumns::find(&sheet, kind, warnings)?;
-    let mut recording = columns.recording(file);
+    let mut recording = columns.recording(sheet.file());
     sheet.for_each(|row| columns.read(row, &mut recording))?;
     Ok(recording)
-}
-
-/// The same of a text in pieces, where nothing is wrong with it; else [`parse_tick_log`] says what.
-pub(super) fn tick_log_in_pieces(
-    file: &str,
-    mut pieces: Pieces<impl Read>,
-    kind: Kind,
-    warnings: &mut Vec<String>,
-) -> Option<Recording> {
-    let head = pieces.next().ok().filter(|_| kind.has_tick_logs())?.to_owned();
-    let sheet = Sheet::open(file, without_mark(&head), HEADER).ok()?;
-    let mut noticed = Vec::new();
-    let columns = LogColumns::find(&sheet, kind, &mut noticed).ok()?;
-    let mut recording = columns.recording(file);
-    let mut line = sheet.for_each_of(sheet.body(), |row| columns.read(row, &mut recording)).ok()?;
-    loop {
-        let piece = pieces.next().ok()?;
-        if piece.is_empty() {
-            break;
-        }
-        let rows = sheet.body_after(line, piece);
-        line = sheet.for_each_of(rows, |row| columns.read(row, &mut recording)).ok()?;
-    }
-    warnings.append(&mut noticed);
-    Some(recording).filter(|recording| !recording.time.is_empty())
 }
 
 impl LogColumns {

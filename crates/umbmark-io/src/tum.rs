@@ -3,9 +3,9 @@
 //! Source: Sturm et al. 2012, "A benchmark for the evaluation of RGB-D SLAM systems", file formats. z is up; of the
 //! orientation only the heading is used.
 
-use super::columns::number_in;
 use super::error::DatasetError;
 use super::sheet::Rows;
+use super::source::Source;
 use super::track_rows::TrackRows;
 use std::fmt::Write;
 
@@ -15,17 +15,20 @@ const NAMES: [&str; 8] =
 const UNIT: std::ops::RangeInclusive<f64> = 0.9..=1.1;
 
 /// The poses of a file.
-pub(super) fn parse_tum(file: &str, text: &str) -> Result<TrackRows, DatasetError> {
-    let mut rows = TrackRows { file: file.to_owned(), column: NAMES[0].to_owned(), ..TrackRows::default() };
-    for (line, row) in Rows::of(text) {
-        let cells: Vec<&str> = row.split_whitespace().collect();
+pub(super) fn parse_tum(source: Source) -> Result<TrackRows, DatasetError> {
+    let mut lines = Rows::separated_by(b' ', source);
+    let file = lines.file().to_owned();
+    let mut rows = TrackRows { file, column: NAMES[0].to_owned(), ..TrackRows::default() };
+    while let Some(row) = lines.next()? {
+        let (file, line) = (row.file, row.line);
+        let cells: Vec<&str> = row.cells().flat_map(str::split_whitespace).collect();
         if cells.len() != NAMES.len() {
             let remedy = "a TUM trajectory has t tx ty tz qx qy qz qw, separated by spaces";
             return Err(DatasetError::Ragged { file: file.to_owned(), line, got: cells.len(), expected: 8, remedy });
         }
         let mut numbers = [0.0; 8];
         for (i, cell) in cells.iter().enumerate() {
-            numbers[i] = number_in(file, line, NAMES[i], cell)?;
+            numbers[i] = row.own_number(NAMES[i], cell)?;
         }
         let [time, x, y, _, qx, qy, qz, qw] = numbers;
         let length = (qx * qx + qy * qy + qz * qz + qw * qw).sqrt();
@@ -45,7 +48,7 @@ pub(super) fn parse_tum(file: &str, text: &str) -> Result<TrackRows, DatasetErro
     }
     if rows.time.is_empty() {
         let remedy = "a TUM trajectory has one pose a line: t tx ty tz qx qy qz qw".into();
-        return Err(DatasetError::NoRows { file: file.to_owned(), found: "there are no poses", remedy });
+        return Err(DatasetError::NoRows { file: rows.file, found: "there are no poses", remedy });
     }
     Ok(rows)
 }
@@ -74,7 +77,7 @@ mod tests {
     fn what_is_written_is_read_back() {
         let poses: Vec<(f64, f64, f64, f64)> =
             (-8..=8).map(f64::from).map(|i| (i + 20.0, 0.1 * i, -0.3 * i, 0.4 * i)).collect();
-        let rows = parse_tum("f", &tum_text("poses", poses.iter().copied())).unwrap();
+        let rows = parse_tum(Source::of("f", tum_text("poses", poses.iter().copied()).as_bytes()).unwrap()).unwrap();
         assert_eq!(rows.time.len(), poses.len());
         for ((time, pose), (t, x, y, heading)) in rows.time.iter().zip(&rows.poses).zip(poses) {
             assert_eq!((*time, pose.0, pose.1), (t, x, y));

@@ -137,34 +137,30 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
 
 /// The file of `--out`: one row a trial.
 struct TrialsFile {
-    file: files::Pending,
+    rows: csv::Writer<files::Pending>,
     columns: Vec<usize>,
 }
 
 impl TrialsFile {
     fn create(path: &std::path::Path, metrics: &[Metric], force: bool) -> anyhow::Result<TrialsFile> {
-        let mut file = files::Pending::create(path, force)?;
-        let names: Vec<&str> = metrics.iter().map(|metric| metric.name()).collect();
-        writeln!(file, "trial,{}", names.join(",")).with_context(|| file.failed())?;
+        let mut rows = csv::Writer::from_writer(files::Pending::create(path, force)?);
+        let names = ["trial"].into_iter().chain(metrics.iter().map(|metric| metric.name()));
+        rows.write_record(names).with_context(|| rows.get_ref().failed())?;
         let columns = (0..Metric::COUNT).filter(|i| metrics.contains(&Metric::ALL[*i])).collect();
-        Ok(TrialsFile { file, columns })
+        Ok(TrialsFile { rows, columns })
     }
 
     fn write(&mut self, first: u64, rows: &[Row]) -> anyhow::Result<()> {
-        let mut text = String::new();
         for (trial, row) in (first..).zip(rows) {
-            text.push_str(&trial.to_string());
-            for column in &self.columns {
-                text.push(',');
-                text.push_str(&row[*column].to_string());
-            }
-            text.push('\n');
+            let values = self.columns.iter().map(|column| row[*column].to_string());
+            let written = self.rows.write_record([trial.to_string()].into_iter().chain(values));
+            written.with_context(|| self.rows.get_ref().failed())?;
         }
-        self.file.write_all(text.as_bytes()).with_context(|| self.file.failed())
+        Ok(())
     }
 
     fn finish(self) -> anyhow::Result<()> {
-        self.file.finish()
+        self.rows.into_inner()?.finish()
     }
 }
 

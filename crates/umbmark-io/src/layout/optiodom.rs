@@ -1,9 +1,9 @@
 //! A set as the OptiOdom project has it: a pose with heading in every row, and the ticks since the row before.
 
+use super::super::csv_text::CsvText;
 use super::super::error::DatasetError;
 use super::super::save::{Existing, put};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::{Dataset, TickLog};
 use umbmark_core::drive::{Kind, Robot};
@@ -75,13 +75,16 @@ impl Lost {
 }
 
 /// The rows of a run, where there are any.
-fn run_text(log: &TickLog, lost: &mut Lost) -> Option<String> {
-    let mut text = String::new();
+fn run_text(log: &TickLog, lost: &mut Lost) -> Option<Vec<u8>> {
+    let mut text = CsvText::behind("");
     let (mut left, mut right, mut rows) = (0.0, 0.0, 0);
     for pose in &log.reference {
         let Some(heading) = pose.heading else { continue };
         let (time, l, r) = (log.time[pose.sample], log.left[pose.sample], log.right[pose.sample]);
-        let _ = writeln!(text, "{time:?},{:?},{:?},{heading:?},{},{}", pose.x, pose.y, r - right, l - left);
+        [time, pose.x, pose.y, heading].into_iter().for_each(|value| text.decimal(value));
+        text.cell(r - right);
+        text.cell(l - left);
+        text.end();
         (left, right, rows) = (l, r, rows + 1);
     }
     if rows == 0 {
@@ -90,18 +93,26 @@ fn run_text(log: &TickLog, lost: &mut Lost) -> Option<String> {
     lost.merged += log.time.len().saturating_sub(rows);
     let rest = |ticks: &[f64], at: f64| ticks.last().map_or(0.0, |last| (last - at).abs());
     lost.trailing += rest(&log.left, left) + rest(&log.right, right);
-    Some(text)
+    Some(text.finish())
 }
 
-fn metadata_text(robot: &Robot, path: Option<&DrivenPath>, runs: usize) -> String {
+fn metadata_text(robot: &Robot, path: Option<&DrivenPath>, runs: usize) -> Vec<u8> {
     let side = path.filter(|path| path.shape().name == SQUARE.name).map(|path| path.values()[0].to_string());
+    let side = side.unwrap_or_default();
     let (drive, ticks) = (&robot.drive, robot.encoder.ticks_per_revolution());
     let (right, left) = (drive.wheel_diameter_right(), drive.wheel_diameter_left());
-    format!(
-        "type,diff\nngear,1\nencRes,{ticks}\nLi,{}\nDi,{right},{left}\nThi,\nN,{runs}\nL,{}\n",
-        drive.wheelbase(),
-        side.unwrap_or_default()
-    )
+    let [ticks, wheelbase, right, left] = [ticks, drive.wheelbase(), right, left].map(|value| value.to_string());
+    let runs = runs.to_string();
+    let mut text = CsvText::behind("");
+    text.row(["type", "diff"]);
+    text.row(["ngear", "1"]);
+    text.row(["encRes", &ticks]);
+    text.row(["Li", &wheelbase]);
+    text.row(["Di", &right, &left]);
+    text.row(["Thi", ""]);
+    text.row(["N", &runs]);
+    text.row(["L", &side]);
+    text.finish()
 }
 
 /// One number for each run with a log; whether they are not the runs' own, because these are not unique.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::source::Source;
 use umbmark_core::dataset::{ReferencePose, ReturnError, Run};
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::TestKind;
@@ -113,7 +114,7 @@ fn tum_holds_the_measured_poses() {
     let place = tempfile::tempdir().unwrap();
     layout("tum").write(&data, place.path().join("out"), Existing::Keep).unwrap();
     let text = std::fs::read_to_string(place.path().join("out/cw_02_reference.tum")).unwrap();
-    let rows = crate::tum::parse_tum("file", &text).unwrap();
+    let rows = crate::tum::parse_tum(Source::of("file", text.as_bytes()).unwrap()).unwrap();
     let log = data.runs[1].log.as_ref().unwrap();
     assert_eq!(rows.time.len(), log.reference.len());
     for ((time, (x, y, heading)), pose) in rows.time.iter().zip(&rows.poses).zip(&log.reference) {

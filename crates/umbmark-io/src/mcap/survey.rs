@@ -1,7 +1,7 @@
 //! A log before its messages are read: its topics, and the robot that it may bring along.
 
 use super::super::error::DatasetError;
-use super::super::text::unreadable;
+use super::super::source::unreadable;
 use super::container::{Container, Damage, Record, Visit};
 use super::message_type::{Encoding, MessageType};
 use super::problem::McapProblem;
