@@ -16,7 +16,7 @@ pub enum ReplayError {
         /// Number of right counts.
         right: usize,
     },
-    /// A count that is no number.
+    /// An invalid count.
     #[error("ticks of sample {sample} must be finite, got left {left}, right {right}")]
     NotFinite {
         /// The sample, from 0.

@@ -1,6 +1,6 @@
 //! The moment that a measurement shows: its stamp less what the reference is late.
 
-use super::Track;
+use super::track::Track;
 use crate::effect::{Chain, Context, Evaluate, Sight};
 
 /// Steps of time that rounding makes \[s\].

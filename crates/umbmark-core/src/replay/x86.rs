@@ -1,6 +1,8 @@
 //! The same replay compiled for wider registers.
 
-use super::{Chain, Evaluate, Pose2, Track};
+use super::track::Track;
+use crate::effect::{Chain, Evaluate};
+use crate::geometry::Pose2;
 use std::ops::Range;
 
 #[target_feature(enable = "avx512f,avx512dq")]

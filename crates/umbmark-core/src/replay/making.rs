@@ -1,0 +1,137 @@
+//! Tracks of recorded runs, and of paths that are driven as commanded.
+
+use super::error::{ReplayError, check};
+use super::pace;
+use super::track::Track;
+use crate::dataset::TickLog;
+use crate::drive::{Robot, WheelTravel};
+use crate::effect::{Place, Progress, Sight};
+use crate::engine::Convoy;
+use crate::path::{Direction, Path, Pieces, SpeedProfile};
+use std::sync::Arc;
+
+impl Track {
+    /// The track of a recorded run, one piece a sample, observed at each of its reference poses.
+    ///
+    /// It stands first in its session; see [`Track::from_log_at`].
+    pub fn from_log(log: &TickLog, robot: &Robot) -> Result<Track, ReplayError> {
+        Track::from_log_at(log, robot, Place::default())
+    }
+
+    /// [`Track::from_log`] of a run with its place among others.
+    pub fn from_log_at(log: &TickLog, robot: &Robot, place: Place) -> Result<Track, ReplayError> {
+        Track::from_log_seen(log, robot, place, log.reference.iter().map(|reference| reference.sample))
+    }
+
+    /// [`Track::from_log_at`], observed at some of its samples, in order.
+    pub fn from_log_seen(
+        log: &TickLog,
+        robot: &Robot,
+        place: Place,
+        samples: impl Iterator<Item = usize>,
+    ) -> Result<Track, ReplayError> {
+        check(log)?;
+        let per_tick = robot.metres_per_tick();
+        let speeds = pace::wheel_speeds(log, &per_tick);
+        let mut progress = Progress::new(robot, place, true);
+        let mut track = Track::empty();
+        let mut due = samples.peekable();
+        let (mut left, mut right) = (0.0, 0.0);
+        for (sample, (l, r)) in log.left.iter().zip(&log.right).enumerate() {
+            let before = sample.saturating_sub(1);
+            let duration = log.time[sample] - log.time[before];
+            let travel = WheelTravel { left: (l - left) * per_tick.left, right: (r - right) * per_tick.right };
+            track.push(travel, progress.piece(&travel, duration, speeds[before], speeds[sample]));
+            (left, right) = (*l, *r);
+            track.duration = log.time[sample] - log.time[0];
+            while due.next_if_eq(&sample).is_some() {
+                track.observe(sight(track.duration, speeds[sample], robot));
+            }
+        }
+        Ok(track)
+    }
+
+    /// The track of a robot that makes the moves of a path as its odometry believes, observed at the end.
+    ///
+    /// Where only return errors were measured, this is what the robot believed to drive: its controller stops each move
+    /// when the odometry says so. Each move is one piece: for models that do not [vary](crate::effect::Model::varies).
+    pub fn from_path(path: &Path, direction: Direction, robot: &Robot) -> Track {
+        Track::along_path(path, direction, robot, Pieces::whole, Observed::AtEnd)
+    }
+
+    /// [`Track::from_path`] in pieces of a centimetre, for every model.
+    pub fn in_pieces(path: &Path, direction: Direction, robot: &Robot) -> Track {
+        Track::along_path(path, direction, robot, Pieces::of, Observed::AtEnd)
+    }
+
+    /// [`Track::in_pieces`] observed after every move.
+    pub fn with_stops(path: &Path, direction: Direction, robot: &Robot) -> Track {
+        Track::along_path(path, direction, robot, Pieces::of, Observed::AtStops)
+    }
+
+    /// [`Track::in_pieces`] observed after every piece.
+    pub fn watched(path: &Path, direction: Direction, robot: &Robot) -> Track {
+        Track::along_path(path, direction, robot, Pieces::of, Observed::Always)
+    }
+
+    fn along_path(
+        path: &Path,
+        direction: Direction,
+        robot: &Robot,
+        cut: fn(&WheelTravel, &SpeedProfile) -> Pieces,
+        observed: Observed,
+    ) -> Track {
+        if let Some(convoy) = Convoy::new(robot, path, direction) {
+            return Track::of_trucks(convoy, robot, observed);
+        }
+        let place = Place { direction: Some(direction), ..Place::default() };
+        let mut progress = Progress::new(robot, place, false);
+        let mut track = Track::empty();
+        let moves = path.moves(direction);
+        for (index, m) in moves.iter().enumerate() {
+            for piece in cut(&m.wheel_travel(&robot.drive), &path.speed) {
+                track.push(piece.travel, progress.piece(&piece.travel, piece.duration, piece.from, piece.to));
+                if observed == Observed::Always {
+                    track.observe(sight(progress.time(), piece.to, robot));
+                }
+            }
+            progress.piece(&WheelTravel::default(), path.speed.pause(), [0.0; 2], [0.0; 2]);
+            if observed == Observed::AtStops || (observed == Observed::AtEnd && index + 1 == moves.len()) {
+                track.observe(Sight { time: progress.time(), ..Sight::default() });
+            }
+        }
+        track
+    }
+
+    /// The track of a front truck, one piece a period.
+    fn of_trucks(convoy: Convoy, robot: &Robot, observed: Observed) -> Track {
+        let mut track = Track::empty();
+        for (made, step) in (1..).zip(convoy.steps()) {
+            track.travel.push(step.travel[0]);
+            track.contexts.push(step.contexts[0]);
+            let stops = convoy.stops().contains(&made);
+            if match observed {
+                Observed::Always => true,
+                Observed::AtStops => stops,
+                Observed::AtEnd => made == convoy.steps().len(),
+            } {
+                track.observe(sight(step.time, step.speeds[0], robot));
+            }
+        }
+        track.convoy = Some(Arc::new(convoy));
+        track
+    }
+}
+
+/// When a robot on a path is observed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Observed {
+    AtEnd,
+    AtStops,
+    Always,
+}
+
+/// The moment at which the wheels have these speeds \[m/s\].
+fn sight(time: f64, [left, right]: [f64; 2], robot: &Robot) -> Sight {
+    Sight { time, late: 0.0, speed: 0.5 * (left + right), turn_rate: (right - left) / robot.drive.wheelbase() }
+}
