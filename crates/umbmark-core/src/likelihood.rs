@@ -10,6 +10,7 @@
 
 mod beginning;
 mod descent;
+mod fitted;
 mod fitting;
 mod noise;
 mod observed;
@@ -22,9 +23,9 @@ mod whiten;
 
 pub use beginning::Taken;
 pub(crate) use beginning::{FAR, of_reference, ratios};
-pub use fitting::{Column, Fitted, NUISANCE, USUAL_NOISE};
+pub use fitted::{Fitted, Outlier};
+pub use fitting::{NUISANCE, USUAL_NOISE};
 pub use noise::Noise;
-pub use observed::{Block, Growth, Observed, ObservedRun, Stretch};
-pub use outliers::Outlier;
+pub use observed::{Block, Column, Growth, Observed, ObservedRun, Stretch};
 pub(crate) use products::{ABSORBED, ScaledCholesky, gram, scaled_cholesky, share_left, solver};
 pub use whiten::{Disturbance, Whitened};

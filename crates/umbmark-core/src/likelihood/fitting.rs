@@ -1,9 +1,8 @@
 //! The free parameters of a model, fitted to whole tracks.
 
-use super::beginning::Taken;
+use super::fitted::{Fitted, Slopes};
 use super::noise::Noise;
-use super::observed::{Observed, ObservedRun};
-use super::outliers::Outlier;
+use super::observed::{Column, Observed, ObservedRun};
 use super::products::{ABSORBED, gram, share_left};
 use crate::effect::{Derived, Model, ModelError, Number, find};
 use crate::fit::{Options, Problem, least_squares};
@@ -12,57 +11,10 @@ use rayon::prelude::*;
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// One (x, y, heading) a block.
-pub type Column = Vec<[f64; 3]>;
-
 /// Effects of the reference that every track has; they are fitted out before anything is said of the robot.
 pub const NUISANCE: [&str; 3] = ["reference_delay", "marker_offset", "marker_yaw"];
 
-/// A model fitted to tracks, and the noise that it leaves.
-#[derive(Clone, Debug)]
-pub struct Fitted {
-    /// The runs, laid along the model.
-    pub observed: Observed,
-    /// The model with its free parameters at their best.
-    pub model: Model,
-    /// The noise.
-    pub noise: Noise,
-    /// Which of [`Model::values`] were fitted.
-    pub free: Vec<usize>,
-    /// What the effects of the reference that the model lacks would do, run by run: fitted along and left out of the model.
-    pub reference: Vec<Vec<Column>>,
-    /// The covariance of the free values; `None` where the data leaves a combination of them open.
-    pub covariance: Option<DMatrix<f64>>,
-    /// Whether the values are those under noise of the usual sizes, because these predict runs left out better.
-    pub usual_noise: bool,
-    /// What was taken from the motion before the fit, and is in the model now.
-    pub taken: Vec<Taken>,
-    /// Where runs were disturbed; what happened there is left out.
-    pub outliers: Vec<Outlier>,
-    pub(crate) slopes: Slopes,
-}
-
-/// Derivatives of the predicted poses by free values of a model, run by run and one column a value: worked out once for each model.
-#[derive(Clone, Debug)]
-pub(crate) struct Slopes {
-    values: Vec<f64>,
-    free: Vec<usize>,
-    columns: Arc<Vec<Vec<Column>>>,
-}
-
-impl Slopes {
-    fn of(observed: &Observed, model: &Model, free: &[usize]) -> Slopes {
-        let columns = Arc::new(observed.columns(model, free));
-        Slopes { values: model.values().collect(), free: free.to_vec(), columns }
-    }
-
-    /// Whether they are those by these values of a model of the same effects.
-    fn fit(&self, model: &Model, free: &[usize]) -> bool {
-        self.free == free && !self.columns.is_empty() && self.values.iter().copied().eq(model.values())
-    }
-}
-
-/// Outliers are looked for so many times.
+/// Rounds in which outliers are looked for.
 const ROUNDS: usize = 3;
 /// Stops where a step changes no parameter by more than a millionth.
 const STOP: Options =
@@ -173,6 +125,13 @@ impl ObservedRun {
             numbers.iter().zip(own).for_each(|(number, column)| columns[*number] = column);
         }
         columns
+    }
+}
+
+impl Slopes {
+    fn of(observed: &Observed, model: &Model, free: &[usize]) -> Slopes {
+        let columns = Arc::new(observed.columns(model, free));
+        Slopes { values: model.values().collect(), free: free.to_vec(), columns }
     }
 }
 

@@ -1,8 +1,7 @@
 //! The sizes of the noise, and how they are found.
 
 use super::descent::Descent;
-use super::fitting::Column;
-use super::observed::{Growth, Observed, ObservedRun};
+use super::observed::{Column, Growth, Observed, ObservedRun};
 use super::products::{gram, solver};
 use crate::effect::Chain;
 use crate::geometry::{EIGHT, Eight, Scalar};
@@ -60,7 +59,7 @@ impl Default for Noise {
 
 /// No size falls below this share of its usual value, or rises above this multiple of it.
 const RANGE: (f64, f64) = (1e-2, 1e3);
-/// So often are the columns fitted out anew before they are fitted with every noise that is tried.
+/// Number of rounds with the columns fitted out beforehand; afterwards they are fitted with every noise that is tried.
 const ROUNDS: usize = 2;
 
 impl Noise {

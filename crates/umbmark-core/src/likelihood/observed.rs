@@ -25,8 +25,11 @@ use std::sync::Arc;
 const ONE_PLACE: (f64, f64) = (0.10, 0.10);
 /// A pose was measured at START where the robot had gone no farther \[m\].
 const AT_START: f64 = 0.03;
-/// A run has so many blocks at least.
+/// Minimum number of blocks of a run.
 const FEWEST: usize = 3;
+
+/// One (x, y, heading) a block.
+pub type Column = Vec<[f64; 3]>;
 
 /// How the random walk of the pose error grows from one block to the next, for unit noise.
 ///
@@ -61,7 +64,7 @@ pub struct Block {
     pub growth: Growth,
     /// Which quarter of the way it lies in, from 0.
     pub unit: usize,
-    /// Whether the robot is taken to start anew here, because what happened before it was no noise; see
+    /// Whether the run restarts here, because what happened before it was not noise; see
     /// [`Outlier`](super::Outlier) and [`Jump`](crate::setup::Jump).
     pub afresh: bool,
     /// Whether the track jumps before it.
@@ -81,7 +84,7 @@ pub struct ObservedRun {
     pub track: Arc<Track>,
     /// Measured poses, but for those that are wrong: x, y \[m\] and, where it was measured, heading \[rad\].
     pub measured: Arc<[(f64, f64, Option<f64>)]>,
-    /// The same, laid on the prediction where the run starts, and starts anew.
+    /// The same, laid on the prediction where the run starts and restarts.
     pub seen: Arc<[(f64, f64, Option<f64>)]>,
     /// The moments that the observations show, by the model that the run is laid along.
     pub moments: Arc<[Moment]>,
@@ -110,7 +113,7 @@ pub struct Observed {
 
 impl Observed {
     /// Gathers the runs of a dataset that have ticks and absolute poses in at least three places. Poses that are wrong are left
-    /// out, where a track jumps the run starts anew, and long runs are cut into pieces.
+    /// out, where a track jumps the run restarts, and long runs are cut into pieces.
     pub fn new(data: &Dataset, robot: &Robot) -> Result<Observed, ReplayError> {
         let setup = Setup::of(&data.runs, robot, data.path.as_ref());
         let mut runs = Vec::new();
@@ -135,7 +138,7 @@ impl Observed {
         self.runs.iter().map(|run| run.track.as_ref())
     }
 
-    /// The same runs as they were measured, starting anew only where the track jumps.
+    /// The same runs as they were measured, restarting only where the track jumps.
     pub(crate) fn whole(&self) -> Observed {
         let mut observed = self.clone();
         observed.runs.iter_mut().for_each(|run| run.linear = false);
@@ -231,7 +234,7 @@ impl ObservedRun {
         observed
     }
 
-    /// Starts anew at a block.
+    /// Restarts the run at a block.
     pub(super) fn start_afresh(&mut self, block: usize, chain: &Chain<f64>) {
         self.blocks[block].afresh = true;
         self.lay_measured(chain);

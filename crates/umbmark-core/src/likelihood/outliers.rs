@@ -1,46 +1,31 @@
-//! Collisions and glitches: places in a run where what is new cannot be noise.
+//! Collisions and glitches: places in a run whose innovation cannot be noise.
 //!
-//! What the filter finds new in a block, by the noise of all runs and the usual size in its own run, is a few standard deviations
-//! at most. Where it is ten, and far beyond what the tails of this data reach, the robot was pushed, or the reference jumped. From such a block the run starts anew, as if it had been
-//! put down there: neither the fit nor any test sees the jump. What happens at the same place in other runs too is no accident
-//! but an effect, and stays; so do jumps without number.
+//! The innovation of a block, by the noise of all runs and the usual size in its own run, is a few standard deviations at most.
+//! Where it is ten, and far beyond what the tails of this data reach, the robot was pushed or the reference jumped. The run
+//! restarts at such a block, as if the robot had been put down there: neither the fit nor any test sees the jump. What happens at
+//! the same place in other runs too is an effect, not an accident, and stays in the data. So do jumps where there are very many.
 
-use super::fitting::Fitted;
+use super::fitted::{Fitted, Outlier};
 use super::observed::{Observed, ObservedRun};
 use crate::setup::{Jump, RunSetup};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// So many standard deviations are no noise, unless the noise itself has heavy tails: Gaussian noise has it once in 1e21 blocks.
+/// Threshold in standard deviations, unless the noise has heavy tails: Gaussian noise exceeds it once in 1e21 blocks.
 const BEYOND: f64 = 10.0;
-/// Blocks so many in a data set may be beyond, by tails that fall on as they do between these two shares of all blocks.
+/// The threshold is exceeded by at most this many blocks per data set, extrapolating the tail between these two quantiles.
 const LEVEL: f64 = 0.01;
 const TAIL: [f64; 2] = [0.05, 0.01];
-/// So many, within [`NEAR`], make a jump in another run one of the same kind.
+/// A jump in another run is the same one where it exceeds this threshold \[standard deviations\] within [`NEAR`].
 const ALIKE: f64 = 4.0;
 /// Way (of a wheel, in a turn) within which two runs are at the same place \[m\].
 const NEAR: f64 = 0.15;
 /// A jump that this share of the other runs has too is an effect.
 const SHARED: f64 = 0.2;
-/// More of all blocks than this are no accidents.
+/// Where a greater share of all blocks exceeds the threshold, these are not accidents.
 const MOST: f64 = 0.01;
-/// Blocks at the beginning that are spent on START.
+/// Blocks at the beginning that determine START.
 const SPENT: usize = 2;
-
-/// A place where a run was disturbed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Outlier {
-    /// The run.
-    pub run: String,
-    /// Time since START \[s\].
-    pub time: f64,
-    /// How far the robot seemed to jump \[m\].
-    pub moved: f64,
-    /// How far it seemed to turn \[rad\]; `None` where headings were not measured.
-    pub turned: Option<f64>,
-    /// In standard deviations.
-    pub deviations: f64,
-}
 
 /// A block that is beyond noise, by run and number.
 pub(super) type Place = (usize, usize);
@@ -63,7 +48,7 @@ impl Observed {
 }
 
 impl Fitted {
-    /// Blocks beyond noise that do not start anew yet.
+    /// Blocks beyond noise at which the run does not restart yet.
     pub(super) fn beyond_noise(&self) -> BTreeSet<(Place, u64)> {
         let wheelbase = self.observed.robot.drive.wheelbase();
         let runs: Vec<Vec<f64>> = self.observed.runs.par_iter().map(|run| self.deviations(run)).collect();
@@ -86,7 +71,7 @@ impl Fitted {
         if (found.len() + known) as f64 <= MOST * all as f64 { found } else { BTreeSet::new() }
     }
 
-    /// How far what is new in each block is from nothing, in standard deviations of this run.
+    /// Innovation of each block, in standard deviations of this run.
     fn deviations(&self, run: &ObservedRun) -> Vec<f64> {
         let white = self.noise.whiten(run, &[&run.residuals_along(&self.model.chain())]);
         let (mut squares, mut rows) = (vec![0.0; run.blocks.len()], vec![0.0; run.blocks.len()]);
@@ -102,7 +87,7 @@ impl Fitted {
         (0..squares.len()).map(|block| if block < SPENT { 0.0 } else { (squares[block] / usual).sqrt() }).collect()
     }
 
-    /// A disturbed place, for people.
+    /// Describes a disturbed place.
     pub(super) fn outlier(&self, (run, block): Place, deviations: f64) -> Outlier {
         let run = &self.observed.runs[run];
         let residuals = run.residuals_along(&self.model.chain());
@@ -118,8 +103,8 @@ impl Fitted {
     }
 }
 
-/// How many standard deviations are beyond the tails of all blocks: as many as a power law through two of their quantiles would reach in
-/// this many blocks with probability `level`; 0 where there are too few.
+/// The threshold beyond the tails of all blocks, in standard deviations: a power law through two of their quantiles exceeds it in
+/// this many blocks with probability `level`. Zero where there are too few blocks.
 pub(super) fn beyond_tails(runs: &[Vec<f64>], level: f64) -> f64 {
     let mut all: Vec<f64> = runs.iter().flatten().copied().filter(|d| *d > 0.0).collect();
     all.sort_by(|a, b| b.total_cmp(a));

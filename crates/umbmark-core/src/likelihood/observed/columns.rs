@@ -3,7 +3,7 @@
 use super::ObservedRun;
 use crate::effect::{Chain, Evaluate};
 use crate::geometry::{Dual, LANES, Pose2, wrap};
-use crate::likelihood::Column;
+use crate::likelihood::observed::Column;
 
 impl ObservedRun {
     /// Measured minus predicted poses, block by block.

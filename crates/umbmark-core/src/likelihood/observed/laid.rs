@@ -1,10 +1,10 @@
-//! A run laid along a model: where its blocks are, and its measured poses on the prediction where it starts, and starts anew.
+//! A run laid along a model: where its blocks are, and its measured poses on the prediction where it starts and restarts.
 
 use super::walk::{Walk, velocity};
 use super::{Block, ObservedRun};
 use crate::effect::Chain;
 use crate::geometry::{Pose2, mean_angle, wrap};
-use crate::likelihood::Column;
+use crate::likelihood::observed::Column;
 
 /// Without headings, poses are turned so that so much of the way behind a start lies on the prediction \[m\].
 const WAY: f64 = 1.0;
@@ -31,7 +31,7 @@ impl ObservedRun {
         self.lay_measured(chain);
     }
 
-    /// Lays what was measured on what the model predicts where the run starts, unless START is trusted, and where it starts anew:
+    /// Lays what was measured on what the model predicts where the run starts, unless START is trusted, and where it restarts:
     /// turned by degrees, what follows would be off by more than a small rotation moves it.
     pub(super) fn lay_measured(&mut self, chain: &Chain<f64>) {
         let mut predicted = Vec::with_capacity(self.places.len());
