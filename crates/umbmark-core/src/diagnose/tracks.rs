@@ -7,12 +7,12 @@
 //! | whiten | `examination` | makes the residuals and columns independent; all tests follow from their products |
 //! | test | `significance`, `flips` | F of every effect and smooth, Bonferroni-corrected; sign flips of whole runs |
 //! | class | `class` | which effects look the same in these runs |
-//! | search | `search`, `growth`, `repeats` | adds what is certified to the model, and tests again |
+//! | search | `search`, `missing`, `growth`, `needless`, `repeats` | adds what is certified to the model, and tests again |
 //! | words | `conclusion`, `left`, `dependence`, `experiments` | the verdict, the doubts, and what to drive next |
 //!
-//! An effect is certified as missing where three things hold: its F stands out of all effects asked (Bonferroni), by the noise
-//! model and by how the runs differ from one another; so does its score when the signs of runs are flipped, which trusts no noise
-//! model; and runs that are left out are predicted better with it, the choice being made anew without each.
+//! An effect is certified as missing where three things hold: its F is significant (Bonferroni-corrected), by the noise model and
+//! by the scatter between runs; its score is significant under sign flips of whole runs, which need no noise model; and held-out
+//! runs are predicted better with it, where the effect is chosen again without each run.
 //!
 //! Smooth functions of how the robot drives stand beside the catalogue: where one explains clearly more than the best
 //! effect does, something is missing that the catalogue does not list.
@@ -29,6 +29,8 @@ mod finding;
 mod flips;
 mod growth;
 mod left;
+mod missing;
+mod needless;
 pub(super) mod repeats;
 mod responses;
 mod search;
@@ -57,10 +59,10 @@ pub(crate) use search::{Added, Found, Search, Wanted, search};
 pub(crate) use significance::p_of_own;
 pub use suggestion::Suggestion;
 
-/// A diagnosis names at most so many classes.
+/// Maximum number of classes that a diagnosis names.
 const MOST: usize = 3;
 
-/// Fits a model's free parameters to tracks and asks every other effect, and every smooth, whether it is missing.
+/// Fits a model's free parameters to tracks and tests every other effect and every smooth.
 pub(crate) fn diagnose(observed: &Observed, model: &Model, options: &Options) -> Result<Diagnosis, FitError> {
     let fitted = fit(observed, model)?;
     let mut search = Watch::nobody(|watch| search(fitted, options, (MOST, Wanted::Listed), Vec::new(), watch))?;

@@ -2,13 +2,13 @@
 
 use super::dependence::{Dependence, dependence};
 use super::examination::Examination;
-use super::experiments;
 use super::left::{doubts_of, reason_to_doubt, remains_of};
+use super::missing::FEWEST;
 use super::repeats::Repeated;
 use super::responses::Question;
-use super::search::{Added, FEWEST, Found, Search};
-use super::significance;
+use super::search::{Added, Found, Search};
 use super::smooth::{ALONG_THE_WAY, Motion};
+use super::{experiments, significance};
 use crate::diagnose::diagnosis::{Diagnosis, GoodnessOfFit, Verdict};
 use crate::diagnose::experiments::Experiment;
 use crate::diagnose::identifiability::Identifiability;
@@ -34,7 +34,7 @@ const NEAR: f64 = 0.5;
 pub(crate) struct Conclusion {
     /// The answer in one word, the reasons for doubt left aside.
     pub verdict: Verdict,
-    /// What speaks against the last model.
+    /// Reasons against the last model.
     pub reasons: Vec<Reason>,
     /// What repeats most beside the last model.
     pub repeats: Option<Repeated>,
@@ -154,7 +154,7 @@ fn visibility(exam: &Examination) -> (Vec<Unseen>, Vec<Detectable>) {
     let (mut unseen, mut detectable) = (Vec::new(), Vec::new());
     for (index, asked) in exam.asked.iter().enumerate() {
         let Question::Effect(effect, parameters) = &asked.question else { continue };
-        // Where shapes were tried, the usual one comes first and speaks for all.
+        // Where shapes were tried, the usual one comes first and stands for all.
         if index > 0 && exam.asked[index - 1].effect() == Some(*effect) {
             continue;
         }

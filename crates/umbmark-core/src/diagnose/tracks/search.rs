@@ -1,138 +1,35 @@
-//! What a model is missing, and a model that grows by it: one effect after the other, and what no longer helps taken out again. Where no
-//! effect of the catalogue is certified and something repeats all the same, the law that it follows is added.
+//! The missing effects, added to the model one after the other; effects that no longer help are taken out again. Where no effect of the
+//! catalogue is certified but something repeats, the law that it follows is added.
 
-use super::class;
 use super::examination::Examination;
-use super::finding::{Finding, TELLING};
+use super::finding::Finding;
 use super::growth;
+use super::missing::{Missing, WIDE, missing, speaks_on};
+use super::needless::{idle, silent, with_and_without, without};
 use super::repeats::{self, Repeated, UnlistedLaw};
-use super::responses::Asked;
-use super::significance;
 use crate::diagnose::options::Options;
 use crate::diagnose::suspect::Suspect;
-use crate::effect::{Law, Model, Part};
-use crate::evidence::tracks::LEAST_GAIN;
-use crate::evidence::tracks::Misses;
-use crate::evidence::tracks::Projected;
-use crate::evidence::tracks::estimates;
-use crate::evidence::tracks::{Alone, trusted};
-use crate::evidence::{Estimate, FitError};
-use crate::likelihood::{Fitted, Noise};
+use crate::effect::{Law, Model};
+use crate::evidence::FitError;
+use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, trusted};
+use crate::likelihood::Fitted;
 use crate::watch::Watch;
 use std::borrow::Cow;
 
-/// A smooth speaks for an unlisted effect where the best effect of the catalogue explains less than this share of it.
-const EXPLAINED: f64 = 0.85;
-/// So many certified effects are tried for their gain.
-const TRIES: usize = 4;
-/// Fewer runs give no certificate.
-pub(super) const FEWEST: usize = 2;
-/// A law that no catalogue lists is added where positions or headings of runs left out fall by this share, or what is new from pose to pose by
-/// the second, and so many laws at most.
+/// A law outside the catalogue is added where the error of positions or headings in held-out runs falls by this share, or the
+/// innovations by the second; at most this many laws are added.
 const WORTH_A_LAW: f64 = 0.05;
 const WORTH_BY_POSES: f64 = 0.15;
 const MOST_LAWS: usize = 3;
-/// A law that no catalogue lists comes before an effect that explains less than this share of what it does.
+/// A law outside the catalogue is preferred to an effect that explains less than this share of what the law explains.
 const OUTDONE: f64 = 0.5;
-/// An effect by which the standard error of E_d, E_b or E_s grows by more than this factor needs a p of at most this share of the usual one. A
-/// law that is not in the catalogue is not added then: these runs hardly separate it from them.
-const WIDE: f64 = 2.0;
-const SURE: f64 = 0.2;
-/// A fit with an effect more went astray where its error is so many times as large.
+/// A fit with one more effect failed where its error exceeds this multiple of the error before.
 const ASTRAY: f64 = 2.0;
-
-/// What a fitted model is missing.
-pub(crate) struct Missing {
-    /// The certified effect that would be added.
-    pub effect: Option<(Finding, Suspect)>,
-    /// A certified smooth that this effect, or none, explains.
-    pub smooth: Option<Finding>,
-    /// All effects that were asked, the likeliest first.
-    pub asked: Vec<Suspect>,
-}
-
-/// Looks for what is missing and not refused.
-fn missing(exam: &Examination, options: &Options, refused: &[&str]) -> Missing {
-    let findings = significance::effects(exam, options);
-    let smooth = significance::smooths(exam, options).iter().find(|s| s.certified(options)).cloned();
-    let enough = exam.fitted.observed.runs.len() >= FEWEST;
-    let best = if enough { first_with_gain(exam, &findings, options, refused) } else { None };
-    let unexplained = smooth.filter(|smooth| !explains(exam, best, smooth) && smooth_gains(exam, smooth));
-    Missing {
-        effect: best.and_then(|finding| class::suspect(exam, finding).map(|suspect| (finding.clone(), suspect))),
-        smooth: unexplained,
-        asked: findings.iter().filter_map(|finding| class::suspect(exam, finding)).collect(),
-    }
-}
-
-/// Whether an effect explains as much as a smooth does, both asked beside the same.
-pub(super) fn explains(exam: &Examination, effect: Option<&Finding>, smooth: &Finding) -> bool {
-    let Some(effect) = effect else { return false };
-    let whole = &exam.system.whole;
-    let beside = Projected::new(whole, effect.base());
-    let drop = exam.answer(&beside, whole, smooth.answer.asked).map_or(0.0, |answer| answer.drop);
-    effect.answer.drop >= EXPLAINED * drop
-}
-
-/// The first certified effect with which runs left out are predicted better, the choice being made anew without each.
-///
-/// Physics comes before the reference: an effect is asked beside all effects of the reference and stands for itself, where a
-/// delay, asked without itself, takes a share of what physics explains better.
-fn first_with_gain<'a>(
-    exam: &Examination,
-    findings: &'a [Finding],
-    options: &Options,
-    refused: &[&str],
-) -> Option<&'a Finding> {
-    let nuisance = |finding: &Finding| exam.asked[finding.answer.asked].nuisance;
-    for of_reference in [false, true] {
-        let mut passed: Vec<&str> = refused.to_vec();
-        let own = findings.iter().filter(|f| nuisance(f) == of_reference && f.certified(options));
-        let is_refused =
-            |f: &Finding| exam.asked[f.answer.asked].effect().is_some_and(|e| refused.contains(&e.about.name));
-        let own = own.filter(|f| significance::possible(exam, f) && !is_refused(f) && is_sure(exam, f, options));
-        for finding in own.take(TRIES) {
-            let wanted = |asked: &Asked| {
-                let name = asked.effect().map_or("", |effect| effect.about.name);
-                asked.nuisance == of_reference && !passed.contains(&name)
-            };
-            // Effects of the reference are in both predictions, so that the gain is the effect's own.
-            let beside: Vec<usize> = finding.base().iter().copied().filter(|c| !exam.free.contains(c)).collect();
-            let before = exam.left_out(&beside);
-            let after = exam.left_out_with(&beside, |products| exam.likeliest(products, wanted));
-            if after.gain(&before) >= LEAST_GAIN {
-                return Some(finding);
-            }
-            passed.extend(exam.asked[finding.answer.asked].effect().map(|effect| effect.about.name));
-        }
-    }
-    None
-}
-
-/// Whether an effect is certain enough. One that doubles the standard error of E_d, E_b or E_s is separated from them by little, such as the
-/// ramps of turns that are all alike; a mistake there makes every other drive worse, so it needs a smaller p.
-fn is_sure(exam: &Examination, finding: &Finding, options: &Options) -> bool {
-    finding.p_adjusted() <= SURE * options.size || exam.widening(&finding.answer.columns) <= WIDE
-}
-
-/// Whether runs left out are predicted better with a smooth.
-fn smooth_gains(exam: &Examination, finding: &Finding) -> bool {
-    let own = &finding.answer.columns;
-    let errors = exam.errors_with(own);
-    let of = |columns: Vec<usize>| {
-        errors.misses(|run| {
-            let values = Projected::fit(&exam.system.without(run), &columns);
-            (columns.clone(), values)
-        })
-    };
-    let base = exam.base(None);
-    of([&base[..], own].concat()).gain(&of(base.clone())) >= TELLING
-}
 
 /// Something that was missing and was added.
 #[derive(Clone)]
 pub(crate) struct Added {
-    /// What it is, how sure that is, and what cannot be told from it.
+    /// What it is, how sure that is, and what is indistinguishable from it.
     pub suspect: Suspect,
     /// How.
     pub by: Found,
@@ -143,7 +40,7 @@ pub(crate) struct Added {
 pub(crate) enum Found {
     /// Among the effects of the catalogue.
     Listed(Finding),
-    /// Among the laws that no catalogue lists.
+    /// Among the laws outside the catalogue.
     Unlisted(Box<Repeated>),
 }
 
@@ -156,7 +53,7 @@ struct Grown {
     removed: Vec<&'static str>,
 }
 
-/// What is asked for.
+/// What may be added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wanted {
     /// Effects of the catalogue.
@@ -165,7 +62,7 @@ pub(crate) enum Wanted {
     All,
 }
 
-/// What was found missing, one effect after the other, each fitted before the next was asked about.
+/// The missing effects, one after the other, each fitted before the next test.
 pub(crate) struct Search {
     /// The model as it was, and after each effect.
     pub exams: Vec<Examination>,
@@ -175,11 +72,11 @@ pub(crate) struct Search {
     pub added: Vec<Added>,
     /// Effects that no longer helped once others were there, and were taken out again.
     pub removed: Vec<&'static str>,
-    /// Certified effects with which runs left out are predicted worse; they were not added.
+    /// Certified effects with which held-out runs are predicted worse; they were not added.
     pub harmful: Vec<&'static str>,
     /// What the last model is missing and was not added.
     pub left: Missing,
-    /// What repeats most beside the last model, once it was asked for.
+    /// The strongest repeating pattern beside the last model, once it was looked for.
     repeats: Option<Option<Repeated>>,
     /// Formulas that were tried and taken back.
     refused_laws: Vec<String>,
@@ -187,8 +84,8 @@ pub(crate) struct Search {
     law_failed: bool,
 }
 
-/// Adds what is certified as missing and `wanted`, at most `most` effects and none of those `refused`, each fitted without approximation
-/// before the next is asked; once stopped, no more.
+/// Adds what is certified as missing and `wanted`, at most `most` effects and none of those `refused`. Each is fitted without
+/// approximation before the next test. Once stopped, no more are added.
 pub(crate) fn search(
     fitted: Fitted,
     options: &Options,
@@ -197,7 +94,7 @@ pub(crate) fn search(
     watch: &Watch,
 ) -> Result<Search, FitError> {
     let mut exam = Examination::new(fitted)?;
-    // What was taken from the motion is asked whether it helps, as all that is added here is; what the user's model says stands.
+    // Effects that were taken from the motion must help, as every effect added here; those of the user's model stay.
     let taken: Vec<&str> = exam.fitted.taken.iter().map(|taken| taken.effect).collect();
     let mut removed = Vec::new();
     while let Some(effect) = silent(&exam, |effect| taken.contains(&effect)) {
@@ -225,62 +122,10 @@ pub(crate) fn search(
     Ok(search)
 }
 
-/// A fit without one of its effects.
-fn without(fitted: &Fitted, effect: &str) -> Result<Fitted, FitError> {
-    let taken = fitted.taken.iter().filter(|taken| taken.effect != effect).copied().collect();
-    let again = fitted.observed.fit(&fitted.model.without(effect), &Noise::default(), &[])?;
-    Ok(Fitted { taken, ..again })
-}
-
 /// Whether a fit ended far from the one before it: with an effect more, no model need miss by more.
 fn astray(exam: &Examination, before: &Examination) -> bool {
     let [now, then] = [exam, before].map(|exam| exam.errors.in_sample().position);
     now > ASTRAY * then
-}
-
-/// An effect among those `asked` that does not help: none of its sizes is known to be other than nothing, or runs left out are predicted
-/// as well without it.
-fn idle(exam: &Examination, asked: impl Fn(&'static str) -> bool) -> Option<&'static str> {
-    silent(exam, &asked).or_else(|| last_part(exam, asked, |part| !helps(exam, part.effect.name())))
-}
-
-/// An effect among those `asked` of which no size is known to be other than nothing.
-fn silent(exam: &Examination, asked: impl Fn(&'static str) -> bool) -> Option<&'static str> {
-    let estimates = estimates(&exam.fitted);
-    let model = &exam.fitted.model;
-    let is_silent = |part: &Part| {
-        let own: Vec<&Estimate> = estimates.iter().filter(|e| e.effect == part.effect.name()).collect();
-        let shows = |e: &&&Estimate| {
-            let nothing = model.place_of(e.effect, e.parameter).and_then(|place| model.nothing(place));
-            nothing.is_some_and(|nothing| e.interval(0.95).is_none_or(|interval| !interval.contains(nothing)))
-        };
-        !own.is_empty() && own.iter().all(|e| !shows(&e))
-    };
-    last_part(exam, asked, is_silent)
-}
-
-/// The last added of the effects that are fitted, `asked` and such.
-fn last_part(
-    exam: &Examination,
-    asked: impl Fn(&'static str) -> bool,
-    is_such: impl Fn(&Part) -> bool,
-) -> Option<&'static str> {
-    let parts = exam.fitted.model.parts().iter().filter(|part| part.free && asked(part.effect.name()));
-    parts.rev().find(|part| is_such(part)).map(|part| part.effect.name())
-}
-
-/// Whether runs left out are predicted better with an effect of the model than without it.
-fn helps(exam: &Examination, effect: &str) -> bool {
-    let [with, without] = with_and_without(exam, effect);
-    exam.columns_of(effect).is_empty() || with.gain(&without) >= LEAST_GAIN
-}
-
-/// Errors of runs left out with an effect of the model, and without it, the others fitted anew.
-fn with_and_without(exam: &Examination, effect: &str) -> [Misses; 2] {
-    let own = exam.columns_of(effect);
-    let beside: Vec<usize> = exam.base(None).into_iter().filter(|column| !own.contains(column)).collect();
-    let of_reference: Vec<usize> = beside.iter().copied().filter(|column| !exam.free.contains(column)).collect();
-    [exam.left_out(&of_reference), exam.left_out_without(&own, &beside)]
 }
 
 impl Search {
@@ -335,7 +180,7 @@ impl Search {
         let (mut kept, mut removed) = (vec![effect], Vec::new());
         while let Some(effect) = idle(&exam, |effect| !stands(effect) && !kept.contains(&effect)) {
             let fewer = Examination::new(without(&exam.fitted, effect)?)?;
-            // That it helps no longer was seen in one step; the fit has to say so too.
+            // One linear step shows that it no longer helps; the full fit must confirm it.
             let is_silent = silent(&exam, |asked| asked == effect).is_some();
             if !is_silent && exam.left_out(&[]).gain(&fewer.left_out(&[])) >= LEAST_GAIN {
                 kept.push(effect);
@@ -378,8 +223,8 @@ impl Search {
         Ok(None)
     }
 
-    /// Whether a law that a model has grown by predicts runs left out better: positions or headings, or by far what is new from pose to pose,
-    /// and neither positions nor headings worse. No physics speaks for such a law, so what it predicts has to.
+    /// Whether a law that was added predicts held-out runs better: positions or headings, or the innovations by far, and neither
+    /// positions nor headings worse. No physics supports such a law, so its predictions must.
     fn is_worth_a_law(&self, grown: &Grown, name: &str) -> bool {
         let before = self.written[self.written.len() - 1].left_out();
         let [least, most] = grown.written.left_out().falls(&before);
@@ -431,7 +276,7 @@ impl Search {
         self.last().fitted.model.parts().iter().any(|part| part.effect.name() == effect)
     }
 
-    /// Whether an effect is in the last model, and no size of it is known to be other than nothing.
+    /// Whether an effect is in the last model, and the interval of each of its sizes holds zero.
     pub fn is_needless(&self, effect: &str) -> bool {
         silent(self.last(), |asked| asked == effect).is_some()
     }
@@ -470,7 +315,7 @@ impl Search {
         }
     }
 
-    /// Effects that are not asked for again, beside those `refused` from the beginning.
+    /// Effects that are not tested again, beside those `refused` from the beginning.
     fn passed(&self, refused: &[&'static str]) -> Vec<&'static str> {
         refused.iter().chain(&self.removed).chain(&self.harmful).copied().collect()
     }
@@ -508,11 +353,4 @@ impl Search {
 fn text_of(law: &Model) -> String {
     let formula = law.parts().first().and_then(|part| part.effect.formula());
     formula.map_or_else(String::new, |formula| formula.text().to_owned())
-}
-
-/// Whether a smooth that an effect seemed not to explain is there after that effect was fitted. What one linear step
-/// leaves of a large effect is gone then; what is not in the catalogue is not.
-pub(super) fn speaks_on(exam: &Examination, smooth: &Finding, options: &Options) -> bool {
-    let mut now = significance::smooths(exam, options).iter().filter(|finding| finding.certified(options));
-    now.any(|finding| finding.answer.drop > (1.0 - EXPLAINED) * smooth.answer.drop)
 }

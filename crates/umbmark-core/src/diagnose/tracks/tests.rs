@@ -1,6 +1,6 @@
 //! Diagnoses of simulated tracks, whose cause is known.
 
-use super::search::{explains, speaks_on};
+use super::missing::{explains, speaks_on};
 use super::*;
 use crate::diagnose::first_model;
 use crate::diagnose::tests::robot_with;

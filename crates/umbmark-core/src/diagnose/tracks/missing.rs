@@ -1,0 +1,115 @@
+//! What a fitted model is missing: the certified effect that would be added, and a smooth that no effect explains.
+
+use super::examination::Examination;
+use super::finding::{Finding, TELLING};
+use super::responses::Asked;
+use super::{class, significance};
+use crate::diagnose::options::Options;
+use crate::diagnose::suspect::Suspect;
+use crate::evidence::tracks::{LEAST_GAIN, Projected};
+
+/// A smooth indicates an unlisted effect where the best effect of the catalogue explains less than this share of it.
+const EXPLAINED: f64 = 0.85;
+/// Maximum number of certified effects whose gain is tried.
+const TRIES: usize = 4;
+/// Fewer runs give no certificate.
+pub(super) const FEWEST: usize = 2;
+/// Where an effect widens the standard error of E_d, E_b or E_s by more than this factor, it needs a p of at most this share of the
+/// usual level. A law outside the catalogue is then not added: these runs hardly separate it from E_d, E_b and E_s.
+pub(super) const WIDE: f64 = 2.0;
+const SURE: f64 = 0.2;
+
+/// What a fitted model is missing.
+pub(crate) struct Missing {
+    /// The certified effect that would be added.
+    pub effect: Option<(Finding, Suspect)>,
+    /// A certified smooth that this effect, or none, explains.
+    pub smooth: Option<Finding>,
+    /// All effects that were tested, the likeliest first.
+    pub asked: Vec<Suspect>,
+}
+
+/// Looks for missing effects that are not refused.
+pub fn missing(exam: &Examination, options: &Options, refused: &[&str]) -> Missing {
+    let findings = significance::effects(exam, options);
+    let smooth = significance::smooths(exam, options).iter().find(|s| s.certified(options)).cloned();
+    let enough = exam.fitted.observed.runs.len() >= FEWEST;
+    let best = if enough { first_with_gain(exam, &findings, options, refused) } else { None };
+    let unexplained = smooth.filter(|smooth| !explains(exam, best, smooth) && smooth_gains(exam, smooth));
+    Missing {
+        effect: best.and_then(|finding| class::suspect(exam, finding).map(|suspect| (finding.clone(), suspect))),
+        smooth: unexplained,
+        asked: findings.iter().filter_map(|finding| class::suspect(exam, finding)).collect(),
+    }
+}
+
+/// Whether an effect explains as much as a smooth does, both tested beside the same columns.
+pub(super) fn explains(exam: &Examination, effect: Option<&Finding>, smooth: &Finding) -> bool {
+    let Some(effect) = effect else { return false };
+    let whole = &exam.system.whole;
+    let beside = Projected::new(whole, effect.base());
+    let drop = exam.answer(&beside, whole, smooth.answer.asked).map_or(0.0, |answer| answer.drop);
+    effect.answer.drop >= EXPLAINED * drop
+}
+
+/// The first certified effect with which held-out runs are predicted better, where it is chosen again without each run.
+///
+/// Physics comes before the reference: an effect is tested beside all effects of the reference, but a delay, tested without itself,
+/// absorbs a share of what physics explains better.
+fn first_with_gain<'a>(
+    exam: &Examination,
+    findings: &'a [Finding],
+    options: &Options,
+    refused: &[&str],
+) -> Option<&'a Finding> {
+    let nuisance = |finding: &Finding| exam.asked[finding.answer.asked].nuisance;
+    for of_reference in [false, true] {
+        let mut passed: Vec<&str> = refused.to_vec();
+        let own = findings.iter().filter(|f| nuisance(f) == of_reference && f.certified(options));
+        let is_refused =
+            |f: &Finding| exam.asked[f.answer.asked].effect().is_some_and(|e| refused.contains(&e.about.name));
+        let own = own.filter(|f| significance::possible(exam, f) && !is_refused(f) && is_sure(exam, f, options));
+        for finding in own.take(TRIES) {
+            let wanted = |asked: &Asked| {
+                let name = asked.effect().map_or("", |effect| effect.about.name);
+                asked.nuisance == of_reference && !passed.contains(&name)
+            };
+            // Effects of the reference are in both predictions, so that the gain is the effect's own.
+            let beside: Vec<usize> = finding.base().iter().copied().filter(|c| !exam.free.contains(c)).collect();
+            let before = exam.left_out(&beside);
+            let after = exam.left_out_with(&beside, |products| exam.likeliest(products, wanted));
+            if after.gain(&before) >= LEAST_GAIN {
+                return Some(finding);
+            }
+            passed.extend(exam.asked[finding.answer.asked].effect().map(|effect| effect.about.name));
+        }
+    }
+    None
+}
+
+/// Whether an effect is certain enough. One that doubles the standard error of E_d, E_b or E_s is separated from them by little, such as the
+/// ramps of turns that are all alike; a mistake there makes every other drive worse, so it needs a smaller p.
+fn is_sure(exam: &Examination, finding: &Finding, options: &Options) -> bool {
+    finding.p_adjusted() <= SURE * options.size || exam.widening(&finding.answer.columns) <= WIDE
+}
+
+/// Whether held-out runs are predicted better with a smooth.
+fn smooth_gains(exam: &Examination, finding: &Finding) -> bool {
+    let own = &finding.answer.columns;
+    let errors = exam.errors_with(own);
+    let of = |columns: Vec<usize>| {
+        errors.misses(|run| {
+            let values = Projected::fit(&exam.system.without(run), &columns);
+            (columns.clone(), values)
+        })
+    };
+    let base = exam.base(None);
+    of([&base[..], own].concat()).gain(&of(base.clone())) >= TELLING
+}
+
+/// Whether a smooth that an effect seemed not to explain is there after that effect was fitted. What one linear step
+/// leaves of a large effect is gone then; what is not in the catalogue is not.
+pub fn speaks_on(exam: &Examination, smooth: &Finding, options: &Options) -> bool {
+    let mut now = significance::smooths(exam, options).iter().filter(|finding| finding.certified(options));
+    now.any(|finding| finding.answer.drop > (1.0 - EXPLAINED) * smooth.answer.drop)
+}
