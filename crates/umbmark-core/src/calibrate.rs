@@ -61,7 +61,7 @@ pub struct Calibration {
     pub heading_arm: Option<f64>,
     /// What could not be determined, and why. What was found of the data stands first.
     pub warnings: Vec<String>,
-    /// Why the lengths are not to be written to a robot, a sentence each; empty where nothing speaks against them.
+    /// Reasons not to write the lengths to a robot, a sentence each; empty where there are none.
     pub doubts: Vec<String>,
     /// What was found of the experiment before the fit.
     pub setup: Arc<Setup>,
@@ -144,8 +144,8 @@ pub fn calibrate(data: &Dataset, options: &Options) -> Result<Calibration, Calib
     Ok(Calibration { estimates, level, heading_arm, warnings, doubts, setup, taken })
 }
 
-/// Why data itself is not to be believed: from return errors, those that are far from the others; from tracks, jumps without number, and headings that
-/// two robots have.
+/// Doubts about the data: for return errors, outlying runs; for tracks, very many jumps, and headings that two different robots would
+/// have.
 fn doubts_of_data(setup: &Setup, level: Level, robot: &Robot) -> Vec<String> {
     let outlying = || setup.outlying().map(|run| sentence(&format!("{}; {}", run.sentence(), run.remedy())));
     match level {

@@ -1,7 +1,7 @@
-//! Models against measured runs: what each explains, what not, and in which direction of driving.
+//! Models compared with measured runs: what each explains and what not, direction by direction.
 //!
-//! Every statistic of a test (mean end pose, spread, correlation; for each direction) is held against many simulated tests of the
-//! same size. The p of each is told alone, and once for all together: that of the smallest among all.
+//! Every statistic of a test (mean end pose, spread, correlation; for each direction) is compared with many simulated tests of the
+//! same size. Each has its own p, and there is one p for all together: that of the smallest.
 
 mod replicas;
 mod statistics;
@@ -22,7 +22,7 @@ pub use replicas::NoiseSource;
 pub use statistics::Quantity;
 pub use tracks::{TrackComparison, compare_tracks};
 
-/// The models that are held against data where none is given: the nominal robot, and that with its first effects fitted, where
+/// The models that are compared with data where none is given: the nominal robot, and that with its first effects fitted, where
 /// nothing is wrong with the data. Each has a name.
 pub fn usual_models(data: &Dataset, options: &Options) -> Result<Vec<(String, Model)>, FitError> {
     let (robot, level) = (robot_of(data)?, options.level(data));
@@ -33,7 +33,7 @@ pub fn usual_models(data: &Dataset, options: &Options) -> Result<Vec<(String, Mo
     };
     match AnyEvidence::of(data, level)?.fit(&first) {
         Ok(fitted) => models.push((name.to_owned(), fitted.model)),
-        // What is wrong is told beside the nominal robot.
+        // The report tells the faults beside the nominal robot.
         Err(FitError::Faulty { .. }) => {}
         Err(error) => return Err(error),
     }
@@ -98,14 +98,14 @@ pub struct Comparison {
     pub contrasts: Vec<Contrast>,
     /// End points beside the circle through START.
     pub circle: Vec<OnCircle>,
-    /// What else should be said, a sentence each.
+    /// Further remarks, a sentence each.
     pub remarks: Vec<String>,
     /// What was found of the return errors before anything was compared.
     pub setup: Arc<Setup>,
 }
 
 impl Judged {
-    /// Whether nothing speaks against the model at this size of the whole test.
+    /// Whether no test rejects the model at this size of the whole test.
     pub fn explains(&self, size: f64) -> bool {
         self.p >= size && !self.in_doubt
     }

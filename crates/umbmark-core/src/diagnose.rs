@@ -36,7 +36,7 @@ pub use suspect::Suspect;
 pub use tracks::{Curve, CurvePoint, Dependence, Repeated, Suggestion, UnlistedLaw, what_repeats};
 pub use unseen::{Detectable, Unseen, Why};
 
-/// The model that is asked first: E_d and E_b, and where tracks show it E_s, all free.
+/// The usual first model: E_d and E_b, and with tracks E_s, all free.
 pub fn first_model(data: &Dataset) -> Result<Model, FitError> {
     let robot = robot_of(data)?;
     let mut model = base_model(robot)?;
@@ -46,7 +46,7 @@ pub fn first_model(data: &Dataset) -> Result<Model, FitError> {
     Ok(model)
 }
 
-/// The model of the paper: E_d and E_b, both free; for other drives, the two that do alike on a square.
+/// The model of the paper: E_d and E_b, both free; for other drives, the two effects with the same result on a square.
 pub fn base_model(robot: &Robot) -> Result<Model, ModelError> {
     let mut model = Model::new(robot);
     for effect in &robot.drive.first_effects()[..2] {
@@ -55,7 +55,7 @@ pub fn base_model(robot: &Robot) -> Result<Model, ModelError> {
     Ok(model)
 }
 
-/// Fits a model's free parameters and asks every other effect of the catalogue whether it is missing.
+/// Fits a model's free parameters and tests every other effect of the catalogue.
 ///
 /// ```
 /// use umbmark_core::diagnose::{Options, Verdict, base_model, diagnose};

@@ -1,9 +1,9 @@
-//! The whole loop: fit, diagnose, add what is certified as missing, fit again, until nothing is.
+//! The whole loop: fit, diagnose, add the effect that is certified as missing, and fit again, until none is missing.
 //!
-//! An effect is added when both hold: its class is certified among all that were asked
-//! ([`Diagnosis::certified`](crate::diagnose::Diagnosis::certified)), and the error of runs that were left out falls. Leaving out is
-//! nested: without each run in turn, the choice of the effect is made anew and the model fitted anew. AICc and BIC are told and
-//! decide nothing: with many effects on offer they accept a false one in half of all tests.
+//! An effect is added when both hold: its class is certified among all that were tested
+//! ([`Diagnosis::certified`](crate::diagnose::Diagnosis::certified)), and the cross-validated error falls. The cross-validation is
+//! nested: without each run in turn, the effect is chosen again and the model fitted again. AICc and BIC are reported but decide
+//! nothing: with many effects on offer they accept a false one in half of all tests.
 
 mod ends;
 mod gears;
@@ -25,22 +25,22 @@ const MOST: usize = 6;
 pub struct Error {
     /// Distance of observed from predicted positions \[m\].
     pub position: f64,
-    /// Observed less predicted headings \[rad\], where they were measured.
+    /// Observed minus predicted headings \[rad\], where they were measured.
     pub heading: Option<f64>,
-    /// Both together, in units of the noise's shape: what has to fall for an effect to stay.
+    /// Both together, weighted by the shape of the noise: it must fall for an effect to stay.
     pub weighted: f64,
 }
 
-/// One line of the story.
+/// One step of learning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
     /// The effect that was added; `None` for the nominal robot.
     pub added: Option<&'static str>,
-    /// All effects that the data could not tell from it, itself included.
+    /// All effects that the data cannot distinguish from it, itself included.
     pub class: Vec<&'static str>,
-    /// p of its class among all that were asked; `None` for what was not asked but fitted.
+    /// p of its class, corrected for all classes that were tested; `None` for an effect that was fitted without a test.
     pub p_adjusted: Option<f64>,
-    /// Of a law that no catalogue lists: how it was found, what else it may be, and its formula as it was fitted.
+    /// For a law outside the catalogue: how it was found, the alternatives, and its fitted formula.
     pub law: Option<Box<Repeated>>,
     /// In the runs that the model was fitted to.
     pub error: Error,
@@ -55,17 +55,17 @@ pub struct Step {
 /// What was learnt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Learnt {
-    /// From the nominal robot to the model.
+    /// From the nominal robot to the final model.
     pub steps: Vec<Step>,
-    /// What the last diagnosis says.
+    /// The verdict of the last diagnosis.
     pub verdict: Verdict,
     /// The model, its free parameters fitted.
     pub model: Model,
     /// The last diagnosis: of the model that was learnt.
     pub diagnosis: Diagnosis,
-    /// What else should be said, a sentence each.
+    /// Further remarks, a sentence each.
     pub remarks: Vec<String>,
-    /// Whether it was stopped while an effect was certified that may have been added.
+    /// Whether it was stopped while a certified effect could still be added.
     pub partial: bool,
 }
 
@@ -94,8 +94,8 @@ pub fn learn(data: &Dataset, options: &diagnose::Options) -> Result<Learnt, FitE
     Watch::nobody(|watch| learn_from(data, &Model::new(robot), options, watch))
 }
 
-/// [`learn`], with the effects of a `start` model in the story from the beginning: a formula to try, say. They are fitted
-/// where they are free, after E_d, E_b and (from tracks) E_s. Once stopped, it ends with the step that it is at.
+/// [`learn`] that starts with the effects of a model, such as a formula to try. Free effects are fitted after E_d, E_b and (from
+/// tracks) E_s. Once stopped, it ends with its current step.
 pub fn learn_from(
     data: &Dataset,
     start: &Model,

@@ -40,7 +40,7 @@ pub use suspicion::Suspicion;
 const ROUNDS: usize = 3;
 /// Fewer windows in all say nothing.
 const FEWEST: usize = 20;
-/// Values of so many parts of the data tell how sure one is.
+/// Number of parts of the data whose values give the standard errors.
 const PARTS: usize = 8;
 
 /// How the measured poses lie against the wheels, over all runs.
@@ -236,7 +236,7 @@ impl Setup {
         self.returned.outlying.iter().filter(|run| run.test == TestKind::Systematic)
     }
 
-    /// What speaks against the return errors of the regular runs: outlying ones, and jumps of the tracks that end in them.
+    /// Reasons against the return errors of the regular runs: outlying ones, and jumps of the tracks that end in them.
     pub(crate) fn suspicions(&self, runs: &[Run]) -> Vec<Suspicion> {
         let returned = |name: &str| runs.iter().any(|run| run.name == name && run.returned.is_some());
         let jumps = self.runs.iter().filter(|run| returned(&run.run));
@@ -263,7 +263,7 @@ impl Setup {
     }
 
     /// What has to be known before the return errors are believed, a sentence each without a full stop: faults, jumps and wrong poses
-    /// of tracks, runs whose return is far from the others. Of many of a kind, the first [`TOLD`] are told and the rest counted.
+    /// of tracks, runs whose return is far from the others. Of many of a kind, the first [`TOLD`] are listed and the rest counted.
     pub fn notices(&self) -> Vec<String> {
         let told = |fault: &Fault| format!("{}; to mend it, {}", fault.sentence(), fault.remedy());
         let mut notices: Vec<String> = self.all_faults().map(told).collect();
@@ -292,7 +292,7 @@ impl Setup {
 const HALF_TURN: f64 = 0.05;
 /// More of all poses than this share are no accidents.
 const ACCIDENTS: f64 = 0.1;
-/// Of many notices of a kind, so many are told.
+/// Maximum number of notices of a kind that are listed.
 pub const TOLD: usize = 5;
 
 /// The first notices, and how many more there are.

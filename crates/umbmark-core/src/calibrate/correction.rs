@@ -28,7 +28,7 @@ impl Ratio {
     }
 }
 
-/// How the true robot differs from the nominal one, and so what its odometry must be told.
+/// How the true robot differs from the nominal one: the correction of its odometry.
 ///
 /// With nominal wheelbase b and wheel diameters D_L, D_R:
 ///

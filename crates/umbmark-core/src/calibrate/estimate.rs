@@ -64,7 +64,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// E_d and E_b alone, nothing known of their worth.
+    /// E_d and E_b alone, without their uncertainty and consequences.
     pub(super) fn new(method: Method, correction: Correction, degrees_of_freedom: f64) -> Estimate {
         Estimate {
             method,

@@ -89,7 +89,7 @@ fn model(robot: &Robot, taken: &[Taken]) -> Model {
 pub(super) fn set_taken(model: &mut Model, taken: &[Taken]) {
     for own in taken {
         for (parameter, measured) in own.values.iter().flatten() {
-            // A value out of bounds is none of a reference, and says nothing.
+            // A value out of bounds cannot be one of a reference; it is ignored.
             let _ = model.set(own.effect, parameter, measured.value);
         }
     }

@@ -30,8 +30,8 @@ pub(super) fn of_what_does_not_show(shown: &[bool; 3], observations: &Observatio
     }
 }
 
-/// Where a fifth of E_max,sys would be left, and twice what the exact fit leaves, the closed forms are out of their depth: their
-/// own scatter does not leave so much of an error that shows at all.
+/// The closed forms do not apply where they would leave a fifth of E_max,sys and twice what the exact fit leaves: their own scatter
+/// does not explain so large a rest.
 pub(super) fn of_large_errors(estimates: &[Estimate], warnings: &mut Vec<String>) {
     let of = |method| estimates.iter().find(|estimate| estimate.method == method);
     let left = |estimate: &Estimate| estimate.e_max_sys_after.zip(estimate.e_max_sys_before);

@@ -59,7 +59,7 @@ impl Quantity {
         }
     }
 
-    /// Factor and unit for people: millimetres and degrees.
+    /// Factor and unit of the report: millimetres and degrees.
     pub fn display(self) -> (f64, &'static str) {
         match self {
             Quantity::MeanX | Quantity::MeanY | Quantity::SpreadX | Quantity::SpreadY => (1e3, " mm"),

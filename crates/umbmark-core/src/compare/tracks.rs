@@ -1,9 +1,9 @@
-//! Models against tracks: where along the way the error is made, and what it depends on.
+//! Models compared with tracks: where along the way the error is made, and what it depends on.
 //!
 //! The error of each step between two measurements is taken as the robot sees it: the measured motion as seen from where the
 //! predicted one ends. So an error that was made earlier does not count again. Steps are summed by move, direction, speed and
 //! run, and in bins of everything that an error may depend on. All intervals and tests rest on the scatter from run to run, and on
-//! what whole ticks of the counters leave open; they trust no noise model.
+//! the resolution of the encoders; they need no noise model.
 
 mod covariate;
 mod followed;
@@ -79,9 +79,9 @@ pub struct TracksJudged {
     pub parts: Vec<Part>,
     /// The errors themselves.
     pub residuals: Vec<TrackResiduals>,
-    /// What of the reference was taken from the motion, since the model says nothing of it and it is large.
+    /// Effects of the reference that were taken from the motion: they are large, and the model does not have them.
     pub taken: Vec<Taken>,
-    /// Why the model does not explain the runs, whatever the tests say.
+    /// Reasons why the model does not explain the runs, regardless of the tests.
     pub reasons: Vec<Reason>,
     /// What it leaves: how much of that is the same in every run, and what chance there is.
     pub remains: Option<Remains>,
@@ -100,18 +100,18 @@ pub struct TrackComparison {
     pub setup: Arc<Setup>,
     /// In the order in which they were given.
     pub models: Vec<TracksJudged>,
-    /// What else should be said, a sentence each.
+    /// Further remarks, a sentence each.
     pub remarks: Vec<String>,
 }
 
 impl TracksJudged {
-    /// Whether nothing speaks against the model at this size of all tests together; `None` where nothing could.
+    /// Whether no test rejects the model at this size of all tests together; `None` where there is no test.
     pub fn explains(&self, size: f64) -> Option<bool> {
         if self.reasons.is_empty() { self.p.map(|p| p >= size) } else { Some(false) }
     }
 }
 
-/// Holds models, with the values that they have, against tracks.
+/// Compares the predictions of models, with the values that they have, with tracks.
 ///
 /// ```no_run
 /// use umbmark_core::{compare::compare_tracks, dataset::Dataset, diagnose::Options, effect::Model};

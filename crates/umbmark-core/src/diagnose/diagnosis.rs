@@ -19,17 +19,17 @@ use std::sync::Arc;
 /// The answer in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// No sign of a further effect, as far as this data can see.
+    /// These runs show no further effect.
     Explained,
     /// One class of effects is missing.
     MissingEffect,
     /// More than one class is missing.
     SeveralMissing,
-    /// Something is missing that no effect of the catalogue explains.
+    /// An effect outside the catalogue is missing.
     UnlistedEffect,
     /// Too few runs, or of one direction only.
     NotEnoughData,
-    /// Nothing further is certified, and yet the model does not explain the data; the reasons say why.
+    /// No further effect is certified, but the model does not explain the data; the reasons say why.
     NotExplained,
 }
 
@@ -71,21 +71,21 @@ pub struct Diagnosis {
     pub model: Model,
     /// Those parameters.
     pub fitted: Vec<Estimate>,
-    /// Their correlations, a row each; empty where they are not known.
+    /// Their correlations, a row each; empty where unknown.
     pub correlations: Vec<Vec<f64>>,
     /// Tests of the model as a whole.
     pub goodness_of_fit: Vec<GoodnessOfFit>,
-    /// All classes that were asked: those that may be certified first, and of these the likeliest first.
+    /// All classes that were tested: those that may be certified first, the likeliest of them first.
     pub ranking: Vec<Suspect>,
-    /// How many of the first of the ranking are certified as missing.
+    /// Number of classes at the head of the ranking that are certified as missing.
     pub certified: usize,
     /// What this data cannot see.
     pub invisible: Vec<Unseen>,
-    /// How alike the effects that it can see look.
+    /// Likeness of the effects that this data can see.
     pub likeness: Likeness,
-    /// What it would have seen.
+    /// Minimum detectable sizes.
     pub minimum_detectable: Vec<Detectable>,
-    /// What to measure next, the most telling per minute first.
+    /// What to measure next, the most informative per minute first.
     pub next_experiments: Vec<Experiment>,
     /// Closure contrasts of a square driven both ways, after the fit.
     pub contrasts: Vec<Contrast>,
@@ -101,13 +101,13 @@ pub struct Diagnosis {
     pub setup: Arc<Setup>,
     /// What of that was taken into the model.
     pub taken: Vec<Taken>,
-    /// Why the model is not called explained, or would not be.
+    /// Reasons against the verdict "explained".
     pub reasons: Vec<Reason>,
-    /// What repeats most beside the model, whether it counts or not; from tracks only.
+    /// The strongest repeating pattern that the model leaves, significant or not; from tracks only.
     pub repeats: Option<Repeated>,
-    /// What the model leaves; none where the columns are not what they are called.
+    /// What the model leaves; `None` where columns are not what their names say.
     pub remains: Option<Remains>,
-    /// What else should be said, a sentence each.
+    /// Further remarks, a sentence each.
     pub remarks: Vec<String>,
 }
 

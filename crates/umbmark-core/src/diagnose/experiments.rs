@@ -18,7 +18,7 @@ pub(crate) use design::{MINUTES_A_RUN, minutes};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// A further experiment that tells two effects apart.
+/// A further experiment that separates two effects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Experiment {
     /// The two.
@@ -27,7 +27,7 @@ pub struct Experiment {
     pub experiment: String,
     /// How long it takes.
     pub minutes: f64,
-    /// How far apart the two would then be, in standard deviations; 3.3 is seen in nine cases of ten.
+    /// Separation of the two afterwards, in standard deviations; 3.3 is detected with 90 % power.
     pub sd: f64,
 }
 
@@ -147,7 +147,7 @@ pub(super) fn worth(experiment: &Experiment) -> f64 {
     experiment.sd * experiment.sd / experiment.minutes
 }
 
-/// Of those that tell with 90 % power at 5 %, the one worth most a minute; else the one that tells most, if any does.
+/// Of the experiments with 90 % power at 5 %, the one worth most per minute; else the one with the largest separation, if any.
 pub(super) fn best(told: Vec<Experiment>) -> Option<Experiment> {
     let surely = normal_quantile(0.975) + normal_quantile(0.9);
     let sure = told.iter().filter(|e| e.sd >= surely).max_by(|a, b| worth(a).total_cmp(&worth(b))).cloned();

@@ -28,7 +28,7 @@ pub struct Share {
 pub struct Hidden {
     /// Parameters with their weights, the largest ±1: changed together in these proportions, they change no end pose.
     pub weights: Vec<(&'static str, f64)>,
-    /// Where exactly two are involved: a unit of the first does what so many units of the second do.
+    /// Where exactly two are involved: how many units of the second have the effect of one unit of the first.
     pub ratio: Option<f64>,
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 /// How far effects can be taken for one another: |cos| of the angle between what each does to the observations, in units of
-/// their noise and less what the model's free parameters absorb. 1 cannot be told apart.
+/// their noise and less what the model's free parameters absorb. At 1 they are indistinguishable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Likeness {
     /// The effects that can be seen, each by the size that shows most.

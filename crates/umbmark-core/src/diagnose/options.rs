@@ -1,14 +1,14 @@
-//! How to look for what is missing.
+//! How to look for missing effects.
 
 use crate::dataset::Dataset;
 use crate::evidence::Level;
 
-/// How to look.
+/// How to look for missing effects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Probability with which a complete model is accused all the same: the family-wise size of all tests together.
+    /// Family-wise false-alarm rate of all tests together: the probability that a complete model is rejected.
     pub size: f64,
-    /// Simulated tests that p-values without a closed form are taken from.
+    /// Number of simulated tests for p-values without a closed form.
     pub draws: usize,
     /// Seed of those.
     pub seed: u64,
@@ -27,7 +27,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// What is used of a dataset.
+    /// The level of a dataset that is used.
     pub fn level(&self, data: &Dataset) -> Level {
         if self.ends_only { Level::Ends } else { Level::of(data) }
     }

@@ -1,7 +1,7 @@
 //! Why a model is not called explained though nothing further is certified.
 
 use super::remains::{Remains, Repeating};
-use super::tracks::Repeated;
+use super::tracks::repeats::Repeated;
 use crate::setup::{Fault, Suspicion};
 
 /// One reason.
@@ -9,7 +9,7 @@ use crate::setup::{Fault, Suspicion};
 pub enum Reason {
     /// A column, a unit or a frame is not what it is called.
     Fault(Fault),
-    /// A size of the noise ran into the limit of its search: what the model leaves is no noise.
+    /// A noise size reached the limit of its search: what the model leaves is not noise.
     NoiseAtLimit {
         /// Which size, in words.
         what: &'static str,
@@ -18,7 +18,7 @@ pub enum Reason {
         /// That unit.
         unit: &'static str,
     },
-    /// A size of the noise is far above what counters, floor and reference make.
+    /// A noise size is far above that of encoders, floor and reference.
     NoiseTooLarge {
         /// Which size, in words.
         what: &'static str,

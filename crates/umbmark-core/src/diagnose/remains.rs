@@ -1,7 +1,7 @@
 //! What a model leaves: how much of it is the same in every run, and where the rest comes from.
 //!
 //! Two runs of one path see the same law and different chance. So the mean, over pairs of runs, of the product of what is left in both at
-//! the same share of the way estimates the square of what repeats, and trusts no noise model:
+//! the same share of the way estimates the square of what repeats, without a noise model:
 //!
 //! repeats² = Σ dᵢ(s)·dⱼ(s) / n,  i ≠ j of one path and sense,
 //!
@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 /// they go from START, and this \[m\].
 const SAME_LENGTH: f64 = 0.05;
 const SAME_PLACE: (f64, f64) = (0.1, 0.05);
-/// A run is held against so many runs before it at most.
+/// A run is compared with at most this many runs before it.
 const MOST_PARTNERS: usize = 50;
 /// Fewer runs have no interval.
 const FEWEST: usize = 3;
@@ -60,14 +60,14 @@ pub struct Chance {
     pub heading: f64,
 }
 
-/// A source of chance is told where it makes this share of all.
+/// A source of chance is reported where it contributes this share.
 const TOLD: f64 = 0.1;
-/// Chance that is so many times what is left does not add up.
+/// Where chance exceeds this multiple of what is left, the two do not add up.
 const UNDONE: f64 = 1.5;
-/// So many disturbances are told.
+/// Maximum number of disturbances in the report.
 const NAMED: usize = 3;
 
-/// A unit for people.
+/// A unit of the report.
 #[derive(Clone, Copy)]
 struct Unit {
     scale: f64,
@@ -372,7 +372,7 @@ fn runs_of(pairs: &[Pair]) -> Vec<usize> {
 }
 
 /// Pairs of runs path by path: of one path are runs that a chain of pairs joins. Where some paths have three runs or more, those of two are
-/// left out, since nothing says how sure they are.
+/// left out, since their uncertainty is unknown.
 fn by_path(pairs: Vec<Pair>, runs: usize) -> Vec<Vec<Pair>> {
     let mut path_of: Vec<usize> = (0..runs).collect();
     let find = |path_of: &[usize], mut run: usize| {

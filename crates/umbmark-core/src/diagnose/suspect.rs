@@ -17,20 +17,19 @@ pub struct Suspect {
     pub degrees_of_freedom: [f64; 2],
     /// p of this class alone.
     pub p: f64,
-    /// p of the greatest among all classes that were asked.
+    /// p corrected for all classes that were tested (the greatest of them).
     pub p_adjusted: f64,
-    /// p of the greatest when the signs of the runs' scores are flipped, where there are runs enough: it trusts no
-    /// noise model.
+    /// p of the greatest under sign flips of the runs' scores, where there are enough runs: it needs no noise model.
     pub p_flips: Option<f64>,
     /// Sizes of the best effect after one step from zero.
     pub estimate: Vec<Estimate>,
-    /// By how much the misfit would fall, in units of the noise variance: it ranks the classes.
+    /// Expected decrease of the misfit, in units of the noise variance: it ranks the classes.
     pub expected_drop: f64,
 }
 
 impl Suspect {
-    /// What the best effect would mean for the robot at its estimated size, in a sentence; `None` where it says nothing or
-    /// cannot have that size.
+    /// The meaning of the best effect for the robot at its estimated size, in a sentence; `None` where it has none or cannot have
+    /// that size.
     pub fn meaning(&self, robot: &Robot) -> Option<String> {
         let mut model = Model::new(robot);
         for e in &self.estimate {

@@ -1,6 +1,6 @@
 //! What the data cannot see, and the least that it would see.
 
-/// An effect that this data says nothing of.
+/// An effect that this data cannot show.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unseen {
     /// The effect.
@@ -12,13 +12,13 @@ pub struct Unseen {
 /// Why an effect cannot be seen.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Why {
-    /// Whatever it does, these parameters of the model do as well.
+    /// It is indistinguishable from these parameters of the model with this path.
     Absorbed(Vec<&'static str>),
-    /// At its usual size it moves no observation by as much as the noise.
+    /// At its usual size it moves every observation by less than the noise.
     BelowNoise,
 }
 
-/// The least size of an effect that this data would show in four cases of five.
+/// Minimum detectable size of an effect: this data would show it with 80 % power.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Detectable {
     /// The effect.

@@ -4,7 +4,7 @@ use crate::effect::ModelError;
 use crate::replay::ReplayError;
 use crate::setup::Fault;
 
-/// Why a model cannot be held against the runs of a dataset.
+/// Why a model cannot be fitted to, or compared with, the runs of a dataset.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {

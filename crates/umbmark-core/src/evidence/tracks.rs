@@ -50,7 +50,7 @@ impl Evidence for Observed {
     }
 }
 
-/// Fits the free parameters of a model to what is new from pose to pose, beginning with what the motion says of the reference.
+/// Fits the free parameters of a model to the innovations, starting with what the motion says of the reference.
 pub(crate) fn fit(observed: &Observed, model: &Model) -> Result<Fitted, FitError> {
     observed.check_columns()?;
     observed.check(model)?;

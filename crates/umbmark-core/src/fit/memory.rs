@@ -3,7 +3,7 @@
 use super::covariance::RANK_TOLERANCE;
 use nalgebra::{DMatrix, DVector};
 
-/// A step learns from so many changes before it at most.
+/// Maximum number of earlier changes that a step learns from.
 const REMEMBERED: usize = 4;
 
 /// Points of a fit, and the steps that Gauss and Newton take from there, the last one last.

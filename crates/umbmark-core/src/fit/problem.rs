@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Residuals to be made small.
+/// Residuals to be minimised.
 pub trait Problem {
     /// r(p): observed minus predicted, each in units of its standard deviation.
     fn residuals(&self, parameters: &[f64]) -> DVector<f64>;
@@ -27,8 +27,8 @@ pub struct Options {
     pub decrease_tolerance: f64,
     /// Whether the first steps are damped: needed where the start may be far from the end.
     pub cautious: bool,
-    /// Whether points are dear: steps learn from those before them, and one that would lower the sum of squares too little to matter is
-    /// not taken.
+    /// Whether points are expensive: steps then learn from those before them, and a step with a negligible expected decrease is not
+    /// evaluated.
     pub frugal: bool,
 }
 

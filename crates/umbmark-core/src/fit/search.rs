@@ -4,7 +4,7 @@ use super::descent::least_squares;
 use super::outcome::Fit;
 use super::problem::{Options, Problem};
 
-/// Another minimum is about as good where its cost is at most so many times the least.
+/// Another minimum is about as good where its cost is at most this multiple of the least.
 const RIVAL: f64 = 2.0;
 /// A minimum replaces that of the first start where it costs less than this share of it.
 const BETTER: f64 = 0.99;

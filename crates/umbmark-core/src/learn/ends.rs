@@ -1,4 +1,4 @@
-//! Learning from return poses: the model is fitted anew to all runs and without each of them.
+//! Learning from return poses: the model is fitted to all runs, and again without each of them.
 
 use super::{Error, Learnt, MOST, Step};
 use crate::diagnose::ends::{self, Moments};

@@ -1,4 +1,4 @@
-//! Learning from tracks: the same story, told from products of columns instead of one fit for each fold.
+//! Learning from tracks: the same story, computed from products of columns instead of one fit per fold.
 
 use super::{Error, Learnt, MOST, Step};
 use crate::diagnose::tracks::{self, Added, Conclusion, Found, Search, Wanted};
@@ -9,14 +9,14 @@ use crate::evidence::{Estimate, Evidence, FitError};
 use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE};
 use crate::watch::Watch;
 
-/// A first effect whose standard error is so many times its usual size, and which stands out by fewer standard errors than this, is not
-/// shown.
+/// The runs do not show a first effect whose standard error exceeds this multiple of its usual size ...
 const OPEN: f64 = 10.0;
+/// ... and whose value is less than this many standard errors from zero effect.
 const SURE: f64 = 4.0;
-/// A ratio is one that a robot has where it is within this factor of the one by which its motion differs.
+/// A fitted ratio is credible within this factor of the ratio that the motion alone gives.
 const FAR: f64 = 1.5;
-/// Runs left out are predicted worse than by the nominal robot where their error is so many times as large: three numbers that are
-/// fitted to few runs cost something where the nominal robot is right.
+/// Held-out runs are predicted worse than by the nominal robot where their error exceeds this multiple of its error: three numbers
+/// that are fitted to few runs cost something where the nominal robot is right.
 const WORSE: f64 = 1.5;
 const ENOUGH_RUNS: usize = 5;
 
@@ -31,7 +31,7 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
         *model = fitted.model.clone();
         steps.push(step(fitted, Some((effect, vec![effect], p))));
     };
-    // What the motion alone says of the reference comes first: no physics is told from it otherwise.
+    // What the motion alone says of the reference comes first: without it, no physics can be distinguished from the reference.
     let (begun, taken) = observed.begin(&model)?;
     for own in &taken {
         let part = begun.parts().iter().find(|part| part.effect.name() == own.effect);
@@ -40,7 +40,7 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
         add(&mut model, own.effect, Some(own.p), fitted);
     }
     let first = shown(observed, &model)?;
-    // Each row begins anew from what the motion says: a ratio by itself takes up what the next one is.
+    // Each row starts again from what the motion says: a ratio alone absorbs the effect of the next one.
     let mut fresh = model.clone();
     for effect in &first {
         fresh.add(effect)?.free = true;
@@ -119,7 +119,7 @@ fn uncertified(effect: &str, step: &Step, before: &Error, options: &Options) -> 
     })
 }
 
-/// Those of the first effects of the robot's drive that the runs say anything of, beside what is in a model.
+/// The first effects of the robot's drive that the runs show, beside what is in a model.
 fn shown(observed: &Observed, model: &Model) -> Result<Vec<&'static str>, FitError> {
     let mut first = observed.robot.drive.first_effects().to_vec();
     loop {
@@ -133,8 +133,7 @@ fn shown(observed: &Observed, model: &Model) -> Result<Vec<&'static str>, FitErr
     }
 }
 
-/// Whether the runs say anything of an effect that every robot is asked for: that it is something, or that it is less than
-/// so many times its usual size.
+/// Whether the runs show one of the first effects: that it is not zero, or that it is less than [`OPEN`] times its usual size.
 fn is_shown(fitted: &Fitted, effect: &str) -> bool {
     let own = estimates(fitted).into_iter().find(|e| e.effect == effect);
     let parameter = find(effect).ok().and_then(|entry| entry.about.parameters.first());
@@ -147,7 +146,7 @@ fn is_shown(fitted: &Fitted, effect: &str) -> bool {
     possible && (own.standard_error < OPEN * parameter.typical || off > SURE * own.standard_error)
 }
 
-/// Runs left out do not agree with those fitted where their error is so many times as large.
+/// Held-out runs disagree with those fitted where their error exceeds this multiple.
 const FAR_WORSE: f64 = 5.0;
 
 /// The story's end: the diagnosis of the model that was learnt.

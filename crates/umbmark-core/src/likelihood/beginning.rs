@@ -5,18 +5,17 @@ use crate::drive::Drive;
 use crate::effect::{Model, ModelError, Part};
 use crate::replay::Track;
 use crate::setup::Mounting;
-use crate::stats::Measured;
-use crate::stats::t_two_sided;
+use crate::stats::{Measured, t_two_sided};
 
-/// The reference's clock and place are taken where they stand out by so many standard errors ...
+/// The clock and the place of the reference are taken from the motion where they differ from zero by this many standard errors ...
 const SURE: f64 = 5.0;
-/// ... and are larger than this: small ones are fitted along, and asked about as every effect is.
+/// ... and exceed this: smaller ones are fitted along, and tested as every effect is.
 const LATE: f64 = 0.010;
 const AWAY: f64 = 0.010;
 const TURNED: f64 = 0.020;
 /// Sizes of the robot that are off by this share are far off: a fit from the nominal ones may end elsewhere.
 pub(crate) const FAR: f64 = 0.04;
-/// A ratio is known well enough to begin with where it is so many times its standard error.
+/// A ratio is a start value where it is this multiple of its standard error.
 const KNOWN: f64 = 5.0;
 /// A track that the nominal robot turns out of its way by more \[rad\] is far off too.
 const AWAY_BY: f64 = 0.2;
@@ -33,7 +32,7 @@ pub struct Taken {
     pub effect: &'static str,
     /// Its numbers, as the motion has them.
     pub values: [Option<(&'static str, Measured)>; 2],
-    /// Probability of so large a value where there is none.
+    /// Probability of so large a value by chance.
     pub p: f64,
 }
 

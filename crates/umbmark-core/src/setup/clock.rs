@@ -8,7 +8,7 @@ use crate::stats::Measured;
 /// Delays that are looked at \[s\]: both ways up to the farthest, in these steps.
 const FARTHEST: f64 = 1.0;
 const STEP: f64 = 0.05;
-/// Another delay than none must agree better by this share of the disagreement.
+/// A delay other than zero must reduce the disagreement by this share.
 const CLEARLY: f64 = 0.05;
 /// A piece of a run in which a clock that is fast shows as one delay \[s\], and the fewest windows in it.
 const PIECE: f64 = 60.0;
@@ -17,18 +17,18 @@ const FEWEST: usize = 20;
 /// wrong. And a change of the delay that ends it \[s\].
 const STEPS: [usize; 2] = [5, 9];
 const ENOUGH: f64 = 1e-6;
-/// A way that is so many times that of the wheels is in another unit.
+/// A distance of this multiple of the wheels' distance is in another unit.
 const OTHER_UNIT: f64 = 5.0;
 /// Half of the step of a derivative by time \[s\].
 const HALF: f64 = 0.01;
-/// What is left of a window has three coordinates; the median of its size is so many standard deviations of one.
+/// The residual of a window has three coordinates; the median of its length, in standard deviations of one coordinate.
 const MEDIAN_SIZE: f64 = 1.538;
 /// Windows are weighed by no smaller standard deviation \[m\]: those in which the motion changes are the ones that show a delay, and are
 /// not one arc.
 const LEAST_SCALE: f64 = 1e-3;
 /// What a clock leaves may be more than before by this share: it is weighed otherwise.
 const SLACK: f64 = 1e-2;
-/// Beyond so many standard deviations a window has no weight.
+/// Beyond this many standard deviations a window has no weight.
 const BEYOND: f64 = 6.0;
 
 /// What the stamps of a run are late: delay at the middle of the run and what is added for each second after that.
@@ -42,7 +42,7 @@ pub(super) struct Late {
     pub middle: f64,
     /// Variances and covariance of delay and rate.
     pub covariance: [f64; 3],
-    /// How many windows the delay is told from: fewer where the motion seldom changes.
+    /// Number of windows that determine the delay: fewer where the motion seldom changes.
     pub told_by: f64,
 }
 
@@ -88,7 +88,7 @@ pub(super) fn guess(windows: &[Window], rolled: &Rolled, wheelbase: f64) -> Late
     }
     let slopes =
         found.iter().enumerate().flat_map(|(k, a)| found[k + 1..].iter().map(move |b| (b.1 - a.1) / (b.0 - a.0)));
-    // Two pieces have one slope, and a step of the grid between them is none.
+    // Two pieces have one slope, and a grid step between them does not count.
     let rate = if found.len() > 2 { median(slopes) } else { 0.0 };
     let delay = median(found.iter().map(|(at, delay)| delay - rate * (at - middle)));
     Late { delay, rate, middle, ..Late::default() }

@@ -9,29 +9,29 @@ use super::robust::median;
 use super::{PoseNoise, stretches};
 use crate::geometry::Pose2;
 
-/// A difference beyond so many standard deviations is a jump.
+/// A difference of more standard deviations than this is a jump.
 pub(super) const JUMP: f64 = 10.0;
 /// What a jump costs, in half squares of standard deviations; what the first pose costs that is passed over, and each after it.
 const COSTS: [f64; 3] = [0.5 * JUMP * JUMP, 32.0, 10.0];
-/// So many poses in a row may be wrong.
+/// Maximum number of consecutive wrong poses.
 const LONGEST: usize = 12;
-/// Where no edge near is beyond so many standard deviations, nothing is passed over.
+/// Where no edge nearby exceeds this many standard deviations, no pose is passed over.
 const QUIET: f64 = 5.0;
 /// What stands apart for no longer than this share of a run's poses, and this time \[s\], and then goes on as before, is wrong.
 const APART: (f64, f64) = (0.05, 3.0);
-/// Edges that noise is told from: over so many poses.
+/// Edges that determine the noise: over these numbers of poses.
 const OVER: [usize; 4] = [1, 2, 4, 8];
-/// Noise is told apart by the size of the motion, in so many parts of all edges.
+/// The noise is estimated by the size of the motion, in this many parts of all edges.
 const PARTS: usize = 10;
-/// No standard deviation is taken for less \[m, rad\], nor for less than what so much time makes of the motion \[s\]: what is smaller
-/// is noise, and told from it where the sizes of the noise are known.
+/// Minimum standard deviation \[m, rad\], and minimum in terms of the motion in this time \[s\]: smaller differences are noise, and are
+/// judged where the sizes of the noise are known.
 const LEAST: [f64; 2] = [1.5e-3, 3e-3];
 const JITTER: f64 = 0.01;
 /// Sizes of the robot by the motion alone are wrong by up to this share of way and turns.
 const SIZES: f64 = 0.005;
-/// A jump that stands in other runs at the same place is none: within this way \[m\], and too often for chance at this level.
+/// A jump that other runs have at the same place is not an accident: within this distance \[m\], and more often than by chance at this level.
 const SAME_PLACE: (f64, f64) = (0.15, 1e-4);
-/// It stands there where a difference is beyond so many standard deviations.
+/// Other runs have it where a difference exceeds this many standard deviations.
 pub(super) const LARGE: f64 = 4.0;
 
 /// A pose of a run: as the wheels have it, and as it was measured.
@@ -262,7 +262,7 @@ impl Shared {
     }
 }
 
-/// Probability of so many or more of n, each with probability p.
+/// Probability of a given number or more of n, each with probability p.
 fn at_least(count: usize, n: usize, p: f64) -> f64 {
     if p >= 1.0 {
         return 1.0;

@@ -1,6 +1,6 @@
 //! Return errors that are not what the robot did: typing errors in single runs, and columns in another unit.
 //!
-//! A run is held against the other runs of its direction and test, coordinate by coordinate. Several typing errors hide each other
+//! A run is compared with the other runs of its direction and test, coordinate by coordinate. Several typing errors hide each other
 //! when the runs are looked at one after the other, so they are found together: of all ways to leave out i runs, the one that leaves
 //! the least scatter is tested by
 //!
@@ -36,7 +36,7 @@ const SAME_WAY: f64 = 0.2;
 const BELIEVED: f64 = 0.2;
 /// Headings that differ by less \[rad\] from those which follow from the positions are in radians.
 const NEAR: f64 = 0.1;
-/// The mean headings differ from a unit by so many standard errors where it is wrong.
+/// A unit is wrong where the mean headings differ from it by this many standard errors.
 const BEYOND: f64 = 6.0;
 /// Read in the right unit, headings are so much nearer to those which follow from the positions.
 const NEARER: f64 = 0.25;

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, SMatrix, SVector};
 
 /// Steps of reweighted least squares for absolute deviations, and for the biweight.
 const STEPS: [usize; 2] = [12, 8];
-/// The biweight gives no weight beyond so many standard deviations: 95 % of the sharpness of least squares for normal values.
+/// The biweight gives no weight beyond this many standard deviations: 95 % efficiency for normal values.
 const BEYOND: f64 = 4.685;
 /// Directions with less than this share of the strongest one's information are left where they are.
 const SHOWN: f64 = 1e-9;

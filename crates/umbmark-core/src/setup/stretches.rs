@@ -1,4 +1,4 @@
-//! Stretches of a few seconds in which robot and wheels part: a wheel spins, the robot is pushed aside or lifted and carried.
+//! Stretches of a few seconds in which robot and wheels disagree: a wheel spins, or the robot is pushed aside or carried.
 //!
 //! From pose to pose the difference may be within what noise makes; over the whole stretch it is not. Windows of 2, 4, 8, ... poses are
 //! looked at as edges are, and one that is far beyond the others of its length is an accident. What a law of the robot does,
@@ -9,17 +9,17 @@ use super::robust::quantile;
 
 /// A stretch lasts no longer \[s\].
 const LONGEST: f64 = 3.0;
-/// Windows on all sides of it make it look so many times as long at most.
+/// Windows on both sides make it look longer by at most this factor.
 const SEEMING: f64 = 2.0;
 /// Jumps with less time between them are one stretch \[s\].
 const TOGETHER: f64 = 0.5;
-/// A stretch is beyond so many times what this share of all windows of its length are below.
+/// A stretch exceeds this multiple of this quantile of all windows of its length.
 const BEYOND: (f64, f64) = (4.0, 0.9);
-/// And beyond so many standard deviations: windows are many, and what they add up is less well known than what one edge does.
+/// It also exceeds this many standard deviations: there are many windows, and their sums are less well known than single edges.
 const LEAST: f64 = 1.5 * JUMP;
 /// It begins and ends where windows are below this share of that.
 const ENDS: f64 = 0.4;
-/// What fills more than this share of all poses is no accident.
+/// What fills more than this share of all poses is not an accident.
 const ACCIDENTS: f64 = 0.1;
 
 /// Jumps of each run with those that belong together as one, and the stretches. `kept`: the poses of each run that are not wrong.

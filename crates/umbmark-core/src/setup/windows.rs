@@ -8,7 +8,7 @@ use crate::run::TickLog;
 const LENGTH: f64 = 0.4;
 /// A window takes in no longer time than this \[s\]: in it, the motion is one arc.
 const LONGEST: f64 = 2.5;
-/// Windows begin twice in their length, and there are no more than so many a run.
+/// Windows overlap by half; maximum number per run.
 const OVERLAP: f64 = 2.0;
 const MOST: usize = 600;
 

@@ -53,7 +53,7 @@ impl Rate {
         }
     }
 
-    /// Factor and unit for people.
+    /// Factor and unit of the report.
     pub fn display(self) -> (f64, &'static str) {
         match self {
             Rate::Forward | Rate::Sideways => (1e3, "mm/m"),
@@ -97,15 +97,15 @@ impl Rate {
 /// How the range of a covariate is cut.
 #[derive(Clone, Copy, Debug)]
 enum Cut {
-    /// Into so many equal parts, from 0 to the greatest size.
+    /// Number of equal bins from 0 to the greatest size.
     FromZero(usize),
-    /// Into so many equal parts, from the greatest negative to the greatest positive.
+    /// Number of equal bins from the most negative to the most positive value.
     Around(usize),
-    /// A full turn in so many parts, the first about 0.
+    /// Number of bins of a full turn, the first centred on 0.
     Cyclic(usize),
     /// At these, the last open.
     At(&'static [f64]),
-    /// Into at most so many parts of whole numbers.
+    /// Maximum number of bins of whole numbers.
     Whole(usize),
 }
 
@@ -142,7 +142,7 @@ const PLAIN: Covariate = Covariate {
     between_runs: false,
 };
 
-/// All that is asked about.
+/// All that is tested.
 pub static COVARIATES: [Covariate; 11] = [
     Covariate {
         name: "speed",

@@ -33,7 +33,7 @@ pub(super) struct Place {
     /// How many pieces of the track are made, and how far the wheels have rolled on average by then \[m\].
     pub made: usize,
     pub rolled: f64,
-    /// Whether START was fitted here, so that its error is none.
+    /// Whether START was fitted here, so that its error is zero.
     pub starts: bool,
 }
 
@@ -122,7 +122,7 @@ pub(super) fn rolled(track: &Track) -> Vec<f64> {
 
 fn step(track: &Track, pair: &[Place]) -> Option<Step> {
     let (a, b) = (&pair[0], &pair[1]);
-    // Across a jump nothing is told.
+    // Steps across a jump do not count.
     if b.starts {
         return None;
     }

@@ -13,7 +13,7 @@ pub struct Mean {
     pub runs: usize,
 }
 
-/// What one run says of a rate.
+/// A rate in one run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Sum {
     /// Sum of the errors, and how much was driven.
@@ -57,7 +57,7 @@ pub(super) fn shared<'a>(runs: impl ExactSizeIterator<Item = &'a Sum>, resolutio
     resolution * resolution * runs.map(|run| run.ends as f64).sum::<f64>() / n
 }
 
-/// Fewer runs say too little of their own scatter for a test.
+/// Fewer runs do not determine their own scatter well enough for a test.
 const FEWEST: usize = 3;
 
 /// p of a mean of zero, by Student's t, where values share an error of variance `shared`; `None` below three values.

@@ -4,7 +4,7 @@ use super::{Against, By, Mean, Part, TracksJudged};
 
 /// A part is named where it has this share of the error.
 const MUCH: f64 = 0.2;
-/// So many parts, and so many dependences of one rate, are named.
+/// Maximum number of parts, and of dependences of one rate, that are named.
 const NAMED: usize = 3;
 
 pub(super) fn of(judged: &TracksJudged, size: f64) -> Vec<String> {

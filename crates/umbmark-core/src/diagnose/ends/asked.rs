@@ -1,4 +1,4 @@
-//! What a test of n + n return poses is asked: the residuals of a fitted model, and every size of every missing effect.
+//! What is tested with n + n return poses: the residuals of a fitted model, against every size of every effect that it lacks.
 
 use super::exact::{Pattern, wilks};
 use super::moments::{Moments, Whitened};
@@ -9,15 +9,14 @@ use crate::diagnose::{candidates, classes};
 use crate::drive::{LinkReading, WheelTravel};
 use crate::effect::{Context, Entry, Model, Sight, of_drive};
 use crate::evidence::FitError;
-use crate::evidence::ends::names;
-use crate::evidence::ends::{Ends, Fitted, mirrored};
+use crate::evidence::ends::{Ends, Fitted, mirrored, names};
 use crate::fit::RANK_TOLERANCE;
 use crate::geometry::Pose2;
 use crate::parameter::Parameter;
 use crate::stats::f_upper_tail;
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// An effect that moves the means by less than this many standard deviations at its usual size is not asked.
+/// An effect that moves the means by fewer standard deviations than this at its usual size is not tested.
 const VISIBLE: f64 = 0.5;
 /// A parameter that makes up less than this share of an absorbed effect is not named.
 const SHARE: f64 = 0.1;
@@ -38,7 +37,7 @@ pub(crate) struct Unit {
     pub shift: DVector<f64>,
 }
 
-/// Residuals and what is asked of them.
+/// Residuals, and the effects that they are tested for.
 #[derive(Clone, Debug)]
 pub(crate) struct Asked {
     /// In coordinates in which the pooled scatter is the identity (times ν).
@@ -90,7 +89,7 @@ impl Asked {
         Some(f_upper_tail(f, freedom))
     }
 
-    /// The residuals in coordinates fit for tests, nothing asked of them yet.
+    /// The residuals in the coordinates of the tests, with no effects to test yet.
     fn residuals(ends: &Ends, fitted: &Fitted) -> Option<(Asked, Frame)> {
         let d = ends.coordinates();
         let groups: Vec<usize> = ends.runs.iter().map(|run| run.direction as usize).collect();
@@ -216,7 +215,7 @@ fn whitener(moments: &Moments) -> Option<DMatrix<f64>> {
     const ROUNDING: f64 = 1e-9;
     let covariance = &moments.scatter / moments.freedom();
     let scales = DVector::from_fn(covariance.nrows(), |i, _| covariance[(i, i)].sqrt());
-    // Scatter that is rounding beside the residuals themselves is none.
+    // Scatter of the size of rounding does not count.
     if scales.iter().any(|s| !(*s > 1e-12)) {
         return None;
     }

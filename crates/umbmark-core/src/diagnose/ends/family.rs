@@ -1,8 +1,8 @@
-//! All tests together: p of the most striking one among all that were asked.
+//! All tests together: p of the most significant one, corrected for all of them.
 //!
 //! Each test has its own p, exact where there is an exact test, else from simulated null tests. The smallest of them is
-//! compared with the smallest of each of many simulated null tests (Westfall & Young 1993), so tests that say nearly the same
-//! cost nearly nothing.
+//! compared with the smallest of each of many simulated null tests (Westfall & Young 1993), so tests that are nearly
+//! the same cost nearly nothing.
 
 use super::asked::{Asked, Unit};
 use super::exact::wilks;
@@ -12,14 +12,14 @@ use crate::random::Stream;
 use crate::stats::{f_upper_tail, student_t_quantile};
 use rayon::prelude::*;
 
-/// The test of the whole model has to be so many times as striking as one of a single effect: most causes are on the list, and
-/// each is better seen by its own test. It is there for those that are not.
+/// p of the whole-model test is multiplied by this: most causes are in the catalogue, and each shows better in its own test. The
+/// whole-model test is there for causes that are not in the catalogue.
 const WHOLE: f64 = 4.0;
 
 /// Purpose of the stream of simulated null tests.
 const NULL_TESTS: u64 = 10;
 
-/// What all tests say of one set of moments: F of each unit, and of the whole.
+/// Statistics of all tests for one set of moments: F of each unit, and of the whole.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Statistics {
     pub units: Vec<f64>,
@@ -58,7 +58,7 @@ pub(crate) fn statistics(asked: &Asked, moments: &Moments) -> Option<Statistics>
 }
 
 impl Family {
-    /// `None` where the runs have no scatter, or nothing is left to ask.
+    /// `None` where the runs have no scatter, or no effect is left to test.
     pub fn new(asked: &Asked, options: &Options) -> Option<Family> {
         let observed = statistics(asked, &asked.moments)?;
         let (counts, size) = (asked.moments.counts, asked.moments.size());

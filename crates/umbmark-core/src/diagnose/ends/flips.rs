@@ -1,16 +1,16 @@
-//! The certificate that trusts no noise model: the signs of the runs' own scores.
+//! Sign flips of the runs' scores: a test without a noise model.
 //!
 //! Where an effect is absent, a run's score for it is as likely to be positive as negative, whatever the covariance of its
-//! coordinates. So the observed |Σ s_i| / √(Σ s_i²) is compared with that of other signs. For effects that are asked together, the
+//! coordinates. So the observed |Σ s_i| / √(Σ s_i²) is compared with that of other signs. For effects that are tested together, the
 //! greatest is compared with the greatest. Source: the sign-flip score tests of Hemerik, Goeman & Finos (2020).
 
 use super::asked::Asked;
 use crate::random::Stream;
 use nalgebra::DVector;
 
-/// Up to so many runs all patterns of signs are tried.
+/// Up to this many runs, all sign patterns are tried.
 const ALL: usize = 12;
-/// Beyond, so many are drawn.
+/// Number of random patterns beyond that.
 const DRAWN: usize = 1999;
 const SIGNS: u64 = 11;
 

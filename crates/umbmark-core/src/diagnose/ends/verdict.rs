@@ -9,8 +9,7 @@ use crate::diagnose::diagnosis::{Diagnosis, GoodnessOfFit, Verdict};
 use crate::diagnose::ends::contrasts::OnCircle;
 use crate::diagnose::experiments::next_experiments;
 use crate::diagnose::identifiability::of_ends;
-use crate::diagnose::likeness::Likeness;
-use crate::diagnose::likeness::correlations;
+use crate::diagnose::likeness::{Likeness, correlations};
 use crate::diagnose::options::Options;
 use crate::diagnose::reason::Reason;
 use crate::diagnose::remains::{Remains, Trail};
@@ -26,7 +25,7 @@ use std::sync::Arc;
 /// Probability with which an effect of the minimum detectable size is seen.
 const POWER: f64 = 0.8;
 
-/// Fits the model and asks all that is missing.
+/// Fits the model and tests every effect that it lacks.
 pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<Diagnosis, FitError> {
     let fitted = Fitted::new(ends, model)?;
     let mut diagnosis = Diagnosis {
@@ -99,7 +98,7 @@ pub(crate) fn remains(ends: &Ends, residuals: &[Vector3<f64>], options: &Options
     Remains::of(&trails, 1.0 - options.size)
 }
 
-/// What the return poses of runs that were observed on the way say of the model by themselves.
+/// What the return poses alone say of a model, where the runs were observed on the way too.
 pub(crate) struct Beside {
     pub contrasts: Vec<Contrast>,
     pub circle: Vec<OnCircle>,
@@ -212,7 +211,7 @@ fn detectable(asked: &Asked, size: f64) -> Vec<Detectable> {
     asked.units.iter().map(of).collect()
 }
 
-/// Verdict and certificates: the best is added to what is explained, and the rest asked again.
+/// Verdict and certified classes: the best class is added to the model, and the rest tested again.
 fn judge(diagnosis: &mut Diagnosis, asked: &Asked, family: &Family, options: &Options) {
     let certified = diagnosis.ranking.first().is_some_and(|s| s.p_adjusted < options.size);
     if !certified {

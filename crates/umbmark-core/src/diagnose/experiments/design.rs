@@ -25,7 +25,7 @@ pub(super) struct Noise {
 }
 
 impl Noise {
-    /// From the runs: the wheel noise that has their scatter. `None` where there is none to see.
+    /// From the runs: the wheel noise that gives their scatter. `None` where they have no scatter.
     pub fn of(ends: &Ends, fitted: &Fitted) -> Option<Noise> {
         let d = ends.coordinates();
         let shape = ends.noise_shape()?.view((0, 0), (d, d)).into_owned().cholesky()?;
@@ -49,9 +49,9 @@ struct Leg {
 pub(super) struct Stage {
     /// How an error of the pose is carried on.
     carried: Matrix3<f64>,
-    /// Lower triangular root of the covariance of what is new.
+    /// Lower triangular root of the covariance of the innovations.
     factor: DMatrix<f64>,
-    /// How much of what is new is known from then on.
+    /// Gain: how much of the innovations is known from then on.
     gain: Matrix3xX<f64>,
 }
 
@@ -71,7 +71,7 @@ impl Design {
         self.legs.iter().map(|leg| leg.stages(robot, noise)).collect()
     }
 
-    /// What some numbers do to all observations, in standard deviations: at each, what is new, given those before.
+    /// What some numbers do to all observations, in standard deviations: the innovation of each, given those before.
     pub fn columns(&self, derived: &Derived, stages: &[Vec<Stage>]) -> Vec<DVector<f64>> {
         let poses: Vec<Vec<Pose2<Dual>>> = self.legs.iter().map(|leg| leg.poses(&derived.chain)).collect();
         (0..derived.numbers.len()).map(|lane| self.column(&poses, lane, stages)).collect()

@@ -9,10 +9,10 @@ use crate::setup::PoseNoise;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-/// Simulated sets from which a source of chance is told: so many, fewer where there are more blocks in all than this.
+/// Number of simulated sets for a source of chance; fewer where the data has more blocks than the second number.
 const SETS: (usize, usize) = (40, 400_000);
 const FEWEST_SETS: usize = 4;
-/// A disturbance moves the robot by more than so many whole ticks, and by more than so many standard deviations of a single pose.
+/// A disturbance moves the robot by more than this many ticks, and by more than this many standard deviations of a single pose.
 const TICKS: f64 = 2.0;
 const POSES: f64 = 4.0;
 /// Purpose of the stream.
@@ -46,7 +46,7 @@ pub(super) fn remains(
     remains
 }
 
-/// What is left of a run where it is told.
+/// What is left of a run, at the blocks whose errors are reported.
 fn trail(run: &ObservedRun, left: &Column, noise: PoseNoise, wheelbase: f64) -> Trail {
     let rolled = run.rolled(wheelbase);
     let mut trail = Trail {

@@ -70,7 +70,7 @@ fn alike(
     alike.into_iter().map(|(_, answer)| answer).collect()
 }
 
-/// A finding about an effect, for people.
+/// A finding about an effect as a suspect of the report.
 pub fn suspect(exam: &Examination, finding: &Finding) -> Option<Suspect> {
     let Question::Effect(entry, parameters) = &exam.asked[finding.answer.asked].question else { return None };
     let columns = &exam.asked[finding.answer.asked].columns;

@@ -1,4 +1,4 @@
-//! A smooth as people see it: a curve over what it depends on, with its interval.
+//! A smooth as a curve over what it depends on, with its interval.
 
 use super::examination::Examination;
 use super::finding::Finding;
@@ -56,7 +56,7 @@ pub fn curve(exam: &Examination, finding: &Finding, covariate: &Covariate, motio
     }
 }
 
-/// Where a curve is told: all that the runs show of the covariate.
+/// Where a curve is given: over the range of the covariate in the runs.
 fn places(exam: &Examination, covariate: &Covariate, scales: &Scales) -> Vec<f64> {
     let (low, high) = match covariate.exposure {
         Exposure::WheelWay(_) => (0.0, TAU),

@@ -16,7 +16,7 @@ pub struct Dependence {
     pub depends_on: &'static str,
     /// The same in words.
     pub title: &'static str,
-    /// p among all that was asked.
+    /// p, corrected for all that was tested.
     pub p_adjusted: f64,
     /// By how much the misfit would fall, in units of the noise variance.
     pub drop: f64,
@@ -28,7 +28,7 @@ pub struct Dependence {
     pub nearest: Option<(&'static str, f64)>,
 }
 
-/// A smooth, for people.
+/// A smooth as a dependence of the report.
 pub(crate) fn dependence(exam: &Examination, finding: &Finding, asked: &[Suspect]) -> Option<Dependence> {
     let Question::Smooth(covariate, motion) = &exam.asked[finding.answer.asked].question else { return None };
     let share = |suspect: &&Suspect| suspect.expected_drop / finding.answer.drop;

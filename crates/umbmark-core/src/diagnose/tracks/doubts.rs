@@ -1,4 +1,4 @@
-//! What speaks against a fitted model as a whole, though no effect that it lacks is certified.
+//! Reasons against a fitted model as a whole, even where no missing effect is certified.
 
 use super::chance;
 use crate::diagnose::reason::Reason;
@@ -6,8 +6,7 @@ use crate::effect::Model;
 use crate::evidence::tracks::Misses;
 use crate::likelihood::{Growth, Noise, Observed};
 
-/// Sizes of the noise beyond which it is none, for a robot with [`USUAL_BASE`]: on carpet, with worn wheels and a reference of
-/// centimetres.
+/// Largest credible noise of a robot with [`USUAL_BASE`]: on carpet, with worn wheels and a reference good to centimetres.
 const MOST: Noise = Noise {
     heading_per_metre: 0.03,
     heading_per_radian: 0.03,
@@ -26,9 +25,9 @@ const MOST: Noise = Noise {
 const USUAL_BASE: f64 = 0.3;
 /// A size is at its limit within this share of it.
 const AT_LIMIT: f64 = 0.9;
-/// Way \[m\] and turning \[rad\] of a run on average from which the noise of wheels is told.
+/// Mean distance \[m\] and rotation \[rad\] per run below which the wheel noise is not judged.
 const LEAST: (f64, f64) = (1.0, 1.0);
-/// Simulated sets that errors along the way are held against: so many, fewer where there are more blocks in all than this.
+/// Number of simulated sets that errors along the way are compared with; fewer where the data has more blocks than the second number.
 const SETS: (usize, usize) = (100, 2_000_000);
 /// Errors may be larger than the largest of nineteen in twenty simulated sets by this factor: noise that remembers over metres makes
 /// drifts 2.6 times as wide as the noise model believes.
@@ -44,7 +43,7 @@ pub(super) fn of_model(observed: &Observed, model: &Model, noise: &Noise, left: 
     reasons
 }
 
-/// Sizes that are at their limit, or too large; those that a run has hardly any way or turns for say nothing.
+/// Sizes at their limit, or too large. Runs with hardly any distance or rotation do not count.
 fn of_noise(observed: &Observed, noise: &Noise, wheelbase: f64) -> Vec<Reason> {
     let slim = (USUAL_BASE / wheelbase).max(1.0);
     let of_run = |of: fn(&Growth) -> f64| {

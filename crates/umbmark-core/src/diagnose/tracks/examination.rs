@@ -4,15 +4,13 @@ use super::finding::{Answer, Finding, worth};
 use super::responses::{self, Asked, Question, Responses};
 use crate::effect::{Changes, Entry, Law, Model, ModelError, Number};
 use crate::evidence::ends::names;
-use crate::evidence::tracks::Errors;
-use crate::evidence::tracks::Misses;
-use crate::evidence::tracks::{Projected, System};
+use crate::evidence::tracks::{Errors, Misses, Projected, System};
 use crate::geometry::Pose2;
 use crate::likelihood::{ABSORBED, Column, Fitted, Noise, share_left, solver};
 use nalgebra::{DMatrix, DVector};
 use std::sync::{Arc, OnceLock};
 
-/// At its usual size a candidate must move the observations by so many standard deviations to be asked about.
+/// At its usual size, a candidate must move the observations by this many standard deviations to be tested.
 const VISIBLE: f64 = 0.3;
 /// Groups that are fitted out for a clean estimate of the noise, and the drop that each must bring a column.
 const CLEANED: usize = 6;
@@ -25,7 +23,7 @@ pub struct Examination {
     pub fitted: Fitted,
     /// Products of all columns.
     pub system: System,
-    /// All that is asked about.
+    /// All that is tested.
     pub asked: Vec<Asked>,
     /// Columns of the model's free values.
     pub free: Vec<usize>,
@@ -34,7 +32,7 @@ pub struct Examination {
     /// What the columns of the model and of the catalogue's effects are derivatives by.
     numbers: Vec<Number>,
     columns: Vec<Vec<Column>>,
-    /// The true poses along which the columns of what is asked about were taken, run by run.
+    /// The true poses along which the tested columns were computed, run by run.
     pub along: Vec<Arc<[Pose2]>>,
     /// What was found of the smooths, once they were looked at.
     pub smooths: OnceLock<Vec<Finding>>,
@@ -59,7 +57,7 @@ impl Examination {
         Ok(Examination::by(fitted, responses))
     }
 
-    /// What a grown model still lacks of what was asked about.
+    /// What a grown model still lacks of what was tested.
     fn lacked_by(&self, model: &Model) -> Responses {
         let known = |effect: &Entry| model.parts().iter().any(|part| part.effect == *effect);
         let (mut asked, mut kept) = (Vec::new(), Vec::new());
@@ -97,7 +95,7 @@ impl Examination {
         examination
     }
 
-    /// Estimates the noise anew with what is most evidently missing fitted out, so that it is noise alone.
+    /// Estimates the noise again with the most evident missing effects fitted out, so that it is noise alone.
     fn clean(&mut self) {
         let mut out = self.base(None);
         let mut added = 0;
@@ -133,7 +131,7 @@ impl Examination {
         Errors::new(&self.fitted.observed, &self.system, &self.columns, which)
     }
 
-    /// Columns that are fitted out when a group is asked about: the model's own and those of the reference, its own excepted.
+    /// Columns that are fitted out when a group is tested: the model's own and those of the reference, except the group's.
     pub fn base(&self, asked: Option<usize>) -> Vec<usize> {
         let others = self.asked.iter().enumerate().filter(|(i, other)| other.nuisance && Some(*i) != asked);
         let mut base = self.free.clone();
@@ -145,7 +143,7 @@ impl Examination {
         base
     }
 
-    /// How many times as wide the standard errors of what every robot is asked for become where a group's columns are fitted along, at most.
+    /// The largest factor by which fitting a group's columns too widens a standard error of the first effects.
     pub fn widening(&self, columns: &[usize]) -> f64 {
         let first = self.fitted.model.robot().drive.first_effects();
         let is_first = |column: &usize| self.name(*column).is_some_and(|name| first.contains(&name));
@@ -181,7 +179,7 @@ impl Examination {
         self.left_out_with(found, |_| None)
     }
 
-    /// The same with one more group, picked anew from the products of the others.
+    /// The same with one more group, chosen again from the products of the other runs.
     pub fn left_out_with(
         &self,
         found: &[usize],

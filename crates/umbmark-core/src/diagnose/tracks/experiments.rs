@@ -6,13 +6,11 @@
 
 use super::class::rivals;
 use super::examination::Examination;
-use super::finding::Answer;
-use super::finding::Finding;
+use super::finding::{Answer, Finding};
 use super::repeats::{Repeated, SHAPE, UnlistedLaw};
 use super::responses::{Asked, Question};
-use crate::diagnose::experiments::Experiment;
 use crate::diagnose::experiments::design::{MINUTES_A_RUN, minutes};
-use crate::diagnose::experiments::{best, worth};
+use crate::diagnose::experiments::{Experiment, best, worth};
 use crate::diagnose::unseen::{Unseen, Why};
 use crate::effect::{Law, Model, ModelError, Number, Part};
 use crate::evidence::FitError;
@@ -28,9 +26,9 @@ use std::sync::Arc;
 
 /// Runs of a new drive, each way.
 const RUNS: usize = 3;
-/// What laws that cannot be told from the one that is taken are called, as their table has them.
+/// Names of laws that are indistinguishable from the one taken, as in their table.
 const LAWS: [&str; 8] = ["law_1", "law_2", "law_3", "law_4", "law_5", "law_6", "law_7", "law_8"];
-/// What a size below the noise is told from.
+/// What a size below the noise is separated from.
 const NOISE: &str = "noise";
 
 /// A drive on offer.
@@ -42,7 +40,7 @@ struct Drive {
     directions: &'static [Direction],
 }
 
-/// Something that may be true, and what it must be told from.
+/// A hypothesis, and what it must be separated from.
 #[derive(Clone)]
 struct Doubt {
     separates: [&'static str; 2],

@@ -23,7 +23,7 @@ pub struct Answer {
     pub covariance: DMatrix<f64>,
 }
 
-/// A group beside the base that it was asked in.
+/// A tested group, beside the columns that were fitted out.
 #[derive(Clone, Debug)]
 pub struct Finding {
     /// The group after one step.
@@ -48,7 +48,7 @@ impl Finding {
         self.p_f <= options.size && self.p_flips <= options.size
     }
 
-    /// The columns that were fitted out when it was asked.
+    /// The columns that were fitted out in its test.
     pub fn base(&self) -> &[usize] {
         &self.projected.base
     }
@@ -64,7 +64,7 @@ pub fn worth(answer: &Answer) -> f64 {
     worth_of(answer.drop, answer.columns.len())
 }
 
-/// What a drop by so many numbers is worth.
+/// Worth of a drop by a given number of parameters.
 pub fn worth_of(drop: f64, numbers: usize) -> f64 {
     drop - 3.0 * numbers as f64
 }

@@ -1,4 +1,4 @@
-//! Sign flips: the certificate that trusts no noise model.
+//! Sign flips: a test without a noise model.
 //!
 //! Where nothing is missing, the score of a run for an effect is as likely the one sign as the other. Flipping the signs of all runs'
 //! scores at once therefore gives other outcomes of the same experiment, whatever the noise within a run looks like, and
@@ -23,11 +23,11 @@ use nalgebra::{DMatrix, DVector};
 use rand::Rng;
 use rayon::prelude::*;
 
-/// Up to so many units all flips are taken, beyond as many at random.
+/// Up to this many units, all flips are used; beyond, random ones.
 const ALL: usize = 12;
 /// Purpose of the stream of random flips.
 const FLIPS: u64 = 0x666c_6970;
-/// Share of the information that is left of it at least, however the signs fall: keeps a quotient of two nothings finite.
+/// Minimum share of the information that remains under any flip: it keeps a quotient of two zeros finite.
 const LEAST: f64 = 1e-3;
 
 /// The scores of a group of columns, unit by unit, and how they scatter.
@@ -125,7 +125,7 @@ fn product(a: &[Eight], b: &[Eight]) -> Eight {
 /// what is left when the observed group has been fitted too. They have more power, but beside seven fitted columns ten runs have
 /// too little left.
 pub struct Family {
-    /// How far the farthest group is from zero under each flip but that which is none.
+    /// Largest distance of a group from zero, under every flip except the identity.
     farthest: Vec<f64>,
 }
 

@@ -4,16 +4,14 @@ use super::examination::Examination;
 use super::repeats::SHAPE;
 use crate::diagnose::suspect::Suspect;
 use crate::effect::{Law, Model, Part};
-use crate::evidence::Estimate;
-use crate::evidence::FitError;
-use crate::evidence::tracks::Alone;
-use crate::evidence::tracks::estimates;
+use crate::evidence::tracks::{Alone, estimates};
+use crate::evidence::{Estimate, FitError};
 use crate::likelihood::{Fitted, Noise};
 use std::sync::Arc;
 
-/// A shape (a length, a threshold) is fitted where its size stands out by so many standard errors.
+/// A shape (a length, a threshold) is fitted where its size is this many standard errors from zero.
 const SHOWN: f64 = 8.0;
-/// Its size still stands out by so many once they are fitted along, or AICc falls by this; else they keep their values.
+/// Shapes keep their values unless the size is still this many standard errors from zero with them, or AICc falls by this.
 const SURE: f64 = 4.0;
 const LIKELIER: f64 = 10.0;
 

@@ -1,10 +1,9 @@
-//! What a model leaves of the tracks, and what of that speaks against the model.
+//! What a model leaves of the tracks, and the reasons against the model that follow.
 
-use super::chance;
-use super::doubts;
 use super::examination::Examination;
 use super::finding::TELLING;
 use super::repeats::{Repeated, what_repeats};
+use super::{chance, doubts};
 use crate::diagnose::options::Options;
 use crate::diagnose::reason::Reason;
 use crate::diagnose::remains::Remains;
@@ -22,7 +21,7 @@ pub(crate) fn remains_of(exam: &Examination, options: &Options) -> Remains {
     chance::remains(observed, noise, &left, &exam.errors.in_sample(), options)
 }
 
-/// What speaks against the model of an examination as a whole.
+/// Reasons against the model of an examination as a whole.
 pub(crate) fn doubts_of(exam: &Examination, options: &Options) -> Vec<Reason> {
     let Examination { fitted, errors, .. } = exam;
     doubts::of_model(&fitted.observed, &fitted.model, &fitted.noise, &errors.in_sample(), options.seed)
@@ -36,8 +35,7 @@ pub(crate) fn reason_to_doubt(repeated: Option<&Repeated>) -> Option<Reason> {
         .map(|repeated| Reason::Repeats(Box::new(repeated)))
 }
 
-/// What speaks against a model with the values that it has, nothing but START fitted: under the noise that would make what it leaves
-/// likeliest.
+/// Reasons against a model with the values that it has, only START fitted, under the noise for which what it leaves is likeliest.
 pub(crate) fn doubts_as_written(
     observed: &Observed,
     model: &Model,

@@ -1,12 +1,12 @@
-//! One test for whatever repeats: thousands of laws that no catalogue lists, and one p-value for all of them.
+//! One test for whatever repeats: thousands of laws outside the catalogue, and one p-value for all of them.
 //!
-//! The whitened residuals of a fitted model are held against the whitened columns of every law of [`Laws`], each less what the
-//! model's own columns make of it. The statistic is the greatest of all quotients of a score and its standard deviation. Where nothing
-//! repeats, the signs of whole runs may be flipped, and the same columns give its distribution: no law is asked by itself, so none costs
-//! anything. Where few runs carry a column, quarters of runs are flipped.
+//! The whitened residuals of a fitted model are correlated with the whitened columns of every law of [`Laws`], after the model's own
+//! columns are fitted out of each. The statistic is the greatest score in standard deviations. Where nothing repeats, the signs of whole
+//! runs may be flipped, and the same columns give its distribution: the greatest of all laws is compared with the greatest under each
+//! flip. Where few runs carry a column, quarters of runs are flipped.
 //!
-//! Of the laws that stand out most, each is then fitted along with the model and runs are left out. The shortest of those that predict
-//! them as well as the best, within one standard error, is the law.
+//! Each of the most significant laws is then fitted together with the model and cross-validated. The law is the shortest of those that
+//! predict held-out runs as well as the best, within one standard error.
 //!
 //! Source: as [`flips`](super::flips); the choice by one standard error, Breiman, Friedman, Olshen & Stone (1984).
 
@@ -36,7 +36,7 @@ pub(super) use added::suspect;
 pub use law::{Repeated, UnlistedLaw};
 pub(super) use laws::SHAPE;
 
-/// Looks for what repeats beside a model under a noise: the law that stands out most, whether it counts or not; `None` where the runs could
+/// Looks for what repeats beside a model under a noise: the most significant law, whether it counts or not; `None` where the runs can
 /// show no law. `own` holds, run by run, the columns that are fitted along, one (x, y, heading) \[m, m, rad\] a block each, and last the residual.
 pub fn what_repeats(
     observed: &Observed,

@@ -7,7 +7,7 @@ use crate::likelihood::{Column, Fitted, NUISANCE, Observed};
 use crate::parameter::Parameter;
 use std::sync::Arc;
 
-/// What is asked about.
+/// What is tested.
 #[derive(Clone, Debug)]
 pub enum Question {
     /// An effect of the catalogue, with the parameters that its columns stand for.
@@ -39,7 +39,7 @@ impl Asked {
     }
 }
 
-/// All that is asked about, with derivatives of the poses along a model.
+/// All groups that are tested, with derivatives of the poses along a model.
 #[derive(Clone, Debug)]
 pub struct Responses {
     /// The groups.

@@ -1,4 +1,4 @@
-//! Every group asked beside a fitted model: how much it explains, and how sure that is.
+//! The tests: how much every group of columns explains beside a fitted model, and how significant that is.
 
 use super::examination::Examination;
 use super::finding::{Finding, worth};
@@ -91,8 +91,8 @@ pub fn possible(exam: &Examination, finding: &Finding) -> bool {
     })
 }
 
-/// p of an effect that the model has, as if it lacked it and that alone were asked: the greatest of those by F, by the scatter of the runs,
-/// and by flips. `None` where none of its values was fitted, or the others do all that it does.
+/// p of an effect of the model, as if the model lacked it and it alone were tested: the greatest of the p-values by F, by the scatter
+/// of the runs and by flips. `None` where none of its values was fitted, or the others do all that it does.
 pub fn p_of_own(exam: &Examination, effect: &str, options: &Options) -> Option<f64> {
     let own = exam.columns_of(effect);
     let values: Vec<f64> = own.iter().map(|column| exam.departure(*column)).collect();

@@ -156,7 +156,7 @@ const fn covariate(name: &'static str, title: &'static str, terms: usize, value:
     Covariate { name, title, unit: "", exposure: Exposure::Way, terms, value, scale: |_| 1.0, basis: powers }
 }
 
-/// Everything that smooths are asked about.
+/// Everything that smooths may depend on.
 pub const COVARIATES: [Covariate; 14] = [
     Covariate { unit: "m/s", scale: |s| s.speed, ..covariate("speed", "the speed", 2, |p| p.at.speed.abs()) },
     Covariate {

@@ -1,11 +1,10 @@
 //! A formula for what the catalogue does not list: of a small family, the one that explains most of what the smooth does.
 //!
-//! Each formula of the family is asked as an effect is, by its own columns beside the model, so it is judged by the data and
+//! Each formula of the family is tested as an effect is, by its own columns beside the model, so it is judged by the data and
 //! not by the looks of a curve. Its sizes start at their values after one step from zero, its shape at the one tried.
 
 use super::examination::Examination;
-use super::finding::Finding;
-use super::finding::worth_of;
+use super::finding::{Finding, worth_of};
 use super::smooth::{Covariate, Exposure, Motion, Scales};
 use crate::effect::{Formula, Model, Target};
 use crate::evidence::tracks::{Projected, System};

@@ -29,8 +29,8 @@ impl Alone {
         let (observed, columns) = (&fitted.observed, fitted.all_columns());
         let system = System::new(observed, &fitted.noise, &columns);
         let usual = fitted.usual_noise.then(|| System::new(observed, &Noise::default(), &columns));
-        // Errors are those of the model as anyone has them: a run starts anew where its track jumps, and not where this fit found
-        // less than that, and as far off as it is.
+        // Errors are those that any user of the model has: a run restarts where its track jumps, but not at the smaller outliers of
+        // this fit.
         let which = (0..system.width).collect();
         let disturbed = observed.runs.iter().flat_map(|run| &run.blocks).any(|block| block.afresh && !block.jumped);
         let errors = if disturbed || observed.runs.iter().any(|run| run.linear) {

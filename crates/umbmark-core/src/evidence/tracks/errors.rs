@@ -1,4 +1,4 @@
-//! Errors as people see them: metres and degrees along the way, in the runs at hand and in runs left out.
+//! Errors in metres and degrees along the way, in the fitted runs and in held-out runs.
 
 use super::system::System;
 use crate::likelihood::{Column, Observed, ObservedRun, gram};
@@ -6,7 +6,7 @@ use crate::setup::PoseNoise;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Share by which errors in runs left out must fall for an effect to count: less is not worth a parameter.
+/// Share by which the errors in held-out runs must fall for an effect to count: less is not worth a parameter.
 pub(crate) const LEAST_GAIN: f64 = 0.02;
 /// An effect is not kept where positions or headings of runs left out are worse by this share, and neither is better.
 const HARM: f64 = 0.1;
@@ -18,19 +18,19 @@ pub struct Misses {
     pub position: f64,
     /// Of the heading \[rad\]; `None` where none was measured.
     pub heading: Option<f64>,
-    /// Of what is new from pose to pose, in standard deviations.
+    /// Of the innovations, in standard deviations.
     pub white: f64,
 }
 
 impl Misses {
-    /// By what share errors are smaller than `before`: of position, of heading, or of what is new from pose to pose, whichever
-    /// falls most. What an effect does within centimetres hardly moves the whole.
+    /// The largest relative decrease against `before`: of position, heading or innovation errors. An effect that acts within
+    /// centimetres hardly changes the position error.
     pub fn gain(&self, before: &Misses) -> f64 {
         let heading = self.heading.zip(before.heading).map_or(f64::NEG_INFINITY, |(now, then)| fall(now, then));
         fall(self.position, before.position).max(heading).max(fall(self.white, before.white))
     }
 
-    /// Whether positions or headings are worse than `before` by a share that is not chance, and neither is better.
+    /// Whether positions or headings are worse than `before` by more than chance, and neither is better.
     pub fn harms(&self, before: &Misses) -> bool {
         let [least, most] = self.falls(before);
         most < LEAST_GAIN && least < -HARM
@@ -43,7 +43,7 @@ impl Misses {
         [position.min(heading), position.max(heading)]
     }
 
-    /// By what share what is new from pose to pose is smaller than `before`, both in standard deviations of one noise.
+    /// Relative decrease of the innovations against `before`, both in standard deviations of one noise.
     pub fn white_fall(&self, before: &Misses) -> f64 {
         fall(self.white, before.white)
     }
@@ -109,7 +109,7 @@ impl Errors {
         Misses { position: root(0), heading: (counts[1] > 0).then(|| root(1)), white: root(2) }
     }
 
-    /// Sums of squares of what is left in each fold: of positions, of headings and of what is new from pose to pose.
+    /// Sums of squares that are left in each fold: of positions, headings and innovations.
     pub fn squares(&self, of_fold: impl Fn(usize) -> (Vec<usize>, DVector<f64>) + Send + Sync) -> Vec<[f64; 3]> {
         let of_fold = |(index, (fold, white)): (usize, (&Fold, &(DMatrix<f64>, usize)))| {
             let weights = self.weights(&of_fold(index));

@@ -34,7 +34,7 @@ pub struct System {
     pub rows: usize,
 }
 
-/// Fewer runs are left out by quarters: without one of two, nothing can be told from the other.
+/// Fewer runs are left out by quarters: with one of two runs left out, the other alone determines too little.
 const FEW: usize = 4;
 
 /// How many parts of the data are left out in turn.
@@ -72,7 +72,7 @@ impl System {
         System { rows: units.iter().map(|unit| unit.rows).sum(), units, width, whole }
     }
 
-    /// The same columns with a residual to which some of them are added, so many times each.
+    /// The same columns, with multiples of some of them added to the residual.
     pub fn with_added(&self, columns: &[usize], times: &[f64]) -> System {
         let residual = self.residual();
         let added = |products: &DMatrix<f64>| {
@@ -178,7 +178,7 @@ impl Projected {
         }
     }
 
-    /// What a unit says for and against a group, and how much of the base's columns, made orthonormal, the group's hold in it.
+    /// Score of a unit for a group, and how much of the orthonormalised base columns the group's columns hold in it.
     pub fn score(&self, unit: &DMatrix<f64>, group: &[usize]) -> (DVector<f64>, DMatrix<f64>) {
         let residual = self.products.ncols() - 1;
         let between =

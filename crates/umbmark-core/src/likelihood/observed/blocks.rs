@@ -9,7 +9,7 @@ use crate::replay::Track;
 /// Poses measured within this way \[m\] and rotation \[rad\] are one observation: they share the noise of the wheels, and only
 /// that of the reference is averaged.
 const BLOCK: (f64, f64) = (0.03, 0.05);
-/// A run falls into so many units, by the way driven.
+/// Number of units of a run, by the distance driven.
 const UNITS: f64 = 4.0;
 
 /// Cuts the observations of a track into blocks; each of `jumps` is the first of one.

@@ -9,7 +9,7 @@ use crate::effect::Model;
 use crate::geometry::Pose2;
 use std::ops::Range;
 
-/// Fewer runs than this are cut where they are long, into so many in all.
+/// Fewer runs than this are cut where they are long, into this many pieces in all.
 const FEW: usize = 6;
 const ENOUGH: usize = 10;
 /// A run as long as this is long \[s\]; one that stands alone is long from the second on.

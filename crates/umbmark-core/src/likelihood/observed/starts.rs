@@ -1,4 +1,4 @@
-//! Where a run starts, and starts anew, fitted to what was measured there: all that is fitted before an error is told.
+//! Where a run starts and restarts, fitted to the poses measured there: the only fit before an error is reported.
 //!
 //! A single pose turns everything behind it by its own noise, ten metres on by some centimetres. So START is fitted to the
 //! first poses of a stretch, each weighed by its own noise and by what wheels usually gather until then.
@@ -149,7 +149,7 @@ impl Stretch {
         own.iter().zip(values).map(left).collect()
     }
 
-    /// The blocks whose errors are told: where START is fitted, the first is spent on it.
+    /// The blocks whose errors are reported: where START is fitted, the first determines it.
     pub fn told(&self) -> Range<usize> {
         self.blocks.start + usize::from(self.start.is_some())..self.blocks.end
     }

@@ -17,13 +17,13 @@ use crate::stats::chi_squared_upper_tail;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-/// Probability with which anything is named in a run in which there is noise alone.
+/// False-alarm rate per run that holds noise alone.
 const SIZE: f64 = 0.005;
 /// Probability with which the tails that what is left has reach as far as what is named, in one block of all.
 const LEVEL: f64 = 0.05;
 /// Disturbances nearer to each other than this are one \[m\].
 const NEAR: f64 = 0.15;
-/// Blocks that are spent on START.
+/// Blocks that determine START.
 const SPENT: usize = 2;
 
 /// A place where a run is disturbed.
@@ -43,7 +43,7 @@ pub struct Disturbance {
     pub deviations: f64,
 }
 
-/// What stands out at a block.
+/// The most significant disturbance at a block.
 struct Standing {
     block: usize,
     lasts: bool,
@@ -52,7 +52,7 @@ struct Standing {
 }
 
 impl Noise {
-    /// Where what is left of some runs stands out of this noise, and beyond the tails that what is left has.
+    /// Places where the residuals of some runs exceed this noise, and the tails of the residuals themselves.
     pub fn disturbances(&self, runs: &[ObservedRun], left: &[Column], wheelbase: f64) -> Vec<Disturbance> {
         let scores: Vec<Vec<Standing>> =
             runs.par_iter().zip(left).map(|(run, left)| less_usual(self.scores(run, left))).collect();
@@ -118,7 +118,7 @@ fn less_usual(mut scores: Vec<Standing>) -> Vec<Standing> {
     scores
 }
 
-/// Those of a run that are beyond noise and `tails`, of neighbours the one that stands out most.
+/// Disturbances of a run that exceed the noise and its `tails`; of neighbours, the most significant one.
 fn named(run: &ObservedRun, mut scores: Vec<Standing>, tails: f64, wheelbase: f64) -> Vec<Disturbance> {
     let rows: f64 = if run.blocks.iter().any(|block| block.headings > 0) { 3.0 } else { 2.0 };
     let blocks = run.blocks.len() as f64;

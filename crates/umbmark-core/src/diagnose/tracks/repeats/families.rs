@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 /// Periods from the least to the largest \[s\] and \[m\].
 const TIMES: (f64, f64) = (1.5, 80.0);
 const WAYS: (f64, f64) = (0.25, 30.0);
-/// Waves one after the other go out of step by half a cycle over a run: a wave between two of them is nearly one of them. So many of these,
-/// from the longest; beyond, each period is shorter by this factor.
+/// Neighbouring waves differ by half a cycle over a run, so that a wave between two of them is nearly one of them. This many from the
+/// longest; beyond, each period is shorter by this factor.
 const PERIODS: usize = 96;
 const SHORTER: f64 = 1.1;
 /// Decays over so much time \[s\], and way since a turn or from a wall \[m\].
@@ -17,7 +17,7 @@ const DECAYS: [f64; 7] = [3.0, 6.0, 12.0, 20.0, 35.0, 60.0, 100.0];
 const NEAR: [f64; 5] = [0.1, 0.2, 0.35, 0.6, 1.0];
 /// Sizes of what a robot does, as shares of the largest.
 const SHARES: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
-/// Humps on the floor are so far apart at least \[m\], and so many at most.
+/// Minimum distance between humps on the floor \[m\], and their maximum number.
 const HUMPS: (f64, usize) = (0.5, 80);
 
 /// A formula without a parameter.
@@ -45,7 +45,7 @@ fn less(number: f64) -> String {
     if number < 0.0 { format!("+ {:.3}", -number) } else { format!("- {number:.3}") }
 }
 
-/// The periods to ask about where runs last so long, or go so far.
+/// The periods to test for runs of a given duration or distance.
 fn periods((low, high): (f64, f64), extent: f64) -> Vec<f64> {
     let longest = high.min(extent);
     let mut periods: Vec<f64> = (0..PERIODS).map(|k| 1.0 / (1.0 / longest + k as f64 / (2.0 * extent))).collect();
@@ -339,7 +339,7 @@ impl Laws {
         self.join(first, per.len());
     }
 
-    /// Makes twins of so many terms and as many behind them.
+    /// Makes twins of `count` terms and the `count` terms behind them.
     fn join(&mut self, first: usize, count: usize) {
         for k in 0..count {
             self.terms[first + k].twin = Some(first + count + k);

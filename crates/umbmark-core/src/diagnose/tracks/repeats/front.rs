@@ -1,4 +1,4 @@
-//! The laws that stand out, fitted along with the model, and the one that they are taken for.
+//! The most significant laws, fitted together with the model, and the choice among them.
 
 use super::law::UnlistedLaw;
 use super::laws::Laws;
@@ -8,12 +8,12 @@ use crate::diagnose::tracks::smooth::Motion;
 use crate::evidence::tracks::{Errors, Projected, System};
 use crate::likelihood::{Column, Noise, Observed, ObservedRun};
 
-/// A law by which errors of runs left out fall by less than this share of what the best of them does is none to take.
+/// A law is not taken where its gain in held-out runs is below this share of the best gain.
 const WORSE: f64 = 0.5;
-/// A law that is as good as another takes off the sum of squares as much as that, but for so much.
+/// Two laws are equally good where their drops of the sum of squares differ by less than this.
 const AS_LIKELY: f64 = 40.0;
 
-/// Laws fitted along with the model's own columns: first the shortest of those that predict runs left out as well as the best, within one
+/// Laws fitted together with the model's own columns: first the shortest of those that predict held-out runs as well as the best, within one
 /// standard error, then the others from the best to the worst.
 pub fn front(
     observed: &Observed,
@@ -91,7 +91,7 @@ pub fn front(
     std::iter::once(chosen.0).chain(others).collect()
 }
 
-/// Whether squares of what is new from pose to pose, fold by fold, are no greater than the least ones, within one standard error of the sum of
+/// Whether the squared innovations, fold by fold, are no greater than the smallest ones, within one standard error of the sum of
 /// their differences.
 fn is_as_good(squares: &[[f64; 3]], least: &[[f64; 3]]) -> bool {
     let off: Vec<f64> = squares.iter().zip(least).map(|(own, least)| own[2] - least[2]).collect();

@@ -1,43 +1,43 @@
-//! A law that no catalogue lists, and whether what repeats counts.
+//! A law outside the catalogue, and whether what repeats is significant.
 
 use super::laws::SIZES;
 use crate::diagnose::tracks::class::ALIKE;
 use crate::effect::Model;
 use crate::stats::chi_squared_upper_tail;
 
-/// p at which something repeats: the other certificates together take the rest of one in twenty. Where it stands out as far as the second says
-/// and runs left out are predicted so much better, p need only be the third: the flips of ten runs, of which the fast ones carry most, are few.
+/// False-alarm rate of what repeats: the other tests together use the rest of 5 %. Where p by the noise model is below the first number of
+/// `LOUD` and the gain in held-out runs above the second, `SIZE_IF_LOUD` applies: ten runs, of which the fast ones carry most, have few flips.
 const SIZE: f64 = 0.01;
 const LOUD: (f64, f64) = (1e-6, 0.1);
 const SIZE_IF_LOUD: f64 = 0.05;
-/// Fewer runs do not show whether it is the same in all.
+/// Fewer runs do not show whether a pattern is the same in all.
 const ENOUGH_RUNS: usize = 4;
-/// Where runs left out are predicted so much better, noise as wide as it was fitted may be what repeats, and is not taken as wider still. p need
-/// only be this then: it is of the flips alone, and of few runs, of which some carry most, these are few.
+/// With this gain in held-out runs, the fitted noise may already contain what repeats, so it is not widened further, and `SIZE_IF_PLAIN`
+/// applies to p of the flips: few runs, of which some carry most, have few flips.
 const PLAIN: f64 = 0.4;
 const SIZE_IF_PLAIN: f64 = 0.2;
-/// The same by the noise model, and how many times as wide as that has it noise that remembers makes a drift of the heading.
+/// False-alarm rate by the noise model, and the factor by which correlated noise widens a heading drift against that model.
 const SIZE_BY_NOISE: f64 = 0.05;
 pub(super) const REMEMBERS: f64 = 2.6;
 
-/// What repeats most.
+/// The strongest repeating pattern.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Repeated {
     /// p of all laws together.
     pub p: f64,
-    /// The score of the one that stands out most in standard deviations, as the noise model has them.
+    /// The greatest score, in standard deviations of the noise model.
     pub deviations: f64,
-    /// How many laws there are that the data could show.
+    /// Number of laws that the data could show.
     pub laws: usize,
-    /// In how many runs it was looked for.
+    /// Number of runs in which it was looked for.
     pub runs: usize,
     /// The law that it is taken for.
     pub law: UnlistedLaw,
-    /// Others that stand out, the one that predicts runs left out best first.
+    /// Other significant laws, the one that predicts held-out runs best first.
     pub others: Vec<UnlistedLaw>,
 }
 
-/// A law that no catalogue lists.
+/// A law outside the catalogue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnlistedLaw {
     /// Its number in the table of laws, from 1.
@@ -106,7 +106,7 @@ fn three_digits(value: f64) -> String {
 }
 
 impl Repeated {
-    /// Whether it is no chance, and makes errors of runs left out fall by this share.
+    /// Whether it is significant, and reduces the errors of held-out runs by this share.
     pub(in crate::diagnose::tracks) fn counts(&self, least: f64) -> bool {
         let (by_noise, gain) = (self.p_by_noise(REMEMBERS), self.law.gain);
         let is_plain = gain >= PLAIN && self.p_by_noise(1.0) <= LOUD.0;
@@ -116,16 +116,15 @@ impl Repeated {
         gain >= least && (is_certain || (is_clear && self.runs >= ENOUGH_RUNS))
     }
 
-    /// Whether a model beside which it is left is not to be called explained: it counts, or it stands out of the noise as far as chance does
-    /// once in a million and predicts runs left out 10 % better, though the flips of so few runs do not confirm it. A doubt needs less than an
-    /// addition.
+    /// Whether it is a reason not to call a model explained: it is significant, or its p by the noise model is below 1e-6 and it predicts
+    /// held-out runs 10 % better, even where the flips of few runs do not confirm it. A doubt needs less than an addition.
     pub(in crate::diagnose::tracks) fn is_doubt(&self, least: f64) -> bool {
         let stands_out = self.p_by_noise(1.0) <= LOUD.0 && self.law.gain >= LOUD.1.max(least);
         self.counts(least) || (stands_out && self.runs >= ENOUGH_RUNS)
     }
 
-    /// p of all laws together by the noise model (Bonferroni), with scores so many times as wide as that has them: flips of few runs are few, and
-    /// one of them is as far out once in a while.
+    /// Bonferroni-corrected p of all laws by the noise model, with scores widened by a factor: few runs have few flips, one of which may
+    /// be extreme by chance.
     pub(super) fn p_by_noise(&self, wider: f64) -> f64 {
         let square = (self.deviations / wider).powi(2);
         (self.laws as f64 * chi_squared_upper_tail(square, 1.0)).min(1.0)
@@ -150,7 +149,7 @@ impl Repeated {
         )
     }
 
-    /// The same with the law of a number taken, 1 for the one that is, or the first behind it that is not `refused`; `None` where there is none.
+    /// The same with another law taken: number 1 is the present one. Skips laws that are `refused`; `None` where none is left.
     pub(in crate::diagnose::tracks) fn taking(
         &self,
         number: usize,

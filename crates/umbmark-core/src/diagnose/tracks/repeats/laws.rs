@@ -1,4 +1,4 @@
-//! The laws that are asked about: functions of how and where the robot drives, for each second, metre or radian.
+//! The laws that are tested: functions of how and where the robot drives, per second, metre or radian.
 
 use super::extent::Extent;
 use super::steps::{Per, Step};
@@ -88,7 +88,7 @@ impl Laws {
         1 + usize::from(self.terms[term].twin.is_some()) + shapes
     }
 
-    /// The numbers that shape a term, as it was asked about.
+    /// The numbers that shape a term, as it was tested.
     pub fn shapes(&self, term: usize) -> Vec<f64> {
         self.functions[self.terms[term].function].formula.1.iter().map(|shape| shape.1).collect()
     }
@@ -98,7 +98,7 @@ impl Laws {
         self.functions[self.terms[term].function].formula.1.iter().map(|shape| shape.0 == SHAPE).collect()
     }
 
-    /// The most that these numbers may be: no wave is longer than the longest that is asked about, which is as long as a run.
+    /// Upper bound of these numbers: no wave is longer than the longest that is tested, which is as long as a run.
     pub fn most(&self, term: usize) -> f64 {
         let text = |function: usize| &self.functions[function].formula.0;
         let own = self.terms[term].function;

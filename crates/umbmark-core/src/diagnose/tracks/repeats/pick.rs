@@ -1,4 +1,4 @@
-//! The laws that stand out most, of each shape a few.
+//! The most significant laws, of each shape a few.
 
 use super::laws::Laws;
 use super::signs::Asked;
@@ -6,7 +6,7 @@ use super::steps::Step;
 use crate::diagnose::tracks::smooth::Motion;
 use crate::likelihood::{Column, ObservedRun};
 
-/// So many laws are fitted, and so many of one shape at most.
+/// Maximum number of laws that are fitted, and of one shape.
 const TRIED: usize = 16;
 const OF_A_SHAPE: usize = 2;
 
@@ -36,7 +36,7 @@ pub fn sense_of(run: &ObservedRun) -> f64 {
     run.track.contexts().first().map_or(0.0, |at| at.direction)
 }
 
-/// The laws that stand out most, and the square of the greatest score of a column in standard deviations.
+/// The most significant laws, and the square of the greatest score of a column in standard deviations.
 pub fn picks(asked: &[&Asked], laws: &Laws) -> (Vec<Pick>, f64) {
     let each = Motion::ALL.len();
     let mut all: Vec<(f64, Pick)> = Vec::new();

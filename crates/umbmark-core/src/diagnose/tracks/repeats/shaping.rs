@@ -1,8 +1,8 @@
 //! The numbers that shape a law, fitted: a period, a threshold, a place.
 //!
-//! Laws are asked about on a grid of these numbers. Before laws are held against each other, each that stands out has them at their best:
-//! its sizes are fitted out at every trial, with the model's own columns, and the numbers follow by Gauss and Newton's steps under the same
-//! whitening, halved where they lead too far.
+//! Laws are tested on a grid of these numbers. Before laws are compared with each other, the numbers of each significant law are
+//! fitted: its sizes are fitted out at every trial, together with the model's own columns, and the numbers follow by Gauss-Newton steps under
+//! the same whitening, halved where they overshoot.
 //!
 //! Source: variable projection, Golub & Pereyra (1973).
 
@@ -14,7 +14,7 @@ use crate::likelihood::{Column, Noise, Observed, Whitened};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-/// So many laws, steps, and halvings of a step.
+/// Maximum number of laws, of steps, and of halvings of a step.
 const MOST: usize = 10;
 const ROUNDS: usize = 8;
 const HALVINGS: usize = 4;
@@ -27,7 +27,7 @@ const APART: (f64, f64) = (1e-3, 0.1);
 const RANGE: (f64, f64) = (0.4, 2.5);
 const FAR: f64 = 0.5;
 
-/// Gives the laws that stand out most the numbers with which they explain most.
+/// Fits the numbers that shape the most significant laws.
 pub(super) fn shape(
     picks: &mut Vec<Pick>,
     (observed, noise, own): (&Observed, &Noise, &[Vec<Column>]),
@@ -59,7 +59,7 @@ impl Pick {
     }
 }
 
-/// What the model's own columns and the residual are, whitened: laws are held against that.
+/// The model's own columns and the residual, whitened: laws are fitted beside them.
 struct Ground<'a> {
     observed: &'a Observed,
     noise: &'a Noise,

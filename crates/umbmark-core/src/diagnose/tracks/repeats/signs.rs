@@ -8,9 +8,9 @@ use crate::random::Stream;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// A column of which less than this share is left beside the model is not asked about.
+/// A column is not tested where less than this share of it is left beside the model.
 const LEFT: f64 = 1.0 / 400.0;
-/// Laws are whitened so many at a time, and columns flipped so many at a time.
+/// Number of laws that are whitened together, and of columns that are flipped together.
 const CHUNK: usize = 64;
 /// Flips, the signs as they are among them.
 const FLIPS: usize = 512;
