@@ -5,7 +5,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
 use umbmark_core::effect::{ActsOn, CATALOGUE, Entry, Model};
 use umbmark_core::monte_carlo::{Distribution, Draw};
-use umbmark_core::parameter::{DefaultValue, Parameter};
+use umbmark_core::parameter::{DefaultValue, Parameter, Role};
 
 use crate::numbers::number;
 
@@ -45,14 +45,14 @@ fn deviation_flag(parameter: &Parameter) -> String {
 
 /// Whether its scatter from robot to robot makes sense: choices and scatters have none.
 fn has_deviation(parameter: &Parameter) -> bool {
-    parameter.choices.is_empty() && !parameter.name.contains("_sd_")
+    !matches!(parameter.role, Role::Choice(_) | Role::Scatter)
 }
 
 /// A flag for a number, with its unit and range in the help.
 pub fn number_flag(parameter: &'static Parameter) -> Arg {
     let name = if parameter.unit.is_empty() { "X".to_owned() } else { parameter.unit.to_uppercase() };
     let default = match parameter.default {
-        DefaultValue::Value(value) => match parameter.choices.get(value as usize) {
+        DefaultValue::Value(value) => match parameter.word(value) {
             Some(word) => format!(" [default: {word}]"),
             None => format!(" [default: {value}]"),
         },
@@ -62,10 +62,10 @@ pub fn number_flag(parameter: &'static Parameter) -> Arg {
         .long(parameter.flag)
         .help(format!("{}{default}", parameter.meaning))
         .allow_negative_numbers(true);
-    if parameter.choices.is_empty() {
+    if parameter.choices().is_empty() {
         arg.value_name(name).value_parser(number)
     } else {
-        arg.value_parser(clap::builder::PossibleValuesParser::new(parameter.choices))
+        arg.value_parser(clap::builder::PossibleValuesParser::new(parameter.choices()))
     }
 }
 
@@ -74,11 +74,11 @@ pub fn number_of(matches: &ArgMatches, parameter: &Parameter) -> Option<f64> {
     if matches.value_source(parameter.flag) != Some(ValueSource::CommandLine) {
         return None;
     }
-    if parameter.choices.is_empty() {
+    if parameter.choices().is_empty() {
         return matches.get_one::<f64>(parameter.flag).copied();
     }
     let word = matches.get_one::<String>(parameter.flag)?;
-    parameter.choices.iter().position(|choice| choice == word).map(|index| index as f64)
+    parameter.choices().iter().position(|choice| choice == word).map(|index| index as f64)
 }
 
 impl Args for EffectFlags {

@@ -2,7 +2,7 @@
 
 use anyhow::Context;
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches};
-use umbmark_core::drive::{Drive, Encoder, Kind, Robot};
+use umbmark_core::drive::{DifferentialDrive, Encoder, Robot};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{Path, SHAPES, SpeedProfile, WAYPOINTS};
 
@@ -12,10 +12,8 @@ use crate::numbers::number;
 /// What was said of robot and path on the command line.
 #[derive(Clone, Debug, Default)]
 pub struct RobotFlags {
-    wheelbase: Option<f64>,
-    wheel_diameter: Option<f64>,
-    ticks_per_revolution: Option<f64>,
-    encoder_rate: Option<Option<f64>>,
+    /// Numbers of the robot, with their descriptions; `None` for an encoder that is looked at at every tick.
+    numbers: Vec<(&'static Parameter, Option<f64>)>,
     shape: Option<String>,
     sizes: Vec<(&'static str, f64)>,
     speed: [Option<f64>; 3],
@@ -51,36 +49,24 @@ fn encoder_rate(text: &str) -> Result<Option<f64>, String> {
 
 impl Args for RobotFlags {
     fn augment_args(command: Command) -> Command {
-        let robot = |flag: &'static str, unit: &'static str, help: &'static str| {
-            Arg::new(flag)
-                .long(flag)
-                .value_name(unit)
-                .value_parser(number)
-                .allow_negative_numbers(true)
-                .help(help)
-                .help_heading("Robot")
+        let robot = |command: Command, p: &'static Parameter| {
+            let arg = number_flag(p).help_heading("Robot");
+            command.arg(if p.name == Encoder::RATE.name {
+                let help = format!("{}, or \"every tick\" [default: every tick]", p.meaning);
+                arg.value_parser(encoder_rate).help(help)
+            } else {
+                arg
+            })
         };
-        let command = command
-            .arg(robot("wheelbase", "M", "nominal wheelbase b [default: 0.340, the paper's LabMate]"))
-            .arg(robot("wheel-diameter", "M", "nominal diameter of both wheels [default: 0.150, assumed]"))
-            .arg(robot("ticks-per-revolution", "N", "encoder ticks per wheel revolution [default: 2000, assumed]"))
-            .arg(
-                Arg::new("encoder-rate")
-                    .long("encoder-rate")
-                    .value_name("HZ")
-                    .value_parser(encoder_rate)
-                    .help("how often the counters are read, or \"every tick\" [default: every tick]")
-                    .help_heading("Robot"),
-            )
-            .arg(
-                Arg::new("shape")
-                    .long("shape")
-                    .value_parser(clap::builder::PossibleValuesParser::new(
-                        SHAPES.iter().filter(|s| !std::ptr::eq(**s, &WAYPOINTS)).map(|s| s.name),
-                    ))
-                    .help("shape of the path [default: square]")
-                    .help_heading("Path"),
-            );
+        let command = Robot::NUMBERS.iter().fold(command, robot).arg(
+            Arg::new("shape")
+                .long("shape")
+                .value_parser(clap::builder::PossibleValuesParser::new(
+                    SHAPES.iter().filter(|s| !std::ptr::eq(**s, &WAYPOINTS)).map(|s| s.name),
+                ))
+                .help("shape of the path [default: square]")
+                .help_heading("Path"),
+        );
         let command = sizes().into_iter().fold(command, |command, p| command.arg(size_flag(p)));
         SpeedProfile::PARAMETERS.iter().fold(command, |command, p| command.arg(number_flag(p).help_heading("Path")))
     }
@@ -92,12 +78,16 @@ impl Args for RobotFlags {
 
 impl FromArgMatches for RobotFlags {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
-        let value = |flag: &str| matches.get_one::<f64>(flag).copied();
+        let number = |p: &'static Parameter| {
+            let given = if p.name == Encoder::RATE.name {
+                matches.get_one::<Option<f64>>(p.flag).copied()?
+            } else {
+                Some(number_of(matches, p)?)
+            };
+            Some((p, given))
+        };
         Ok(RobotFlags {
-            wheelbase: value("wheelbase"),
-            wheel_diameter: value("wheel-diameter"),
-            ticks_per_revolution: value("ticks-per-revolution"),
-            encoder_rate: matches.get_one::<Option<f64>>("encoder-rate").copied(),
+            numbers: Robot::NUMBERS.iter().filter_map(number).collect(),
             shape: matches.get_one::<String>("shape").cloned(),
             sizes: sizes().into_iter().filter_map(|p| Some((p.flag, number_of(matches, p)?))).collect(),
             speed: std::array::from_fn(|i| number_of(matches, &SpeedProfile::PARAMETERS[i])),
@@ -113,29 +103,13 @@ impl FromArgMatches for RobotFlags {
 impl RobotFlags {
     /// `robot` with what was said changed.
     pub fn robot(&self, robot: Robot) -> anyhow::Result<Robot> {
-        let Robot { name, drive, encoder } = robot;
-        Ok(Robot {
-            name,
-            drive: self.drive(drive)?,
-            encoder: Encoder::new(
-                self.ticks_per_revolution.unwrap_or(encoder.ticks_per_revolution()),
-                self.encoder_rate.unwrap_or(encoder.rate()),
-                encoder.counter_bits(),
-            )?,
+        self.numbers.iter().try_fold(robot, |robot, (parameter, value)| {
+            let changed = match value {
+                Some(value) => robot.with(parameter.name, *value),
+                None => robot.encoder.with_rate(None).map(|encoder| Robot { encoder, ..robot }),
+            };
+            changed.with_context(|| format!("--{}", parameter.flag))
         })
-    }
-
-    fn drive(&self, drive: Drive) -> anyhow::Result<Drive> {
-        let said = [(self.wheelbase, "--wheelbase"), (self.wheel_diameter, "--wheel-diameter")];
-        let (kind, given) = (drive.kind(), said.iter().find(|(value, _)| value.is_some()));
-        if let Some((_, flag)) = given.filter(|_| kind != Kind::Differential) {
-            anyhow::bail!(
-                "{flag} is for robots with drive = \"differential\"; say the {} robot's numbers in a robot.toml",
-                kind.name()
-            );
-        }
-        let drive = self.wheelbase.map_or(Ok(drive), |value| drive.with("wheelbase_m", value))?;
-        Ok(self.wheel_diameter.map_or(Ok(drive), |value| drive.with("wheel_diameter_m", value))?)
     }
 
     /// `path` with what was said changed.
@@ -170,6 +144,7 @@ impl RobotFlags {
 
     /// Whether the wheel diameter and ticks are still the assumed ones.
     pub fn leaves_assumptions(&self) -> bool {
-        self.wheel_diameter.is_none() || self.ticks_per_revolution.is_none()
+        let said = |wanted: Parameter| self.numbers.iter().any(|(parameter, _)| parameter.name == wanted.name);
+        !said(DifferentialDrive::WHEEL_DIAMETER) || !said(Encoder::TICKS)
     }
 }

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::Command;
 use umbmark_core::drive::{Drive, Kind, Robot};
 use umbmark_core::effect::{ActsOn, of_drive};
-use umbmark_core::parameter::{DefaultValue, Parameter};
+use umbmark_core::parameter::Parameter;
 use umbmark_core::path::SHAPES;
 
 fn umbmark(arguments: &[&str]) -> String {
@@ -73,7 +73,7 @@ fn the_page_of_the_drives_has_every_kind_and_its_keys() {
         text += &format!("\n## {}\n\n{}\n\n", kind.name(), kind.about());
         text += "| key | allowed | where it is left out | meaning |\n|---|---|---|---|\n";
         for p in kind.parameters() {
-            let left_out = if let DefaultValue::Value(0.0) = p.default { "0" } else { "refused" };
+            let left_out = if p.nothing().is_some() { "0" } else { "refused" };
             text += &format!("| `{}` | {} | {left_out} | {} |\n", p.name, p.allowed(), p.meaning);
         }
         let counters = kind.counters().map(|counter| format!("`ticks_{counter}`"));

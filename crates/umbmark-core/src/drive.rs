@@ -32,7 +32,9 @@ pub use clapper::LinkReading;
 pub use differential::WheelTravel;
 pub use encoder::{Encoder, MAX_COUNTER_BITS, Wiring, roll_over};
 pub use kind::{Kind, Kinds};
+pub use kinematics::Spelling;
 
+use crate::parameter::{Parameter, ParameterError};
 use kinematics::Kinematics;
 use std::ops::Deref;
 
@@ -63,26 +65,9 @@ impl std::fmt::Display for Wheel {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DriveError {
-    /// A length, count or rate that must be positive and finite is not.
-    #[error("{quantity} must be positive and finite, got {value} {unit}")]
-    NotPositive {
-        /// What was meant.
-        quantity: &'static str,
-        /// What was given.
-        value: f64,
-        /// Its unit.
-        unit: &'static str,
-    },
-    /// A number that must be finite, and small, is not.
-    #[error("{quantity} must be finite and small, got {value} {unit}")]
-    NotFinite {
-        /// What was meant.
-        quantity: &'static str,
-        /// What was given.
-        value: f64,
-        /// Its unit.
-        unit: &'static str,
-    },
+    /// A number that is out of its range.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
     /// A number that a drive does not have.
     #[error("a robot with drive = \"{drive}\" has no {quantity}")]
     NotOf {
@@ -91,13 +76,6 @@ pub enum DriveError {
         /// Kind of the drive.
         drive: &'static str,
     },
-    /// A counter of no or too many bits.
-    #[error("counter_bits must be between 1 and {MAX_COUNTER_BITS}, got {0}")]
-    CounterBits(u32),
-}
-
-fn positive(quantity: &'static str, value: f64, unit: &'static str) -> Result<f64, DriveError> {
-    if value > 0.0 && value.is_finite() { Ok(value) } else { Err(DriveError::NotPositive { quantity, value, unit }) }
 }
 
 /// Exports the types in the files of drives, and makes the type of all of them.
@@ -212,18 +190,33 @@ impl Drive {
         kind.drive(values)
     }
 
-    /// The drive with another value of one of its numbers, by its name in files; `wheel_diameter_m` is that of all wheels. What is
-    /// a number of the encoder or of another drive changes nothing, but for the wheelbase.
+    /// One of its numbers, by any of its names in files; of several that go by that name, the first.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        let kind = self.kind();
+        let (own, factor) = match kind.spelling(name) {
+            Some(spelling) => (spelling.of[0], spelling.factor),
+            None => (name, 1.0),
+        };
+        let place = kind.parameters().iter().position(|p| p.name == own)?;
+        Some(self.values()[place] / factor)
+    }
+
+    /// The drive with another value of one of its numbers, by any of its names in files.
     pub fn with(&self, name: &'static str, value: f64) -> Result<Drive, DriveError> {
-        let all_wheels = |own: &str| name == "wheel_diameter_m" && own.starts_with("wheel_diameter_");
         let (kind, mut values) = (self.kind(), self.values());
-        if name == "wheelbase_m" && kind.parameters().iter().all(|p| p.name != name) {
-            return Err(DriveError::NotOf { quantity: name, drive: kind.name() });
-        }
+        let own = [name];
+        let (names, value) = match kind.spelling(name) {
+            Some(spelling) => (spelling.of, spelling.factor * spelling.parameter.check(value)?),
+            None => (&own[..], value),
+        };
+        let mut found = false;
         for (parameter, own) in kind.parameters().iter().zip(&mut values) {
-            if parameter.name == name || all_wheels(parameter.name) {
-                *own = value;
+            if names.contains(&parameter.name) {
+                (*own, found) = (value, true);
             }
+        }
+        if !found {
+            return Err(DriveError::NotOf { quantity: name, drive: kind.name() });
         }
         Drive::from_values(kind, &values)
     }
@@ -267,6 +260,24 @@ impl Robot {
             drive: DifferentialDrive::new(0.340, 0.150, 0.150).expect("constants are positive").into(),
             encoder: Encoder::new(2000.0, None, None).expect("constants are positive"),
         }
+    }
+
+    /// The numbers of robots that flags and sweeps can change.
+    pub const NUMBERS: [Parameter; 4] =
+        [DifferentialDrive::WHEELBASE, DifferentialDrive::WHEEL_DIAMETER, Encoder::TICKS, Encoder::RATE];
+
+    /// A number of the drive or the encoder, by its name in files.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.encoder.number(name).unwrap_or_else(|| self.drive.number(name))
+    }
+
+    /// The robot with another value of a number of its drive or encoder, by its name in files.
+    pub fn with(&self, name: &'static str, value: f64) -> Result<Robot, DriveError> {
+        let (drive, encoder) = match self.encoder.with(name, value)? {
+            Some(encoder) => (self.drive, encoder),
+            None => (self.drive.with(name, value)?, self.encoder),
+        };
+        Ok(Robot { name: self.name.clone(), drive, encoder })
     }
 
     /// What the counters do while the axle's centre advances `forward` \[m\] and the robot turns by `rotation` \[rad\], at a

@@ -88,7 +88,6 @@ pub use context::{Context, Place, Progress, Sight};
 pub use conversion::{CONVERTED, Conversion};
 pub use formula::{Formula, FormulaError, FormulaVariable, Target};
 pub use law::Law;
-pub(crate) use model::is_shape;
 pub use model::{Model, ModelError, Part};
 pub use number::{Derived, Number};
 pub use text::{effects_text, effects_text_with};
@@ -394,7 +393,7 @@ pub struct Scatter {
 /// An effect as data: of the catalogue, or of a program that adds its own by [`Model::add_entry`].
 ///
 /// ```
-/// use umbmark_core::{drive::Robot, geometry::{Displacement2, Real}, parameter::{DefaultValue, Parameter}};
+/// use umbmark_core::{drive::Robot, geometry::{Displacement2, Real}, parameter::Parameter};
 /// use umbmark_core::effect::{About, ActsOn, Context, Effect, Entry, Model};
 /// struct Draught;
 /// impl Effect for Draught {
@@ -402,16 +401,7 @@ pub struct Scatter {
 ///         name: "draught",
 ///         title: "a door left open",
 ///         acts_on: ActsOn::Body,
-///         parameters: &[Parameter {
-///             name: "push_m_per_m",
-///             flag: "",
-///             unit: "m/m",
-///             default: DefaultValue::Value(0.0),
-///             typical: 1e-3,
-///             bounds: (-1.0, 1.0),
-///             meaning: "drift to the left per metre",
-///             choices: &[],
-///         }],
+///         parameters: &[Parameter::size("push_m_per_m", "", "m/m", 1e-3, (-1.0, 1.0), "drift to the left per metre")],
 ///         equation: "sideways ← sideways + k · length",
 ///         physics: "Wind.",
 ///         signature: "A drift to the left on every leg.",

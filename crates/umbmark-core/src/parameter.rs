@@ -1,7 +1,7 @@
-//! A number a user can set: its name, unit, bounds, usual value and meaning.
+//! A number a user can set: its name, unit, role, bounds, usual value and meaning.
 //!
-//! Effects, path shapes and speed profiles describe their numbers with the same type, so that files, flags, help and
-//! error messages are all made from one description.
+//! Robots, effects, path shapes and speed profiles describe their numbers with the same type, so that files, flags, sweeps, help
+//! and error messages are all made from one description.
 
 use crate::drive::Robot;
 
@@ -10,20 +10,37 @@ use crate::drive::Robot;
 pub struct Parameter {
     /// Its name in files: the unit stands in the name unless it is a ratio or a count.
     pub name: &'static str,
-    /// Its command-line flag, without the dashes.
+    /// Its command-line flag, without the dashes; empty where it has none.
     pub flag: &'static str,
     /// Its unit; empty for a pure number.
     pub unit: &'static str,
+    /// What it does.
+    pub role: Role,
     /// The value where none is given.
     pub default: DefaultValue,
-    /// A usual size: for an effect, of the departure from the value that does nothing.
+    /// A usual size: of the departure from the value that does nothing, where there is one.
     pub typical: f64,
     /// Smallest and largest value allowed.
     pub bounds: (f64, f64),
     /// What it is, in a short sentence.
     pub meaning: &'static str,
-    /// Where the number stands for one of a few words: the words, in order from zero.
-    pub choices: &'static [&'static str],
+}
+
+/// What a number does in what it belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// It does nothing at 0.
+    Size,
+    /// It does nothing at 1.
+    Ratio,
+    /// A length, rate or threshold. It changes nothing by itself, and no value of it does nothing.
+    Shape,
+    /// A standard deviation of what differs from run to run: nothing varies at 0.
+    Scatter,
+    /// How many there are: a whole number.
+    Count,
+    /// It stands for one of these words, in order from 0.
+    Choice(&'static [&'static str]),
 }
 
 /// The value of a parameter that nobody set.
@@ -58,7 +75,17 @@ pub struct ParameterError {
 }
 
 impl Parameter {
-    /// A size that does nothing where it is 0, its value where none is given.
+    const fn new(
+        role: Role,
+        [name, flag, unit]: [&'static str; 3],
+        [default, typical]: [f64; 2],
+        bounds: (f64, f64),
+        meaning: &'static str,
+    ) -> Parameter {
+        Parameter { name, flag, unit, role, default: DefaultValue::Value(default), typical, bounds, meaning }
+    }
+
+    /// A number that does nothing where it is 0, its value where none is given.
     pub const fn size(
         name: &'static str,
         flag: &'static str,
@@ -67,34 +94,98 @@ impl Parameter {
         bounds: (f64, f64),
         meaning: &'static str,
     ) -> Parameter {
-        Parameter { name, flag, unit, default: DefaultValue::Value(0.0), typical, bounds, meaning, choices: &[] }
+        Parameter::new(Role::Size, [name, flag, unit], [0.0, typical], bounds, meaning)
     }
 
-    /// A number that every robot of a kind has, with that of a usual one.
-    pub const fn of_robot(
+    /// A pure number that does nothing where it is 1, its value where none is given; `typical` is a usual departure from 1.
+    pub const fn ratio(
         name: &'static str,
+        flag: &'static str,
+        typical: f64,
+        bounds: (f64, f64),
+        meaning: &'static str,
+    ) -> Parameter {
+        Parameter::new(Role::Ratio, [name, flag, ""], [1.0, typical], bounds, meaning)
+    }
+
+    /// A length, rate or threshold, with a usual value.
+    pub const fn shape(
+        name: &'static str,
+        flag: &'static str,
         unit: &'static str,
         usual: f64,
         bounds: (f64, f64),
         meaning: &'static str,
     ) -> Parameter {
-        let default = DefaultValue::Value(usual);
-        Parameter { name, flag: "", unit, default, typical: usual, bounds, meaning, choices: &[] }
+        Parameter::new(Role::Shape, [name, flag, unit], [usual, usual], bounds, meaning)
     }
 
-    /// A value at which it does something: the typical departure from 0 or 1 where that does nothing, else the default.
-    pub fn usual(&self, robot: &Robot) -> f64 {
-        match self.default.resolve(robot) {
-            0.0 => self.typical,
-            1.0 => 1.0 + self.typical,
-            other => other,
+    /// A standard deviation of what differs from run to run, 0 where none is given.
+    pub const fn scatter(
+        name: &'static str,
+        flag: &'static str,
+        unit: &'static str,
+        typical: f64,
+        bounds: (f64, f64),
+        meaning: &'static str,
+    ) -> Parameter {
+        Parameter::new(Role::Scatter, [name, flag, unit], [0.0, typical], bounds, meaning)
+    }
+
+    /// How many there are; none where nothing is said.
+    pub const fn count(
+        name: &'static str,
+        flag: &'static str,
+        typical: f64,
+        bounds: (f64, f64),
+        meaning: &'static str,
+    ) -> Parameter {
+        Parameter::new(Role::Count, [name, flag, ""], [0.0, typical], bounds, meaning)
+    }
+
+    /// One of a few words; the one of this index where none is given.
+    pub const fn choice(
+        name: &'static str,
+        flag: &'static str,
+        words: &'static [&'static str],
+        default: usize,
+        meaning: &'static str,
+    ) -> Parameter {
+        let bounds = (0.0, words.len() as f64 - 1.0);
+        Parameter::new(Role::Choice(words), [name, flag, ""], [default as f64; 2], bounds, meaning)
+    }
+
+    /// The words that it stands for; none for a number.
+    pub fn choices(&self) -> &'static [&'static str] {
+        match self.role {
+            Role::Choice(words) => words,
+            _ => &[],
         }
+    }
+
+    /// The word that a value of it stands for.
+    pub fn word(&self, value: f64) -> Option<&'static str> {
+        self.choices().get(value as usize).copied()
+    }
+
+    /// The value at which it does nothing, where there is one.
+    pub fn nothing(&self) -> Option<f64> {
+        match self.role {
+            Role::Size | Role::Scatter | Role::Count => Some(0.0),
+            Role::Ratio => Some(1.0),
+            Role::Shape | Role::Choice(_) => None,
+        }
+    }
+
+    /// A value at which it does something: the typical departure from the one that does nothing, else the default.
+    pub fn usual(&self, robot: &Robot) -> f64 {
+        self.nothing().map_or_else(|| self.default.resolve(robot), |nothing| nothing + self.typical)
     }
 
     /// `value`, if it is finite and within the bounds.
     pub fn check(&self, value: f64) -> Result<f64, ParameterError> {
         let (lowest, highest) = self.bounds;
-        let whole = self.choices.is_empty() || value.fract() == 0.0;
+        let whole = self.choices().is_empty() || value.fract() == 0.0;
         if value.is_finite() && value >= lowest && value <= highest && whole {
             return Ok(value);
         }
@@ -103,8 +194,8 @@ impl Parameter {
 
     /// The allowed values in words: "between 0.5 and 2", "0 or more, in m".
     pub fn allowed(&self) -> String {
-        if !self.choices.is_empty() {
-            return format!("one of {}", self.choices.join(", "));
+        if let Role::Choice(words) = self.role {
+            return format!("one of {}", words.join(", "));
         }
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
         match self.bounds {
@@ -151,16 +242,7 @@ fn edit_distance(a: &str, b: &str) -> usize {
 mod tests {
     use super::*;
 
-    const RATIO: Parameter = Parameter {
-        name: "e_d",
-        flag: "ed",
-        unit: "",
-        default: DefaultValue::Value(1.0),
-        typical: 1e-3,
-        bounds: (0.5, 2.0),
-        meaning: "",
-        choices: &[],
-    };
+    const RATIO: Parameter = Parameter::ratio("e_d", "ed", 1e-3, (0.5, 2.0), "");
 
     #[test]
     fn values_out_of_bounds_and_not_finite_are_refused_with_the_range() {

@@ -182,9 +182,9 @@ impl<'a> Entry<'a> {
 
     /// The value as a number within the bounds of its description; a word where the description offers words.
     pub fn number(&self, parameter: &Parameter) -> Result<f64, DatasetError> {
-        if let (DeValue::String(word), false) = (self.value.get_ref(), parameter.choices.is_empty()) {
-            let place = parameter.choices.iter().position(|choice| *choice == word.as_ref());
-            let remedy = super::error::did_you_mean(word, parameter.choices.iter().copied());
+        if let (DeValue::String(word), false) = (self.value.get_ref(), parameter.choices().is_empty()) {
+            let place = parameter.choices().iter().position(|choice| *choice == word.as_ref());
+            let remedy = super::error::did_you_mean(word, parameter.choices().iter().copied());
             return place.map(|p| p as f64).ok_or_else(|| self.wrong(&parameter.allowed(), &remedy));
         }
         let value = self.any_number().ok_or_else(|| self.wrong(&parameter.allowed(), self.unquote()))?;

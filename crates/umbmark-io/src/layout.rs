@@ -11,7 +11,6 @@ use super::mcap::save_mcap;
 use super::save::{Existing, save};
 use std::path::Path;
 use umbmark_core::dataset::{Dataset, Run, TickLog};
-use umbmark_core::drive::Encoder;
 
 /// A layout that datasets are written in.
 #[derive(Clone, Copy, Debug)]
@@ -82,8 +81,7 @@ fn csv(data: &Dataset, folder: &Path, existing: Existing) -> Result<Vec<String>,
     }
     let mut unrolled = data.clone();
     let mut robot = robot.clone();
-    robot.encoder = Encoder::new(encoder.ticks_per_revolution(), encoder.rate(), None)
-        .map_err(|error| DatasetError::Unwritable { file: folder.display().to_string(), reason: error.to_string() })?;
+    robot.encoder = encoder.without_roll_over();
     unrolled.robot = Some(robot);
     save(&unrolled, folder, existing)?;
     Ok(vec!["counter_bits: counts were put between readings, so all are written with their roll-overs undone".into()])

@@ -171,7 +171,7 @@ fn read_value(entry: &Entry, parameter: &Parameter) -> Result<(f64, Option<Distr
     if !entry.is_table() {
         return Ok((entry.number(parameter)?, None));
     }
-    if !parameter.choices.is_empty() {
+    if !parameter.choices().is_empty() {
         return Err(entry.wrong(&parameter.allowed(), "it cannot be drawn"));
     }
     let distribution = read_distribution(&entry.table(entry.key.to_owned())?, parameter, &[])?;

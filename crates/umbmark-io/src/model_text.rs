@@ -58,7 +58,7 @@ mod tests {
         let mut model = Model::new(&robot);
         for (i, entry) in CATALOGUE.iter().enumerate() {
             model.add(entry.about.name).unwrap().free = i % 2 == 0;
-            for parameter in entry.about.parameters.iter().filter(|p| p.choices.is_empty()) {
+            for parameter in entry.about.parameters.iter().filter(|p| p.choices().is_empty()) {
                 let value = parameter.default.resolve(&robot) + parameter.typical / 3.0;
                 model.set(entry.about.name, parameter.name, value).unwrap();
             }

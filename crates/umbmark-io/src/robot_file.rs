@@ -4,29 +4,10 @@ use super::document::{Entry, Source, Table};
 use super::error::{DatasetError, did_you_mean};
 use super::source::read_text;
 use umbmark_core::dataset::ReferenceFrame;
-use umbmark_core::drive::{DifferentialDrive, Drive, DriveError, Encoder, Kind, MAX_COUNTER_BITS, Robot, Wiring};
-use umbmark_core::parameter::{DefaultValue, Parameter};
+use umbmark_core::drive::{Drive, Encoder, Kind, Robot, Spelling, Wiring};
+use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{Path, PathError, SHAPES, Shape, SpeedProfile, WAYPOINTS};
 
-const WHEELBASE: Parameter =
-    Parameter::of_robot("wheelbase_m", "m", 0.340, (1e-3, 100.0), "distance of the two wheels' contact points");
-const DIAMETER: Parameter =
-    Parameter::of_robot("wheel_diameter_m", "m", 0.150, (1e-3, 10.0), "diameter of both wheels");
-const RADIUS: Parameter = Parameter::of_robot("wheel_radius_m", "m", 0.075, (5e-4, 5.0), "radius of both wheels");
-const DIAMETER_LEFT: Parameter = Parameter { name: "wheel_diameter_left_m", ..DIAMETER };
-const DIAMETER_RIGHT: Parameter = Parameter { name: "wheel_diameter_right_m", ..DIAMETER };
-const TICKS: Parameter = Parameter::of_robot(
-    "ticks_per_revolution",
-    "",
-    2000.0,
-    (1.0, 1e9),
-    "counts per wheel revolution, after gearing and quadrature",
-);
-const RATE: Parameter =
-    Parameter::of_robot("encoder_rate_hz", "Hz", 100.0, (1e-3, 1e6), "how often the counts are read");
-const BITS: Parameter =
-    Parameter::of_robot("counter_bits", "", 16.0, (1.0, MAX_COUNTER_BITS as f64), "width of a counter that rolls over");
-const WHEELBASE_NAMES: [&str; 3] = [WHEELBASE.name, "wheel_separation_m", "track_width_m"];
 const EVERY_TICK: &str = "every tick";
 const POINTS: &str = "points_m";
 pub(super) const EXCHANGED: &str = "wheels_exchanged";
@@ -69,34 +50,20 @@ pub(super) fn read_robot_table(table: &Table) -> Result<Robot, DatasetError> {
     let kind = table.get("drive").map_or(Ok(Kind::Differential), |drive| read_kind(&drive))?;
     let backward = kind.counters().map(|counter| format!("{counter}_counts_backward"));
     let mut keys = vec!["name", "drive", EXCHANGED, &backward[0], &backward[1]];
-    if kind == Kind::Differential {
-        keys.extend(WHEELBASE_NAMES);
-        keys.extend([DIAMETER, DIAMETER_LEFT, DIAMETER_RIGHT, RADIUS].map(|p| p.name));
-    } else {
-        keys.extend(kind.parameters().iter().map(|p| p.name));
-    }
-    keys.extend([TICKS, RATE, BITS].map(|p| p.name));
+    keys.extend(kind.parameters().iter().map(|p| p.name));
+    keys.extend(kind.spellings().iter().map(|spelling| spelling.parameter.name));
+    keys.extend([Encoder::TICKS, Encoder::RATE, Encoder::BITS].map(|p| p.name));
     table.only(&keys)?;
     let name = table.get("name").map(|entry| entry.word("text")).transpose()?.unwrap_or("robot");
-    let drive = match kind {
-        Kind::Differential => read_differential(table)?,
-        _ => Drive::from_values(kind, &read_numbers(table, kind.parameters())?),
-    };
+    let values = kind.parameters().iter().map(|p| read_number(table, kind, p)).collect::<Result<Vec<f64>, _>>()?;
+    let drive = Drive::from_values(kind, &values);
     let flag = |key: &str| table.get(key).map_or(Ok(false), |entry| entry.flag());
     let wiring = Wiring { exchanged: flag(EXCHANGED)?, backward: [flag(&backward[0])?, flag(&backward[1])?] };
-    let encoder = Encoder::new(table.number(&TICKS)?, read_rate(table)?, read_bits(table)?);
+    let encoder = Encoder::new(table.number(&Encoder::TICKS)?, read_rate(table)?, read_bits(table)?);
     match (drive, encoder) {
         (Ok(drive), Ok(encoder)) => Ok(Robot { name: name.to_owned(), drive, encoder: encoder.wired(wiring) }),
         (Err(error), _) | (_, Err(error)) => Err(table.missing("possible values", &error.to_string())),
     }
-}
-
-fn read_differential(table: &Table) -> Result<Result<Drive, DriveError>, DatasetError> {
-    let wheelbase =
-        table.one_of(&WHEELBASE_NAMES)?.ok_or_else(|| table.missing(WHEELBASE.name, "e.g. wheelbase_m = 0.340"))?;
-    let wheelbase = wheelbase.number(&WHEELBASE)?;
-    let (left, right) = read_wheels(table)?;
-    Ok(DifferentialDrive::new(wheelbase, left, right).map(Drive::from))
 }
 
 fn read_kind(drive: &Entry) -> Result<Kind, DatasetError> {
@@ -107,54 +74,54 @@ fn read_kind(drive: &Entry) -> Result<Kind, DatasetError> {
     kind.ok_or_else(|| drive.wrong(&allowed, &did_you_mean(word, names)))
 }
 
-/// The numbers of a drive; those that do nothing at 0 may be left out.
-fn read_numbers(table: &Table, parameters: &[Parameter]) -> Result<Vec<f64>, DatasetError> {
-    let read = |p: &Parameter| match (table.get(p.name), p.default) {
-        (None, DefaultValue::Value(0.0)) => Ok(0.0),
-        _ => table.number(p),
+/// A number of a drive, by whichever of its keys is there; one that may do nothing may be left out.
+fn read_number(table: &Table, kind: Kind, parameter: &Parameter) -> Result<f64, DatasetError> {
+    let spellings: Vec<&Spelling> = kind.spellings().iter().filter(|s| s.of.contains(&parameter.name)).collect();
+    let names: Vec<&str> = spellings.iter().map(|s| s.parameter.name).collect();
+    let own = [parameter.name];
+    let Some(entry) = table.one_of(&[&own, &names[..]].concat())? else {
+        return match parameter.nothing() {
+            Some(nothing) => Ok(nothing),
+            None => Err(missing(table, parameter, &spellings)),
+        };
     };
-    parameters.iter().map(read).collect()
-}
-
-/// Left and right diameter \[m\].
-fn read_wheels(table: &Table) -> Result<(f64, f64), DatasetError> {
-    let both = table.one_of(&[DIAMETER.name, RADIUS.name])?;
-    let single = table.get(DIAMETER_LEFT.name).or_else(|| table.get(DIAMETER_RIGHT.name));
-    match (both, single) {
-        (Some(both), Some(single)) => Err(both.again(&single)),
-        (Some(radius), None) if radius.key == RADIUS.name => {
-            let diameter = 2.0 * radius.number(&RADIUS)?;
-            Ok((diameter, diameter))
-        }
-        (Some(diameter), None) => {
-            let diameter = diameter.number(&DIAMETER)?;
-            Ok((diameter, diameter))
-        }
-        (None, Some(_)) => Ok((table.number(&DIAMETER_LEFT)?, table.number(&DIAMETER_RIGHT)?)),
-        (None, None) => Err(table.missing(
-            DIAMETER.name,
-            "e.g. wheel_diameter_m = 0.150 (or wheel_diameter_left_m and wheel_diameter_right_m, or wheel_radius_m)",
-        )),
+    match spellings.iter().find(|s| s.parameter.name == entry.key) {
+        Some(spelling) => Ok(spelling.factor * entry.number(&spelling.parameter)?),
+        None => entry.number(parameter),
     }
 }
 
+/// The error of a number that is not there: by a key for several, where the others are not there either.
+fn missing(table: &Table, parameter: &Parameter, spellings: &[&Spelling]) -> DatasetError {
+    let example = |p: &Parameter| format!("e.g. {} = {:?}", p.name, p.typical);
+    let of_several = |s: &&&Spelling| s.of.len() > 1 && s.of.iter().all(|name| table.get(name).is_none());
+    let mut all: Vec<&&Spelling> = spellings.iter().filter(of_several).collect();
+    if all.is_empty() {
+        return table.missing(parameter.name, &example(parameter));
+    }
+    let first = all.remove(0);
+    let others: String = all.iter().map(|s| format!(", or {}", s.parameter.name)).collect();
+    let example = format!("{} (or {}{others})", example(&first.parameter), first.of.join(" and "));
+    table.missing(first.parameter.name, &example)
+}
+
 fn read_rate(table: &Table) -> Result<Option<f64>, DatasetError> {
-    let Some(entry) = table.get(RATE.name) else { return Ok(None) };
+    let Some(entry) = table.get(Encoder::RATE.name) else { return Ok(None) };
     if entry.any_number().is_none() {
-        let allowed = format!("{}, or \"{EVERY_TICK}\"", RATE.allowed());
+        let allowed = format!("{}, or \"{EVERY_TICK}\"", Encoder::RATE.allowed());
         return match entry.word(&allowed) {
             Ok(EVERY_TICK) => Ok(None),
             _ => Err(entry.wrong(&allowed, "")),
         };
     }
-    entry.number(&RATE).map(Some)
+    entry.number(&Encoder::RATE).map(Some)
 }
 
 fn read_bits(table: &Table) -> Result<Option<u32>, DatasetError> {
-    let Some(entry) = table.get(BITS.name) else { return Ok(None) };
-    let bits = entry.number(&BITS)?;
+    let Some(entry) = table.get(Encoder::BITS.name) else { return Ok(None) };
+    let bits = entry.number(&Encoder::BITS)?;
     if bits.fract() != 0.0 {
-        return Err(entry.wrong(&format!("a whole number {}", BITS.allowed()), ""));
+        return Err(entry.wrong(&format!("a whole number {}", Encoder::BITS.allowed()), ""));
     }
     Ok(Some(bits as u32))
 }

@@ -4,7 +4,7 @@ use super::RobotFile;
 use super::robot_file::{EXCHANGED, is_waypoints};
 use std::fmt::Write;
 use umbmark_core::dataset::{Dataset, ReferenceFrame};
-use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::drive::{Robot, Spelling};
 use umbmark_core::path::{Path, SpeedProfile};
 
 impl RobotFile {
@@ -75,20 +75,22 @@ pub(super) fn robot_text(robot: &Robot) -> String {
 }
 
 fn push_lengths(text: &mut String, robot: &Robot) {
-    if robot.drive.kind() != Kind::Differential {
-        for (parameter, value) in robot.drive.kind().parameters().iter().zip(robot.drive.values()) {
-            let word = parameter.choices.get(value as usize).map(|word| format!("\"{word}\""));
-            line(text, parameter.name, &word.unwrap_or_else(|| number(value)), parameter.meaning);
-        }
-        return;
-    }
-    line(text, "wheelbase_m", &number(robot.drive.wheelbase()), "b: distance of the wheels' contact points");
-    let (left, right) = (robot.drive.wheel_diameter_left(), robot.drive.wheel_diameter_right());
-    if left == right {
-        line(text, "wheel_diameter_m", &number(left), "both wheels");
-    } else {
-        line(text, "wheel_diameter_left_m", &number(left), "");
-        line(text, "wheel_diameter_right_m", &number(right), "");
+    let (kind, values) = (robot.drive.kind(), robot.drive.values());
+    // One key for several numbers that are alike.
+    let alike = |spelling: &&Spelling| {
+        let numbers = kind.parameters().iter().zip(&values).filter(|(p, _)| spelling.of.contains(&p.name));
+        let values: Vec<f64> = numbers.map(|(_, value)| *value).collect();
+        spelling.factor == 1.0 && values.len() > 1 && values.windows(2).all(|pair| pair[0] == pair[1])
+    };
+    let shared: Vec<&Spelling> = kind.spellings().iter().filter(alike).collect();
+    for (parameter, value) in kind.parameters().iter().zip(&values) {
+        let key = match shared.iter().find(|spelling| spelling.of.contains(&parameter.name)) {
+            Some(spelling) if spelling.of[0] == parameter.name => &spelling.parameter,
+            Some(_) => continue,
+            None => parameter,
+        };
+        let word = parameter.word(*value).map(|word| format!("\"{word}\""));
+        line(text, key.name, &word.unwrap_or_else(|| number(*value)), key.meaning);
     }
 }
 

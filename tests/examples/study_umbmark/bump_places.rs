@@ -6,22 +6,13 @@ use crate::{Study, labmate};
 use umbmark_core::dataset::ReturnError;
 use umbmark_core::drive::Wheel;
 use umbmark_core::effect::{About, ActsOn, Bump, Effect, Entry, Stretch, TestKind, extra_travel};
-use umbmark_core::parameter::{DefaultValue, Parameter};
+use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{Direction, Path};
 use umbmark_core::random::Stream;
 use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth};
 
-const fn number(name: &'static str, default: f64, meaning: &'static str) -> Parameter {
-    Parameter {
-        name,
-        flag: name,
-        unit: "",
-        default: DefaultValue::Value(default),
-        typical: 1.0,
-        bounds: (0.0, 1.0),
-        meaning,
-        choices: &[],
-    }
+const fn number(name: &'static str, usual: f64, meaning: &'static str) -> Parameter {
+    Parameter::shape(name, name, "", usual, (0.0, 1.0), meaning)
 }
 
 /// Ten bumps of 10 mm under the inside wheel on the first leg, wherever wanted.

@@ -129,8 +129,7 @@ fn explanation(entry: &Entry, signature: Option<&Signature>) -> String {
     text += &format!("  name = \"{}\"\n", about.name);
     for parameter in about.parameters {
         let value = parameter.usual(&Robot::labmate());
-        let written =
-            parameter.choices.get(value as usize).map_or_else(|| value.to_string(), |word| format!("{word:?}"));
+        let written = parameter.word(value).map_or_else(|| value.to_string(), |word| format!("{word:?}"));
         text += &format!("  {} = {written}\n", parameter.name);
     }
     text
@@ -139,14 +138,14 @@ fn explanation(entry: &Entry, signature: Option<&Signature>) -> String {
 /// "between 0.5 and 2; 1 by default; usual departure 0.00121; --ed".
 fn range(parameter: &Parameter) -> String {
     let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
-    let default = match (parameter.default, parameter.choices) {
-        (DefaultValue::OfRobot(_), _) => "the robot's own by default".to_owned(),
-        (DefaultValue::Value(value), choices) => match choices.get(value as usize) {
+    let default = match parameter.default {
+        DefaultValue::OfRobot(_) => "the robot's own by default".to_owned(),
+        DefaultValue::Value(value) => match parameter.word(value) {
             Some(word) => format!("{word} by default"),
             None => format!("{value}{unit} by default"),
         },
     };
     let usual =
-        if parameter.choices.is_empty() { format!("; usual {}{unit}", parameter.typical) } else { String::new() };
+        if parameter.choices().is_empty() { format!("; usual {}{unit}", parameter.typical) } else { String::new() };
     format!("{}; {default}{usual}; --{}", parameter.allowed(), parameter.flag)
 }

@@ -68,7 +68,7 @@ pub(crate) fn separating(ends: &Ends, model: &Model, pair: [&str; 2]) -> Result<
     let fitted = Fitted::new(ends, &model)?;
     let mut sizes: Vec<SizeOf> = Vec::new();
     let of_both = [first, second].map(|entry| {
-        let numbers = entry.about.parameters.iter().filter(|p| p.choices.is_empty() && !has(&model, entry));
+        let numbers = entry.about.parameters.iter().filter(|p| p.choices().is_empty() && !has(&model, entry));
         numbers
             .map(|parameter| {
                 sizes.push((entry, parameter));

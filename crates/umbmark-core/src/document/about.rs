@@ -33,10 +33,7 @@ pub fn formula_variables() -> Value {
 
 fn parameter_json(parameter: &Parameter) -> Value {
     let default = match parameter.default {
-        DefaultValue::Value(value) => match parameter.choices.get(value as usize) {
-            Some(word) => json!(word),
-            None => json!(value),
-        },
+        DefaultValue::Value(value) => parameter.word(value).map_or(json!(value), |word| json!(word)),
         DefaultValue::OfRobot(_) => json!("of the robot"),
     };
     json!({
@@ -46,7 +43,7 @@ fn parameter_json(parameter: &Parameter) -> Value {
         "default": default,
         "typical": parameter.typical,
         "bounds": [finite(parameter.bounds.0), finite(parameter.bounds.1)],
-        "choices": parameter.choices,
+        "choices": parameter.choices(),
         "meaning": parameter.meaning,
     })
 }

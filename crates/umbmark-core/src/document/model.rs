@@ -9,7 +9,7 @@ pub fn model(model: &Model) -> Value {
     let part = |part: &Part| {
         let mut effect = Map::from_iter([("name".to_owned(), json!(part.effect.name()))]);
         let number = |(parameter, value): (&Parameter, &f64)| {
-            let word = parameter.choices.get(*value as usize);
+            let word = parameter.word(*value);
             (parameter.name.to_owned(), word.map_or(json!(value), |word| json!(word)))
         };
         let mut numbers: Map<String, Value> = part.effect.parameters().iter().zip(&part.values).map(number).collect();

@@ -81,7 +81,7 @@ fn effects(study: &Study) -> Value {
         let name = part.effect.name();
         let mut entry = Map::from_iter([("name".to_owned(), json!(name))]);
         for (parameter, value) in part.effect.parameters().iter().zip(&part.values) {
-            let value = match (drawn(name, parameter.name), parameter.choices.get(*value as usize)) {
+            let value = match (drawn(name, parameter.name), parameter.word(*value)) {
                 (Some(draw), _) => distribution(&draw.distribution()),
                 (None, Some(word)) => json!(word),
                 (None, None) => json!(value),

@@ -1,7 +1,7 @@
 //! Ackermann and tricycle drive: an axle that cannot steer, and a wheel (or two that act as one) before it that can.
 
 use super::kinematics::Kinematics;
-use super::{Counting, DifferentialDrive, DriveError, Encoder, WheelTravel, positive};
+use super::{Counting, DifferentialDrive, DriveError, Encoder, WheelTravel};
 use crate::parameter::Parameter;
 use std::f64::consts::{PI, TAU};
 
@@ -30,15 +30,8 @@ impl AckermannDrive {
         steering_ticks: f64,
         steering_zero: f64,
     ) -> Result<Self, DriveError> {
-        positive("axle distance", axle_distance, "m")?;
-        positive("track width", track_width, "m")?;
-        positive("wheel diameter", wheel_diameter, "m")?;
-        positive("steering ticks per revolution", steering_ticks, "ticks")?;
-        if !(steering_zero.abs() < MOST_STEERING) {
-            return Err(DriveError::NotFinite { quantity: "steering zero", value: steering_zero, unit: "rad" });
-        }
-        let axle = DifferentialDrive::new(track_width, wheel_diameter, wheel_diameter)?;
-        Ok(AckermannDrive { axle, axle_distance, steering_ticks, steering_zero })
+        let axle = DifferentialDrive::of_axle(track_width, wheel_diameter);
+        AckermannDrive { axle, axle_distance, steering_ticks, steering_zero }.checked()
     }
 
     /// Angle of the steered wheel where its counter shows 0 \[rad\].
@@ -75,23 +68,26 @@ impl Kinematics for AckermannDrive {
     const COUNTERS: [&'static str; 2] = ["drive", "steering"];
 
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::of_robot(
+        Parameter::shape(
             "axle_distance_m",
+            "",
             "m",
             0.5,
             (1e-3, 100.0),
             "distance of the steered wheel from the rear axle",
         ),
-        Parameter::of_robot("track_width_m", "m", 0.4, (1e-3, 100.0), "distance of the rear wheels' contact points"),
-        Parameter::of_robot(
+        Parameter::shape("track_width_m", "", "m", 0.4, (1e-3, 100.0), "distance of the rear wheels' contact points"),
+        Parameter::shape(
             "wheel_diameter_m",
+            "",
             "m",
             0.15,
             (1e-3, 100.0),
             "diameter of the wheels that the drive encoder counts, on the rear axle",
         ),
-        Parameter::of_robot(
+        Parameter::shape(
             "steering_ticks_per_revolution",
+            "",
             "",
             20_000.0,
             (1.0, 1e9),

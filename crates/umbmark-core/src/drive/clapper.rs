@@ -1,7 +1,7 @@
 //! CLAPPER: two differential trucks and a compliant link between their centres, whose direction corrects their headings.
 
 use super::kinematics::Kinematics;
-use super::{Counting, DifferentialDrive, DriveError, Encoder, positive};
+use super::{Counting, DifferentialDrive, DriveError, Encoder};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -29,9 +29,7 @@ impl ClapperDrive {
     /// From the trucks, the length of the link \[m\], and the counts of its angles per revolution. The rotary encoders show 0 where
     /// trucks and link are in line.
     pub fn new(truck: DifferentialDrive, link: f64, rotary_ticks: f64, correction: bool) -> Result<Self, DriveError> {
-        positive("link", link, "m")?;
-        positive("rotary ticks per revolution", rotary_ticks, "ticks")?;
-        Ok(ClapperDrive { truck, link, rotary_ticks, correction, zero_difference: 0.0 })
+        ClapperDrive { truck, link, rotary_ticks, correction, zero_difference: 0.0 }.checked()
     }
 
     /// One of its trucks.
@@ -74,32 +72,31 @@ impl Kinematics for ClapperDrive {
     const NAME: &'static str = "clapper";
 
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::of_robot(
+        Parameter::shape(
             "wheelbase_m",
+            "",
             "m",
             0.340,
             (1e-3, 100.0),
             "distance of the wheels' contact points, of both trucks",
         ),
-        Parameter::of_robot("wheel_diameter_m", "m", 0.150, (1e-3, 10.0), "mean diameter of all wheels"),
-        Parameter::of_robot("link_m", "m", 1.0, (1e-2, 100.0), "distance of the trucks' centres"),
-        Parameter::of_robot(
+        Parameter::shape("wheel_diameter_m", "", "m", 0.150, (1e-3, 10.0), "mean diameter of all wheels"),
+        Parameter::shape("link_m", "", "m", 1.0, (1e-2, 100.0), "distance of the trucks' centres"),
+        Parameter::shape(
             "rotary_ticks_per_revolution",
+            "",
             "",
             8192.0,
             (4.0, 1e9),
             "counts of the link's two angles per revolution",
         ),
-        Parameter {
-            choices: &["off", "on"],
-            ..Parameter::of_robot(
-                "correction",
-                "",
-                1.0,
-                (0.0, 1.0),
-                "whether the link's angles correct the trucks' headings",
-            )
-        },
+        Parameter::choice(
+            "correction",
+            "",
+            &["off", "on"],
+            1,
+            "whether the link's angles correct the trucks' headings",
+        ),
         Parameter::size(
             "rotary_zero_difference_rad",
             "",
@@ -129,10 +126,7 @@ impl Kinematics for ClapperDrive {
         let left = 2.0 * values[1] / (2.0 + values[6]);
         let truck = DifferentialDrive::new(values[0], left, left * (1.0 + values[6]))?;
         let drive = ClapperDrive::new(truck, values[2], values[3], values[4] == 1.0)?;
-        if !(values[5].abs() <= 0.5) {
-            return Err(DriveError::NotFinite { quantity: "rotary zero difference", value: values[5], unit: "rad" });
-        }
-        Ok(ClapperDrive { zero_difference: values[5], ..drive })
+        ClapperDrive { zero_difference: values[5], ..drive }.checked()
     }
 
     fn values(&self) -> Vec<f64> {
@@ -161,6 +155,6 @@ impl Kinematics for ClapperDrive {
         let [difference, ratio, scale] = first;
         let truck = self.truck.corrected([1.0, 1.0, scale])?;
         let drive = ClapperDrive::new(truck, self.link * ratio, self.rotary_ticks, true)?;
-        Ok(ClapperDrive { zero_difference: self.zero_difference + difference, ..drive })
+        ClapperDrive { zero_difference: self.zero_difference + difference, ..drive }.checked()
     }
 }

@@ -1,7 +1,7 @@
 //! Differential drive: two driven wheels on one axle.
 
-use super::kinematics::Kinematics;
-use super::{DriveError, Encoder, positive};
+use super::kinematics::{Kinematics, Spelling};
+use super::{DriveError, Encoder};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -34,13 +34,28 @@ pub struct DifferentialDrive {
 }
 
 impl DifferentialDrive {
-    /// A drive from its wheelbase and wheel diameters \[m\], all positive and finite.
+    /// b.
+    pub const WHEELBASE: Parameter = Parameter::shape(
+        "wheelbase_m",
+        "wheelbase",
+        "m",
+        0.340,
+        (1e-3, 100.0),
+        "distance of the two wheels' contact points",
+    );
+
+    /// D of both wheels.
+    pub const WHEEL_DIAMETER: Parameter =
+        Parameter::shape("wheel_diameter_m", "wheel-diameter", "m", 0.150, (1e-3, 10.0), "diameter of both wheels");
+
+    /// A drive from its wheelbase and wheel diameters \[m\].
     pub fn new(wheelbase: f64, wheel_diameter_left: f64, wheel_diameter_right: f64) -> Result<Self, DriveError> {
-        Ok(DifferentialDrive {
-            wheelbase: positive("wheelbase", wheelbase, "m")?,
-            wheel_diameter_left: positive("wheel diameter (left)", wheel_diameter_left, "m")?,
-            wheel_diameter_right: positive("wheel diameter (right)", wheel_diameter_right, "m")?,
-        })
+        DifferentialDrive { wheelbase, wheel_diameter_left, wheel_diameter_right }.checked()
+    }
+
+    /// The axle of another drive, which knows the bounds of its numbers.
+    pub(super) fn of_axle(wheelbase: f64, wheel_diameter: f64) -> Self {
+        DifferentialDrive { wheelbase, wheel_diameter_left: wheel_diameter, wheel_diameter_right: wheel_diameter }
     }
 
     /// b \[m\]: distance between the contact points of the two drive wheels.
@@ -84,13 +99,34 @@ impl DifferentialDrive {
     }
 }
 
+const BOTH_WHEELS: &[&str] = &["wheel_diameter_left_m", "wheel_diameter_right_m"];
+
 impl Kinematics for DifferentialDrive {
     const NAME: &'static str = "differential";
 
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::of_robot("wheelbase_m", "m", 0.340, (1e-3, 100.0), "distance of the two wheels' contact points"),
-        Parameter::of_robot("wheel_diameter_left_m", "m", 0.150, (1e-3, 10.0), "diameter of the left wheel"),
-        Parameter::of_robot("wheel_diameter_right_m", "m", 0.150, (1e-3, 10.0), "diameter of the right wheel"),
+        Self::WHEELBASE,
+        Parameter { name: "wheel_diameter_left_m", meaning: "diameter of the left wheel", ..Self::WHEEL_DIAMETER },
+        Parameter { name: "wheel_diameter_right_m", meaning: "diameter of the right wheel", ..Self::WHEEL_DIAMETER },
+    ];
+
+    const SPELLINGS: &'static [Spelling] = &[
+        Spelling {
+            parameter: Parameter { name: "wheel_separation_m", ..Self::WHEELBASE },
+            of: &["wheelbase_m"],
+            factor: 1.0,
+        },
+        Spelling {
+            parameter: Parameter { name: "track_width_m", ..Self::WHEELBASE },
+            of: &["wheelbase_m"],
+            factor: 1.0,
+        },
+        Spelling { parameter: Self::WHEEL_DIAMETER, of: BOTH_WHEELS, factor: 1.0 },
+        Spelling {
+            parameter: Parameter::shape("wheel_radius_m", "", "m", 0.075, (5e-4, 5.0), "radius of both wheels"),
+            of: BOTH_WHEELS,
+            factor: 2.0,
+        },
     ];
 
     fn from_values(values: &[f64]) -> Result<Self, DriveError> {
@@ -134,9 +170,9 @@ mod tests {
 
     #[test]
     fn impossible_lengths_are_refused_with_the_offending_value() {
-        for (bad, text) in [(-0.34, "-0.34"), (0.0, "0"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
+        for (bad, text) in [(-0.34, "-0.34"), (0.0, "0"), (500.0, "500"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
             let error = DifferentialDrive::new(bad, 0.15, 0.15).unwrap_err().to_string();
-            assert_eq!(error, format!("wheelbase must be positive and finite, got {text} m"));
+            assert_eq!(error, format!("wheelbase_m must be between 0.001 and 100 m, got {text}"));
         }
     }
 }

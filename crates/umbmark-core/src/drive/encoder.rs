@@ -1,6 +1,7 @@
 //! Incremental wheel encoders and their counters.
 
-use super::{DriveError, positive};
+use super::DriveError;
+use crate::parameter::Parameter;
 
 /// The widest counter that is unrolled.
 pub const MAX_COUNTER_BITS: u32 = 62;
@@ -57,23 +58,76 @@ pub struct Encoder {
 }
 
 impl Encoder {
+    /// Ticks per wheel revolution.
+    pub const TICKS: Parameter = Parameter::shape(
+        "ticks_per_revolution",
+        "ticks-per-revolution",
+        "",
+        2000.0,
+        (1.0, 1e9),
+        "counts per wheel revolution, after gearing and quadrature",
+    );
+
+    /// How often the counts are looked at, where that is not at every tick.
+    pub const RATE: Parameter =
+        Parameter::shape("encoder_rate_hz", "encoder-rate", "Hz", 100.0, (1e-3, 1e6), "how often the counts are read");
+
+    /// Width of a counter.
+    pub const BITS: Parameter = Parameter::count(
+        "counter_bits",
+        "",
+        16.0,
+        (1.0, MAX_COUNTER_BITS as f64),
+        "width of a counter that rolls over",
+    );
+
     /// Encoders from ticks per wheel revolution (after gearing and quadrature; need not be whole), sampling rate \[Hz\]
     /// (`None`: every tick is seen) and counter width (`None`: never rolls over).
     pub fn new(ticks_per_revolution: f64, rate: Option<f64>, counter_bits: Option<u32>) -> Result<Self, DriveError> {
-        positive("ticks per revolution", ticks_per_revolution, "ticks")?;
-        if let Some(rate) = rate {
-            positive("encoder rate", rate, "Hz")?;
+        Encoder { ticks_per_revolution, rate, counter_bits, wiring: Wiring::default() }.checked()
+    }
+
+    fn checked(self) -> Result<Self, DriveError> {
+        Self::TICKS.check(self.ticks_per_revolution)?;
+        self.rate.map(|rate| Self::RATE.check(rate)).transpose()?;
+        self.counter_bits.map(|bits| Self::BITS.check(f64::from(bits))).transpose()?;
+        Ok(self)
+    }
+
+    /// The same encoders, looked at so often \[Hz\]; at every tick for `None`.
+    pub fn with_rate(self, rate: Option<f64>) -> Result<Self, DriveError> {
+        Encoder { rate, ..self }.checked()
+    }
+
+    /// One of its numbers, by its name in files; `None` for a number of something else. An encoder may have no rate.
+    pub(super) fn number(&self, name: &str) -> Option<Option<f64>> {
+        match name {
+            _ if name == Self::TICKS.name => Some(Some(self.ticks_per_revolution)),
+            _ if name == Self::RATE.name => Some(self.rate),
+            _ => None,
         }
-        match counter_bits {
-            Some(bits) if !(1..=MAX_COUNTER_BITS).contains(&bits) => Err(DriveError::CounterBits(bits)),
-            _ => Ok(Encoder { ticks_per_revolution, rate, counter_bits, wiring: Wiring::default() }),
-        }
+    }
+
+    /// The encoder with another value of one of its numbers, by its name in files; `None` for a number of something else.
+    pub(super) fn with(&self, name: &str, value: f64) -> Result<Option<Self>, DriveError> {
+        let changed = match name {
+            _ if name == Self::TICKS.name => Encoder { ticks_per_revolution: value, ..*self },
+            _ if name == Self::RATE.name => Encoder { rate: Some(value), ..*self },
+            _ => return Ok(None),
+        };
+        changed.checked().map(Some)
     }
 
     /// The same encoders, whose logs are wired as said.
     #[must_use]
     pub fn wired(self, wiring: Wiring) -> Self {
         Encoder { wiring, ..self }
+    }
+
+    /// The same encoders, with counters that never roll over.
+    #[must_use]
+    pub fn without_roll_over(self) -> Self {
+        Encoder { counter_bits: None, ..self }
     }
 
     /// How the columns of a log are wired to the counters.

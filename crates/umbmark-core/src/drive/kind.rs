@@ -1,6 +1,6 @@
 //! The kinds of drives: what is known of one before there is a robot.
 
-use super::kinematics::Kinematics;
+use super::kinematics::{Kinematics, Spelling};
 use super::{Drive, DriveError, Robot};
 use crate::parameter::Parameter;
 
@@ -33,6 +33,7 @@ struct Facts {
     name: &'static str,
     counters: [&'static str; 2],
     parameters: &'static [Parameter],
+    spellings: &'static [Spelling],
     has_tick_logs: bool,
     from_values: fn(&[f64]) -> Result<Drive, DriveError>,
 }
@@ -44,6 +45,7 @@ impl Facts {
             name: D::NAME,
             counters: D::COUNTERS,
             parameters: D::PARAMETERS,
+            spellings: D::SPELLINGS,
             has_tick_logs: D::HAS_TICK_LOGS,
             from_values: |values| D::from_values(values).map(Into::into),
         }
@@ -66,10 +68,19 @@ impl Kind {
         self.facts().counters
     }
 
-    /// The numbers of its nominal robot beside those of the encoder. In files, those of a differential drive have other names
-    /// too.
+    /// The numbers of its nominal robot beside those of the encoder.
     pub fn parameters(self) -> &'static [Parameter] {
         self.facts().parameters
+    }
+
+    /// Other keys for those numbers in files.
+    pub fn spellings(self) -> &'static [Spelling] {
+        self.facts().spellings
+    }
+
+    /// What another key for its numbers stands for.
+    pub(super) fn spelling(self, name: &str) -> Option<&'static Spelling> {
+        self.spellings().iter().find(|spelling| spelling.parameter.name == name)
     }
 
     /// Whether its two counters say all that its odometry knows, so that there are tick logs of it; not where a link corrects two

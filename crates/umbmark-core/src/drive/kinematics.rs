@@ -3,6 +3,17 @@
 use super::{Counting, DifferentialDrive, DriveError, Encoder, Wheel, WheelTravel};
 use crate::parameter::Parameter;
 
+/// Another key for numbers of a drive in files.
+#[derive(Debug)]
+pub struct Spelling {
+    /// The key, and what it may be.
+    pub parameter: Parameter,
+    /// The numbers that it says, which are all alike.
+    pub of: &'static [&'static str],
+    /// By what it is multiplied to be one of them.
+    pub factor: f64,
+}
+
 /// One drive: its numbers, and how its two counters become travel of its axle. Where nothing else is said, the counters are
 /// those of the axle's two wheels.
 pub(super) trait Kinematics: Sized {
@@ -15,6 +26,9 @@ pub(super) trait Kinematics: Sized {
     /// The numbers of its nominal robot beside those of the encoder.
     const PARAMETERS: &'static [Parameter];
 
+    /// Other keys for those numbers in files.
+    const SPELLINGS: &'static [Spelling] = &[];
+
     /// See [`Drive::first_effects`](super::Drive::first_effects); those of all robots of the kind, unless it says otherwise.
     const FIRST_EFFECTS: [&'static str; 3] = ["wheel_diameter_ratio", "wheelbase", "scale"];
 
@@ -26,11 +40,19 @@ pub(super) trait Kinematics: Sized {
         Self::FIRST_EFFECTS
     }
 
-    /// A drive from the values of [`Kinematics::PARAMETERS`].
+    /// A drive from the values of [`Kinematics::PARAMETERS`], if they are within their bounds.
     fn from_values(values: &[f64]) -> Result<Self, DriveError>;
 
     /// The values of [`Kinematics::PARAMETERS`].
     fn values(&self) -> Vec<f64>;
+
+    /// The drive, if its numbers are within their bounds.
+    fn checked(self) -> Result<Self, DriveError> {
+        for (parameter, value) in Self::PARAMETERS.iter().zip(self.values()) {
+            parameter.check(value)?;
+        }
+        Ok(self)
+    }
 
     /// Its axle, real or virtual.
     fn axle(&self) -> &DifferentialDrive;

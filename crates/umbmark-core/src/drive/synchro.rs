@@ -4,7 +4,7 @@
 //! or measured, is that of the course: of the turret, which turns with the wheels.
 
 use super::kinematics::Kinematics;
-use super::{Counting, DifferentialDrive, DriveError, Encoder, Wheel, WheelTravel, positive};
+use super::{Counting, DifferentialDrive, DriveError, Encoder, Wheel, WheelTravel};
 use crate::parameter::Parameter;
 use std::f64::consts::{PI, TAU};
 
@@ -23,14 +23,8 @@ impl SynchroDrive {
     /// A drive from the diameter of its wheel circle and of its wheels \[m\], the steering counts per revolution, and the
     /// coupling \[rad/m\].
     pub fn new(wheel_circle: f64, wheel_diameter: f64, steering_ticks: f64, coupling: f64) -> Result<Self, DriveError> {
-        positive("wheel circle", wheel_circle, "m")?;
-        positive("wheel diameter", wheel_diameter, "m")?;
-        positive("steering ticks per revolution", steering_ticks, "ticks")?;
-        if !coupling.is_finite() {
-            return Err(DriveError::NotFinite { quantity: "coupling", value: coupling, unit: "rad/m" });
-        }
-        let axle = DifferentialDrive::new(wheel_circle, wheel_diameter, wheel_diameter)?;
-        Ok(SynchroDrive { axle, steering_ticks, coupling })
+        let axle = DifferentialDrive::of_axle(wheel_circle, wheel_diameter);
+        SynchroDrive { axle, steering_ticks, coupling }.checked()
     }
 
     /// Metres per count of the drive, radians per count of the steering.
@@ -51,22 +45,25 @@ impl Kinematics for SynchroDrive {
     const COUNTERS: [&'static str; 2] = ["drive", "steering"];
 
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter::of_robot(
+        Parameter::shape(
             "wheel_circle_m",
+            "",
             "m",
             0.5,
             (1e-3, 100.0),
             "diameter of the circle that the wheels stand on",
         ),
-        Parameter::of_robot(
+        Parameter::shape(
             "wheel_diameter_m",
+            "",
             "m",
             0.25,
             (1e-3, 100.0),
             "diameter of the wheels that the drive encoder counts",
         ),
-        Parameter::of_robot(
+        Parameter::shape(
             "steering_ticks_per_revolution",
+            "",
             "",
             10_000.0,
             (1.0, 1e9),

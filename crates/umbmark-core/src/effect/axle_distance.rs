@@ -4,7 +4,7 @@ use super::words::{deg, either, percent};
 use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 use std::f64::consts::FRAC_PI_2;
 
 /// The ratio of true to nominal distance between the steered wheel and the axle.
@@ -15,16 +15,13 @@ impl Effect for AxleDistance {
         name: "axle_distance",
         title: "distance of the steered wheel from the axle",
         acts_on: ActsOn::Body,
-        parameters: &[Parameter {
-            name: "ratio",
-            flag: "axle-distance-ratio",
-            unit: "",
-            default: DefaultValue::Value(1.0),
-            typical: 5e-3,
-            bounds: (0.2, 5.0),
-            meaning: "true / nominal distance of the steered wheel from the axle",
-            choices: &[],
-        }],
+        parameters: &[Parameter::ratio(
+            "ratio",
+            "axle-distance-ratio",
+            5e-3,
+            (0.2, 5.0),
+            "true / nominal distance of the steered wheel from the axle",
+        )],
         equation: "Δθ ← Δθ / r",
         physics: "The distance is not what it is believed to be, or the wheel touches the floor before or behind its axis.",
         signature: "Every corner is too sharp or too blunt, opposite in ccw and cw. On corners of one radius nothing tells it from the \

@@ -15,16 +15,14 @@ impl Effect for Bumps {
         title: "bumps met by chance",
         acts_on: ActsOn::Wheels,
         parameters: &[
-            Parameter {
-                name: "rate_per_m",
-                flag: "bump-rate",
-                unit: "1/m",
-                default: DefaultValue::Value(0.0),
-                typical: 0.1,
-                bounds: (0.0, 1000.0),
-                meaning: "bumps per metre rolled, of each wheel",
-                choices: &[],
-            },
+            Parameter::size(
+                "rate_per_m",
+                "bump-rate",
+                "1/m",
+                0.1,
+                (0.0, 1000.0),
+                "bumps per metre rolled, of each wheel",
+            ),
             Parameter { flag: "random-bump-height", ..HEIGHT },
             Parameter { flag: "random-bump-wheel-radius", ..WHEEL_RADIUS },
             Parameter { flag: "random-bump-profile", ..PROFILE },
@@ -76,40 +74,30 @@ fn exponential(stream: &mut Stream) -> f64 {
 pub(super) const EXTRA_TRAVEL: &str =
     "edge: D = 2R(ψ - sin ψ), cos ψ = 1 - h/R;  cable: D = 2(R + h/2)(φ - sin φ), cos φ = (R - h/2)/(R + h/2)";
 
-pub(super) const HEIGHT: Parameter = Parameter {
-    name: "height_m",
-    flag: "bump-height",
-    unit: "m",
-    default: DefaultValue::Value(0.010),
-    typical: 0.010,
-    bounds: (0.0, 1.0),
-    meaning: "height of the obstacle",
-    choices: &[],
-};
+pub(super) const HEIGHT: Parameter =
+    Parameter::shape("height_m", "bump-height", "m", 0.010, (0.0, 1.0), "height of the obstacle");
 
 pub(super) const WHEEL_RADIUS: Parameter = Parameter {
-    name: "wheel_radius_m",
-    flag: "bump-wheel-radius",
-    unit: "m",
     default: DefaultValue::OfRobot(|robot| {
         0.25 * (robot.drive.wheel_diameter_left() + robot.drive.wheel_diameter_right())
     }),
-    typical: 0.075,
-    bounds: (1e-3, 10.0),
-    meaning: "radius of the wheel that climbs it",
-    choices: &[],
+    ..Parameter::shape(
+        "wheel_radius_m",
+        "bump-wheel-radius",
+        "m",
+        0.075,
+        (1e-3, 10.0),
+        "radius of the wheel that climbs it",
+    )
 };
 
-pub(super) const PROFILE: Parameter = Parameter {
-    name: "profile",
-    flag: "bump-profile",
-    unit: "",
-    default: DefaultValue::Value(0.0),
-    typical: 0.0,
-    bounds: (0.0, 1.0),
-    meaning: "a round cable lying on the floor, or a thin edge",
-    choices: &["cable", "edge"],
-};
+pub(super) const PROFILE: Parameter = Parameter::choice(
+    "profile",
+    "bump-profile",
+    &["cable", "edge"],
+    0,
+    "a round cable lying on the floor, or a thin edge",
+);
 
 /// Travel that the encoder counts and the body does not make \[m\], from the effect's parameters.
 pub(super) fn lost_travel(height: f64, wheel_radius: f64, profile: f64) -> f64 {

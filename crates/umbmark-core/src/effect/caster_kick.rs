@@ -4,7 +4,7 @@ use super::words::{deg, either, mm};
 use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 
 /// A change of heading over the first way after each turn, in the sense of that turn.
 pub struct CasterKick;
@@ -60,16 +60,7 @@ impl Effect for CasterKick {
     }
 }
 
-pub(super) const TRAIL: Parameter = Parameter {
-    name: "trail_m",
-    flag: "",
-    unit: "m",
-    default: DefaultValue::Value(0.05),
-    typical: 0.05,
-    bounds: (1e-3, 100.0),
-    meaning: "",
-    choices: &[],
-};
+pub(super) const TRAIL: Parameter = Parameter::shape("trail_m", "", "m", 0.05, (1e-3, 100.0), "");
 
 /// The share of a kick that is made within a piece: e^(-d₀/λ) - e^(-d₁/λ).
 #[inline(always)]

@@ -4,7 +4,7 @@ use super::words::{either, mm};
 use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 
 /// The ratio of true to nominal way; the steering has gears of its own and is not touched.
 pub struct DriveScale;
@@ -14,16 +14,13 @@ impl Effect for DriveScale {
         name: "drive_scale",
         title: "scale of the drive, E_s of a synchro drive",
         acts_on: ActsOn::Body,
-        parameters: &[Parameter {
-            name: "e_s",
-            flag: "drive-scale",
-            unit: "",
-            default: DefaultValue::Value(1.0),
-            typical: 4e-3,
-            bounds: (0.2, 5.0),
-            meaning: "true / nominal way per count of the drive",
-            choices: &[],
-        }],
+        parameters: &[Parameter::ratio(
+            "e_s",
+            "drive-scale",
+            4e-3,
+            (0.2, 5.0),
+            "true / nominal way per count of the drive",
+        )],
         equation: "forward ← E_s forward",
         physics: "The wheels' diameter differs from the nominal one. All wheels are driven by one shaft, and the course is set by \
                   another: turns are right all the same.",

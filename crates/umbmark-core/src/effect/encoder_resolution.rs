@@ -25,14 +25,15 @@ impl Effect for EncoderResolution {
                 "travel of a wheel per count that it is read to",
             ),
             Parameter {
-                name: "wheelbase_m",
-                flag: "encoder-quantum-wheelbase",
-                unit: "m",
                 default: DefaultValue::OfRobot(|robot| robot.drive.wheelbase()),
-                typical: 0.34,
-                bounds: (1e-3, 100.0),
-                meaning: "distance between the wheels that are counted",
-                choices: &[],
+                ..Parameter::shape(
+                    "wheelbase_m",
+                    "encoder-quantum-wheelbase",
+                    "m",
+                    0.34,
+                    (1e-3, 100.0),
+                    "distance between the wheels that are counted",
+                )
             },
         ],
         equation: "(forward, Δθ) ← (forward, Δθ) + ((e_L + e_R)/2, (e_R - e_L)/b),  e_w uniform in ±q/2",

@@ -30,7 +30,7 @@ use super::name::lasting;
 use super::{CATALOGUE, Context, MAX_PARAMETERS};
 use crate::drive::{DifferentialDrive, WheelTravel};
 use crate::geometry::{Displacement2, Dual, LANES, Pose2, Real};
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::{DefaultValue, Parameter, Role};
 use program::{Op, Program};
 use std::fmt;
 use units::Unit;
@@ -152,7 +152,6 @@ pub struct Formula {
     target: Target,
     text: String,
     parameters: Vec<Parameter>,
-    sizes: Vec<bool>,
     reads_place: bool,
     program: Program,
 }
@@ -182,12 +181,12 @@ impl Formula {
             return Err(FormulaError::Unused { name: parameters[unused].to_owned() });
         }
         let units = units::check(&text, &program, parameters.len(), (target.name(), target.unit()))?;
+        let described = parameters.iter().zip(&units).zip(program.roles(parameters.len()));
         Ok(Formula {
             name: lasting(name),
             target,
             text,
-            parameters: parameters.iter().zip(&units).map(|(name, unit)| described(name, unit)).collect(),
-            sizes: program.sizes(parameters.len()),
+            parameters: described.map(|((name, unit), role)| parameter(name, unit, role)).collect(),
             reads_place: [Variable::X, Variable::Y].iter().any(|place| program.ops().contains(&Op::Variable(*place))),
             program,
         })
@@ -231,12 +230,6 @@ impl Formula {
     /// Its numbers, with their units where those follow from the formula.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
-    }
-
-    /// Whether a parameter is a size: one that the formula is linear in; all are where it is linear in none. The others shape
-    /// what the sizes do, and change nothing where those are 0.
-    pub(super) fn is_size(&self, parameter: usize) -> bool {
-        self.sizes[parameter]
     }
 
     /// Whether it depends on x or y.
@@ -331,16 +324,16 @@ impl Formula {
     }
 }
 
-fn described(name: &str, unit: &Option<Unit>) -> Parameter {
+fn parameter(name: &str, unit: &Option<Unit>, role: Role) -> Parameter {
     Parameter {
         name: lasting(name),
         flag: "",
         unit: lasting(&unit.map(|unit| unit.to_string()).unwrap_or_default()),
+        role,
         default: DefaultValue::Value(0.0),
         typical: 1.0,
         bounds: (f64::NEG_INFINITY, f64::INFINITY),
         meaning: "",
-        choices: &[],
     }
 }
 

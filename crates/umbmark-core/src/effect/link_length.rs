@@ -4,7 +4,7 @@ use super::words::{either, percent};
 use super::{About, ActsOn, Changes, Effect};
 use crate::drive::{Kind, Kinds, LinkReading, Robot};
 use crate::geometry::Real;
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 
 /// The ratio of the true distance of the trucks to the one that the linear encoder shows.
 pub struct LinkLength;
@@ -14,16 +14,13 @@ impl Effect for LinkLength {
         name: "link_length",
         title: "length of the link",
         acts_on: ActsOn::Odometry,
-        parameters: &[Parameter {
-            name: "ratio",
-            flag: "link-length",
-            unit: "",
-            default: DefaultValue::Value(1.0),
-            typical: 2e-3,
-            bounds: (0.5, 2.0),
-            meaning: "true distance of the trucks' centres over the one that the linear encoder shows",
-            choices: &[],
-        }],
+        parameters: &[Parameter::ratio(
+            "ratio",
+            "link-length",
+            2e-3,
+            (0.5, 2.0),
+            "true distance of the trucks' centres over the one that the linear encoder shows",
+        )],
         equation: "shown length ← length / ratio",
         physics: "The distance of the two pivots was not measured well, or the linear encoder counts more or fewer millimetres \
                   than there are.",

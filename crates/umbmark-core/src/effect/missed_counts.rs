@@ -4,7 +4,7 @@ use super::words::{either, percent, size};
 use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 
 /// The share of its counts that each wheel misses above a speed.
 pub struct MissedCounts;
@@ -31,16 +31,14 @@ impl Effect for MissedCounts {
                 (-1.0, 1.0),
                 "travel that the right counter misses per m/s above the threshold, as a share",
             ),
-            Parameter {
-                name: "threshold_m_s",
-                flag: "missed-threshold",
-                unit: "m/s",
-                default: DefaultValue::Value(0.1),
-                typical: 0.1,
-                bounds: (0.0, 100.0),
-                meaning: "wheel speed up to which every count is kept",
-                choices: &[],
-            },
+            Parameter::shape(
+                "threshold_m_s",
+                "missed-threshold",
+                "m/s",
+                0.1,
+                (0.0, 100.0),
+                "wheel speed up to which every count is kept",
+            ),
         ],
         equation: "s_w ← (1 + k_w max(0, |v_w| - v₀)) s_w",
         physics: "Counts come faster than an interrupt routine or an input filter takes them, and some are lost: the wheel \

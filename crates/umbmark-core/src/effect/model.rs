@@ -3,7 +3,7 @@
 use super::chain::{Chain, Link, Work};
 use super::{Context, Entry, Evaluate, Formula, Law, MAX_PARAMETERS, find};
 use crate::drive::{Kinds, Robot};
-use crate::parameter::{DefaultValue, Parameter, ParameterError, nearest};
+use crate::parameter::{Parameter, ParameterError, Role, nearest};
 use std::sync::Arc;
 
 /// What makes a model impossible.
@@ -336,19 +336,18 @@ impl Model {
     /// Which of the [values](Model::values) are shapes: numbers (a length, a threshold) that change nothing where their effect
     /// is at zero.
     pub fn shapes(&self) -> Vec<usize> {
-        let shape = |law: &Law, index: usize| match law {
-            Law::Entry(entry) => is_shape(&entry.about.parameters[index]),
-            Law::Formula(formula) => !formula.is_size(index),
-        };
-        let of_part = |part: &Part| (0..part.values.len()).map(|index| shape(&part.effect, index)).collect::<Vec<_>>();
-        self.parts.iter().flat_map(of_part).enumerate().filter(|(_, shape)| *shape).map(|(value, _)| value).collect()
+        let shapes = self.parameters().enumerate().filter(|(_, parameter)| parameter.role == Role::Shape);
+        shapes.map(|(value, _)| value).collect()
     }
 
     /// The value of one of the [values](Model::values), named by its place, at which its effect does nothing; `None` for a shape.
     pub(crate) fn nothing(&self, place: usize) -> Option<f64> {
-        let parameters = self.parts.iter().flat_map(|part| part.effect.parameters());
-        let nothing = parameters.into_iter().nth(place)?.default.resolve(&self.robot);
-        (!self.shapes().contains(&place)).then_some(nothing)
+        self.parameters().nth(place)?.nothing()
+    }
+
+    /// What the [values](Model::values) are values of.
+    fn parameters(&self) -> impl Iterator<Item = &Parameter> {
+        self.parts.iter().flat_map(|part| part.effect.parameters())
     }
 
     /// The same effects with some of the [values](Model::values), named by their place, replaced.
@@ -390,11 +389,6 @@ impl Model {
         chain.set_values(values);
         chain
     }
-}
-
-/// Whether a parameter of an effect shapes what its others do.
-pub(crate) fn is_shape(parameter: &Parameter) -> bool {
-    !matches!(parameter.default, DefaultValue::Value(value) if value == 0.0 || value == 1.0)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use super::words::{deg, mm, size};
 use super::{About, ActsOn, Bump, Changes, Context, Effect, Stretch, TestKind};
 use crate::drive::{Kind, Kinds, Robot, Wheel, WheelTravel};
 use crate::geometry::Real;
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 use crate::path::Direction;
 use crate::random::Stream;
 
@@ -19,16 +19,13 @@ impl Effect for PlacedBumps {
         title: "bumps of the extended UMBmark test",
         acts_on: ActsOn::Wheels,
         parameters: &[
-            Parameter {
-                name: "count",
-                flag: "bumps",
-                unit: "",
-                default: DefaultValue::Value(0.0),
-                typical: 10.0,
-                bounds: (0.0, 1000.0),
-                meaning: "bumps placed on the first leg of each run of the extended test",
-                choices: &[],
-            },
+            Parameter::count(
+                "count",
+                "bumps",
+                10.0,
+                (0.0, 1000.0),
+                "bumps placed on the first leg of each run of the extended test",
+            ),
             HEIGHT,
             WHEEL_RADIUS,
             PROFILE,

@@ -4,14 +4,13 @@ use super::words::{either, percent};
 use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Real};
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 
 /// E_d, E_b and E_s of the rear truck, beside those of both.
 pub struct RearTruck;
 
 const fn ratio(name: &'static str, flag: &'static str, typical: f64, meaning: &'static str) -> Parameter {
-    let default = DefaultValue::Value(1.0);
-    Parameter { name, flag, unit: "", default, typical, bounds: (0.5, 2.0), meaning, choices: &[] }
+    Parameter::ratio(name, flag, typical, (0.5, 2.0), meaning)
 }
 
 impl Effect for RearTruck {

@@ -18,7 +18,7 @@ impl Effect for ReferenceNoise {
         title: "noise of the absolute measurement",
         acts_on: ActsOn::Reference,
         parameters: &[
-            Parameter::size(
+            Parameter::scatter(
                 "position_sd_m",
                 "reference-position-noise",
                 "m",
@@ -26,7 +26,7 @@ impl Effect for ReferenceNoise {
                 SCATTER,
                 "standard deviation of each coordinate",
             ),
-            Parameter::size(
+            Parameter::scatter(
                 "heading_sd_rad",
                 "reference-heading-noise",
                 "rad",

@@ -4,7 +4,7 @@ use super::words::{either, mm};
 use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::Real;
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 
 /// The ratio of the mean true wheel diameter to the nominal one.
 pub struct Scale;
@@ -14,16 +14,13 @@ impl Effect for Scale {
         name: "scale",
         title: "scale, E_s",
         acts_on: ActsOn::Wheels,
-        parameters: &[Parameter {
-            name: "e_s",
-            flag: "es",
-            unit: "",
-            default: DefaultValue::Value(1.0),
-            typical: 4e-3,
-            bounds: (0.2, 5.0),
-            meaning: "E_s = mean true wheel diameter / mean nominal wheel diameter",
-            choices: &[],
-        }],
+        parameters: &[Parameter::ratio(
+            "e_s",
+            "es",
+            4e-3,
+            (0.2, 5.0),
+            "E_s = mean true wheel diameter / mean nominal wheel diameter",
+        )],
         equation: "s_L ← E_s s_L,  s_R ← E_s s_R",
         physics: "The mean of both wheel diameters differs from the nominal one: wear, load, tape-measure error. 0.3 to \
                   0.5 % is what a tape leaves.",

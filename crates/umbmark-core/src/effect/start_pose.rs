@@ -29,7 +29,7 @@ impl Effect for StartPose {
                 EITHER_WAY,
                 "constant misalignment, counter-clockwise",
             ),
-            Parameter::size(
+            Parameter::scatter(
                 "position_sd_m",
                 "start-position-scatter",
                 "m",
@@ -37,7 +37,7 @@ impl Effect for StartPose {
                 SCATTER,
                 "scatter of each coordinate from run to run",
             ),
-            Parameter::size(
+            Parameter::scatter(
                 "heading_sd_rad",
                 "start-heading-scatter",
                 "rad",

@@ -4,7 +4,7 @@ use super::words::deg;
 use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 use std::f64::consts::FRAC_PI_2;
 
 /// The ratio of true to believed turns of the course.
@@ -15,16 +15,7 @@ impl Effect for SteerScale {
         name: "steer_scale",
         title: "scale of the steering",
         acts_on: ActsOn::Body,
-        parameters: &[Parameter {
-            name: "ratio",
-            flag: "steer-scale",
-            unit: "",
-            default: DefaultValue::Value(1.0),
-            typical: 3e-3,
-            bounds: (0.2, 5.0),
-            meaning: "true / believed turn of the course",
-            choices: &[],
-        }],
+        parameters: &[Parameter::ratio("ratio", "steer-scale", 3e-3, (0.2, 5.0), "true / believed turn of the course")],
         equation: "Δθ ← r Δθ",
         physics: "Counts per revolution of the steering are not what is believed, or its belts slip.",
         signature: "Every corner is too sharp or too blunt: return headings are opposite in ccw and cw, as E_b is in a \

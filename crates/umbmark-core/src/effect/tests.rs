@@ -3,6 +3,7 @@
 use super::*;
 use crate::drive::{Drive, LinkReading, Robot};
 use crate::geometry::{LANES, seeded};
+use crate::parameter::Role;
 use crate::path::{CIRCLE, Path, SQUARE, SpeedProfile};
 use crate::preset::Preset;
 use crate::replay::Track;
@@ -178,7 +179,7 @@ fn every_effect_that_files_may_name_is_there() {
 
 /// A drive of usual numbers, and with each of the words that one of them may stand for.
 fn drives_of(kind: Kind) -> Vec<Drive> {
-    let words = kind.parameters().iter().flat_map(|p| (0..p.choices.len()).map(|word| (p.name, word as f64)));
+    let words = kind.parameters().iter().flat_map(|p| (0..p.choices().len()).map(|word| (p.name, word as f64)));
     let worded = words.map(|(name, word)| kind.usual().with(name, word).unwrap());
     std::iter::once(kind.usual()).chain(worded).collect()
 }
@@ -242,14 +243,16 @@ fn each_number_but_those_of_chance_shows_and_its_derivative_is_that_of_finite_di
             }
         }
     }
+    let by_chance = |entry: &Entry, p: &Parameter| {
+        !entry.changes.include(Changes::MEAN)
+            || p.role == Role::Scatter
+            || (entry.about.name == "placed_bumps" && p.role != Role::Size)
+    };
     let chance: Vec<(&str, &str)> = CATALOGUE
         .iter()
-        .flat_map(|entry| entry.about.parameters.iter().map(move |p| (entry.about.name, p.name)))
-        .filter(|(effect, parameter)| {
-            ["bumps", "wheel_noise", "encoder_resolution", "reference_noise"].contains(effect)
-                || parameter.contains("_sd_")
-                || (*effect == "placed_bumps" && *parameter != "lost_per_m")
-        })
+        .flat_map(|entry| entry.about.parameters.iter().map(move |p| (entry, p)))
+        .filter(|(entry, p)| by_chance(entry, p))
+        .map(|(entry, p)| (entry.about.name, p.name))
         .collect();
     assert_eq!(silent, chance);
 }
@@ -436,8 +439,7 @@ fn an_effect_varies_from_the_first_of_its_sizes_that_is_not_zero_and_not_before(
         if !alone(entry, Parameter::usual).varies() {
             continue;
         }
-        let sizes = entry.about.parameters.iter().filter(|p| p.default.resolve(nothing.robot()) == 0.0);
-        for p in sizes.filter(|p| p.choices.is_empty() && p.name != "count") {
+        for p in entry.about.parameters.iter().filter(|p| matches!(p.role, Role::Size | Role::Scatter)) {
             let mut one = nothing.clone();
             one.set(entry.about.name, p.name, p.typical).unwrap();
             assert!(one.varies(), "{} {}", entry.about.name, p.name);
@@ -455,7 +457,7 @@ fn an_effect_says_what_its_numbers_mean_in_a_sentence_that_changes_with_their_si
         assert!(!usual.contains("NaN") && !usual.contains("inf") && !usual.contains("  "), "{usual}");
         let sized = |p: &Parameter, robot: &Robot| {
             let rest = p.default.resolve(robot);
-            if p.choices.is_empty() { rest + 2.0 * (p.usual(robot) - rest) + 1e-3 } else { rest }
+            if p.choices().is_empty() { rest + 2.0 * (p.usual(robot) - rest) + 1e-3 } else { rest }
         };
         assert_ne!(said(alone(entry, sized)), usual);
     }

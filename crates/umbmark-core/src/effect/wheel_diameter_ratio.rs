@@ -4,7 +4,7 @@ use super::words::{deg, either, mm, side};
 use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::Real;
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 
 /// The ratio of the true wheel diameters, split symmetrically so that their mean stays nominal.
 pub struct WheelDiameterRatio;
@@ -14,16 +14,13 @@ impl Effect for WheelDiameterRatio {
         name: "wheel_diameter_ratio",
         title: "unequal wheel diameters, E_d",
         acts_on: ActsOn::Wheels,
-        parameters: &[Parameter {
-            name: "e_d",
-            flag: "ed",
-            unit: "",
-            default: DefaultValue::Value(1.0),
-            typical: 1.21e-3,
-            bounds: (0.5, 2.0),
-            meaning: "E_d = D_R/D_L, the ratio of the true wheel diameters beyond their nominal ratio",
-            choices: &[],
-        }],
+        parameters: &[Parameter::ratio(
+            "e_d",
+            "ed",
+            1.21e-3,
+            (0.5, 2.0),
+            "E_d = D_R/D_L, the ratio of the true wheel diameters beyond their nominal ratio",
+        )],
         equation: "s_R ← s_R · 2 E_d/(1 + E_d),  s_L ← s_L · 2/(1 + E_d)",
         physics: "Tyres are never made to the same diameter, and a load off the centre line compresses one more than the \
                   other. The wheel that is larger rolls farther for the same count.",

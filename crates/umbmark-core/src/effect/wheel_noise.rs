@@ -3,7 +3,7 @@
 use super::words::{deg, mm};
 use super::{About, ActsOn, Changes, Effect, WheelVariance};
 use crate::drive::{Kinds, Robot, WheelTravel};
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 
 /// White noise on each wheel's travel over ground.
 pub struct WheelNoise;
@@ -13,16 +13,14 @@ impl Effect for WheelNoise {
         name: "wheel_noise",
         title: "wheel noise",
         acts_on: ActsOn::Wheels,
-        parameters: &[Parameter {
-            name: "k_sqrt_m",
-            flag: "wheel-noise",
-            unit: "m^0.5",
-            default: DefaultValue::Value(0.0),
-            typical: 1e-3,
-            bounds: (0.0, 1.0),
-            meaning: "square root of the variance of a wheel's travel per metre",
-            choices: &[],
-        }],
+        parameters: &[Parameter::size(
+            "k_sqrt_m",
+            "wheel-noise",
+            "m^0.5",
+            1e-3,
+            (0.0, 1.0),
+            "square root of the variance of a wheel's travel per metre",
+        )],
         equation: "var s_w = k² |s_w|, independent along the way and between the wheels",
         physics: "Small slips, grains and unevenness add up like a random walk. 4.0e-4 and 5.8e-4 m^0.5 were measured on \
                   parquet; 1e-3 gives the paper's scatter.",

@@ -4,7 +4,7 @@ use super::words::{deg, mm};
 use super::{About, ActsOn, Changes, Context, Effect};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 
 /// The ratio of the effective wheelbase to the nominal one.
 pub struct Wheelbase;
@@ -14,16 +14,7 @@ impl Effect for Wheelbase {
         name: "wheelbase",
         title: "effective wheelbase, E_b",
         acts_on: ActsOn::Body,
-        parameters: &[Parameter {
-            name: "e_b",
-            flag: "eb",
-            unit: "",
-            default: DefaultValue::Value(1.0),
-            typical: 8e-3,
-            bounds: (0.2, 5.0),
-            meaning: "E_b = effective wheelbase / nominal wheelbase",
-            choices: &[],
-        }],
+        parameters: &[Parameter::ratio("e_b", "eb", 8e-3, (0.2, 5.0), "E_b = effective wheelbase / nominal wheelbase")],
         equation: "Δθ ← Δθ / E_b",
         physics: "A tyre touches the floor in an area, not in a point; where in that area it turns is uncertain by up to 1 % \
                   of the wheelbase. Scrub in turns on the spot acts the same way and is part of what is measured.",

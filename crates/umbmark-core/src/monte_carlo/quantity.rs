@@ -4,7 +4,7 @@ use super::{Study, StudyError};
 use crate::drive::{DriveError, Encoder, Robot};
 use crate::effect::CATALOGUE;
 use crate::engine::Update;
-use crate::parameter::{DefaultValue, Parameter, ParameterError, nearest};
+use crate::parameter::{Parameter, ParameterError, Role, nearest};
 use crate::path::{Path, PathError, SHAPES, SpeedProfile};
 use crate::simulate::Odometry;
 
@@ -74,21 +74,8 @@ pub enum QuantityError {
     Path(#[from] PathError),
 }
 
-const fn number(name: &'static str, flag: &'static str, unit: &'static str, meaning: &'static str) -> Parameter {
-    let default = DefaultValue::Value(1.0);
-    Parameter { name, flag, unit, default, typical: 1.0, bounds: (1e-6, 1e12), meaning, choices: &[] }
-}
-
-const ROBOT: [Parameter; 4] = [
-    number("wheelbase_m", "wheelbase", "m", "nominal wheelbase b"),
-    number("wheel_diameter_m", "wheel-diameter", "m", "nominal diameter of both wheels"),
-    number("ticks_per_revolution", "ticks-per-revolution", "", "encoder ticks per wheel revolution"),
-    number("encoder_rate_hz", "encoder-rate", "Hz", "how often the counters are read"),
-];
-
 /// Runs in each direction of a test; sigma needs two.
-const RUNS: Parameter =
-    Parameter { bounds: (2.0, 10_000.0), ..number("runs", "runs", "", "runs in each direction, whole numbers") };
+const RUNS: Parameter = Parameter::count("runs", "runs", 5.0, (2.0, 10_000.0), "runs in each direction, whole numbers");
 
 impl Quantity {
     /// A quantity by its flag ("ed") or by its key ("wheel_diameter_ratio.e_d"); formulas are found in the study's model.
@@ -99,7 +86,7 @@ impl Quantity {
             let nearest = nearest(name, names.iter().map(String::as_str)).map(str::to_owned);
             return Err(QuantityError::Unknown { name: name.to_owned(), nearest });
         };
-        if !found.parameter.choices.is_empty() {
+        if !found.parameter.choices().is_empty() {
             let parameter = found.parameter;
             return Err(QuantityError::Choice { name: parameter.name, allowed: parameter.allowed() });
         }
@@ -116,7 +103,7 @@ impl Quantity {
         let sizes = std::iter::once(study.path.shape()).chain(SHAPES.iter().copied()).flat_map(|s| s.parameters);
         let speeds = SpeedProfile::PARAMETERS.into_iter().enumerate().map(|(i, p)| (Owner::Speed(i), p));
         effects
-            .chain(ROBOT.map(|p| (Owner::Robot, p)))
+            .chain(Robot::NUMBERS.map(|p| (Owner::Robot, p)))
             .chain(sizes.map(|p| (Owner::Path, *p)))
             .chain(speeds)
             .chain([(Owner::Test, RUNS)])
@@ -142,7 +129,7 @@ impl Quantity {
 
     /// Whether a test rounds it to a whole number.
     pub fn is_whole(&self) -> bool {
-        matches!((self.owner, self.parameter.name), (Owner::Test, _) | (Owner::Effect("placed_bumps"), "count"))
+        self.parameter.role == Role::Count
     }
 
     /// The effect that it is a number of, if it is.
@@ -155,15 +142,10 @@ impl Quantity {
 
     /// Its value in a study; none where an effect, a rate or a size is not there.
     pub fn get(&self, study: &Study) -> Option<f64> {
-        let (robot, name) = (study.robot(), self.parameter.name);
+        let name = self.parameter.name;
         match self.owner {
             Owner::Effect(effect) => study.model.get(effect, name),
-            Owner::Robot => match name {
-                "wheelbase_m" => Some(robot.drive.wheelbase()),
-                "wheel_diameter_m" => Some(robot.drive.wheel_diameter_left()),
-                "ticks_per_revolution" => Some(robot.encoder.ticks_per_revolution()),
-                _ => robot.encoder.rate(),
-            },
+            Owner::Robot => study.robot().number(name),
             Owner::Path => {
                 let place = study.path.shape().parameters.iter().position(|p| p.name == name)?;
                 study.path.values().get(place).copied()
@@ -202,21 +184,15 @@ impl Quantity {
     }
 
     fn set_robot(&self, study: &mut Study, value: f64) -> Result<(), QuantityError> {
-        let Robot { name, drive, encoder } = study.robot().clone();
-        let given = |parameter: &str, present: f64| if self.parameter.name == parameter { value } else { present };
-        let drive = drive.with(self.parameter.name, value)?;
-        let ticks = given("ticks_per_revolution", encoder.ticks_per_revolution());
-        let sampled = self.parameter.name == "encoder_rate_hz";
-        let rate = if sampled { Some(value) } else { encoder.rate() };
-        if sampled {
+        let robot = study.robot().with(self.parameter.name, value)?;
+        if self.parameter.name == Encoder::RATE.name {
             let update = match study.odometry {
                 Odometry::Sampled { update, .. } => update,
                 _ => Update::Arc,
             };
             study.odometry = Odometry::Sampled { rate: value, update };
         }
-        let encoder = Encoder::new(ticks, rate, encoder.counter_bits())?;
-        study.model = study.model.clone().of(&Robot { name, drive, encoder });
+        study.model = study.model.clone().of(&robot);
         Ok(())
     }
 
@@ -244,7 +220,7 @@ mod tests {
     #[test]
     fn every_quantity_that_a_square_has_can_be_set_and_read_back() {
         let study = study();
-        for quantity in Quantity::all(&study).iter().filter(|q| q.parameter.choices.is_empty()) {
+        for quantity in Quantity::all(&study).iter().filter(|q| q.parameter.choices().is_empty()) {
             let (low, high) = quantity.parameter.bounds;
             let value = (quantity.parameter.usual(study.robot()) * 1.25).clamp(low, high).round().max(low);
             let mut changed = study.clone();

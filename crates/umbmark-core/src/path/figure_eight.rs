@@ -2,7 +2,7 @@
 
 use super::square::SIDE_BOUNDS;
 use super::{Move, Shape};
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 use std::f64::consts::TAU;
 
 /// A full circle to the left, then one to the right, through START. To first order it shows E_d in the return heading
@@ -10,16 +10,7 @@ use std::f64::consts::TAU;
 pub static FIGURE_EIGHT: Shape = Shape {
     name: "figure_eight",
     about: "a full circle to one side, then a full circle to the other, crossing at START",
-    parameters: &[Parameter {
-        name: "radius_m",
-        flag: "radius",
-        unit: "m",
-        default: DefaultValue::Value(2.0),
-        typical: 2.0,
-        bounds: SIDE_BOUNDS,
-        meaning: "radius of each circle",
-        choices: &[],
-    }],
+    parameters: &[Parameter::shape("radius_m", "radius", "m", 2.0, SIDE_BOUNDS, "radius of each circle")],
     closed: true,
     moves: |values| Ok([TAU, -TAU].map(|angle| Move::Arc { radius: values[0], angle }).to_vec()),
 };

@@ -2,7 +2,7 @@
 
 use super::square::SIDE_BOUNDS;
 use super::{Move, Shape};
-use crate::parameter::{DefaultValue, Parameter, ParameterError};
+use crate::parameter::{Parameter, ParameterError};
 use std::f64::consts::FRAC_PI_2;
 
 /// Four straight legs and four quarter circles. START is where the first corner's arc would begin if it came before the first leg: at
@@ -11,9 +11,9 @@ pub static ROUNDED_RECTANGLE: Shape = Shape {
     name: "rounded_rectangle",
     about: "two long and two short legs with quarter circles for corners: for robots that cannot turn on the spot",
     parameters: &[
-        size("length_m", "length", 4.0, "length of the first side, corners included"),
-        size("width_m", "width", 4.0, "length of the second side, corners included"),
-        size("corner_radius_m", "corner-radius", 1.0, "radius of the corners"),
+        side("length_m", "length", 4.0, "length of the first side, corners included"),
+        side("width_m", "width", 4.0, "length of the second side, corners included"),
+        side("corner_radius_m", "corner-radius", 1.0, "radius of the corners"),
     ],
     closed: true,
     moves: |values| {
@@ -32,7 +32,6 @@ pub static ROUNDED_RECTANGLE: Shape = Shape {
     },
 };
 
-const fn size(name: &'static str, flag: &'static str, typical: f64, meaning: &'static str) -> Parameter {
-    let default = DefaultValue::Value(typical);
-    Parameter { name, flag, unit: "m", default, typical, bounds: SIDE_BOUNDS, meaning, choices: &[] }
+const fn side(name: &'static str, flag: &'static str, usual: f64, meaning: &'static str) -> Parameter {
+    Parameter::shape(name, flag, "m", usual, SIDE_BOUNDS, meaning)
 }

@@ -1,7 +1,7 @@
 //! How fast a move is driven.
 
 use super::PathError;
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 
 /// Trapezoidal speed from rest to rest, and a pause before the next move.
 ///
@@ -24,36 +24,16 @@ impl Default for SpeedProfile {
 impl SpeedProfile {
     /// The numbers of a profile, in the order of [`SpeedProfile::new`].
     pub const PARAMETERS: [Parameter; 3] = [
-        Parameter {
-            name: "speed_m_s",
-            flag: "speed",
-            unit: "m/s",
-            default: DefaultValue::Value(0.2),
-            typical: 0.2,
-            bounds: (1e-4, 100.0),
-            meaning: "greatest speed of the faster wheel",
-            choices: &[],
-        },
-        Parameter {
-            name: "acceleration_m_s2",
-            flag: "acceleration",
-            unit: "m/s^2",
-            default: DefaultValue::Value(0.2),
-            typical: 0.2,
-            bounds: (1e-4, 1000.0),
-            meaning: "acceleration of the faster wheel",
-            choices: &[],
-        },
-        Parameter {
-            name: "pause_s",
-            flag: "pause",
-            unit: "s",
-            default: DefaultValue::Value(1.0),
-            typical: 1.0,
-            bounds: (0.0, 3600.0),
-            meaning: "rest between two moves",
-            choices: &[],
-        },
+        Parameter::shape("speed_m_s", "speed", "m/s", 0.2, (1e-4, 100.0), "greatest speed of the faster wheel"),
+        Parameter::shape(
+            "acceleration_m_s2",
+            "acceleration",
+            "m/s^2",
+            0.2,
+            (1e-4, 1000.0),
+            "acceleration of the faster wheel",
+        ),
+        Parameter::shape("pause_s", "pause", "s", 1.0, (0.0, 3600.0), "rest between two moves"),
     ];
 
     /// A profile from speed \[m/s\], acceleration \[m/s²\] and pause \[s\].

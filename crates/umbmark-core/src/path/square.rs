@@ -1,7 +1,7 @@
 //! The square of UMBmark.
 
 use super::{Move, Shape};
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 use std::f64::consts::FRAC_PI_2;
 
 pub(super) const SIDE_BOUNDS: (f64, f64) = (1e-3, 1e4);
@@ -10,16 +10,7 @@ pub(super) const SIDE_BOUNDS: (f64, f64) = (1e-3, 1e4);
 pub static SQUARE: Shape = Shape {
     name: "square",
     about: "four straight legs, each followed by a quarter turn on the spot: the path of UMBmark",
-    parameters: &[Parameter {
-        name: "side_m",
-        flag: "side",
-        unit: "m",
-        default: DefaultValue::Value(4.0),
-        typical: 4.0,
-        bounds: SIDE_BOUNDS,
-        meaning: "length of a side",
-        choices: &[],
-    }],
+    parameters: &[Parameter::shape("side_m", "side", "m", 4.0, SIDE_BOUNDS, "length of a side")],
     closed: true,
     moves: |values| Ok(sides(&[values[0]; 4])),
 };

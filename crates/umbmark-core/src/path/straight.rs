@@ -2,22 +2,13 @@
 
 use super::square::SIDE_BOUNDS;
 use super::{Move, Shape};
-use crate::parameter::{DefaultValue, Parameter};
+use crate::parameter::Parameter;
 
 /// One straight leg: the length shows E_s, the heading E_d. Its two directions are the same.
 pub static STRAIGHT: Shape = Shape {
     name: "straight",
     about: "one straight leg, open: the length shows the scale, the heading the wheel-diameter ratio",
-    parameters: &[Parameter {
-        name: "length_m",
-        flag: "length",
-        unit: "m",
-        default: DefaultValue::Value(10.0),
-        typical: 10.0,
-        bounds: SIDE_BOUNDS,
-        meaning: "length of the leg",
-        choices: &[],
-    }],
+    parameters: &[Parameter::shape("length_m", "length", "m", 10.0, SIDE_BOUNDS, "length of the leg")],
     closed: false,
     moves: |values| Ok(vec![Move::Straight { length: values[0] }]),
 };

@@ -2,16 +2,15 @@
 
 use super::*;
 use crate::drive::Kinds;
-use crate::effect::{CATALOGUE, Entry, Model, Place};
-use crate::parameter::Parameter;
+use crate::effect::{CATALOGUE, Changes, Entry, Model, Place};
+use crate::parameter::{Parameter, Role};
 use crate::path::{CIRCLE, FIGURE_EIGHT, SQUARE, SpeedProfile};
 use crate::preset::Preset;
 use crate::replay::Track;
 
 /// Numbers whose effect is drawn by chance.
 fn by_chance(entry: &Entry, p: &Parameter) -> bool {
-    let effects = ["bumps", "wheel_noise", "encoder_resolution", "reference_noise"];
-    effects.contains(&entry.about.name) || p.name.contains("_sd_") || p.name == "count"
+    !entry.changes.include(Changes::MEAN) || matches!(p.role, Role::Scatter | Role::Count)
 }
 
 /// Gives an effect its usual sizes, those of chance at zero unless asked for.
@@ -151,7 +150,7 @@ fn every_number_of_every_effect_shows_in_what_is_measured() {
         let before = everything_measured(&usual);
         for p in entry.about.parameters {
             let (value, neutral) = (p.usual(&robot), p.default.resolve(&robot));
-            let other = match (p.choices.is_empty(), value == neutral) {
+            let other = match (p.choices().is_empty(), value == neutral) {
                 (false, _) => 1.0 - value,
                 (true, true) => 1.5 * value,
                 (true, false) => neutral + 1.5 * (value - neutral),

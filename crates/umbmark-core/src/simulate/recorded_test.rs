@@ -2,7 +2,7 @@
 
 use super::{Odometry, Phase, SimulateError, Simulator, Truth};
 use crate::dataset::{Dataset, Run};
-use crate::drive::{Encoder, Robot};
+use crate::drive::Robot;
 use crate::effect::{Model, TestKind};
 use crate::engine::Update;
 use crate::path::{Direction, Path};
@@ -35,7 +35,7 @@ pub fn record_test(
 ) -> Result<Dataset, SimulateError> {
     let encoder = &model.robot().encoder;
     let rate = encoder.rate().unwrap_or(LOG_RATE);
-    let encoder = Encoder::new(encoder.ticks_per_revolution(), Some(rate), encoder.counter_bits())?;
+    let encoder = encoder.with_rate(Some(rate))?;
     let robot = Robot { encoder, ..model.robot().clone() };
     let odometry = Odometry::Sampled { rate, update: Update::Arc };
     let mut simulator = Simulator::new(&robot, path, odometry, Phase::Random)?;

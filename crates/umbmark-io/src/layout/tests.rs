@@ -1,7 +1,7 @@
 use super::*;
 use crate::source::Source;
 use umbmark_core::dataset::{ReferencePose, ReturnError, Run};
-use umbmark_core::drive::Robot;
+use umbmark_core::drive::{Encoder, Robot};
 use umbmark_core::effect::TestKind;
 use umbmark_core::geometry::wrap;
 use umbmark_core::path::{Direction, Path as DrivenPath};

@@ -319,7 +319,7 @@ fn absorbers(full: &Columns, fitted: &Fitted, frame: &Frame) -> Vec<&'static str
 fn moves_means(entry: &'static Entry, model: &Model) -> bool {
     let plain = Model::new(model.robot());
     let mut with = plain.clone();
-    for parameter in entry.about.parameters.iter().filter(|p| p.choices.is_empty()) {
+    for parameter in entry.about.parameters.iter().filter(|p| p.choices().is_empty()) {
         let usual = parameter.default.resolve(model.robot()) + parameter.typical;
         if with.set(entry.about.name, parameter.name, usual).is_err() {
             return false;

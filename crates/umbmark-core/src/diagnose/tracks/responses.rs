@@ -1,10 +1,10 @@
 //! What the effects and smooths that a model lacks would do to the poses of its runs.
 
 use super::smooth::{self, Covariate, Motion, smooth_columns};
-use crate::effect::{Changes, Entry, Model, ModelError, Number, is_shape, of_drive};
+use crate::effect::{Changes, Entry, Model, ModelError, Number, of_drive};
 use crate::geometry::{Pose2, wrap};
 use crate::likelihood::{Column, Fitted, NUISANCE, Observed};
-use crate::parameter::Parameter;
+use crate::parameter::{Parameter, Role};
 use std::sync::Arc;
 
 /// What is tested.
@@ -131,7 +131,8 @@ fn offers(model: &Model) -> Vec<Offer> {
     let mut offers = Vec::new();
     for effect in missing {
         let parameters = effect.about.parameters.iter();
-        let (shapes, sizes): (Vec<&Parameter>, Vec<&Parameter>) = parameters.partition(|parameter| is_shape(parameter));
+        let (sizes, others): (Vec<&Parameter>, Vec<&Parameter>) = parameters.partition(|p| p.nothing().is_some());
+        let shapes: Vec<&Parameter> = others.into_iter().filter(|p| p.role == Role::Shape).collect();
         let tried = if shapes.is_empty() { &TRIED[..1] } else { &TRIED[..] };
         for factor in tried {
             let shape = shapes.first().map(|shape| (*shape, factor * shape.default.resolve(model.robot())));

@@ -3,6 +3,7 @@
 use super::variable::{Middle, Variable};
 use crate::effect::Context;
 use crate::geometry::{Displacement2, Real};
+use crate::parameter::Role;
 use std::ops::Range;
 
 /// The most values that wait on the stack at once.
@@ -205,10 +206,12 @@ impl Program {
         Ok(results)
     }
 
-    /// Which parameters the formula is linear in; all of them where it is linear in none.
-    pub fn sizes(&self, parameters: usize) -> Vec<bool> {
-        let linear: Vec<bool> = (0..parameters).map(|p| self.degree(p) == 1).collect();
-        if linear.contains(&true) { linear } else { vec![true; parameters] }
+    /// The roles of its parameters: those that it is linear in are sizes, all of them where it is linear in none. The others
+    /// shape what the sizes do, and change nothing where those are 0.
+    pub fn roles(&self, parameters: usize) -> Vec<Role> {
+        let linear = |p: usize| if self.degree(p) == 1 { Role::Size } else { Role::Shape };
+        let roles: Vec<Role> = (0..parameters).map(linear).collect();
+        if roles.contains(&Role::Size) { roles } else { vec![Role::Size; parameters] }
     }
 
     /// Degree of the formula in a parameter: 0, 1, or 2 for all else.

@@ -501,7 +501,8 @@ fn sizes_are_what_a_formula_is_linear_in() {
         ("k^1 * h^2", [true, false]),
     ] {
         let program = parser::parse(text, &["k", "h"]).unwrap();
-        assert_eq!(program.sizes(2), sizes, "{text}");
+        let found: Vec<bool> = program.roles(2).iter().map(|role| *role == Role::Size).collect();
+        assert_eq!(found, sizes, "{text}");
     }
     let mut model = model_of(&[(Target::HeadingPerMetre, "k * sin(heading - h)", &[("k", 1e-3), ("h", 0.5)])]);
     model.add("wheelbase").unwrap();
