@@ -6,7 +6,7 @@
 
 use std::error::Error;
 
-use umbmark_core::effect::{About, ActsOn, Context, Effect, Entry, Model};
+use umbmark_core::effect::{About, ActsOn, BodyLaw, Context, Effect, Entry, Model};
 use umbmark_core::evidence::fit;
 use umbmark_core::geometry::{Displacement2, Real};
 use umbmark_core::parameter::Parameter;
@@ -37,17 +37,19 @@ impl Effect for Tilt {
         source: "this example",
     };
 
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        let (sine, _) = at.heading.sine_cosine();
-        motion.rotation += p[0] * sine * at.length;
-    }
-
     fn varies(p: &[f64]) -> bool {
         p[0] != 0.0
     }
 }
 
-static TILT: Entry = Entry::of::<Tilt>();
+impl BodyLaw for Tilt {
+    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        let (sine, _) = at.heading.sine_cosine();
+        motion.rotation += p[0] * sine * at.length;
+    }
+}
+
+static TILT: Entry = Entry::of::<Tilt>().body::<Tilt>();
 
 fn main() -> Result<(), Box<dyn Error>> {
     let data = umbmark_io::load("examples/hidden")?;

@@ -35,7 +35,8 @@ struct Given {
 }
 
 fn every() -> impl Iterator<Item = (&'static Entry, &'static Parameter)> {
-    let by_kind = ActsOn::ALL.into_iter().flat_map(|kind| CATALOGUE.iter().filter(move |e| e.about.acts_on == kind));
+    let by_kind =
+        ActsOn::ALL.into_iter().flat_map(|kind| CATALOGUE.iter().copied().filter(move |e| e.about.acts_on == kind));
     by_kind.flat_map(|entry| entry.about.parameters.iter().map(move |p| (entry, p)))
 }
 

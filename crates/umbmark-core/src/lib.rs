@@ -32,6 +32,7 @@ pub mod path;
 pub mod plan;
 pub mod preset;
 pub mod random;
+mod register;
 pub mod replay;
 pub mod run;
 pub mod score;

@@ -4,44 +4,38 @@
 //! is their mirror image in the START heading. START is the origin, heading along the x axis. A [`SpeedProfile`] says how
 //! fast each move is driven, from rest to rest.
 
-mod circle;
-mod figure_eight;
 mod pieces;
-mod rectangle;
-mod rounded_rectangle;
 mod speed;
-mod spin;
-mod square;
-mod straight;
-mod waypoints;
 
 use crate::drive::{DifferentialDrive, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
 use crate::parameter::{Parameter, ParameterError};
+use crate::register;
 
 pub use pieces::{Piece, Pieces};
 pub use speed::{SpeedProfile, Trapezoid};
 
-/// Exports the shapes of these files, and lists them.
-macro_rules! shapes {
-    ($($file:ident::$shape:ident,)+) => {
-        $(pub use $file::$shape;)+
-
-        /// Every shape there is.
-        pub static SHAPES: &[&Shape] = &[$(&$shape,)+];
-    };
+register! {
+    /// Every shape there is.
+    pub SHAPES: Shape = SHAPE in
+    square,
+    rectangle,
+    rounded_rectangle,
+    figure_eight,
+    circle,
+    straight,
+    spin,
+    waypoints,
 }
 
-shapes! {
-    square::SQUARE,
-    rectangle::RECTANGLE,
-    rounded_rectangle::ROUNDED_RECTANGLE,
-    figure_eight::FIGURE_EIGHT,
-    circle::CIRCLE,
-    straight::STRAIGHT,
-    spin::SPIN,
-    waypoints::WAYPOINTS,
-}
+pub use circle::SHAPE as CIRCLE;
+pub use figure_eight::SHAPE as FIGURE_EIGHT;
+pub use rectangle::SHAPE as RECTANGLE;
+pub use rounded_rectangle::SHAPE as ROUNDED_RECTANGLE;
+pub use spin::SHAPE as SPIN;
+pub use square::SHAPE as SQUARE;
+pub use straight::SHAPE as STRAIGHT;
+pub use waypoints::SHAPE as WAYPOINTS;
 
 /// The sense in which a path is driven round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]

@@ -65,7 +65,7 @@ fn figures_of_tracks_are_drawn_as_they_were() {
 #[test]
 fn what_cannot_be_drawn_says_why_in_a_sentence() {
     for study in [&*SLOPE, &*TRACKED] {
-        for kind in &KINDS {
+        for kind in KINDS {
             let Err(absent) = (kind.build)(study) else { continue };
             let why = absent.to_string();
             assert!(why.ends_with('.') && why.len() > 20, "{}: {why}", kind.name);

@@ -7,7 +7,7 @@ use umbmark_core::effect::{CATALOGUE, Formula};
 /// The catalogue, as a document.
 #[pyfunction]
 pub fn effects() -> String {
-    serde_json::Value::Array(CATALOGUE.iter().map(document::about).collect()).to_string()
+    serde_json::Value::Array(CATALOGUE.iter().copied().map(document::about).collect()).to_string()
 }
 
 /// The names of what formulas may depend on.

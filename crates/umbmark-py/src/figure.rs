@@ -189,7 +189,7 @@ pub fn figure(
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Figure> {
-    let known = || KINDS.map(|kind| kind.name).join(", ");
+    let known = || KINDS.iter().map(|kind| kind.name).collect::<Vec<_>>().join(", ");
     let kind = find(kind)
         .ok_or_else(|| PyValueError::new_err(format!("there is no figure \"{kind}\"; there are {}", known())))?;
     let study = study(py, asked, options(how)?)?;

@@ -5,7 +5,7 @@ use crate::shares::moments;
 use crate::{Study, labmate};
 use umbmark_core::dataset::ReturnError;
 use umbmark_core::drive::Wheel;
-use umbmark_core::effect::{About, ActsOn, Bump, Effect, Entry, Stretch, TestKind, extra_travel};
+use umbmark_core::effect::{About, ActsOn, Bump, BumpLaw, Effect, Entry, Stretch, TestKind, extra_travel};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{Direction, Path};
 use umbmark_core::random::Stream;
@@ -35,7 +35,9 @@ impl Effect for BumpsSomewhere {
         separated_by: "",
         source: "Borenstein & Feng (1995), Fig. 6",
     };
+}
 
+impl BumpLaw for BumpsSomewhere {
     fn bumps(p: &[f64], stretch: &Stretch, stream: &mut Stream, met: &mut Vec<Bump>) {
         if stretch.test != TestKind::Bumps || stretch.index != 0 {
             return;
@@ -49,7 +51,7 @@ impl Effect for BumpsSomewhere {
     }
 }
 
-static BUMPS: Entry = Entry::of::<BumpsSomewhere>();
+static BUMPS: Entry = Entry::of::<BumpsSomewhere>().bumps::<BumpsSomewhere>();
 
 /// Return errors of counter-clockwise runs with bumps placed like this.
 fn driven(study: &Study, [middle, width, random]: [f64; 3], k: f64, runs: u64) -> Vec<ReturnError> {

@@ -33,7 +33,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
             (document, explanation(entry, signature.as_ref()))
         }
         None => {
-            let entries: Vec<Value> = CATALOGUE.iter().map(document::about).collect();
+            let entries: Vec<Value> = CATALOGUE.iter().copied().map(document::about).collect();
             let document = json!({
                 "effects": entries,
                 "formula_variables": document::formula_variables(),

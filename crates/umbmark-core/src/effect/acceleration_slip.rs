@@ -1,13 +1,15 @@
 //! Slip under drive and brake.
 
 use super::words::{either, percent};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// The share of travel that each wheel loses per acceleration, and gains per deceleration.
 pub struct AccelerationSlip;
+
+pub(super) static EFFECT: Entry = Entry::of::<AccelerationSlip>().wheels::<AccelerationSlip>();
 
 impl Effect for AccelerationSlip {
     const ABOUT: About = About {
@@ -31,8 +33,6 @@ impl Effect for AccelerationSlip {
         source: "linear creep of a rolling tyre; 2 % per m/s² is assumed",
     };
 
-    const CHANGES: Changes = Changes::WHEELS;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(
             "While it gains 0.5 m/s in a second a wheel gets {} {} than it counts, and as much the other way while it brakes.",
@@ -44,7 +44,9 @@ impl Effect for AccelerationSlip {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl WheelLaw for AccelerationSlip {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= -p[0] * gain(at, 0) + 1.0;

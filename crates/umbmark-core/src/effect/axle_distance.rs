@@ -1,7 +1,7 @@
 //! The distance of the steered wheel.
 
 use super::words::{deg, either, percent};
-use super::{About, ActsOn, Changes, Context, Effect};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -9,6 +9,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// The ratio of true to nominal distance between the steered wheel and the axle.
 pub struct AxleDistance;
+
+pub(super) static EFFECT: Entry = Entry::of::<AxleDistance>().body::<AxleDistance>();
 
 impl Effect for AxleDistance {
     const ABOUT: About = About {
@@ -33,8 +35,6 @@ impl Effect for AxleDistance {
 
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         let off = p[0] - 1.0;
         format!(
@@ -44,7 +44,9 @@ impl Effect for AxleDistance {
             deg(FRAC_PI_2 / p[0])
         )
     }
+}
 
+impl BodyLaw for AxleDistance {
     #[inline(always)]
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation /= p[0];

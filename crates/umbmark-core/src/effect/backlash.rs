@@ -1,13 +1,15 @@
 //! Play between motor and wheel.
 
 use super::words::{deg, mm};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// Travel that a wheel does not make when its motor reverses.
 pub struct Backlash;
+
+pub(super) static EFFECT: Entry = Entry::of::<Backlash>().wheels::<Backlash>();
 
 impl Effect for Backlash {
     const ABOUT: About = About {
@@ -31,8 +33,6 @@ impl Effect for Backlash {
         source: "geometry; hobby drives with about 1 degree of body heading are reported, 0.5 mm is assumed",
     };
 
-    const CHANGES: Changes = Changes::WHEELS;
-
     fn means(p: &[f64], robot: &Robot) -> String {
         format!(
             "There are {} of play at the rim: where a turn begins the heading jumps by {}, and back where the next leg does.",
@@ -44,7 +44,9 @@ impl Effect for Backlash {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl WheelLaw for Backlash {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left -= p[0] * at.reversed[0];

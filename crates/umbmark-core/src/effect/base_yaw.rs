@@ -1,13 +1,15 @@
 //! A base that turns as its wheels pull unevenly.
 
 use super::words::{deg, side};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// A rate of turn per metre that depends on how far the wheels are steered from where they were at START.
 pub struct BaseYaw;
+
+pub(super) static EFFECT: Entry = Entry::of::<BaseYaw>().body::<BaseYaw>();
 
 impl Effect for BaseYaw {
     const ABOUT: About = About {
@@ -44,8 +46,6 @@ impl Effect for BaseYaw {
 
     const DRIVES: Kinds = Kinds::of(Kind::Synchro);
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         let angle = libm::atan2(p[1], p[0]);
         format!(
@@ -59,7 +59,9 @@ impl Effect for BaseYaw {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl BodyLaw for BaseYaw {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         let (sine, cosine) = (motion.rotation * 0.5 + at.believed_heading).sine_cosine();

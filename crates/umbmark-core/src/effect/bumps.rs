@@ -1,13 +1,15 @@
 //! Bumps met by chance, and the geometry of one.
 
 use super::words::{deg, size};
-use super::{About, ActsOn, Bump, Changes, Effect, Stretch};
+use super::{About, ActsOn, Bump, BumpLaw, Effect, Entry, Stretch};
 use crate::drive::{Kind, Kinds, Robot, Wheel};
 use crate::parameter::{DefaultValue, Parameter};
 use crate::random::Stream;
 
 /// Bumps under either wheel as a Poisson process in the distance that the wheel rolls.
 pub struct Bumps;
+
+pub(super) static EFFECT: Entry = Entry::of::<Bumps>().bumps::<Bumps>();
 
 impl Effect for Bumps {
     const ABOUT: About = About {
@@ -40,8 +42,6 @@ impl Effect for Bumps {
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro);
 
-    const CHANGES: Changes = Changes::BUMPS;
-
     fn means(p: &[f64], robot: &Robot) -> String {
         let lost = lost_travel(p[1], p[2], p[3]);
         format!(
@@ -50,7 +50,9 @@ impl Effect for Bumps {
             deg(lost / robot.drive.wheelbase())
         )
     }
+}
 
+impl BumpLaw for Bumps {
     fn bumps(p: &[f64], stretch: &Stretch, stream: &mut Stream, met: &mut Vec<Bump>) {
         if p[0] == 0.0 {
             return;

@@ -1,13 +1,15 @@
 //! A carpet whose pile leans one way.
 
 use super::floor_slope::{DRIFT, DRIFT_X, DRIFT_Y, carried, drift};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// A drift along the pile, whatever the heading.
 pub struct CarpetNap;
+
+pub(super) static EFFECT: Entry = Entry::of::<CarpetNap>().body::<CarpetNap>();
 
 impl Effect for CarpetNap {
     const ABOUT: About = About {
@@ -38,8 +40,6 @@ impl Effect for CarpetNap {
 
     const DRIVES: Kinds = Kinds::ALL;
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("{}.", carried(p, "on each metre"))
     }
@@ -47,7 +47,9 @@ impl Effect for CarpetNap {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl BodyLaw for CarpetNap {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         drift(p, at, motion);

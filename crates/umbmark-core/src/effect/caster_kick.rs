@@ -1,13 +1,15 @@
 //! The kick of casters that swing round after a turn.
 
 use super::words::{deg, either, mm};
-use super::{About, ActsOn, Changes, Context, Effect};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// A change of heading over the first way after each turn, in the sense of that turn.
 pub struct CasterKick;
+
+pub(super) static EFFECT: Entry = Entry::of::<CasterKick>().body::<CasterKick>();
 
 impl Effect for CasterKick {
     const ABOUT: About = About {
@@ -39,8 +41,6 @@ impl Effect for CasterKick {
         source: "users' reports of drift after a change of direction; 0.2 degree and 5 cm are assumed",
     };
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(
             "After each turn the casters push the robot {} {}, most of it within {}.",
@@ -53,7 +53,9 @@ impl Effect for CasterKick {
     fn varies(p: &[f64]) -> bool {
         p[0] != 0.0
     }
+}
 
+impl BodyLaw for CasterKick {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation += p[0] * faded(at, p[1]) * at.last_turn;

@@ -1,13 +1,15 @@
 //! The outer tyre gives way in arcs.
 
 use super::words::{either, percent};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// A difference of the wheel radii that grows with centripetal acceleration.
 pub struct CentripetalLoad;
+
+pub(super) static EFFECT: Entry = Entry::of::<CentripetalLoad>().wheels::<CentripetalLoad>();
 
 impl Effect for CentripetalLoad {
     const ABOUT: About = About {
@@ -31,8 +33,6 @@ impl Effect for CentripetalLoad {
         source: "load transfer on a linear tyre; 0.1 % per m/s² is assumed",
     };
 
-    const CHANGES: Changes = Changes::WHEELS;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(
             "In an arc at 1 m/s and 1 rad/s the outer wheel rolls {} {} than it counts, and the inner one as much the other way.",
@@ -44,7 +44,9 @@ impl Effect for CentripetalLoad {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl WheelLaw for CentripetalLoad {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         let half = p[0] * (0.5 * at.speed * at.turn_rate);

@@ -1,37 +1,36 @@
-//! Which of its methods an effect has.
+//! Which laws an effect has.
 
-/// What an effect changes: the methods of [`Effect`](super::Effect) that it overrides, so that the others need not be
-/// called for every piece of every run.
+/// What an effect changes: the laws that its [`Entry`](super::Entry) lists. The others are not called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Changes(u16);
 
 impl Changes {
-    /// [`Effect::wheels`](super::Effect::wheels).
+    /// [`WheelLaw::wheels`](super::WheelLaw::wheels).
     pub const WHEELS: Changes = Changes(1);
-    /// [`Effect::body`](super::Effect::body).
+    /// [`BodyLaw::body`](super::BodyLaw::body).
     pub const BODY: Changes = Changes(1 << 1);
-    /// [`Effect::seen`](super::Effect::seen).
+    /// [`SightLaw::seen`](super::SightLaw::seen).
     pub const SEEN: Changes = Changes(1 << 2);
-    /// [`Effect::diffusion`](super::Effect::diffusion).
+    /// [`DiffusionLaw::diffusion`](super::DiffusionLaw::diffusion).
     pub const DIFFUSION: Changes = Changes(1 << 3);
-    /// [`Effect::bumps`](super::Effect::bumps).
+    /// [`BumpLaw::bumps`](super::BumpLaw::bumps).
     pub const BUMPS: Changes = Changes(1 << 4);
-    /// [`Effect::start`](super::Effect::start).
+    /// [`StartLaw::start`](super::StartLaw::start).
     pub const START: Changes = Changes(1 << 5);
-    /// [`Effect::start_scatter`](super::Effect::start_scatter).
+    /// [`StartLaw::start_scatter`](super::StartLaw::start_scatter).
     pub const START_SCATTER: Changes = Changes(1 << 6);
-    /// [`Effect::measured`](super::Effect::measured).
+    /// [`MeasurementLaw::measured`](super::MeasurementLaw::measured).
     pub const MEASURED: Changes = Changes(1 << 7);
-    /// [`Effect::link`](super::Effect::link).
+    /// [`LinkLaw::link`](super::LinkLaw::link).
     pub const LINK: Changes = Changes(1 << 8);
-    /// [`Effect::late`](super::Effect::late).
+    /// [`ClockLaw::late`](super::ClockLaw::late).
     pub const CLOCK: Changes = Changes(1 << 9);
     /// What moves the mean of where a robot is.
     pub const MOTION: Changes = Changes::WHEELS.and(Changes::BODY).and(Changes::START).and(Changes::LINK);
     /// What moves the mean of what is observed.
     pub const MEAN: Changes = Changes::MOTION.and(Changes::SEEN).and(Changes::CLOCK);
-    /// All of these: always right, if slower.
-    pub const ALL: Changes = Changes(u16::MAX);
+    /// Nothing.
+    pub const NOTHING: Changes = Changes(0);
 
     /// These and others.
     pub const fn and(self, others: Changes) -> Changes {

@@ -1,7 +1,7 @@
 //! Way that is made while the robot turns, and not counted.
 
 use super::words::{either, mm};
-use super::{About, ActsOn, Changes, Context, Effect};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -9,6 +9,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Way per radian of turn.
 pub struct ContactTrail;
+
+pub(super) static EFFECT: Entry = Entry::of::<ContactTrail>().body::<ContactTrail>();
 
 impl Effect for ContactTrail {
     const ABOUT: About = About {
@@ -35,8 +37,6 @@ impl Effect for ContactTrail {
 
     const DRIVES: Kinds = Kinds::of(Kind::Synchro).and(Kind::Ackermann);
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         let way = mm(p[0] * FRAC_PI_2);
         format!(
@@ -44,7 +44,9 @@ impl Effect for ContactTrail {
             either(p[0], "ahead", "back")
         )
     }
+}
 
+impl BodyLaw for ContactTrail {
     #[inline(always)]
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.forward += p[0] * motion.rotation;

@@ -1,13 +1,15 @@
 //! Crab: wheels that stand askew, both to the same side.
 
 use super::words::{deg, mm, side};
-use super::{About, ActsOn, Changes, Context, Effect};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// The angle between the course of the robot and its heading.
 pub struct Crab;
+
+pub(super) static EFFECT: Entry = Entry::of::<Crab>().body::<Crab>();
 
 impl Effect for Crab {
     const ABOUT: About = About {
@@ -34,8 +36,6 @@ impl Effect for Crab {
 
     const DRIVES: Kinds = Kinds::ALL;
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(
             "The robot moves {} to the {} of where it faces: {} aside on each metre.",
@@ -44,7 +44,9 @@ impl Effect for Crab {
             mm(libm::tan(p[0]))
         )
     }
+}
 
+impl BodyLaw for Crab {
     #[inline(always)]
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         turn_course(motion, p[0]);

@@ -1,13 +1,15 @@
 //! Wheel diameters that change as the robot drives.
 
 use super::words::{either, mm};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// A ratio of the wheel diameters that grows with the way driven, in the run and in the session.
 pub struct DiameterDrift;
+
+pub(super) static EFFECT: Entry = Entry::of::<DiameterDrift>().wheels::<DiameterDrift>();
 
 impl Effect for DiameterDrift {
     const ABOUT: About = About {
@@ -41,8 +43,6 @@ impl Effect for DiameterDrift {
         source: "0.12 % over a run is assumed",
     };
 
-    const CHANGES: Changes = Changes::WHEELS;
-
     fn means(p: &[f64], robot: &Robot) -> String {
         let mean = 0.5 * (robot.drive.wheel_diameter_left() + robot.drive.wheel_diameter_right());
         let grown =
@@ -57,7 +57,9 @@ impl Effect for DiameterDrift {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl WheelLaw for DiameterDrift {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         let half = 0.5 * at.length;

@@ -1,13 +1,15 @@
 //! A wheelbase that is not the same for left and right turns.
 
 use super::words::mm;
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// How much longer the effective wheelbase is in left turns than in right turns.
 pub struct DirectionDependentWheelbase;
+
+pub(super) static EFFECT: Entry = Entry::of::<DirectionDependentWheelbase>().body::<DirectionDependentWheelbase>();
 
 impl Effect for DirectionDependentWheelbase {
     const ABOUT: About = About {
@@ -32,8 +34,6 @@ impl Effect for DirectionDependentWheelbase {
         source: "first-order theory of side-periodic errors; 0.4 % is assumed",
     };
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], robot: &Robot) -> String {
         let b = robot.drive.wheelbase();
         format!(
@@ -46,7 +46,9 @@ impl Effect for DirectionDependentWheelbase {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl BodyLaw for DirectionDependentWheelbase {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if at.turn_rate != 0.0 {

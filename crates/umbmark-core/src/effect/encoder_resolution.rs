@@ -1,7 +1,7 @@
 //! What lies between two counts.
 
 use super::words::mm;
-use super::{About, ActsOn, Changes, Effect};
+use super::{About, ActsOn, Effect, Entry, MeasurementLaw};
 use crate::drive::Robot;
 use crate::geometry::{Pose2, Real};
 use crate::parameter::{DefaultValue, Parameter};
@@ -9,6 +9,8 @@ use crate::random::Stream;
 
 /// The rounding of each counter where a pose is measured.
 pub struct EncoderResolution;
+
+pub(super) static EFFECT: Entry = Entry::of::<EncoderResolution>().measured::<EncoderResolution>();
 
 impl Effect for EncoderResolution {
     const ABOUT: About = About {
@@ -45,12 +47,12 @@ impl Effect for EncoderResolution {
         source: "variance q²/12 of rounding; a count of the assumed LabMate is 0.236 mm",
     };
 
-    const CHANGES: Changes = Changes::MEASURED;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("A count of {} leaves the travel of each wheel uncertain by half of that, either way.", mm(p[0]))
     }
+}
 
+impl MeasurementLaw for EncoderResolution {
     fn measured(p: &[f64], stream: &mut Stream, pose: &mut Pose2) {
         if p[0] == 0.0 {
             return;

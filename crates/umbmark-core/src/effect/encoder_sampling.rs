@@ -2,13 +2,15 @@
 
 use super::crab::turn_course;
 use super::words::{deg, size};
-use super::{About, ActsOn, Changes, Context, Effect};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// Euler steps of the robot's own odometry, where what it believes is not computed anew from its counts.
 pub struct EncoderSampling;
+
+pub(super) static EFFECT: Entry = Entry::of::<EncoderSampling>().body::<EncoderSampling>();
 
 impl Effect for EncoderSampling {
     const ABOUT: About = About {
@@ -34,8 +36,6 @@ impl Effect for EncoderSampling {
         source: "Euler's rule against the mid-point rule; 50 ms is assumed",
     };
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(
             "Steps of {} ms lay each chord of an arc too far outside: at 1 rad/s the course is {} off.",
@@ -47,7 +47,9 @@ impl Effect for EncoderSampling {
     fn varies(p: &[f64]) -> bool {
         p[0] != 0.0
     }
+}
 
+impl BodyLaw for EncoderSampling {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if !at.recorded {

@@ -1,13 +1,15 @@
 //! Encoders that are not read at the same moment.
 
 use super::words::{deg, either, size};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// How much later the right counter is read than the left.
 pub struct EncoderSkew;
+
+pub(super) static EFFECT: Entry = Entry::of::<EncoderSkew>().wheels::<EncoderSkew>();
 
 impl Effect for EncoderSkew {
     const ABOUT: About = About {
@@ -32,8 +34,6 @@ impl Effect for EncoderSkew {
         source: "kinematics: 10 ms at 0.2 m/s is 0.34 degree with b = 0.34 m",
     };
 
-    const CHANGES: Changes = Changes::WHEELS;
-
     fn means(p: &[f64], robot: &Robot) -> String {
         format!(
             "The right counter is read {} ms {} than the left: at 0.5 m/s the heading by odometry is {} off while the robot moves.",
@@ -46,7 +46,9 @@ impl Effect for EncoderSkew {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl WheelLaw for EncoderSkew {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.right -= p[0] * at.speed_change[1];

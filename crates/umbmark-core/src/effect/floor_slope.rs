@@ -1,13 +1,15 @@
 //! A sloping floor that lets the robot drift downhill.
 
 use super::words::mm;
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// A drift that points one way in the room, whatever the heading.
 pub struct FloorSlope;
+
+pub(super) static EFFECT: Entry = Entry::of::<FloorSlope>().body::<FloorSlope>();
 
 impl Effect for FloorSlope {
     const ABOUT: About = About {
@@ -59,8 +61,6 @@ impl Effect for FloorSlope {
 
     const DRIVES: Kinds = Kinds::ALL;
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         let (drift, slide) = (&p[..2], &p[2..]);
         match (at_work(drift), at_work(slide)) {
@@ -76,7 +76,9 @@ impl Effect for FloorSlope {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl BodyLaw for FloorSlope {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         drift(p, at, motion);

@@ -1,13 +1,15 @@
 //! A sloping floor that turns the robot as it drives across and as it turns.
 
 use super::words::deg;
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// A turn per metre, and per radian turned, that depends on the heading in the room.
 pub struct FloorSlopeYaw;
+
+pub(super) static EFFECT: Entry = Entry::of::<FloorSlopeYaw>().body::<FloorSlopeYaw>();
 
 impl Effect for FloorSlopeYaw {
     const ABOUT: About = About {
@@ -62,8 +64,6 @@ impl Effect for FloorSlopeYaw {
 
     const DRIVES: Kinds = Kinds::ALL;
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         let most = |p: &[f64]| (deg(libm::hypot(p[0], p[1])), libm::round(libm::atan2(p[1], p[0]).to_degrees()));
         let turned = |p: &[f64], when: &str| {
@@ -87,7 +87,9 @@ impl Effect for FloorSlopeYaw {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl BodyLaw for FloorSlopeYaw {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         let (sine, cosine) = (at.heading + motion.rotation * 0.5).sine_cosine();

@@ -1,7 +1,6 @@
 //! What an effect of a model does: an entry, or a formula of the user's own.
 
-use super::{CATALOGUE, Changes, Entry, Formula, Scatter, WheelVariance};
-use crate::geometry::Pose2;
+use super::{CATALOGUE, Changes, Entry, Formula, Scatter};
 use crate::parameter::Parameter;
 use std::fmt;
 use std::sync::Arc;
@@ -66,13 +65,8 @@ impl Law {
 
     /// Its random part; a formula has none.
     pub(crate) fn scatter(&self) -> &'static Scatter {
-        static NONE: Scatter = Scatter {
-            diffusion: |_, _| WheelVariance::default(),
-            bumps: |_, _, _, _| (),
-            start_scatter: |_, _| Pose2::IDENTITY,
-            measured: |_, _, _| (),
-        };
-        self.entry().map_or(&NONE, |entry| &entry.scatter)
+        static NOTHING: Scatter = Scatter::NOTHING;
+        self.entry().map_or(&NOTHING, |entry| &entry.scatter)
     }
 
     /// A number that names its random stream.

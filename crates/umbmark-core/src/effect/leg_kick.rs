@@ -2,13 +2,15 @@
 
 use super::caster_kick::{TRAIL, faded};
 use super::words::{deg, mm, side};
-use super::{About, ActsOn, Changes, Context, Effect};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// A change of heading over the first way of each leg, always in the same sense.
 pub struct LegKick;
+
+pub(super) static EFFECT: Entry = Entry::of::<LegKick>().body::<LegKick>();
 
 impl Effect for LegKick {
     const ABOUT: About = About {
@@ -40,8 +42,6 @@ impl Effect for LegKick {
         source: "first-order theory of side-periodic errors; 0.2 degree and 5 cm are assumed",
     };
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(
             "Whenever it drives off the robot turns {} to the {}, most of it within {}.",
@@ -54,7 +54,9 @@ impl Effect for LegKick {
     fn varies(p: &[f64]) -> bool {
         p[0] != 0.0
     }
+}
 
+impl BodyLaw for LegKick {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation += p[0] * faded(at, p[1]);

@@ -1,13 +1,15 @@
 //! The length of the link between two trucks.
 
 use super::words::{either, percent};
-use super::{About, ActsOn, Changes, Effect};
+use super::{About, ActsOn, Effect, Entry, LinkLaw};
 use crate::drive::{Kind, Kinds, LinkReading, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// The ratio of the true distance of the trucks to the one that the linear encoder shows.
 pub struct LinkLength;
+
+pub(super) static EFFECT: Entry = Entry::of::<LinkLength>().link::<LinkLength>();
 
 impl Effect for LinkLength {
     const ABOUT: About = About {
@@ -33,13 +35,13 @@ impl Effect for LinkLength {
 
     const DRIVES: Kinds = Kinds::of(Kind::Clapper);
 
-    const CHANGES: Changes = Changes::LINK;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         let word = either(p[0] - 1.0, "longer", "shorter");
         format!("The link is {} {word} than its encoder shows.", percent(p[0] - 1.0))
     }
+}
 
+impl LinkLaw for LinkLength {
     fn link<T: Real>(p: &[T], shown: &mut LinkReading<T>) {
         shown.length /= p[0];
     }

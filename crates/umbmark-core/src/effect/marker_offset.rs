@@ -1,13 +1,15 @@
 //! A marker that is not over the axle's centre.
 
 use super::words::{either, mm, side};
-use super::{About, ActsOn, Changes, Effect};
+use super::{About, ActsOn, Effect, Entry, SightLaw};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
 /// The lever arm from the axle's centre to what the reference sees.
 pub struct MarkerOffset;
+
+pub(super) static EFFECT: Entry = Entry::of::<MarkerOffset>().seen::<MarkerOffset>();
 
 impl Effect for MarkerOffset {
     const ABOUT: About = About {
@@ -44,8 +46,6 @@ impl Effect for MarkerOffset {
 
     const DRIVES: Kinds = Kinds::ALL;
 
-    const CHANGES: Changes = Changes::SEEN;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(
             "The marker sits {} {} and {} to the {} of the middle of the axle.",
@@ -55,7 +55,9 @@ impl Effect for MarkerOffset {
             side(p[1])
         )
     }
+}
 
+impl SightLaw for MarkerOffset {
     fn seen<T: Real>(p: &[T], pose: &mut Pose2<T>) {
         let (sine, cosine) = pose.heading.sine_cosine();
         pose.x += cosine * p[0] - sine * p[1] - p[0];

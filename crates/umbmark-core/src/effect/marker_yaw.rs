@@ -1,13 +1,15 @@
 //! A marker that is mounted askew.
 
 use super::words::{deg, side};
-use super::{About, ActsOn, Changes, Effect};
+use super::{About, ActsOn, Effect, Entry, SightLaw};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
 /// The angle between what the reference calls the robot's heading and its heading.
 pub struct MarkerYaw;
+
+pub(super) static EFFECT: Entry = Entry::of::<MarkerYaw>().seen::<MarkerYaw>();
 
 impl Effect for MarkerYaw {
     const ABOUT: About = About {
@@ -34,12 +36,12 @@ impl Effect for MarkerYaw {
 
     const DRIVES: Kinds = Kinds::ALL;
 
-    const CHANGES: Changes = Changes::SEEN;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("The marker faces {} to the {} of where the robot does.", deg(p[0]), side(p[0]))
     }
+}
 
+impl SightLaw for MarkerYaw {
     fn seen<T: Real>(p: &[T], pose: &mut Pose2<T>) {
         pose.heading += p[0];
     }

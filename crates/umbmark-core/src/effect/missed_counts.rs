@@ -1,13 +1,15 @@
 //! Encoders that are too slow for the wheel.
 
 use super::words::{either, percent, size};
-use super::{About, ActsOn, Changes, Context, Effect};
+use super::{About, ActsOn, Context, Effect, Entry, WheelLaw};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// The share of its counts that each wheel misses above a speed.
 pub struct MissedCounts;
+
+pub(super) static EFFECT: Entry = Entry::of::<MissedCounts>().wheels::<MissedCounts>();
 
 impl Effect for MissedCounts {
     const ABOUT: About = About {
@@ -50,8 +52,6 @@ impl Effect for MissedCounts {
         source: "reports of users of small controllers; sizes are assumed",
     };
 
-    const CHANGES: Changes = Changes::WHEELS;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         let more = |k: f64| format!("{} {}", percent(0.1 * k), either(k, "more", "less"));
         format!(
@@ -65,7 +65,9 @@ impl Effect for MissedCounts {
     fn varies(p: &[f64]) -> bool {
         p[0] != 0.0 || p[1] != 0.0
     }
+}
 
+impl WheelLaw for MissedCounts {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= p[0] * above(at.wheel_speed[0], p[2]) + 1.0;

@@ -2,7 +2,7 @@
 
 use super::bumps::{HEIGHT, PROFILE, WHEEL_RADIUS, lost_travel};
 use super::words::{deg, mm, size};
-use super::{About, ActsOn, Bump, Changes, Context, Effect, Stretch, TestKind};
+use super::{About, ActsOn, Bump, BumpLaw, Context, Effect, Entry, Stretch, TestKind, WheelLaw};
 use crate::drive::{Kind, Kinds, Robot, Wheel, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -12,6 +12,8 @@ use crate::random::Stream;
 /// Bumps spread evenly over the first leg, under the wheel on the inside of the path: one by one in simulated runs of the
 /// extended test only, or on average in every run that a model is asked for.
 pub struct PlacedBumps;
+
+pub(super) static EFFECT: Entry = Entry::of::<PlacedBumps>().wheels::<PlacedBumps>().bumps::<PlacedBumps>();
 
 impl Effect for PlacedBumps {
     const ABOUT: About = About {
@@ -52,8 +54,6 @@ impl Effect for PlacedBumps {
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro).and(Kind::Clapper);
 
-    const CHANGES: Changes = Changes::WHEELS.and(Changes::BUMPS);
-
     fn means(p: &[f64], robot: &Robot) -> String {
         let (single, share) = (lost_travel(p[1], p[2], p[3]), p[4]);
         let turned = |lost: f64| deg(lost / robot.drive.wheelbase());
@@ -75,7 +75,9 @@ impl Effect for PlacedBumps {
     fn varies(p: &[f64]) -> bool {
         p[4] != 0.0
     }
+}
 
+impl WheelLaw for PlacedBumps {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         if at.last_turn != 0.0 || at.turns_on_the_spot() {
@@ -87,7 +89,9 @@ impl Effect for PlacedBumps {
             travel.right *= -p[4] + 1.0;
         }
     }
+}
 
+impl BumpLaw for PlacedBumps {
     fn bumps(p: &[f64], stretch: &Stretch, _stream: &mut Stream, met: &mut Vec<Bump>) {
         if stretch.test != TestKind::Bumps || stretch.index != 0 {
             return;

@@ -1,7 +1,7 @@
 //! The rear one of two trucks, where its wheels are not those of the front one.
 
 use super::words::{either, percent};
-use super::{About, ActsOn, Changes, Context, Effect};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, WheelLaw};
 use crate::drive::{Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -12,6 +12,8 @@ pub struct RearTruck;
 const fn ratio(name: &'static str, flag: &'static str, typical: f64, meaning: &'static str) -> Parameter {
     Parameter::ratio(name, flag, typical, (0.5, 2.0), meaning)
 }
+
+pub(super) static EFFECT: Entry = Entry::of::<RearTruck>().wheels::<RearTruck>().body::<RearTruck>();
 
 impl Effect for RearTruck {
     const ABOUT: About = About {
@@ -35,8 +37,6 @@ impl Effect for RearTruck {
 
     const DRIVES: Kinds = Kinds::of(Kind::Clapper);
 
-    const CHANGES: Changes = Changes::WHEELS.and(Changes::BODY);
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         let more = |value: f64| format!("{} {}", percent(value - 1.0), either(value - 1.0, "more", "less"));
         format!(
@@ -50,7 +50,9 @@ impl Effect for RearTruck {
     fn varies(p: &[f64]) -> bool {
         p.iter().any(|ratio| *ratio != 1.0)
     }
+}
 
+impl WheelLaw for RearTruck {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         if at.truck > 0.0 {
@@ -59,7 +61,9 @@ impl Effect for RearTruck {
             travel.right *= left * p[0];
         }
     }
+}
 
+impl BodyLaw for RearTruck {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if at.truck > 0.0 {

@@ -1,13 +1,15 @@
 //! A reference whose clock runs slow.
 
 use super::words::{either, size};
-use super::{About, ActsOn, Changes, Effect};
+use super::{About, ActsOn, ClockLaw, Effect, Entry};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// By how much the clock of the reference and that of the encoders part, per time.
 pub struct ReferenceClockRate;
+
+pub(super) static EFFECT: Entry = Entry::of::<ReferenceClockRate>().late::<ReferenceClockRate>();
 
 impl Effect for ReferenceClockRate {
     const ABOUT: About = About {
@@ -34,12 +36,12 @@ impl Effect for ReferenceClockRate {
 
     const DRIVES: Kinds = Kinds::ALL;
 
-    const CHANGES: Changes = Changes::CLOCK;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("The clock of the reference {} {} ms in a minute.", either(p[0], "loses", "gains"), size(6e4 * p[0]))
     }
+}
 
+impl ClockLaw for ReferenceClockRate {
     fn late<T: Real>(p: &[T], time: f64, late: &mut T) {
         *late += p[0] * time;
     }

@@ -1,13 +1,15 @@
 //! A reference whose clock is behind.
 
 use super::words::{either, mm, size};
-use super::{About, ActsOn, Changes, Effect};
+use super::{About, ActsOn, ClockLaw, Effect, Entry};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// How old a measured pose is when it is stamped.
 pub struct ReferenceDelay;
+
+pub(super) static EFFECT: Entry = Entry::of::<ReferenceDelay>().late::<ReferenceDelay>();
 
 impl Effect for ReferenceDelay {
     const ABOUT: About = About {
@@ -33,8 +35,6 @@ impl Effect for ReferenceDelay {
 
     const DRIVES: Kinds = Kinds::ALL;
 
-    const CHANGES: Changes = Changes::CLOCK;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(
             "The reference shows where the robot {} {} ms {}: at 0.5 m/s that is {}.",
@@ -44,7 +44,9 @@ impl Effect for ReferenceDelay {
             mm(0.5 * p[0])
         )
     }
+}
 
+impl ClockLaw for ReferenceDelay {
     fn late<T: Real>(p: &[T], _time: f64, late: &mut T) {
         *late += p[0];
     }

@@ -1,7 +1,7 @@
 //! Noise of the absolute measurement.
 
 use super::words::{deg, mm};
-use super::{About, ActsOn, Changes, Effect};
+use super::{About, ActsOn, Effect, Entry, MeasurementLaw};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::Pose2;
 use crate::parameter::Parameter;
@@ -11,6 +11,8 @@ use crate::random::Stream;
 pub struct ReferenceNoise;
 
 const SCATTER: (f64, f64) = (0.0, 10.0);
+
+pub(super) static EFFECT: Entry = Entry::of::<ReferenceNoise>().measured::<ReferenceNoise>();
 
 impl Effect for ReferenceNoise {
     const ABOUT: About = About {
@@ -45,12 +47,12 @@ impl Effect for ReferenceNoise {
 
     const DRIVES: Kinds = Kinds::ALL;
 
-    const CHANGES: Changes = Changes::MEASURED;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("A measured position scatters by {} along each axis, a heading by {}.", mm(p[0]), deg(p[1]))
     }
+}
 
+impl MeasurementLaw for ReferenceNoise {
     fn measured(p: &[f64], stream: &mut Stream, pose: &mut Pose2) {
         if p[0] > 0.0 {
             pose.x += p[0] * stream.normal();

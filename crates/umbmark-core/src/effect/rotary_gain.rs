@@ -1,7 +1,7 @@
 //! The gain of a link's two rotary encoders.
 
 use super::words::{deg, either, percent};
-use super::{About, ActsOn, Changes, Effect};
+use super::{About, ActsOn, Effect, Entry, LinkLaw};
 use crate::drive::{Kind, Kinds, LinkReading, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
@@ -9,6 +9,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// How much more than there is both angles show, as a share.
 pub struct RotaryGain;
+
+pub(super) static EFFECT: Entry = Entry::of::<RotaryGain>().link::<RotaryGain>();
 
 impl Effect for RotaryGain {
     const ABOUT: About = About {
@@ -34,8 +36,6 @@ impl Effect for RotaryGain {
 
     const DRIVES: Kinds = Kinds::of(Kind::Clapper);
 
-    const CHANGES: Changes = Changes::LINK;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         let more = either(p[0], "more", "less");
         format!(
@@ -44,7 +44,9 @@ impl Effect for RotaryGain {
             deg(p[0] * FRAC_PI_2)
         )
     }
+}
 
+impl LinkLaw for RotaryGain {
     fn link<T: Real>(p: &[T], shown: &mut LinkReading<T>) {
         let factor = p[0] + 1.0;
         shown.angles.iter_mut().for_each(|angle| *angle *= factor);

@@ -1,13 +1,15 @@
 //! Zeros of a link's two rotary encoders that differ.
 
 use super::words::{deg, side};
-use super::{About, ActsOn, Changes, Effect};
+use super::{About, ActsOn, Effect, Entry, LinkLaw};
 use crate::drive::{Drive, Kind, Kinds, LinkReading, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// What the front angle shows more than the rear one where trucks and link are in line.
 pub struct RotaryZeroDifference;
+
+pub(super) static EFFECT: Entry = Entry::of::<RotaryZeroDifference>().link::<RotaryZeroDifference>();
 
 impl Effect for RotaryZeroDifference {
     const ABOUT: About = About {
@@ -34,13 +36,13 @@ impl Effect for RotaryZeroDifference {
 
     const DRIVES: Kinds = Kinds::of(Kind::Clapper);
 
-    const CHANGES: Changes = Changes::LINK;
-
     fn means(p: &[f64], robot: &Robot) -> String {
         let link = if let Drive::Clapper(drive) = robot.drive { drive.link() } else { 1.0 };
         format!("Each metre ahead turns the line of trucks by {} to the {}.", deg(p[0] / link), side(p[0]))
     }
+}
 
+impl LinkLaw for RotaryZeroDifference {
     fn link<T: Real>(p: &[T], shown: &mut LinkReading<T>) {
         let half = p[0] * 0.5;
         shown.angles[0] += half;

@@ -1,13 +1,15 @@
 //! Zeros of a link's two rotary encoders that are off alike.
 
 use super::words::{deg, side};
-use super::{About, ActsOn, Changes, Effect};
+use super::{About, ActsOn, Effect, Entry, LinkLaw};
 use crate::drive::{Kind, Kinds, LinkReading, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// What both angles show where trucks and link are in line.
 pub struct RotaryZeroMean;
+
+pub(super) static EFFECT: Entry = Entry::of::<RotaryZeroMean>().link::<RotaryZeroMean>();
 
 impl Effect for RotaryZeroMean {
     const ABOUT: About = About {
@@ -33,12 +35,12 @@ impl Effect for RotaryZeroMean {
 
     const DRIVES: Kinds = Kinds::of(Kind::Clapper);
 
-    const CHANGES: Changes = Changes::LINK;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("Both trucks head {} to the {} of where they believe.", deg(p[0]), side(p[0]))
     }
+}
 
+impl LinkLaw for RotaryZeroMean {
     fn link<T: Real>(p: &[T], shown: &mut LinkReading<T>) {
         shown.angles.iter_mut().for_each(|angle| *angle += p[0]);
     }

@@ -1,13 +1,15 @@
 //! E_s: the scale.
 
 use super::words::{either, mm};
-use super::{About, ActsOn, Changes, Context, Effect};
+use super::{About, ActsOn, Context, Effect, Entry, WheelLaw};
 use crate::drive::{Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// The ratio of the mean true wheel diameter to the nominal one.
 pub struct Scale;
+
+pub(super) static EFFECT: Entry = Entry::of::<Scale>().wheels::<Scale>();
 
 impl Effect for Scale {
     const ABOUT: About = About {
@@ -41,13 +43,13 @@ impl Effect for Scale {
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Ackermann).and(Kind::Clapper);
 
-    const CHANGES: Changes = Changes::WHEELS;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         let (off, word) = (p[0] - 1.0, either(p[0] - 1.0, "long", "short"));
         format!("A metre by odometry is {} too {word} on the floor.", mm(off))
     }
+}
 
+impl WheelLaw for Scale {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= p[0];

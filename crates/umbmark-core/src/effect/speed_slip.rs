@@ -1,13 +1,15 @@
 //! Slip of both wheels that grows with their speed.
 
 use super::words::{either, percent};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// The share of travel that each wheel loses per speed.
 pub struct SpeedSlip;
+
+pub(super) static EFFECT: Entry = Entry::of::<SpeedSlip>().wheels::<SpeedSlip>();
 
 impl Effect for SpeedSlip {
     const ABOUT: About = About {
@@ -27,8 +29,6 @@ impl Effect for SpeedSlip {
         source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
     };
 
-    const CHANGES: Changes = Changes::WHEELS;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         creeps(p[0], "both wheels get")
     }
@@ -36,7 +36,9 @@ impl Effect for SpeedSlip {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl WheelLaw for SpeedSlip {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= kept(p[0], at.wheel_speed[0]);

@@ -1,13 +1,15 @@
 //! Slip of the left wheel that grows with its speed.
 
 use super::speed_slip::{CREEP, PER_SPEED, creeps, kept};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// The share of travel that the left wheel loses per speed.
 pub struct SpeedSlipLeft;
+
+pub(super) static EFFECT: Entry = Entry::of::<SpeedSlipLeft>().wheels::<SpeedSlipLeft>();
 
 impl Effect for SpeedSlipLeft {
     const ABOUT: About = About {
@@ -27,8 +29,6 @@ impl Effect for SpeedSlipLeft {
         source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
     };
 
-    const CHANGES: Changes = Changes::WHEELS;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         creeps(p[0], "the left wheel gets")
     }
@@ -36,7 +36,9 @@ impl Effect for SpeedSlipLeft {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl WheelLaw for SpeedSlipLeft {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left *= kept(p[0], at.wheel_speed[0]);

@@ -1,13 +1,15 @@
 //! Slip of the right wheel that grows with its speed.
 
 use super::speed_slip::{CREEP, PER_SPEED, creeps, kept};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// The share of travel that the right wheel loses per speed.
 pub struct SpeedSlipRight;
+
+pub(super) static EFFECT: Entry = Entry::of::<SpeedSlipRight>().wheels::<SpeedSlipRight>();
 
 impl Effect for SpeedSlipRight {
     const ABOUT: About = About {
@@ -27,8 +29,6 @@ impl Effect for SpeedSlipRight {
         source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
     };
 
-    const CHANGES: Changes = Changes::WHEELS;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         creeps(p[0], "the right wheel gets")
     }
@@ -36,7 +36,9 @@ impl Effect for SpeedSlipRight {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl WheelLaw for SpeedSlipRight {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.right *= kept(p[0], at.wheel_speed[1]);

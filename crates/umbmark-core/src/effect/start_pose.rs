@@ -1,7 +1,7 @@
 //! Misplacement at START.
 
 use super::words::{deg, either, mm, side};
-use super::{About, ActsOn, Changes, Effect};
+use super::{About, ActsOn, Effect, Entry, StartLaw};
 use crate::drive::{Kinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
@@ -12,6 +12,8 @@ pub struct StartPose;
 
 const EITHER_WAY: (f64, f64) = (-10.0, 10.0);
 const SCATTER: (f64, f64) = (0.0, 10.0);
+
+pub(super) static EFFECT: Entry = Entry::of::<StartPose>().start::<StartPose>();
 
 impl Effect for StartPose {
     const ABOUT: About = About {
@@ -57,8 +59,6 @@ impl Effect for StartPose {
 
     const DRIVES: Kinds = Kinds::ALL;
 
-    const CHANGES: Changes = Changes::START.and(Changes::START_SCATTER);
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(
             "The robot stands {} {} and {} to the {} of where its odometry begins, turned {} to the {}.",
@@ -70,7 +70,9 @@ impl Effect for StartPose {
             side(p[2])
         )
     }
+}
 
+impl StartLaw for StartPose {
     fn start<T: Real>(p: &[T]) -> Pose2<T> {
         Pose2::new(p[0], p[1], p[2])
     }

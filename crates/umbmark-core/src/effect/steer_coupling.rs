@@ -1,13 +1,15 @@
 //! A course that turns as the robot drives.
 
 use super::words::{deg, side};
-use super::{About, ActsOn, Changes, Context, Effect};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// A turn of the course per metre driven.
 pub struct SteerCoupling;
+
+pub(super) static EFFECT: Entry = Entry::of::<SteerCoupling>().body::<SteerCoupling>();
 
 impl Effect for SteerCoupling {
     const ABOUT: About = About {
@@ -33,12 +35,12 @@ impl Effect for SteerCoupling {
 
     const DRIVES: Kinds = Kinds::of(Kind::Synchro);
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("Each metre ahead turns the course by {} to the {}, whatever is steered.", deg(p[0]), side(p[0]))
     }
+}
 
+impl BodyLaw for SteerCoupling {
     #[inline(always)]
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation += p[0] * motion.forward;

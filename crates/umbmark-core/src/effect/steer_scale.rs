@@ -1,7 +1,7 @@
 //! The scale of a synchro drive's steering.
 
 use super::words::deg;
-use super::{About, ActsOn, Changes, Context, Effect};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -9,6 +9,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// The ratio of true to believed turns of the course.
 pub struct SteerScale;
+
+pub(super) static EFFECT: Entry = Entry::of::<SteerScale>().body::<SteerScale>();
 
 impl Effect for SteerScale {
     const ABOUT: About = About {
@@ -27,12 +29,12 @@ impl Effect for SteerScale {
 
     const DRIVES: Kinds = Kinds::of(Kind::Synchro);
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("Where the steering counts 90 degrees the course turns by {}.", deg(p[0] * FRAC_PI_2))
     }
+}
 
+impl BodyLaw for SteerScale {
     #[inline(always)]
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation *= p[0];

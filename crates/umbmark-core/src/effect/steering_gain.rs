@@ -2,7 +2,7 @@
 
 use super::steering_zero::{steer_on, steered};
 use super::words::{deg, either, percent};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
@@ -12,6 +12,8 @@ pub struct SteeringGain;
 
 /// A usual angle of steering \[rad\].
 const TWENTY: f64 = 0.349;
+
+pub(super) static EFFECT: Entry = Entry::of::<SteeringGain>().body::<SteeringGain>();
 
 impl Effect for SteeringGain {
     const ABOUT: About = About {
@@ -36,8 +38,6 @@ impl Effect for SteeringGain {
 
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         let more = either(p[0], "more", "less");
         format!(
@@ -50,7 +50,9 @@ impl Effect for SteeringGain {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl BodyLaw for SteeringGain {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if let Some(tangent) = steered(at, motion) {

@@ -1,13 +1,15 @@
 //! A steered wheel that does not stand straight where its counter says so.
 
 use super::words::{deg, side};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// The true steering angle where it is believed to be zero.
 pub struct SteeringZero;
+
+pub(super) static EFFECT: Entry = Entry::of::<SteeringZero>().body::<SteeringZero>();
 
 impl Effect for SteeringZero {
     const ABOUT: About = About {
@@ -32,8 +34,6 @@ impl Effect for SteeringZero {
 
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("Where straight ahead is believed, the wheel is steered {} to the {}.", deg(p[0]), side(p[0]))
     }
@@ -41,7 +41,9 @@ impl Effect for SteeringZero {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl BodyLaw for SteeringZero {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if let Some(tangent) = steered(at, motion) {

@@ -30,7 +30,7 @@ pub fn effects_text_with(model: &Model, other: impl Fn(&Part, &Parameter) -> Opt
 /// The numbers of an effect of the catalogue.
 fn numbers(part: &Part, other: &impl Fn(&Part, &Parameter) -> Option<String>) -> String {
     let line = |(parameter, value): (&Parameter, &f64)| {
-        let word = parameter.choices.get(*value as usize).map(|word| format!("\"{word}\""));
+        let word = parameter.word(*value).map(|word| format!("\"{word}\""));
         let written = word.or_else(|| other(part, parameter)).unwrap_or_else(|| format!("{value:?}"));
         format!("{} = {written}\n", parameter.name)
     };

@@ -1,13 +1,15 @@
 //! Scrub in turns on the spot.
 
 use super::words::{deg, either};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// The share of rotation that turns on the spot lose.
 pub struct TurnSlip;
+
+pub(super) static EFFECT: Entry = Entry::of::<TurnSlip>().body::<TurnSlip>();
 
 impl Effect for TurnSlip {
     const ABOUT: About = About {
@@ -32,8 +34,6 @@ impl Effect for TurnSlip {
         source: "Borenstein & Feng (1995), section 2 (up to 1 %); factors 1.5 to 1.9 that users set for skid-steer robots",
     };
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(
             "90 degrees on the spot by odometry come out {} too {}.",
@@ -45,7 +45,9 @@ impl Effect for TurnSlip {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl BodyLaw for TurnSlip {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if at.turns_on_the_spot() {

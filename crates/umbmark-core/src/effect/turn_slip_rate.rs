@@ -1,13 +1,15 @@
 //! Slip that grows with the rate of turn.
 
 use super::words::{deg, either};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// The share of rotation that is lost per rate of turn.
 pub struct TurnSlipRate;
+
+pub(super) static EFFECT: Entry = Entry::of::<TurnSlipRate>().body::<TurnSlipRate>();
 
 impl Effect for TurnSlipRate {
     const ABOUT: About = About {
@@ -30,8 +32,6 @@ impl Effect for TurnSlipRate {
         source: "linear creep of a rolling tyre; 0.8 % per rad/s is assumed",
     };
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(
             "At 1 rad/s a turn of 90 degrees by odometry comes out {} too {}, and in proportion at other rates.",
@@ -43,7 +43,9 @@ impl Effect for TurnSlipRate {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl BodyLaw for TurnSlipRate {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation *= -p[0] * at.turn_rate.abs() + 1.0;

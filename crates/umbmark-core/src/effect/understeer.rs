@@ -2,13 +2,15 @@
 
 use super::steering_zero::{steer_on, steered};
 use super::words::{deg, either};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// Steering lost per lateral acceleration.
 pub struct Understeer;
+
+pub(super) static EFFECT: Entry = Entry::of::<Understeer>().body::<Understeer>();
 
 impl Effect for Understeer {
     const ABOUT: About = About {
@@ -33,8 +35,6 @@ impl Effect for Understeer {
 
     const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], _robot: &Robot) -> String {
         let less = either(p[0], "less", "more");
         format!("In a curve with 1 m/s² of side force the wheel acts as if it were steered by {} {less}.", deg(p[0]))
@@ -43,7 +43,9 @@ impl Effect for Understeer {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl BodyLaw for Understeer {
     #[inline(always)]
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
         if let Some(tangent) = steered(at, motion) {

@@ -1,13 +1,15 @@
 //! E_d: unequal wheel diameters.
 
 use super::words::{deg, either, mm, side};
-use super::{About, ActsOn, Changes, Context, Effect};
+use super::{About, ActsOn, Context, Effect, Entry, WheelLaw};
 use crate::drive::{Kind, Kinds, Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// The ratio of the true wheel diameters, split symmetrically so that their mean stays nominal.
 pub struct WheelDiameterRatio;
+
+pub(super) static EFFECT: Entry = Entry::of::<WheelDiameterRatio>().wheels::<WheelDiameterRatio>();
 
 impl Effect for WheelDiameterRatio {
     const ABOUT: About = About {
@@ -40,8 +42,6 @@ impl Effect for WheelDiameterRatio {
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Clapper);
 
-    const CHANGES: Changes = Changes::WHEELS;
-
     fn means(p: &[f64], robot: &Robot) -> String {
         let ratio = 2.0 * (p[0] - 1.0) / (p[0] + 1.0);
         let mean = 0.5 * (robot.drive.wheel_diameter_left() + robot.drive.wheel_diameter_right());
@@ -53,7 +53,9 @@ impl Effect for WheelDiameterRatio {
             side(turned)
         )
     }
+}
 
+impl WheelLaw for WheelDiameterRatio {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
         let left = (p[0] + 1.0).recip() * 2.0;

@@ -1,13 +1,15 @@
 //! Run-out of the left wheel.
 
 use super::words::{deg, mm};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// A left wheel whose axle misses its centre.
 pub struct WheelEccentricityLeft;
+
+pub(super) static EFFECT: Entry = Entry::of::<WheelEccentricityLeft>().wheels::<WheelEccentricityLeft>();
 
 impl Effect for WheelEccentricityLeft {
     const ABOUT: About = About {
@@ -36,8 +38,6 @@ impl Effect for WheelEccentricityLeft {
         source: "geometry of an off-centre wheel; 0.3 mm is assumed",
     };
 
-    const CHANGES: Changes = Changes::WHEELS;
-
     fn means(p: &[f64], robot: &Robot) -> String {
         run_out(p, robot, "left")
     }
@@ -45,7 +45,9 @@ impl Effect for WheelEccentricityLeft {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl WheelLaw for WheelEccentricityLeft {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.left += wave(p, at, 0);

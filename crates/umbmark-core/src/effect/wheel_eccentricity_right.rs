@@ -1,13 +1,15 @@
 //! Run-out of the right wheel.
 
 use super::wheel_eccentricity_left::{COSINE, RUN_OUT, SINE, run_out, wave};
-use super::{About, ActsOn, Changes, Context, Effect, at_work};
+use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
 /// A right wheel whose axle misses its centre.
 pub struct WheelEccentricityRight;
+
+pub(super) static EFFECT: Entry = Entry::of::<WheelEccentricityRight>().wheels::<WheelEccentricityRight>();
 
 impl Effect for WheelEccentricityRight {
     const ABOUT: About = About {
@@ -35,8 +37,6 @@ impl Effect for WheelEccentricityRight {
         source: "geometry of an off-centre wheel; 0.3 mm is assumed",
     };
 
-    const CHANGES: Changes = Changes::WHEELS;
-
     fn means(p: &[f64], robot: &Robot) -> String {
         run_out(p, robot, "right")
     }
@@ -44,7 +44,9 @@ impl Effect for WheelEccentricityRight {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
+}
 
+impl WheelLaw for WheelEccentricityRight {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
         travel.right += wave(p, at, 1);

@@ -1,12 +1,14 @@
 //! Random slip and unevenness, wheel by wheel.
 
 use super::words::{deg, mm};
-use super::{About, ActsOn, Changes, Effect, WheelVariance};
+use super::{About, ActsOn, DiffusionLaw, Effect, Entry, WheelVariance};
 use crate::drive::{Kinds, Robot, WheelTravel};
 use crate::parameter::Parameter;
 
 /// White noise on each wheel's travel over ground.
 pub struct WheelNoise;
+
+pub(super) static EFFECT: Entry = Entry::of::<WheelNoise>().diffusion::<WheelNoise>();
 
 impl Effect for WheelNoise {
     const ABOUT: About = About {
@@ -33,8 +35,6 @@ impl Effect for WheelNoise {
 
     const DRIVES: Kinds = Kinds::ALL;
 
-    const CHANGES: Changes = Changes::DIFFUSION;
-
     fn means(p: &[f64], robot: &Robot) -> String {
         let scattered = p[0] * libm::sqrt(10.0);
         format!(
@@ -43,7 +43,9 @@ impl Effect for WheelNoise {
             deg(scattered * std::f64::consts::SQRT_2 / robot.drive.wheelbase())
         )
     }
+}
 
+impl DiffusionLaw for WheelNoise {
     fn diffusion(p: &[f64], travel: &WheelTravel) -> WheelVariance {
         let per_metre = p[0] * p[0];
         WheelVariance { left: per_metre * travel.left.abs(), right: per_metre * travel.right.abs() }

@@ -1,13 +1,15 @@
 //! E_b: the effective wheelbase.
 
 use super::words::{deg, mm};
-use super::{About, ActsOn, Changes, Context, Effect};
+use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
 use crate::drive::{Kind, Kinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
 /// The ratio of the effective wheelbase to the nominal one.
 pub struct Wheelbase;
+
+pub(super) static EFFECT: Entry = Entry::of::<Wheelbase>().body::<Wheelbase>();
 
 impl Effect for Wheelbase {
     const ABOUT: About = About {
@@ -27,8 +29,6 @@ impl Effect for Wheelbase {
 
     const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Clapper);
 
-    const CHANGES: Changes = Changes::BODY;
-
     fn means(p: &[f64], robot: &Robot) -> String {
         let b = robot.drive.wheelbase();
         format!(
@@ -38,7 +38,9 @@ impl Effect for Wheelbase {
             deg(std::f64::consts::FRAC_PI_2 / p[0])
         )
     }
+}
 
+impl BodyLaw for Wheelbase {
     #[inline(always)]
     fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
         motion.rotation /= p[0];

@@ -96,7 +96,7 @@ impl Quantity {
     /// All that there are, those of the catalogue first.
     fn all(study: &Study) -> Vec<Quantity> {
         let known = CATALOGUE.iter().map(|entry| (entry.about.name, entry.about.parameters));
-        let own = study.model.parts().iter().filter(|part| part.effect.entry().is_none_or(|e| !CATALOGUE.contains(e)));
+        let own = study.model.parts().iter().filter(|part| part.effect.entry().is_none_or(|e| !CATALOGUE.contains(&e)));
         let effects = known.chain(own.map(|part| (part.effect.name(), part.effect.parameters())));
         let effects = effects.flat_map(|(effect, all)| all.iter().map(move |p| (Owner::Effect(effect), *p)));
         // The shape that is driven comes first: shapes share names.

@@ -6,7 +6,7 @@ use crate::parameter::Parameter;
 use std::f64::consts::TAU;
 
 /// One arc of any number of turns: wheel speeds differ all the time, so what depends on speed or turn rate shows.
-pub static CIRCLE: Shape = Shape {
+pub static SHAPE: Shape = Shape {
     name: "circle",
     about: "a circle, driven round one or more times without stopping",
     parameters: &[Parameter::shape("radius_m", "radius", "m", 1.0, SIDE_BOUNDS, "radius of the circle"), TURNS],

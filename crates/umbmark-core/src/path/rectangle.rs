@@ -5,7 +5,7 @@ use super::square::{SIDE_BOUNDS, sides};
 use crate::parameter::Parameter;
 
 /// Two long and two short legs with quarter turns: 7 x 4 m in Borenstein & Feng (1995), section 4.5.
-pub static RECTANGLE: Shape = Shape {
+pub static SHAPE: Shape = Shape {
     name: "rectangle",
     about: "two long and two short legs, each followed by a quarter turn on the spot",
     parameters: &[

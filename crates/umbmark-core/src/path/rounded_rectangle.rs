@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Four straight legs and four quarter circles. START is where the first corner's arc would begin if it came before the first leg: at
 /// the end of the last arc.
-pub static ROUNDED_RECTANGLE: Shape = Shape {
+pub static SHAPE: Shape = Shape {
     name: "rounded_rectangle",
     about: "two long and two short legs with quarter circles for corners: for robots that cannot turn on the spot",
     parameters: &[

@@ -5,7 +5,7 @@ use super::{Move, Shape};
 use std::f64::consts::TAU;
 
 /// Full turns on the spot: E_d does nothing here, so E_b (with scrub) stands alone.
-pub static SPIN: Shape = Shape {
+pub static SHAPE: Shape = Shape {
     name: "spin",
     about: "one or more full turns on the spot",
     parameters: &[TURNS],

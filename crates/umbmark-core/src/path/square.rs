@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 pub(super) const SIDE_BOUNDS: (f64, f64) = (1e-3, 1e4);
 
 /// Four straight legs and four quarter turns on the spot: Borenstein & Feng (1995), section 3.
-pub static SQUARE: Shape = Shape {
+pub static SHAPE: Shape = Shape {
     name: "square",
     about: "four straight legs, each followed by a quarter turn on the spot: the path of UMBmark",
     parameters: &[Parameter::shape("side_m", "side", "m", 4.0, SIDE_BOUNDS, "length of a side")],

@@ -5,7 +5,7 @@ use crate::geometry::wrap;
 
 /// Turn towards each point in turn and drive straight to it; x, y of each point \[m\], START at the origin. The clockwise
 /// direction is the mirror image in the x axis.
-pub static WAYPOINTS: Shape = Shape {
+pub static SHAPE: Shape = Shape {
     name: "waypoints",
     about: "straight legs from START through a list of points, `points_m = [[x, y], ..]`, turning on the spot at each",
     parameters: &[],
@@ -27,7 +27,7 @@ fn check(values: &[f64]) -> Result<(), PathError> {
         before = (x, y);
     }
     if values.is_empty() || !values.len().is_multiple_of(2) {
-        return Err(PathError::Count { shape: WAYPOINTS.name, expected: 2, got: values.len() });
+        return Err(PathError::Count { shape: SHAPE.name, expected: 2, got: values.len() });
     }
     Ok(())
 }
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn the_robot_ends_at_the_last_point_and_its_mirror_image_at_the_mirrored_one() {
-        let path = Path::new(&WAYPOINTS, &[2.0, 0.0, 2.0, 3.0, -1.0, 1.0], SpeedProfile::default()).unwrap();
+        let path = Path::new(&SHAPE, &[2.0, 0.0, 2.0, 3.0, -1.0, 1.0], SpeedProfile::default()).unwrap();
         let (left, right) = (path.end(Direction::Ccw), path.end(Direction::Cw));
         assert!((left.x + 1.0).abs() < 1e-12 && (left.y - 1.0).abs() < 1e-12);
         assert!((right.x + 1.0).abs() < 1e-12 && (right.y + 1.0).abs() < 1e-12);

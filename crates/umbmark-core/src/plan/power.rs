@@ -46,7 +46,7 @@ impl Sought {
     ///
     /// Where several effects have a size of that name, the first of the catalogue.
     pub fn named(name: &str, value: f64, robot: &Robot) -> Result<Sought, PlanError> {
-        let mut all = CATALOGUE.iter().flat_map(|e| e.about.parameters.iter().map(move |p| (e, p)));
+        let mut all = CATALOGUE.iter().copied().flat_map(|e| e.about.parameters.iter().map(move |p| (e, p)));
         let is_meant = |(effect, parameter): &(&'static Entry, &'static Parameter)| {
             let whole = name.split_once('.').is_some_and(|(e, p)| e == effect.about.name && p == parameter.name);
             whole || name == parameter.flag || name == parameter.name

@@ -4,13 +4,17 @@ use umbmark_core::diagnose::OnCircle;
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::{Direction, SQUARE};
 
+use super::Kind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::study::{Absent, Study};
 use crate::tone::Tone;
 
 const MM: f64 = 1e3;
 
-pub(super) fn figure(study: &Study) -> Result<Figure, Absent> {
+pub(super) static FIGURE: Kind =
+    Kind { name: "circle", about: "end points beside the circle through START", build: figure };
+
+fn figure(study: &Study) -> Result<Figure, Absent> {
     let circle = &study.diagnosis()?.circle;
     let path = study.data.path.as_ref().filter(|path| std::ptr::eq(path.shape(), &SQUARE));
     let side = path.map(|path| path.values()[0]);

@@ -2,11 +2,15 @@
 
 use umbmark_core::diagnose::classes::ALIKE;
 
+use super::Kind;
 use super::correlations::cells;
 use crate::figure::{Axis, Figure, Panel, Table, Told};
 use crate::study::{Absent, Study};
 
-pub(super) fn figure(study: &Study) -> Result<Figure, Absent> {
+pub(super) static FIGURE: Kind =
+    Kind { name: "confusability", about: "which effects look alike in these runs", build: figure };
+
+fn figure(study: &Study) -> Result<Figure, Absent> {
     let likeness = &study.diagnosis()?.likeness;
     if likeness.effects.len() < 2 {
         return Err(Absent("Fewer than two effects outside the model can be seen in these runs.".into()));

@@ -1,10 +1,14 @@
 //! How far the fitted numbers are tied to one another.
 
+use super::Kind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::study::{Absent, Study};
 use crate::tone::Tone;
 
-pub(super) fn figure(study: &Study) -> Result<Figure, Absent> {
+pub(super) static FIGURE: Kind =
+    Kind { name: "correlations", about: "how far the model's numbers are tied", build: figure };
+
+fn figure(study: &Study) -> Result<Figure, Absent> {
     let diagnosis = study.diagnosis()?;
     let names: Vec<String> = diagnosis.fitted.iter().map(|e| e.parameter.to_owned()).collect();
     let values = &diagnosis.correlations;

@@ -2,6 +2,7 @@
 
 use umbmark_core::learn::{Learnt, Step};
 
+use super::Kind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::kind::p_value;
 use crate::study::{Absent, Study};
@@ -9,7 +10,10 @@ use crate::tone::Tone;
 
 const MM: f64 = 1e3;
 
-pub(super) fn figure(study: &Study) -> Result<Figure, Absent> {
+pub(super) static FIGURE: Kind =
+    Kind { name: "learning", about: "the error falling as effects are added", build: figure };
+
+fn figure(study: &Study) -> Result<Figure, Absent> {
     let learnt = study.learnt()?;
     let names = learnt.steps.iter().map(name).collect();
     let stairs = |of: fn(&Step) -> f64| {

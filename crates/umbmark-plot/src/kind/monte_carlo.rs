@@ -2,6 +2,7 @@
 
 use umbmark_core::monte_carlo::{Metric, Statistics};
 
+use super::Kind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::scale::round_up;
 use crate::study::{Absent, Study};
@@ -11,7 +12,10 @@ const MM: f64 = 1e3;
 /// About so many bars.
 const BARS: f64 = 16.0;
 
-pub(super) fn figure(study: &Study) -> Result<Figure, Absent> {
+pub(super) static FIGURE: Kind =
+    Kind { name: "monte_carlo", about: "E_max,sys of simulated tests, the measured one among them", build: figure };
+
+fn figure(study: &Study) -> Result<Figure, Absent> {
     let chance = study.chance()?;
     let statistics = chance.ensemble.get(Metric::EMaxSys).filter(|s| s.count() > 0);
     let statistics = statistics.ok_or_else(|| Absent("E_max,sys needs runs in both directions.".into()))?;

@@ -4,11 +4,15 @@ use umbmark_core::effect::{Model, find};
 use umbmark_core::evidence::Estimate;
 use umbmark_core::stats::student_t_quantile;
 
+use super::Kind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::study::{Absent, Study};
 use crate::tone::Tone;
 
-pub(super) fn figure(study: &Study) -> Result<Figure, Absent> {
+pub(super) static FIGURE: Kind =
+    Kind { name: "parameters", about: "the model's numbers with their intervals", build: figure };
+
+fn figure(study: &Study) -> Result<Figure, Absent> {
     let diagnosis = study.diagnosis()?;
     if diagnosis.fitted.is_empty() {
         return Err(Absent("The model has no free parameter that these runs show.".into()));

@@ -5,13 +5,20 @@ use umbmark_core::effect::TestKind;
 use umbmark_core::path::Direction;
 use umbmark_core::score::{CentroidInterval, Cluster, Score};
 
+use super::Kind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told, ellipse};
 use crate::study::{Absent, Study};
 use crate::tone::Tone;
 
 const MM: f64 = 1e3;
 
-pub(super) fn figure(study: &Study) -> Result<Figure, Absent> {
+pub(super) static FIGURE: Kind = Kind {
+    name: "return_errors",
+    about: "return errors, centres of gravity, E_max,sys: the paper's Fig. 5",
+    build: figure,
+};
+
+fn figure(study: &Study) -> Result<Figure, Absent> {
     let predicted = Direction::BOTH.map(|direction| study.predicted_return(direction));
     Ok(of_score(&study.data, study.score()?, predicted))
 }

@@ -1,0 +1,295 @@
+//! An effect as data.
+
+use super::laws::{BodyLaw, BumpLaw, ClockLaw, DiffusionLaw, LinkLaw, MeasurementLaw, SightLaw, StartLaw, WheelLaw};
+use super::{About, Bump, Changes, Context, Effect, MAX_PARAMETERS, Stretch, WheelVariance};
+use crate::drive::{Kinds, LinkReading, Robot, WheelTravel};
+use crate::geometry::{Displacement2, Dual, Instructions, Pose2, Real};
+use crate::random::Stream;
+
+/// The deterministic part of an effect, for one kind of number.
+#[derive(Clone, Copy, Debug)]
+pub struct Mean<T: Real> {
+    /// See [`StartLaw::start`].
+    pub start: fn(&[T]) -> Pose2<T>,
+    /// See [`WheelLaw::wheels`].
+    pub wheels: fn(&[T], &Context<T>, &mut WheelTravel<T>),
+    /// See [`BodyLaw::body`].
+    pub body: fn(&[T], &Context<T>, &mut Displacement2<T>),
+    /// See [`LinkLaw::link`].
+    pub link: fn(&[T], &mut LinkReading<T>),
+    /// See [`ClockLaw::late`].
+    pub late: fn(&[T], f64, &mut T),
+    /// See [`SightLaw::seen`].
+    pub seen: fn(&[T], &mut Pose2<T>),
+}
+
+impl<T: Real> Mean<T> {
+    /// Changes nothing.
+    const fn nothing() -> Mean<T> {
+        Mean {
+            start: |_| Pose2::IDENTITY.lift(),
+            wheels: |_, _, _| (),
+            body: |_, _, _| (),
+            link: |_, _| (),
+            late: |_, _, _| (),
+            seen: |_, _| (),
+        }
+    }
+}
+
+/// The random part of an effect.
+#[derive(Clone, Copy, Debug)]
+pub struct Scatter {
+    /// See [`DiffusionLaw::diffusion`].
+    pub diffusion: fn(&[f64], &WheelTravel) -> WheelVariance,
+    /// See [`BumpLaw::bumps`].
+    pub bumps: fn(&[f64], &Stretch, &mut Stream, &mut Vec<Bump>),
+    /// See [`StartLaw::start_scatter`].
+    pub start_scatter: fn(&[f64], &mut Stream) -> Pose2,
+    /// See [`MeasurementLaw::measured`].
+    pub measured: fn(&[f64], &mut Stream, &mut Pose2),
+}
+
+impl Scatter {
+    /// Changes nothing.
+    pub const NOTHING: Scatter = Scatter {
+        diffusion: |_, _| WheelVariance { left: 0.0, right: 0.0 },
+        bumps: |_, _, _, _| (),
+        start_scatter: |_, _| Pose2::IDENTITY,
+        measured: |_, _, _| (),
+    };
+}
+
+/// An effect as data: of the catalogue, or of a program that adds its own by [`Model::add_entry`].
+///
+/// ```
+/// use umbmark_core::{drive::Robot, geometry::{Displacement2, Real}, parameter::Parameter};
+/// use umbmark_core::effect::{About, ActsOn, BodyLaw, Context, Effect, Entry, Model};
+/// struct Draught;
+/// impl Effect for Draught {
+///     const ABOUT: About = About {
+///         name: "draught",
+///         title: "a door left open",
+///         acts_on: ActsOn::Body,
+///         parameters: &[Parameter::size("push_m_per_m", "", "m/m", 1e-3, (-1.0, 1.0), "drift to the left per metre")],
+///         equation: "sideways ← sideways + k · length",
+///         physics: "Wind.",
+///         signature: "A drift to the left on every leg.",
+///         confused_with: &["crab"],
+///         separated_by: "closing the door",
+///         source: "none",
+///     };
+///     fn varies(p: &[f64]) -> bool {
+///         p[0] != 0.0
+///     }
+/// }
+/// impl BodyLaw for Draught {
+///     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+///         motion.sideways += p[0] * at.length;
+///     }
+/// }
+/// static DRAUGHT: Entry = Entry::of::<Draught>().body::<Draught>();
+/// let mut model = Model::new(&Robot::labmate());
+/// model.add_entry(&DRAUGHT)?.free = true;
+/// model.set("draught", "push_m_per_m", 2e-3)?;
+/// assert!(model.varies() && model.set("draught", "push_m_per_m", 2.0).is_err());
+/// # Ok::<(), umbmark_core::effect::ModelError>(())
+/// ```
+#[derive(Debug)]
+pub struct Entry {
+    /// What people should know of it.
+    pub about: About,
+    /// See [`Effect::DRIVES`].
+    pub drives: Kinds,
+    /// What its laws change.
+    pub changes: Changes,
+    /// See [`Effect::means`].
+    pub means: fn(&[f64], &Robot) -> String,
+    /// See [`Effect::varies`].
+    pub varies: fn(&[f64]) -> bool,
+    pub(crate) values: Mean<f64>,
+    /// For each of the [`Instructions`], in their order.
+    pub(super) duals: [Mean<Dual>; 3],
+    pub(crate) scatter: Scatter,
+}
+
+/// Makes the functions that list a law which is the same for registers of every width.
+macro_rules! laws {
+    ($($(#[$about:meta])* $name:ident: $Law:ident changes $Change:ident,)+) => {
+        $($(#[$about])*
+        pub const fn $name<E: $Law>(mut self) -> Entry {
+            self.values.$name = E::$name::<f64>;
+            self.duals[0].$name = E::$name::<Dual>;
+            self.duals[1].$name = E::$name::<Dual>;
+            self.duals[2].$name = E::$name::<Dual>;
+            self.changes = self.changes.and(Changes::$Change);
+            self
+        })+
+    };
+}
+
+impl Entry {
+    /// The entry of an effect whose laws are listed behind. One with more than [`MAX_PARAMETERS`] parameters does not compile.
+    pub const fn of<E: Effect>() -> Entry {
+        assert!(E::ABOUT.parameters.len() <= MAX_PARAMETERS);
+        Entry {
+            about: E::ABOUT,
+            drives: E::DRIVES,
+            changes: Changes::NOTHING,
+            means: E::means,
+            varies: E::varies,
+            values: Mean::nothing(),
+            duals: [Mean::nothing(), Mean::nothing(), Mean::nothing()],
+            scatter: Scatter::NOTHING,
+        }
+    }
+
+    /// Lists its law of the wheels.
+    pub const fn wheels<E: WheelLaw>(mut self) -> Entry {
+        self.values.wheels = E::wheels::<f64>;
+        let [plain, four, eight] = by_width::wheels::<E>();
+        self.duals[0].wheels = plain;
+        self.duals[1].wheels = four;
+        self.duals[2].wheels = eight;
+        self.changes = self.changes.and(Changes::WHEELS);
+        self
+    }
+
+    /// Lists its law of the body.
+    pub const fn body<E: BodyLaw>(mut self) -> Entry {
+        self.values.body = E::body::<f64>;
+        let [plain, four, eight] = by_width::body::<E>();
+        self.duals[0].body = plain;
+        self.duals[1].body = four;
+        self.duals[2].body = eight;
+        self.changes = self.changes.and(Changes::BODY);
+        self
+    }
+
+    laws! {
+        /// Lists its law of the link between two trucks.
+        link: LinkLaw changes LINK,
+        /// Lists its law of the clock.
+        late: ClockLaw changes CLOCK,
+        /// Lists its law of what is measured.
+        seen: SightLaw changes SEEN,
+    }
+
+    /// Lists its law of START.
+    pub const fn start<E: StartLaw>(mut self) -> Entry {
+        self.values.start = E::start::<f64>;
+        self.duals[0].start = E::start::<Dual>;
+        self.duals[1].start = E::start::<Dual>;
+        self.duals[2].start = E::start::<Dual>;
+        self.scatter.start_scatter = E::start_scatter;
+        self.changes = self.changes.and(Changes::START).and(Changes::START_SCATTER);
+        self
+    }
+
+    /// Lists its law of noise on the wheels.
+    pub const fn diffusion<E: DiffusionLaw>(mut self) -> Entry {
+        self.scatter.diffusion = E::diffusion;
+        self.changes = self.changes.and(Changes::DIFFUSION);
+        self
+    }
+
+    /// Lists its law of bumps.
+    pub const fn bumps<E: BumpLaw>(mut self) -> Entry {
+        self.scatter.bumps = E::bumps;
+        self.changes = self.changes.and(Changes::BUMPS);
+        self
+    }
+
+    /// Lists its law of noise of measurements.
+    pub const fn measured<E: MeasurementLaw>(mut self) -> Entry {
+        self.scatter.measured = E::measured;
+        self.changes = self.changes.and(Changes::MEASURED);
+        self
+    }
+
+    /// A number that names the effect's random stream: a hash of its name (FNV-1a), so that the order of the catalogue
+    /// does not matter.
+    pub(crate) fn purpose(&self) -> u64 {
+        self.about
+            .name
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    }
+}
+
+impl PartialEq for Entry {
+    fn eq(&self, other: &Entry) -> bool {
+        self.about.name == other.about.name
+    }
+}
+
+/// A kind of number that effects can be asked for.
+pub trait Evaluate: Real {
+    /// The deterministic part of an effect for this kind of number.
+    fn mean(entry: &Entry) -> &Mean<Self>;
+}
+
+impl Evaluate for f64 {
+    fn mean(entry: &Entry) -> &Mean<f64> {
+        &entry.values
+    }
+}
+
+impl Evaluate for Dual {
+    fn mean(entry: &Entry) -> &Mean<Dual> {
+        &entry.duals[Instructions::best() as usize]
+    }
+}
+
+/// Laws of derivatives, compiled for registers of each width: for each of the [`Instructions`], in their order.
+mod by_width {
+    use super::{BodyLaw, Context, Displacement2, Dual, WheelLaw, WheelTravel};
+
+    type OfWheels = fn(&[Dual], &Context<Dual>, &mut WheelTravel<Dual>);
+    type OfBody = fn(&[Dual], &Context<Dual>, &mut Displacement2<Dual>);
+
+    #[cfg(not(target_arch = "x86_64"))]
+    pub const fn wheels<E: WheelLaw>() -> [OfWheels; 3] {
+        [E::wheels; 3]
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    pub const fn body<E: BodyLaw>() -> [OfBody; 3] {
+        [E::body; 3]
+    }
+
+    // SAFETY: `Evaluate::mean` hands these out to machines only that were found to have such registers.
+    #[cfg(target_arch = "x86_64")]
+    pub const fn wheels<E: WheelLaw>() -> [OfWheels; 3] {
+        #[target_feature(enable = "avx512f,avx512dq")]
+        fn eight<E: WheelLaw>(p: &[Dual], at: &Context<Dual>, travel: &mut WheelTravel<Dual>) {
+            E::wheels(p, at, travel);
+        }
+        #[target_feature(enable = "avx2")]
+        fn four<E: WheelLaw>(p: &[Dual], at: &Context<Dual>, travel: &mut WheelTravel<Dual>) {
+            E::wheels(p, at, travel);
+        }
+        [
+            E::wheels,
+            |p, at, travel| unsafe { four::<E>(p, at, travel) },
+            |p, at, travel| unsafe { eight::<E>(p, at, travel) },
+        ]
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    pub const fn body<E: BodyLaw>() -> [OfBody; 3] {
+        #[target_feature(enable = "avx512f,avx512dq")]
+        fn eight<E: BodyLaw>(p: &[Dual], at: &Context<Dual>, motion: &mut Displacement2<Dual>) {
+            E::body(p, at, motion);
+        }
+        #[target_feature(enable = "avx2")]
+        fn four<E: BodyLaw>(p: &[Dual], at: &Context<Dual>, motion: &mut Displacement2<Dual>) {
+            E::body(p, at, motion);
+        }
+        [
+            E::body,
+            |p, at, motion| unsafe { four::<E>(p, at, motion) },
+            |p, at, motion| unsafe { eight::<E>(p, at, motion) },
+        ]
+    }
+}

@@ -1,0 +1,72 @@
+//! Errors along each run.
+
+use umbmark_core::compare::tracks::TracksJudged;
+use umbmark_core::path::Direction;
+
+use super::Kind;
+use super::residuals::{COMPONENTS, models};
+use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
+use crate::study::{Absent, Study};
+use crate::thin::thin;
+use crate::tone::Tone;
+
+/// Places of one panel of errors along the way.
+const PLACES: usize = 6000;
+/// Fewer of one run lose its shape.
+const OF_RUN: usize = 24;
+
+pub(super) static FIGURE: Kind =
+    Kind { name: "residuals_along", about: "errors of the model along each run", build: figure };
+
+fn figure(study: &Study) -> Result<Figure, Absent> {
+    let (nominal, model) = models(study)?;
+    let most = (PLACES / model.residuals.len().max(1)).max(OF_RUN);
+    let mut lines: [Vec<Layer>; 3] = Default::default();
+    for direction in [Some(Direction::Cw), Some(Direction::Ccw), None] {
+        let (mut places, mut runs): ([Vec<[f64; 2]>; 3], Vec<usize>) = Default::default();
+        for run in model.residuals.iter().filter(|run| run.direction == direction) {
+            let column = |k: usize| run.errors.iter().map(|error| error[k]).collect::<Vec<f64>>();
+            let kept = thin(&[&column(0), &column(1), &column(2)], most);
+            let index = study.data.runs.iter().position(|own| own.name == run.run).unwrap_or_default();
+            runs.extend(std::iter::repeat_n(index, kept.len() + 1));
+            for (k, places) in places.iter_mut().enumerate() {
+                places.extend(kept.iter().map(|i| [run.rolled[*i], COMPONENTS[k].1 * run.errors[*i][k]]));
+                places.push([f64::NAN, f64::NAN]);
+            }
+        }
+        for (lines, places) in lines.iter_mut().zip(places).filter(|(_, places)| !places.is_empty()) {
+            let name = direction.map_or("runs".to_owned(), |d| format!("{} runs", d.name()));
+            let layer = Layer::new(name, direction.map_or(Tone::Measured, Tone::of), Mark::Line, places);
+            lines.push(Layer { direction, ..layer.from_runs(runs.clone()) });
+        }
+    }
+    let panel = |(layers, (component, _, unit)): (Vec<Layer>, (&str, f64, &str))| Panel {
+        title: component.to_owned(),
+        x: Axis::of("way rolled [m]"),
+        y: Axis::of(format!("error [{unit}]")),
+        equal: false,
+        layers,
+    };
+    let mm = |judged: &TracksJudged| format!("{:.1}", 1e3 * judged.along.position);
+    let end = |judged: &TracksJudged| format!("{:.1}", 1e3 * judged.end.position);
+    let rows = [nominal, model].map(|judged| [judged.name.clone(), mm(judged), end(judged)]);
+    Ok(Figure {
+        kind: "residuals_along",
+        title: "Residuals along the way".into(),
+        told: Told {
+            shows: format!(
+                "Where the robot is, seen from where {} has it, along each run: forward, to the left, and turned to the left.",
+                study.model_name()
+            ),
+            good: "Lines wander about zero, each its own way; runs that stray together show what the model lacks."
+                .into(),
+            says: format!(
+                "The root mean square distance is {} mm along the way, {} mm for the nominal robot.",
+                mm(model),
+                mm(nominal)
+            ),
+        },
+        panels: lines.into_iter().zip(COMPONENTS).map(panel).collect(),
+        table: Table::new(["model", "along the way [mm]", "at the ends [mm]"], rows),
+    })
+}

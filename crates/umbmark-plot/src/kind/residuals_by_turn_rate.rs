@@ -1,0 +1,12 @@
+//! Errors against the turn rate.
+
+use umbmark_core::compare::tracks::Rate;
+
+use super::Kind;
+use super::residuals::by;
+
+pub(super) static FIGURE: Kind = Kind {
+    name: "residuals_by_turn_rate",
+    about: "errors against the turn rate",
+    build: |study| by(study, FIGURE.name, "the turn rate", &["turn_rate"], &[Rate::Forward, Rate::Yaw, Rate::Turn]),
+};
