@@ -168,7 +168,7 @@ fn the_model_file_of_an_explanation_is_one() {
         let model = text.split("in a model.toml\n").nth(1).unwrap();
         let robot = umbmark_core::drive::Robot::labmate();
         let file = umbmark_io::ModelFile::parse("model.toml", model, Some(&robot)).unwrap();
-        assert_eq!(file.model.parts()[0].effect, entry);
+        assert_eq!(file.model.parts()[0].effect, *entry);
     }
 }
 
