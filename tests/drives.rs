@@ -18,7 +18,7 @@ fn k2a() -> (Robot, Path) {
 }
 
 fn tricycle() -> (Robot, Path) {
-    let drive = Drive::Ackermann(AckermannDrive::new(0.5, 0.4, 0.15, 20_000.0, 0.0).unwrap());
+    let drive = AckermannDrive::new(0.5, 0.4, 0.15, 20_000.0, 0.0).unwrap().into();
     let robot = Robot { name: "tricycle".into(), drive, encoder: Encoder::new(2000.0, None, None).unwrap() };
     (robot, Path::new(&ROUNDED_RECTANGLE, &[4.0, 4.0, 1.0], SpeedProfile::default()).unwrap())
 }
@@ -144,7 +144,7 @@ fn calibration_finds_the_gears_of_each_drive_and_says_what_returns_do_not_show()
         // A robot that believes what was found, and truly is what it was, returns to START.
         let again = found.corrected.drive.corrected([
             0.0,
-            1.0 - f64::from(u8::from(robot.0.drive.kind() == Kind::Ackermann)),
+            1.0 - f64::from(u8::from(robot.0.drive.kind().steers())),
             1.0,
         ]);
         assert_eq!(again.unwrap(), found.corrected.drive);
@@ -192,7 +192,7 @@ fn a_tricycle_in_the_layout_of_optiodom_is_read_and_calibrated() {
     write_optiodom_tricycle(&data, folder.path());
     let read = umbmark_io::load(folder.path()).unwrap();
     let nominal = read.robot.as_ref().unwrap();
-    assert_eq!((nominal.drive.kind(), nominal.drive.values()[0], read.runs.len()), (Kind::Ackermann, 0.5, 10));
+    assert_eq!((nominal.drive.kind().name(), nominal.drive.values()[0], read.runs.len()), ("ackermann", 0.5, 10));
     for (made, found) in data.runs.iter().zip(&read.runs) {
         let (made, found) = (made.returned.unwrap(), found.returned.unwrap());
         assert!((made.x - found.x).hypot(made.y - found.y) < 0.02, "{made:?} {found:?}");
@@ -238,7 +238,7 @@ fn a_path_with_turns_on_the_spot_suits_no_ackermann_drive() {
 fn clapper(correction: bool, rotary_ticks: f64) -> (Robot, Path) {
     let preset = Preset::find("clapper").unwrap();
     let drive = ClapperDrive::new(*preset.robot().drive, 1.0, rotary_ticks, correction).unwrap();
-    (Robot { drive: Drive::Clapper(drive), ..preset.robot() }, preset.path())
+    (Robot { drive: drive.into(), ..preset.robot() }, preset.path())
 }
 
 /// Return poses of five runs each way.

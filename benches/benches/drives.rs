@@ -16,7 +16,7 @@ fn tricycle() -> (Robot, Path) {
     let drive = AckermannDrive::new(0.5, 0.4, 0.15, 20_000.0, 0.0).expect("positive lengths");
     let encoder = Encoder::new(2000.0, None, None).expect("positive ticks");
     let path = Path::new(&ROUNDED_RECTANGLE, &[4.0, 4.0, 1.0], SpeedProfile::default()).expect("corners that fit");
-    (Robot { name: "tricycle".into(), drive: Drive::Ackermann(drive), encoder }, path)
+    (Robot { name: "tricycle".into(), drive: drive.into(), encoder }, path)
 }
 
 fn drives(criterion: &mut Criterion) {

@@ -105,7 +105,7 @@ pub fn calibrate(data: &Dataset, options: &Options) -> Result<Calibration, Calib
         return Err(CalibrateError::HeadingArm { value });
     }
     let robot = robot_of(data)?;
-    if robot.drive.kind() != Kind::Differential {
+    if !robot.drive.kind().has_axle_wheels() {
         return Err(CalibrateError::OtherDrive { drive: robot.drive.kind().name() });
     }
     let setup = Setup::of(&data.runs, robot, data.path.as_ref());
@@ -160,7 +160,7 @@ fn doubts_of_data(setup: &Setup, level: Level, robot: &Robot) -> Vec<String> {
 /// Return headings \[rad\], clockwise and counter-clockwise, that a robot has whose E_d and E_b explain the median return positions;
 /// `None` where these do not show both.
 pub(crate) fn by_positions(returns: &[Vec<ReturnError>; 2], robot: &Robot, path: &Path) -> Option<[f64; 2]> {
-    if robot.drive.kind() != Kind::Differential {
+    if !robot.drive.kind().has_axle_wheels() {
         return None;
     }
     let median = |of: fn(&ReturnError) -> f64, own: &[ReturnError]| {

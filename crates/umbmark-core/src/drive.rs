@@ -4,29 +4,21 @@
 //! is that of the axle's wheels, whatever the drive, so what predicts, simulates, fits and tests is written once. A drive's own
 //! file says how its two counters become travel of the axle, and back; [`Encoder`] is what they count with.
 
-/// Hands every drive to a macro: what it is, its kind, its file and the type in it.
+/// Hands every drive to a macro: its kind, its file and the type in it.
 macro_rules! every_drive {
     ($make:ident) => {
         $make! {
-            /// Two driven wheels on one axle.
             Differential(differential::DifferentialDrive),
-            /// Wheels that are driven together and steered together.
             Synchro(synchro::SynchroDrive),
-            /// Two differential trucks and a link that corrects their headings; its axle is that of a truck.
             Clapper(clapper::ClapperDrive),
-            /// A driven axle and a steered wheel, or two, before it: cars and tricycles.
             Ackermann(ackermann::AckermannDrive),
         }
     };
 }
 
-mod ackermann;
-mod clapper;
-mod differential;
 mod encoder;
 mod kind;
 mod kinematics;
-mod synchro;
 
 pub use clapper::LinkReading;
 pub use differential::WheelTravel;
@@ -78,17 +70,18 @@ pub enum DriveError {
     },
 }
 
-/// Exports the types in the files of drives, and makes the type of all of them.
+/// Makes the `mod` lines of the files of drives, exports the types in them, and makes the type of all of them.
 macro_rules! drives {
-    ($($(#[$about:meta])* $kind:ident($file:ident::$drive:ident),)+) => {
-        $(pub use $file::$drive;)+
+    ($($kind:ident($file:ident::$drive:ident),)+) => {
+        $(mod $file;
+        pub use $file::$drive;)+
 
         /// A drive: its axle, and what its counters count.
         ///
         /// It [derefs](Deref) to the axle, real or virtual.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Drive {
-            $($(#[$about])* $kind($drive),)+
+            $(#[doc = concat!("A [`", stringify!($drive), "`].")] $kind($drive),)+
         }
 
         $(impl From<$drive> for Drive {
@@ -145,6 +138,13 @@ macro_rules! drives {
             pub fn axle_distance(&self) -> f64 {
                 match self {
                     $(Drive::$kind(drive) => drive.axle_distance(),)+
+                }
+            }
+
+            /// Its two trucks and their link, where it has them.
+            pub fn trucks(&self) -> Option<&ClapperDrive> {
+                match self {
+                    $(Drive::$kind(drive) => drive.trucks(),)+
                 }
             }
 

@@ -115,7 +115,7 @@ pub const MAX_PARAMETERS: usize = 6;
 
 /// The effects that a robot with this drive may have.
 pub fn of_drive(kind: Kind) -> impl Iterator<Item = &'static Entry> + Clone {
-    CATALOGUE.iter().copied().filter(move |entry| entry.drives.contains(kind))
+    CATALOGUE.iter().copied().filter(move |entry| entry.drives().contains(kind))
 }
 
 /// The entry of an effect by its name in files.

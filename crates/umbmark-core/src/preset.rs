@@ -181,7 +181,7 @@ impl PublishedBumps {
 fn k2a() -> Robot {
     let drive = SynchroDrive::new(0.5, 0.25, 10_000.0, 0.0).expect("constants are positive");
     let encoder = Encoder::new(4000.0, None, None).expect("constants are positive");
-    Robot { name: "Cybermotion K2A".into(), drive: Drive::Synchro(drive), encoder }
+    Robot { name: "Cybermotion K2A".into(), drive: drive.into(), encoder }
 }
 
 /// The CLAPPER, as far as the paper describes it.
@@ -189,7 +189,7 @@ fn clapper() -> Robot {
     let truck = DifferentialDrive::new(0.340, 0.150, 0.150).expect("constants are positive");
     let drive = ClapperDrive::new(truck, 1.0, 8192.0, true).expect("constants are positive");
     let encoder = Encoder::new(2000.0, Some(25.0), None).expect("constants are positive");
-    Robot { name: "CLAPPER".into(), drive: Drive::Clapper(drive), encoder }
+    Robot { name: "CLAPPER".into(), drive: drive.into(), encoder }
 }
 
 const NOMINAL: &str = "b = 340.0 mm, D_R/D_L = 1 in the odometry (Table I)";

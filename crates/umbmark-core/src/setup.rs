@@ -258,7 +258,7 @@ impl Setup {
     /// That the tracked body faces backward, or the wheels are exchanged and both count backward: the motion is the same.
     pub(crate) fn tail_first(&self, robot: &Robot) -> Option<Suspicion> {
         let yaw = self.mounting?.yaw?.value;
-        let half = robot.drive.kind() == Kind::Differential && wrap(yaw - std::f64::consts::PI).abs() < HALF_TURN;
+        let half = robot.drive.kind().has_axle_wheels() && wrap(yaw - std::f64::consts::PI).abs() < HALF_TURN;
         half.then_some(Suspicion::TailFirst { yaw })
     }
 

@@ -168,11 +168,11 @@ impl Simulator {
         let per_tick = robot.metres_per_tick();
         let geometry = TickGeometry::new(per_tick.left, per_tick.right, robot.drive.wheelbase())?;
         let convoys = Convoys::new(robot, path);
-        if robot.drive.kind() == Kind::Clapper && convoys.is_none() {
+        if robot.drive.kind().has_trucks() && convoys.is_none() {
             return Err(SimulateError::Unsupported { drive: robot.drive.kind().name(), what: "paths with arcs" });
         }
         let [cw, ccw] = [Course::new(robot, path, Direction::Cw)?, Course::new(robot, path, Direction::Ccw)?];
-        let differential = robot.drive.kind() == Kind::Differential;
+        let differential = robot.drive.kind().has_axle_wheels();
         let computer = match odometry {
             Odometry::Continuous => Computer::Continuous,
             Odometry::EveryTick | Odometry::EveryTickOneByOne if !differential => Computer::Counters,
@@ -337,7 +337,7 @@ impl Simulator {
 
     /// Travel of the axle's wheels along a line of the counters, as the odometry believes.
     fn believed(&self, leg: &Leg, line: &WheelLine) -> WheelTravel {
-        if self.robot.drive.kind() == Kind::Differential { self.per_tick.of(line) } else { leg.rolled(line) }
+        if self.robot.drive.kind().has_axle_wheels() { self.per_tick.of(line) } else { leg.rolled(line) }
     }
 
     fn draw_phase(&mut self) -> [u32; 2] {

@@ -73,7 +73,7 @@ impl Assembly {
 
     /// The robot's drive; differential where there is no robot.
     pub fn kind(&self) -> Kind {
-        self.robot.as_ref().map_or(Kind::Differential, |robot| robot.drive.kind())
+        self.robot.as_ref().map_or_else(Kind::default, |robot| robot.drive.kind())
     }
 
     /// Adds the recording of a file that is called `stem`, with the poses that a tracking system saw of it, where there are some.

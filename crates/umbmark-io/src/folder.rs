@@ -191,7 +191,7 @@ fn add_optiodom_run(assembly: &mut Assembly, folder: &Path, run: &optiodom::RunF
     let file = folder.join(&run.ticks);
     let source = Source::open(&file)?;
     let named = Named { number: Some(run.number), ..Named::default() };
-    let tricycle = assembly.robot().filter(|robot| robot.drive.kind() == Kind::Ackermann);
+    let tricycle = assembly.robot().filter(|robot| robot.drive.kind().steers());
     let Some(track) = &run.track else {
         let recording = match tricycle {
             Some(robot) => optiodom::parse_tricycle_run(source, robot)?,

@@ -118,7 +118,7 @@ fn damaged_tick_logs() {
     for (purpose, bits) in [(2, Some(16)), (3, None)] {
         let good = if bits.is_some() { good.to_owned() } else { good.replace("655", "") };
         survive(&good, purpose, |text| {
-            tick_log::parse_tick_log(source(text), Kind::Differential, &mut Vec::new())
+            tick_log::parse_tick_log(source(text), Kind::default(), &mut Vec::new())
                 .is_ok_and(|recording| finished(recording, bits))
         });
     }
@@ -168,7 +168,7 @@ fn a_log_is_the_same_however_its_bytes_arrive() {
         let bytes = damage(good.as_bytes(), &mut stream);
         let read = |source: Result<Source, DatasetError>| {
             let mut noticed = Vec::new();
-            let read = source.and_then(|source| tick_log::parse_tick_log(source, Kind::Differential, &mut noticed));
+            let read = source.and_then(|source| tick_log::parse_tick_log(source, Kind::default(), &mut noticed));
             (read.map_err(|error| error.to_string()), noticed)
         };
         let dribble = Dribble(&bytes, 1 + (round % 40) as usize);
@@ -261,7 +261,7 @@ fn damaged_counters_with_time_stamps_out_of_order() {
     let reset = "t_s,ticks_left,ticks_right\n0,1000,1000\n0.01,1003,1003\n0.03,3,2\n0.02,0,0\n0.04,6,6\n0.04,7,6\n";
     for (purpose, bits) in [(12, Some(16)), (13, None)] {
         survive(reset, purpose, |text| {
-            tick_log::parse_tick_log(source(text), Kind::Differential, &mut Vec::new())
+            tick_log::parse_tick_log(source(text), Kind::default(), &mut Vec::new())
                 .is_ok_and(|recording| finished(recording, bits))
         });
     }

@@ -212,7 +212,7 @@ pub(super) fn parse_tricycle_run(source: Source, robot: &Robot) -> Result<Record
         columns: [names[0], names[4], names[5]].map(str::to_owned),
         ..Recording::default()
     };
-    let zero = if let Drive::Ackermann(drive) = &robot.drive { drive.steering_zero() } else { 0.0 };
+    let zero = robot.drive.number("steering_zero_rad").unwrap_or(0.0);
     let mut driven = 0.0;
     headless(source, &names, |line, cells| {
         let [time, x, y, heading, ticks, angle] = *cells;

@@ -89,7 +89,7 @@ impl Recording {
     ) -> Result<Vec<f64>, DatasetError> {
         let usual = self.usual_rate(wheel);
         let mut readings = std::mem::take(&mut self.counts[wheel]);
-        if wheel == 1 && robot.is_some_and(|robot| robot.drive.kind() == Kind::Ackermann) {
+        if wheel == 1 && robot.is_some_and(|robot| robot.drive.kind().steers()) {
             // An angle, and no sum of steps.
             let signed = |reading: f64| bits.map_or(reading, |bits| roll_over(0, reading as i64, bits) as f64);
             return Ok(readings.into_iter().map(signed).collect());
@@ -100,7 +100,7 @@ impl Recording {
             return Err(self.fractional(wheel, at, readings[at]));
         }
         // A steering counter has no speed over ground.
-        let robot = robot.filter(|robot| wheel == 0 || robot.drive.kind() == Kind::Differential);
+        let robot = robot.filter(|robot| wheel == 0 || robot.drive.kind().has_axle_wheels());
         let fastest = robot.map_or(f64::INFINITY, |robot| FASTEST / metres_per_tick(robot, wheel));
         let mut before = readings.first().copied().unwrap_or(0.0);
         let widths = widths_of(&readings);

@@ -47,7 +47,7 @@ impl RobotFile {
 
 /// The table of a robot.
 pub(super) fn read_robot_table(table: &Table) -> Result<Robot, DatasetError> {
-    let kind = table.get("drive").map_or(Ok(Kind::Differential), |drive| read_kind(&drive))?;
+    let kind = table.get("drive").map_or_else(|| Ok(Kind::default()), |drive| read_kind(&drive))?;
     let backward = kind.counters().map(|counter| format!("{counter}_counts_backward"));
     let mut keys = vec!["name", "drive", EXCHANGED, &backward[0], &backward[1]];
     keys.extend(kind.parameters().iter().map(|p| p.name));

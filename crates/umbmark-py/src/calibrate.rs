@@ -35,7 +35,7 @@ pub fn calibrate(
         radius_wheelbase: choice("radius_wheelbase", radius_wheelbase, &WHEELBASES)?,
     };
     let robot = data.0.nominal_robot().map_err(refused)?;
-    if robot.drive.kind() != Kind::Differential {
+    if !robot.drive.kind().has_axle_wheels() {
         let kind = robot.drive.kind().name();
         let words = format!("this calibrates differential drives, got drive = \"{kind}\"; use calibrate_gears");
         return Err(PyValueError::new_err(words));

@@ -99,7 +99,7 @@ impl Arguments {
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
-    if data.nominal_robot()?.drive.kind() != Kind::Differential {
+    if !data.nominal_robot()?.drive.kind().has_axle_wheels() {
         return gears::run(&arguments, &data, session);
     }
     let mut calibration = calibrate(&data, &arguments.options())?;

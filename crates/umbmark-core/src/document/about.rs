@@ -14,7 +14,7 @@ pub fn about(entry: &Entry) -> Value {
         "name": about.name,
         "title": about.title,
         "acts_on": about.acts_on.name(),
-        "drives": entry.drives.each().map(Kind::name).collect::<Vec<_>>(),
+        "drives": entry.drives().each().map(Kind::name).collect::<Vec<_>>(),
         "equation": about.equation,
         "physics": about.physics,
         "signature": about.signature,

@@ -32,7 +32,7 @@ impl Theory {
         let e_d = middle("wheel_diameter_ratio", "e_d");
         // A square sees the ratio of the two only.
         let e_b = middle("wheelbase", "e_b") / middle("scale", "e_s");
-        let of_paper = std::ptr::eq(study.path.shape(), &SQUARE) && study.robot().drive.kind() == Kind::Differential;
+        let of_paper = std::ptr::eq(study.path.shape(), &SQUARE) && study.robot().drive.kind().has_axle_wheels();
         let side = study.path.values().first().filter(|_| of_paper);
         let first_order = side.and_then(|side| {
             let angles = Angles::of(&Correction { e_d, e_b, e_s: 1.0 }, *side, &study.robot().drive);

@@ -65,6 +65,8 @@ impl AckermannDrive {
 impl Kinematics for AckermannDrive {
     const NAME: &'static str = "ackermann";
 
+    const ABOUT: &'static str = "A driven axle and a steered wheel, or two, before it: cars and tricycles.";
+
     const COUNTERS: [&'static str; 2] = ["drive", "steering"];
 
     const PARAMETERS: &'static [Parameter] = &[
@@ -112,6 +114,8 @@ impl Kinematics for AckermannDrive {
     fn axle_distance(&self) -> f64 {
         self.axle_distance
     }
+
+    const STEERS: bool = true;
 
     fn from_values(values: &[f64]) -> Result<Self, DriveError> {
         AckermannDrive::new(values[0], values[1], values[2], values[3], values[4])

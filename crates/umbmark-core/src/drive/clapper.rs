@@ -71,6 +71,8 @@ impl ClapperDrive {
 impl Kinematics for ClapperDrive {
     const NAME: &'static str = "clapper";
 
+    const ABOUT: &'static str = "Two differential trucks and a link that corrects their headings; its axle is that of a truck.";
+
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::shape(
             "wheelbase_m",
@@ -121,6 +123,12 @@ impl Kinematics for ClapperDrive {
     }
 
     const HAS_TICK_LOGS: bool = false;
+
+    const HAS_TRUCKS: bool = true;
+
+    fn trucks(&self) -> Option<&ClapperDrive> {
+        Some(self)
+    }
 
     fn from_values(values: &[f64]) -> Result<Self, DriveError> {
         let left = 2.0 * values[1] / (2.0 + values[6]);

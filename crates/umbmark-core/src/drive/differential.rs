@@ -104,6 +104,8 @@ const BOTH_WHEELS: &[&str] = &["wheel_diameter_left_m", "wheel_diameter_right_m"
 impl Kinematics for DifferentialDrive {
     const NAME: &'static str = "differential";
 
+    const ABOUT: &'static str = "Two driven wheels on one axle.";
+
     const PARAMETERS: &'static [Parameter] = &[
         Self::WHEELBASE,
         Parameter { name: "wheel_diameter_left_m", meaning: "diameter of the left wheel", ..Self::WHEEL_DIAMETER },
@@ -128,6 +130,8 @@ impl Kinematics for DifferentialDrive {
             factor: 2.0,
         },
     ];
+
+    const HAS_AXLE_WHEELS: bool = true;
 
     fn from_values(values: &[f64]) -> Result<Self, DriveError> {
         DifferentialDrive::new(values[0], values[1], values[2])

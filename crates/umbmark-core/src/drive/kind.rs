@@ -6,11 +6,11 @@ use crate::parameter::Parameter;
 
 /// Makes the kinds from the list of drives.
 macro_rules! kinds {
-    ($(#[doc = $about:literal] $kind:ident($file:ident::$drive:ident),)+) => {
+    ($($kind:ident($file:ident::$drive:ident),)+) => {
         /// A kind of drive.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Kind {
-            $(#[doc = $about] $kind,)+
+            $(#[doc = concat!("That of [`", stringify!($drive), "`](super::", stringify!($drive), ").")] $kind,)+
         }
 
         impl Kind {
@@ -19,7 +19,7 @@ macro_rules! kinds {
 
             const fn facts(self) -> &'static Facts {
                 match self {
-                    $(Kind::$kind => const { &Facts::of::<super::$drive>($about) },)+
+                    $(Kind::$kind => const { &Facts::of::<super::$drive>() },)+
                 }
             }
         }
@@ -34,21 +34,36 @@ struct Facts {
     counters: [&'static str; 2],
     parameters: &'static [Parameter],
     spellings: &'static [Spelling],
+    effects: &'static [&'static str],
     has_tick_logs: bool,
+    has_axle_wheels: bool,
+    steers: bool,
+    has_trucks: bool,
     from_values: fn(&[f64]) -> Result<Drive, DriveError>,
 }
 
 impl Facts {
-    const fn of<D: Kinematics + Into<Drive>>(about: &'static str) -> Facts {
+    const fn of<D: Kinematics + Into<Drive>>() -> Facts {
         Facts {
-            about: about.trim_ascii(),
+            about: D::ABOUT,
             name: D::NAME,
             counters: D::COUNTERS,
             parameters: D::PARAMETERS,
             spellings: D::SPELLINGS,
+            effects: D::EFFECTS,
             has_tick_logs: D::HAS_TICK_LOGS,
+            has_axle_wheels: D::HAS_AXLE_WHEELS,
+            steers: D::STEERS,
+            has_trucks: D::HAS_TRUCKS,
             from_values: |values| D::from_values(values).map(Into::into),
         }
+    }
+}
+
+impl Default for Kind {
+    /// Two driven wheels on one axle, as in the paper.
+    fn default() -> Kind {
+        Kind::Differential
     }
 }
 
@@ -87,6 +102,28 @@ impl Kind {
     /// trucks, each with counters of its own.
     pub fn has_tick_logs(self) -> bool {
         self.facts().has_tick_logs
+    }
+
+    /// Whether its counters are those of two wheels on one axle, each driven by itself: what the paper's E_d and E_b are defined
+    /// for.
+    pub fn has_axle_wheels(self) -> bool {
+        self.facts().has_axle_wheels
+    }
+
+    /// Whether its second counter shows the angle of a steered wheel before the axle: driven backward, that turns the robot the
+    /// other way.
+    pub fn steers(self) -> bool {
+        self.facts().steers
+    }
+
+    /// Whether it is two trucks with a link.
+    pub fn has_trucks(self) -> bool {
+        self.facts().has_trucks
+    }
+
+    /// Whether it may have an effect that does not name it.
+    pub(crate) fn adopts(self, effect: &str) -> bool {
+        self.facts().effects.contains(&effect)
     }
 
     /// A drive of usual numbers.

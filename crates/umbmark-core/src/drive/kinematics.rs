@@ -1,6 +1,6 @@
 //! What a drive's own file says of it.
 
-use super::{Counting, DifferentialDrive, DriveError, Encoder, Wheel, WheelTravel};
+use super::{ClapperDrive, Counting, DifferentialDrive, DriveError, Encoder, Wheel, WheelTravel};
 use crate::parameter::Parameter;
 
 /// Another key for numbers of a drive in files.
@@ -20,6 +20,9 @@ pub(super) trait Kinematics: Sized {
     /// As in files.
     const NAME: &'static str;
 
+    /// What it is, in a sentence.
+    const ABOUT: &'static str;
+
     /// What its two counters are called in files.
     const COUNTERS: [&'static str; 2] = ["left", "right"];
 
@@ -32,8 +35,20 @@ pub(super) trait Kinematics: Sized {
     /// See [`Drive::first_effects`](super::Drive::first_effects); those of all robots of the kind, unless it says otherwise.
     const FIRST_EFFECTS: [&'static str; 3] = ["wheel_diameter_ratio", "wheelbase", "scale"];
 
+    /// Effects that it may have beside those which name it in their [`DRIVES`](crate::effect::Effect::DRIVES).
+    const EFFECTS: &'static [&'static str] = &[];
+
     /// See [`Kind::has_tick_logs`](super::Kind::has_tick_logs).
     const HAS_TICK_LOGS: bool = true;
+
+    /// See [`Kind::has_axle_wheels`](super::Kind::has_axle_wheels).
+    const HAS_AXLE_WHEELS: bool = false;
+
+    /// See [`Kind::steers`](super::Kind::steers).
+    const STEERS: bool = false;
+
+    /// See [`Kind::has_trucks`](super::Kind::has_trucks).
+    const HAS_TRUCKS: bool = false;
 
     /// See [`Drive::first_effects`](super::Drive::first_effects).
     fn first_effects(&self) -> [&'static str; 3] {
@@ -52,6 +67,11 @@ pub(super) trait Kinematics: Sized {
             parameter.check(value)?;
         }
         Ok(self)
+    }
+
+    /// See [`Drive::trucks`](super::Drive::trucks).
+    fn trucks(&self) -> Option<&ClapperDrive> {
+        None
     }
 
     /// Its axle, real or virtual.

@@ -42,6 +42,8 @@ impl SynchroDrive {
 impl Kinematics for SynchroDrive {
     const NAME: &'static str = "synchro";
 
+    const ABOUT: &'static str = "Wheels that are driven together and steered together.";
+
     const COUNTERS: [&'static str; 2] = ["drive", "steering"];
 
     const PARAMETERS: &'static [Parameter] = &[

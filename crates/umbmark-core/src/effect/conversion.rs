@@ -71,7 +71,7 @@ impl Model {
         if differs.is_empty() {
             return Ok((self.clone().of(robot), None));
         }
-        if own.drive.kind() != Kind::Differential {
+        if !own.drive.kind().has_axle_wheels() {
             return refuse("only models of differential drives are converted; learn it anew");
         }
         let [there, here] = [own, robot].map(Robot::metres_per_tick);

@@ -2,7 +2,7 @@
 
 use super::laws::{BodyLaw, BumpLaw, ClockLaw, DiffusionLaw, LinkLaw, MeasurementLaw, SightLaw, StartLaw, WheelLaw};
 use super::{About, Bump, Changes, Context, Effect, MAX_PARAMETERS, Stretch, WheelVariance};
-use crate::drive::{Kinds, LinkReading, Robot, WheelTravel};
+use crate::drive::{Kind, Kinds, LinkReading, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Dual, Instructions, Pose2, Real};
 use crate::random::Stream;
 
@@ -99,8 +99,7 @@ impl Scatter {
 pub struct Entry {
     /// What people should know of it.
     pub about: About,
-    /// See [`Effect::DRIVES`].
-    pub drives: Kinds,
+    drives: Kinds,
     /// What its laws change.
     pub changes: Changes,
     /// See [`Effect::means`].
@@ -205,6 +204,12 @@ impl Entry {
         self.scatter.measured = E::measured;
         self.changes = self.changes.and(Changes::MEASURED);
         self
+    }
+
+    /// The drives that may have it: those of [`Effect::DRIVES`], and those that name it.
+    pub fn drives(&self) -> Kinds {
+        let adopting = Kind::ALL.iter().filter(|kind| kind.adopts(self.about.name));
+        adopting.fold(self.drives, |drives, kind| drives.and(*kind))
     }
 
     /// A number that names the effect's random stream: a hash of its name (FNV-1a), so that the order of the catalogue

@@ -155,9 +155,9 @@ impl Model {
             Law::Entry(entry) => Some(*entry),
             Law::Formula(_) => None,
         });
-        match entries.into_iter().find(|entry| !entry.drives.contains(kind)) {
+        match entries.into_iter().find(|entry| !entry.drives().contains(kind)) {
             Some(entry) => {
-                Err(ModelError::OtherDrive { effect: entry.about.name, drives: entry.drives, drive: kind.name() })
+                Err(ModelError::OtherDrive { effect: entry.about.name, drives: entry.drives(), drive: kind.name() })
             }
             None => Ok(()),
         }

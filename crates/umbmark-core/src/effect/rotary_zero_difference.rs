@@ -37,7 +37,7 @@ impl Effect for RotaryZeroDifference {
     const DRIVES: Kinds = Kinds::of(Kind::Clapper);
 
     fn means(p: &[f64], robot: &Robot) -> String {
-        let link = if let Drive::Clapper(drive) = robot.drive { drive.link() } else { 1.0 };
+        let link = robot.drive.trucks().map_or(1.0, |trucks| trucks.link());
         format!("Each metre ahead turns the line of trucks by {} to the {}.", deg(p[0] / link), side(p[0]))
     }
 }

@@ -101,7 +101,7 @@ pub struct Convoy {
 impl Convoy {
     /// The plan of a CLAPPER; `None` for other drives, and for paths with arcs.
     pub fn new(robot: &Robot, path: &Path, direction: Direction) -> Option<Convoy> {
-        let Drive::Clapper(drive) = robot.drive else { return None };
+        let drive = *robot.drive.trucks()?;
         let place = Place { direction: Some(direction), ..Place::default() };
         let mut planner = Planner {
             drive,
@@ -326,7 +326,7 @@ pub(crate) mod tests {
         let truck = DifferentialDrive::new(0.34, 0.15, 0.15).unwrap();
         let drive = ClapperDrive::new(truck, 1.0, 1e9, correction).unwrap();
         let encoder = Encoder::new(2000.0, Some(25.0), None).unwrap();
-        Robot { name: "CLAPPER".into(), drive: Drive::Clapper(drive), encoder }
+        Robot { name: "CLAPPER".into(), drive: drive.into(), encoder }
     }
 
     /// The way that it was tested on.

@@ -85,7 +85,7 @@ impl Observed {
 
     /// The ratio that a first effect of a differential drive has by the motion alone; `None` where that does not show it.
     pub fn ratio_by_motion(&self, effect: &str) -> Option<f64> {
-        let mounting = self.setup.mounting.as_ref().filter(|_| matches!(self.robot.drive, Drive::Differential(_)))?;
+        let mounting = self.setup.mounting.as_ref().filter(|_| self.robot.drive.kind().has_axle_wheels())?;
         ratios(mounting, self.robot.drive.wheelbase()).into_iter().find(|(name, ..)| *name == effect)?.2
     }
 
@@ -99,7 +99,9 @@ impl Observed {
 
     /// Sets the free first effects of a differential drive to what the motion says, where that is far from their start values.
     fn start_near(&self, model: &mut Model, mounting: &Mounting) -> Result<(), ModelError> {
-        let Drive::Differential(_) = &self.robot.drive else { return Ok(()) };
+        if !self.robot.drive.kind().has_axle_wheels() {
+            return Ok(());
+        }
         let values = ratios(mounting, self.robot.drive.wheelbase());
         let far = values.iter().any(|(_, _, value)| value.is_some_and(|value| (value - 1.0).abs() > FAR))
             || self.tracks().any(|track| self.turns_away(track, mounting));

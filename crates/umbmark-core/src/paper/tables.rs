@@ -204,8 +204,9 @@ fn correction(seed: u64) -> Result<[f64; 2], PaperError> {
     let preset = preset("clapper")?;
     let mut turned = [0.0; 2];
     for (turned, correction) in turned.iter_mut().zip([true, false]) {
-        let Drive::Clapper(drive) = preset.robot().drive else { return Err(PaperError::Robot("clapper")) };
-        let robot = Robot { drive: Drive::Clapper(drive.with_correction(correction)), ..preset.robot() };
+        let robot = preset.robot();
+        let drive = robot.drive.trucks().ok_or(PaperError::Robot("clapper"))?;
+        let robot = Robot { drive: drive.with_correction(correction).into(), ..robot };
         let mut model = Model::new(&robot);
         model.set("placed_bumps", "count", 10.0)?;
         let study = Study { path: preset.path(), ..Study::new(model, 10, seed) };

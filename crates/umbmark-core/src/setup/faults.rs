@@ -251,7 +251,7 @@ pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
         if sound { found.misfit } else { found.misfit.max(1.0) }
     };
     let given = of(windows, Reading::default());
-    let differential = robot.drive.kind() == Kind::Differential;
+    let differential = robot.drive.kind().has_axle_wheels();
     let (mut best, mut reading, mut degrees) = (given, Reading::default(), false);
     if doubt(&given) > DOUBTFUL {
         let in_degrees: Vec<Beside> = windows.iter().map(|(window, rolled)| (window.in_degrees(), *rolled)).collect();
@@ -291,16 +291,16 @@ fn turned(found: &Agreement, Reading { opposed, clockwise }: Reading, kind: Kind
     }
     let of = |counters, exchanged| Some(Fault::Backward { names: kind.counters(), counters, exchanged });
     // A tracked body may face backward; wheels that turn the other way as well have another cause.
-    let wheels = match (kind, opposed, other_way, backward) {
+    let wheels = match (kind.has_axle_wheels(), opposed, other_way, backward) {
         (_, false, false, _) => None,
-        (Kind::Differential, false, true, false) => Some(Fault::Exchanged),
-        (Kind::Differential, false, true, true) => of([true, true], false),
+        (true, false, true, false) => Some(Fault::Exchanged),
+        (true, false, true, true) => of([true, true], false),
         (_, true, false, false) => of([true, false], false),
         (_, true, true, true) => of([false, true], false),
         (_, true, true, false) => of([true, false], true),
         (_, true, false, true) => of([false, true], true),
         // Driven backward, a steered wheel turns the robot the other way.
-        (Kind::Ackermann, false, true, true) => of([true, false], false),
+        (_, false, true, true) if kind.steers() => of([true, false], false),
         // The second counter of the others is that of the steering.
         (_, false, true, _) => of([false, true], false),
     };

@@ -28,7 +28,7 @@ fn models() -> Vec<(&'static str, Model)> {
     for entry in CATALOGUE {
         let mut alone = nothing.clone();
         put(&mut alone, entry, false);
-        if entry.drives.contains(Kind::Differential) {
+        if entry.drives().contains(Kind::default()) {
             put(&mut together, entry, false);
         }
         models.push((entry.about.name, alone));
@@ -140,7 +140,7 @@ fn everything_measured(model: &Model) -> Vec<f64> {
 #[test]
 fn every_number_of_every_effect_shows_in_what_is_measured() {
     for entry in CATALOGUE {
-        let of_trucks = entry.drives == Kinds::of(Kind::Clapper);
+        let of_trucks = entry.drives().each().all(Kind::has_trucks);
         let robot = if of_trucks { Preset::find("clapper").unwrap().robot() } else { Robot::labmate() };
         let mut usual = Model::new(&robot);
         put(&mut usual, entry, true);

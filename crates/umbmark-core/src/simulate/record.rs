@@ -125,7 +125,7 @@ impl Simulator {
             ReferencePose { sample, x, y, heading: Some(heading) }
         });
         recording.log.reference = measured.collect();
-        if self.robot().drive.kind() != Kind::Differential {
+        if !self.robot().drive.kind().has_axle_wheels() {
             recording.reckon(self.robot());
         }
         let at_rest = Sight { time: samples as f64 / rate, ..Sight::default() };

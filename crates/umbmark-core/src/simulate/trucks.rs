@@ -18,7 +18,7 @@ pub(super) struct Convoys {
 impl Convoys {
     /// `None` for drives that are no two trucks, and for paths that suit none.
     pub fn new(robot: &Robot, path: &Path) -> Option<Convoys> {
-        let Drive::Clapper(drive) = robot.drive else { return None };
+        let drive = *robot.drive.trucks()?;
         let plan = |direction| Convoy::new(robot, path, direction);
         Some(Convoys { drive, plans: [plan(Direction::Cw)?, plan(Direction::Ccw)?] })
     }

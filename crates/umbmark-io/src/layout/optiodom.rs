@@ -13,7 +13,7 @@ use umbmark_core::path::{Path as DrivenPath, SQUARE};
 pub(super) fn write(data: &Dataset, folder: &Path, existing: Existing) -> Result<Vec<String>, DatasetError> {
     let robot = data.nominal_robot()?;
     let kind = robot.drive.kind();
-    if kind != Kind::Differential {
+    if !kind.has_axle_wheels() {
         let reason = format!("a robot with drive = \"{}\" is not written as a set of OptiOdom", kind.name());
         return Err(DatasetError::Unwritable { file: folder.display().to_string(), reason });
     }

@@ -29,7 +29,7 @@ const MCAP: LogFormat = LogFormat { ending: "mcap", bytes, same };
 pub fn save_mcap(data: &Dataset, place: impl AsRef<Path>, existing: Existing) -> Result<Vec<String>, DatasetError> {
     let place = place.as_ref();
     let kind = data.nominal_robot()?.drive.kind();
-    if kind != Kind::Differential {
+    if !kind.has_axle_wheels() {
         let reason =
             format!("MCAP logs hold wheels, and a robot with drive = \"{}\" counts others; write CSV", kind.name());
         return Err(DatasetError::Unwritable { file: place.display().to_string(), reason });

@@ -181,10 +181,8 @@ pub(super) fn designs(ends: &Ends) -> Vec<Design> {
         let quarter = std::f64::consts::FRAC_PI_2;
         offered.push(again(path, robot, "the pose taped at every stop", true, 0.0));
         offered.push(again(path, robot, "START turned by 90 deg in the room", false, quarter));
-        if let Drive::Clapper(drive) = robot.drive
-            && drive.corrects()
-        {
-            let plain = Robot { drive: Drive::Clapper(drive.with_correction(false)), ..robot.clone() };
+        if let Some(trucks) = robot.drive.trucks().filter(|trucks| trucks.corrects()) {
+            let plain = Robot { drive: trucks.with_correction(false).into(), ..robot.clone() };
             offered.push(again(path, &plain, "the correction by the link switched off", false, 0.0));
         }
         let double = of(path.shape(), path.values(), faster);

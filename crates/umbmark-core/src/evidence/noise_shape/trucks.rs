@@ -98,7 +98,7 @@ mod tests {
     fn clapper(correction: bool) -> Robot {
         let robot = Preset::find("clapper").unwrap().robot();
         let drive = ClapperDrive::new(*robot.drive, 1.0, 1e9, correction).unwrap();
-        Robot { drive: Drive::Clapper(drive), ..robot }
+        Robot { drive: drive.into(), ..robot }
     }
 
     /// Oracle: 1000 simulated runs; seed 3. Standard deviations within 8 %, correlations within 0.1; alpha below 1e-3.
