@@ -16,6 +16,7 @@ mod real;
 pub use angle::{mean_angle, wrap};
 pub(crate) use eight::{EIGHT, Eight, Scalar};
 pub use instructions::Instructions;
+pub(crate) use instructions::by_width;
 pub use pose::{Displacement2, Pose2};
 pub(crate) use real::{COSINE_SERIES, HALF_PI, SINC_SERIES, sinc_cos_near_zero};
 pub use real::{Dual, LANES, Real, direction, seeded};

@@ -17,8 +17,6 @@ mod moment;
 mod pace;
 mod prediction;
 mod track;
-#[cfg(target_arch = "x86_64")]
-mod x86;
 
 pub use error::ReplayError;
 pub use formulas::check_on_path;

@@ -1,9 +1,6 @@
 //! Products of whitened columns, and what follows from them.
 
-#[cfg(target_arch = "x86_64")]
-mod x86;
-
-use crate::engine::Instructions;
+use crate::geometry::{Instructions, by_width};
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
 /// A column with less than this share of its square left is absorbed by the base: a collinearity index above 20, the rule of
@@ -15,15 +12,7 @@ const TOGETHER: usize = 8;
 
 /// XᵀX of a matrix stored row by row: the same bits whatever the machine can do at once.
 pub(crate) fn gram(values: &[f64], columns: usize) -> DMatrix<f64> {
-    #[cfg(target_arch = "x86_64")]
-    match Instructions::best() {
-        // SAFETY: the machine was found to have them.
-        Instructions::Avx512 => return unsafe { x86::gram_by_eight(values, columns) },
-        // SAFETY: as above.
-        Instructions::Avx2 => return unsafe { x86::gram_by_four(values, columns) },
-        Instructions::Portable => {}
-    }
-    gram_of(values, columns)
+    by_width!(Instructions::best(), |values: &[f64], columns: usize| -> DMatrix<f64> { gram_of(values, columns) })
 }
 
 #[inline(always)]

@@ -1,15 +1,13 @@
 //! Residuals and Jacobian columns of a run, made independent by a Kalman filter along it.
 
 mod disturbances;
-#[cfg(target_arch = "x86_64")]
-mod x86;
 
 pub use disturbances::Disturbance;
 
 use super::noise::Noise;
 use super::observed::{Block, ObservedRun};
-use crate::engine::Instructions;
 use crate::geometry::{Eight, Scalar};
+use crate::geometry::{Instructions, by_width};
 
 /// Standard deviation of a START that is not taken on trust \[m, rad\]: beyond all misplacement, so that it costs one pose.
 const FREE_START: f64 = 1.0;
@@ -69,15 +67,10 @@ impl Noise {
     /// in the error coordinates of [`Growth`](super::Growth). The same gains serve all columns, so linear relations between
     /// columns are kept.
     pub fn whiten(&self, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> Whitened {
-        #[cfg(target_arch = "x86_64")]
-        match Instructions::best() {
-            // SAFETY: the machine was found to have them.
-            Instructions::Avx512 => return unsafe { x86::whiten_by_eight(self, run, columns) },
-            // SAFETY: as above.
-            Instructions::Avx2 => return unsafe { x86::whiten_by_four(self, run, columns) },
-            Instructions::Portable => {}
-        }
-        self.whiten_plainly(run, columns)
+        let noise = self;
+        by_width!(Instructions::best(), |noise: &Noise, run: &ObservedRun, columns: &[&[[f64; 3]]]| -> Whitened {
+            noise.whiten_plainly(run, columns)
+        })
     }
 
     #[inline(always)]
@@ -105,15 +98,11 @@ impl Noise {
 impl Noise<Eight> {
     /// Products of the whitened columns, one row of the matrix after the other, and the logarithm of what was divided by.
     pub(super) fn products(&self, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> (Vec<Eight>, Eight) {
-        #[cfg(target_arch = "x86_64")]
-        match Instructions::best() {
-            // SAFETY: the machine was found to have them.
-            Instructions::Avx512 => return unsafe { x86::products_by_eight(self, run, columns) },
-            // SAFETY: as above.
-            Instructions::Avx2 => return unsafe { x86::products_by_four(self, run, columns) },
-            Instructions::Portable => {}
-        }
-        self.products_plainly(run, columns)
+        let noise = self;
+        by_width!(Instructions::best(), |noise: &Noise<Eight>,
+                                         run: &ObservedRun,
+                                         columns: &[&[[f64; 3]]]|
+         -> (Vec<Eight>, Eight) { noise.products_plainly(run, columns) })
     }
 
     #[inline(always)]

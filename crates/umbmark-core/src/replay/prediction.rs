@@ -2,13 +2,9 @@
 
 use super::moment::Moments;
 use super::track::Track;
-#[cfg(target_arch = "x86_64")]
-use super::x86;
 use crate::effect::{Chain, Evaluate, Sight};
 use crate::engine::{Convoy, Predicted};
-#[cfg(target_arch = "x86_64")]
-use crate::geometry::Instructions;
-use crate::geometry::{Displacement2, Pose2};
+use crate::geometry::{Displacement2, Instructions, Pose2, by_width};
 
 impl Track {
     /// The pose predicted for the end of the travel.
@@ -133,19 +129,18 @@ impl Track {
         from: Pose2<T>,
         pieces: std::ops::Range<usize>,
     ) -> Pose2<T> {
-        #[cfg(target_arch = "x86_64")]
-        match Instructions::best() {
-            // SAFETY: the machine was found to have them.
-            Instructions::Avx512 if T::WIDE => return unsafe { x86::drive_by_eight(self, chain, from, pieces) },
-            // SAFETY: as above.
-            Instructions::Avx2 if T::WIDE => return unsafe { x86::drive_by_four(self, chain, from, pieces) },
-            _ => {}
-        }
-        self.drive_plainly(chain, from, pieces)
+        let track = self;
+        let instructions = if T::WIDE { Instructions::best() } else { Instructions::Portable };
+        by_width!(
+            instructions,
+            [T: Evaluate] |track: &Track, chain: &Chain<T>, from: Pose2<T>, pieces: std::ops::Range<usize>| -> Pose2<T> {
+                track.drive_plainly(chain, from, pieces)
+            }
+        )
     }
 
     #[inline(always)]
-    pub(super) fn drive_plainly<T: Evaluate>(
+    fn drive_plainly<T: Evaluate>(
         &self,
         chain: &Chain<T>,
         from: Pose2<T>,

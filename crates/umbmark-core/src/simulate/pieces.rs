@@ -8,10 +8,7 @@
 use super::diffusion::Diffusion;
 use crate::effect::WheelVariance;
 use crate::engine::{Instructions, Motion};
-use crate::geometry::{Displacement2, Pose2, sinc_cos_near_zero};
-
-#[cfg(target_arch = "x86_64")]
-mod x86;
+use crate::geometry::{Displacement2, Pose2, by_width, sinc_cos_near_zero};
 
 /// A motion with constant twist, whose end is then moved in the frame of its start and turned about itself.
 #[derive(Clone, Copy, Debug)]
@@ -184,16 +181,9 @@ fn all_ends(blocks: &mut [Block], ends: &mut [[Motion; WIDTH]], rotation_per_met
 }
 
 fn work_out(instructions: Instructions, blocks: &mut [Block], ends: &mut [[Motion; WIDTH]], rotation_per_metre: f64) {
-    #[cfg(target_arch = "x86_64")]
-    match instructions {
-        // SAFETY: `instructions` is never more than what the machine was found to have.
-        Instructions::Avx512 => return unsafe { x86::all_ends_by_eight(blocks, ends, rotation_per_metre) },
-        // SAFETY: as above.
-        Instructions::Avx2 => return unsafe { x86::all_ends_by_four(blocks, ends, rotation_per_metre) },
-        Instructions::Portable => {}
-    }
-    let _ = instructions;
-    all_ends(blocks, ends, rotation_per_metre);
+    by_width!(instructions, |blocks: &mut [Block], ends: &mut [[Motion; WIDTH]], rotation_per_metre: f64| -> () {
+        all_ends(blocks, ends, rotation_per_metre)
+    })
 }
 
 /// A run under way.

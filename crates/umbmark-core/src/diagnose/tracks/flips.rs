@@ -11,12 +11,8 @@
 //! Source: Hemerik, Goeman & Finos (2020), Robust testing in generalized linear models by sign flipping score contributions;
 //! standardised by the flip's own variance, De Santis, Goeman, Davenport, Hemerik & Finos (2022); the greatest statistic, Westfall & Young (1993).
 
-#[cfg(target_arch = "x86_64")]
-mod x86;
-
-#[cfg(target_arch = "x86_64")]
-use crate::geometry::Instructions;
 use crate::geometry::{EIGHT, Eight};
+use crate::geometry::{Instructions, by_width};
 use crate::random::Stream;
 use crate::stats::f_upper_tail;
 use nalgebra::{DMatrix, DVector};
@@ -65,15 +61,10 @@ impl Scores {
     /// How far the flipped sum is from zero under each of eight flips, as a standard normal's quantile (Wilson & Hilferty 1931);
     /// NaN where it has no covariance.
     fn distances(&self, signs: &[Eight]) -> [f64; EIGHT] {
-        #[cfg(target_arch = "x86_64")]
-        match Instructions::best() {
-            // SAFETY: the machine was found to have them.
-            Instructions::Avx512 => return unsafe { x86::distances_by_eight(self, signs) },
-            // SAFETY: as above.
-            Instructions::Avx2 => return unsafe { x86::distances_by_four(self, signs) },
-            Instructions::Portable => {}
-        }
-        self.distances_plainly(signs)
+        let scores = self;
+        by_width!(Instructions::best(), |scores: &Scores, signs: &[Eight]| -> [f64; EIGHT] {
+            scores.distances_plainly(signs)
+        })
     }
 
     #[inline(always)]

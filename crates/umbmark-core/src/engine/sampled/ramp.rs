@@ -4,9 +4,7 @@ use super::constant_rate::Step;
 use super::directions::{Directions, sum, turned};
 use super::{Profile, SampledOdometry, TickGeometry, Update};
 use crate::engine::{Instructions, Motion, UNITS_PER_TICK, WheelLine};
-
-#[cfg(target_arch = "x86_64")]
-mod x86;
+use crate::geometry::by_width;
 
 /// Lines whose wheels travel less than this far \[units\] have angles that are whole numbers in `f64`.
 const TRAVEL_LIMIT: i64 = 1 << 52;
@@ -80,16 +78,10 @@ impl LookUps {
     }
 
     fn fill_by(&mut self, instructions: Instructions, line: &WheelLine, shares: &[f64], origin: i32) {
-        #[cfg(target_arch = "x86_64")]
-        match instructions {
-            // SAFETY: `instructions` is never more than what the machine was found to have.
-            Instructions::Avx512 => return unsafe { x86::fill_by_eight(self, line, shares, origin) },
-            // SAFETY: as above.
-            Instructions::Avx2 => return unsafe { x86::fill_by_four(self, line, shares, origin) },
-            Instructions::Portable => {}
-        }
-        let _ = instructions;
-        self.fill(line, shares, origin);
+        let look_ups = self;
+        by_width!(instructions, |look_ups: &mut LookUps, line: &WheelLine, shares: &[f64], origin: i32| -> () {
+            look_ups.fill(line, shares, origin)
+        })
     }
 }
 
