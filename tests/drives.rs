@@ -4,7 +4,7 @@
 
 use umbmark_core::dataset::{Dataset, Run};
 use umbmark_core::diagnose::{Options, Verdict, diagnose};
-use umbmark_core::drive::{AckermannDrive, ClapperDrive, Drive, Encoder, Kind, Robot};
+use umbmark_core::drive::{AckermannDrive, ClapperDrive, Encoder, Robot};
 use umbmark_core::effect::{Model, TestKind};
 use umbmark_core::learn::{calibrate_gears, learn};
 use umbmark_core::path::{CIRCLE, Direction, Path, ROUNDED_RECTANGLE, SpeedProfile};
@@ -142,11 +142,8 @@ fn calibration_finds_the_gears_of_each_drive_and_says_what_returns_do_not_show()
         }
         assert!(found.e_max_sys_before.unwrap() > 0.1 && found.e_max_sys_after.unwrap() < 5e-3);
         // A robot that believes what was found, and truly is what it was, returns to START.
-        let again = found.corrected.drive.corrected([
-            0.0,
-            1.0 - f64::from(u8::from(robot.0.drive.kind().steers())),
-            1.0,
-        ]);
+        let again =
+            found.corrected.drive.corrected([0.0, 1.0 - f64::from(u8::from(robot.0.drive.kind().steers())), 1.0]);
         assert_eq!(again.unwrap(), found.corrected.drive);
         let returns = calibrate_gears(&returns_of(data)).unwrap();
         assert_eq!(returns.identifiability.unwrap().rank, 2);

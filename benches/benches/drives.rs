@@ -6,7 +6,7 @@
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use std::time::Duration;
 use umbmark_benches::studies;
-use umbmark_core::drive::{AckermannDrive, Drive, Encoder, Robot};
+use umbmark_core::drive::{AckermannDrive, Encoder, Robot};
 use umbmark_core::effect::Model;
 use umbmark_core::monte_carlo::{CHUNK, Study};
 use umbmark_core::path::{Path, ROUNDED_RECTANGLE, SpeedProfile};

@@ -1,7 +1,7 @@
 //! What one effect of usual size does along a path, ccw and cw.
 
 use serde_json::{Value, json};
-use umbmark_core::drive::{Kind, Kinds, Robot};
+use umbmark_core::drive::{Kind, Robot};
 use umbmark_core::effect::{Entry, Model};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{CIRCLE, Direction, Path, SpeedProfile};

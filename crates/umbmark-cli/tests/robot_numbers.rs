@@ -4,11 +4,11 @@
 #![allow(clippy::unwrap_used)]
 
 use snapbox::cmd::{Command, cargo_bin};
-use umbmark_io::RobotFile;
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::Model;
 use umbmark_core::monte_carlo::{Quantity, Study};
 use umbmark_core::path::Path;
+use umbmark_io::RobotFile;
 
 fn said_by_mc(arguments: &[String]) -> String {
     let assert = Command::new(cargo_bin!("umbmark")).args(["mc", "-n", "1"]).args(arguments).assert().code(1);

@@ -21,7 +21,7 @@ mod square;
 mod warning;
 
 use crate::dataset::{Dataset, ReturnError, Run};
-use crate::drive::{Kind, Robot};
+use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::evidence::{FitError, Level, robot_of};
 use crate::likelihood::Taken;

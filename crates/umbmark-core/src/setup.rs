@@ -21,7 +21,7 @@ mod stretches;
 mod suspicion;
 mod windows;
 
-use crate::drive::{Kind, Robot};
+use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::geometry::{Displacement2, Pose2, wrap};
 use crate::path::Path;

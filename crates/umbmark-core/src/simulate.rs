@@ -16,7 +16,7 @@ mod truth;
 mod way;
 
 use crate::dataset::ReturnError;
-use crate::drive::{DriveError, Kind, Robot, WheelTravel};
+use crate::drive::{DriveError, Robot, WheelTravel};
 use crate::effect::{Sight, Stretch, TestKind};
 use crate::engine::{
     EngineError, Instructions, Integrator, Method, Motion, Segment, TickGeometry, UNITS_PER_TICK, Update, WheelLine,

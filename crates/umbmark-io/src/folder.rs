@@ -13,7 +13,6 @@ use super::tick_log::parse_tick_log;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::Dataset;
-use umbmark_core::drive::Kind;
 use umbmark_core::run::dead_reckoning::EndPose;
 
 pub(super) const ROBOT: &str = "robot.toml";

@@ -18,7 +18,7 @@ use super::sheet::Rows;
 use super::source::Source;
 use std::collections::{BTreeMap, BTreeSet};
 use umbmark_core::dataset::ReferencePose;
-use umbmark_core::drive::{AckermannDrive, DifferentialDrive, Drive, Encoder, Robot};
+use umbmark_core::drive::{AckermannDrive, DifferentialDrive, Encoder, Robot};
 use umbmark_core::geometry::wrap;
 use umbmark_core::path::{Path, SQUARE, SpeedProfile};
 

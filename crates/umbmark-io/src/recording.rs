@@ -5,7 +5,7 @@ mod order;
 use super::error::DatasetError;
 use super::lines::Lines;
 use umbmark_core::dataset::{Mended, ReferencePose, TickLog};
-use umbmark_core::drive::{Kind, Robot, roll_over};
+use umbmark_core::drive::{Robot, roll_over};
 
 /// No wheel of a robot rolls faster \[m/s\].
 const FASTEST: f64 = 100.0;

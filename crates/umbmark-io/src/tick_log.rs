@@ -47,7 +47,11 @@ impl LogColumns {
     fn find(sheet: &Sheet, kind: Kind, warnings: &mut Vec<String>) -> Result<LogColumns, DatasetError> {
         let mut columns = Columns::of(sheet);
         let [first, second] = kind.counters().map(|counter| format!("ticks_{counter}"));
-        let of = if kind == Kind::default() { String::new() } else { format!(" of a robot with drive = \"{}\"", kind.name()) };
+        let of = if kind == Kind::default() {
+            String::new()
+        } else {
+            format!(" of a robot with drive = \"{}\"", kind.name())
+        };
         let needs = format!("a tick log{of} needs t_s, {first} and {second}");
         let time = columns.need("t", Time, &needs)?;
         let counts = [columns.need(&first, Bare, &needs)?, columns.need(&second, Bare, &needs)?];

@@ -6,7 +6,6 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_core::calibrate::{self as core, Correction, Options, RadiusWheelbase};
 use umbmark_core::document;
-use umbmark_core::drive::Kind;
 use umbmark_core::learn;
 use umbmark_io::{RobotFile, export as texts};
 

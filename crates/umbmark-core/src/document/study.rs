@@ -2,7 +2,6 @@
 
 use crate::calibrate::{Angles, Correction};
 use crate::dataset::Run;
-use crate::drive::Kind;
 use crate::monte_carlo::{Distribution, Draw, Ensemble, Metric, Statistics, Study, StudyError};
 use crate::path::{Direction, SQUARE};
 use crate::preset::Published;

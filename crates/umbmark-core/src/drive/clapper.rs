@@ -71,7 +71,8 @@ impl ClapperDrive {
 impl Kinematics for ClapperDrive {
     const NAME: &'static str = "clapper";
 
-    const ABOUT: &'static str = "Two differential trucks and a link that corrects their headings; its axle is that of a truck.";
+    const ABOUT: &'static str =
+        "Two differential trucks and a link that corrects their headings; its axle is that of a truck.";
 
     const PARAMETERS: &'static [Parameter] = &[
         Parameter::shape(

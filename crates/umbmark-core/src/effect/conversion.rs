@@ -1,7 +1,7 @@
 //! A model of one nominal robot as that of another: the same true robot, seen from other numbers.
 
 use super::{Changes, Law, Model, ModelError};
-use crate::drive::{Kind, Robot};
+use crate::drive::Robot;
 
 /// Nominal numbers that differ by no more than this share are the same.
 const SAME: f64 = 1e-9;

@@ -2,7 +2,7 @@
 
 use super::words::{deg, side};
 use super::{About, ActsOn, Effect, Entry, LinkLaw};
-use crate::drive::{Drive, Kind, Kinds, LinkReading, Robot};
+use crate::drive::{Kind, Kinds, LinkReading, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 

@@ -12,7 +12,7 @@
 //! The same loop simulates (values, noise, bumps, whole counts) and predicts (values or derivatives, nothing by chance): what
 //! differs is the [`Floor`] that the trucks meet.
 
-use crate::drive::{ClapperDrive, Drive, LinkReading, Robot, WheelTravel};
+use crate::drive::{ClapperDrive, LinkReading, Robot, WheelTravel};
 use crate::effect::{Chain, Context, Evaluate, Place, Progress};
 use crate::geometry::{Displacement2, Pose2, Real, direction, wrap};
 use crate::path::{Direction, Move, Path, SpeedProfile, Trapezoid};

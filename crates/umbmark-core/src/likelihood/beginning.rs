@@ -1,7 +1,6 @@
 //! Where a fit begins: with what the motion alone says of the reference, and of the robot's sizes where they are far off.
 
 use super::observed::Observed;
-use crate::drive::Drive;
 use crate::effect::{Model, ModelError, Part};
 use crate::replay::Track;
 use crate::setup::Mounting;

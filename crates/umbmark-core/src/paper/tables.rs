@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use serde::Serialize;
 
 use super::{Bench, PaperError, preset};
-use crate::drive::{Drive, Robot};
+use crate::drive::Robot;
 use crate::effect::Model;
 use crate::monte_carlo::{Ensemble, Metric, Shard, Statistics, Study};
 use crate::path::Direction;

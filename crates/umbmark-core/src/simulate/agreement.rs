@@ -1,7 +1,7 @@
 //! Simulation against replay, effect by effect: both give a law the same pieces, so both make the same motion of it.
 
 use super::*;
-use crate::drive::Kinds;
+use crate::drive::Kind;
 use crate::effect::{CATALOGUE, Changes, Entry, Model, Place};
 use crate::parameter::{Parameter, Role};
 use crate::path::{CIRCLE, FIGURE_EIGHT, SQUARE, SpeedProfile};

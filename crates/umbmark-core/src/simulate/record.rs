@@ -2,7 +2,7 @@
 
 use super::{Rest, SimulateError, Simulator, Truth, return_error};
 use crate::dataset::{ReferencePose, ReturnError, TickLog};
-use crate::drive::{Kind, Robot, Wheel, WheelTravel};
+use crate::drive::{Robot, Wheel, WheelTravel};
 use crate::effect::{Sight, Stretch, TestKind};
 use crate::engine::{SampledOdometry, TickGeometry, UNITS_PER_TICK, Update};
 use crate::geometry::Pose2;

@@ -2,7 +2,7 @@
 
 use super::{Leg, Truth, return_error};
 use crate::dataset::ReturnError;
-use crate::drive::{ClapperDrive, Drive, LinkReading, Robot, Wheel, WheelTravel};
+use crate::drive::{ClapperDrive, LinkReading, Robot, Wheel, WheelTravel};
 use crate::effect::{Bump, Sight, Stretch, TestKind};
 use crate::engine::{Convoy, Floor, Step};
 use crate::geometry::{Displacement2, Pose2};

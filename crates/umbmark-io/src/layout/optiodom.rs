@@ -6,7 +6,7 @@ use super::super::save::{Existing, put};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::{Dataset, TickLog};
-use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::drive::Robot;
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::{Path as DrivenPath, SQUARE};
 

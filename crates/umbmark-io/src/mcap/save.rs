@@ -8,7 +8,6 @@ use super::write::{nanoseconds, write};
 use std::io::{Cursor, Write};
 use std::path::Path;
 use umbmark_core::dataset::{Dataset, Run, TickLog};
-use umbmark_core::drive::Kind;
 use umbmark_core::geometry::wrap;
 
 /// Times are kept to the nanosecond, one at most being lost \[s\].
