@@ -19,6 +19,9 @@ pub struct RobotFlags {
     speed: [Option<f64>; 3],
 }
 
+/// Numbers of the LabMate that the paper does not give.
+const ASSUMED: [Parameter; 2] = [DifferentialDrive::WHEEL_DIAMETER, Encoder::TICKS];
+
 /// The numbers of all shapes, those that share a flag only once.
 fn sizes() -> Vec<&'static Parameter> {
     let mut sizes: Vec<&'static Parameter> = Vec::new();
@@ -51,12 +54,13 @@ impl Args for RobotFlags {
     fn augment_args(command: Command) -> Command {
         let robot = |command: Command, p: &'static Parameter| {
             let arg = number_flag(p).help_heading("Robot");
-            command.arg(if p.name == Encoder::RATE.name {
+            if p.name == Encoder::RATE.name {
                 let help = format!("{}, or \"every tick\" [default: every tick]", p.meaning);
-                arg.value_parser(encoder_rate).help(help)
-            } else {
-                arg
-            })
+                return command.arg(arg.value_parser(encoder_rate).help(help));
+            }
+            let assumed = ASSUMED.iter().any(|assumed| assumed.name == p.name);
+            let source = if assumed { "assumed" } else { "the paper's LabMate" };
+            command.arg(arg.help(format!("{} [default: {}, {source}]", p.meaning, p.typical)))
         };
         let command = Robot::NUMBERS.iter().fold(command, robot).arg(
             Arg::new("shape")
@@ -144,7 +148,7 @@ impl RobotFlags {
 
     /// Whether the wheel diameter and ticks are still the assumed ones.
     pub fn leaves_assumptions(&self) -> bool {
-        let said = |wanted: Parameter| self.numbers.iter().any(|(parameter, _)| parameter.name == wanted.name);
-        !said(DifferentialDrive::WHEEL_DIAMETER) || !said(Encoder::TICKS)
+        let said = |assumed: &Parameter| self.numbers.iter().any(|(parameter, _)| parameter.name == assumed.name);
+        !ASSUMED.iter().all(said)
     }
 }

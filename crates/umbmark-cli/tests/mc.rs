@@ -162,7 +162,7 @@ error: cannot write into the folder [..]: there is no such folder; make it first
 fn unusable_arguments_get_one_clear_error_and_exit_one() {
     for (arguments, message) in [
         (&["--ed", "9"][..], "error: --ed: wheel_diameter_ratio: e_d must be between 0.5 and 2, got 9\n"),
-        (&["--wheelbase", "-0.34"], "error: wheelbase must be positive and finite, got -0.34 m\n"),
+        (&["--wheelbase", "-0.34"], "error: --wheelbase: wheelbase_m must be between 0.001 and 100 m, got -0.34\n"),
         (&["--eb-sd", "-1"], "error: --eb-sd: standard deviation of e_b must be finite and 0 or more, got -1\n"),
         (&["--radius", "2"], "error: --radius is not a size of a square\n"),
         (&["-n", "0"], "error: number of trials must be between 1 and 1000000000000, got 0\n"),

@@ -1,7 +1,7 @@
 //! Robots of the paper, ready to be driven: geometry, systematic errors and noise, each number with where it is from.
 
 use crate::calibrate::Correction;
-use crate::drive::{ClapperDrive, DifferentialDrive, Drive, Encoder, Robot, SynchroDrive};
+use crate::drive::{ClapperDrive, DifferentialDrive, Encoder, Robot, SynchroDrive};
 use crate::effect::{Model, ModelError};
 use crate::evidence::noise_shape::end_covariance;
 use crate::parameter::nearest;

@@ -4,7 +4,7 @@ use super::RobotFile;
 use super::robot_file::{EXCHANGED, is_waypoints};
 use std::fmt::Write;
 use umbmark_core::dataset::{Dataset, ReferenceFrame};
-use umbmark_core::drive::{Robot, Spelling};
+use umbmark_core::drive::{Encoder, Robot, Spelling};
 use umbmark_core::path::{Path, SpeedProfile};
 
 impl RobotFile {
@@ -51,11 +51,11 @@ pub(super) fn robot_text(robot: &Robot) -> String {
     push_lengths(&mut text, robot);
     let encoder = &robot.encoder;
     let ticks = number(encoder.ticks_per_revolution());
-    line(&mut text, "ticks_per_revolution", &ticks, "of the wheel, after gearing and quadrature");
+    line(&mut text, Encoder::TICKS.name, &ticks, Encoder::TICKS.meaning);
     let rate = encoder.rate().map_or("\"every tick\"".to_owned(), number);
-    line(&mut text, "encoder_rate_hz", &rate, "how often the counters are read");
+    line(&mut text, Encoder::RATE.name, &rate, Encoder::RATE.meaning);
     if let Some(bits) = encoder.counter_bits() {
-        line(&mut text, "counter_bits", &bits.to_string(), "the counters roll over");
+        line(&mut text, Encoder::BITS.name, &bits.to_string(), Encoder::BITS.meaning);
     }
     let wiring = encoder.wiring();
     for (counter, backward) in robot.drive.kind().counters().iter().zip(wiring.backward) {

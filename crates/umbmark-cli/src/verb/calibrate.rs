@@ -10,7 +10,7 @@ use anyhow::Context;
 use umbmark_core::calibrate::{Calibration, Estimate, Method, Options, RadiusWheelbase, Ratio, calibrate};
 use umbmark_core::dataset::Dataset;
 use umbmark_core::document;
-use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::drive::Robot;
 use umbmark_core::evidence::Level;
 use umbmark_io::{RobotFile, export};
 

@@ -41,7 +41,7 @@ impl DifferentialDrive {
         "m",
         0.340,
         (1e-3, 100.0),
-        "distance of the two wheels' contact points",
+        "b: distance of the two wheels' contact points",
     );
 
     /// D of both wheels.

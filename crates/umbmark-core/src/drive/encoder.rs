@@ -69,8 +69,14 @@ impl Encoder {
     );
 
     /// How often the counts are looked at, where that is not at every tick.
-    pub const RATE: Parameter =
-        Parameter::shape("encoder_rate_hz", "encoder-rate", "Hz", 100.0, (1e-3, 1e6), "how often the counts are read");
+    pub const RATE: Parameter = Parameter::shape(
+        "encoder_rate_hz",
+        "encoder-rate",
+        "Hz",
+        100.0,
+        (1e-3, 1e6),
+        "how often the counters are read",
+    );
 
     /// Width of a counter.
     pub const BITS: Parameter = Parameter::count(

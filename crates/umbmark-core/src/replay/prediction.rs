@@ -140,7 +140,7 @@ impl Track {
     }
 
     #[inline(always)]
-    fn drive_plainly<T: Evaluate>(
+    pub(super) fn drive_plainly<T: Evaluate>(
         &self,
         chain: &Chain<T>,
         from: Pose2<T>,

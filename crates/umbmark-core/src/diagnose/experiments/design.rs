@@ -1,6 +1,6 @@
 //! Experiments that people with a tape measure can do, and how their poses scatter.
 
-use crate::drive::{Drive, Robot};
+use crate::drive::Robot;
 use crate::effect::{Chain, Derived, Evaluate};
 use crate::evidence::ends::{Ends, Fitted};
 use crate::evidence::noise_shape::trucks;

@@ -87,7 +87,7 @@ impl<T: Real> Floor<T> for Even<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drive::{ClapperDrive, Drive, Robot};
+    use crate::drive::{ClapperDrive, Robot};
     use crate::effect::{Model, TestKind};
     use crate::evidence::noise_shape::end_covariance;
     use crate::path::{Direction, Path, SQUARE, SpeedProfile};
