@@ -37,7 +37,7 @@ pub use chain::Chain;
 pub use changes::Changes;
 pub use context::{Context, Place, Progress, Sight};
 pub use conversion::{CONVERTED, Conversion};
-pub use entry::{Entry, Evaluate, Mean, Scatter};
+pub use entry::{Entry, Evaluate, MeanLaws, RandomLaws};
 pub use formula::{Formula, FormulaError, FormulaVariable, Target};
 pub use law::Law;
 pub use laws::{BodyLaw, BumpLaw, ClockLaw, DiffusionLaw, LinkLaw, MeasurementLaw, SightLaw, StartLaw, WheelLaw};

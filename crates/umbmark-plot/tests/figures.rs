@@ -38,20 +38,11 @@ fn golden(figure: &Figure, of: &str) {
 #[test]
 fn figures_of_return_poses_are_drawn_as_they_were() {
     let figures = drawn(&SLOPE);
-    let kinds: Vec<&str> = figures.iter().map(|figure| figure.kind).collect();
-    let expected = [
-        "return_errors",
-        "circle",
-        "tracks",
-        "learning",
-        "confusability",
-        "parameters",
-        "correlations",
-        "monte_carlo",
-        "runs",
-    ];
-    assert_eq!(kinds, expected);
     figures.iter().for_each(|figure| golden(figure, "slope"));
+    let goldens = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden")).unwrap();
+    let drawn: BTreeSet<String> = figures.iter().map(|figure| format!("{}_slope.svg", figure.kind)).collect();
+    let names = goldens.map(|file| file.unwrap().file_name().into_string().unwrap());
+    assert_eq!(names.filter(|name| name.ends_with("_slope.svg")).collect::<BTreeSet<_>>(), drawn);
 }
 
 #[test]

@@ -104,7 +104,8 @@ fn own() -> String {
 fn explanation(entry: &Entry, signature: Option<&Signature>) -> String {
     let (about, drives) = (&entry.about, entry.drives().to_string());
     let mut text = format!("{}: {}\n\n", about.name, about.title);
-    let confused = if about.confused_with.is_empty() { "nothing".to_owned() } else { about.confused_with.join(", ") };
+    let alike = entry.confused_with();
+    let confused = if alike.is_empty() { "nothing".to_owned() } else { alike.join(", ") };
     for (head, body) in [
         ("acts on", about.acts_on.name()),
         ("drives", &drives),

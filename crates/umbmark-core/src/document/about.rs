@@ -18,7 +18,7 @@ pub fn about(entry: &Entry) -> Value {
         "equation": about.equation,
         "physics": about.physics,
         "signature": about.signature,
-        "confused_with": about.confused_with,
+        "confused_with": entry.confused_with(),
         "separated_by": about.separated_by,
         "source": about.source,
         "parameters": parameters,

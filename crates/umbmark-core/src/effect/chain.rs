@@ -1,6 +1,6 @@
 //! The effects of a model at work: from believed to true motion, and to what is seen of it.
 
-use super::{Changes, Context, Evaluate, Formula, MAX_PARAMETERS, Mean, Sight};
+use super::{Changes, Context, Evaluate, Formula, MAX_PARAMETERS, MeanLaws, Sight};
 use crate::drive::{DifferentialDrive, LinkReading, WheelTravel};
 use crate::geometry::{Displacement2, Pose2};
 use std::sync::Arc;
@@ -9,14 +9,14 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Chain<T: Evaluate> {
     pub(super) drive: DifferentialDrive,
-    pub(super) links: Vec<Link<T>>,
+    pub(super) effects: Vec<Acting<T>>,
     pub(super) reads_place: bool,
 }
 
 /// One effect of a chain, with its values.
 #[derive(Clone, Debug)]
-pub(super) struct Link<T: Evaluate> {
-    pub work: Work<T>,
+pub(super) struct Acting<T: Evaluate> {
+    pub laws: ActingLaws<T>,
     pub changes: Changes,
     pub count: usize,
     pub values: [T; MAX_PARAMETERS],
@@ -24,16 +24,16 @@ pub(super) struct Link<T: Evaluate> {
 
 /// What an effect does: the functions of an entry of the catalogue, or a formula.
 #[derive(Clone, Debug)]
-pub(super) enum Work<T: Evaluate> {
-    Entry(Mean<T>),
+pub(super) enum ActingLaws<T: Evaluate> {
+    Entry(MeanLaws<T>),
     Formula(Arc<Formula>),
 }
 
 impl<T: Evaluate> Chain<T> {
-    /// Its links that change this.
+    /// Its effects that change this.
     #[inline(always)]
-    fn links(&self, change: Changes) -> impl Iterator<Item = &Link<T>> {
-        self.links.iter().filter(move |link| link.changes.include(change))
+    fn acting(&self, change: Changes) -> impl Iterator<Item = &Acting<T>> {
+        self.effects.iter().filter(move |acting| acting.changes.include(change))
     }
 
     /// Replaces all values, in the order of [`Model::values`](super::Model::values).
@@ -42,10 +42,10 @@ impl<T: Evaluate> Chain<T> {
     /// Where there are fewer values than parameters.
     pub fn set_values(&mut self, values: &[T]) {
         let mut rest = values;
-        for link in &mut self.links {
+        for acting in &mut self.effects {
             let own;
-            (own, rest) = rest.split_at(link.count);
-            link.values[..link.count].copy_from_slice(own);
+            (own, rest) = rest.split_at(acting.count);
+            acting.values[..acting.count].copy_from_slice(own);
         }
     }
 
@@ -58,9 +58,9 @@ impl<T: Evaluate> Chain<T> {
     /// Where the robot truly stands at START on average, seen from where it is believed to stand.
     pub fn start(&self) -> Pose2<T> {
         let start = Pose2::IDENTITY.lift();
-        self.links(Changes::START).fold(start, |pose, link| match &link.work {
-            Work::Entry(mean) => pose.compose(&(mean.start)(&link.values)),
-            Work::Formula(_) => pose,
+        self.acting(Changes::START).fold(start, |pose, acting| match &acting.laws {
+            ActingLaws::Entry(laws) => pose.compose(&(laws.start)(&acting.values)),
+            ActingLaws::Formula(_) => pose,
         })
     }
 
@@ -82,22 +82,22 @@ impl<T: Evaluate> Chain<T> {
     /// What the encoders of a link show of it.
     #[inline]
     pub fn link(&self, reading: LinkReading<T>) -> LinkReading<T> {
-        self.links(Changes::LINK).fold(reading, |mut shown, link| {
-            if let Work::Entry(mean) = &link.work {
-                (mean.link)(&link.values, &mut shown);
+        self.acting(Changes::LINK).fold(reading, |mut shown, acting| {
+            if let ActingLaws::Entry(laws) = &acting.laws {
+                (laws.link)(&acting.values, &mut shown);
             }
             shown
         })
     }
 
-    /// Makes true wheel travels of believed ones, all in one place: link after link, so that no travel waits for another.
+    /// Makes true wheel travels of believed ones, all in one place: effect after effect, so that no travel waits for another.
     #[inline(always)]
     pub(crate) fn change_wheels(&self, at: &Context<T>, travels: &mut [WheelTravel<T>]) {
-        for link in self.links(Changes::WHEELS) {
+        for acting in self.acting(Changes::WHEELS) {
             for travel in &mut *travels {
-                match &link.work {
-                    Work::Entry(mean) => (mean.wheels)(&link.values, at, travel),
-                    Work::Formula(formula) => formula.wheels(&link.values, at, &self.drive, travel),
+                match &acting.laws {
+                    ActingLaws::Entry(laws) => (laws.wheels)(&acting.values, at, travel),
+                    ActingLaws::Formula(formula) => formula.wheels(&acting.values, at, &self.drive, travel),
                 }
             }
         }
@@ -121,11 +121,11 @@ impl<T: Evaluate> Chain<T> {
 
     #[inline(always)]
     fn change_bodies(&self, at: &Context<T>, motions: &mut [Displacement2<T>]) {
-        for link in self.links(Changes::BODY) {
+        for acting in self.acting(Changes::BODY) {
             for motion in &mut *motions {
-                match &link.work {
-                    Work::Entry(mean) => (mean.body)(&link.values, at, motion),
-                    Work::Formula(formula) => formula.body(&link.values, at, motion),
+                match &acting.laws {
+                    ActingLaws::Entry(laws) => (laws.body)(&acting.values, at, motion),
+                    ActingLaws::Formula(formula) => formula.body(&acting.values, at, motion),
                 }
             }
         }
@@ -140,15 +140,15 @@ impl<T: Evaluate> Chain<T> {
     /// Whether measurements may be older, or younger, than their stamps say.
     #[inline]
     pub fn has_clock(&self) -> bool {
-        self.links(Changes::CLOCK).next().is_some()
+        self.acting(Changes::CLOCK).next().is_some()
     }
 
     /// By how much older than its stamp a measurement is that is stamped `time` after the run began \[s\].
     #[inline]
     pub fn late(&self, time: f64) -> T {
-        self.links(Changes::CLOCK).fold(T::from(0.0), |mut late, link| {
-            if let Work::Entry(mean) = &link.work {
-                (mean.late)(&link.values, time, &mut late);
+        self.acting(Changes::CLOCK).fold(T::from(0.0), |mut late, acting| {
+            if let ActingLaws::Entry(laws) = &acting.laws {
+                (laws.late)(&acting.values, time, &mut late);
             }
             late
         })
@@ -164,9 +164,9 @@ impl<T: Evaluate> Chain<T> {
             let back = [-at.speed, -at.turn_rate].map(|rate| further * rate);
             seen.advance(&Displacement2 { forward: back[0], sideways: T::from(0.0), rotation: back[1] });
         }
-        for link in self.links(Changes::SEEN) {
-            if let Work::Entry(mean) = &link.work {
-                (mean.seen)(&link.values, &mut seen);
+        for acting in self.acting(Changes::SEEN) {
+            if let ActingLaws::Entry(laws) = &acting.laws {
+                (laws.seen)(&acting.values, &mut seen);
             }
         }
         seen

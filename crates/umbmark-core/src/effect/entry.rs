@@ -1,14 +1,14 @@
 //! An effect as data.
 
 use super::laws::{BodyLaw, BumpLaw, ClockLaw, DiffusionLaw, LinkLaw, MeasurementLaw, SightLaw, StartLaw, WheelLaw};
-use super::{About, Bump, Changes, Context, Effect, MAX_PARAMETERS, Stretch, WheelVariance};
+use super::{About, Bump, CATALOGUE, Changes, Context, Effect, MAX_PARAMETERS, Stretch, WheelVariance};
 use crate::drive::{Kind, Kinds, LinkReading, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Dual, Instructions, Pose2, Real};
 use crate::random::Stream;
 
 /// The deterministic part of an effect, for one kind of number.
 #[derive(Clone, Copy, Debug)]
-pub struct Mean<T: Real> {
+pub struct MeanLaws<T: Real> {
     /// See [`StartLaw::start`].
     pub start: fn(&[T]) -> Pose2<T>,
     /// See [`WheelLaw::wheels`].
@@ -23,10 +23,10 @@ pub struct Mean<T: Real> {
     pub seen: fn(&[T], &mut Pose2<T>),
 }
 
-impl<T: Real> Mean<T> {
+impl<T: Real> MeanLaws<T> {
     /// Changes nothing.
-    const fn nothing() -> Mean<T> {
-        Mean {
+    const fn nothing() -> MeanLaws<T> {
+        MeanLaws {
             start: |_| Pose2::IDENTITY.lift(),
             wheels: |_, _, _| (),
             body: |_, _, _| (),
@@ -39,7 +39,7 @@ impl<T: Real> Mean<T> {
 
 /// The random part of an effect.
 #[derive(Clone, Copy, Debug)]
-pub struct Scatter {
+pub struct RandomLaws {
     /// See [`DiffusionLaw::diffusion`].
     pub diffusion: fn(&[f64], &WheelTravel) -> WheelVariance,
     /// See [`BumpLaw::bumps`].
@@ -50,9 +50,9 @@ pub struct Scatter {
     pub measured: fn(&[f64], &mut Stream, &mut Pose2),
 }
 
-impl Scatter {
+impl RandomLaws {
     /// Changes nothing.
-    pub const NOTHING: Scatter = Scatter {
+    pub const NOTHING: RandomLaws = RandomLaws {
         diffusion: |_, _| WheelVariance { left: 0.0, right: 0.0 },
         bumps: |_, _, _, _| (),
         start_scatter: |_, _| Pose2::IDENTITY,
@@ -106,10 +106,10 @@ pub struct Entry {
     pub means: fn(&[f64], &Robot) -> String,
     /// See [`Effect::varies`].
     pub varies: fn(&[f64]) -> bool,
-    pub(crate) values: Mean<f64>,
+    pub(crate) values: MeanLaws<f64>,
     /// For each of the [`Instructions`], in their order.
-    pub(super) duals: [Mean<Dual>; 3],
-    pub(crate) scatter: Scatter,
+    pub(super) duals: [MeanLaws<Dual>; 3],
+    pub(crate) scatter: RandomLaws,
 }
 
 /// Makes the functions that list a law which is the same for registers of every width.
@@ -137,9 +137,9 @@ impl Entry {
             changes: Changes::NOTHING,
             means: E::means,
             varies: E::varies,
-            values: Mean::nothing(),
-            duals: [Mean::nothing(), Mean::nothing(), Mean::nothing()],
-            scatter: Scatter::NOTHING,
+            values: MeanLaws::nothing(),
+            duals: [MeanLaws::nothing(), MeanLaws::nothing(), MeanLaws::nothing()],
+            scatter: RandomLaws::NOTHING,
         }
     }
 
@@ -212,6 +212,14 @@ impl Entry {
         adopting.fold(self.drives, |drives, kind| drives.and(*kind))
     }
 
+    /// Effects that look the same: those that it [names](About::confused_with), and those that name it.
+    pub fn confused_with(&self) -> Vec<&'static str> {
+        let mut alike = self.about.confused_with.to_vec();
+        let naming = CATALOGUE.iter().filter(|other| other.about.confused_with.contains(&self.about.name));
+        alike.extend(naming.map(|other| other.about.name).filter(|name| !self.about.confused_with.contains(name)));
+        alike
+    }
+
     /// A number that names the effect's random stream: a hash of its name (FNV-1a), so that the order of the catalogue
     /// does not matter.
     pub(crate) fn purpose(&self) -> u64 {
@@ -231,17 +239,17 @@ impl PartialEq for Entry {
 /// A kind of number that effects can be asked for.
 pub trait Evaluate: Real {
     /// The deterministic part of an effect for this kind of number.
-    fn mean(entry: &Entry) -> &Mean<Self>;
+    fn mean(entry: &Entry) -> &MeanLaws<Self>;
 }
 
 impl Evaluate for f64 {
-    fn mean(entry: &Entry) -> &Mean<f64> {
+    fn mean(entry: &Entry) -> &MeanLaws<f64> {
         &entry.values
     }
 }
 
 impl Evaluate for Dual {
-    fn mean(entry: &Entry) -> &Mean<Dual> {
+    fn mean(entry: &Entry) -> &MeanLaws<Dual> {
         &entry.duals[Instructions::best() as usize]
     }
 }

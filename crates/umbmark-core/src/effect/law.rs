@@ -1,6 +1,6 @@
 //! What an effect of a model does: an entry, or a formula of the user's own.
 
-use super::{CATALOGUE, Changes, Entry, Formula, Scatter};
+use super::{CATALOGUE, Changes, Entry, Formula, RandomLaws};
 use crate::parameter::Parameter;
 use std::fmt;
 use std::sync::Arc;
@@ -64,8 +64,8 @@ impl Law {
     }
 
     /// Its random part; a formula has none.
-    pub(crate) fn scatter(&self) -> &'static Scatter {
-        static NOTHING: Scatter = Scatter::NOTHING;
+    pub(crate) fn scatter(&self) -> &'static RandomLaws {
+        static NOTHING: RandomLaws = RandomLaws::NOTHING;
         self.entry().map_or(&NOTHING, |entry| &entry.scatter)
     }
 

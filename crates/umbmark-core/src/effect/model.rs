@@ -1,6 +1,6 @@
 //! A model: a choice of effects with values.
 
-use super::chain::{Chain, Link, Work};
+use super::chain::{Acting, ActingLaws, Chain};
 use super::{Context, Entry, Evaluate, Formula, Law, MAX_PARAMETERS, find};
 use crate::drive::{Kinds, Robot};
 use crate::parameter::{Parameter, ParameterError, Role, nearest};
@@ -376,16 +376,16 @@ impl Model {
 
     /// The model's deterministic chain with `values` (numbers or duals) in the order of [`Model::values`].
     pub fn chain_with<T: Evaluate>(&self, values: &[T]) -> Chain<T> {
-        let links = self.parts.iter().map(|part| Link {
-            work: match &part.effect {
-                Law::Entry(entry) => Work::Entry(*T::mean(entry)),
-                Law::Formula(formula) => Work::Formula(Arc::clone(formula)),
+        let effects = self.parts.iter().map(|part| Acting {
+            laws: match &part.effect {
+                Law::Entry(entry) => ActingLaws::Entry(*T::mean(entry)),
+                Law::Formula(formula) => ActingLaws::Formula(Arc::clone(formula)),
             },
             changes: part.effect.changes(),
             count: part.values.len(),
             values: [T::from(0.0); MAX_PARAMETERS],
         });
-        let mut chain = Chain { drive: *self.robot.drive, links: links.collect(), reads_place: self.reads_place() };
+        let mut chain = Chain { drive: *self.robot.drive, effects: effects.collect(), reads_place: self.reads_place() };
         chain.set_values(values);
         chain
     }

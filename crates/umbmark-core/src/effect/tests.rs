@@ -184,9 +184,9 @@ fn every_drive_may_have_its_first_effects_whose_default_values_correct_nothing()
 #[test]
 fn effects_that_look_alike_name_each_other() {
     for entry in CATALOGUE {
-        for other in entry.about.confused_with {
-            assert_ne!(*other, entry.about.name);
-            let back = find(other).unwrap().about.confused_with;
+        for other in entry.confused_with() {
+            assert_ne!(other, entry.about.name);
+            let back = find(other).unwrap().confused_with();
             assert!(back.contains(&entry.about.name), "{other} does not name {}", entry.about.name);
         }
     }
@@ -289,7 +289,7 @@ fn derivatives_of_every_effect_have_the_same_bits_in_registers_of_every_width() 
             entry.about.parameters.iter().enumerate().map(|(k, p)| number(p.usual(&Robot::labmate()), k)).collect();
         for (k, at) in contexts().iter().enumerate() {
             let at = at.at_pose(&Pose2::new(number(1.5, k + 6), number(-0.8, k + 7), number(0.7, k)));
-            let acted = |mean: &Mean<Dual>| {
+            let acted = |mean: &MeanLaws<Dual>| {
                 let mut travel = WheelTravel { left: number(0.01, k + 1), right: number(-0.02, k + 2) };
                 let mut motion = Displacement2 {
                     forward: number(0.02, k + 3),
@@ -374,8 +374,8 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
     let travel = WheelTravel { left: 0.3, right: 0.5 };
     let motion = Displacement2 { forward: 0.4, sideways: 0.1, rotation: 0.2 };
     let pose = Pose2::new(1.0, 2.0, 0.5);
-    let Mean { start, wheels, body, link, late, seen } = entry.values;
-    let Scatter { diffusion, bumps, start_scatter, measured } = entry.scatter;
+    let MeanLaws { start, wheels, body, link, late, seen } = entry.values;
+    let RandomLaws { diffusion, bumps, start_scatter, measured } = entry.scatter;
     let mut stream = Stream::new(1, 2, 3);
     let (mut rolled, mut moved, mut shown, mut found) = ([travel; 2], [motion; 2], pose, pose);
     for ((at, rolled), moved) in contexts().iter().zip(&mut rolled).zip(&mut moved) {

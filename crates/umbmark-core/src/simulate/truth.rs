@@ -6,7 +6,7 @@ use super::pieces::{Noise, Piece, Pieces};
 use super::rolls::{Roll, Rolls};
 use super::way::Way;
 use crate::drive::{Drive, LinkReading, WheelTravel};
-use crate::effect::{Bump, Chain, Changes, Context, Law, Model, Scatter, Sight, Stretch, WheelVariance};
+use crate::effect::{Bump, Chain, Changes, Context, Law, Model, RandomLaws, Sight, Stretch, WheelVariance};
 use crate::engine::Instructions;
 use crate::geometry::{Displacement2, Pose2, Real};
 use crate::path::Direction;
@@ -54,7 +54,7 @@ pub struct Truth {
 struct RandomPart {
     effect: Law,
     changes: Changes,
-    scatter: &'static Scatter,
+    scatter: &'static RandomLaws,
     purpose: u64,
     values: Vec<f64>,
     stream: Stream,
