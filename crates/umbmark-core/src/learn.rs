@@ -18,7 +18,7 @@ use crate::evidence::{AnyEvidence, Evidence, FitError, robot_of};
 use crate::watch::Watch;
 
 /// No model is given more effects than this.
-const MOST: usize = 6;
+const MAX_EFFECTS: usize = 6;
 
 /// Root mean square errors of predicted poses.
 #[derive(Clone, Copy, Debug, PartialEq)]

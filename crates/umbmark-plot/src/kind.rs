@@ -11,7 +11,7 @@ pub use return_errors::of_score;
 
 /// A kind of figure.
 #[derive(Clone, Copy, Debug)]
-pub struct Kind {
+pub struct FigureKind {
     /// Its name.
     pub name: &'static str,
     /// What it shows, in a line.
@@ -22,7 +22,7 @@ pub struct Kind {
 
 register! {
     /// All kinds, in the order of a report.
-    pub KINDS: Kind = FIGURE in
+    pub KINDS: FigureKind = FIGURE in
     return_errors,
     circle,
     tracks,
@@ -52,6 +52,6 @@ fn p_is(p: f64) -> String {
 }
 
 /// The kind of this name.
-pub fn find(name: &str) -> Option<&'static Kind> {
+pub fn find(name: &str) -> Option<&'static FigureKind> {
     KINDS.iter().copied().find(|kind| kind.name == name)
 }

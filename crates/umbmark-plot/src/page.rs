@@ -150,7 +150,7 @@ fn filter(study: &Study) -> serde_json::Value {
 
 fn figure_section(
     studies: &[Study],
-    kind: &crate::kind::Kind,
+    kind: &crate::kind::FigureKind,
     figures: &mut serde_json::Map<String, serde_json::Value>,
 ) -> Section {
     let mut built: Vec<_> = studies.iter().map(|study| study.begin().and_then(|()| (kind.build)(study))).collect();

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use anyhow::Context;
 use serde_json::json;
 use umbmark_plot::figure::Figure;
-use umbmark_plot::kind::{KINDS, Kind, find};
+use umbmark_plot::kind::{FigureKind, KINDS, find};
 use umbmark_plot::render::file::{Format, UnknownEnding, WIDTHS_MM};
 
 use crate::Session;
@@ -28,7 +28,7 @@ fn drawing(text: &str) -> Result<Drawing, UnknownEnding> {
     Ok(Drawing { format: Format::of(&path)?, path })
 }
 
-fn kind(name: &str) -> Result<&'static Kind, String> {
+fn kind(name: &str) -> Result<&'static FigureKind, String> {
     find(name).ok_or_else(|| format!("there is no such kind of figure\n\n{}", kinds()))
 }
 
@@ -44,7 +44,7 @@ fn kinds() -> String {
 pub struct Arguments {
     /// What to draw; the kinds are listed below
     #[arg(value_name = "KIND", value_parser = kind)]
-    kind: &'static Kind,
+    kind: &'static FigureKind,
 
     #[command(flatten)]
     data: DataArguments,

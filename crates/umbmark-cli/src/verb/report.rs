@@ -19,13 +19,13 @@ use crate::study_arguments::StudyArguments;
 const MANY: usize = 200_000;
 
 /// No more stand side by side.
-const MOST: usize = 2;
+const MAX_SIDE_BY_SIDE: usize = 2;
 
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// A dataset folder or file; two of them are put side by side, as before and after a calibration
-    #[arg(value_name = "DATA", required = true, num_args = 1..=MOST)]
+    #[arg(value_name = "DATA", required = true, num_args = 1..=MAX_SIDE_BY_SIDE)]
     data: Vec<PathBuf>,
 
     /// A model with the values that it has, its free ones fitted; two of them are put side by side
@@ -116,7 +116,7 @@ impl Arguments {
         match (&self.data[..], &self.model[..]) {
             ([place], []) => Ok(vec![of(place, None, &short(place))?]),
             ([place], [model]) => Ok(vec![of(place, Some(model), &short(place))?]),
-            ([place], models) if models.len() <= MOST => {
+            ([place], models) if models.len() <= MAX_SIDE_BY_SIDE => {
                 models.iter().map(|model| of(place, Some(model), &short(model))).collect()
             }
             (places, []) => places.iter().map(|place| of(place, None, &short(place))).collect(),
@@ -125,7 +125,10 @@ impl Arguments {
             }
             (places, [model]) => places.iter().map(|place| of(place, Some(model), &short(place))).collect(),
             (_, models) => {
-                anyhow::bail!("{} models are too many: {MOST} studies at most stand side by side", models.len())
+                anyhow::bail!(
+                    "{} models are too many: {MAX_SIDE_BY_SIDE} studies at most stand side by side",
+                    models.len()
+                )
             }
         }
     }

@@ -60,12 +60,12 @@ pub(crate) use significance::p_of_own;
 pub use suggestion::Suggestion;
 
 /// Maximum number of classes that a diagnosis names.
-const MOST: usize = 3;
+const MAX_CLASSES: usize = 3;
 
 /// Fits a model's free parameters to tracks and tests every other effect and every smooth.
 pub(crate) fn diagnose(observed: &Observed, model: &Model, options: &Options) -> Result<Diagnosis, FitError> {
     let fitted = fit(observed, model)?;
-    let mut search = Watch::nobody(|watch| search(fitted, options, (MOST, Wanted::Listed), Vec::new(), watch))?;
+    let mut search = Watch::nobody(|watch| search(fitted, options, (MAX_CLASSES, Wanted::Listed), Vec::new(), watch))?;
     let Conclusion { verdict, reasons, repeats, remains, dependence, experiments, hints } =
         Conclusion::new(&mut search, options)?;
     let Search { mut exams, added, left, .. } = search;

@@ -53,14 +53,14 @@ impl BodyLaw for SteeringZero {
 }
 
 /// A wheel that would be steered farther than this is none: turns on the spot have no steering angle. tan of 1.4 rad.
-const MOST: f64 = 5.8;
+const MAX_TANGENT: f64 = 5.8;
 
 /// The tangent of the steering angle that a motion is made with; `None` on the spot, and where it is not known how the robot is
 /// steered.
 #[inline(always)]
 pub(super) fn steered<T: Real>(at: &Context<T>, motion: &Displacement2<T>) -> Option<T> {
     let across = motion.rotation * at.axle_distance;
-    let drives = at.axle_distance > 0.0 && across.value().abs() < MOST * motion.forward.value().abs();
+    let drives = at.axle_distance > 0.0 && across.value().abs() < MAX_TANGENT * motion.forward.value().abs();
     drives.then(|| across / motion.forward)
 }
 

@@ -40,7 +40,7 @@ const NO_MOTION: &str = "neither logs nor a path say how the robot drove: write 
 /// The motion of a path is taken in so many pieces a move, that of a log in pieces of so much time \[s\], no more than so many a run.
 const PIECES: usize = 8;
 const STEP: f64 = 0.25;
-const MOST: f64 = 2400.0;
+const MAX_STEPS: f64 = 2400.0;
 /// Poses of a run that follow each other sooner share their noise \[s\]; no more than so many of a run are looked at.
 const APART: f64 = 0.5;
 const MOST_POSES: f64 = 200.0;
@@ -346,7 +346,7 @@ impl<'a> Seen<'a> {
 /// The samples at which the steps of a log end, the first one included, and those of all poses.
 fn steps(log: &TickLog, poses: &[usize]) -> Vec<usize> {
     let (first, last) = (log.time[0], log.time[log.time.len() - 1]);
-    let step = STEP.max((last - first) / MOST);
+    let step = STEP.max((last - first) / MAX_STEPS);
     let mut poses = poses.iter().copied().peekable();
     let mut ends = vec![0];
     let mut before = first;

@@ -23,7 +23,7 @@ const NEAR: f64 = 0.15;
 /// A jump that this share of the other runs has too is an effect.
 const SHARED: f64 = 0.2;
 /// Where a greater share of all blocks exceeds the threshold, these are not accidents.
-const MOST: f64 = 0.01;
+const MAX_SHARE: f64 = 0.01;
 /// Blocks at the beginning that determine START.
 const SPENT: usize = 2;
 
@@ -68,7 +68,7 @@ impl Fitted {
         let found: BTreeSet<_> = alone.map(|place| (place, runs[place.0][place.1].to_bits())).collect();
         let all: usize = self.observed.runs.iter().map(|run| run.blocks.len()).sum();
         let known = self.observed.runs.iter().flat_map(|run| &run.blocks).filter(|block| block.afresh).count();
-        if (found.len() + known) as f64 <= MOST * all as f64 { found } else { BTreeSet::new() }
+        if (found.len() + known) as f64 <= MAX_SHARE * all as f64 { found } else { BTreeSet::new() }
     }
 
     /// Innovation of each block, in standard deviations of this run.

@@ -3,9 +3,9 @@
 use super::{SpeedProfile, Trapezoid};
 use crate::drive::WheelTravel;
 
-/// No wheel rolls farther in a piece \[m\], unless the move would fall into more than [`MOST`] of them.
+/// No wheel rolls farther in a piece \[m\], unless the move would fall into more than [`MAX_PIECES`] of them.
 const LENGTH: f64 = 0.01;
-const MOST: f64 = 2000.0;
+const MAX_PIECES: f64 = 2000.0;
 
 /// A small piece of a move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +53,7 @@ impl Pieces {
     /// The same, spread over time by `profile`.
     pub fn along(travel: &WheelTravel, profile: Trapezoid) -> Pieces {
         let most = travel.left.abs().max(travel.right.abs());
-        let count = (most / LENGTH).ceil().clamp(0.0, MOST) as usize;
+        let count = (most / LENGTH).ceil().clamp(0.0, MAX_PIECES) as usize;
         let mut pieces = Pieces { travel: *travel, profile, count, next: 1, reached: Moment::default() };
         pieces.reached = pieces.moment(0.0);
         pieces

@@ -25,7 +25,7 @@ const FALSE_ALARMS: f64 = 1e-3;
 /// A group of fewer runs does not show which of them is wrong.
 const FEWEST: usize = 3;
 /// At most this share of all runs is wrong, beyond the first two.
-const MOST: f64 = 0.25;
+const MAX_WRONG_SHARE: f64 = 0.25;
 /// Scatter is never smaller than the reading of a tape \[m\] and of a protractor \[rad\].
 const READING: [f64; 3] = [5e-4, 5e-4, 9e-4];
 /// Values closer than this are equal: they differ by rounding only.
@@ -375,7 +375,7 @@ fn mean(own: &[(usize, f64)]) -> f64 {
 fn subset(groups: &[Vec<(usize, f64)>], least: f64, level: f64) -> Option<(Vec<std::ops::Range<usize>>, f64, f64)> {
     let all: usize = groups.iter().map(Vec::len).sum();
     let possible: usize = groups.iter().map(|own| (own.len() - 1) / 2).sum();
-    let most = possible.min(2.max((MOST * all as f64) as usize));
+    let most = possible.min(2.max((MAX_WRONG_SHARE * all as f64) as usize));
     // By the number of values left out in the groups so far: the least sum of squares, and what is kept for it.
     let mut best: Vec<Option<(f64, Vec<std::ops::Range<usize>>)>> = vec![None; most + 1];
     best[0] = Some((0.0, Vec::new()));

@@ -10,7 +10,7 @@ const LENGTH: f64 = 0.4;
 const LONGEST: f64 = 2.5;
 /// Windows overlap by half; maximum number per run.
 const OVERLAP: f64 = 2.0;
-const MOST: usize = 600;
+const MAX_WINDOWS: usize = 600;
 
 /// What the reference saw between two of its poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ pub(super) fn windows(log: &TickLog) -> Vec<Window> {
     }
     let with_heading = log.reference.iter().all(|pose| pose.heading.is_some());
     let length = LENGTH.max(2.0 * usual_step(&time)).max(2.0 * usual_step(&log.time));
-    let step = (length / OVERLAP).max((time[time.len() - 1] - time[0]) / MOST as f64);
+    let step = (length / OVERLAP).max((time[time.len() - 1] - time[0]) / MAX_WINDOWS as f64);
     let (sine, cosine) = libm::sincos(log.start.heading);
     let (mut windows, mut next) = (Vec::new(), time[0]);
     for (i, from) in time.iter().enumerate() {

@@ -16,7 +16,7 @@ const RATES: std::ops::RangeInclusive<i32> = -10..=10;
 const RATE_STEP: f64 = 0.005;
 /// Finest step of the grid \[s\], and the most steps over the ticks.
 const STEP: f64 = 0.1;
-const MOST: f64 = 2000.0;
+const MAX_STEPS: f64 = 2000.0;
 /// The same, and the most tries, when looking closer.
 const MOST_CLOSER: f64 = 20_000.0;
 const TRIES: usize = 400;
@@ -56,7 +56,7 @@ impl Rates {
 /// Looks at every offset at which the two overlap and every rate, and then closer around the best.
 pub(super) fn search(ticks: &Motion, seen: &Motion, arm: f64) -> Guess {
     let half = 0.5 * (ticks.last() - ticks.first());
-    let step = STEP.max(2.0 * half / MOST).max((seen.last() - seen.first()) / (2.0 * MOST));
+    let step = STEP.max(2.0 * half / MAX_STEPS).max((seen.last() - seen.first()) / (2.0 * MAX_STEPS));
     let steps = |span: f64| ((span / step).ceil() as usize).max(1);
     let track = Rates::of(seen, seen.first(), step, steps(seen.last() - seen.first()), arm, seen.has_heading);
     let mut best = Guess { offset: 0.0, rate: 1.0, agreement: f64::NEG_INFINITY };

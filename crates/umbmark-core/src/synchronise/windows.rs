@@ -34,7 +34,7 @@ const LENGTH: f64 = 0.4;
 /// Windows begin so many times in their length.
 const OVERLAP: f64 = 4.0;
 /// More windows tell nothing more.
-const MOST: usize = 4000;
+const MAX_WINDOWS: usize = 4000;
 /// Less turning \[rad\] and driving \[m\] in all do not show lever arm and yaw.
 const LEAST_TURN: f64 = 1.0;
 const LEAST_WAY: f64 = 0.2;
@@ -54,7 +54,7 @@ impl<'m> Windows<'m> {
     pub fn new(ticks: &'m Motion, track: &Motion, guess: &Guess, arm: f64) -> Windows<'m> {
         let length = LENGTH.max(2.0 * track.period).max(2.0 * ticks.period);
         let span = track.last() - track.first();
-        let step = (length / OVERLAP).max(span / MOST as f64);
+        let step = (length / OVERLAP).max(span / MAX_WINDOWS as f64);
         let middle = 0.5 * (ticks.first() + ticks.last());
         let tick_time = |time: f64| middle + (time - guess.offset) / guess.rate;
         let mut seen = Vec::new();

@@ -70,9 +70,9 @@ pub enum McapProblem {
 
 /// Names for a message: as they are, separated by commas, and no more than a few.
 pub(super) fn listed<T: fmt::Display>(names: impl IntoIterator<Item = T>) -> String {
-    const MOST: usize = 12;
+    const MAX_NAMES: usize = 12;
     let mut names = names.into_iter();
-    let mut shown: Vec<String> = names.by_ref().take(MOST).map(|name| name.to_string()).collect();
+    let mut shown: Vec<String> = names.by_ref().take(MAX_NAMES).map(|name| name.to_string()).collect();
     let others = names.count();
     if others > 0 {
         shown.push(format!("and {others} more"));

@@ -4,15 +4,15 @@ use umbmark_core::diagnose::OnCircle;
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::{Direction, SQUARE};
 
-use super::Kind;
+use super::FigureKind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::study::{Absent, Study};
 use crate::tone::Tone;
 
 const MM: f64 = 1e3;
 
-pub(super) static FIGURE: Kind =
-    Kind { name: "circle", about: "end points beside the circle through START", build: figure };
+pub(super) static FIGURE: FigureKind =
+    FigureKind { name: "circle", about: "end points beside the circle through START", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let circle = &study.diagnosis()?.circle;

@@ -2,13 +2,13 @@
 
 use umbmark_core::diagnose::classes::ALIKE;
 
-use super::Kind;
+use super::FigureKind;
 use super::correlations::cells;
 use crate::figure::{Axis, Figure, Panel, Table, Told};
 use crate::study::{Absent, Study};
 
-pub(super) static FIGURE: Kind =
-    Kind { name: "confusability", about: "which effects look alike in these runs", build: figure };
+pub(super) static FIGURE: FigureKind =
+    FigureKind { name: "confusability", about: "which effects look alike in these runs", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let likeness = &study.diagnosis()?.likeness;
@@ -64,9 +64,9 @@ fn alike(names: &[String], values: &[Vec<f64>]) -> Vec<(String, String, f64)> {
 }
 
 fn phrases(alike: &[(String, String, f64)]) -> String {
-    const MOST: usize = 4;
-    let first: Vec<String> = alike.iter().take(MOST).map(|(a, b, _)| format!("{a} and {b}")).collect();
-    match alike.len().saturating_sub(MOST) {
+    const MAX_PAIRS: usize = 4;
+    let first: Vec<String> = alike.iter().take(MAX_PAIRS).map(|(a, b, _)| format!("{a} and {b}")).collect();
+    match alike.len().saturating_sub(MAX_PAIRS) {
         0 => first.join("; "),
         rest => format!("{}; and {rest} pairs more", first.join("; ")),
     }

@@ -1,12 +1,12 @@
 //! How far the fitted numbers are tied to one another.
 
-use super::Kind;
+use super::FigureKind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::study::{Absent, Study};
 use crate::tone::Tone;
 
-pub(super) static FIGURE: Kind =
-    Kind { name: "correlations", about: "how far the model's numbers are tied", build: figure };
+pub(super) static FIGURE: FigureKind =
+    FigureKind { name: "correlations", about: "how far the model's numbers are tied", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let diagnosis = study.diagnosis()?;

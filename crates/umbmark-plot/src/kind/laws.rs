@@ -3,7 +3,7 @@
 use umbmark_core::diagnose::{Repeated, UnlistedLaw};
 use umbmark_core::learn::Learnt;
 
-use super::Kind;
+use super::FigureKind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::kind::p_is;
 use crate::study::{Absent, Study};
@@ -18,8 +18,8 @@ const BESIDE: f64 = 0.3;
 /// A digit is so wide, in lengths.
 const WIDE: f64 = 0.35;
 
-pub(super) static FIGURE: Kind =
-    Kind { name: "laws", about: "laws that no catalogue lists: error left out against length", build: figure };
+pub(super) static FIGURE: FigureKind =
+    FigureKind { name: "laws", about: "laws that no catalogue lists: error left out against length", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let learnt = study.learnt()?;

@@ -2,7 +2,7 @@
 
 use umbmark_core::learn::{Learnt, Step};
 
-use super::Kind;
+use super::FigureKind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::kind::p_value;
 use crate::study::{Absent, Study};
@@ -10,8 +10,8 @@ use crate::tone::Tone;
 
 const MM: f64 = 1e3;
 
-pub(super) static FIGURE: Kind =
-    Kind { name: "learning", about: "the error falling as effects are added", build: figure };
+pub(super) static FIGURE: FigureKind =
+    FigureKind { name: "learning", about: "the error falling as effects are added", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let learnt = study.learnt()?;

@@ -2,7 +2,7 @@
 
 use umbmark_core::monte_carlo::{Metric, Statistics};
 
-use super::Kind;
+use super::FigureKind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::scale::round_up;
 use crate::study::{Absent, Study};
@@ -12,8 +12,11 @@ const MM: f64 = 1e3;
 /// About so many bars.
 const BARS: f64 = 16.0;
 
-pub(super) static FIGURE: Kind =
-    Kind { name: "monte_carlo", about: "E_max,sys of simulated tests, the measured one among them", build: figure };
+pub(super) static FIGURE: FigureKind = FigureKind {
+    name: "monte_carlo",
+    about: "E_max,sys of simulated tests, the measured one among them",
+    build: figure,
+};
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let chance = study.chance()?;

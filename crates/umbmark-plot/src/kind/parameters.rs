@@ -4,13 +4,13 @@ use umbmark_core::effect::{Model, find};
 use umbmark_core::evidence::Estimate;
 use umbmark_core::stats::student_t_quantile;
 
-use super::Kind;
+use super::FigureKind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::study::{Absent, Study};
 use crate::tone::Tone;
 
-pub(super) static FIGURE: Kind =
-    Kind { name: "parameters", about: "the model's numbers with their intervals", build: figure };
+pub(super) static FIGURE: FigureKind =
+    FigureKind { name: "parameters", about: "the model's numbers with their intervals", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let diagnosis = study.diagnosis()?;

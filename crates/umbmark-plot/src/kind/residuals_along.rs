@@ -3,7 +3,7 @@
 use umbmark_core::compare::tracks::TracksJudged;
 use umbmark_core::path::Direction;
 
-use super::Kind;
+use super::FigureKind;
 use super::residuals::{COMPONENTS, models};
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::study::{Absent, Study};
@@ -15,8 +15,8 @@ const PLACES: usize = 6000;
 /// Fewer of one run lose its shape.
 const OF_RUN: usize = 24;
 
-pub(super) static FIGURE: Kind =
-    Kind { name: "residuals_along", about: "errors of the model along each run", build: figure };
+pub(super) static FIGURE: FigureKind =
+    FigureKind { name: "residuals_along", about: "errors of the model along each run", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let (nominal, model) = models(study)?;

@@ -2,13 +2,13 @@
 
 use umbmark_core::compare::tracks::{By, Part, TracksJudged};
 
-use super::Kind;
+use super::FigureKind;
 use super::residuals::{COMPONENTS, models, pair_of_layers, with_half};
 use crate::figure::{Axis, Figure, Panel, Table, Told};
 use crate::study::{Absent, Study};
 
-pub(super) static FIGURE: Kind =
-    Kind { name: "residuals_by_move", about: "errors that each leg and turn adds", build: figure };
+pub(super) static FIGURE: FigureKind =
+    FigureKind { name: "residuals_by_move", about: "errors that each leg and turn adds", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let (nominal, model) = models(study)?;

@@ -5,14 +5,14 @@ use umbmark_core::effect::TestKind;
 use umbmark_core::path::Direction;
 use umbmark_core::score::{CentroidInterval, Cluster, Score};
 
-use super::Kind;
+use super::FigureKind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told, ellipse};
 use crate::study::{Absent, Study};
 use crate::tone::Tone;
 
 const MM: f64 = 1e3;
 
-pub(super) static FIGURE: Kind = Kind {
+pub(super) static FIGURE: FigureKind = FigureKind {
     name: "return_errors",
     about: "return errors, centres of gravity, E_max,sys: the paper's Fig. 5",
     build: figure,

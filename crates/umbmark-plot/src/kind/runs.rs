@@ -6,7 +6,7 @@ use umbmark_core::effect::TestKind;
 use umbmark_core::path::Direction;
 use umbmark_core::stats::f_upper_tail;
 
-use super::Kind;
+use super::FigureKind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::kind::p_is;
 use crate::study::{Absent, Study};
@@ -17,8 +17,8 @@ const FEWEST: usize = 5;
 /// A run is called unusual where one so far off would be seen in fewer than this share of tests without any.
 const UNUSUAL: f64 = 0.05;
 
-pub(super) static FIGURE: Kind =
-    Kind { name: "runs", about: "each run's distance from the others: outliers, drift", build: figure };
+pub(super) static FIGURE: FigureKind =
+    FigureKind { name: "runs", about: "each run's distance from the others: outliers, drift", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let mut all: Vec<Among> = Vec::new();

@@ -2,7 +2,7 @@
 
 use umbmark_core::path::Direction;
 
-use super::Kind;
+use super::FigureKind;
 use crate::figure::{Axis, Figure, Layer, Mark, Panel, Table, Told};
 use crate::study::{Absent, Paths, RunPath, Study};
 use crate::tone::Tone;
@@ -10,8 +10,8 @@ use crate::tone::Tone;
 /// The largest error is drawn no longer than this share of the path's width.
 const SHARE: f64 = 0.2;
 
-pub(super) static FIGURE: Kind =
-    Kind { name: "tracks", about: "measured, computed and modelled path, the error magnified", build: figure };
+pub(super) static FIGURE: FigureKind =
+    FigureKind { name: "tracks", about: "measured, computed and modelled path, the error magnified", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let paths = study.paths()?;

@@ -6,7 +6,7 @@ use super::{List, Rows};
 use crate::study::Study;
 
 /// Experiments that are told.
-const MOST: usize = 6;
+const MAX_EXPERIMENTS: usize = 6;
 
 pub(super) fn unseen(study: &Study) -> Vec<List> {
     let Ok(diagnosis) = study.diagnosis() else { return vec![nothing("There is no diagnosis.")] };
@@ -53,7 +53,7 @@ pub(super) fn next(study: &Study) -> Vec<List> {
         vec![e.experiment.clone(), format!("{a} from {b}"), format!("{:.1}", e.sd), format!("{:.0}", e.minutes)]
     };
     let header = ["experiment", "tells", "standard deviations", "minutes"].map(str::to_owned).into();
-    let table = Rows { header, rows: experiments.iter().take(MOST).map(row).collect() };
+    let table = Rows { header, rows: experiments.iter().take(MAX_EXPERIMENTS).map(row).collect() };
     let sentence =
         "The most telling per minute first; 3.3 standard deviations are seen in nine cases of ten.".to_owned();
     vec![List { sentences: vec![sentence], table: Some(table), ..List::default() }]

@@ -7,7 +7,7 @@ use crate::evidence::tracks::Misses;
 use crate::likelihood::{Growth, Noise, Observed};
 
 /// Largest credible noise of a robot with [`USUAL_BASE`]: on carpet, with worn wheels and a reference good to centimetres.
-const MOST: Noise = Noise {
+const MAX_NOISE: Noise = Noise {
     heading_per_metre: 0.03,
     heading_per_radian: 0.03,
     forward_per_metre: 0.04,
@@ -66,7 +66,7 @@ fn of_noise(observed: &Observed, noise: &Noise, wheelbase: f64) -> Vec<Reason> {
     ];
     let limits = Noise::largest();
     let told = sizes.into_iter().filter(|size| size.2).filter_map(|(what, of, _, wider, scale, unit)| {
-        let (value, limit, most) = (of(noise), of(&limits), wider * of(&MOST));
+        let (value, limit, most) = (of(noise), of(&limits), wider * of(&MAX_NOISE));
         if value >= AT_LIMIT * limit {
             return Some(Reason::NoiseAtLimit { what, value: scale * value, unit });
         }

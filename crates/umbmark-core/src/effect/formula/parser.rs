@@ -21,7 +21,7 @@ const POWER: u8 = 4;
 /// How deep parentheses, minus signs and functions may stand in each other.
 const NESTED: usize = 16;
 /// The largest exponent.
-const MOST: f64 = 16.0;
+const MAX_EXPONENT: f64 = 16.0;
 
 /// Names of functions of two numbers.
 const OF_TWO: [(&str, Op); 2] = [("min", Op::Smaller), ("max", Op::Larger)];
@@ -211,7 +211,7 @@ impl<'a> Parser<'a> {
         let (Token::Number(size), mut end) = (self.peek(), self.here().end) else {
             return Err(self.expected(EXPECTED));
         };
-        if size.fract() != 0.0 || size > MOST {
+        if size.fract() != 0.0 || size > MAX_EXPONENT {
             return Err(self.expected(EXPECTED));
         }
         self.take();

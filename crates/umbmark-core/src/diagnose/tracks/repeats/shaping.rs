@@ -15,7 +15,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// Maximum number of laws, of steps, and of halvings of a step.
-const MOST: usize = 10;
+const MAX_LAWS: usize = 10;
 const ROUNDS: usize = 8;
 const HALVINGS: usize = 4;
 /// Steps end where they take off less than this more of the sum of squares, in units of the noise variance and as a share.
@@ -35,7 +35,7 @@ pub(super) fn shape(
     steps: &[Vec<Step>],
 ) {
     let ground = Ground::new(observed, noise, own, laws, steps);
-    let shaped = picks.par_iter_mut().take(MOST).filter(|pick| !pick.shapes.is_empty());
+    let shaped = picks.par_iter_mut().take(MAX_LAWS).filter(|pick| !pick.shapes.is_empty());
     shaped.for_each(|pick| pick.shapes = ground.best(pick));
     // Several places on the grid may lead to one.
     let mut known: Vec<Pick> = Vec::new();
