@@ -10,7 +10,7 @@ use pyo3::types::{PyBytes, PyTuple};
 use serde::{Deserialize, Serialize};
 use umbmark_core::dataset::{self as core, RunClock, RunTopics};
 use umbmark_core::document;
-use umbmark_io::{LAYOUTS, Layout, Topics, write_template};
+use umbmark_io::{Layout, Topics, write_template};
 
 use crate::path::{DIRECTIONS, Path};
 use crate::robot::Robot;
@@ -136,7 +136,7 @@ impl Dataset {
     fn save(&self, py: Python<'_>, place: PathBuf, layout: Option<&str>, replace: bool) -> PyResult<Vec<String>> {
         let named = |layout: &'static Layout| (layout.name, layout);
         let layout = match layout {
-            Some(name) => choice("layout", name, &LAYOUTS.iter().map(named).collect::<Vec<_>>())?,
+            Some(name) => choice("layout", name, &Layout::written().map(named).collect::<Vec<_>>())?,
             None => Layout::of_place(&place),
         };
         detached(py, || layout.write(&self.0, &place, existing(replace)))?.map_err(unwritten)

@@ -124,7 +124,7 @@ fn field(line: &str, of: &str) -> Result<Option<Field>, String> {
     let line = line.split('#').next().unwrap_or("").trim();
     let mut words = line.split_whitespace();
     let Some(type_name) = words.next() else { return Ok(None) };
-    let broken = || format!("its schema has the line {}, which is no field", super::super::error::quoted(line));
+    let broken = || format!("its schema has the line {}, which is no field", crate::error::quoted(line));
     let name = words.next().ok_or_else(broken)?;
     if name.contains('=') || words.next().is_some_and(|word| word.starts_with('=')) {
         return Ok(None);

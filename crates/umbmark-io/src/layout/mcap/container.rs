@@ -4,8 +4,8 @@
 //! place of damage is known to the byte. Chunks are unpacked by the `mcap` crate, each with its checksum tested before
 //! any of its messages is used. No more than one chunk is in memory.
 
-use super::super::error::quoted;
 use super::problem::McapProblem;
+use crate::error::quoted;
 use mcap::McapError;
 use mcap::records::op;
 use mcap::sans_io::{

@@ -1,19 +1,20 @@
 //! `returns.csv`: what a tape measure and the robot's own display say at the end of each run.
 
-use super::columns::{Column, Columns, Quantity};
-use super::error::DatasetError;
-use super::label::{DIRECTIONS, TESTS};
-use super::sheet::{Row, Sheet};
-use super::source::Source;
+use crate::columns::{Column, Columns, Quantity};
+use crate::csv_text::CsvText;
+use crate::error::DatasetError;
+use crate::label::{DIRECTIONS, TESTS};
+use crate::sheet::{Row, Sheet};
+use crate::source::Source;
 use Quantity::{Angle, Bare, Length};
-use umbmark_core::dataset::{RETURNS_COLUMNS, ReturnError};
+use umbmark_core::dataset::{RETURNS_COLUMNS, ReturnError, Run};
 use umbmark_core::effect::TestKind;
 use umbmark_core::geometry::{Pose2, wrap};
 use umbmark_core::path::Direction;
 
 /// A row of the file.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ReturnRow {
+pub(crate) struct ReturnRow {
     pub line: usize,
     /// `None` where the file has no such column.
     pub test: Option<TestKind>,
@@ -41,7 +42,7 @@ enum Convention {
 }
 
 /// The rows of a file, and what was noticed in it.
-pub(super) fn parse_returns(source: Source, warnings: &mut Vec<String>) -> Result<Vec<ReturnRow>, DatasetError> {
+pub(crate) fn parse_returns(source: Source, warnings: &mut Vec<String>) -> Result<Vec<ReturnRow>, DatasetError> {
     let sheet = Sheet::open(source, RETURNS_COLUMNS)?;
     let mut columns = Columns::of(&sheet);
     let direction = columns.need("direction", Bare, "it says cw or ccw")?;
@@ -157,4 +158,32 @@ impl EndPoses {
         };
         Ok(ReturnError { x: x - x_calc, y: y - y_calc, heading })
     }
+}
+
+/// `returns.csv` of the runs whose return error is known; nothing where there is none.
+pub(crate) fn returns_text(runs: &[Run]) -> Option<Vec<u8>> {
+    let known: Vec<_> = runs.iter().filter_map(|run| Some((run, run.returned?))).collect();
+    if known.is_empty() {
+        return None;
+    }
+    let tests = known.iter().any(|(run, _)| run.test != TestKind::Systematic);
+    let headings = known.iter().any(|(_, error)| error.heading.is_some());
+    let mut text = CsvText::behind("# Return errors: absolute minus computed end pose, in the frame of START.\n");
+    let optional = |is: bool, column: &'static str| is.then_some(column);
+    let columns = ["direction", "run"].into_iter().chain(optional(tests, "test")).chain(["ex_m", "ey_m"]);
+    text.row(columns.chain(optional(headings, "etheta_rad")));
+    for (run, error) in known {
+        text.cell(run.direction.map_or("none", Direction::name));
+        text.cell(run.number);
+        if tests {
+            text.cell(run.test.name());
+        }
+        text.decimal(error.x);
+        text.decimal(error.y);
+        if headings {
+            text.decimal(error.heading);
+        }
+        text.end();
+    }
+    Some(text.finish())
 }

@@ -1,11 +1,11 @@
 //! Where the robot was, message by message.
 
-use super::super::track_rows::TrackRows;
 use super::clock::{Clock, Times};
 use super::fields::{Fields, Number};
 use super::message_type::MessageType;
 use super::problem::{McapProblem, listed};
 use super::topics::{Chosen, shown};
+use crate::track_rows::TrackRows;
 
 /// More pairs of frames are not kept apart.
 const MOST_FRAMES: usize = 256;
@@ -60,7 +60,7 @@ impl Track {
             let names: Vec<String> = self.frames.iter().map(|frames| shown(&frames.child)).collect();
             self.frames.retain(|frames| bare(&frames.child) == bare(part) || bare(&frames.frame) == bare(part));
             if self.frames.is_empty() {
-                let found = format!("it has no frame {}", super::super::error::quoted(part));
+                let found = format!("it has no frame {}", crate::error::quoted(part));
                 let remedy = format!("its frames are: {}", listed(names));
                 return Err(McapProblem::Topic { topic: shown(&chosen.topic), found, remedy });
             }

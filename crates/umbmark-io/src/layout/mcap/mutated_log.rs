@@ -6,7 +6,6 @@
 //! schemas and messages, 1.5 million of JSON and 3 million of protobuf; and 200 000 whole files with
 //! `UMBMARK_MUTATIONS=4000000`. They found one panic in a library, which is guarded against (docs/studies/mutations.md).
 
-use super::super::mutated_input::damage;
 use super::cdr::Plan;
 use super::definitions::{Definition, JOINT_STATE, ODOMETRY, POSE_STAMPED, TF};
 use super::fields::Fields;
@@ -16,6 +15,7 @@ use super::schema::Schema;
 use super::write::write;
 use super::{Survey, Topics, json};
 use crate::RobotFile;
+use crate::mutated_input::damage;
 use std::io::{Cursor, Write};
 use umbmark_core::dataset::{ReferencePose, TickLog};
 use umbmark_core::drive::Robot;

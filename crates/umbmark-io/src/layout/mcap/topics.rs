@@ -4,9 +4,9 @@
 //! integer counts, then joint positions, then odometry. Of those that tell where the robot was: poses, then single
 //! transforms, then odometry that is not the wheels, then /tf. Two of the same kind are for the user to tell apart.
 
-use super::super::error::quoted;
 use super::message_type::{Encoding, MessageType};
 use super::problem::{McapProblem, listed};
+use crate::error::quoted;
 
 /// Topics of MCAP logs that hold what is measured; those that are not named are found by type.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -36,19 +36,57 @@ pub use save::save_mcap;
 pub(super) use survey::Survey;
 pub use topics::Topics;
 
-use super::error::{DatasetError, quoted};
-use super::recording::Recording;
-use super::track_rows::TrackRows;
+use super::Layout;
+use super::csv::robot_beside;
+use crate::RobotFile;
+use crate::assembly::Assembly;
+use crate::error::{DatasetError, quoted};
+use crate::label;
+use crate::probe::{Probe, stem};
+use crate::recording::Recording;
+use crate::track_rows::TrackRows;
 use clock::Clock;
 use container::{Damage, Record};
 use decoder::Decoder;
 use fields::Fields;
+use std::path::Path;
 use topics::{Chosen, shown};
 use track::Track;
+use umbmark_core::dataset::Dataset;
 use umbmark_core::dataset::{RunTopics, TickLog};
 use umbmark_core::drive::Robot;
+use umbmark_core::run::dead_reckoning::EndPose;
 use umbmark_core::run::place;
 use wheels::Wheels;
+
+pub(super) const LAYOUT: Layout = Layout::new("mcap", "the same with logs of ROS 2, runs/*.mcap; one run as NAME.mcap")
+    .reads_data((|probe| probe.extension() == "mcap", read))
+    .reads_logs(("mcap", |assembly, file, _, topics| add(assembly, Survey::open(file)?, file, topics)))
+    .writes(|data, place, existing| save_mcap(data, place, existing));
+
+fn add(assembly: &mut Assembly, survey: Survey, file: &Path, topics: &Topics) -> Result<(), DatasetError> {
+    let mut warnings = Vec::new();
+    let reading = survey.read(topics, assembly.robot(), &mut warnings)?;
+    let stem = stem(file);
+    assembly.topics.push(reading.topics(&stem));
+    let log = reading.into_log(assembly.robot(), &mut warnings)?;
+    assembly.warnings.append(&mut warnings);
+    assembly.add_log(file.display().to_string(), log, None, &stem, label::parse(&stem), EndPose::Standing)
+}
+
+/// One log, with the robot that stands beside it, or with the one that it brings along.
+fn read(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> {
+    let file = &probe.path;
+    let survey = Survey::open(file)?;
+    let robot_file = match (robot_beside(&probe.folder), &survey.robot) {
+        (Some(robot), _) => Some(RobotFile::read(robot)?),
+        (None, Some(text)) => Some(RobotFile::parse(&format!("{} (its robot.toml)", file.display()), text)?),
+        (None, None) => None,
+    };
+    let mut assembly = Assembly::new(robot_file);
+    add(&mut assembly, survey, file, topics)?;
+    Ok(assembly.finish())
+}
 
 /// More messages of a topic are not kept: hours of a fast robot, and 300 MB.
 const MOST_MESSAGES: usize = 2_000_000;

@@ -5,11 +5,11 @@
 //! zeros, which is no rotation. The nominal robot goes along as metadata. Chunks are packed with zstd, and the same log
 //! gives the same bytes.
 
-use super::super::RobotFile;
 use super::definitions::{Definition, JOINT_STATE, MARKER_ARRAY, ODOMETRY, PATH, POSE_STAMPED, TF};
 use super::parts::{Cdr, header, numbers, orientation};
 use super::scene;
 use super::survey::{METADATA, ROBOT};
+use crate::RobotFile;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, McapResult, WriteOptions, Writer};
 use std::collections::BTreeMap;

@@ -1,8 +1,8 @@
 //! The two drive wheels among the joints of a robot.
 
-use super::super::error::quoted;
 use super::fields::{Fields, Names};
 use super::problem::listed;
+use crate::error::quoted;
 
 /// The joints of the left and the right wheel.
 pub(super) struct Joints {

@@ -112,7 +112,7 @@ impl Compiler<'_> {
         let fields = match self.schema.fields(name) {
             Some(fields) => fields,
             None if TIME.contains(&name) => &time,
-            None => return Err(format!("its schema does not define {}", super::super::error::quoted(name))),
+            None => return Err(format!("its schema does not define {}", crate::error::quoted(name))),
         };
         let mut steps = Vec::new();
         for field in fields {

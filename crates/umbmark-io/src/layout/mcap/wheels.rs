@@ -1,12 +1,12 @@
 //! How far the wheels turned, message by message: from counts, joint positions or odometry.
 
-use super::super::error::quoted;
-use super::super::recording::Recording;
 use super::clock::{Clock, Times};
 use super::fields::{Fields, Number};
 use super::joints::Joints;
 use super::message_type::MessageType;
 use super::odometer::Odometer;
+use crate::error::quoted;
+use crate::recording::Recording;
 use std::f64::consts::TAU;
 use umbmark_core::drive::Robot;
 

@@ -1,10 +1,11 @@
 //! Runs saved as MCAP: one as a file, read back and renamed; or each as a file of a folder.
 
-use super::super::RobotFile;
-use super::super::error::DatasetError;
-use super::super::save::{Existing, LogFormat, save_with, unwritable};
+use super::super::csv::{LogFormat, save_with};
 use super::clock::is_calendar;
 use super::write::{nanoseconds, write};
+use crate::RobotFile;
+use crate::error::DatasetError;
+use crate::save::{Existing, unwritable};
 use std::io::{Cursor, Write};
 use std::path::Path;
 use umbmark_core::dataset::{Dataset, Run, TickLog};

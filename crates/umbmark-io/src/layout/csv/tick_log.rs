@@ -1,18 +1,21 @@
 //! `runs/*.csv`: one tick log per run, with the absolute poses that were measured on the way.
 
-use super::columns::{Column, Columns, Quantity};
-use super::error::DatasetError;
-use super::recording::Recording;
-use super::sheet::{Row, Sheet};
-use super::source::Source;
+use crate::columns::{Column, Columns, Quantity};
+use crate::csv_text::CsvText;
+use crate::error::DatasetError;
+use crate::recording::Recording;
+use crate::sheet::{Row, Sheet};
+use crate::source::Source;
 use Quantity::{Angle, Bare, Length, Time};
-use umbmark_core::dataset::ReferencePose;
-use umbmark_core::drive::Kind;
+use umbmark_core::dataset::{ReferencePose, TickLog};
+use umbmark_core::drive::{Kind, Robot};
 
-/// The header of messages and of files that are written.
-pub(super) const HEADER: &str = "t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad";
+/// The columns of the absolute poses.
+const REFERENCE: [&str; 3] = ["x_ref_m", "y_ref_m", "theta_ref_rad"];
+/// The header of messages.
+pub(crate) const HEADER: &str = "t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad";
 
-pub(super) struct ReferenceColumns {
+pub(crate) struct ReferenceColumns {
     x: Column,
     y: Column,
     heading: Option<Column>,
@@ -26,7 +29,7 @@ struct LogColumns {
 }
 
 /// The rows of a log.
-pub(super) fn parse_tick_log(
+pub(crate) fn parse_tick_log(
     source: Source,
     kind: Kind,
     warnings: &mut Vec<String>,
@@ -104,4 +107,31 @@ impl ReferenceColumns {
             (_, None) => Err(row.wrong(&self.y, "a finite number", "fill in the pose, or leave all its cells empty")),
         }
     }
+}
+
+/// `runs/*.csv` of a log whose references belong to different samples, in their order; counts as the encoder's counter
+/// shows them, rolled over where it does.
+pub(crate) fn tick_log_text(log: &TickLog, robot: &Robot) -> Vec<u8> {
+    let (encoder, kind) = (&robot.encoder, robot.drive.kind());
+    let [first, second] = encoder.wiring().columns(robot.counters([&log.left, &log.right]));
+    let shown = |ticks: f64| encoder.reading(ticks.floor() as i64) as f64 + (ticks - ticks.floor());
+    let referenced = !log.reference.is_empty();
+    let counters = kind.counters().map(|counter| format!("ticks_{counter}"));
+    let mut text = CsvText::behind("");
+    let columns = ["t_s"].into_iter().chain(counters.iter().map(String::as_str));
+    text.row(columns.chain(REFERENCE.into_iter().filter(|_| referenced)));
+    let mut references = log.reference.iter().peekable();
+    for (sample, time) in log.time.iter().enumerate() {
+        text.decimal(*time);
+        text.cell(shown(first[sample]));
+        text.cell(shown(second[sample]));
+        if referenced {
+            let pose = references.next_if(|pose| pose.sample == sample);
+            text.decimal(pose.map(|pose| pose.x));
+            text.decimal(pose.map(|pose| pose.y));
+            text.decimal(pose.and_then(|pose| pose.heading));
+        }
+        text.end();
+    }
+    text.finish()
 }

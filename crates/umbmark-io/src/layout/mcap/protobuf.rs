@@ -11,7 +11,7 @@ pub(super) fn descriptor(name: &str, data: &[u8]) -> Result<MessageDescriptor, S
     let decoded = catch_unwind(|| DescriptorPool::decode(data));
     let none = "its schema is no set of protobuf descriptors";
     let pool = decoded.ok().and_then(Result::ok).ok_or_else(|| none.to_owned())?;
-    let missing = || format!("its schema does not define {}", super::super::error::quoted(name));
+    let missing = || format!("its schema does not define {}", crate::error::quoted(name));
     pool.get_message_by_name(name).ok_or_else(missing)
 }
 

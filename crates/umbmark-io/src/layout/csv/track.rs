@@ -1,32 +1,20 @@
-//! Files with poses that have a clock of their own: recognised by what is in them.
+//! `reference/*.csv`: poses with a clock of their own.
 
-use super::columns::{Columns, Quantity};
-use super::error::DatasetError;
-use super::motive::{is_motive, parse_motive};
-use super::sheet::Sheet;
-use super::source::Source;
 use super::tick_log::ReferenceColumns;
-use super::track_rows::TrackRows;
-use super::tum::parse_tum;
-use umbmark_core::run::ReferenceTrack;
+use crate::columns::{Columns, Quantity};
+use crate::error::DatasetError;
+use crate::sheet::Sheet;
+use crate::source::Source;
+use crate::track_rows::TrackRows;
 
 const HEADER: &str = "t_s,x_ref_m,y_ref_m,theta_ref_rad";
 
-/// The track of a file: an export of Motive, a TUM trajectory, or `t_s,x_ref_m,y_ref_m,theta_ref_rad`.
-pub(super) fn parse_reference(source: Source, warnings: &mut Vec<String>) -> Result<ReferenceTrack, DatasetError> {
-    let first = source.first_row();
-    let rows = if is_motive(&first) {
-        parse_motive(source, warnings)?
-    } else if first.contains(',') || first.is_empty() || first.contains("x_ref") {
-        parse_columns(source, warnings)?
-    } else {
-        parse_tum(source)?
-    };
-    rows.into_track(warnings)
+pub(super) fn is_track(first_row: &str) -> bool {
+    first_row.contains("x_ref")
 }
 
 /// Rows without a pose are gaps.
-fn parse_columns(source: Source, warnings: &mut Vec<String>) -> Result<TrackRows, DatasetError> {
+pub(super) fn parse_columns(source: Source, warnings: &mut Vec<String>) -> Result<TrackRows, DatasetError> {
     let sheet = Sheet::open(source, HEADER)?;
     let mut columns = Columns::of(&sheet);
     let needs = "a track needs t_s, x_ref_m and y_ref_m";

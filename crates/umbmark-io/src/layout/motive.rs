@@ -15,11 +15,15 @@
 //! axis along which the body moves least. The floor's x and y are the two axes that follow it (z, x for y up), so headings stay
 //! counter-clockwise as seen from above.
 
-use super::error::{DatasetError, quoted};
-use super::sheet::Rows;
-use super::source::Source;
-use super::track_rows::TrackRows;
+use super::Layout;
+use crate::error::{DatasetError, quoted};
+use crate::sheet::Rows;
+use crate::source::Source;
+use crate::track_rows::TrackRows;
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
+
+pub(super) const LAYOUT: Layout = Layout::new("motive", "rigid bodies as OptiTrack's Motive exports them")
+    .reads_tracks((&[], is_motive, parse_motive));
 
 /// How the first line of a file of Motive begins.
 const FORMAT: &str = "Format Version";
@@ -28,12 +32,12 @@ const REMEDY: &str = "export the robot's rigid body from Motive as CSV, with rot
 const CLEARLY: f64 = 3.0;
 
 /// Whether a text is an export of Motive.
-pub(super) fn is_motive(text: &str) -> bool {
+fn is_motive(text: &str) -> bool {
     text.trim_start_matches(['"', '\u{feff}']).starts_with(FORMAT)
 }
 
 /// Where the columns of the body are, and what they hold.
-struct Layout {
+struct Body {
     /// How many of the length unit make a metre.
     per_metre: f64,
     /// Letters of the rotation's axes, in order; `None` for quaternions.
@@ -44,27 +48,27 @@ struct Layout {
 }
 
 /// The poses of the one rigid body in a file.
-pub(super) fn parse_motive(source: Source, warnings: &mut Vec<String>) -> Result<TrackRows, DatasetError> {
+fn parse_motive(source: Source, warnings: &mut Vec<String>) -> Result<TrackRows, DatasetError> {
     let mut lines = Rows::of(source);
     let file = lines.file().to_owned();
-    let layout = Layout::read(&file, &mut lines)?;
+    let body = Body::read(&file, &mut lines)?;
     let mut rows = TrackRows { file: file.clone(), column: "Time (Seconds)".into(), ..TrackRows::default() };
     let mut found: Vec<(Vector3<f64>, Matrix3<f64>)> = Vec::new();
     while let Some(row) = lines.next()? {
         let cell = |column: usize| row.cell(column);
-        let columns = || layout.position.into_iter().chain(layout.rotation.into_iter().flatten());
+        let columns = || body.position.into_iter().chain(body.rotation.into_iter().flatten());
         if columns().all(|column| cell(column).is_empty()) {
             rows.lost += 1;
             continue;
         }
         let number = |column: usize, name: &str| row.own_number(name, cell(column));
         let mut position = Vector3::zeros();
-        for (axis, column) in layout.position.into_iter().enumerate() {
-            position[axis] = number(column, "Position")? / layout.per_metre;
+        for (axis, column) in body.position.into_iter().enumerate() {
+            position[axis] = number(column, "Position")? / body.per_metre;
         }
         rows.lines.push(row.line);
         rows.time.push(number(1, "Time (Seconds)")?);
-        found.push((position, layout.rotation(|column| number(column, "Rotation"))?));
+        found.push((position, body.rotation(|column| number(column, "Rotation"))?));
     }
     if found.is_empty() {
         return Err(refused(&file, "the rigid body is in none of the frames"));
@@ -91,8 +95,8 @@ fn refused(file: &str, found: &str) -> DatasetError {
     DatasetError::NotADataset { file: file.to_owned(), found: found.to_owned(), remedy: REMEDY }
 }
 
-impl Layout {
-    fn read(file: &str, lines: &mut Rows) -> Result<Layout, DatasetError> {
+impl Body {
+    fn read(file: &str, lines: &mut Rows) -> Result<Body, DatasetError> {
         let (mut types, mut names, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
         let (mut per_metre, mut rotation_type) = (1.0, String::from("XYZ"));
         while let Some(row) = lines.next()? {
@@ -106,14 +110,14 @@ impl Layout {
                 (_, "Type") => types = owned(),
                 (_, "Name") => names = owned(),
                 (_, "ID" | "Parent") => {}
-                ("Frame", _) => return Layout::of(file, per_metre, &rotation_type, [&types, &names, &kinds, &owned()]),
+                ("Frame", _) => return Body::of(file, per_metre, &rotation_type, [&types, &names, &kinds, &owned()]),
                 _ => kinds = owned(),
             }
         }
         Err(refused(file, "it is an export of Motive without a line of column names (Frame, Time (Seconds), ..)"))
     }
 
-    fn of(file: &str, per_metre: f64, rotation_type: &str, header: [&[String]; 4]) -> Result<Layout, DatasetError> {
+    fn of(file: &str, per_metre: f64, rotation_type: &str, header: [&[String]; 4]) -> Result<Body, DatasetError> {
         let [types, names, kinds, axes] = header;
         let at = |row: &[String], column: usize| row.get(column).cloned().unwrap_or_default();
         let body: Vec<usize> = (2..axes.len()).filter(|c| at(types, *c) == "Rigid Body").collect();
@@ -137,7 +141,7 @@ impl Layout {
         let turned = euler.as_ref().map_or(4, |letters| if letters.len() == 3 { 3 } else { 5 });
         match position {
             [Some(x), Some(y), Some(z)] if rotation.iter().take(turned).flatten().count() == turned => {
-                Ok(Layout { per_metre, euler, rotation, position: [x, y, z] })
+                Ok(Body { per_metre, euler, rotation, position: [x, y, z] })
             }
             _ => Err(refused(file, "its rigid body has no position or no rotation")),
         }

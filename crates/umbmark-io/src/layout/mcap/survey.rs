@@ -1,11 +1,11 @@
 //! A log before its messages are read: its topics, and the robot that it may bring along.
 
-use super::super::error::DatasetError;
-use super::super::source::unreadable;
 use super::container::{Container, Damage, Record, Visit};
 use super::message_type::{Encoding, MessageType};
 use super::problem::McapProblem;
 use super::topics::{Chosen, Topic, shown};
+use crate::error::DatasetError;
+use crate::source::unreadable;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fs::File;
 use std::path::{Path, PathBuf};
