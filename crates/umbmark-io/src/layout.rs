@@ -23,7 +23,7 @@ macro_rules! layouts {
     };
 }
 
-layouts! { csv, mcap, optiodom, tum, returns, motive, trail }
+layouts! { csv, mcap, optiodom, tum, returns, motive }
 
 /// How some files are recognised, read and written. A layout does what its file says that it does.
 #[derive(Clone, Copy, Debug)]
