@@ -1,8 +1,7 @@
 //! The files of umbmark: data sets of measured robots, robots, models and long studies, read and written.
 //!
 //! [`load`] takes a folder (`robot.toml`, `returns.csv`, `runs/*.csv`, `runs/*.mcap`; or one of OptiOdom) or one file of it.
-//! Inside, one file per layout reads rows (`returns`, `tick_log`, `optiodom`, `motive`, `tum`, `mcap`), a `Recording` mends
-//! rows and counts, the core's [`synchronise`](umbmark_core::synchronise) sets the clock of a track by the motion and
+//! Inside, a file of `layout` recognises, reads and writes one layout, a `Recording` mends rows and counts, the core's [`synchronise`](umbmark_core::synchronise) sets the clock of a track by the motion and
 //! puts its poses into the log, `start_frame` moves them into the frame of START, and an `Assembly` matches returns with
 //! logs.
 //!
