@@ -1,8 +1,7 @@
-//! What is said of an ensemble: for people, and as a document.
+//! What is said of an ensemble.
 
-use serde_json::{Map, Value};
-use umbmark_core::document;
 use umbmark_core::monte_carlo::{Distribution, Ensemble, Metric, Statistics};
+use umbmark_core::result::{Keyed, MonteCarlo, NumberOrWord, Setting, Study};
 use umbmark_plot::figure::Mark;
 
 use crate::distribution_text::distribution_words;
@@ -12,8 +11,8 @@ use crate::terminal::histogram;
 /// An ensemble and what is to be said of it.
 #[derive(Debug)]
 pub struct Report<'a> {
-    /// What the study is, as its document tells.
-    pub study: &'a Map<String, Value>,
+    /// What the study is.
+    pub study: &'a Study,
     /// Its seed.
     pub seed: u64,
     /// What was found.
@@ -29,9 +28,9 @@ impl Report<'_> {
         self.took.map(|(seconds, trials)| trials as f64 / seconds.max(1e-9))
     }
 
-    /// One document.
-    pub fn json(&self) -> Value {
-        document::ensemble(self.ensemble, self.seed, self.partial, self.trials_per_s(), self.study)
+    /// All of it.
+    pub fn result(&self) -> MonteCarlo {
+        MonteCarlo::new(self.ensemble, self.seed, self.partial, self.trials_per_s(), self.study)
     }
 
     /// A table and a histogram, in characters beyond ASCII where they are shown.
@@ -55,17 +54,14 @@ impl Report<'_> {
 
     /// Where the paper's numbers lie among those of the trials.
     fn published(&self) -> String {
-        let told = &self.study["published"];
-        let of = |key: &str| told[key].as_f64();
-        let Some(((row, e_max_sys), sigma)) = told["row"].as_str().zip(of("e_max_sys_m")).zip(of("sigma_m")) else {
-            return String::new();
-        };
+        let Some(published) = &self.study.published else { return String::new() };
         let place = |metric: Metric, value: f64| {
             let above = self.ensemble.get(metric).map_or(f64::NAN, |s| 100.0 * s.share_below(value));
             format!("{:.0} mm (above {above:.0} % of the trials)", value * 1e3)
         };
-        let (e_max_sys, sigma) = (place(Metric::EMaxSys, e_max_sys), place(Metric::Sigma, sigma));
-        format!("Table I, {row}: E_max,sys {e_max_sys}, sigma {sigma}\n\n")
+        let e_max_sys = place(Metric::EMaxSys, published.e_max_sys_m);
+        let sigma = place(Metric::Sigma, published.sigma_m);
+        format!("Table I, {}: E_max,sys {e_max_sys}, sigma {sigma}\n\n", published.row)
     }
 
     fn table(&self) -> String {
@@ -82,44 +78,37 @@ impl Report<'_> {
 }
 
 /// What a study is, in lines for people.
-fn heading(study: &Map<String, Value>) -> Vec<String> {
-    let list = |key: &str| study.get(key).and_then(Value::as_array).into_iter().flatten();
-    let phrases = |key: &str, what: &str| -> Vec<String> {
-        list(key).filter_map(Value::as_str).map(|phrase| format!("  {what}: {phrase}")).collect()
+fn heading(study: &Study) -> Vec<String> {
+    let phrases = |phrases: &[String], what: &str| -> Vec<String> {
+        phrases.iter().map(|phrase| format!("  {what}: {phrase}")).collect()
     };
-    let path = &study["path"];
-    let sizes = path["sizes"].as_object().into_iter().flatten();
-    let sizes: Vec<String> = sizes.map(|(name, value)| format!("{name} {}", in_words(value))).collect();
-    let shape = path["shape"].as_str().unwrap_or_default().replace('_', "-");
+    let sizes: Vec<String> = study.path.sizes.iter().map(|(name, value)| format!("{name} {value}")).collect();
+    let shape = study.path.shape.replace('_', "-");
     let mut heading = vec![
-        match runs(study) {
-            [cw, 0] => format!("{cw} cw runs, uni-directional"),
-            [0, ccw] => format!("{ccw} ccw runs, uni-directional"),
-            [cw, ccw] => format!("{cw} cw + {ccw} ccw runs"),
+        match (study.runs.cw, study.runs.ccw) {
+            (cw, 0) => format!("{cw} cw runs, uni-directional"),
+            (0, ccw) => format!("{ccw} ccw runs, uni-directional"),
+            (cw, ccw) => format!("{cw} cw + {ccw} ccw runs"),
         },
-        format!("{}, {shape} ({})", study["robot"].as_str().unwrap_or_default(), sizes.join(", ")),
+        format!("{}, {shape} ({})", study.robot, sizes.join(", ")),
     ];
-    for effect in list("effects").filter_map(Value::as_object) {
-        let name = effect.get("name").and_then(Value::as_str).unwrap_or_default();
+    for effect in &study.effects {
+        let name = effect.get("name").map(in_words).unwrap_or_default();
         let numbers = effect.iter().filter(|(key, _)| *key != "name");
         let numbers: Vec<String> = numbers.map(|(key, value)| format!("{key} {}", in_words(value))).collect();
         heading.push(format!("  {name}: {}", numbers.join(", ")));
     }
-    heading.extend(phrases("sources", "from the paper"));
-    heading.extend(phrases("assumed", "assumed"));
+    heading.extend(phrases(&study.sources, "from the paper"));
+    heading.extend(phrases(&study.assumed, "assumed"));
     heading
 }
 
-/// Numbers of runs \[cw, ccw\].
-fn runs(study: &Map<String, Value>) -> [u64; 2] {
-    ["cw", "ccw"].map(|direction| study["runs"][direction].as_u64().unwrap_or(0))
-}
-
 /// What the test gives without noise.
-fn theory(study: &Map<String, Value>) -> String {
-    let subject = if runs(study).contains(&0) { "Driven both ways, E_max,sys" } else { "E_max,sys" };
-    let mm = |key: &str| study["noise_free"][key].as_f64().map(|value| format!("{:.1} mm", value * 1e3));
-    match (mm("e_max_sys_m"), mm("first_order_e_max_sys_m")) {
+fn theory(study: &Study) -> String {
+    let one_way = study.runs.cw == 0 || study.runs.ccw == 0;
+    let subject = if one_way { "Driven both ways, E_max,sys" } else { "E_max,sys" };
+    let mm = |length: Option<f64>| length.map(|value| format!("{:.1} mm", value * 1e3));
+    match (mm(study.noise_free.e_max_sys_m), mm(study.noise_free.first_order_e_max_sys_m)) {
         (Some(exact), Some(first)) => {
             format!("{subject} without noise: {exact} by exact kinematics, {first} to first order\n\n")
         }
@@ -128,22 +117,29 @@ fn theory(study: &Map<String, Value>) -> String {
     }
 }
 
-/// A value of a document: a number, a word, or a distribution.
-fn in_words(value: &Value) -> String {
-    let number = |key: &str| value.get(key).and_then(Value::as_f64);
-    let (middle, spread) = (number("mean").zip(number("sd")), number("min").zip(number("max")));
-    let distribution = match (middle, spread, number("mode")) {
-        (Some((mean, sd)), _, _) => Some(Distribution::Normal { mean, sd }),
-        (_, Some((min, max)), Some(mode)) => Some(Distribution::Triangular { min, mode, max }),
-        (_, Some((min, max)), _) if value.get("scale").is_some() => Some(Distribution::LogUniform { min, max }),
-        (_, Some((min, max)), _) => Some(Distribution::Uniform { min, max }),
-        _ => None,
-    };
-    match (distribution, value) {
-        (Some(distribution), _) => distribution_words(&distribution),
-        (None, Value::String(word)) => word.clone(),
-        (None, value) => value.as_f64().map(|number| number.to_string()).unwrap_or_default(),
+/// A value of an effect: a number, a word, or a distribution.
+fn in_words(value: &Setting) -> String {
+    match value {
+        Setting::Word(word) => word.clone(),
+        Setting::Number(number) => number.to_string(),
+        Setting::Drawn(keys) => distribution(keys).as_ref().map(distribution_words).unwrap_or_default(),
     }
+}
+
+fn distribution(keys: &Keyed<NumberOrWord>) -> Option<Distribution> {
+    let number = |key: &str| match keys.get(key)? {
+        NumberOrWord::Number(number) => Some(*number),
+        NumberOrWord::Word(_) => None,
+    };
+    if let (Some(mean), Some(sd)) = (number("mean"), number("sd")) {
+        return Some(Distribution::Normal { mean, sd });
+    }
+    let (min, max) = (number("min")?, number("max")?);
+    Some(match (number("mode"), keys.get("scale")) {
+        (Some(mode), _) => Distribution::Triangular { min, mode, max },
+        (None, Some(_)) => Distribution::LogUniform { min, max },
+        (None, None) => Distribution::Uniform { min, max },
+    })
 }
 
 /// The unit that people read a metric in, and how many of it are one of SI.

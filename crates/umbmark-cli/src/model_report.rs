@@ -5,10 +5,10 @@ use std::path::Path;
 use anyhow::Context;
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Contrast, OnCircle, first_model};
-use umbmark_core::document::meanings;
 use umbmark_core::effect::{Model, find};
 use umbmark_core::evidence::Estimate;
 use umbmark_core::likelihood::Outlier;
+use umbmark_core::result::meaning;
 use umbmark_core::setup::Setup;
 use umbmark_core::stats::Interval;
 use umbmark_io::ModelFile;
@@ -57,7 +57,7 @@ pub fn estimates_table(estimates: &[Estimate], level: f64) -> String {
 
 /// What the fitted effects mean for the robot, a paragraph each.
 pub fn meaning_text(estimates: &[Estimate], model: &Model) -> String {
-    let paragraphs: String = meanings(estimates, model).iter().map(|(_, said)| hanging("", 2, said)).collect();
+    let paragraphs: String = meaning(estimates, model).iter().map(|(_, said)| hanging("", 2, said)).collect();
     if paragraphs.is_empty() { paragraphs } else { format!("\nthat is\n{paragraphs}") }
 }
 

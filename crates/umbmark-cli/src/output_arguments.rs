@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use umbmark_core::dataset::Dataset;
-use umbmark_io::{DatasetError, Existing, LAYOUTS, Layout};
+use umbmark_io::{DatasetError, Existing, Layout};
 
 use crate::prose::hanging;
 
@@ -25,12 +25,12 @@ pub struct OutputArguments {
 }
 
 fn names() -> PossibleValuesParser {
-    PossibleValuesParser::new(LAYOUTS.iter().map(|layout| layout.name))
+    PossibleValuesParser::new(Layout::written().map(|layout| layout.name))
 }
 
 /// The layouts, for the end of a verb's help.
 pub fn layouts() -> String {
-    let lines = LAYOUTS.iter().map(|layout| hanging(&format!("  {}", layout.name), 12, layout.about));
+    let lines = Layout::written().map(|layout| hanging(&format!("  {}", layout.name), 12, layout.about));
     format!("Layouts:\n{}", lines.collect::<String>())
 }
 

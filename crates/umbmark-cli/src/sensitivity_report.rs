@@ -1,8 +1,7 @@
-//! What is said of sensitivities: for people, and as a document.
+//! What is said of sensitivities.
 
-use serde_json::Value;
-use umbmark_core::document::{self, Asked, Found};
 use umbmark_core::monte_carlo::{Metric, Study};
+use umbmark_core::result::{Asked, Found, Sensitivity};
 use umbmark_core::sensitivity::{Derivative, Estimate, OutputIndices, Screened};
 
 use crate::distribution_text::distribution_words;
@@ -44,9 +43,9 @@ impl SensitivityReport<'_> {
         self.found.is_partial()
     }
 
-    /// One document.
-    pub fn json(&self) -> Value {
-        document::sensitivity(
+    /// All of it.
+    pub fn result(&self) -> Sensitivity {
+        Sensitivity::new(
             self.found,
             &Asked {
                 varied: &self.varied.parameters,

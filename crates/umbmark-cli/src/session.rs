@@ -75,7 +75,7 @@ impl Session {
     }
 
     /// Prints one JSON document.
-    pub fn print_json(&mut self, document: &serde_json::Value) -> io::Result<()> {
+    pub fn print_json(&mut self, document: &impl serde::Serialize) -> io::Result<()> {
         serde_json::to_writer_pretty(&mut self.out, document)?;
         writeln!(self.out)
     }

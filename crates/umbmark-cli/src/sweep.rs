@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use umbmark_core::document;
 use umbmark_core::monte_carlo::{Axis, Metric, MetricSummary, Quantity, Study, Sweep, SweepPoint};
+use umbmark_core::result;
 use umbmark_io::checkpoint::{Checkpoint, Keeper};
 
 use crate::Session;
@@ -122,7 +122,7 @@ pub fn run(
     }
     let report = SweepReport { sweep: &sweep, points: &points, metric, assumed };
     if session.json() {
-        session.print_json(&document::sweep(&sweep, &points, assumed))?;
+        session.print_json(&result::Sweep::new(&sweep, &points, assumed))?;
     } else {
         let terminal = session.on_terminal();
         write!(session.out(), "{}", report.text(terminal))?;

@@ -21,7 +21,7 @@ mod unseen;
 use crate::dataset::Dataset;
 use crate::drive::Robot;
 use crate::effect::{Model, ModelError, find};
-use crate::evidence::{self, AnyEvidence, Ends, FitError, Level, robot_of};
+use crate::evidence::{AnyEvidence, Ends, FitError, Level, robot_of};
 
 pub use candidates::{Candidate, Size, candidates, columns};
 pub use diagnosis::{Diagnosis, GoodnessOfFit, Verdict};
@@ -112,14 +112,11 @@ pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diag
 /// watched as these were. Each effect is taken at its usual size, the hardest of its sizes. None where the runs have no
 /// scatter to judge by.
 pub fn separating(data: &Dataset, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, FitError> {
-    match Level::of(data) {
-        Level::Ends => experiments::separating(&Ends::new(data)?, model, pair),
-        Level::Tracks => {
-            let [first, second] = [find(pair[0])?, find(pair[1])?];
-            let model = experiments::with_one_of(model, [first, second])?;
-            let fitted = evidence::tracks::fit(&evidence::tracks::of(data)?, &model)?;
-            tracks::separating(fitted, [first.about.name, second.about.name])
-        }
+    let rivals = [find(pair[0])?, find(pair[1])?];
+    let model = experiments::with_one_of(model, rivals)?;
+    match AnyEvidence::of(data, Level::of(data))? {
+        AnyEvidence::Ends(ends) => experiments::separating(&ends, &model, rivals),
+        AnyEvidence::Tracks(observed) => tracks::separating(&observed, &model, rivals),
     }
 }
 

@@ -6,6 +6,7 @@
 mod figures;
 mod tables;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::effect::ModelError;
@@ -18,7 +19,7 @@ use crate::watch::Watch;
 pub use figures::{
     BothWays, BumpPlace, Cluster, Hidden, Masking, Rectangle, bump_places, clusters, figure_eight, masking, rectangle,
 };
-pub use tables::{Column, Facts, LinkError, Place, Row, TableOne, TableTwo, table_one, table_two};
+pub use tables::{From, LinkError, Place, RobotOfTableOne, RobotOfTableTwo, TableOne, TableTwo, table_one, table_two};
 
 /// An experiment that cannot be repeated.
 #[derive(Debug, thiserror::Error)]
@@ -64,8 +65,8 @@ fn preset(name: &'static str) -> Result<&'static Preset, PaperError> {
     Preset::find(name).map_err(|_| PaperError::Robot(name))
 }
 
-/// Return errors of one run each way: x, y \[m\] and heading \[rad\].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+/// Return errors of one run each way: x and y in m, heading in rad.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Returns {
     /// Counter-clockwise.
     pub ccw: [f64; 3],

@@ -12,11 +12,14 @@
 //! Return errors are looked at by themselves (`returns`): runs far from the others, and columns in another unit.
 
 mod agreement;
+mod cheapest;
 mod clock;
 mod disturbances;
+mod edges;
 mod faults;
 mod returns;
 mod robust;
+mod shared;
 mod stretches;
 mod suspicion;
 mod windows;
@@ -29,7 +32,8 @@ use crate::run::{Run, TickLog};
 use crate::stats::Measured;
 use agreement::{Agreement, Beside, Reading};
 use clock::Late;
-use disturbances::{Found, Sighting};
+use disturbances::Found;
+use edges::Sighting;
 use windows::{Rolled, Window, windows};
 
 pub use faults::Fault;

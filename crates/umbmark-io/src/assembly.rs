@@ -3,8 +3,8 @@
 use super::RobotFile;
 use super::error::DatasetError;
 use super::label::{self, Named};
+use super::layout::csv::ReturnRow;
 use super::recording::Recording;
-use super::returns::ReturnRow;
 use super::stale::drop_stale;
 use super::start_frame::move_to_start;
 use std::collections::BTreeMap;

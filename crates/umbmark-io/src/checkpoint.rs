@@ -5,11 +5,11 @@ use std::time::{Duration, Instant};
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
 
 use crate::Existing;
 use crate::whole_file::{FileError, WholeFile, in_words};
 use umbmark_core::monte_carlo::{Ensemble, MergeError, Shard, Study, Sweep, SweepPoint};
+use umbmark_core::result;
 
 /// What is done where the file of a checkpoint is there already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,8 +38,8 @@ pub struct Checkpoint {
 pub struct Written {
     /// Its seed.
     pub seed: u64,
-    /// What it is, as [`document::study`](umbmark_core::document::study) says it.
-    pub study: Map<String, Value>,
+    /// What it is.
+    pub study: result::Study,
     /// What is done.
     pub ensemble: Ensemble,
 }
@@ -126,7 +126,7 @@ impl Written {
 
 impl Checkpoint {
     /// What is known of a shard of a study when it begins: nothing, or what the file has. `told` is what the study is.
-    pub fn begin(&self, study: &Study, shard: Shard, told: &Map<String, Value>) -> Result<Written, CheckpointError> {
+    pub fn begin(&self, study: &Study, shard: Shard, told: &result::Study) -> Result<Written, CheckpointError> {
         let new = || Written { seed: study.seed, study: told.clone(), ensemble: Ensemble::new(study, shard) };
         let known: Option<Written> = self.read("study")?;
         match known {
@@ -174,16 +174,16 @@ impl<'a> Keeper<'a> {
     }
 
     /// Writes a study down where it is time.
-    pub fn look(&mut self, seed: u64, study: &Map<String, Value>, known: &Ensemble) -> Result<(), CheckpointError> {
+    pub fn look(&mut self, seed: u64, study: &result::Study, known: &Ensemble) -> Result<(), CheckpointError> {
         if self.is_due() { self.keep(seed, study, known) } else { Ok(()) }
     }
 
     /// Writes a study down.
-    pub fn keep(&mut self, seed: u64, study: &Map<String, Value>, ensemble: &Ensemble) -> Result<(), CheckpointError> {
+    pub fn keep(&mut self, seed: u64, study: &result::Study, ensemble: &Ensemble) -> Result<(), CheckpointError> {
         #[derive(Serialize)]
         struct Borrowed<'a> {
             seed: u64,
-            study: &'a Map<String, Value>,
+            study: &'a result::Study,
             ensemble: &'a Ensemble,
         }
         self.write(&Borrowed { seed, study, ensemble })
@@ -236,6 +236,11 @@ mod tests {
     use umbmark_core::drive::Robot;
     use umbmark_core::effect::Model;
     use umbmark_core::monte_carlo::{Axis, Quantity};
+    use umbmark_core::result::{NoiseFree, Told};
+
+    fn told(study: &Study) -> result::Study {
+        result::Study::new(study, &NoiseFree::of(study).unwrap(), &Told::default())
+    }
 
     fn study(seed: u64) -> Study {
         let mut model = Model::new(&Robot::labmate());
@@ -250,7 +255,8 @@ mod tests {
     #[test]
     fn a_study_that_was_broken_off_goes_on_to_the_same_bits() {
         let folder = tempfile::tempdir().unwrap();
-        let (study, told) = (study(3), Map::new());
+        let study = study(3);
+        let told = told(&study);
         let (anew, resumed) = (checkpoint(&folder, Found::Refuse), checkpoint(&folder, Found::Resume));
         let mut known = anew.begin(&study, Shard::WHOLE, &told).unwrap();
         let mut keeper = Keeper::of(Some(&anew));
@@ -270,7 +276,7 @@ mod tests {
     #[test]
     fn what_is_there_is_neither_lost_nor_taken_for_another_study() {
         let folder = tempfile::tempdir().unwrap();
-        let of = |found, seed| checkpoint(&folder, found).begin(&study(seed), Shard::WHOLE, &Map::new());
+        let of = |found, seed| checkpoint(&folder, found).begin(&study(seed), Shard::WHOLE, &told(&study(seed)));
         let known = of(Found::Resume, 3).unwrap();
         std::fs::write(folder.path().join("study.json"), known.text().unwrap()).unwrap();
         assert!(matches!(of(Found::Refuse, 3), Err(CheckpointError::Exists(_))));

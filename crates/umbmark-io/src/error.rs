@@ -1,6 +1,6 @@
 //! What can be wrong with measurements, and what to do about it.
 
-use super::mcap::McapProblem;
+use super::layout::mcap::McapProblem;
 use umbmark_core::dataset::NoRobot;
 
 /// What makes a dataset, a robot file or a model file unusable.

@@ -1,49 +1,95 @@
-//! The layouts that datasets are written in.
+//! Layouts: how files are recognised, read and written. One file each, listed by a word.
 //!
 //! A layout holds what it can hold; what it cannot is said in words, never left out silently.
 
-mod optiodom;
-mod returns;
-mod tum;
-
+use self::mcap::Topics;
+use super::assembly::{Assembly, Tracked};
 use super::error::DatasetError;
-use super::mcap::save_mcap;
-use super::save::{Existing, save};
-use std::path::Path;
+use super::probe::Probe;
+use super::save::Existing;
+use super::source::Source;
+use super::track_rows::TrackRows;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use umbmark_core::dataset::{Dataset, Run, TickLog};
+use umbmark_core::run::ReferenceTrack;
 
-/// A layout that datasets are written in.
+macro_rules! layouts {
+    ($($name:ident),+ $(,)?) => {
+        $(pub(super) mod $name;)+
+
+        /// All of them. The first takes data sets and tracks that no other recognises.
+        static LAYOUTS: &[Layout] = &[$($name::LAYOUT),+];
+    };
+}
+
+layouts! { csv, mcap, optiodom, tum, returns, motive }
+
+/// How some files are recognised, read and written. A layout does what its file says that it does.
 #[derive(Clone, Copy, Debug)]
 pub struct Layout {
     /// What it is called.
     pub name: &'static str,
     /// What it is.
     pub about: &'static str,
-    write: Write,
+    data: Option<ReadData>,
+    logs: Option<ReadLogs>,
+    tracks: Option<ReadTracks>,
+    write: Option<Write>,
 }
 
-/// Writes a dataset into a folder and says what is lost.
+/// Whole data sets: whether a place is one, and what is in it.
+type ReadData = (fn(&Probe) -> bool, fn(&Probe, &Topics) -> Result<Dataset, DatasetError>);
+
+/// Files in `runs`: their ending, and how one is added, with its track where it takes one.
+type ReadLogs = (&'static str, fn(&mut Assembly, &Path, &mut Tracks, &Topics) -> Result<(), DatasetError>);
+
+/// Files in `reference`: their endings, whether a first row begins one, and its rows.
+type ReadTracks =
+    (&'static [&'static str], fn(&str) -> bool, fn(Source, &mut Vec<String>) -> Result<TrackRows, DatasetError>);
+
+/// Writes a data set into a folder and says what is lost.
 type Write = fn(&Dataset, &Path, Existing) -> Result<Vec<String>, DatasetError>;
 
-/// All of them.
-pub static LAYOUTS: &[Layout] = &[
-    Layout { name: "csv", about: "robot.toml, returns.csv and runs/*.csv: holds everything", write: csv },
-    Layout { name: "mcap", about: "the same with logs of ROS 2, runs/*.mcap; one run as NAME.mcap", write: mcap },
-    Layout { name: "optiodom", about: "a set of OptiOdom: *_metadata.csv and *_run-NN.csv", write: optiodom::write },
-    Layout { name: "tum", about: "TUM trajectories: *_reference.tum and *_odometry.tum", write: tum::write },
-    Layout { name: "returns", about: "the return sheet alone: returns.csv", write: returns::write },
-];
+/// Files of tracks, by the name of the log that they belong to.
+type Tracks = BTreeMap<String, PathBuf>;
 
 impl Layout {
-    /// The layout of a name.
-    pub fn named(name: &str) -> Option<&'static Layout> {
-        LAYOUTS.iter().find(|layout| layout.name == name)
+    const fn new(name: &'static str, about: &'static str) -> Layout {
+        Layout { name, about, data: None, logs: None, tracks: None, write: None }
     }
 
-    /// The layout that the name of a place asks for: `mcap` where it ends in `.mcap`, else `csv`.
+    const fn reads_data(self, read: ReadData) -> Layout {
+        Layout { data: Some(read), ..self }
+    }
+
+    const fn reads_logs(self, read: ReadLogs) -> Layout {
+        Layout { logs: Some(read), ..self }
+    }
+
+    const fn reads_tracks(self, read: ReadTracks) -> Layout {
+        Layout { tracks: Some(read), ..self }
+    }
+
+    const fn writes(self, write: Write) -> Layout {
+        Layout { write: Some(write), ..self }
+    }
+
+    /// Those that data sets are written in.
+    pub fn written() -> impl Iterator<Item = &'static Layout> {
+        LAYOUTS.iter().filter(|layout| layout.write.is_some())
+    }
+
+    /// The layout of a name that data sets are written in.
+    pub fn named(name: &str) -> Option<&'static Layout> {
+        Layout::written().find(|layout| layout.name == name)
+    }
+
+    /// The layout that the name of a place asks for: that whose logs end like it, else `csv`.
     pub fn of_place(place: impl AsRef<Path>) -> &'static Layout {
-        let is_log = place.as_ref().extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"));
-        &LAYOUTS[usize::from(is_log)]
+        let ending = super::probe::extension(place.as_ref());
+        let is_its = |layout: &&Layout| layout.logs.is_some_and(|(own, _)| own == ending);
+        LAYOUTS.iter().find(is_its).unwrap_or(&LAYOUTS[0])
     }
 
     /// Writes a dataset into a folder, and says what this layout cannot hold, one sentence each.
@@ -58,33 +104,65 @@ impl Layout {
         folder: impl AsRef<Path>,
         existing: Existing,
     ) -> Result<Vec<String>, DatasetError> {
-        (self.write)(data, folder.as_ref(), existing)
+        self.write.map_or_else(|| Ok(Vec::new()), |write| write(data, folder.as_ref(), existing))
     }
 }
 
+/// The reader of the first layout that recognises a thing; else the first reader of such things.
+fn choose<Read: Copy>(of: impl Fn(&Layout) -> Option<Read>, recognises: impl Fn(&Read) -> bool) -> Option<Read> {
+    let readers = || LAYOUTS.iter().filter_map(&of);
+    readers().find(recognises).or_else(|| readers().next())
+}
+
+/// A dataset from a folder, or from one file of it.
+pub(super) fn load(path: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
+    let probe = Probe::of(path)?;
+    match choose(|layout| layout.data, |(recognises, _)| recognises(&probe)) {
+        Some((_, read)) => read(&probe, topics),
+        None => Ok(Dataset::default()),
+    }
+}
+
+/// The endings of logs.
+fn log_endings() -> Vec<&'static str> {
+    LAYOUTS.iter().filter_map(|layout| Some(layout.logs?.0)).collect()
+}
+
+/// Adds a log, where a layout knows its ending.
+fn add_log(
+    assembly: &mut Assembly,
+    file: &Path,
+    tracks: &mut Tracks,
+    topics: &Topics,
+) -> Option<Result<(), DatasetError>> {
+    let ending = super::probe::extension(file);
+    let (_, add) = LAYOUTS.iter().filter_map(|layout| layout.logs).find(|(own, _)| *own == ending)?;
+    Some(add(assembly, file, tracks, topics))
+}
+
+/// The endings of tracks.
+fn track_endings() -> Vec<&'static str> {
+    LAYOUTS.iter().filter_map(|layout| layout.tracks).flat_map(|(endings, ..)| endings).copied().collect()
+}
+
+/// The poses of a file that have a clock of their own.
+fn read_track(file: &Path, warnings: &mut Vec<String>) -> Result<Tracked, DatasetError> {
+    let track = parse_track(Source::open(file)?, warnings)?;
+    Ok(Tracked { track, file: file.display().to_string() })
+}
+
+/// The same of a text.
+pub(super) fn parse_track(source: Source, warnings: &mut Vec<String>) -> Result<ReferenceTrack, DatasetError> {
+    let first = source.first_row();
+    match choose(|layout| layout.tracks, |(_, recognises, _)| recognises(&first)) {
+        Some((.., read)) => read(source, warnings)?.into_track(warnings),
+        None => Ok(ReferenceTrack::default()),
+    }
+}
+
+/// The runs that have logs.
 fn logs(data: &Dataset) -> impl Iterator<Item = (&Run, &TickLog)> {
     data.runs.iter().filter_map(|run| Some((run, run.log.as_ref()?)))
-}
-
-fn mcap(data: &Dataset, place: &Path, existing: Existing) -> Result<Vec<String>, DatasetError> {
-    save_mcap(data, place, existing)
-}
-
-/// The project's own layout. Counts between two readings, which a track put there, are no counts of a counter that rolls over:
-/// then they are written as they are, unrolled.
-fn csv(data: &Dataset, folder: &Path, existing: Existing) -> Result<Vec<String>, DatasetError> {
-    let between = |log: &TickLog| log.left.iter().chain(&log.right).any(|ticks| ticks.fract() != 0.0);
-    let robot = data.nominal_robot()?;
-    let encoder = &robot.encoder;
-    if encoder.counter_bits().is_none() || !logs(data).any(|(_, log)| between(log)) {
-        return save(data, folder, existing).map(|()| Vec::new());
-    }
-    let mut unrolled = data.clone();
-    let mut robot = robot.clone();
-    robot.encoder = encoder.without_roll_over();
-    unrolled.robot = Some(robot);
-    save(&unrolled, folder, existing)?;
-    Ok(vec!["counter_bits: counts were put between readings, so all are written with their roll-overs undone".into()])
 }
 
 #[cfg(test)]

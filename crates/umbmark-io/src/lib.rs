@@ -1,8 +1,7 @@
 //! The files of umbmark: data sets of measured robots, robots, models and long studies, read and written.
 //!
 //! [`load`] takes a folder (`robot.toml`, `returns.csv`, `runs/*.csv`, `runs/*.mcap`; or one of OptiOdom) or one file of it.
-//! Inside, one file per layout reads rows (`returns`, `tick_log`, `optiodom`, `motive`, `tum`, `mcap`), a `Recording` mends
-//! rows and counts, the core's [`synchronise`](umbmark_core::synchronise) sets the clock of a track by the motion and
+//! Inside, a file of `layout` recognises, reads and writes one layout, a `Recording` mends rows and counts, the core's [`synchronise`](umbmark_core::synchronise) sets the clock of a track by the motion and
 //! puts its poses into the log, `start_frame` moves them into the frame of START, and an `Assembly` matches returns with
 //! logs.
 //!
@@ -21,44 +20,37 @@ mod distribution_table;
 mod document;
 mod error;
 pub mod export;
-mod folder;
 mod label;
 mod layout;
 mod lines;
-mod mcap;
 mod model_file;
 mod model_text;
-mod motive;
 #[cfg(test)]
 mod mutated_input;
-mod optiodom;
 
 mod parameter_file;
+mod probe;
 mod recording;
-mod reference_file;
-mod returns;
 mod robot_file;
 mod robot_text;
 mod save;
 mod sheet;
-mod sheets;
 mod source;
 mod stale;
 mod start_frame;
 mod template;
 
-mod tick_log;
 mod track_rows;
-mod tum;
 pub mod whole_file;
 
 pub use error::DatasetError;
-pub use layout::{LAYOUTS, Layout};
-pub use mcap::{McapProblem, Topics, save_mcap};
+pub use layout::Layout;
+pub use layout::csv::save;
+pub use layout::mcap::{McapProblem, Topics, save_mcap};
 pub use model_file::ModelFile;
 pub use parameter_file::{ParameterFile, parse_parameters, read_parameters};
 pub use robot_file::RobotFile;
-pub use save::{Existing, save};
+pub use save::Existing;
 pub use template::{template, write_template};
 
 use std::path::Path;
@@ -73,5 +65,5 @@ pub fn load(path: impl AsRef<Path>) -> Result<Dataset, DatasetError> {
 
 /// Reads a dataset whose MCAP logs hold wheels and reference on the given topics.
 pub fn load_with(path: impl AsRef<Path>, topics: &Topics) -> Result<Dataset, DatasetError> {
-    folder::load(path.as_ref(), topics)
+    layout::load(path.as_ref(), topics)
 }

@@ -4,6 +4,8 @@
 //! `UMBMARK_TEST_CASES=1000000` damages each of the files a million times and prints how many were read.
 
 use super::error::DatasetError;
+use super::layout::csv::{parse_returns, parse_tick_log};
+use super::layout::{optiodom, parse_track};
 use super::model_file::ModelFile;
 use super::recording::Recording;
 use super::robot_file::RobotFile;
@@ -11,7 +13,6 @@ use super::sheet::Rows;
 use super::source::Source;
 use super::stale::drop_stale;
 use super::start_frame::move_to_start;
-use super::{motive, optiodom, reference_file, returns, tick_log, tum};
 use std::io::Read;
 use umbmark_core::dataset::TickLog;
 use umbmark_core::drive::{Kind, Robot};
@@ -104,7 +105,7 @@ fn damaged_return_sheets() {
     let good = "direction,run,test,x_abs_m,y_abs_m,theta_abs_rad,x_calc_m,y_calc_m,theta_calc_rad,x_start_m,y_start_m,theta_start_rad\n\
                 # Monday\r\ncw,1,bumps,0.1,-0.2,0.3,1e-3,0,0,1,2,3\n\"ccw\",2,,0.1,-0.2,,1e-3,0,,1,2,3\n";
     survive(good, 1, |text| {
-        returns::parse_returns(source(text), &mut Vec::new()).is_ok_and(|rows| {
+        parse_returns(source(text), &mut Vec::new()).is_ok_and(|rows| {
             assert!(rows.iter().all(|row| row.error.x.is_finite() && row.error.heading.is_none_or(f64::is_finite)));
             true
         })
@@ -118,7 +119,7 @@ fn damaged_tick_logs() {
     for (purpose, bits) in [(2, Some(16)), (3, None)] {
         let good = if bits.is_some() { good.to_owned() } else { good.replace("655", "") };
         survive(&good, purpose, |text| {
-            tick_log::parse_tick_log(source(text), Kind::default(), &mut Vec::new())
+            parse_tick_log(source(text), Kind::default(), &mut Vec::new())
                 .is_ok_and(|recording| finished(recording, bits))
         });
     }
@@ -168,7 +169,7 @@ fn a_log_is_the_same_however_its_bytes_arrive() {
         let bytes = damage(good.as_bytes(), &mut stream);
         let read = |source: Result<Source, DatasetError>| {
             let mut noticed = Vec::new();
-            let read = source.and_then(|source| tick_log::parse_tick_log(source, Kind::default(), &mut noticed));
+            let read = source.and_then(|source| parse_tick_log(source, Kind::default(), &mut noticed));
             (read.map_err(|error| error.to_string()), noticed)
         };
         let dribble = Dribble(&bytes, 1 + (round % 40) as usize);
@@ -245,11 +246,8 @@ fn damaged_tracks() {
                   Frame,Time (Seconds),Y,X,Z,X,Y,Z,\n0,0.0,90,0,0.1,1,0.1,2,0.001\n1,0.01,,,,,,,\n2,0.02,91,-1,0,1.1,0.1,2,0\n";
     let columns = "t_s,x_ref_mm,y_ref_mm,theta_ref_deg\n0.0,1,2,3\n0.5,,,\n1.0,-4,5e-1,179\n1.5,2,3,-179\n";
     for (purpose, good) in [(8, tum), (9, motive), (10, columns)] {
-        survive(good, purpose, |text| {
-            reference_file::parse_reference(source(text), &mut Vec::new()).is_ok_and(|track| placed(&track))
-        });
+        survive(good, purpose, |text| parse_track(source(text), &mut Vec::new()).is_ok_and(|track| placed(&track)));
     }
-    assert!(motive::parse_motive(source(motive), &mut Vec::new()).is_ok() && tum::parse_tum(source(tum)).is_ok());
 }
 
 #[test]
@@ -261,7 +259,7 @@ fn damaged_counters_with_time_stamps_out_of_order() {
     let reset = "t_s,ticks_left,ticks_right\n0,1000,1000\n0.01,1003,1003\n0.03,3,2\n0.02,0,0\n0.04,6,6\n0.04,7,6\n";
     for (purpose, bits) in [(12, Some(16)), (13, None)] {
         survive(reset, purpose, |text| {
-            tick_log::parse_tick_log(source(text), Kind::default(), &mut Vec::new())
+            parse_tick_log(source(text), Kind::default(), &mut Vec::new())
                 .is_ok_and(|recording| finished(recording, bits))
         });
     }

@@ -1,7 +1,7 @@
 //! What a new user fills in: a commented `robot.toml` and an empty `returns.csv`.
 
 use super::error::DatasetError;
-use super::folder::{RETURNS, ROBOT};
+use super::layout::csv::{RETURNS, ROBOT};
 use super::save::{Existing, put};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -19,7 +19,7 @@ use crate::tone::Tone;
 
 pub use minijinja::Error as PageError;
 pub use provenance::{Origin, Provenance};
-pub use verdict::{notices, verdict};
+pub use verdict::said;
 
 const TEMPLATE: &str = include_str!("page/report.html");
 const TABLE: &str = include_str!("page/table.html");
@@ -114,10 +114,9 @@ pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usi
     environment.add_template("report.html", TEMPLATE)?;
     environment.add_template("table.html", TABLE)?;
     let filters: Vec<_> = studies.iter().map(filter).collect();
-    let verdicts: Vec<_> = studies.iter().map(|s| (s.name.clone(), notices(s), verdict(s))).collect();
     environment.get_template("report.html")?.render(context! {
         title => title(studies),
-        verdicts => verdicts,
+        verdicts => Value::from(Serde(studies.iter().map(said).collect::<Vec<_>>())),
         partial => studies.iter().any(Study::is_partial),
         many => studies.len() > 1,
         sections => Value::from(Serde(&sections)),

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_core::calibrate::{self as core, Correction, Options, RadiusWheelbase};
-use umbmark_core::document;
 use umbmark_core::learn;
+use umbmark_core::result;
 use umbmark_io::{RobotFile, export as texts};
 
 use crate::dataset::Dataset;
@@ -14,7 +14,7 @@ use crate::model::Model;
 use crate::path::Path;
 use crate::robot::Robot;
 use crate::work::watched;
-use crate::{choice, probability, refused};
+use crate::{choice, json, probability, refused};
 
 const WHEELBASES: [(&str, RadiusWheelbase); 2] =
     [("nominal", RadiusWheelbase::Nominal), ("corrected", RadiusWheelbase::Corrected)];
@@ -47,7 +47,7 @@ pub fn calibrate(
     }
     let noticed = calibration.setup.notices().len();
     calibration.warnings.splice(noticed..noticed, data.0.warnings.iter().cloned());
-    Ok(document::calibration(robot, &calibration, level).to_string())
+    json(&result::Calibration::new(robot, &calibration, level))
 }
 
 /// A calibration of any drive by its first effects: the document, the model, and the corrected robot.
@@ -62,7 +62,7 @@ pub fn calibrate_gears(py: Python<'_>, data: &Dataset, level: f64) -> PyResult<(
             "nothing can be calibrated from these runs: drive a closed path in both directions, or measure poses on the way",
         ));
     }
-    let document = document::gears(robot, &found, level, &data.0.warnings).to_string();
+    let document = json(&result::GearCalibration::new(robot, &found, level, &data.0.warnings))?;
     Ok((document, found.model.into(), Robot(found.corrected)))
 }
 

@@ -5,13 +5,13 @@ use std::time::Duration;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use umbmark_core::document;
+use umbmark_core::result::MonteCarlo;
 use umbmark_io::checkpoint::{Checkpoint, CheckpointError, Found, Written};
 use umbmark_io::whole_file::WholeFile;
 
 use crate::monte_carlo::Ensemble;
 use crate::work::watched;
-use crate::{existing, refused, unwritten};
+use crate::{existing, json, refused, unwritten};
 
 /// Time between two writes \[s\].
 const EVERY: Duration = Duration::from_secs(2);
@@ -63,6 +63,6 @@ pub fn merge(
     }
     let Written { seed, study, ensemble } = merged;
     let partial = !ensemble.missing().is_empty();
-    let document = document::ensemble(&ensemble, seed, partial, None, &study).to_string();
+    let document = json(&MonteCarlo::new(&ensemble, seed, partial, None, &study))?;
     Ok((document, Ensemble(ensemble)))
 }

@@ -9,14 +9,14 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 use serde::{Deserialize, Serialize};
 use umbmark_core::dataset::{self as core, RunClock, RunTopics};
-use umbmark_core::document;
-use umbmark_io::{LAYOUTS, Layout, Topics, write_template};
+use umbmark_core::result;
+use umbmark_io::{Layout, Topics, write_template};
 
 use crate::path::{DIRECTIONS, Path};
 use crate::robot::Robot;
 use crate::run::{Run, TESTS};
 use crate::work::{detached, watched};
-use crate::{choice, existing, refused, unwritten};
+use crate::{choice, existing, json, refused, unwritten};
 
 /// A robot and its runs, measured or simulated. Frozen; ``umbmark.load_dataset`` reads one.
 ///
@@ -136,7 +136,7 @@ impl Dataset {
     fn save(&self, py: Python<'_>, place: PathBuf, layout: Option<&str>, replace: bool) -> PyResult<Vec<String>> {
         let named = |layout: &'static Layout| (layout.name, layout);
         let layout = match layout {
-            Some(name) => choice("layout", name, &LAYOUTS.iter().map(named).collect::<Vec<_>>())?,
+            Some(name) => choice("layout", name, &Layout::written().map(named).collect::<Vec<_>>())?,
             None => Layout::of_place(&place),
         };
         detached(py, || layout.write(&self.0, &place, existing(replace)))?.map_err(unwritten)
@@ -246,7 +246,7 @@ pub fn inspect(py: Python<'_>, data: &Dataset, place: &str) -> PyResult<String> 
     }
     let shared = Arc::clone(&data.0);
     let found = watched(py, 1, None, move |_| shared.inspect())?;
-    Ok(document::inspection(place, &data.0, &found).to_string())
+    json(&result::Inspection::new(place, &data.0, &found))
 }
 
 /// Write a robot.toml and a returns.csv to fill in.

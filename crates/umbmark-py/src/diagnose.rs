@@ -7,12 +7,13 @@ use pyo3::prelude::*;
 use umbmark_core::compare::{self as comparing, Compared};
 use umbmark_core::diagnose::{self as core, Options, first_model};
 use umbmark_core::evidence::FitError;
-use umbmark_core::{document, effect, evidence, learn as learning};
+use umbmark_core::result::{self, Comparison, TrackComparison};
+use umbmark_core::{effect, evidence, learn as learning};
 
 use crate::dataset::Dataset;
 use crate::model::Model;
 use crate::work::{Watch, watched};
-use crate::{probability, refused};
+use crate::{json, probability, refused};
 
 /// Numbers of simulated tests that a p-value may come from.
 const DRAWS: std::ops::RangeInclusive<usize> = 99..=99_999;
@@ -32,14 +33,14 @@ pub fn compare(
     shared.nominal_robot().map_err(refused)?;
     let given = models.into_iter().map(|(name, model)| Ok((name, model.of_data(py, &shared)?)));
     let given: Vec<_> = given.collect::<PyResult<_>>()?;
-    let document = watched(py, threads, None, move |_| -> Result<_, FitError> {
+    let found = watched(py, threads, None, move |_| -> Result<_, FitError> {
         let models = if given.is_empty() { comparing::usual_models(&shared, &options)? } else { given };
         Ok(match comparing::compare(&shared, &models, &options)? {
-            Compared::Ends(comparison) => document::comparison(&comparison, &options),
-            Compared::Tracks(comparison) => document::track_comparison(&comparison, &options),
+            Compared::Ends(comparison) => json(&Comparison::new(&comparison, &options)),
+            Compared::Tracks(comparison) => json(&TrackComparison::new(&comparison, &options)),
         })
     })?;
-    Ok(document.map_err(refused)?.to_string())
+    found.map_err(refused)?
 }
 
 /// What a model is missing, and the model with its free parameters fitted.
@@ -56,7 +57,7 @@ pub fn diagnose(
     let model = asked(py, data, model)?;
     let shared = Arc::clone(&data.0);
     let diagnosis = watched(py, threads, None, move |_| core::diagnose(&shared, &model, &options))?.map_err(refused)?;
-    Ok((document::diagnosis(&diagnosis, &options).to_string(), diagnosis.model.into()))
+    Ok((json(&result::Diagnosis::new(&diagnosis, &options))?, diagnosis.model.into()))
 }
 
 /// A model with its free effects fitted, those of `add` too.
@@ -80,7 +81,7 @@ pub fn fit(
     }
     let shared = Arc::clone(&data.0);
     let fitted = watched(py, 1, None, move |_| evidence::fit(&shared, &model))?.map_err(refused)?;
-    Ok((document::fitted(&fitted, level).to_string(), fitted.model.into()))
+    Ok((json(&result::Fitted::new(&fitted, level))?, fitted.model.into()))
 }
 
 /// The whole loop, from a model where one is given, and the model that was learnt.
@@ -102,7 +103,7 @@ pub fn learn(
     };
     let work = move |told: &Watch| told.work(|watch| learning::learn_from(&shared, &start, &options, watch));
     let learnt = watched(py, threads, progress, work)?.map_err(refused)?;
-    Ok((document::learnt(&learnt, &options).to_string(), learnt.model.into()))
+    Ok((json(&result::Learnt::new(&learnt, &options))?, learnt.model.into()))
 }
 
 /// The model that is asked about, the usual first one where none is given.

@@ -1,13 +1,15 @@
 //! The catalogue of effects.
 
 use pyo3::prelude::*;
-use umbmark_core::document;
 use umbmark_core::effect::{CATALOGUE, Formula};
+use umbmark_core::result::Effect;
 
-/// The catalogue, as a document.
+use crate::json;
+
+/// The catalogue.
 #[pyfunction]
-pub fn effects() -> String {
-    serde_json::Value::Array(CATALOGUE.iter().copied().map(document::about).collect()).to_string()
+pub fn effects() -> PyResult<String> {
+    json(&CATALOGUE.iter().copied().map(Effect::from).collect::<Vec<_>>())
 }
 
 /// The names of what formulas may depend on.

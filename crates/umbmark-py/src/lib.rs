@@ -1,7 +1,7 @@
 //! Python bindings: the extension module `umbmark._umbmark`, which the package `umbmark` makes comfortable.
 //!
 //! One file for each room of `umbmark-core` that Python sees, and two for `umbmark-plot`. Robots, paths, models and datasets are frozen classes here.
-//! Results cross as the documents that `--json` prints ([`umbmark_core::document`]); the package decodes them into typed
+//! Results cross as the documents that `--json` prints ([`umbmark_core::result`]); the package decodes them into typed
 //! classes. Every call has three steps: arguments are read under the interpreter lock, the work runs without it (`work`),
 //! and its result is handed over.
 
@@ -122,7 +122,12 @@ fn probability(name: &str, value: f64) -> PyResult<()> {
     Err(PyValueError::new_err(format!("{name} must be between 0 and 1, both excluded, got {value}")))
 }
 
-/// A document as Python's own dicts, lists and numbers.
-fn as_python<'py>(py: Python<'py>, document: &serde_json::Value) -> PyResult<Bound<'py, PyAny>> {
-    py.import("json")?.call_method1("loads", (document.to_string(),))
+/// A result as the document that the package decodes.
+fn json(result: &impl serde::Serialize) -> PyResult<String> {
+    serde_json::to_string(result).map_err(refused)
+}
+
+/// A result as Python's own dicts, lists and numbers.
+fn as_python<'py>(py: Python<'py>, result: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
+    py.import("json")?.call_method1("loads", (json(result)?,))
 }

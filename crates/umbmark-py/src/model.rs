@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use toml::{Table, Value};
 use umbmark_core::monte_carlo::Draw;
-use umbmark_core::{dataset, document, drive, effect};
+use umbmark_core::{dataset, drive, effect, result};
 use umbmark_io::ModelFile;
 
 use crate::robot::Robot;
@@ -149,9 +149,9 @@ impl Model {
         ModelFile { model, draws, conversion: None }.text()
     }
 
-    /// Give its effects, as documents of results have them.
+    /// Give its effects, as results have them.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        as_python(py, &document::model(&self.model))
+        as_python(py, &result::Model::from(&self.model))
     }
 
     fn __repr__(&self) -> String {

@@ -9,11 +9,10 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use serde_json::{Map, Value};
-use umbmark_core::document::{self, Theory, Told};
 use umbmark_core::engine::Update;
 use umbmark_core::monte_carlo::{self as core, Batch, Metric, Shard, Statistics};
 use umbmark_core::replay::check_on_path;
+use umbmark_core::result::{self, MonteCarlo, NoiseFree, Told};
 use umbmark_core::simulate::{Odometry, Phase};
 use umbmark_io::checkpoint::Keeper;
 
@@ -21,7 +20,7 @@ use crate::checkpoint::{Place, unusable};
 use crate::model::Model;
 use crate::path::Path;
 use crate::work::{Watch, detached, watched, watched_to_its_end};
-use crate::{choice, refused};
+use crate::{choice, json, refused};
 
 const UPDATES: [(&str, Update); 3] = [("arc", Update::Arc), ("midpoint", Update::Midpoint), ("euler", Update::Euler)];
 const PHASES: [(&str, Phase); 2] = [("random", Phase::Random), ("edge", Phase::Edge)];
@@ -55,7 +54,7 @@ const PHASES: [(&str, Phase); 2] = [("random", Phase::Random), ("edge", Phase::E
 #[pyclass(frozen, module = "umbmark")]
 pub struct Study {
     study: core::Study,
-    theory: Theory,
+    noise_free: NoiseFree,
     odometry: String,
     update: String,
     phase: String,
@@ -97,9 +96,9 @@ impl Study {
             ..base
         };
         check_on_path(&study.model, &study.path).map_err(refused)?;
-        let theory = Theory::of(&study).map_err(refused)?;
+        let noise_free = NoiseFree::of(&study).map_err(refused)?;
         let [odometry, update, phase] = [odometry, update, phase].map(str::to_owned);
-        Ok(Study { study, theory, odometry, update, phase })
+        Ok(Study { study, noise_free, odometry, update, phase })
     }
 
     /// Number of trials.
@@ -232,8 +231,8 @@ impl Study {
     }
 
     /// The document of an ensemble of this study.
-    fn _document(&self, ensemble: &Ensemble, partial: bool, trials_per_s: Option<f64>) -> String {
-        document::ensemble(&ensemble.0, self.study.seed, partial, trials_per_s, &self.told()).to_string()
+    fn _document(&self, ensemble: &Ensemble, partial: bool, trials_per_s: Option<f64>) -> PyResult<String> {
+        json(&MonteCarlo::new(&ensemble.0, self.study.seed, partial, trials_per_s, &self.told()))
     }
 
     fn __repr__(&self) -> String {
@@ -263,11 +262,11 @@ impl Study {
 
 impl Study {
     /// What it is.
-    fn told(&self) -> Map<String, Value> {
+    fn told(&self) -> result::Study {
         let noisy = self.study.model.get("wheel_noise", "k_sqrt_m").is_some();
         let assumed: Vec<String> = (!noisy).then(|| "no wheel noise".to_owned()).into_iter().collect();
         let told = Told { assumed: &assumed, ..Told::default() };
-        document::study(&self.study, &self.theory, &told)
+        result::Study::new(&self.study, &self.noise_free, &told)
     }
 
     /// The study itself.

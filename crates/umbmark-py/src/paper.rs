@@ -2,22 +2,23 @@
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use serde_json::{Map, Value, json};
 use umbmark_core::paper::{self as core, Bench, PaperError};
+use umbmark_core::result::Paper;
 
 use crate::work::{Watch, watched};
-use crate::{choice, refused};
+use crate::{choice, json, refused};
 
-type Experiment = fn(&Bench) -> Result<Value, PaperError>;
+/// Adds what an experiment found.
+type Experiment = fn(&Bench, &mut Paper) -> Result<(), PaperError>;
 
 const EXPERIMENTS: [(&str, Experiment); 7] = [
-    ("table_1", |bench| Ok(json!(core::table_one(bench)?))),
-    ("table_2", |bench| Ok(json!(core::table_two(bench)?))),
-    ("figure_2", |_| Ok(json!(core::masking()?))),
-    ("figure_5", |bench| Ok(json!(core::clusters(bench.seed)?))),
-    ("figure_6", |_| Ok(json!(core::bump_places()?))),
-    ("figure_eight", |_| Ok(json!(core::figure_eight()?))),
-    ("rectangle", |_| Ok(json!(core::rectangle()?))),
+    ("table_1", |bench, all| core::table_one(bench).map(|found| all.table_1 = Some(found))),
+    ("table_2", |bench, all| core::table_two(bench).map(|found| all.table_2 = Some(found))),
+    ("figure_2", |_, all| core::masking().map(|found| all.figure_2 = Some(found))),
+    ("figure_5", |bench, all| core::clusters(bench.seed).map(|found| all.figure_5 = Some(found))),
+    ("figure_6", |_, all| core::bump_places().map(|found| all.figure_6 = Some(found))),
+    ("figure_eight", |_, all| core::figure_eight().map(|found| all.figure_eight = Some(found))),
+    ("rectangle", |_, all| core::rectangle().map(|found| all.rectangle = Some(found))),
 ];
 
 /// Tests of each robot that a table may be made of.
@@ -42,14 +43,11 @@ pub fn paper(
     }
     let found = watched(py, threads, progress, move |told: &Watch| {
         let wanted = |name: &str| names.is_empty() || names.iter().any(|known| known == name);
-        let mut document = Map::new();
-        for (name, experiment) in EXPERIMENTS.iter().filter(|(name, _)| wanted(name)) {
-            let found = told.work(|watch| experiment(&Bench { trials, seed, watch }))?;
-            document.insert((*name).to_owned(), found);
+        let mut found = Paper::new(seed);
+        for (_, experiment) in EXPERIMENTS.iter().filter(|(name, _)| wanted(name)) {
+            told.work(|watch| experiment(&Bench { trials, seed, watch }, &mut found))?;
         }
-        document.insert("seed".to_owned(), json!(seed));
-        document.insert("version".to_owned(), json!(umbmark_core::VERSION));
-        Ok::<_, PaperError>(Value::Object(document).to_string())
+        Ok::<_, PaperError>(found)
     })?;
-    found.map_err(refused)
+    json(&found.map_err(refused)?)
 }

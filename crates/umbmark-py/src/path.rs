@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use toml::{Table, Value};
 use umbmark_core::path::{Direction, SHAPES};
-use umbmark_core::{document, drive, path};
+use umbmark_core::{drive, path, result};
 use umbmark_io::RobotFile;
 
 use crate::{as_python, choice, keys};
@@ -76,9 +76,9 @@ impl Path {
         SHAPES.iter().map(|shape| (shape.name, shape.about)).into_py_dict(py)
     }
 
-    /// Give shape, sizes in m and length in m, as documents of results have them.
+    /// Give shape, sizes in m and length in m, as results have them.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        as_python(py, &document::path(&self.0))
+        as_python(py, &result::PathFacts::from(&self.0))
     }
 
     /// Name of its shape.

@@ -6,9 +6,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_core::dataset::Dataset as CoreDataset;
 use umbmark_core::diagnose::{Options, first_model, separating};
-use umbmark_core::document;
 use umbmark_core::path::Path as CorePath;
 use umbmark_core::plan::{Measured, Order, PlanError, Protocol, Request, Setting, Sought, expected_dataset};
+use umbmark_core::result;
 use umbmark_core::stats::Interval;
 
 use crate::dataset::Dataset;
@@ -16,7 +16,7 @@ use crate::diagnose::options_of;
 use crate::model::Model;
 use crate::path::Path;
 use crate::work::{Watch, watched};
-use crate::{choice, probability, refused};
+use crate::{choice, json, probability, refused};
 
 const ORDERS: [(&str, Order); 3] =
     [("mirrored", Order::Mirrored), ("alternating", Order::Alternating), ("blocks", Order::Blocks)];
@@ -109,10 +109,11 @@ pub fn plan(
         let request = Request { runs, see: &see, power, numbers: &numbers, sigma_interval, options };
         let findings = told.work(|watch| request.findings(&setting, watch))?;
         let sheet = Protocol::new(&setting, runs, order, setting.bumps());
-        let document = document::plan(&setting, &request, &findings, &assumed);
-        Ok((document.to_string(), sheet.markdown(), sheet.html()))
+        let found = result::Plan::new(&setting, &request, &findings, &assumed);
+        Ok((found, sheet))
     };
-    watched(py, threads, progress, work)?.map_err(refused)
+    let (found, sheet) = watched(py, threads, progress, work)?.map_err(refused)?;
+    Ok((json(&found)?, sheet.markdown(), sheet.html()))
 }
 
 /// Experiments that tell two effects apart, together with the data or a planned test.
@@ -140,7 +141,7 @@ pub fn separate(
             }
         };
         let ranked = separating(&data, &first_model(&data)?, names)?;
-        Ok(document::separation(names, &beside, &ranked, &options).to_string())
+        Ok(result::Separation::new(names, &beside, &ranked, &options))
     };
-    watched(py, threads, None, work)?.map_err(refused)
+    json(&watched(py, threads, None, work)?.map_err(refused)?)
 }

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use pyo3::prelude::*;
-use serde_json::json;
+use umbmark_core::result::Report;
 use umbmark_io::whole_file::WholeFile;
-use umbmark_plot::page::{Origin, Provenance, notices, page, verdict};
+use umbmark_plot::page::{Origin, Provenance, page, said};
 use umbmark_plot::study::Study;
 
 use crate::figure::{Asked, options, study};
 use crate::work::{Watch, watched};
-use crate::{existing, refused, unwritten};
+use crate::{existing, json, refused, unwritten};
 
 /// The page of one study or of two side by side, and its document. `call` is how Python asked, `places` what it read.
 #[pyfunction]
@@ -36,16 +36,16 @@ pub fn report(
             let _ = told.work(|watch| study.learn(watch.progress).is_ok());
         }
         let html = page(&studies, &provenance, |_| ())?;
-        let said = |study: &Study| json!({ "name": study.name, "notices": notices(study), "verdict": verdict(study) });
-        let document = json!({
-            "bytes": html.len(),
-            "studies": studies.iter().map(said).collect::<Vec<_>>(),
-            "seed": seed,
-            "version": umbmark_core::VERSION,
-        });
-        Ok::<_, umbmark_plot::page::PageError>((document.to_string(), html))
+        let report = Report {
+            bytes: html.len(),
+            studies: studies.iter().map(said).collect(),
+            seed,
+            version: umbmark_core::VERSION,
+        };
+        Ok::<_, umbmark_plot::page::PageError>((report, html))
     })?;
-    made.map_err(refused)
+    let (report, html) = made.map_err(refused)?;
+    Ok((json(&report)?, html))
 }
 
 /// Writes a file, whole or not at all.

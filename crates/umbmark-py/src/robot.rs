@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use toml::{Table, Value};
-use umbmark_core::{document, drive};
+use umbmark_core::{drive, result};
 use umbmark_io::RobotFile;
 
 use crate::{as_python, keys, refused};
@@ -76,9 +76,9 @@ impl Robot {
         RobotFile::new(self.0.clone(), None).text()
     }
 
-    /// Give its keys and values, as documents of results have them.
+    /// Give its keys and values, as results have them.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        as_python(py, &document::robot(&self.0))
+        as_python(py, &result::RobotFacts::from(&self.0))
     }
 
     /// What people call it.

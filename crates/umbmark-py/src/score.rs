@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use umbmark_core::dataset::ReturnError;
-use umbmark_core::document;
+use umbmark_core::result;
 use umbmark_core::score::{self as core, Convention, ScoreError};
 
 use crate::arrays::ReturnErrors;
 use crate::dataset::Dataset;
 use crate::work::{detached, watched};
-use crate::{choice, refused};
+use crate::{choice, json, refused};
 
 const CONVENTIONS: [(&str, Convention); 2] = [("mean", Convention::Mean), ("sum", Convention::Sum)];
 
@@ -39,7 +39,7 @@ pub fn score_arrays(
         let [cw, ccw, bumps_cw, bumps_ccw] = all;
         core::score_returns([cw, ccw], [bumps_cw, bumps_ccw], level)
     })?;
-    Ok(document::score(&score.map_err(refused)?, convention).to_string())
+    json(&result::Score::new(&score.map_err(refused)?, convention))
 }
 
 /// The score of a dataset.
@@ -50,7 +50,7 @@ pub fn score_dataset(py: Python<'_>, data: &Dataset, level: f64, convention: &st
     let mut score = watched(py, 1, None, move |_| core::score_dataset(&shared, level))?.map_err(refused)?;
     let noticed = score.setup.notices().len();
     score.warnings.splice(noticed..noticed, data.0.warnings.iter().cloned());
-    Ok(document::score(&score, convention).to_string())
+    json(&result::Score::new(&score, convention))
 }
 
 /// Refuses a return error that is no number, its run named as Python would index it.

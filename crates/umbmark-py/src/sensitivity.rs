@@ -5,8 +5,8 @@ use std::sync::Arc;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use umbmark_core::document::{self, Asked, Found};
 use umbmark_core::monte_carlo::{Distribution, Quantity};
+use umbmark_core::result::{Asked, Found, Sensitivity};
 use umbmark_core::sensitivity::{
     Correlation, Inputs, Noise, SensitivityError, SobolDesign, SobolOptions, SobolSums, Tests, local_derivatives,
     screen, sobol_indices,
@@ -14,7 +14,7 @@ use umbmark_core::sensitivity::{
 
 use crate::monte_carlo::Study;
 use crate::work::watched;
-use crate::{choice, parameters, refused};
+use crate::{choice, json, parameters, refused};
 
 #[derive(Clone, Copy)]
 enum Method {
@@ -72,7 +72,7 @@ impl Varied {
         Ok(Varied { tests, parameters: varied, correlations, inputs, noise, seed: study.seed })
     }
 
-    fn document(&self, found: &Found) -> String {
+    fn result(&self, found: &Found) -> Sensitivity {
         let asked = Asked {
             varied: &self.parameters,
             correlations: &self.correlations,
@@ -81,7 +81,7 @@ impl Varied {
             noisy: self.noise == Noise::Simulated,
             assumed: &[],
         };
-        document::sensitivity(found, &asked).to_string()
+        Sensitivity::new(found, &asked)
     }
 }
 
@@ -111,9 +111,9 @@ pub fn sensitivity(
             Method::Morris => screen(tests, inputs, effort, *seed, watch).map(Found::Morris),
             Method::Local => local_derivatives(tests, inputs, effort, watch).map(Found::Local),
         })?;
-        Ok(varied.document(&found))
+        Ok(varied.result(&found))
     })?;
-    found.map_err(refused)
+    json(&found.map_err(refused)?)
 }
 
 /// Sobol indices in blocks that can be done anywhere.
@@ -162,6 +162,6 @@ impl Sobol {
         let Varied { tests, inputs, .. } = &*self.varied;
         let design = SobolDesign::new(tests, inputs, &self.options).map_err(refused)?;
         let sums = SobolSums::from_numbers(&design, numbers.as_slice()?);
-        Ok(self.varied.document(&Found::Sobol(design.indices(&sums).map_err(refused)?)))
+        json(&self.varied.result(&Found::Sobol(design.indices(&sums).map_err(refused)?)))
     }
 }

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use pyo3::prelude::*;
-use umbmark_core::document;
 use umbmark_core::monte_carlo::{Axis, Quantity, Sweep};
+use umbmark_core::result;
 use umbmark_io::checkpoint::Keeper;
 
 use crate::checkpoint::{Place, unusable};
 use crate::monte_carlo::Study;
-use crate::refused;
 use crate::work::{Watch, watched, watched_to_its_end};
+use crate::{json, refused};
 
 /// A study on every point of a grid; axes are (name, first, last, count), a checkpoint (file, resume, replace).
 #[pyfunction]
@@ -46,6 +46,6 @@ pub fn sweep(
         });
         done.map_err(refused)?;
         failure.map_or_else(|| keeper.keep_points(&sweep, &points), Err).map_err(unusable)?;
-        Ok(document::sweep(&sweep, &points, &[]).to_string())
+        json(&result::Sweep::new(&sweep, &points, &[]))
     })?
 }

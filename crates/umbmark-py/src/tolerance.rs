@@ -2,14 +2,14 @@
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use umbmark_core::document::{self, Wanted};
 use umbmark_core::monte_carlo::Metric;
+use umbmark_core::result::{self, Wanted};
 use umbmark_core::sensitivity::tolerance::{Target, Tolerances};
 use umbmark_core::sensitivity::{Noise, SensitivityError, Tests};
 
 use crate::monte_carlo::Study;
 use crate::work::watched;
-use crate::{parameters, probability, refused};
+use crate::{json, parameters, probability, refused};
 
 /// How many robots keep a target, and the cheapest grades that make it enough: the document, and the sizes of the robots as
 /// they are now, in order.
@@ -47,7 +47,8 @@ pub fn tolerance(
         let tolerances = Tolerances { tests: &tests, parameters, correlations: &correlations, robots, seed };
         let findings = told.work(|watch| tolerances.search(&target, watch))?;
         let wanted = Wanted { parameters, metric, target: &target, noise, seed, assumed: &[] };
-        Ok((document::tolerance(&findings, &wanted).to_string(), findings.now.robots.sizes().to_vec()))
+        Ok((result::Tolerance::new(&findings, &wanted), findings.now.robots.sizes().to_vec()))
     })?;
-    found.map_err(refused)
+    let (found, sizes) = found.map_err(refused)?;
+    Ok((json(&found)?, sizes))
 }

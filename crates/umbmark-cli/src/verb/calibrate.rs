@@ -9,9 +9,9 @@ use std::process::ExitCode;
 use anyhow::Context;
 use umbmark_core::calibrate::{Calibration, Estimate, Method, Options, RadiusWheelbase, Ratio, calibrate};
 use umbmark_core::dataset::Dataset;
-use umbmark_core::document;
 use umbmark_core::drive::Robot;
 use umbmark_core::evidence::Level;
+use umbmark_core::result;
 use umbmark_io::{RobotFile, export};
 
 use crate::Session;
@@ -112,7 +112,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let withheld = !calibration.doubts.is_empty() && !arguments.force;
     let written = if withheld { Vec::new() } else { export_files(&arguments, &data, robot, &calibration)? };
     if session.json() {
-        session.print_json(&document::calibration(robot, &calibration, arguments.intervals.level))?;
+        session.print_json(&result::Calibration::new(robot, &calibration, arguments.intervals.level))?;
         return told_what_is_withheld(&arguments, withheld);
     }
     for warning in &calibration.warnings {

@@ -9,8 +9,8 @@ use umbmark_core::compare::{
 };
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::Options;
-use umbmark_core::document;
 use umbmark_core::effect::Model;
+use umbmark_core::result;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
@@ -58,7 +58,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
 /// Says whether some model explains the data.
 fn on_return_poses(comparison: &Comparison, options: &Options, session: &mut Session) -> anyhow::Result<bool> {
     if session.json() {
-        session.print_json(&document::comparison(comparison, options))?;
+        session.print_json(&result::Comparison::new(comparison, options))?;
     } else {
         write!(session.out(), "{}", text(comparison, options))?;
     }
@@ -68,7 +68,7 @@ fn on_return_poses(comparison: &Comparison, options: &Options, session: &mut Ses
 /// Says whether some model explains the data.
 fn on_tracks(comparison: &TrackComparison, options: &Options, session: &mut Session) -> anyhow::Result<bool> {
     if session.json() {
-        session.print_json(&document::track_comparison(comparison, options))?;
+        session.print_json(&result::TrackComparison::new(comparison, options))?;
     } else {
         let terminal = session.on_terminal();
         write!(session.out(), "{}", tracks_report::text(comparison, options, terminal))?;

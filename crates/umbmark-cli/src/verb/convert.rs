@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use serde_json::{Value, json};
 use umbmark_core::dataset::{Dataset, RunClock};
-use umbmark_core::document::clock;
+use umbmark_core::result::Clock;
 use umbmark_core::stats::Measured;
 
 use crate::Session;
@@ -95,7 +95,7 @@ fn document(arguments: &OutputArguments, data: &Dataset, lost: &[String]) -> Val
         "output": arguments.output.display().to_string(),
         "layout": arguments.layout().name,
         "runs": data.runs.len(),
-        "clocks": data.clocks.iter().map(clock).collect::<Vec<Value>>(),
+        "clocks": data.clocks.iter().map(Clock::from).collect::<Vec<_>>(),
         "lost": lost,
         "warnings": data.warnings,
         "version": umbmark_core::VERSION,

@@ -8,8 +8,8 @@ use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{
     Detectable, Diagnosis, Experiment, GoodnessOfFit, Identifiability, Options, Suspect, Verdict, diagnose,
 };
-use umbmark_core::document;
 use umbmark_core::evidence::Level;
+use umbmark_core::result;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
@@ -52,7 +52,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         session.message("warning", warning);
     }
     if session.json() {
-        session.print_json(&document::diagnosis(&diagnosis, &options))?;
+        session.print_json(&result::Diagnosis::new(&diagnosis, &options))?;
     } else {
         let text = text(&data, &diagnosis, &options, session.on_terminal());
         write!(session.out(), "{text}")?;

@@ -4,10 +4,10 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use serde_json::{Value, json};
-use umbmark_core::document;
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::{ActsOn, CATALOGUE, Entry, Formula, FormulaVariable, find};
 use umbmark_core::parameter::{DefaultValue, Parameter};
+use umbmark_core::result::Effect;
 
 use crate::Session;
 use crate::prose::hanging;
@@ -28,15 +28,14 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         Some(name) => {
             let entry = find(name)?;
             let signature = Signature::of(entry)?;
-            let mut document = document::about(entry);
+            let mut document = json!(Effect::from(entry));
             document["picture"] = signature.as_ref().map_or(Value::Null, Signature::json);
             (document, explanation(entry, signature.as_ref()))
         }
         None => {
-            let entries: Vec<Value> = CATALOGUE.iter().copied().map(document::about).collect();
             let document = json!({
-                "effects": entries,
-                "formula_variables": document::formula_variables(),
+                "effects": CATALOGUE.iter().copied().map(Effect::from).collect::<Vec<_>>(),
+                "formula_variables": Formula::variables(),
                 "version": umbmark_core::VERSION,
             });
             (document, list())

@@ -4,9 +4,9 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use umbmark_core::document;
 use umbmark_core::evidence::{Fit, fit};
 use umbmark_core::likelihood::USUAL_NOISE;
+use umbmark_core::result;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
@@ -56,13 +56,13 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         write_model(model, file, arguments.force)?;
     }
     if session.json() {
-        session.print_json(&document::fitted(&fitted, arguments.intervals.level))?;
+        session.print_json(&result::Fitted::new(&fitted, arguments.intervals.level))?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &data.warnings {
         session.message("warning", warning);
     }
-    for effect in document::not_shown(model, estimates) {
+    for effect in result::not_shown(model, estimates) {
         let why = "this data does not show it apart from the rest of the model; it keeps its values";
         session.message("warning", &format!("{effect} was not fitted: {why}"));
     }

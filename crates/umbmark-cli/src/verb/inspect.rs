@@ -4,10 +4,10 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use umbmark_core::dataset::{Dataset, RunTopics};
-use umbmark_core::document;
 use umbmark_core::drive::Robot;
 use umbmark_core::inspect::{Determined, Group, Inspection, LogFacts, MovesFound};
 use umbmark_core::path::Direction;
+use umbmark_core::result;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
@@ -28,7 +28,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let data = arguments.data.load()?;
     let inspection = data.inspect();
     if session.json() {
-        session.print_json(&document::inspection(&arguments.data.data.display().to_string(), &data, &inspection))?;
+        session.print_json(&result::Inspection::new(&arguments.data.data.display().to_string(), &data, &inspection))?;
     } else {
         let text = text(&data, &inspection, session.on_terminal());
         write!(session.out(), "{text}")?;

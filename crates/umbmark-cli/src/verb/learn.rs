@@ -6,10 +6,10 @@ use std::process::ExitCode;
 
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Experiment, Options, Reason, Verdict};
-use umbmark_core::document;
 use umbmark_core::effect::Model;
 use umbmark_core::evidence::Level;
 use umbmark_core::learn::{Learnt, Step, learn_from};
+use umbmark_core::result;
 
 use super::diagnose::{experiment_text, in_words};
 use crate::Session;
@@ -66,7 +66,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         write_model(&learnt.model, file, arguments.force)?;
     }
     if session.json() {
-        session.print_json(&document::learnt(&learnt, &options))?;
+        session.print_json(&result::Learnt::new(&learnt, &options))?;
     } else {
         for warning in &data.warnings {
             session.message("warning", warning);

@@ -7,9 +7,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Context;
-use serde_json::{Map, Value};
-use umbmark_core::document::{self, Theory};
 use umbmark_core::monte_carlo::{Ensemble, Metric, Row, Shard, Statistics, Study};
+use umbmark_core::result::{self, NoiseFree, Told};
 use umbmark_io::checkpoint::{Keeper, Written};
 
 use crate::checkpoint_flags::{CheckpointFlags, with_remedy};
@@ -127,7 +126,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let took = Some((seconds, ensemble.trials() - before));
     let report = Report { study: told, seed: *seed, ensemble, partial, took };
     if session.json() {
-        session.print_json(&report.json())?;
+        session.print_json(&report.result())?;
     } else {
         let text = report.text(session.on_terminal());
         write!(session.out(), "{text}")?;
@@ -165,7 +164,7 @@ impl TrialsFile {
 }
 
 /// What the study is.
-fn describe(study: &Study, known: &Known) -> anyhow::Result<Map<String, Value>> {
-    let told = document::Told { sources: &known.sources, assumed: &known.assumed, published: known.published };
-    Ok(document::study(study, &Theory::of(study)?, &told))
+fn describe(study: &Study, known: &Known) -> anyhow::Result<result::Study> {
+    let told = Told { sources: &known.sources, assumed: &known.assumed, published: known.published };
+    Ok(result::Study::new(study, &NoiseFree::of(study)?, &told))
 }

@@ -38,7 +38,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let Written { seed, study, ensemble } = &merged;
     let report = Report { study, seed: *seed, ensemble, partial: !missing.is_empty(), took: None };
     if session.json() {
-        session.print_json(&report.json())?;
+        session.print_json(&report.result())?;
     } else {
         let text = report.text(session.on_terminal());
         write!(session.out(), "{text}")?;

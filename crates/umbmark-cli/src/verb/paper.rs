@@ -4,8 +4,8 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use serde_json::{Map, Value, json};
 use umbmark_core::paper::{self, Bench, BothWays, LinkError, PaperError, Place};
+use umbmark_core::result::Paper;
 use umbmark_core::watch::Watch;
 
 use crate::Session;
@@ -52,15 +52,8 @@ pub struct Arguments {
     trials: u64,
 }
 
-/// What an experiment found: for people, and as a document.
-struct Found {
-    /// Its key in the document.
-    key: &'static str,
-    text: String,
-    document: Value,
-}
-
-type Run = fn(&Bench) -> Result<Found, PaperError>;
+/// Adds what an experiment found, and gives it in words.
+type Run = fn(&Bench, &mut Paper) -> Result<String, PaperError>;
 
 const EXPERIMENTS: [(Experiment, Run); 7] = [
     (Experiment::TableOne, table_one),
@@ -75,24 +68,19 @@ const EXPERIMENTS: [(Experiment, Run); 7] = [
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let wanted = |experiment: Experiment| [experiment, Experiment::All].contains(&arguments.experiment);
     let (trials, seed) = (arguments.trials, session.seed());
-    let mut found = Vec::new();
+    let (mut found, mut texts) = (Paper::new(seed), Vec::new());
     for (_, run) in EXPERIMENTS.iter().filter(|(experiment, _)| wanted(*experiment)) {
-        let told = session.told("per mille of the tests", |progress| {
+        let text = session.told("per mille of the tests", |progress| {
             let stop = AtomicBool::new(false);
-            run(&Bench { trials, seed, watch: &Watch { stop: &stop, progress } })
+            run(&Bench { trials, seed, watch: &Watch { stop: &stop, progress } }, &mut found)
         });
-        found.push(told??);
+        texts.push(text??);
     }
     if session.json() {
-        let mut document: Map<String, Value> =
-            found.into_iter().map(|found| (found.key.to_owned(), found.document)).collect();
-        document.insert("seed".to_owned(), json!(seed));
-        document.insert("version".to_owned(), json!(umbmark_core::VERSION));
-        session.print_json(&Value::Object(document))?;
-        return Ok(ExitCode::SUCCESS);
+        session.print_json(&found)?;
+    } else {
+        writeln!(session.out(), "{}", texts.join("\n\n\n"))?;
     }
-    let texts: Vec<String> = found.into_iter().map(|found| found.text).collect();
-    writeln!(session.out(), "{}", texts.join("\n\n\n"))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -108,8 +96,8 @@ fn cells(place: &Place, factor: f64) -> Vec<String> {
     ]
 }
 
-fn table_one(bench: &Bench) -> Result<Found, PaperError> {
-    let found = paper::table_one(bench)?;
+fn table_one(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
+    let found = all.table_1.insert(paper::table_one(bench)?);
     let (mut rows, mut notes) = (Vec::new(), String::new());
     for row in &found.rows {
         let mut words = vec![row.row.to_owned()];
@@ -123,18 +111,17 @@ fn table_one(bench: &Bench) -> Result<Found, PaperError> {
     let error = |e: &LinkError| format!("  {} of {} off by {:.2e}\n", e.parameter, e.effect, e.size);
     let would: String = found.clapper_would_take.iter().map(error).collect();
     let header = ["Table I", "E_max,sys [mm]", "simulated", "middle 95 %", "below it", "sigma [mm]", "simulated"];
-    let text = format!(
+    Ok(format!(
         "{}\n\n{} simulated tests of each. \"below it\": the share of them below the published E_max,sys.\n\
          The CLAPPER's 22 mm are more than noise of its published sigma makes (2.71 sigma/sqrt(5) = 13 mm at most in 95 %): they are\n\
          systematic, the paper does not say of what, and nothing was invented to make them. Each of these alone would:\n{would}{notes}",
         table(&header, rows),
         found.trials
-    );
-    Ok(Found { key: "table_1", text, document: json!(found) })
+    ))
 }
 
-fn table_two(bench: &Bench) -> Result<Found, PaperError> {
-    let found = paper::table_two(bench)?;
+fn table_two(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
+    let found = all.table_2.insert(paper::table_two(bench)?);
     let rows = found.columns.iter().map(|column| {
         let exactly = column.heading_noise_rad == 0.0;
         let robot = if exactly { column.robot.to_owned() } else { format!("{}, +-0.4 deg", column.robot) };
@@ -146,7 +133,7 @@ fn table_two(bench: &Bench) -> Result<Found, PaperError> {
     });
     let header = ["Table II [deg]", "printed", "recomputed", "simulated", "middle 95 %", "below it", "its runs"];
     let (on, off) = (found.clapper_corrected_rad, found.clapper_uncorrected_rad);
-    let text = format!(
+    Ok(format!(
         "{}\n\n{} simulated tests of each, ten bumps of 10 mm under the inside wheel on the first leg.\n\
          recomputed: half of Eq. (5), the mean over all runs, from the printed headings; the printed 8.35 of the LabMate needs\n\
          its two systematic means exchanged. \"its runs\": the least and the largest deviation of a single run.\n\
@@ -160,8 +147,7 @@ fn table_two(bench: &Bench) -> Result<Found, PaperError> {
         off.to_degrees(),
         on.to_degrees(),
         off / on
-    );
-    Ok(Found { key: "table_2", text, document: json!(found) })
+    ))
 }
 
 /// Distances and headings, ccw and cw.
@@ -178,24 +164,23 @@ fn both_ways(rows: &[BothWays]) -> String {
 }
 
 /// Figs. 2 to 4.
-fn masking(_: &Bench) -> Result<Found, PaperError> {
-    let found = paper::masking()?;
-    let text = format!(
+fn masking(_: &Bench, all: &mut Paper) -> Result<String, PaperError> {
+    let found = all.figure_2.insert(paper::masking()?);
+    Ok(format!(
         "Figures 2 to 4: errors that compensate for each other in one direction\n\n{}\n\nE_d = {:.5}, E_b = {:.5}, LabMate, 4 x 4 m, \
          exact kinematics without noise",
         both_ways(&found.rows),
         found.e_d,
         found.e_b
-    );
-    Ok(Found { key: "figure_2", text, document: json!(found) })
+    ))
 }
 
 /// Fig. 5: one test of the uncalibrated LabMate.
-fn clusters(bench: &Bench) -> Result<Found, PaperError> {
-    let found = paper::clusters(bench.seed)?;
+fn clusters(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
+    let found = all.figure_5.insert(paper::clusters(bench.seed)?);
     let mm = |v: f64| format!("{:.0}", v * 1e3);
     let mut rows = Vec::new();
-    for cluster in &found {
+    for cluster in found.iter() {
         let name = cluster.direction;
         for (number, [x, y]) in cluster.returns_m.iter().enumerate() {
             rows.push(vec![format!("{name} {}", number + 1), mm(*x), mm(*y), String::new()]);
@@ -203,45 +188,41 @@ fn clusters(bench: &Bench) -> Result<Found, PaperError> {
         let [x, y] = cluster.centre_m;
         rows.push(vec![format!("{name} centre of gravity"), mm(x), mm(y), mm(cluster.r_m)]);
     }
-    let text = format!(
+    Ok(format!(
         "Figure 5: return positions of one test, trc-labmate-nocal, seed {}\n\n{}",
         bench.seed,
         table(&["", "ex [mm]", "ey [mm]", "r [mm]"], rows)
-    );
-    Ok(Found { key: "figure_5", text, document: json!(found) })
+    ))
 }
 
 /// Fig. 6: ten bumps at the beginning of the first leg, all along it, and at its end.
-fn bump_places(_: &Bench) -> Result<Found, PaperError> {
-    let found = paper::bump_places()?;
+fn bump_places(_: &Bench, all: &mut Paper) -> Result<String, PaperError> {
+    let found = all.figure_6.insert(paper::bump_places()?);
     let rows = found.iter().map(|place| {
         let shift = format!("{:.0}", place.return_position_m * 1e3);
         vec![place.bumps.to_owned(), shift, format!("{:.2}", place.return_heading_rad.to_degrees())]
     });
-    let text = format!(
+    Ok(format!(
         "Figure 6: ten 10 mm bumps on the first leg, ccw, LabMate, exact kinematics without noise\n\n{}",
         table(&["", "return position [mm]", "return heading [deg]"], rows)
-    );
-    Ok(Found { key: "figure_6", text, document: json!(found) })
+    ))
 }
 
 /// What a figure-eight shows of E_d and E_b.
-fn figure_eight(_: &Bench) -> Result<Found, PaperError> {
-    let found = paper::figure_eight()?;
-    let text = format!(
+fn figure_eight(_: &Bench, all: &mut Paper) -> Result<String, PaperError> {
+    let found = all.figure_eight.insert(paper::figure_eight()?);
+    Ok(format!(
         "Section 3.1: the figure-eight (two circles of 2 m) hides E_d from a tape measure and E_b from a compass,\n\
          whichever way it is driven: with positions alone it has the shortcoming that the paper says, with headings it has not\n\n{}",
-        both_ways(&found)
-    );
-    Ok(Found { key: "figure_eight", text, document: json!(found) })
+        both_ways(found)
+    ))
 }
 
 /// The 7 x 4 m rectangle beside the square.
-fn rectangle(_: &Bench) -> Result<Found, PaperError> {
-    let found = paper::rectangle()?;
-    let text = format!(
+fn rectangle(_: &Bench, all: &mut Paper) -> Result<String, PaperError> {
+    let found = all.rectangle.insert(paper::rectangle()?);
+    Ok(format!(
         "Section 4.5: the rectangle instead of the square, trc-labmate-nocal, exact kinematics without noise\n\n{}",
-        both_ways(&found)
-    );
-    Ok(Found { key: "rectangle", text, document: json!(found) })
+        both_ways(found)
+    ))
 }

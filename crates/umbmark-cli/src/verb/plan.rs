@@ -7,9 +7,9 @@ use std::process::ExitCode;
 use anyhow::Context;
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{first_model, separating};
-use umbmark_core::document;
 use umbmark_core::effect::CATALOGUE;
 use umbmark_core::plan::{Measured, Options, Order, Protocol, Request, Setting, Sought, expected_dataset};
+use umbmark_core::result;
 use umbmark_core::stats::Interval;
 
 use crate::files::Pending;
@@ -18,7 +18,7 @@ use crate::plan_report::{Known, Report, Separation};
 use crate::setup::{Directions, Setup, SetupFlags};
 use crate::{Session, plan_report};
 
-/// Numbers of runs a direction that documents tell of.
+/// Numbers of runs a direction that results tell of.
 const RUNS: std::ops::RangeInclusive<usize> = 3..=30;
 
 /// The order in which runs are driven.
@@ -124,8 +124,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         }
         let separation = session.on_threads(|| arguments.separation(data.as_ref(), session.seed()))??;
         let [a, b] = &separation.pair;
-        let document = document::separation([a, b], &separation.after, &separation.experiments, &options);
-        return answer(session, separation.text(), &document);
+        let found = result::Separation::new([a, b], &separation.after, &separation.experiments, &options);
+        return answer(session, separation.text(), &found);
     }
     let (setting, known, sigma_interval) =
         session.on_threads(|| arguments.setting(data.as_ref(), session.seed()))??;
@@ -141,13 +141,13 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     }
     let report =
         Report { summary: &sheet.summary, setting: &setting, known: &known, request: &request, findings: &findings };
-    let document = document::plan(&setting, &request, &findings, &known.assumed);
-    answer(session, plan_report::text(&report), &document)
+    let found = result::Plan::new(&setting, &request, &findings, &known.assumed);
+    answer(session, plan_report::text(&report), &found)
 }
 
-fn answer(session: &mut Session, text: String, document: &serde_json::Value) -> anyhow::Result<ExitCode> {
+fn answer(session: &mut Session, text: String, found: &impl serde::Serialize) -> anyhow::Result<ExitCode> {
     if session.json() {
-        session.print_json(document)?;
+        session.print_json(found)?;
     } else {
         write!(session.out(), "{text}")?;
     }

@@ -6,8 +6,9 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use serde_json::json;
+use umbmark_core::result::Said;
 use umbmark_plot::kind::KINDS;
-use umbmark_plot::page::{Origin, Provenance, notices, page, verdict};
+use umbmark_plot::page::{Origin, Provenance, page, said};
 use umbmark_plot::study::Study;
 
 use crate::Session;
@@ -80,24 +81,24 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if partial {
         session.message("partial", "stopped before all was worked out; the page says what is missing");
     }
+    let verdicts: Vec<Said> = studies.iter().map(said).collect();
     if session.json() {
-        let told = |study: &Study| json!({ "name": study.name, "notices": notices(study), "verdict": verdict(study) });
         session.print_json(&json!({
             "output": output,
             "bytes": text.len(),
-            "studies": studies.iter().map(told).collect::<Vec<_>>(),
+            "studies": verdicts,
             "partial": partial,
             "seed": session.seed(),
             "version": umbmark_core::VERSION,
         }))?;
         return Ok(ExitCode::SUCCESS);
     }
-    for study in &studies {
-        let name = if studies.len() > 1 { format!("{}: ", study.name) } else { String::new() };
-        for notice in notices(study) {
+    for said in &verdicts {
+        let name = if verdicts.len() > 1 { format!("{}: ", said.name) } else { String::new() };
+        for notice in &said.notices {
             write!(session.out(), "{}", hanging("LOOK", 6, &format!("{name}{notice}")))?;
         }
-        write!(session.out(), "{}", hanging("", 0, &format!("{name}{}", verdict(study))))?;
+        write!(session.out(), "{}", hanging("", 0, &format!("{name}{}", said.verdict)))?;
     }
     writeln!(session.out(), "\nwrote {output} ({:.1} MB)", text.len() as f64 / 1e6)?;
     Ok(ExitCode::SUCCESS)

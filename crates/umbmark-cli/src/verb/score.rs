@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use umbmark_core::document;
+use umbmark_core::result;
 use umbmark_core::score::{Cluster, Convention, Score, score_dataset};
 use umbmark_core::stats::Interval;
 use umbmark_plot::kind::of_score;
@@ -51,7 +51,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         ConventionKind::Sum => Convention::Sum,
     };
     if session.json() {
-        session.print_json(&document::score(&score, convention))?;
+        session.print_json(&result::Score::new(&score, convention))?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &score.warnings {

@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use umbmark_core::document::Found;
 use umbmark_core::monte_carlo::Metric;
+use umbmark_core::result::Found;
 use umbmark_core::sensitivity::{Inputs, Noise, SobolOptions, Tests, local_derivatives, screen, sobol_indices};
 
 use crate::Session;
@@ -84,7 +84,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         session.message("partial", "stopped before all tests that were asked for");
     }
     if session.json() {
-        session.print_json(&report.json())?;
+        session.print_json(&report.result())?;
     } else {
         write!(session.out(), "{}", report.text())?;
     }

@@ -3,10 +3,10 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use serde_json::{Value, json};
-use umbmark_core::document;
+use serde_json::json;
 use umbmark_core::effect::TestKind;
 use umbmark_core::monte_carlo::draw_parameters;
+use umbmark_core::result::SimulatedRun;
 use umbmark_core::simulate::{is_extended, record_test};
 
 use crate::Session;
@@ -77,7 +77,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         session.message("lost", text);
     }
     if session.json() {
-        let runs: Vec<Value> = dataset.runs.iter().map(document::run).collect();
+        let runs: Vec<SimulatedRun> = dataset.runs.iter().map(SimulatedRun::from).collect();
         session.print_json(&json!({
             "output": arguments.output.output.display().to_string(),
             "layout": arguments.output.layout().name,

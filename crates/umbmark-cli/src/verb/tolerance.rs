@@ -4,8 +4,8 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use umbmark_core::document::{self, Wanted};
 use umbmark_core::monte_carlo::Metric;
+use umbmark_core::result::{self, Wanted};
 use umbmark_core::sensitivity::tolerance::{Choice, Findings, Target, Tolerances};
 use umbmark_core::sensitivity::{Correlation, Noise, Tests};
 use umbmark_io::{ParameterFile, read_parameters};
@@ -92,7 +92,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
             seed: session.seed(),
             assumed: &assumed,
         };
-        session.print_json(&document::tolerance(&findings, &wanted))?;
+        session.print_json(&result::Tolerance::new(&findings, &wanted))?;
     } else {
         let text = report.text(arguments.with_noise, session.on_terminal())
             + &format!("\nseed {}, umbmark {}\n", session.seed(), umbmark_core::VERSION);

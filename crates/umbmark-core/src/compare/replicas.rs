@@ -1,7 +1,6 @@
 //! Simulated tests of the same size, and where measured statistics lie among them.
 
-use super::Statistic;
-use super::statistics::Quantity;
+use super::statistics::{Quantity, Statistic};
 use crate::dataset::ReturnError;
 use crate::diagnose::Options;
 use crate::effect::{Model, TestKind};

@@ -1,6 +1,22 @@
 //! The statistics of a test of return poses.
 
+use crate::path::Direction;
 use nalgebra::Vector3;
+
+/// A statistic of the measured test beside what a model predicts for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statistic {
+    /// Of the runs.
+    pub direction: Direction,
+    /// What it is.
+    pub quantity: Quantity,
+    /// As measured \[m, rad or 1\].
+    pub measured: f64,
+    /// As predicted: for spreads and correlations, the middle of the simulated tests.
+    pub predicted: f64,
+    /// How often simulated tests are as far from the prediction.
+    pub p: f64,
+}
 
 /// What is compared, for each direction of driving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

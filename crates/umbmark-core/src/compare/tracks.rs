@@ -18,7 +18,7 @@ use crate::dataset::Dataset;
 use crate::diagnose::tracks::doubts_as_written;
 use crate::diagnose::{Options, Reason, Remains};
 use crate::effect::Model;
-use crate::evidence::{self, Evidence, FitError, robot_of};
+use crate::evidence::{self, Evidence, FitError};
 use crate::geometry::Pose2;
 use crate::inspect::moves_of;
 use crate::likelihood::{Observed, Taken};
@@ -128,14 +128,22 @@ pub fn compare_tracks(
     models: &[(String, Model)],
     options: &Options,
 ) -> Result<TrackComparison, FitError> {
-    let observed = evidence::tracks::of(data)?;
-    let robot = robot_of(data)?;
+    compare(&evidence::tracks::of(data)?, data, models, options)
+}
+
+/// Compares models with the tracks of a dataset.
+pub(super) fn compare(
+    observed: &Observed,
+    data: &Dataset,
+    models: &[(String, Model)],
+    options: &Options,
+) -> Result<TrackComparison, FitError> {
     for (_, model) in models {
-        model.check_robot(robot)?;
+        model.check_robot(&observed.robot)?;
         observed.check(model)?;
     }
     let judge = |(name, model): &(String, Model)| {
-        let (model, taken) = with_reference(&observed, model)?;
+        let (model, taken) = with_reference(observed, model)?;
         Ok(TracksJudged { taken, ..judge(name, data, &observed.along(&model), &model, options) })
     };
     let of = |direction| observed.runs.iter().filter(|run| run.direction == direction).count();
@@ -143,7 +151,7 @@ pub fn compare_tracks(
         runs: [of(Some(Direction::Cw)), of(Some(Direction::Ccw)), of(None)],
         poses: observed.runs.iter().map(|run| run.seen.len()).sum(),
         models: models.iter().map(judge).collect::<Result<_, FitError>>()?,
-        remarks: remarks(&observed),
+        remarks: remarks(observed),
         setup: Arc::clone(&observed.setup),
     })
 }

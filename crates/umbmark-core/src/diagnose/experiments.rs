@@ -8,7 +8,7 @@ pub(super) mod design;
 
 use super::ends::asked::Asked;
 use super::suspect::Suspect;
-use crate::effect::{Entry, Model, Number, find};
+use crate::effect::{Entry, Model, Number};
 use crate::evidence::FitError;
 use crate::evidence::ends::{Ends, Fitted, names};
 use crate::parameter::Parameter;
@@ -62,13 +62,15 @@ pub(super) fn next_experiments(
 /// scatter to judge by.
 ///
 /// Each effect is taken at its usual size, the hardest of those of its sizes that show at all; what the model has is fitted.
-pub(crate) fn separating(ends: &Ends, model: &Model, pair: [&str; 2]) -> Result<Vec<Experiment>, FitError> {
-    let [first, second] = [find(pair[0])?, find(pair[1])?];
-    let model = with_one_of(model, [first, second])?;
-    let fitted = Fitted::new(ends, &model)?;
+pub(crate) fn separating(
+    ends: &Ends,
+    model: &Model,
+    [first, second]: [&'static Entry; 2],
+) -> Result<Vec<Experiment>, FitError> {
+    let fitted = Fitted::new(ends, model)?;
     let mut sizes: Vec<SizeOf> = Vec::new();
     let of_both = [first, second].map(|entry| {
-        let numbers = entry.about.parameters.iter().filter(|p| p.choices().is_empty() && !has(&model, entry));
+        let numbers = entry.about.parameters.iter().filter(|p| p.choices().is_empty() && !has(model, entry));
         numbers
             .map(|parameter| {
                 sizes.push((entry, parameter));

@@ -391,6 +391,6 @@ fn a_typing_error_or_a_wrong_unit_is_never_explained() {
     let told = diagnose(&in_mm, &base(), &options).unwrap();
     assert_eq!(told.verdict, Verdict::NotExplained);
     assert!(matches!(told.reasons[..], [Reason::Fault(Fault::ReturnsIn { .. })]), "{:?}", told.reasons);
-    assert!(matches!(evidence::fit(&in_mm, &base()), Err(FitError::Faulty { .. })));
+    assert!(matches!(crate::evidence::fit(&in_mm, &base()), Err(FitError::Faulty { .. })));
     assert_eq!(crate::learn::learn(&in_mm, &options).unwrap().verdict, Verdict::NotExplained);
 }

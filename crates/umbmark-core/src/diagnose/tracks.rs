@@ -42,10 +42,10 @@ use super::diagnosis::{Diagnosis, Verdict};
 use super::experiments::{Experiment, worth};
 use super::options::Options;
 use super::suspect::Suspect;
-use crate::effect::Model;
+use crate::effect::{Entry, Model};
 use crate::evidence::FitError;
 use crate::evidence::tracks::fit;
-use crate::likelihood::{Fitted, Observed};
+use crate::likelihood::Observed;
 use crate::watch::Watch;
 
 pub(crate) use class::class_of_own;
@@ -93,8 +93,12 @@ pub(crate) fn diagnose(observed: &Observed, model: &Model, options: &Options) ->
 }
 
 /// Every drive on offer for telling two effects apart, together with these tracks.
-pub(crate) fn separating(fitted: Fitted, pair: [&'static str; 2]) -> Result<Vec<Experiment>, FitError> {
-    experiments::separating(&Examination::new(fitted)?, pair)
+pub(crate) fn separating(
+    observed: &Observed,
+    model: &Model,
+    pair: [&'static Entry; 2],
+) -> Result<Vec<Experiment>, FitError> {
+    experiments::separating(&Examination::new(fit(observed, model)?)?, pair.map(|entry| entry.about.name))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Learning from return poses: the model is fitted to all runs, and again without each of them.
 
-use super::{Error, Learnt, MAX_EFFECTS, Step};
+use super::story::{Error, Learnt, MOST_EFFECTS, Step};
 use crate::diagnose::ends::{self, Moments};
 use crate::diagnose::{Diagnosis, Options, Suspect};
 use crate::drive::Robot;
@@ -30,8 +30,8 @@ pub(super) fn learn(ends: &Ends, start: &Model, options: &Options, watch: &Watch
     let mut remarks = Vec::new();
     let mut diagnosis = ends::diagnose(ends, &story.model, options)?;
     let mut partial = false;
-    while story.model.parts().len() < MAX_EFFECTS {
-        (watch.progress)(story.model.parts().len() as f64 / MAX_EFFECTS as f64);
+    while story.model.parts().len() < MOST_EFFECTS {
+        (watch.progress)(story.model.parts().len() as f64 / MOST_EFFECTS as f64);
         let Some(suspect) = diagnosis.certified().first().cloned() else { break };
         partial = watch.is_stopped();
         if partial {

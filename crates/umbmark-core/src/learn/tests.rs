@@ -3,7 +3,7 @@
 use super::ends::{Story, free_part};
 use super::*;
 use crate::diagnose::tests::{margin, robot_with, simulated, trials};
-use crate::diagnose::{Options, base_model};
+use crate::diagnose::{Options, Verdict, base_model};
 use crate::drive::Robot;
 use crate::evidence::{Ends, Fit, fit};
 use crate::likelihood::watched::watched;

@@ -1,6 +1,6 @@
 //! Learning from tracks: the same story, computed from products of columns instead of one fit per fold.
 
-use super::{Error, Learnt, MAX_EFFECTS, Step};
+use super::story::{Error, Learnt, MOST_EFFECTS, Step};
 use crate::diagnose::tracks::{self, Added, Conclusion, Found, Search, Wanted};
 use crate::diagnose::{Diagnosis, Options, Reason, Verdict};
 use crate::effect::{Model, Part, find};
@@ -58,7 +58,7 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
     }
     let fitted = Fitted { taken, ..fit(observed, &model)? };
     let not_shown = observed.robot.drive.first_effects().into_iter().filter(|effect| !first.contains(effect));
-    let search = tracks::search(fitted, options, (MAX_EFFECTS, Wanted::All), not_shown.collect(), watch)?;
+    let search = tracks::search(fitted, options, (MOST_EFFECTS, Wanted::All), not_shown.collect(), watch)?;
     let of_reference = |step: &&mut Step| {
         step.added.is_some_and(|effect| search.exams[0].fitted.taken.iter().any(|own| own.effect == effect))
     };

@@ -1,5 +1,6 @@
 //! The paper's figures and remarks, by exact kinematics.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{PaperError, Returns, preset};
@@ -14,7 +15,7 @@ use crate::simulate::{Course, Odometry, Phase, Simulator, Truth};
 const PER_SIDE: f64 = 3.0;
 
 /// What a robot returns with, either way.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct BothWays {
     /// What is tried.
     pub what: &'static str,
@@ -24,7 +25,7 @@ pub struct BothWays {
 }
 
 /// Figs. 2 to 4: two errors that cancel in one direction and add up in the other.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Masking {
     /// E_d of the robot.
     pub e_d: f64,
@@ -41,26 +42,26 @@ pub type Hidden = Vec<BothWays>;
 pub type Rectangle = Vec<BothWays>;
 
 /// Fig. 5: the return positions of one direction.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Cluster {
     /// Its name.
     pub direction: &'static str,
-    /// x and y of each run \[m\].
+    /// x and y of each run, in m.
     pub returns_m: Vec<[f64; 2]>,
-    /// Their centre of gravity \[m\].
+    /// Their centre of gravity, in m.
     pub centre_m: [f64; 2],
-    /// Its distance from START \[m\].
+    /// Its distance from START, in m.
     pub r_m: f64,
 }
 
 /// Fig. 6: where ten bumps lie on the first leg.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct BumpPlace {
     /// Where.
     pub bumps: &'static str,
-    /// Distance from START after the run \[m\].
+    /// Distance from START after the run, in m.
     pub return_position_m: f64,
-    /// Heading after the run \[rad\].
+    /// Heading after the run, in rad.
     pub return_heading_rad: f64,
 }
 

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Bench, PaperError, preset};
@@ -13,7 +14,7 @@ use crate::preset::{PRESETS, Preset, TABLE_TWO};
 use crate::replay::Track;
 
 /// A published number among those that were simulated, in SI.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Place {
     /// What the paper says, or what follows from it.
     pub published: f64,
@@ -38,18 +39,18 @@ impl Place {
 }
 
 /// Table I.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct TableOne {
     /// Simulated tests of each robot.
     pub trials: u64,
     /// Its rows.
-    pub rows: Vec<Row>,
+    pub rows: Vec<RobotOfTableOne>,
     /// What would leave the CLAPPER's published E_max,sys, each alone and to first order.
     pub clapper_would_take: Vec<LinkError>,
 }
 
 /// A size of an error of the CLAPPER's link.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct LinkError {
     /// The effect.
     pub effect: &'static str,
@@ -60,23 +61,23 @@ pub struct LinkError {
 }
 
 /// A robot of Table I.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct RobotOfTableOne {
     /// Its name there.
     pub row: &'static str,
     /// Its name in flags.
     pub robot: &'static str,
-    /// E_max,sys \[m\].
+    /// E_max,sys, in m.
     pub e_max_sys_m: Place,
-    /// σ of one coordinate \[m\].
+    /// Standard deviation of one coordinate, in m.
     pub sigma_m: Place,
     /// Where its numbers are from.
-    pub from: Facts,
+    pub from: From,
 }
 
 /// Where the numbers of a robot are from.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Facts {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct From {
     /// What is taken from the paper, a phrase each.
     pub sources: &'static [&'static str],
     /// What the paper leaves open, a phrase each.
@@ -84,32 +85,32 @@ pub struct Facts {
 }
 
 /// Table II.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct TableTwo {
     /// Simulated tests of each robot.
     pub trials: u64,
     /// Its columns.
-    pub columns: Vec<Column>,
-    /// What ten bumps turn the CLAPPER by without other noise, its correction on \[rad\].
+    pub columns: Vec<RobotOfTableTwo>,
+    /// What ten bumps turn the CLAPPER by without other noise, its correction on, in rad.
     pub clapper_corrected_rad: f64,
     /// The same with its correction off.
     pub clapper_uncorrected_rad: f64,
 }
 
 /// A robot of Table II.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Column {
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct RobotOfTableTwo {
     /// Its name there.
     pub robot: &'static str,
     /// Its name in flags.
     pub preset: &'static str,
-    /// The average as printed \[rad\].
+    /// The average as printed, in rad.
     pub printed_rad: f64,
-    /// The average as it follows from the printed headings \[rad\].
+    /// The average as it follows from the printed headings, in rad.
     pub recomputed: Place,
-    /// Standard deviation with which headings were measured in the simulated tests \[rad\].
+    /// Standard deviation with which headings were measured in the simulated tests, in rad.
     pub heading_noise_rad: f64,
-    /// The least and the largest deviation of a single run \[rad\].
+    /// The least and the largest deviation of a single run, in rad.
     pub runs_rad: [f64; 2],
 }
 
@@ -134,12 +135,12 @@ pub fn table_one(bench: &Bench) -> Result<TableOne, PaperError> {
     for (number, preset) in PRESETS.iter().enumerate() {
         let ensemble = bench.ensemble(preset, preset.model()?, number, PRESETS.len())?;
         let (Some(e_max), Some(sigma)) = (ensemble.get(Metric::EMaxSys), ensemble.get(Metric::Sigma)) else { continue };
-        rows.push(Row {
+        rows.push(RobotOfTableOne {
             row: preset.published.row,
             robot: preset.name,
             e_max_sys_m: Place::of(preset.published.e_max_sys, e_max),
             sigma_m: Place::of(preset.published.sigma, sigma),
-            from: Facts { sources: preset.sources, assumed: preset.assumed },
+            from: From { sources: preset.sources, assumed: preset.assumed },
         });
     }
     Ok(TableOne { trials: bench.trials, rows, clapper_would_take: link_errors()? })
@@ -165,7 +166,7 @@ fn link_errors() -> Result<Vec<LinkError>, PaperError> {
     Ok(errors)
 }
 
-/// Standard deviation of an angle that is known to ±0.4 degrees, evenly \[rad\].
+/// Standard deviation of an angle that is known to ±0.4 degrees, evenly, in rad.
 const MEASURED: f64 = 0.4 / 1.732_050_807_568_877_2 * std::f64::consts::PI / 180.0;
 
 /// The extended test of the robots of Table II: ten bumps of 10 mm under the inside wheel on the first leg. The CLAPPER stands a second
@@ -187,7 +188,7 @@ pub fn table_two(bench: &Bench) -> Result<TableTwo, PaperError> {
         let deviations = column.deviations();
         let extreme =
             |most: fn(f64, f64) -> f64| deviations.as_flattened().iter().copied().reduce(most).unwrap_or(f64::NAN);
-        columns.push(Column {
+        columns.push(RobotOfTableTwo {
             robot: column.robot,
             preset: column.preset,
             printed_rad: column.average.to_radians(),
@@ -199,7 +200,7 @@ pub fn table_two(bench: &Bench) -> Result<TableTwo, PaperError> {
     Ok(TableTwo { trials: bench.trials, columns, clapper_corrected_rad, clapper_uncorrected_rad })
 }
 
-/// What ten bumps turn the CLAPPER by without other noise, its correction on and off \[rad\].
+/// What ten bumps turn the CLAPPER by without other noise, its correction on and off, in rad.
 fn correction(seed: u64) -> Result<[f64; 2], PaperError> {
     let preset = preset("clapper")?;
     let mut turned = [0.0; 2];

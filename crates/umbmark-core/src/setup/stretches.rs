@@ -4,8 +4,9 @@
 //! looked at as edges are, and one that is far beyond the others of its length is an accident. What a law of the robot does,
 //! it does in more of them, or at the same place of other runs.
 
-use super::disturbances::{JUMP, LARGE, Shared, Sighting, Spread, Step};
+use super::edges::{JUMP, LARGE, Sighting, Spread, Step};
 use super::robust::quantile;
+use super::shared::Shared;
 
 /// A stretch lasts no longer \[s\].
 const LONGEST: f64 = 3.0;

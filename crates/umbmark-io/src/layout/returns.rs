@@ -1,14 +1,16 @@
 //! The return sheet alone.
 
-use super::super::error::DatasetError;
-use super::super::folder::RETURNS;
-use super::super::save::{Existing, put};
-use super::super::sheets::returns_text;
+use super::Layout;
+use super::csv::{RETURNS, returns_text};
+use crate::error::DatasetError;
+use crate::save::{Existing, put};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::Dataset;
 
-pub(super) fn write(data: &Dataset, folder: &Path, existing: Existing) -> Result<Vec<String>, DatasetError> {
+pub(super) const LAYOUT: Layout = Layout::new("returns", "the return sheet alone: returns.csv").writes(write);
+
+fn write(data: &Dataset, folder: &Path, existing: Existing) -> Result<Vec<String>, DatasetError> {
     let text = returns_text(&data.runs).ok_or_else(|| DatasetError::Unwritable {
         file: folder.display().to_string(),
         reason: "no run has a return error".into(),

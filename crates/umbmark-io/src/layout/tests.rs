@@ -58,7 +58,7 @@ fn logs(data: &Dataset) -> Vec<&TickLog> {
 #[test]
 fn every_layout_keeps_what_is_there_unless_it_may_be_replaced() {
     let data = dataset(1);
-    for layout in LAYOUTS {
+    for layout in Layout::written() {
         let place = tempfile::tempdir().unwrap();
         let convert = |existing| layout.write(&data, place.path().join("out"), existing);
         convert(Existing::Keep).unwrap();
@@ -114,7 +114,7 @@ fn tum_holds_the_measured_poses() {
     let place = tempfile::tempdir().unwrap();
     layout("tum").write(&data, place.path().join("out"), Existing::Keep).unwrap();
     let text = std::fs::read_to_string(place.path().join("out/cw_02_reference.tum")).unwrap();
-    let rows = crate::tum::parse_tum(Source::of("file", text.as_bytes()).unwrap()).unwrap();
+    let rows = tum::parse_tum(Source::of("file", text.as_bytes()).unwrap(), &mut Vec::new()).unwrap();
     let log = data.runs[1].log.as_ref().unwrap();
     assert_eq!(rows.time.len(), log.reference.len());
     for ((time, (x, y, heading)), pose) in rows.time.iter().zip(&rows.poses).zip(&log.reference) {

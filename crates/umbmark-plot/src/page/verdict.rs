@@ -2,18 +2,24 @@
 
 use umbmark_core::diagnose::{Diagnosis, Verdict};
 use umbmark_core::evidence::Level;
+use umbmark_core::result::Said;
 
 use crate::study::Study;
 
+/// What a study comes to.
+pub fn said(study: &Study) -> Said {
+    Said { name: study.name.clone(), notices: notices(study), verdict: verdict(study) }
+}
+
 /// What has to be known before any figure is believed: faults of the columns, jumps of tracks, runs far from the others. A sentence each.
-pub fn notices(study: &Study) -> Vec<String> {
+fn notices(study: &Study) -> Vec<String> {
     let told = |setup: &umbmark_core::setup::Setup| setup.notices();
     let notices = study.inspection().setup.as_ref().map(told).unwrap_or_default();
     notices.iter().map(|notice| format!("{}.", super::spoken(notice))).collect()
 }
 
 /// What a study comes to, in one sentence.
-pub fn verdict(study: &Study) -> String {
+fn verdict(study: &Study) -> String {
     let robot = study.data.robot.as_ref().map_or("The robot", |robot| robot.name.as_str());
     let missed = match study.score() {
         Ok(score) => {

@@ -25,16 +25,11 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 =================================  ===========================================================
 """
 
-from umbmark._calibration import (
-    Calibration,
-    Correction,
-    GearCalibration,
-    calibrate,
-    calibrate_gears,
-)
+from umbmark._calibration import Calibration, GearCalibration, calibrate, calibrate_gears
 from umbmark._comparison import Comparison, TrackComparison, compare
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
-from umbmark._effects import Effect, effects
+from umbmark._documents import Correction, Effect, Setup
+from umbmark._effects import effects
 from umbmark._formula import formula_of
 from umbmark._inspection import Inspection, inspect
 from umbmark._monte_carlo import MonteCarlo, merge, monte_carlo
@@ -43,7 +38,6 @@ from umbmark._plan import Plan, Separation, plan, separate
 from umbmark._report import Report, figures, plot, report
 from umbmark._scores import Score, score
 from umbmark._sensitivity import Sensitivity, sensitivity
-from umbmark._setup import Setup
 from umbmark._simulation import simulate
 from umbmark._sweep import Sweep, sweep
 from umbmark._tolerance import Tolerance, tolerance

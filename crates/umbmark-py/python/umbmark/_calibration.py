@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 import msgspec
 
-from umbmark._diagnosis import Estimate
-from umbmark._result import Interval, Record, Result, Row
+from umbmark import _documents
+from umbmark._documents import Correction
+from umbmark._result import Row
 from umbmark._scores import Data, data_of
-from umbmark._setup import Setup, Taken
 from umbmark._umbmark import Model, Path, Robot, export
 from umbmark._umbmark import calibrate as _calibrate
 from umbmark._umbmark import calibrate_gears as _calibrate_gears
@@ -18,77 +18,19 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Replayed(Record, frozen=True):
-    """Return errors of the recorded runs, their ticks computed again, in m."""
-
-    e_max_sys_m: float | None
-    largest_m: float
-
-
-class Correction(Record, frozen=True):
-    """The corrections that one method gives; None for what the data does not show.
-
-    ``e_d`` is the ratio of the wheel diameters, right to left; ``e_b`` and ``e_s`` are wheelbase
-    and mean diameter by their nominal values. Lengths are in m. ``covariance`` is of the ratios
-    named in ``covariance_of``.
-    """
-
-    e_d: float | None
-    e_b: float | None
-    e_s: float | None
-    wheelbase_m: float | None
-    wheel_diameter_left_m: float | None
-    wheel_diameter_right_m: float | None
-    covariance: tuple[tuple[float, ...], ...] | None
-    covariance_of: tuple[str, ...]
-    degrees_of_freedom: float | None
-    e_d_interval: Interval | None
-    e_b_interval: Interval | None
-    e_s_interval: Interval | None
-    e_max_sys_before_m: float | None
-    e_max_sys_after_m: float | None
-    replayed_before: Replayed | None
-    replayed_after: Replayed | None
-    termination: str | None
-
-
-class Calibration(Result, frozen=True):
+class Calibration(_documents.Calibration, frozen=True):
     """A calibration by every method that the data allows.
 
     Attributes
     ----------
-    methods : dict of str to Correction or None
-        "closed_form_x", "closed_form_y", "closed_form_mean", "heading" and "exact".
-    observed : str
-        "end_poses" or "tracks".
-    heading_arm_m : float or None
-        Metres that a radian of heading counted as, where whole tracks were fitted.
-    level : float
-        Probability with which the intervals hold.
-    setup : Setup
-        What was found of the data before anything was fitted: faults, clock and mounting of the
-        reference, jumps, wrong poses, runs far from the others.
-    taken : tuple of Taken
-        Effects of the reference whose values were taken from the motion.
-    doubts : tuple of str
-        What puts the corrected lengths in doubt, a sentence each; ``export`` refuses them then.
-    warnings : tuple of str
-        What to know of the data first; then what could not be determined, and why.
-    robot, path
-        The nominal robot, and the path where it is known.
+    robot : Robot
+        The nominal robot.
+    path : Path or None
+        The path; None where it is not known.
     """
 
     _beside: ClassVar[tuple[str, ...]] = ("robot", "path")
 
-    methods: dict[str, Correction | None]
-    observed: str
-    heading_arm_m: float | None
-    level: float
-    setup: Setup
-    taken: tuple[Taken, ...]
-    doubts: tuple[str, ...]
-    warnings: tuple[str, ...]
-    version: str
     robot: Robot
     path: Path | None
 
@@ -199,31 +141,11 @@ def calibrate(
     return Calibration._of(document, robot=data.robot, path=data.path)
 
 
-class Determined(Record, frozen=True):
-    """What return poses of the path determine: so many combinations of so many sizes."""
-
-    rank: int
-    of: int
-    hidden: tuple[dict[str, float], ...]
-
-
-class GearCalibration(Result, frozen=True):
+class GearCalibration(_documents.GearCalibration, frozen=True):
     """A robot of any drive, calibrated by the first effects of its drive.
 
     Attributes
     ----------
-    drive : str
-        "synchro", "ackermann", ...
-    fitted : tuple of Estimate
-        The sizes of its first effects.
-    not_shown : tuple of str
-        Effects that this data does not show apart from the rest; they keep their values.
-    corrected : dict of str to float
-        The keys of robot.toml that change, with their new values.
-    return_poses_determine : Determined or None
-        What return poses can tell; None where the path is not known.
-    e_max_sys_before_m, e_max_sys_after_m : float or None
-        E_max,sys as driven, and what is left of it with the correction.
     model : Model
         The nominal robot with the fitted effects.
     robot : Robot
@@ -232,16 +154,6 @@ class GearCalibration(Result, frozen=True):
 
     _beside: ClassVar[tuple[str, ...]] = ("model", "robot")
 
-    drive: str
-    fitted: tuple[Estimate, ...]
-    not_shown: tuple[str, ...]
-    corrected: dict[str, float]
-    return_poses_determine: Determined | None
-    e_max_sys_before_m: float | None
-    e_max_sys_after_m: float | None
-    level: float
-    warnings: tuple[str, ...]
-    version: str
     model: Model
     robot: Robot
 

@@ -5,36 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from umbmark import _umbmark
-from umbmark._result import Record
-
-
-class Parameter(Record, frozen=True):
-    """A number of an effect: unit, default, usual size, bounds, words where it takes them."""
-
-    name: str
-    flag: str
-    unit: str
-    default: float | str
-    typical: float
-    bounds: tuple[float | None, float | None]
-    choices: tuple[str, ...]
-    meaning: str
-
-
-class Effect(Record, frozen=True):
-    """An effect of the catalogue: law, cause, signature, and what looks like it."""
-
-    name: str
-    title: str
-    acts_on: str
-    drives: tuple[str, ...]
-    equation: str
-    physics: str
-    signature: str
-    confused_with: tuple[str, ...]
-    separated_by: str
-    source: str
-    parameters: tuple[Parameter, ...]
+from umbmark._documents import Effect
 
 
 def effects() -> dict[str, Effect]:

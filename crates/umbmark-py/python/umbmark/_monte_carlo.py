@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from umbmark import _umbmark
-from umbmark._result import Record, Result, Row
+from umbmark import _documents, _umbmark
+from umbmark._result import Row
 from umbmark._umbmark import Ensemble, Model, Path, Study
 
 if TYPE_CHECKING:
@@ -22,61 +22,11 @@ MOST_UNTIL = 1_000_000_000
 Progress: TypeAlias = bool | Callable[[int, int], object] | None
 
 
-class Metric(Record, frozen=True):
-    """Statistics of a metric over the trials, in its unit."""
-
-    mean: float | None
-    std_dev: float | None
-    std_error: float | None
-    min: float | None
-    max: float | None
-    quantiles: dict[str, float | None]
-
-
-class NoiseFree(Record, frozen=True):
-    """E_max,sys of the test without noise, in m: exact, and by the paper's formulas."""
-
-    e_max_sys_m: float | None
-    first_order_e_max_sys_m: float | None
-
-
-class Runs(Record, frozen=True):
-    """Numbers of runs in each direction."""
-
-    cw: int
-    ccw: int
-
-
-class PathSizes(Record, frozen=True):
-    """Shape and sizes of a path."""
-
-    shape: str
-    sizes: dict[str, float]
-
-
-class Published(Record, frozen=True):
-    """What was published of a robot: its row of Table I, in m."""
-
-    row: str
-    e_max_sys_m: float
-    sigma_m: float
-
-
-class MonteCarlo(Result, frozen=True):
+class MonteCarlo(_documents.MonteCarlo, frozen=True):
     """What a study found.
 
     Attributes
     ----------
-    n : int
-        Trials done.
-    metrics : dict of str to Metric
-        "e_max_sys_m", "sigma_m", "centroid_cw_x_m", ...: those that the test has.
-    partial : bool
-        Whether trials that were asked for are not done.
-    trials_per_s : float or None
-        Speed.
-    noise_free : NoiseFree
-        The same test without noise.
     ensemble : Ensemble
         The statistics themselves: any quantile, and what merges with others.
     trials : mapping of str to ndarray of float64, shape (n,), or None
@@ -85,20 +35,6 @@ class MonteCarlo(Result, frozen=True):
 
     _beside: ClassVar[tuple[str, ...]] = ("ensemble", "trials")
 
-    n: int
-    seed: int
-    partial: bool
-    metrics: dict[str, Metric]
-    trials_per_s: float | None
-    noise_free: NoiseFree
-    runs: Runs
-    robot: str
-    path: PathSizes
-    effects: tuple[dict[str, str | float | dict[str, float]], ...]
-    sources: tuple[str, ...]
-    assumed: tuple[str, ...]
-    published: Published | None
-    version: str
     ensemble: Ensemble
     trials: Mapping[str, NDArray[np.float64]] | None
 

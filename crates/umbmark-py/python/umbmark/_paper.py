@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from msgspec import UNSET, UnsetType
+from msgspec import UNSET
 
-from umbmark import _umbmark
+from umbmark import _documents, _umbmark
 from umbmark._monte_carlo import Bar, Progress
-from umbmark._result import Interval, Record, Result, Row
+from umbmark._result import Row
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,131 +17,7 @@ if TYPE_CHECKING:
 Pose = tuple[float, float, float]
 
 
-class Place(Record, frozen=True):
-    """A published number among those that were simulated."""
-
-    published: float
-    mean: float
-    middle_95: Interval
-    share_below_published: float
-    inside: bool
-
-
-class From(Record, frozen=True):
-    """Where the numbers of a robot are from, a phrase each."""
-
-    sources: tuple[str, ...]
-    assumed: tuple[str, ...]
-
-
-class RobotOfTableOne(Record, frozen=True, rename={"from_": "from"}):
-    """A row of Table I, its name among presets, E_max,sys and sigma in m."""
-
-    row: str
-    robot: str
-    e_max_sys_m: Place
-    sigma_m: Place
-    from_: From
-
-
-class LinkError(Record, frozen=True):
-    """A size of an error of the CLAPPER's link, from where it does nothing."""
-
-    effect: str
-    parameter: str
-    size: float
-
-
-class TableOne(Record, frozen=True):
-    """Table I; and what would leave the CLAPPER's published E_max,sys, each alone."""
-
-    trials: int
-    rows: tuple[RobotOfTableOne, ...]
-    clapper_would_take: tuple[LinkError, ...]
-
-
-class RobotOfTableTwo(Record, frozen=True):
-    """A column of Table II: the average orientation error, and the extremes of single runs."""
-
-    robot: str
-    preset: str
-    printed_rad: float
-    recomputed: Place
-    heading_noise_rad: float
-    runs_rad: Interval
-
-
-class TableTwo(Record, frozen=True):
-    """Table II; and what ten bumps turn the CLAPPER by, its correction on and off."""
-
-    trials: int
-    columns: tuple[RobotOfTableTwo, ...]
-    clapper_corrected_rad: float
-    clapper_uncorrected_rad: float
-
-
-class BothWays(Record, frozen=True):
-    """Return errors of one run each way: x, y in m and heading in rad."""
-
-    what: str
-    ccw: Pose
-    cw: Pose
-
-
-class Masking(Record, frozen=True):
-    """Figs. 2 to 4: two errors that cancel in one direction and add up in the other."""
-
-    e_d: float
-    e_b: float
-    rows: tuple[BothWays, ...]
-
-
-class Cluster(Record, frozen=True):
-    """Fig. 5: return positions of a direction, their centre and its distance from START, in m."""
-
-    direction: str
-    returns_m: tuple[Interval, ...]
-    centre_m: Interval
-    r_m: float
-
-
-class BumpPlace(Record, frozen=True):
-    """Fig. 6: where ten bumps lie on the first leg, and what a run returns with."""
-
-    bumps: str
-    return_position_m: float
-    return_heading_rad: float
-
-
-class Paper(Result, frozen=True, kw_only=True):
-    """The paper's experiments; those that were not asked for are ``msgspec.UNSET``.
-
-    Attributes
-    ----------
-    table_1 : TableOne
-        E_max,sys and sigma of every robot, simulated.
-    table_2 : TableTwo
-        The extended test with ten bumps of 10 mm.
-    figure_2 : Masking
-        Two errors that cancel in one direction (Figs. 2 to 4).
-    figure_5 : tuple of Cluster
-        Return positions of one test.
-    figure_6 : tuple of BumpPlace
-        Where the bumps lie.
-    figure_eight, rectangle : tuple of BothWays
-        Section 3.1: what a figure-eight hides; section 4.5: the 7 x 4 m rectangle.
-    """
-
-    table_1: TableOne | UnsetType = UNSET
-    table_2: TableTwo | UnsetType = UNSET
-    figure_2: Masking | UnsetType = UNSET
-    figure_5: tuple[Cluster, ...] | UnsetType = UNSET
-    figure_6: tuple[BumpPlace, ...] | UnsetType = UNSET
-    figure_eight: tuple[BothWays, ...] | UnsetType = UNSET
-    rectangle: tuple[BothWays, ...] | UnsetType = UNSET
-    seed: int
-    version: str
-
+class Paper(_documents.Paper, frozen=True):
     def table(self) -> list[Row]:
         """Give each number with what was published and where simulated tests lie, one a row."""
         rows: list[Row] = []
@@ -183,7 +59,7 @@ class Paper(Result, frozen=True, kw_only=True):
         return _plots.paper(self, ax, quantity)
 
 
-def _row(experiment: str, what: str, quantity: str, place: Place) -> Row:
+def _row(experiment: str, what: str, quantity: str, place: _documents.Place) -> Row:
     low, high = place.middle_95
     return {
         "experiment": experiment,

@@ -6,10 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from umbmark import _umbmark
-from umbmark._diagnosis import Experiment
-from umbmark._monte_carlo import Bar, Progress, Runs
-from umbmark._result import Interval, Record, Result, Row
+from umbmark import _documents, _umbmark
+from umbmark._monte_carlo import Bar, Progress
+from umbmark._result import Row
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Dataset, Model, Path
 
@@ -17,126 +16,17 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Sought(Record, frozen=True):
-    """A size that is to be seen, and how many runs a direction show it.
-
-    ``seen_by`` is "calibrate", "diagnose", "not_asked" or "never"; ``runs`` is None where 1000 do
-    not show it; ``power`` is that of the planned runs; ``experiments`` would show it where return
-    poses do not.
-    """
-
-    effect: str
-    parameter: str
-    value: float
-    seen_by: str
-    absorbed_by: tuple[str, ...] | None
-    runs: int | None
-    runs_at_sigma_interval: tuple[int | None, int | None] | None
-    power: float
-    experiments: tuple[Experiment, ...]
-
-
-class LeastSize(Record, frozen=True):
-    """The least size of an effect that is seen with the wanted power; None where none is."""
-
-    effect: str
-    parameter: str
-    size: float | None
-
-
-class ExpectedEMaxSys(Record, frozen=True):
-    """E_max,sys as tests would read it, and half the width of its interval, in m."""
-
-    mean: float
-    std_dev: float
-    interval_half_width_m: float
-    coverage: float
-    tests: int
-    noise_band_m: float
-
-
-class OfRuns(Record, frozen=True):
-    """What a number of runs a direction shows."""
-
-    runs: int
-    minutes: float
-    e_max_sys_m: ExpectedEMaxSys
-    minimum_detectable: tuple[LeastSize, ...]
-
-
-class Alternative(Record, frozen=True):
-    """Another test in place of the planned one."""
-
-    what: str
-    runs: Runs
-    minutes: float
-    sigma_m: float
-    e_max_sys_interval_half_width_m: float | None
-    minimum_detectable: tuple[LeastSize, ...]
-
-
-class Extended(Record, frozen=True):
-    """The extended test, with bumps."""
-
-    bumps: float
-    runs: int
-    minutes: float
-    nonsys_orientation_rad: float
-    interval_half_width_rad: float
-
-
-class Drift(Record, frozen=True):
-    """A change over the session, and the error that it makes in an order of the runs."""
-
-    effect: str
-    parameter: str
-    change: float
-    order: str
-    error: dict[str, float]
-    error_sd: dict[str, float]
-
-
-class Plan(Result, frozen=True):
+class Plan(_documents.Plan, frozen=True):
     """What a test would show before it is driven.
 
     Attributes
     ----------
-    see : tuple of Sought
-        The sizes that are to be seen, with the runs that they take.
-    by_runs : tuple of OfRuns
-        What each number of runs a direction shows.
-    alternatives : tuple of Alternative
-        Another size, another speed, one direction only.
-    order : tuple of Drift
-        What a drift of the session does in each order of the runs.
-    invisible : tuple of str
-        Effects that no number of runs shows.
-    sigma_m, e_max_sys_m, minutes_a_run
-        Of the robot on its path.
+    sheets : dict[str, str]
+        The sheet to drive by, as "md" and as "html".
     """
 
     _beside: ClassVar[tuple[str, ...]] = ("sheets",)
 
-    robot: str
-    runs: int
-    minutes_a_run: float
-    sigma_m: float
-    sigma_interval_m: Interval | None
-    e_max_sys_m: float
-    with_heading: bool
-    power: float
-    size: float
-    draws: int
-    seed: int
-    see: tuple[Sought, ...]
-    by_runs: tuple[OfRuns, ...]
-    invisible: tuple[str, ...]
-    alternatives: tuple[Alternative, ...]
-    extended: Extended | None
-    order: tuple[Drift, ...]
-    assumed: tuple[str, ...]
-    partial: bool
-    version: str
     sheets: dict[str, str]
 
     def sheet(self, format: str = "md") -> str:
@@ -167,30 +57,12 @@ class Plan(Result, frozen=True):
         return _plots.plan(self, ax)
 
 
-def _first(row: OfRuns) -> tuple[LeastSize, ...]:
+def _first(row: _documents.OfRuns) -> tuple[_documents.LeastSize, ...]:
     """Give the least E_d and E_b."""
     return row.minimum_detectable[:2]
 
 
-class Separation(Result, frozen=True):
-    """Experiments that tell two effects apart, the most telling per minute first.
-
-    Attributes
-    ----------
-    separates : tuple of str
-        The two effects.
-    beside : str
-        What the experiments come on top of.
-    next_experiments : tuple of Experiment
-        How many standard deviations apart each puts them, and how long it takes.
-    """
-
-    separates: tuple[str, str]
-    beside: str
-    next_experiments: tuple[Experiment, ...]
-    seed: int
-    version: str
-
+class Separation(_documents.Separation, frozen=True):
     def table(self) -> list[Row]:
         """Give the experiments, one dict a row."""
         return [

@@ -8,9 +8,9 @@ from os import PathLike, fspath
 from pathlib import PurePath
 from typing import ClassVar, TypeAlias
 
-from umbmark import _umbmark
+from umbmark import _documents, _umbmark
 from umbmark._monte_carlo import Bar, Progress
-from umbmark._result import Record, Result, Row
+from umbmark._result import Row
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Dataset, Figure, Model
 
@@ -18,33 +18,17 @@ from umbmark._umbmark import Dataset, Figure, Model
 Asked: TypeAlias = tuple[str, Dataset, tuple[str, Model] | None]
 
 
-class Said(Record, frozen=True):
-    """What a study comes to, in one sentence; ``notices`` say what to know of its data first."""
-
-    name: str
-    notices: tuple[str, ...]
-    verdict: str
-
-
-class Report(Result, frozen=True):
+class Report(_documents.Report, frozen=True):
     """A page of everything: a single file that needs no network. Notebooks show it.
 
     Attributes
     ----------
     html : str
         The page.
-    studies : tuple of Said
-        The verdict of each study on it, and what to know of its data first.
-    bytes : int
-        Its length.
     """
 
     _beside: ClassVar[tuple[str, ...]] = ("html",)
 
-    bytes: int
-    studies: tuple[Said, ...]
-    seed: int
-    version: str
     html: str
 
     def table(self) -> list[Row]:

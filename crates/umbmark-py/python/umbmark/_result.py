@@ -29,6 +29,17 @@ class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     # Attributes that are no keys of the document.
     _beside: ClassVar[tuple[str, ...]] = ()
 
+    def __init_subclass__(cls) -> None:
+        """Document the attributes of the document that a class adds to before its own."""
+        super().__init_subclass__()
+        rule = "    ----------\n"
+        document, own = cls.__mro__[1].__doc__ or "", cls.__doc__
+        if own is None:
+            cls.__doc__ = document
+        elif rule in document:
+            (*_, inherited), (about, _, added) = document.partition(rule), own.partition(rule)
+            cls.__doc__ = f"{about}{rule}{inherited.rstrip()}\n{added}"
+
     @classmethod
     def _of(cls, document: str, **beside: object) -> Self:
         """Make a result of a document, and of what stands beside it."""

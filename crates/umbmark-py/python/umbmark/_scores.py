@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from umbmark._result import Interval, Record, Result, Row
-from umbmark._setup import Setup
+from umbmark import _documents
+from umbmark._result import Row
 from umbmark._umbmark import Dataset, load_dataset, score_arrays, score_dataset
 
 if TYPE_CHECKING:
@@ -23,86 +23,7 @@ def data_of(data: Data) -> Dataset:
     return data if isinstance(data, Dataset) else load_dataset(fspath(data))
 
 
-class Ellipse(Record, frozen=True):
-    """The ellipse that holds a centre of gravity: semi-axes in m, angle of the major one in rad."""
-
-    semi_major_m: float
-    semi_minor_m: float
-    angle_rad: float
-
-
-class Score(Result, frozen=True):
-    """The scores of a UMBmark test, with intervals that hold with probability ``level``.
-
-    Lengths are in m, angles in rad, counter-clockwise positive; points are (x, y), intervals
-    (low, high). An attribute is None where the runs do not give it, and ``warnings`` says why.
-
-    Attributes
-    ----------
-    e_max_sys_m : float or None
-        E_max,sys: the larger distance of the two centroids from START (Eq. 4).
-    e_max_sys_interval_m : tuple of float or None
-        Its interval; None with fewer than three runs in a direction.
-    noise_band_m : float or None
-        E_max,sys that a robot without systematic error stays below, by the scatter of its runs.
-    sigma_m, sigma_interval_m, sigma_radial_m
-        Standard deviation of one coordinate about its direction's centroid, n - 1, pooled over
-        both coordinates and directions; its interval; and that of the distance.
-    n_cw, n_ccw : int
-        Number of runs of each direction.
-    centroid_cw_m, centroid_ccw_m, centroid_cw_interval_m, centroid_ccw_interval_m
-        Centres of gravity (Eq. 2), and the intervals of their coordinates.
-    centroid_cw_ellipse, centroid_ccw_ellipse : Ellipse or None
-        Ellipses that hold them.
-    return_heading_cw_rad, return_heading_ccw_rad (and ..._interval_rad)
-        Mean return headings (Eq. 6), over the runs whose heading was measured.
-    nonsys_orientation_rad, nonsys_orientation_interval_rad
-        Average absolute orientation error of the extended test (Eq. 5).
-    nonsys_convention : str or None
-        "mean" for half of Eq. 5, which Table II has, or "sum" for Eq. 5 as printed.
-    n_bumps_cw, n_bumps_ccw : int
-        Number of runs with bumps.
-    level : float
-        Probability with which each interval holds.
-    setup : Setup
-        What was found of the runs before they were scored: faults, jumps and wrong poses of
-        tracks, runs whose return is far from the others. Empty where return errors were given in
-        arrays.
-    warnings : tuple of str
-        What to know of the data first; then what could not be computed and why, and what looks
-        wrong.
-    version : str
-        Version of umbmark.
-    """
-
-    e_max_sys_m: float | None
-    e_max_sys_interval_m: Interval | None
-    noise_band_m: float | None
-    sigma_m: float | None
-    sigma_interval_m: Interval | None
-    sigma_radial_m: float | None
-    n_cw: int
-    centroid_cw_m: Interval | None
-    centroid_cw_interval_m: tuple[Interval | None, Interval | None] | None
-    centroid_cw_ellipse: Ellipse | None
-    return_heading_cw_rad: float | None
-    return_heading_cw_interval_rad: Interval | None
-    n_ccw: int
-    centroid_ccw_m: Interval | None
-    centroid_ccw_interval_m: tuple[Interval | None, Interval | None] | None
-    centroid_ccw_ellipse: Ellipse | None
-    return_heading_ccw_rad: float | None
-    return_heading_ccw_interval_rad: Interval | None
-    nonsys_orientation_rad: float | None
-    nonsys_orientation_interval_rad: Interval | None
-    nonsys_convention: str | None
-    n_bumps_cw: int
-    n_bumps_ccw: int
-    level: float
-    setup: Setup
-    warnings: tuple[str, ...]
-    version: str
-
+class Score(_documents.Score, frozen=True):
     def table(self) -> list[Row]:
         """Give each score with the ends of its interval, one dict a row."""
         rows = [

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from msgspec import UNSET, UnsetType
-
-from umbmark import _umbmark
+from umbmark import _documents, _umbmark
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._parameters import Correlations, Parameters, keys_of
-from umbmark._result import Record, Result, Row
+from umbmark._result import Row
 from umbmark._umbmark import Model, Path, Study
 
 if TYPE_CHECKING:
@@ -19,84 +17,7 @@ if TYPE_CHECKING:
 EFFORT = {"sobol": 4096, "morris": 100, "local": 1000}
 
 
-class Estimate(Record, frozen=True):
-    """A number with its interval."""
-
-    value: float | None
-    interval: tuple[float | None, float | None]
-
-
-class OfPair(Record, frozen=True):
-    """The share of two parameters together."""
-
-    value: float | None
-    interval: tuple[float | None, float | None]
-    of: tuple[str, str]
-
-
-class OfMetric(Record, frozen=True):
-    """Sensitivities of a metric, by parameter; those that the method gives.
-
-    ``first`` and ``total`` are Sobol indices, alone and with others, ``second`` those of pairs;
-    ``mu``, ``mu_star`` and ``sigma`` are of Morris; ``per_unit`` and ``per_spread`` derivatives.
-    """
-
-    mean: Estimate | UnsetType = UNSET
-    std_dev: Estimate | UnsetType = UNSET
-    first: dict[str, Estimate] | UnsetType = UNSET
-    total: dict[str, Estimate] | UnsetType = UNSET
-    second: tuple[OfPair, ...] | UnsetType = UNSET
-    mu: dict[str, Estimate] | UnsetType = UNSET
-    mu_star: dict[str, Estimate] | UnsetType = UNSET
-    sigma: dict[str, Estimate] | UnsetType = UNSET
-    per_unit: dict[str, Estimate] | UnsetType = UNSET
-    per_spread: dict[str, Estimate] | UnsetType = UNSET
-
-
-class Varied(Record, frozen=True):
-    """A parameter and the distribution that it was drawn from."""
-
-    name: str
-    flag: str
-    distribution: dict[str, float | str]
-
-
-class Correlation(Record, frozen=True):
-    """Correlation of the normal scores of two parameters."""
-
-    of: tuple[str, str]
-    value: float
-
-
-class Sensitivity(Result, frozen=True, kw_only=True):
-    """Which parameter drives which metric.
-
-    Attributes
-    ----------
-    method : str
-        "sobol", "morris" or "local".
-    metrics : dict of str to OfMetric
-        Sensitivities of each metric; "noise" stands for all that is random in a test.
-    parameters : tuple of Varied
-        What was varied.
-    noise : str
-        "simulated" or "absent".
-    """
-
-    method: str
-    base_points: int | UnsetType = UNSET
-    trajectories: int | UnsetType = UNSET
-    trials: int | UnsetType = UNSET
-    evaluations: int | UnsetType = UNSET
-    seed: int
-    partial: bool
-    noise: str
-    parameters: tuple[Varied, ...]
-    correlations: tuple[Correlation, ...]
-    metrics: dict[str, OfMetric]
-    assumed: tuple[str, ...]
-    version: str
-
+class Sensitivity(_documents.Sensitivity, frozen=True):
     def table(self) -> list[Row]:
         """Give every sensitivity of every metric, one dict a row."""
         rows: list[Row] = []
@@ -114,7 +35,7 @@ class Sensitivity(Result, frozen=True, kw_only=True):
         return _plots.sensitivity(self, ax, metric)
 
 
-def _row(metric: str, index: str, parameter: str, estimate: Estimate) -> Row:
+def _row(metric: str, index: str, parameter: str, estimate: _documents.WithInterval) -> Row:
     low, high = estimate.interval
     named = {"metric": metric, "index": index, "parameter": parameter}
     return named | {"value": estimate.value, "low": low, "high": high}

@@ -7,64 +7,16 @@ from collections.abc import Mapping
 from os import PathLike
 from typing import TYPE_CHECKING
 
-from umbmark import _umbmark
+from umbmark import _documents, _umbmark
 from umbmark._monte_carlo import Bar, Progress
-from umbmark._result import Record, Result, Row
+from umbmark._result import Row
 from umbmark._umbmark import Model, Path, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Axis(Record, frozen=True):
-    """Equally spaced values of a parameter, by its full name and its flag."""
-
-    name: str
-    flag: str
-    first: float
-    last: float
-    count: int
-
-
-class Summary(Record, frozen=True):
-    """Statistics of a metric over the trials of a point, in its unit."""
-
-    mean: float | None
-    std_dev: float | None
-    std_error: float | None
-    quantiles: dict[str, float | None]
-
-
-class Point(Record, frozen=True):
-    """A point of the grid: the values of the axes, and the metrics there."""
-
-    values: tuple[float, ...]
-    metrics: dict[str, Summary]
-
-
-class Sweep(Result, frozen=True):
-    """A study on every point of a grid.
-
-    Attributes
-    ----------
-    axes : tuple of Axis
-        What is swept; the last axis varies fastest.
-    n : int
-        Trials of each point. Trial i has the same noise at every point.
-    points : tuple of Point
-        The points, in order.
-    partial : bool
-        Whether points that were asked for are not done.
-    """
-
-    axes: tuple[Axis, ...]
-    n: int
-    seed: int
-    partial: bool
-    points: tuple[Point, ...]
-    assumed: tuple[str, ...]
-    version: str
-
+class Sweep(_documents.Sweep, frozen=True):
     def table(self) -> list[Row]:
         """Give each metric at each point, one dict a row."""
         names = [axis.flag for axis in self.axes]

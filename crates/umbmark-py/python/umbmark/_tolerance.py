@@ -4,83 +4,27 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from msgspec import UNSET, UnsetType
-
-from umbmark import _umbmark
+from umbmark import _documents, _umbmark
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._parameters import Correlations, Parameters, keys_of
-from umbmark._result import Record, Result, Row
-from umbmark._sensitivity import Estimate
+from umbmark._result import Row
 from umbmark._umbmark import Model, Path, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Target(Record, frozen=True):
-    """The share of robots whose metric is to stay within a size, in m or rad."""
-
-    share: float
-    at_most_m: float | UnsetType = UNSET
-    at_most_rad: float | UnsetType = UNSET
-
-
-class Grade(Record, frozen=True):
-    """A grade of tolerance, numbered from 1 as in the file: distribution and cost."""
-
-    grade: int
-    distribution: dict[str, float | str]
-    cost: float
-
-
-class Choice(Record, frozen=True):
-    """Grades of all parameters, what they cost, and how good the robots are that they make.
-
-    ``share_within`` is the share that keeps the target, ``quantile`` the size that the wanted share
-    keeps.
-    """
-
-    grades: dict[str, Grade]
-    cost: float
-    share_within: Estimate
-    quantile: Estimate
-
-
-class Tolerance(Result, frozen=True):
+class Tolerance(_documents.Tolerance, frozen=True):
     """How many robots keep a target, and the cheapest tolerances with which enough do.
 
     Attributes
     ----------
-    now : Choice
-        The first grade of every parameter.
-    alone : tuple of Choice
-        One parameter tightened alone.
-    last : Choice
-        The last grade of every parameter.
-    cheapest : Choice or None
-        The cheapest choice that keeps the target surely, judged by robots drawn anew; None where
-        none does.
-    sizes : tuple of float
+    sizes : tuple[float, ...]
         The metric of the robots as they are now, in order.
-    partial : bool
-        Whether not all choices were looked at.
     """
 
     _beside: ClassVar[tuple[str, ...]] = ("sizes",)
 
-    metric: str
-    target: Target
-    noise: str
-    robots: int
-    seed: int
-    partial: bool
-    now: Choice
-    alone: tuple[Choice, ...]
-    last: Choice
-    cheapest: Choice | None
-    choices_looked_at: int
-    assumed: tuple[str, ...]
-    version: str
     sizes: tuple[float, ...]
 
     def table(self) -> list[Row]:
@@ -104,7 +48,7 @@ class Tolerance(Result, frozen=True):
             for name, choice in named
         ]
 
-    def _changes(self, choice: Choice) -> str:
+    def _changes(self, choice: _documents.Choice) -> str:
         changed = [
             f"{name}: grade {grade.grade}"
             for name, grade in choice.grades.items()

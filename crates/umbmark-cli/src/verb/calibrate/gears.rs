@@ -5,9 +5,9 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use umbmark_core::dataset::Dataset;
-use umbmark_core::document;
 use umbmark_core::drive::Robot;
 use umbmark_core::learn::{GearCalibration, calibrate_gears};
+use umbmark_core::result;
 use umbmark_io::RobotFile;
 
 use super::Arguments;
@@ -36,7 +36,12 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
         Pending::write_whole(file, arguments.force, &text).context("the corrected robot was not written")?;
     }
     if session.json() {
-        session.print_json(&document::gears(robot, &calibration, arguments.intervals.level, &data.warnings))?;
+        session.print_json(&result::GearCalibration::new(
+            robot,
+            &calibration,
+            arguments.intervals.level,
+            &data.warnings,
+        ))?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &data.warnings {

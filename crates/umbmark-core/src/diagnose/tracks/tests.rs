@@ -8,6 +8,7 @@ use crate::diagnose::unseen::Why;
 use crate::drive::Robot;
 use crate::effect::{Formula, Model, Target};
 use crate::evidence::tracks::{Projected, fit};
+use crate::likelihood::Fitted;
 use crate::likelihood::watched::watched;
 use nalgebra::DMatrix;
 use std::sync::LazyLock;

@@ -25,7 +25,7 @@ pub(super) enum Variable {
 }
 
 /// A quantity that formulas may depend on, as it is in the middle of a piece of the way.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize)]
 pub struct FormulaVariable {
     /// Its name in formulas.
     pub name: &'static str,
@@ -33,7 +33,9 @@ pub struct FormulaVariable {
     pub unit: &'static str,
     /// What it is.
     pub meaning: &'static str,
+    #[serde(skip)]
     pub(super) variable: Variable,
+    #[serde(skip)]
     pub(super) dimension: Unit,
 }
 

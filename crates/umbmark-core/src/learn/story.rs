@@ -1,0 +1,66 @@
+//! How a model was learnt, step by step.
+
+use crate::diagnose::{Diagnosis, Repeated, Verdict};
+use crate::effect::Model;
+use crate::evidence::Evidence;
+
+/// No model is given more effects than this.
+pub(super) const MOST_EFFECTS: usize = 6;
+
+/// Root mean square errors of predicted poses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Error {
+    /// Distance of observed from predicted positions \[m\].
+    pub position: f64,
+    /// Observed minus predicted headings \[rad\], where they were measured.
+    pub heading: Option<f64>,
+    /// Both together, weighted by the shape of the noise: it must fall for an effect to stay.
+    pub weighted: f64,
+}
+
+/// One step of learning.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// The effect that was added; `None` for the nominal robot.
+    pub added: Option<&'static str>,
+    /// All effects that the data cannot distinguish from it, itself included.
+    pub class: Vec<&'static str>,
+    /// p of its class, corrected for all classes that were tested; `None` for an effect that was fitted without a test.
+    pub p_adjusted: Option<f64>,
+    /// For a law outside the catalogue: how it was found, the alternatives, and its fitted formula.
+    pub law: Option<Box<Repeated>>,
+    /// In the runs that the model was fitted to.
+    pub error: Error,
+    /// In runs that were left out.
+    pub held_out: Error,
+    /// Akaike's criterion with its small-sample correction; `None` for too few runs.
+    pub aicc: Option<f64>,
+    /// Bayes' criterion.
+    pub bic: Option<f64>,
+}
+
+/// What was learnt.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Learnt {
+    /// From the nominal robot to the final model.
+    pub steps: Vec<Step>,
+    /// The verdict of the last diagnosis.
+    pub verdict: Verdict,
+    /// The model, its free parameters fitted.
+    pub model: Model,
+    /// The last diagnosis: of the model that was learnt.
+    pub diagnosis: Diagnosis,
+    /// Further remarks, a sentence each.
+    pub remarks: Vec<String>,
+    /// Whether it was stopped while a certified effect could still be added.
+    pub partial: bool,
+}
+
+impl Learnt {
+    /// Columns that are not what they are called teach nothing of the robot.
+    pub(super) fn of_faults(evidence: &dyn Evidence, steps: Vec<Step>) -> Learnt {
+        let model = Model::new(evidence.robot());
+        let diagnosis = Diagnosis::of_faults(evidence, &model);
+        Learnt { steps, verdict: diagnosis.verdict, model, diagnosis, remarks: Vec::new(), partial: false }
+    }
+}

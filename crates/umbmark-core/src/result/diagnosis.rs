@@ -1,0 +1,367 @@
+//! `diagnose`.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::fitted::{Estimate, Outlier, estimates, meaning};
+use super::law::{Nearest, Repeated};
+use super::{Closure, Keyed, Leaves, Model, Setup, Taken, finite, reasons, taken};
+use crate::diagnose::{self, Options, Why};
+use crate::drive::Robot;
+use crate::effect::effects_text;
+use crate::evidence;
+
+/// A test of the whole model.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct GoodnessOfFit {
+    /// Its name.
+    pub name: &'static str,
+    /// Its statistic.
+    pub statistic: f64,
+    /// Degrees of freedom; null where its p is from simulated tests.
+    pub degrees_of_freedom: Option<[f64; 2]>,
+    /// Probability of so large a statistic where nothing is missing.
+    pub p: f64,
+}
+
+impl From<&diagnose::GoodnessOfFit> for GoodnessOfFit {
+    fn from(g: &diagnose::GoodnessOfFit) -> Self {
+        GoodnessOfFit { name: g.name, statistic: g.statistic, degrees_of_freedom: g.degrees_of_freedom, p: g.p }
+    }
+}
+
+/// A class of effects that may be missing, which this data cannot tell apart.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Suspect {
+    /// Names of its effects.
+    pub class: Vec<&'static str>,
+    /// The one that fits best.
+    pub best: &'static str,
+    /// F of adding it.
+    pub f: f64,
+    /// Degrees of freedom of F.
+    pub degrees_of_freedom: [f64; 2],
+    /// Probability of so large an F where it is absent.
+    pub p: f64,
+    /// The same, corrected for all classes that were asked.
+    pub p_adjusted: f64,
+    /// The same by flips of the signs of runs; null where these were not asked.
+    pub p_flips: Option<f64>,
+    /// Values of the parameters of the best.
+    pub estimate: Keyed<Option<f64>>,
+    /// Their standard errors.
+    pub standard_error: Keyed<Option<f64>>,
+    /// By how much adding it is expected to lower the sum of squares.
+    pub expected_drop: f64,
+    /// What the values mean for the robot; null where there is nothing to say.
+    pub meaning: Option<String>,
+}
+
+impl Suspect {
+    fn new(suspect: &diagnose::Suspect, robot: &Robot) -> Suspect {
+        let of = |value: fn(&evidence::Estimate) -> f64| {
+            suspect.estimate.iter().map(|e| (e.parameter, finite(value(e)))).collect()
+        };
+        Suspect {
+            class: suspect.class.clone(),
+            best: suspect.best,
+            f: suspect.f,
+            degrees_of_freedom: suspect.degrees_of_freedom,
+            p: suspect.p,
+            p_adjusted: suspect.p_adjusted,
+            p_flips: suspect.p_flips,
+            estimate: of(|e| e.value),
+            standard_error: of(|e| e.standard_error),
+            expected_drop: suspect.expected_drop,
+            meaning: suspect.meaning(robot),
+        }
+    }
+}
+
+/// The least size of an effect that this data would show in four cases of five.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct DetectableSize {
+    /// The effect.
+    pub effect: &'static str,
+    /// The parameter that has the size.
+    pub parameter: &'static str,
+    /// The size, in the unit of the parameter; null where no size would be seen.
+    pub size: Option<f64>,
+}
+
+/// A further experiment that tells two effects apart.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Experiment {
+    /// The two effects.
+    pub separates: (&'static str, &'static str),
+    /// What to drive.
+    pub experiment: String,
+    /// How long it takes, in min.
+    pub minutes: f64,
+    /// By how many standard deviations it puts them apart.
+    pub sd: f64,
+}
+
+pub(super) fn experiments(experiments: &[diagnose::Experiment]) -> Vec<Experiment> {
+    let one = |e: &diagnose::Experiment| Experiment {
+        separates: e.separates.into(),
+        experiment: e.experiment.clone(),
+        minutes: e.minutes,
+        sd: e.sd,
+    };
+    experiments.iter().map(one).collect()
+}
+
+/// How far a unit of a parameter moves an end pose.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Share {
+    /// The effect.
+    pub effect: &'static str,
+    /// Its parameter.
+    pub parameter: &'static str,
+    /// How far the position moves for a unit of the parameter, in m.
+    pub position_m_per_unit: f64,
+    /// How far the heading turns for a unit of the parameter, in rad.
+    pub heading_rad_per_unit: f64,
+}
+
+/// A combination of parameters that the experiment does not show.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Hidden {
+    /// The weight of each parameter.
+    pub weights: Keyed<f64>,
+    /// How much less it is seen than the combination that is seen best; null where it is not seen at all.
+    pub ratio: Option<f64>,
+}
+
+/// What of the model this experiment determines.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Identifiability {
+    /// Each free parameter, with what it does to end poses.
+    pub parameters: Vec<Share>,
+    /// Number of combinations that are determined.
+    pub rank: usize,
+    /// Combinations that are not determined.
+    pub hidden: Vec<Hidden>,
+}
+
+impl From<&diagnose::Identifiability> for Identifiability {
+    fn from(identifiability: &diagnose::Identifiability) -> Self {
+        let share = |s: &diagnose::Share| Share {
+            effect: s.effect,
+            parameter: s.parameter,
+            position_m_per_unit: s.position,
+            heading_rad_per_unit: s.heading,
+        };
+        let hidden = identifiability.hidden.iter();
+        let hidden = hidden.map(|h| Hidden { weights: h.weights.iter().copied().collect(), ratio: h.ratio });
+        Identifiability {
+            parameters: identifiability.shares.iter().map(share).collect(),
+            rank: identifiability.rank,
+            hidden: hidden.collect(),
+        }
+    }
+}
+
+/// What is added at a place, with its 95 % band.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct CurvePoint {
+    /// The place, in the curve's `at_unit`.
+    pub at: f64,
+    /// What is added, in the curve's `unit`.
+    pub value: f64,
+    /// Lower end of its band.
+    pub low: f64,
+    /// Upper end of its band.
+    pub high: f64,
+}
+
+/// What is added to the motion, by what it depends on.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Curve {
+    /// Unit of what it depends on.
+    pub at_unit: &'static str,
+    /// Unit of what is added.
+    pub unit: String,
+    /// Its points, in order.
+    pub points: Vec<CurvePoint>,
+}
+
+/// A formula to try, and the share that it explains.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Suggestion {
+    /// The formula as an effect of a model.
+    #[serde(flatten)]
+    pub model: Model,
+    /// The share of the curve that it explains.
+    pub share: f64,
+    /// The same as text of a model file.
+    pub toml: String,
+}
+
+/// What is missing and not in the catalogue.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Unlisted {
+    /// What it acts on.
+    pub acts_on: &'static str,
+    /// What it depends on.
+    pub depends_on: &'static str,
+    /// Probability of so strong a dependence where there is none, corrected for all that were asked.
+    pub p_adjusted: f64,
+    /// How it depends on it.
+    pub curve: Curve,
+    /// The effect of the catalogue that explains the largest share of it; null where none explains any.
+    pub nearest: Option<Nearest>,
+    /// A formula to try; null where none is near.
+    pub suggestion: Option<Suggestion>,
+}
+
+impl From<&diagnose::Dependence> for Unlisted {
+    fn from(told: &diagnose::Dependence) -> Self {
+        let point = |p: &diagnose::CurvePoint| CurvePoint {
+            at: p.at,
+            value: p.value,
+            low: p.value - p.half_width,
+            high: p.value + p.half_width,
+        };
+        let suggestion = |suggestion: &diagnose::Suggestion| Suggestion {
+            model: (&suggestion.model).into(),
+            share: suggestion.share,
+            toml: effects_text(&suggestion.model),
+        };
+        Unlisted {
+            acts_on: told.acts_on,
+            depends_on: told.depends_on,
+            p_adjusted: told.p_adjusted,
+            curve: Curve {
+                at_unit: told.curve.at_unit,
+                unit: told.curve.unit.clone(),
+                points: told.curve.points.iter().map(point).collect(),
+            },
+            nearest: told.nearest.map(Nearest::new),
+            suggestion: told.suggestion.as_ref().map(suggestion),
+        }
+    }
+}
+
+/// What a model is missing, how sure that is, and what this data cannot see.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Diagnosis {
+    /// "explained"; "missing_effect" or "several_missing"; "unlisted_effect", which is not in the catalogue; "not_explained", where the model
+    /// is not enough though no single effect is certified (`reasons` say why); or "not_enough_data".
+    pub verdict: &'static str,
+    /// "end_poses" or "tracks".
+    pub observed: &'static str,
+    /// The free parameters of the model.
+    pub fitted: Vec<Estimate>,
+    /// Tests of the whole model.
+    pub goodness_of_fit: Vec<GoodnessOfFit>,
+    /// Classes of effects that were asked, the first `certified` of them missing.
+    pub ranking: Vec<Suspect>,
+    /// How many of the ranking are missing.
+    pub certified: usize,
+    /// Effects that this data says nothing of; `absorbed` says by what.
+    pub invisible: Vec<&'static str>,
+    /// Effects that others of the model make up for, with these.
+    pub absorbed: Keyed<Vec<&'static str>>,
+    /// The least size of each effect that would have been seen.
+    pub minimum_detectable: Keyed<Option<f64>>,
+    /// The same for each parameter.
+    pub minimum_detectable_sizes: Vec<DetectableSize>,
+    /// What to measure next, the most telling per minute first.
+    pub next_experiments: Vec<Experiment>,
+    /// What of the model this experiment determines.
+    pub identifiability: Identifiability,
+    /// What is missing and not in the catalogue; null where nothing is.
+    pub unlisted: Option<Unlisted>,
+    /// The model, its free parameters fitted.
+    pub model: Model,
+    /// What each fitted effect means for the robot, a sentence each.
+    pub meaning: Keyed<String>,
+    /// Jumps of tracks that are beyond noise.
+    pub outliers: Vec<Outlier>,
+    /// What was found of the data before anything was fitted: faults, clock and mounting of the reference, jumps, wrong poses, runs far from
+    /// the others.
+    pub setup: Setup,
+    /// Effects of the reference whose values were taken from the motion.
+    pub taken: Vec<Taken>,
+    /// Why the model is not called explained, a sentence each.
+    pub reasons: Vec<String>,
+    /// What repeats most beside the model, whether it counts or not; null without tracks.
+    pub repeats: Option<Repeated>,
+    /// What else should be said.
+    pub remarks: Vec<String>,
+    /// Probability with which a complete model is accused all the same.
+    pub size: f64,
+    /// Simulated tests for p-values that have no closed form.
+    pub draws: usize,
+    /// Seed of those.
+    pub seed: u64,
+    /// Version of umbmark.
+    pub version: &'static str,
+    /// What the closure of a square says.
+    #[serde(flatten)]
+    pub closure: Closure,
+    /// What the model leaves.
+    #[serde(flatten)]
+    pub leaves: Leaves,
+}
+
+impl Diagnosis {
+    /// A diagnosis, asked with `options`.
+    pub fn new(diagnosis: &diagnose::Diagnosis, options: &Options) -> Diagnosis {
+        let size = |d: &diagnose::Detectable| DetectableSize {
+            effect: d.effect,
+            parameter: d.parameter,
+            size: finite(d.size),
+        };
+        Diagnosis {
+            verdict: diagnosis.verdict.name(),
+            observed: diagnosis.level.name(),
+            fitted: estimates(&diagnosis.fitted, 1.0 - options.size),
+            goodness_of_fit: diagnosis.goodness_of_fit.iter().map(GoodnessOfFit::from).collect(),
+            ranking: diagnosis.ranking.iter().map(|s| Suspect::new(s, diagnosis.model.robot())).collect(),
+            certified: diagnosis.certified,
+            invisible: diagnosis.invisible.iter().map(|u| u.effect).collect(),
+            absorbed: diagnosis.invisible.iter().filter_map(absorbed).collect(),
+            minimum_detectable: largest(&diagnosis.minimum_detectable),
+            minimum_detectable_sizes: diagnosis.minimum_detectable.iter().map(size).collect(),
+            next_experiments: experiments(&diagnosis.next_experiments),
+            identifiability: (&diagnosis.identifiability).into(),
+            unlisted: diagnosis.dependence.as_ref().map(Unlisted::from),
+            model: (&diagnosis.model).into(),
+            meaning: meaning(&diagnosis.fitted, &diagnosis.model),
+            outliers: diagnosis.outliers.iter().map(Outlier::from).collect(),
+            setup: diagnosis.setup.as_ref().into(),
+            taken: taken(&diagnosis.taken),
+            reasons: reasons(&diagnosis.reasons),
+            repeats: diagnosis.repeats.as_ref().map(Repeated::from),
+            remarks: diagnosis.remarks.clone(),
+            size: options.size,
+            draws: options.draws,
+            seed: options.seed,
+            version: crate::VERSION,
+            closure: Closure::new(&diagnosis.contrasts, &diagnosis.circle),
+            leaves: diagnosis.remains.as_ref().into(),
+        }
+    }
+}
+
+fn absorbed(unseen: &diagnose::Unseen) -> Option<(&'static str, Vec<&'static str>)> {
+    match &unseen.why {
+        Why::Absorbed(by) => Some((unseen.effect, by.clone())),
+        Why::BelowNoise => None,
+    }
+}
+
+/// For each effect, the largest of its sizes' least.
+fn largest(detectable: &[diagnose::Detectable]) -> Keyed<Option<f64>> {
+    let mut sizes: Vec<(&str, Option<f64>)> = Vec::new();
+    for d in detectable {
+        match sizes.iter_mut().find(|(effect, _)| *effect == d.effect) {
+            Some((_, size)) => *size = finite(d.size.max(size.unwrap_or(0.0))),
+            None => sizes.push((d.effect, finite(d.size.max(0.0)))),
+        }
+    }
+    sizes.into_iter().collect()
+}

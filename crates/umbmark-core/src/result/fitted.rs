@@ -1,0 +1,123 @@
+//! `fit`.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::{Keyed, Model, Setup, Taken, ends, finite, taken};
+use crate::{effect, evidence, likelihood};
+
+/// A parameter that was fitted.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Estimate {
+    /// The effect that has it.
+    pub effect: &'static str,
+    /// Its name.
+    pub parameter: &'static str,
+    /// Its value, in the unit that the catalogue states.
+    pub value: f64,
+    /// Its standard error; null where the data does not give it.
+    pub standard_error: Option<f64>,
+    /// Its interval; null where the data does not give it.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// What was fitted, with intervals that hold with probability `level`.
+pub(super) fn estimates(estimates: &[evidence::Estimate], level: f64) -> Vec<Estimate> {
+    let one = |e: &evidence::Estimate| Estimate {
+        effect: e.effect,
+        parameter: e.parameter,
+        value: e.value,
+        standard_error: finite(e.standard_error),
+        interval: e.interval(level).and_then(ends),
+    };
+    estimates.iter().map(one).collect()
+}
+
+/// A jump of a track that is beyond noise.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Outlier {
+    /// Name of the run.
+    pub run: String,
+    /// Time since START, in s.
+    pub time_s: f64,
+    /// How far it jumps, in m.
+    pub moved_m: f64,
+    /// How far it turns, in rad; null without headings.
+    pub turned_rad: Option<f64>,
+    /// Size of the jump, in standard deviations of the noise; null where that is not known.
+    pub standard_deviations: Option<f64>,
+}
+
+impl From<&likelihood::Outlier> for Outlier {
+    fn from(o: &likelihood::Outlier) -> Self {
+        Outlier {
+            run: o.run.clone(),
+            time_s: o.time,
+            moved_m: o.moved,
+            turned_rad: o.turned,
+            standard_deviations: finite(o.deviations),
+        }
+    }
+}
+
+/// A fit of a model: its numbers, and the model with them.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Fitted {
+    /// The free parameters.
+    pub fitted: Vec<Estimate>,
+    /// Free effects that this data does not show apart from the rest; they keep their values.
+    pub not_shown: Vec<&'static str>,
+    /// What each fitted effect means for the robot, a sentence each.
+    pub meaning: Keyed<String>,
+    /// Jumps of tracks that are beyond noise.
+    pub outliers: Vec<Outlier>,
+    /// Whether the values are those under noise of the usual sizes: from tracks, where these predict runs left out nearer than the likeliest
+    /// ones by a tenth.
+    pub usual_noise: bool,
+    /// What was found of the data before anything was fitted: faults, clock and mounting of the reference, jumps, wrong poses, runs far from
+    /// the others.
+    pub setup: Setup,
+    /// Effects of the reference whose values were taken from the motion.
+    pub taken: Vec<Taken>,
+    /// The model with the fitted values.
+    pub model: Model,
+    /// Probability with which the intervals hold.
+    pub level: f64,
+    /// Version of umbmark.
+    pub version: &'static str,
+}
+
+impl Fitted {
+    /// A fit, with intervals that hold with probability `level`.
+    pub fn new(fit: &evidence::Fit, level: f64) -> Fitted {
+        Fitted {
+            fitted: estimates(&fit.estimates, level),
+            not_shown: not_shown(&fit.model, &fit.estimates),
+            meaning: meaning(&fit.estimates, &fit.model),
+            outliers: fit.outliers.iter().map(Outlier::from).collect(),
+            usual_noise: fit.usual_noise,
+            setup: fit.setup.as_ref().into(),
+            taken: taken(&fit.taken),
+            model: (&fit.model).into(),
+            level,
+            version: crate::VERSION,
+        }
+    }
+}
+
+/// Each fitted effect with what it means for the robot.
+pub fn meaning(estimates: &[evidence::Estimate], model: &effect::Model) -> Keyed<String> {
+    let mut said: Vec<(&str, String)> = Vec::new();
+    for e in estimates {
+        if said.iter().all(|(name, _)| *name != e.effect) {
+            said.extend(model.meaning(e.effect).map(|sentence| (e.effect, sentence)));
+        }
+    }
+    said.into_iter().collect()
+}
+
+/// The free effects that were not fitted, because this data does not show them apart from the rest of the model.
+pub fn not_shown(model: &effect::Model, fitted: &[evidence::Estimate]) -> Vec<&'static str> {
+    let free = model.parts().iter().filter(|part| part.free).map(|part| part.effect.name());
+    free.filter(|name| fitted.iter().all(|e| e.effect != *name)).collect()
+}

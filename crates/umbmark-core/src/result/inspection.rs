@@ -1,0 +1,318 @@
+//! `inspect`.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::{Clock, Measured, PathFacts, RobotFacts, Setup};
+use crate::dataset::{Dataset, RunTopics};
+use crate::inspect::{self, Wheels};
+use crate::path::Direction;
+
+/// Numbers of runs of one test and direction, and of what they have.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Group {
+    /// "systematic" or "bumps".
+    pub test: &'static str,
+    /// "cw" or "ccw"; null for runs of neither.
+    pub direction: Option<&'static str>,
+    /// Number of runs.
+    pub runs: usize,
+    /// How many of them have a return error.
+    pub returns: usize,
+    /// How many of these have a heading.
+    pub headings: usize,
+    /// How many of the runs have a log.
+    pub logs: usize,
+}
+
+impl From<&inspect::Group> for Group {
+    fn from(group: &inspect::Group) -> Self {
+        Group {
+            test: group.test.name(),
+            direction: group.direction.map(Direction::name),
+            runs: group.runs,
+            returns: group.returns,
+            headings: group.headings,
+            logs: group.logs,
+        }
+    }
+}
+
+/// What was mended in a log while it was read, counted.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Mended {
+    /// Counters that rolled over.
+    pub roll_overs: usize,
+    /// Counters that began anew.
+    pub resets: usize,
+    /// Rows that were out of order.
+    pub rows_out_of_order: usize,
+    /// Rows that stood there twice.
+    pub rows_repeated: usize,
+    /// Poses that were those of the row before.
+    pub stale_poses: usize,
+}
+
+/// Whether the wheels are what they are called, by the motion of the poses.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct WheelFacts {
+    /// Whether they are.
+    pub as_named: bool,
+    /// Whether left and right are exchanged.
+    pub exchanged: bool,
+    /// Whether the left one counts backward.
+    pub left_backward: bool,
+    /// Whether the right one counts backward.
+    pub right_backward: bool,
+}
+
+impl From<Wheels> for WheelFacts {
+    fn from(wheels: Wheels) -> Self {
+        let (exchanged, left_backward, right_backward) = match wheels {
+            Wheels::AsGiven => (false, false, false),
+            Wheels::Otherwise { exchanged, left_backward, right_backward } => {
+                (exchanged, left_backward, right_backward)
+            }
+        };
+        WheelFacts { as_named: wheels == Wheels::AsGiven, exchanged, left_backward, right_backward }
+    }
+}
+
+/// What was driven, by the ticks.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Moves {
+    /// Shape of the path; null where it is none that has a name.
+    pub shape: Option<&'static str>,
+    /// The path in words.
+    pub described: String,
+    /// Number of straight legs.
+    pub legs: usize,
+    /// Number of turns on the spot.
+    pub turns: usize,
+    /// Number of arcs.
+    pub arcs: usize,
+    /// Number of stops.
+    pub stops: usize,
+}
+
+impl From<&inspect::MovesFound> for Moves {
+    fn from(moves: &inspect::MovesFound) -> Self {
+        Moves {
+            shape: moves.shape,
+            described: moves.described.clone(),
+            legs: moves.legs,
+            turns: moves.turns,
+            arcs: moves.arcs,
+            stops: moves.stops,
+        }
+    }
+}
+
+/// The absolute poses of a log.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ReferenceFacts {
+    /// Number of poses.
+    pub poses: usize,
+    /// How many of them have a heading.
+    pub headings: usize,
+    /// Poses in a second.
+    pub rate_hz: f64,
+    /// Where on the way they lie, in words.
+    pub coverage: String,
+    /// The longest time without one, in s.
+    pub longest_gap_s: f64,
+    /// Noise of a coordinate, in m; null where the poses do not show it.
+    pub noise_m: Option<f64>,
+    /// Noise of a heading, in rad; null where the poses do not show it.
+    pub heading_noise_rad: Option<f64>,
+}
+
+impl From<&inspect::ReferenceFacts> for ReferenceFacts {
+    fn from(reference: &inspect::ReferenceFacts) -> Self {
+        ReferenceFacts {
+            poses: reference.poses,
+            headings: reference.headings,
+            rate_hz: reference.rate,
+            coverage: reference.coverage.to_string(),
+            longest_gap_s: reference.longest_gap,
+            noise_m: reference.noise,
+            heading_noise_rad: reference.heading_noise,
+        }
+    }
+}
+
+/// A log: its rows, and what its ticks and poses say.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct LogFacts {
+    /// Name of its run.
+    pub name: String,
+    /// "cw" or "ccw"; null for neither.
+    pub direction: Option<&'static str>,
+    /// Number of rows.
+    pub rows: usize,
+    /// From the first row to the last, in s.
+    pub duration_s: f64,
+    /// Rows in a second.
+    pub rate_hz: f64,
+    /// Scatter of the time from row to row, as a share of it.
+    pub jitter: f64,
+    /// The longest time without a row, in s.
+    pub longest_gap_s: f64,
+    /// Number of gaps.
+    pub gaps: usize,
+    /// What was mended while it was read.
+    pub mended: Mended,
+    /// Length of the way by the ticks, in m; null without a nominal robot.
+    pub length_m: Option<f64>,
+    /// Heading at the end by the ticks, in rad; null without a nominal robot.
+    pub heading_rad: Option<f64>,
+    /// How far that is off what the path asks for, in rad; null where the path is not known.
+    pub heading_off_rad: Option<f64>,
+    /// Whether the wheels are what they are called; null where the poses do not show it.
+    pub wheels: Option<WheelFacts>,
+    /// What was driven; null without a nominal robot.
+    pub moves: Option<Moves>,
+    /// How much older than its stamp a pose is in the middle of the run, in s; null where the motion does not show it.
+    pub delay_s: Option<Measured>,
+    /// Its absolute poses; null where it has none.
+    pub reference: Option<ReferenceFacts>,
+}
+
+impl From<&inspect::LogFacts> for LogFacts {
+    fn from(log: &inspect::LogFacts) -> Self {
+        LogFacts {
+            name: log.name.clone(),
+            direction: log.direction.map(Direction::name),
+            rows: log.rows,
+            duration_s: log.duration,
+            rate_hz: log.rate,
+            jitter: log.jitter,
+            longest_gap_s: log.longest_gap,
+            gaps: log.gaps,
+            mended: Mended {
+                roll_overs: log.mended.roll_overs,
+                resets: log.mended.resets,
+                rows_out_of_order: log.mended.late,
+                rows_repeated: log.mended.repeated,
+                stale_poses: log.mended.stale,
+            },
+            length_m: log.length,
+            heading_rad: log.heading,
+            heading_off_rad: log.heading_off,
+            wheels: log.wheels.map(WheelFacts::from),
+            moves: log.moves.as_ref().map(Moves::from),
+            delay_s: log.delay.as_ref().map(Measured::from),
+            reference: log.reference.as_ref().map(ReferenceFacts::from),
+        }
+    }
+}
+
+/// Where the log of a run was found in an MCAP file.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Topics {
+    /// Name of the run.
+    pub run: String,
+    /// Topic of the wheels.
+    pub wheels: String,
+    /// Topic of the reference; null where there is none.
+    pub reference: Option<String>,
+}
+
+/// A figure, and what good looks like.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Check {
+    /// What is looked at.
+    pub name: String,
+    /// The figure that was found.
+    pub found: String,
+    /// What good looks like.
+    pub good: String,
+    /// Whether it is good.
+    pub ok: bool,
+}
+
+/// Whether the data determines a quantity, and why.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Determined {
+    /// What is asked for.
+    pub quantity: String,
+    /// Whether the data determines it.
+    pub yes: bool,
+    /// Standard error that this data promises with noise of the usual size, as a share of one; null where the data does not show the
+    /// quantity, or it is no value of the robot.
+    pub std_error: Option<f64>,
+    /// Usual size of the error in robots, as a share of one; null where it is no value of the robot.
+    pub usual_size: Option<f64>,
+    /// Why, or what would help.
+    pub because: String,
+}
+
+/// The findings on a dataset.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Inspection {
+    /// Where it was read from.
+    pub data: String,
+    /// The nominal robot; null where it is not known.
+    pub robot: Option<RobotFacts>,
+    /// The path; null where it is not known.
+    pub path: Option<PathFacts>,
+    /// The runs.
+    pub groups: Vec<Group>,
+    /// Each log.
+    pub logs: Vec<LogFacts>,
+    /// Clocks that were set.
+    pub clocks: Vec<Clock>,
+    /// Topics that were read.
+    pub topics: Vec<Topics>,
+    /// Figures with what good looks like: is it any good?
+    pub checks: Vec<Check>,
+    /// What it can say of the robot.
+    pub determined: Vec<Determined>,
+    /// Number of combinations of E_d, E_b and E_s that it determines.
+    pub rank: usize,
+    /// What was found of the runs from their motion and return errors; null without a robot.
+    pub setup: Option<Setup>,
+    /// What looks wrong.
+    pub warnings: Vec<String>,
+    /// Version of umbmark.
+    pub version: &'static str,
+}
+
+impl Inspection {
+    /// What a dataset read from `place` holds.
+    pub fn new(place: &str, data: &Dataset, found: &inspect::Inspection) -> Inspection {
+        let topics = |topics: &RunTopics| Topics {
+            run: topics.run.clone(),
+            wheels: topics.wheels.clone(),
+            reference: topics.reference.clone(),
+        };
+        let check = |check: &inspect::Check| Check {
+            name: check.name.to_string(),
+            found: check.found.clone(),
+            good: check.good.to_string(),
+            ok: check.ok,
+        };
+        let determined = |answer: &inspect::Determined| Determined {
+            quantity: answer.quantity.to_string(),
+            yes: answer.yes,
+            std_error: answer.std_error,
+            usual_size: answer.usual,
+            because: answer.because.to_string(),
+        };
+        Inspection {
+            data: place.to_owned(),
+            robot: data.robot.as_ref().map(RobotFacts::from),
+            path: data.path.as_ref().map(PathFacts::from),
+            groups: found.groups.iter().map(Group::from).collect(),
+            logs: found.logs.iter().map(LogFacts::from).collect(),
+            clocks: data.clocks.iter().map(Clock::from).collect(),
+            topics: data.topics.iter().map(topics).collect(),
+            checks: found.checks.iter().map(check).collect(),
+            determined: found.determined.iter().map(determined).collect(),
+            rank: found.rank,
+            setup: found.setup.as_ref().map(Setup::from),
+            warnings: found.warnings.clone(),
+            version: crate::VERSION,
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! The cheapest way through the poses of a run (Viterbi 1967): which poses are kept, and where the track jumps.
+
+use super::edges::{JUMP, Sighting, Spread, Step};
+
+/// What a jump costs, in half squares of standard deviations; what the first pose costs that is passed over, and each after it.
+const COSTS: [f64; 3] = [0.5 * JUMP * JUMP, 32.0, 10.0];
+/// Maximum number of consecutive wrong poses.
+pub(super) const LONGEST: usize = 12;
+/// Where no edge nearby exceeds this many standard deviations, no pose is passed over.
+const QUIET: f64 = 5.0;
+
+/// The poses of a run that are kept, in order.
+pub(super) struct Way {
+    pub kept: Vec<usize>,
+}
+
+impl Way {
+    pub fn cheapest(run: &[Sighting], spread: &Spread) -> Way {
+        let loud: Vec<bool> =
+            (0..run.len()).map(|k| k > 0 && spread.deviations(&run[k - 1], &run[k]) > QUIET).collect();
+        let passed = |count: usize| if count == 0 { 0.0 } else { COSTS[1] + COSTS[2] * (count - 1) as f64 };
+        let mut cost = vec![f64::INFINITY; run.len()];
+        let mut before = vec![usize::MAX; run.len()];
+        for to in 0..run.len() {
+            if to <= LONGEST {
+                cost[to] = passed(to);
+            }
+            let first = to.saturating_sub(LONGEST + 1);
+            // Without a leap near, the pose before is the one to come from.
+            let near = (first..=(to + 1).min(run.len() - 1)).any(|k| loud[k]);
+            let from = if near { first } else { to.saturating_sub(1) };
+            for from in from..to {
+                let deviations = spread.deviations(&run[from], &run[to]);
+                let own = cost[from] + passed(to - from - 1) + (0.5 * deviations * deviations).min(COSTS[0]);
+                if own < cost[to] {
+                    (cost[to], before[to]) = (own, from);
+                }
+            }
+        }
+        let ends = run.len().saturating_sub(LONGEST + 1)..run.len();
+        let last = ends.min_by(|a, b| {
+            let of = |end: &usize| cost[*end] + passed(run.len() - 1 - end);
+            of(a).total_cmp(&of(b))
+        });
+        let mut kept: Vec<usize> =
+            std::iter::successors(last, |at| Some(before[*at]).filter(|b| *b != usize::MAX)).collect();
+        kept.reverse();
+        Way { kept }
+    }
+
+    pub fn steps(&self, run: &[Sighting], spread: &Spread) -> Vec<Step> {
+        self.kept.windows(2).map(|pair| Step::between(run, pair[0], pair[1], spread)).collect()
+    }
+}

@@ -1,0 +1,128 @@
+//! How far the measured motion between two poses is from that of the wheels, in standard deviations.
+
+use super::PoseNoise;
+use super::robust::median;
+use crate::geometry::{Pose2, wrap};
+
+/// A difference of more standard deviations than this is a jump.
+pub(super) const JUMP: f64 = 10.0;
+/// Other runs have it where a difference exceeds this many standard deviations.
+pub(super) const LARGE: f64 = 4.0;
+/// Edges that determine the noise: over these numbers of poses.
+const OVER: [usize; 4] = [1, 2, 4, 8];
+/// The noise is estimated by the size of the motion, in this many parts of all edges.
+const PARTS: usize = 10;
+/// Minimum standard deviation \[m, rad\], and minimum in terms of the motion in this time \[s\]: smaller differences are noise, and are
+/// judged where the sizes of the noise are known.
+const LEAST: [f64; 2] = [1.5e-3, 3e-3];
+const JITTER: f64 = 0.01;
+/// Sizes of the robot by the motion alone are wrong by up to this share of way and turns.
+const SIZES: f64 = 0.005;
+
+/// A pose of a run: as the wheels have it, and as it was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sighting {
+    /// Its stamp \[s\].
+    pub time: f64,
+    /// Way of the wheels until then \[m\], and how much they turned \[rad\], whatever way.
+    pub way: f64,
+    pub turned: f64,
+    /// Both together, turning at the arm of a wheel \[m\].
+    pub rolled: f64,
+    pub expected: Pose2,
+    /// Without a heading where none was measured.
+    pub measured: (f64, f64, Option<f64>),
+}
+
+/// How far the measured motion from one pose to another is from the expected one: along both coordinates of the robot \[m\] and,
+/// where headings were measured, its rotation \[rad\].
+pub(super) fn difference(from: &Sighting, to: &Sighting) -> ([f64; 2], Option<f64>) {
+    let expected = from.expected.between(&to.expected);
+    let (x, y) = (to.measured.0 - from.measured.0, to.measured.1 - from.measured.1);
+    let (Some(before), Some(after)) = (from.measured.2, to.measured.2) else {
+        // The course is all there is to lay one along the other.
+        return ([libm::hypot(x, y) - libm::hypot(expected.x, expected.y), 0.0], None);
+    };
+    let (sine, cosine) = libm::sincos(before);
+    let moved = [cosine * x + sine * y - expected.x, cosine * y - sine * x - expected.y];
+    (moved, Some(wrap(after - before - expected.heading)))
+}
+
+/// Variances of a coordinate \[m²\] and of a rotation \[rad²\], by how far the wheels rolled: a + b · rolled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spread {
+    position: [f64; 2],
+    heading: [f64; 2],
+}
+
+impl Spread {
+    /// Of all runs, and the noise of a single pose: half of what two differ by that are one place.
+    pub fn of(runs: &[Vec<Sighting>]) -> (Spread, PoseNoise) {
+        let mut edges: Vec<(f64, f64, Option<f64>)> = Vec::new();
+        for run in runs {
+            for over in OVER {
+                edges.extend(run.windows(over + 1).map(|poses| {
+                    let (from, to) = (&poses[0], &poses[over]);
+                    let ([x, y], turned) = difference(from, to);
+                    // The median of chi-squared with two degrees of freedom, and with one.
+                    let square = if turned.is_some() { (x * x + y * y) / 1.386 } else { x * x / 0.455 };
+                    (to.rolled - from.rolled, square, turned.map(|t| t * t / 0.455))
+                }));
+            }
+        }
+        edges.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let part = edges.len().div_ceil(PARTS).max(1);
+        let (mut positions, mut headings) = (Vec::new(), Vec::new());
+        for part in edges.chunks(part) {
+            let rolled = median(part.iter().map(|edge| edge.0));
+            positions.push((rolled, median(part.iter().map(|edge| edge.1))));
+            headings.push((rolled, median(part.iter().filter_map(|edge| edge.2))));
+        }
+        let least = |line: [f64; 2], least: f64| [line[0].max(least * least), line[1]];
+        let (position, heading) = (rising(&positions), rising(&headings));
+        let noise = PoseNoise { position: (0.5 * position[0]).sqrt(), heading: (0.5 * heading[0]).sqrt() };
+        (Spread { position: least(position, LEAST[0]), heading: least(heading, LEAST[1]) }, noise)
+    }
+
+    /// How far two poses of a run differ, in standard deviations.
+    pub fn deviations(&self, from: &Sighting, to: &Sighting) -> f64 {
+        let ([x, y], turned) = difference(from, to);
+        let rolled = to.rolled - from.rolled;
+        let seconds = (to.time - from.time).max(JITTER);
+        let variance = |line: &[f64; 2], moved: f64| {
+            line[0] + line[1] * rolled + (JITTER * moved / seconds).powi(2) + (SIZES * moved).powi(2)
+        };
+        let turned = turned.map_or(0.0, |turned| turned * turned / variance(&self.heading, to.turned - from.turned));
+        ((x * x + y * y) / variance(&self.position, to.way - from.way) + turned).sqrt()
+    }
+}
+
+/// a + b x through medians, neither of them negative.
+fn rising(points: &[(f64, f64)]) -> [f64; 2] {
+    let n = points.len().max(1) as f64;
+    // Variances are as uncertain as they are large.
+    let weight = |y: f64| 1.0 / (y * y).max(1e-30);
+    let sum = |of: &dyn Fn(f64, f64) -> f64| points.iter().map(|(x, y)| weight(*y) * of(*x, *y)).sum::<f64>();
+    let (w, x, y, xx, xy) = (sum(&|_, _| 1.0), sum(&|x, _| x), sum(&|_, y| y), sum(&|x, _| x * x), sum(&|x, y| x * y));
+    let slope = (w * xy - x * y) / (w * xx - x * x);
+    let base = (y - slope * x) / w;
+    match (slope.is_finite() && slope > 0.0, base >= 0.0) {
+        (true, true) => [base, slope],
+        (true, false) => [0.0, xy / xx],
+        _ => [points.iter().map(|(_, y)| y).sum::<f64>() / n, 0.0],
+    }
+}
+
+/// From one kept pose to another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step {
+    pub from: usize,
+    pub to: usize,
+    pub deviations: f64,
+}
+
+impl Step {
+    pub fn between(run: &[Sighting], from: usize, to: usize, spread: &Spread) -> Step {
+        Step { from, to, deviations: spread.deviations(&run[from], &run[to]) }
+    }
+}

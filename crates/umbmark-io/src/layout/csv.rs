@@ -1,0 +1,265 @@
+//! The project's own layout: `robot.toml`, `returns.csv`, `runs/*.csv` and `reference/*.csv`.
+
+mod returns;
+mod tick_log;
+mod track;
+
+use super::mcap::Topics;
+use super::{Layout, Tracks};
+use crate::RobotFile;
+use crate::assembly::Assembly;
+use crate::error::DatasetError;
+use crate::label;
+use crate::probe::{Probe, extension, name_of, names_in, stem};
+use crate::save::{Existing, put};
+use crate::source::Source;
+pub(crate) use returns::{ReturnRow, parse_returns, returns_text};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+pub(crate) use tick_log::{parse_tick_log, tick_log_text};
+use umbmark_core::dataset::{Dataset, Run, TickLog};
+use umbmark_core::run::dead_reckoning::EndPose;
+
+pub(super) const LAYOUT: Layout = Layout::new("csv", "robot.toml, returns.csv and runs/*.csv: holds everything")
+    .reads_data((is_data, read))
+    .reads_logs(("csv", add_log))
+    .reads_tracks((&["csv"], track::is_track, track::parse_columns))
+    .writes(write);
+
+pub(crate) const ROBOT: &str = "robot.toml";
+pub(crate) const RETURNS: &str = "returns.csv";
+pub(crate) const RUNS: &str = "runs";
+const REFERENCE: &str = "reference";
+const EXPECTED: &str =
+    "a dataset has robot.toml with returns.csv, runs/*.csv or runs/*.mcap (`umbmark init FOLDER` writes a start)";
+
+fn is_data(probe: &Probe) -> bool {
+    probe.is_folder && probe.has(ROBOT)
+}
+
+fn read(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> {
+    if probe.is_folder { read_folder(probe, topics) } else { read_file(probe, topics) }
+}
+
+/// Robot, returns and runs of a folder.
+fn read_folder(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> {
+    let folder = &probe.folder;
+    let sheets = || probe.names.iter().filter(|name| name.strip_suffix(".gz").unwrap_or(name) == RETURNS);
+    if !probe.has(ROBOT) {
+        return Err(match sheets().count() > 0 || probe.has(RUNS) {
+            true => not_a_dataset(folder, "it has no robot.toml".into()),
+            false => not_a_dataset(folder, "it has neither robot.toml, nor returns.csv, nor runs".into()),
+        });
+    }
+    let mut assembly = Assembly::new(Some(RobotFile::read(folder.join(ROBOT))?));
+    for sheet in sheets() {
+        add_returns(&mut assembly, &folder.join(sheet))?;
+    }
+    let mut logs = 0;
+    if probe.has(RUNS) {
+        logs = add_logs(&mut assembly, &folder.join(RUNS), topics)?;
+    }
+    if logs == 0 && sheets().count() == 0 {
+        return Err(not_a_dataset(folder, "it has a robot and no measurement".into()));
+    }
+    let named_alike =
+        probe.names.iter().map(|name| folder.join(name)).filter(|file| stem(file).to_lowercase() == "returns");
+    for file in named_alike.filter(|file| sheets().all(|sheet| *sheet != name_of(file))) {
+        assembly.warnings.push(format!("{}: is no return sheet ({RETURNS}) and was not read", file.display()));
+    }
+    Ok(assembly.finish())
+}
+
+pub(super) fn not_a_dataset(file: &Path, found: String) -> DatasetError {
+    DatasetError::NotADataset { file: file.display().to_string(), found, remedy: EXPECTED }
+}
+
+fn add_returns(assembly: &mut Assembly, file: &Path) -> Result<(), DatasetError> {
+    let name = file.display().to_string();
+    let rows = parse_returns(Source::open(file)?, &mut assembly.warnings)?;
+    assembly.add_returns(&name, &rows)
+}
+
+/// Adds every log of a folder, with its track where there is one beside it, and says how many.
+fn add_logs(assembly: &mut Assembly, folder: &Path, topics: &Topics) -> Result<usize, DatasetError> {
+    let mut tracks = tracks_beside(folder, &mut assembly.warnings)?;
+    let mut logs = 0;
+    for name in names_in(folder)? {
+        let file = folder.join(&name);
+        match super::add_log(assembly, &file, &mut tracks, topics) {
+            Some(added) => {
+                added?;
+                logs += 1;
+            }
+            None => {
+                let endings = super::log_endings().join(", .");
+                assembly.warnings.push(format!("{}: is no log (.{endings}) and was not read", file.display()));
+            }
+        }
+    }
+    for track in tracks.values() {
+        assembly.warnings.push(format!("{}: belongs to no log of its name (.csv) and was not read", track.display()));
+    }
+    Ok(logs)
+}
+
+/// The tracks of logs in `runs`, by the name of the log: files of the folder `reference` beside it.
+fn tracks_beside(runs: &Path, warnings: &mut Vec<String>) -> Result<Tracks, DatasetError> {
+    let folder = runs.parent().unwrap_or(Path::new(".")).join(REFERENCE);
+    let mut tracks = Tracks::new();
+    if !folder.is_dir() {
+        return Ok(tracks);
+    }
+    let endings = super::track_endings();
+    for file in names_in(&folder)?.into_iter().map(|name| folder.join(name)) {
+        let name = file.display().to_string();
+        if !endings.contains(&extension(&file).as_str()) {
+            warnings.push(format!("{name}: is no track (.{}) and was not read", endings.join(", .")));
+        } else if let Some(first) = tracks.insert(stem(&file), file) {
+            return Err(DatasetError::TwoTracks { file: name, first: first.display().to_string() });
+        }
+    }
+    Ok(tracks)
+}
+
+/// Adds a log, with the track that stands beside it.
+fn add_log(assembly: &mut Assembly, file: &Path, tracks: &mut Tracks, _: &Topics) -> Result<(), DatasetError> {
+    let recording = parse_tick_log(Source::open(file)?, assembly.kind(), &mut assembly.warnings)?;
+    let tracked =
+        tracks.remove(&stem(file)).map(|track| super::read_track(&track, &mut assembly.warnings)).transpose()?;
+    let stem = stem(file);
+    assembly.add_recording(recording, tracked, &stem, label::parse(&stem), EndPose::Standing)
+}
+
+/// One file, with the robot that stands beside it where there is one.
+fn read_file(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> {
+    let (file, folder) = (&probe.path, &probe.folder);
+    if probe.extension() == "toml" {
+        let (file, found) = (file.display().to_string(), "it describes one".into());
+        return Err(DatasetError::NotADataset { file, found, remedy: "give the folder it is in, or returns.csv" });
+    }
+    let mut assembly = Assembly::new(robot_beside(folder).map(RobotFile::read).transpose()?);
+    if probe.first_row()?.to_lowercase().contains("ticks") {
+        let in_runs = folder.file_name().is_some_and(|name| name == RUNS);
+        let mut tracks = if in_runs { tracks_beside(folder, &mut Vec::new())? } else { Tracks::new() };
+        add_log(&mut assembly, file, &mut tracks, topics)?;
+    } else {
+        add_returns(&mut assembly, file)?;
+    }
+    Ok(assembly.finish())
+}
+
+/// The robot.toml of a file in `folder`: in it, or above it where it is called runs.
+pub(super) fn robot_beside(folder: &Path) -> Option<PathBuf> {
+    let in_runs = folder.file_name().is_some_and(|name| name == RUNS);
+    let above = in_runs.then(|| folder.join("..").join(ROBOT));
+    [Some(folder.join(ROBOT)), above].into_iter().flatten().find(|robot| robot.is_file())
+}
+
+/// The project's own layout. Counts between two readings, which a track put there, are no counts of a counter that rolls over:
+/// then they are written as they are, unrolled.
+fn write(data: &Dataset, folder: &Path, existing: Existing) -> Result<Vec<String>, DatasetError> {
+    let between = |log: &TickLog| log.left.iter().chain(&log.right).any(|ticks| ticks.fract() != 0.0);
+    let robot = data.nominal_robot()?;
+    let encoder = &robot.encoder;
+    if encoder.counter_bits().is_none() || !super::logs(data).any(|(_, log)| between(log)) {
+        return save(data, folder, existing).map(|()| Vec::new());
+    }
+    let mut unrolled = data.clone();
+    let mut robot = robot.clone();
+    robot.encoder = encoder.without_roll_over();
+    unrolled.robot = Some(robot);
+    save(&unrolled, folder, existing)?;
+    Ok(vec!["counter_bits: counts were put between readings, so all are written with their roll-overs undone".into()])
+}
+
+/// How the logs of a dataset are written.
+pub(crate) struct LogFormat {
+    /// Ending of the files.
+    pub ending: &'static str,
+    /// The bytes of a file.
+    pub bytes: fn(&Dataset, &Run, &TickLog) -> Result<Vec<u8>, DatasetError>,
+    /// Whether the first log was read back as the second.
+    pub same: fn(&TickLog, &TickLog) -> bool,
+}
+
+const CSV: LogFormat = LogFormat { ending: "csv", bytes: csv, same: same_record };
+
+/// Whether two logs hold the same samples and poses, whatever had to be mended in either.
+fn same_record(a: &TickLog, b: &TickLog) -> bool {
+    (&a.time, &a.left, &a.right, &a.reference) == (&b.time, &b.left, &b.right, &b.reference)
+}
+
+fn csv(data: &Dataset, _: &Run, log: &TickLog) -> Result<Vec<u8>, DatasetError> {
+    Ok(tick_log_text(log, data.nominal_robot()?))
+}
+
+/// Writes `robot.toml`, `returns.csv` and `runs/*.csv` into a folder, which is made where it is not there.
+///
+/// What is written reads back as this dataset to the last bit, but for the names of the runs and the warnings; that
+/// is checked before anything is put in place, so a folder never holds half of a file. A folder that holds logs of
+/// other runs is refused, lest the two datasets mix.
+pub fn save(data: &Dataset, folder: impl AsRef<Path>, existing: Existing) -> Result<(), DatasetError> {
+    save_with(data, folder.as_ref(), existing, &CSV).map(|_| ())
+}
+
+/// The same with logs of any format; returns what was read back.
+pub(crate) fn save_with(
+    data: &Dataset,
+    folder: &Path,
+    existing: Existing,
+    format: &LogFormat,
+) -> Result<Dataset, DatasetError> {
+    let robot = data.nominal_robot()?;
+    let mut files = BTreeMap::new();
+    // The poses are written as they are meant to be.
+    let robot_file = RobotFile::new(robot.clone(), data.path.clone());
+    files.insert(PathBuf::from(ROBOT), robot_file.text().into_bytes());
+    files.extend(returns_text(&data.runs).map(|text| (PathBuf::from(RETURNS), text)));
+    for run in &data.runs {
+        let Some(log) = &run.log else { continue };
+        let name = format!("{}.{}", label::label(run.test, run.direction, run.number), format.ending);
+        files.insert(Path::new(RUNS).join(name), (format.bytes)(data, run, log)?);
+    }
+    put(folder, &files, existing, |written| check(data, folder, written, format))
+}
+
+/// Refuses what would be read back as something else.
+fn check(data: &Dataset, folder: &Path, written: &Path, format: &LogFormat) -> Result<Dataset, DatasetError> {
+    let refuse = |reason: String| DatasetError::Unwritable { file: folder.display().to_string(), reason };
+    let read = crate::load(written).map_err(|error| {
+        let place = written.display().to_string();
+        refuse(format!("it could not be read back: {}", error.to_string().replace(&place, "…")))
+    })?;
+    let mut runs: Vec<&Run> = data.runs.iter().collect();
+    runs.sort_by_key(|run| (run.test, run.direction, run.number));
+    let same_path = match (&data.path, &read.path) {
+        (Some(a), Some(b)) => a.shape().name == b.shape().name && a.values() == b.values() && a.speed == b.speed,
+        (a, b) => a.is_none() && b.is_none(),
+    };
+    if read.robot != data.robot || !same_path {
+        return Err(refuse("robot or path would not be read back as they are".into()));
+    }
+    let same = |(a, b): (&&Run, &Run)| {
+        (a.test, a.direction, a.number) == (b.test, b.direction, b.number)
+            && match (&a.log, &b.log) {
+                (Some(log), Some(read)) => (format.same)(log, read),
+                (log, read) => log.is_none() && read.is_none(),
+            }
+            && (a.returned == b.returned || a.returned.is_none())
+    };
+    if runs.len() != read.runs.len() {
+        return Err(refuse("a run has neither log nor return error".into()));
+    }
+    match runs.iter().zip(&read.runs).find(|pair| !same(*pair)) {
+        Some((run, _)) => {
+            let name = label::label(run.test, run.direction, run.number);
+            // The last remark: roll-overs, which are undone as they were written, come before any reason.
+            let why =
+                read.warnings.iter().rev().find_map(|w| Some(w.split_once(&format!("{name}.{}: ", format.ending))?.1));
+            let why = why.map(|why| format!("; the reader says: {why}")).unwrap_or_default();
+            Err(refuse(format!("{name} would not be read back as it is{why}")))
+        }
+        None => Ok(read),
+    }
+}

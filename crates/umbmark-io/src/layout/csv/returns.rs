@@ -1,0 +1,189 @@
+//! `returns.csv`: what a tape measure and the robot's own display say at the end of each run.
+
+use crate::columns::{Column, Columns, Quantity};
+use crate::csv_text::CsvText;
+use crate::error::DatasetError;
+use crate::label::{DIRECTIONS, TESTS};
+use crate::sheet::{Row, Sheet};
+use crate::source::Source;
+use Quantity::{Angle, Bare, Length};
+use umbmark_core::dataset::{RETURNS_COLUMNS, ReturnError, Run};
+use umbmark_core::effect::TestKind;
+use umbmark_core::geometry::{Pose2, wrap};
+use umbmark_core::path::Direction;
+
+/// A row of the file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ReturnRow {
+    pub line: usize,
+    /// `None` where the file has no such column.
+    pub test: Option<TestKind>,
+    pub direction: Option<Direction>,
+    pub number: u32,
+    pub error: ReturnError,
+}
+
+struct PoseColumns {
+    x: Column,
+    y: Column,
+    heading: Option<Column>,
+}
+
+/// Columns of absolute and computed end poses, and of START where it was measured.
+struct EndPoses {
+    absolute: PoseColumns,
+    computed: PoseColumns,
+    start: Option<PoseColumns>,
+}
+
+enum Convention {
+    Poses(Box<EndPoses>),
+    Errors(PoseColumns),
+}
+
+/// The rows of a file, and what was noticed in it.
+pub(crate) fn parse_returns(source: Source, warnings: &mut Vec<String>) -> Result<Vec<ReturnRow>, DatasetError> {
+    let sheet = Sheet::open(source, RETURNS_COLUMNS)?;
+    let mut columns = Columns::of(&sheet);
+    let direction = columns.need("direction", Bare, "it says cw or ccw")?;
+    let number = columns.need("run", Bare, "it numbers the runs of each direction from 1")?;
+    let test = columns.find("test", Bare)?;
+    let convention = Convention::find(&sheet, &mut columns)?;
+    columns.finish(warnings)?;
+    let mut rows = Vec::new();
+    sheet.for_each(|row| {
+        rows.push(ReturnRow {
+            line: row.line,
+            test: test.as_ref().map(|column| read_test(row, column)).transpose()?,
+            direction: row.word(&direction, &DIRECTIONS)?,
+            number: read_run_number(row, &number)?,
+            error: convention.read(row)?,
+        });
+        Ok(())
+    })?;
+    Ok(rows)
+}
+
+fn read_test(row: &Row, column: &Column) -> Result<TestKind, DatasetError> {
+    if row.text(column).is_empty() { Ok(TestKind::Systematic) } else { row.word(column, &TESTS) }
+}
+
+fn read_run_number(row: &Row, column: &Column) -> Result<u32, DatasetError> {
+    row.text(column).parse().map_err(|_| row.wrong(column, "a whole number, counted from 1", ""))
+}
+
+impl PoseColumns {
+    fn find(columns: &mut Columns, names: [&str; 3], remedy: &str) -> Result<PoseColumns, DatasetError> {
+        let x = columns.need(names[0], Length, remedy)?;
+        let y = columns.need(names[1], Length, remedy)?;
+        Ok(PoseColumns { x, y, heading: columns.find(names[2], Angle)? })
+    }
+
+    fn read(&self, row: &Row) -> Result<(f64, f64, Option<f64>), DatasetError> {
+        let heading = self.heading.as_ref().map(|column| row.number_or(column)).transpose()?.flatten();
+        Ok((row.number(&self.x)?, row.number(&self.y)?, heading))
+    }
+}
+
+impl Convention {
+    fn find(sheet: &Sheet, columns: &mut Columns) -> Result<Convention, DatasetError> {
+        let errors = ["ex", "ey", "etheta"];
+        let poses = ["x_abs", "y_abs", "theta_abs", "x_calc", "y_calc", "theta_calc"];
+        let stands =
+            |base: &&str| sheet.header.iter().find(|h| h.strip_prefix(*base).is_some_and(|r| r.starts_with('_')));
+        match (poses.iter().find_map(stands), errors.iter().find_map(stands)) {
+            (Some(poses), Some(errors)) => Err(DatasetError::BothConventions {
+                file: sheet.file().to_owned(),
+                line: sheet.header_line,
+                poses: poses.clone(),
+                errors: errors.clone(),
+            }),
+            (None, Some(_)) => {
+                let found = PoseColumns::find(columns, errors, "an error needs ex_m and ey_m (absolute - computed)")?;
+                Ok(Convention::Errors(found))
+            }
+            _ => Ok(Convention::Poses(Box::new(EndPoses::find(columns)?))),
+        }
+    }
+
+    fn read(&self, row: &Row) -> Result<ReturnError, DatasetError> {
+        match self {
+            Convention::Poses(columns) => columns.read(row),
+            Convention::Errors(columns) => {
+                let (x, y, heading) = columns.read(row)?;
+                Ok(ReturnError { x, y, heading: heading.map(wrap) })
+            }
+        }
+    }
+}
+
+impl EndPoses {
+    fn find(columns: &mut Columns) -> Result<EndPoses, DatasetError> {
+        let needs = "a return needs the end poses x_abs_m, y_abs_m, x_calc_m, y_calc_m, or the errors ex_m, ey_m";
+        let absolute = PoseColumns::find(columns, ["x_abs", "y_abs", "theta_abs"], needs)?;
+        let computed = PoseColumns::find(columns, ["x_calc", "y_calc", "theta_calc"], needs)?;
+        if let (Some(_), None) | (None, Some(_)) = (&absolute.heading, &computed.heading) {
+            let base = if absolute.heading.is_some() { "theta_calc" } else { "theta_abs" };
+            return Err(columns.missing(base, Angle, "a heading error needs both theta_abs_rad and theta_calc_rad"));
+        }
+        let needs = "a START pose needs x_start_m, y_start_m and theta_start_rad";
+        let names = ["x_start", "y_start", "theta_start"];
+        let (x, y) = (columns.find(names[0], Length)?, columns.find(names[1], Length)?);
+        let start = match (x, y, columns.find(names[2], Angle)?) {
+            (None, None, None) => None,
+            (Some(x), Some(y), Some(heading)) => Some(PoseColumns { x, y, heading: Some(heading) }),
+            (None, _, _) => return Err(columns.missing(names[0], Length, needs)),
+            (_, None, _) => return Err(columns.missing(names[1], Length, needs)),
+            _ => return Err(columns.missing(names[2], Angle, needs)),
+        };
+        Ok(EndPoses { absolute, computed, start })
+    }
+
+    fn read(&self, row: &Row) -> Result<ReturnError, DatasetError> {
+        let (mut x, mut y, mut heading) = self.absolute.read(row)?;
+        if let Some(columns) = &self.start {
+            let start = columns.read(row)?;
+            let column = columns.heading.as_ref().unwrap_or(&columns.x);
+            let turned = start.2.ok_or_else(|| row.wrong(column, "a finite number", "START needs its heading"))?;
+            let seen = Pose2::new(start.0, start.1, turned).between(&Pose2::new(x, y, heading.unwrap_or(turned)));
+            (x, y, heading) = (seen.x, seen.y, heading.map(|_| seen.heading));
+        }
+        let (x_calc, y_calc, calc) = self.computed.read(row)?;
+        let heading = match (heading, calc, &self.computed.heading) {
+            (Some(absolute), Some(calc), _) => Some(wrap(absolute - calc)),
+            (Some(_), None, Some(column)) => {
+                return Err(row.wrong(column, "a finite number", "the absolute heading of this row needs it"));
+            }
+            _ => None,
+        };
+        Ok(ReturnError { x: x - x_calc, y: y - y_calc, heading })
+    }
+}
+
+/// `returns.csv` of the runs whose return error is known; nothing where there is none.
+pub(crate) fn returns_text(runs: &[Run]) -> Option<Vec<u8>> {
+    let known: Vec<_> = runs.iter().filter_map(|run| Some((run, run.returned?))).collect();
+    if known.is_empty() {
+        return None;
+    }
+    let tests = known.iter().any(|(run, _)| run.test != TestKind::Systematic);
+    let headings = known.iter().any(|(_, error)| error.heading.is_some());
+    let mut text = CsvText::behind("# Return errors: absolute minus computed end pose, in the frame of START.\n");
+    let optional = |is: bool, column: &'static str| is.then_some(column);
+    let columns = ["direction", "run"].into_iter().chain(optional(tests, "test")).chain(["ex_m", "ey_m"]);
+    text.row(columns.chain(optional(headings, "etheta_rad")));
+    for (run, error) in known {
+        text.cell(run.direction.map_or("none", Direction::name));
+        text.cell(run.number);
+        if tests {
+            text.cell(run.test.name());
+        }
+        text.decimal(error.x);
+        text.decimal(error.y);
+        if headings {
+            text.decimal(error.heading);
+        }
+        text.end();
+    }
+    Some(text.finish())
+}

@@ -1,0 +1,139 @@
+//! `runs/*.csv`: one tick log per run, with the absolute poses that were measured on the way.
+
+use crate::columns::{Column, Columns, Quantity};
+use crate::csv_text::CsvText;
+use crate::error::DatasetError;
+use crate::recording::Recording;
+use crate::sheet::{Row, Sheet};
+use crate::source::Source;
+use Quantity::{Angle, Bare, Length, Time};
+use umbmark_core::dataset::{ReferencePose, TickLog};
+use umbmark_core::drive::{Kind, Robot};
+
+/// The columns of the absolute poses.
+const REFERENCE: [&str; 3] = ["x_ref_m", "y_ref_m", "theta_ref_rad"];
+/// The header of messages.
+pub(crate) const HEADER: &str = "t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad";
+
+pub(crate) struct ReferenceColumns {
+    x: Column,
+    y: Column,
+    heading: Option<Column>,
+}
+
+/// The columns of a log.
+struct LogColumns {
+    time: Column,
+    counts: [Column; 2],
+    reference: Option<ReferenceColumns>,
+}
+
+/// The rows of a log.
+pub(crate) fn parse_tick_log(
+    source: Source,
+    kind: Kind,
+    warnings: &mut Vec<String>,
+) -> Result<Recording, DatasetError> {
+    if !kind.has_tick_logs() {
+        let (file, value) = (source.file, format!("\"{}\"", kind.name()));
+        let remedy = "logs of its two trucks are not read; give its returns in returns.csv".into();
+        return Err(DatasetError::NotYet { file, line: 1, key: "drive".into(), value, remedy });
+    }
+    let sheet = Sheet::open(source, HEADER)?;
+    let columns = LogColumns::find(&sheet, kind, warnings)?;
+    let mut recording = columns.recording(sheet.file());
+    sheet.for_each(|row| columns.read(row, &mut recording))?;
+    Ok(recording)
+}
+
+impl LogColumns {
+    fn find(sheet: &Sheet, kind: Kind, warnings: &mut Vec<String>) -> Result<LogColumns, DatasetError> {
+        let mut columns = Columns::of(sheet);
+        let [first, second] = kind.counters().map(|counter| format!("ticks_{counter}"));
+        let of = if kind == Kind::default() {
+            String::new()
+        } else {
+            format!(" of a robot with drive = \"{}\"", kind.name())
+        };
+        let needs = format!("a tick log{of} needs t_s, {first} and {second}");
+        let time = columns.need("t", Time, &needs)?;
+        let counts = [columns.need(&first, Bare, &needs)?, columns.need(&second, Bare, &needs)?];
+        let reference = ReferenceColumns::find(&mut columns)?;
+        columns.finish(warnings)?;
+        Ok(LogColumns { time, counts, reference })
+    }
+
+    /// The recording of a file, before its first row.
+    fn recording(&self, file: &str) -> Recording {
+        let columns = [&self.time, &self.counts[0], &self.counts[1]].map(|column| column.name.clone());
+        Recording { file: file.to_owned(), columns, ..Recording::default() }
+    }
+
+    fn read(&self, row: &Row, recording: &mut Recording) -> Result<(), DatasetError> {
+        recording.lines.push(row.line);
+        recording.time.push(row.number(&self.time)?);
+        for (counts, column) in recording.counts.iter_mut().zip(&self.counts) {
+            counts.push(row.number(column)?);
+        }
+        if let Some(columns) = &self.reference
+            && let Some(pose) = columns.read(row, recording.time.len() - 1)?
+        {
+            recording.reference.push(pose);
+        }
+        Ok(())
+    }
+}
+
+impl ReferenceColumns {
+    pub fn find(columns: &mut Columns) -> Result<Option<ReferenceColumns>, DatasetError> {
+        let x = columns.find("x_ref", Length)?;
+        let y = columns.find("y_ref", Length)?;
+        let heading = columns.find("theta_ref", Angle)?;
+        let needs = "a reference needs both x_ref_m and y_ref_m";
+        match (x, y) {
+            (Some(x), Some(y)) => Ok(Some(ReferenceColumns { x, y, heading })),
+            (None, None) if heading.is_none() => Ok(None),
+            (None, _) => Err(columns.missing("x_ref", Length, needs)),
+            (_, None) => Err(columns.missing("y_ref", Length, needs)),
+        }
+    }
+
+    /// The pose of a row, if one was measured there.
+    #[inline]
+    pub fn read(&self, row: &Row, sample: usize) -> Result<Option<ReferencePose>, DatasetError> {
+        let heading = self.heading.as_ref().map(|column| row.number_or(column)).transpose()?.flatten();
+        match (row.number_or(&self.x)?, row.number_or(&self.y)?) {
+            (Some(x), Some(y)) => Ok(Some(ReferencePose { sample, x, y, heading })),
+            (None, None) if heading.is_none() => Ok(None),
+            (None, _) => Err(row.wrong(&self.x, "a finite number", "fill in the pose, or leave all its cells empty")),
+            (_, None) => Err(row.wrong(&self.y, "a finite number", "fill in the pose, or leave all its cells empty")),
+        }
+    }
+}
+
+/// `runs/*.csv` of a log whose references belong to different samples, in their order; counts as the encoder's counter
+/// shows them, rolled over where it does.
+pub(crate) fn tick_log_text(log: &TickLog, robot: &Robot) -> Vec<u8> {
+    let (encoder, kind) = (&robot.encoder, robot.drive.kind());
+    let [first, second] = encoder.wiring().columns(robot.counters([&log.left, &log.right]));
+    let shown = |ticks: f64| encoder.reading(ticks.floor() as i64) as f64 + (ticks - ticks.floor());
+    let referenced = !log.reference.is_empty();
+    let counters = kind.counters().map(|counter| format!("ticks_{counter}"));
+    let mut text = CsvText::behind("");
+    let columns = ["t_s"].into_iter().chain(counters.iter().map(String::as_str));
+    text.row(columns.chain(REFERENCE.into_iter().filter(|_| referenced)));
+    let mut references = log.reference.iter().peekable();
+    for (sample, time) in log.time.iter().enumerate() {
+        text.decimal(*time);
+        text.cell(shown(first[sample]));
+        text.cell(shown(second[sample]));
+        if referenced {
+            let pose = references.next_if(|pose| pose.sample == sample);
+            text.decimal(pose.map(|pose| pose.x));
+            text.decimal(pose.map(|pose| pose.y));
+            text.decimal(pose.and_then(|pose| pose.heading));
+        }
+        text.end();
+    }
+    text.finish()
+}

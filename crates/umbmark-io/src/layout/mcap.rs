@@ -1,0 +1,277 @@
+//! `runs/*.mcap`: logs of ROS 2 and of Foxglove, without ROS.
+//!
+//! A log is opened (`survey`: which topics are there), the topics of the wheels and of the reference are chosen
+//! (`topics`), and the messages of these two are decoded (`decoder`: `cdr`, `json`, `protobuf`) chunk by chunk
+//! (`container`) into columns (`wheels`, `track`), which become a [`Recording`] and the rows of a track to put into it.
+//! Nothing else of a log is kept, so its size does not matter. `write` is the way back.
+//!
+//! Source: the specification of MCAP (<https://mcap.dev/spec>) and its registry of encodings.
+
+mod cdr;
+mod clock;
+mod container;
+mod decoder;
+mod definitions;
+mod fields;
+mod joints;
+mod json;
+mod message_type;
+#[cfg(test)]
+mod mutated_log;
+mod odometer;
+mod parts;
+mod problem;
+mod protobuf;
+mod save;
+mod scene;
+mod schema;
+mod survey;
+mod topics;
+mod track;
+mod wheels;
+mod write;
+
+pub use problem::McapProblem;
+pub use save::save_mcap;
+pub(super) use survey::Survey;
+pub use topics::Topics;
+
+use super::Layout;
+use super::csv::robot_beside;
+use crate::RobotFile;
+use crate::assembly::Assembly;
+use crate::error::{DatasetError, quoted};
+use crate::label;
+use crate::probe::{Probe, stem};
+use crate::recording::Recording;
+use crate::track_rows::TrackRows;
+use clock::Clock;
+use container::{Damage, Record};
+use decoder::Decoder;
+use fields::Fields;
+use std::path::Path;
+use topics::{Chosen, shown};
+use track::Track;
+use umbmark_core::dataset::Dataset;
+use umbmark_core::dataset::{RunTopics, TickLog};
+use umbmark_core::drive::Robot;
+use umbmark_core::run::dead_reckoning::EndPose;
+use umbmark_core::run::place;
+use wheels::Wheels;
+
+pub(super) const LAYOUT: Layout = Layout::new("mcap", "the same with logs of ROS 2, runs/*.mcap; one run as NAME.mcap")
+    .reads_data((|probe| probe.extension() == "mcap", read))
+    .reads_logs(("mcap", |assembly, file, _, topics| add(assembly, Survey::open(file)?, file, topics)))
+    .writes(|data, place, existing| save_mcap(data, place, existing));
+
+fn add(assembly: &mut Assembly, survey: Survey, file: &Path, topics: &Topics) -> Result<(), DatasetError> {
+    let mut warnings = Vec::new();
+    let reading = survey.read(topics, assembly.robot(), &mut warnings)?;
+    let stem = stem(file);
+    assembly.topics.push(reading.topics(&stem));
+    let log = reading.into_log(assembly.robot(), &mut warnings)?;
+    assembly.warnings.append(&mut warnings);
+    assembly.add_log(file.display().to_string(), log, None, &stem, label::parse(&stem), EndPose::Standing)
+}
+
+/// One log, with the robot that stands beside it, or with the one that it brings along.
+fn read(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> {
+    let file = &probe.path;
+    let survey = Survey::open(file)?;
+    let robot_file = match (robot_beside(&probe.folder), &survey.robot) {
+        (Some(robot), _) => Some(RobotFile::read(robot)?),
+        (None, Some(text)) => Some(RobotFile::parse(&format!("{} (its robot.toml)", file.display()), text)?),
+        (None, None) => None,
+    };
+    let mut assembly = Assembly::new(robot_file);
+    add(&mut assembly, survey, file, topics)?;
+    Ok(assembly.finish())
+}
+
+/// More messages of a topic are not kept: hours of a fast robot, and 300 MB.
+const MOST_MESSAGES: usize = 2_000_000;
+
+/// The wheels and the poses of a log, each with its times.
+pub(super) struct Reading {
+    recording: Recording,
+    are_counts: bool,
+    track: TrackRows,
+    topics: [String; 2],
+}
+
+impl Reading {
+    /// The topics that were read, for a run.
+    pub fn topics(&self, run: &str) -> RunTopics {
+        let [wheels, reference] = self.topics.clone();
+        let reference = (!self.track.poses.is_empty()).then_some(reference);
+        RunTopics { run: run.to_owned(), wheels, reference }
+    }
+
+    /// The log, checked as every recording is, with the poses in it. Both have one clock.
+    pub fn into_log(mut self, robot: Option<&Robot>, warnings: &mut Vec<String>) -> Result<TickLog, DatasetError> {
+        let file = self.recording.file.clone();
+        let bits = robot.and_then(|robot| robot.encoder.counter_bits()).filter(|_| self.are_counts);
+        let mut log = self.recording.into_log(robot, bits, warnings)?;
+        self.track.put_in_order(warnings)?;
+        self.track.count_turns();
+        let poses = self.track.poses.len();
+        let dropped = place(&mut log, &self.track.time, &self.track.poses);
+        if dropped > 0 {
+            warnings.push(format!(
+                "{file}: {dropped} of {poses} poses fall into gaps of the wheels, or outside of them, and were left out"
+            ));
+        }
+        Ok(log)
+    }
+}
+
+/// What is decoded at once: both topics, message by message.
+struct Decoding {
+    /// By channel; there are few.
+    decoders: Vec<(u16, Decoder, Role)>,
+    fields: Fields,
+    wheels: Wheels,
+    track: Option<Track>,
+    topics: [String; 2],
+    messages: [usize; 2],
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Role {
+    Wheels,
+    Reference,
+}
+
+impl Survey {
+    /// Reads the wheels and the reference.
+    pub fn read(
+        mut self,
+        wish: &Topics,
+        robot: Option<&Robot>,
+        warnings: &mut Vec<String>,
+    ) -> Result<Reading, DatasetError> {
+        let refuse = |problem| DatasetError::Mcap { file: self.file.clone(), problem: Box::new(problem) };
+        let ticks = topics::ticks(&self.topics, wish).map_err(|problem| refuse(self.blamed(problem)))?;
+        let reference = topics::reference(&self.topics, wish, &ticks).map_err(refuse)?;
+        let mut decoding = self.decoding(&ticks, reference.as_ref()).map_err(refuse)?;
+        if decoding.wheels.need_robot() && robot.is_none() {
+            return Err(umbmark_core::dataset::NoRobot.into());
+        }
+        let skip = self.chunks_without(|channel| decoding.decoders.iter().any(|(id, ..)| *id == channel));
+        let damage = self.walk(&skip, &mut |record| decoding.take(record))?;
+        let Decoding { wheels, track, topics, messages, .. } = decoding;
+        let file = self.file.clone();
+        let refuse = |problem| DatasetError::Mcap { file: file.clone(), problem: Box::new(problem) };
+        if wheels.times.is_empty() {
+            return Err(refuse(self.without_wheels(&topics[0], &wheels, damage)));
+        }
+        warnings.extend(self.lost(damage, &topics, messages));
+        let rows = match (track, &reference) {
+            (Some(track), Some(reference)) => {
+                let mut said = Vec::new();
+                let rows = track.choose(reference, &mut said).map_err(refuse)?;
+                warnings.extend(said.into_iter().map(|text| format!("{file}: {text}")));
+                rows
+            }
+            _ => Vec::new(),
+        };
+        let clock = Clock::of(wheels.times.iter(), rows.iter().map(|(times, _)| times));
+        let track = track::timed(rows, &clock, &file, &topics[1]);
+        let are_counts = wheels.are_counts();
+        let recording = wheels.into_recording(&file, &topics[0], &clock, robot, warnings);
+        Ok(Reading { recording, are_counts, track, topics })
+    }
+
+    /// Decoders for the topics that were chosen.
+    fn decoding(&self, ticks: &Chosen, reference: Option<&Chosen>) -> Result<Decoding, McapProblem> {
+        let problem = |topic: &str, found: String, remedy: &str| McapProblem::Topic {
+            topic: quoted(topic),
+            found,
+            remedy: remedy.to_owned(),
+        };
+        if reference.is_some_and(|reference| reference.topic == ticks.topic) {
+            let found = "it cannot be both the wheels and the reference".to_owned();
+            return Err(problem(&ticks.topic, found, "name another with --ticks or --reference"));
+        }
+        let remedy = "name the wheels as --ticks TOPIC:LEFT,RIGHT (joints), TOPIC:left,right or TOPIC:right,left (lists of counts)";
+        let wheels = Wheels::new(&self.known(ticks)?.1, ticks.part.as_deref());
+        let wheels = wheels.map_err(|found| problem(&ticks.topic, found, remedy))?;
+        let track = reference.map(|reference| Ok(Track::new(&self.known(reference)?.1))).transpose()?;
+        let mut decoders = Vec::new();
+        for (chosen, role) in [(Some(ticks), Role::Wheels), (reference, Role::Reference)] {
+            let Some(chosen) = chosen else { continue };
+            let (encoding, kind) = self.known(chosen)?;
+            for (id, schema) in self.channels_of(&chosen.topic) {
+                let decoder = Decoder::new(encoding, &kind, &schema.name, &schema.data)
+                    .map_err(|found| problem(&chosen.topic, found, "record it with the schema of its messages"))?;
+                decoders.push((id, decoder, role));
+            }
+        }
+        let topics = [shown(&ticks.topic), reference.map_or(String::new(), |reference| shown(&reference.topic))];
+        Ok(Decoding { decoders, fields: Fields::default(), wheels, track, topics, messages: [0; 2] })
+    }
+
+    /// Why there are no wheels though there is a topic of them.
+    fn without_wheels(&self, topic: &str, wheels: &Wheels, damage: Option<Damage>) -> McapProblem {
+        match (damage, wheels.missing_joints()) {
+            (Some(damage), _) => McapProblem::Damaged { damage: self.place(&damage) },
+            (None, Some(found)) => {
+                let remedy = "name the joints with --ticks TOPIC:LEFT,RIGHT".to_owned();
+                McapProblem::Topic { topic: topic.to_owned(), found, remedy }
+            }
+            (None, None) => {
+                let remedy = "choose another with --ticks TOPIC".to_owned();
+                McapProblem::Topic { topic: topic.to_owned(), found: "there are no messages".to_owned(), remedy }
+            }
+        }
+    }
+
+    /// What was lost to damage.
+    fn lost(&self, damage: Option<Damage>, topics: &[String; 2], messages: [usize; 2]) -> Option<String> {
+        let file = &self.file;
+        let read = messages[0] + messages[1];
+        let expected = self.messages_of(topics).map(|n| n as usize).filter(|n| *n > read);
+        let of = expected.map_or(String::new(), |n| format!(" of {n}"));
+        match (damage, expected) {
+            (Some(damage), _) => {
+                let lost = self.size() - damage.at;
+                let share = 100.0 * lost as f64 / self.size() as f64;
+                let place = self.place(&damage);
+                Some(format!(
+                    "{file}: damaged {place}; read up to there: {read}{of} messages of the wheels and the reference; {lost} bytes ({share:.1} %) of the file are lost"
+                ))
+            }
+            (None, Some(_)) => Some(format!(
+                "{file}: {read}{of} messages of the wheels and the reference are there; the others are missing"
+            )),
+            (None, None) => None,
+        }
+    }
+}
+
+impl Decoding {
+    fn take(&mut self, record: Record) -> Result<(), McapProblem> {
+        let Record::Message { channel, log_time, data } = record else { return Ok(()) };
+        let Some((_, decoder, role)) = self.decoders.iter().find(|(id, ..)| *id == channel) else { return Ok(()) };
+        let place = *role as usize;
+        self.messages[place] += 1;
+        let (wheels, track) = (&mut self.wheels, &mut self.track);
+        let decoded = decoder.read(data, &mut self.fields, &mut |fields| match (role, &mut *track) {
+            (Role::Reference, Some(track)) => track.take(log_time, fields),
+            _ => wheels.take(log_time, fields),
+        });
+        let problem = |found| {
+            let (topic, number) = (self.topics[place].clone(), self.messages[place]);
+            McapProblem::Message { topic, number, found }
+        };
+        decoded.map_err(problem)?.map_err(problem)?;
+        if self.messages[place] > MOST_MESSAGES {
+            return Err(McapProblem::Topic {
+                topic: self.topics[place].clone(),
+                found: format!("there are more than {MOST_MESSAGES} messages"),
+                remedy: "cut the log into runs".to_owned(),
+            });
+        }
+        Ok(())
+    }
+}

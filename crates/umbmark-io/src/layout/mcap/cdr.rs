@@ -1,0 +1,317 @@
+//! Messages in CDR, decoded by a plan that is made of their schema once.
+//!
+//! A plan steps over what is not wanted and ends behind the last field that is. Every length is bounded by the bytes that
+//! are left, and nothing is allocated for what a message only claims to hold.
+
+use super::fields::{Fields, Layout, Number, Slot, Wanted, same_field};
+use super::schema::{Count, Field, Kind, Primitive, Schema};
+use re_cdr::{BigEndian, CdrEndian, CdrReader, LittleEndian};
+
+/// Definitions in definitions, at most so deep.
+const DEEPEST: usize = 32;
+/// Steps of a plan, at most.
+const LONGEST: usize = 4096;
+
+/// A step through a message.
+#[derive(Clone, Debug)]
+enum Step {
+    /// Numbers of a size, `count` of them.
+    Skip {
+        size: usize,
+        count: usize,
+    },
+    SkipText,
+    /// A list of numbers of a size.
+    SkipList {
+        size: usize,
+    },
+    Number(Primitive, Number),
+    Text(Slot),
+    Names,
+    Values(Primitive),
+    /// Something that is there `count` times, or as often as the message says.
+    Repeat {
+        count: Option<usize>,
+        steps: Box<[Step]>,
+    },
+    /// The list whose elements are messages of their own.
+    Each(Box<[Step]>),
+    /// What nobody can step over.
+    Wall(&'static str),
+}
+
+/// How to decode the messages of a topic.
+#[derive(Clone, Debug)]
+pub(super) struct Plan {
+    steps: Box<[Step]>,
+}
+
+type Read<T> = re_cdr::Result<T>;
+
+impl Plan {
+    /// A plan that finds what is wanted.
+    pub fn new(schema: &Schema, layout: &Layout) -> Result<Plan, String> {
+        let mut compiler = Compiler { schema, layout, found: vec![false; layout.wanted.len()], steps: 0 };
+        let mut steps = compiler.message(&schema.root, Some(""), 0)?;
+        let missing = layout.wanted.iter().zip(&compiler.found).find(|(wanted, found)| wanted.needed && !**found);
+        if let Some((wanted, _)) = missing {
+            return Err(format!("its type has no field {}", wanted.path));
+        }
+        shorten(&mut steps);
+        match wall(&steps) {
+            Some(what) => Err(format!("its type has {what} before what is wanted, which cannot be read")),
+            None => Ok(Plan { steps: steps.into() }),
+        }
+    }
+
+    /// Decodes a message, and visits it, or each message of its list.
+    pub fn read<E>(
+        &self,
+        data: &[u8],
+        fields: &mut Fields,
+        visit: &mut dyn FnMut(&Fields) -> Result<(), E>,
+    ) -> Result<Result<(), E>, String> {
+        let [_, kind, _, _, body @ ..] = data else { return Err("is shorter than the header of CDR".to_owned()) };
+        fields.clear();
+        let mut run = Run { fields, visit, single: true, failed: None };
+        let end = match (data[0], kind) {
+            (0, 0) => run.all(&self.steps, &mut CdrReader::<BigEndian>::new(body)),
+            (0, 1) => run.all(&self.steps, &mut CdrReader::<LittleEndian>::new(body)),
+            _ => return Err(format!("is encoded in CDR of kind {:#04x}, where 0 and 1 can be read", kind)),
+        };
+        match (end, run.failed) {
+            (_, Some(error)) => Ok(Err(error)),
+            (Err(re_cdr::Error::Utf8(_)), None) => Err("has a name that is not UTF-8".to_owned()),
+            (Err(_), None) => Err("ends before its type does".to_owned()),
+            (Ok(()), None) if run.single => Ok(visit(fields)),
+            (Ok(()), None) => Ok(Ok(())),
+        }
+    }
+}
+
+struct Compiler<'s> {
+    schema: &'s Schema,
+    layout: &'s Layout,
+    found: Vec<bool>,
+    steps: usize,
+}
+
+impl Compiler<'_> {
+    /// The steps of a definition; `path` is where it is, or nothing where no field of it can be wanted.
+    fn message(&mut self, name: &str, path: Option<&str>, depth: usize) -> Result<Vec<Step>, String> {
+        const TIME: [&str; 2] = ["builtin_interfaces/Time", "builtin_interfaces/Duration"];
+        if depth > DEEPEST {
+            return Err(format!("its schema is deeper than {DEEPEST} types in each other"));
+        }
+        let part = |name: &str, primitive| Field {
+            name: name.to_owned(),
+            kind: Kind::Primitive(primitive),
+            count: Count::One,
+        };
+        let time = [part("sec", Primitive::I32), part("nanosec", Primitive::U32)];
+        let fields = match self.schema.fields(name) {
+            Some(fields) => fields,
+            None if TIME.contains(&name) => &time,
+            None => return Err(format!("its schema does not define {}", crate::error::quoted(name))),
+        };
+        let mut steps = Vec::new();
+        for field in fields {
+            let path =
+                path.map(|path| if path.is_empty() { field.name.clone() } else { format!("{path}.{}", field.name) });
+            let step = self.field(field, path.as_deref(), depth)?;
+            self.steps += step.len();
+            if self.steps > LONGEST {
+                return Err(format!("its schema has more than {LONGEST} fields"));
+            }
+            steps.extend(step);
+        }
+        // A definition without fields takes a byte.
+        Ok(if fields.is_empty() { vec![Step::Skip { size: 1, count: 1 }] } else { steps })
+    }
+
+    fn field(&mut self, field: &Field, path: Option<&str>, depth: usize) -> Result<Vec<Step>, String> {
+        let slot = path.and_then(|path| self.slot(path));
+        let each = self.layout.each.filter(|each| Some(*each) == path && field.count == Count::Any);
+        Ok(match (&field.kind, field.count, slot) {
+            (Kind::Primitive(primitive), Count::One, Some(Slot::Number(number))) => {
+                vec![Step::Number(*primitive, number)]
+            }
+            (Kind::Primitive(primitive), Count::Any, Some(Slot::Values)) => vec![Step::Values(*primitive)],
+            (Kind::Text, Count::One, Some(slot @ (Slot::Frame | Slot::Child))) => vec![Step::Text(slot)],
+            (Kind::Text, Count::Any, Some(Slot::Names)) => vec![Step::Names],
+            (.., Some(_)) => return Err(format!("its field {} has another type than it should", path.unwrap_or(""))),
+            (Kind::Primitive(primitive), Count::Any, None) => vec![Step::SkipList { size: primitive.size() }],
+            (Kind::Primitive(primitive), Count::One, None) => vec![Step::Skip { size: primitive.size(), count: 1 }],
+            (Kind::Primitive(primitive), Count::Exactly(count), None) => {
+                vec![Step::Skip { size: primitive.size(), count }]
+            }
+            (Kind::Text, count, None) => repeated(count, vec![Step::SkipText]),
+            (Kind::WideText, ..) => vec![Step::Wall("wide text")],
+            (Kind::Message(name), ..) if each.is_some() => {
+                vec![Step::Each(self.message(name, path, depth + 1)?.into())]
+            }
+            (Kind::Message(name), Count::One, None) => self.message(name, path, depth + 1)?,
+            (Kind::Message(name), count, None) => repeated(count, self.message(name, None, depth + 1)?),
+        })
+    }
+
+    /// The slot that a field goes to.
+    fn slot(&mut self, path: &str) -> Option<Slot> {
+        let inside = match self.layout.each {
+            Some(each) => path.strip_prefix(each)?.strip_prefix('.')?,
+            None => path,
+        };
+        let fits = |wanted: &Wanted| match (inside.rsplit_once('.'), wanted.path.rsplit_once('.')) {
+            (Some((a, last)), Some((b, wanted))) => a == b && same_field(last, wanted),
+            _ => inside == wanted.path,
+        };
+        let place = self.layout.wanted.iter().position(fits)?;
+        self.found[place] = true;
+        Some(self.layout.wanted[place].slot)
+    }
+}
+
+fn repeated(count: Count, steps: Vec<Step>) -> Vec<Step> {
+    match count {
+        Count::One => steps,
+        Count::Any => vec![Step::Repeat { count: None, steps: steps.into() }],
+        Count::Exactly(count) => vec![Step::Repeat { count: Some(count), steps: steps.into() }],
+    }
+}
+
+fn takes(step: &Step) -> bool {
+    matches!(step, Step::Number(..) | Step::Text(_) | Step::Names | Step::Values(_) | Step::Each(_))
+}
+
+/// Leaves out what comes behind the last field that is wanted, and joins what is stepped over.
+fn shorten(steps: &mut Vec<Step>) {
+    let end = steps.iter().rposition(takes).map_or(0, |last| last + 1);
+    steps.truncate(end);
+    let mut joined: Vec<Step> = Vec::with_capacity(steps.len());
+    for step in steps.drain(..) {
+        match (joined.last_mut(), &step) {
+            (Some(Step::Skip { size, count }), Step::Skip { size: next, count: more }) if size == next => {
+                *count = count.saturating_add(*more);
+            }
+            _ => joined.push(step),
+        }
+    }
+    *steps = joined;
+}
+
+fn wall(steps: &[Step]) -> Option<&'static str> {
+    steps.iter().find_map(|step| match step {
+        Step::Wall(what) => Some(*what),
+        Step::Each(steps) | Step::Repeat { steps, .. } => wall(steps),
+        _ => None,
+    })
+}
+
+struct Run<'r, E> {
+    fields: &'r mut Fields,
+    visit: &'r mut dyn FnMut(&Fields) -> Result<(), E>,
+    /// Whether the message is one and no list of them.
+    single: bool,
+    failed: Option<E>,
+}
+
+impl<E> Run<'_, E> {
+    fn all<B: CdrEndian>(&mut self, steps: &[Step], cdr: &mut CdrReader<B>) -> Read<()> {
+        steps.iter().try_for_each(|step| self.step(step, cdr))
+    }
+
+    /// Does something `count` times, or once where it takes no room: then it may be there any number of times.
+    fn repeat<B: CdrEndian>(
+        &mut self,
+        count: usize,
+        cdr: &mut CdrReader<B>,
+        mut once: impl FnMut(&mut Self, &mut CdrReader<B>) -> Read<()>,
+    ) -> Read<()> {
+        for _ in 0..count {
+            let before = cdr.position();
+            once(self, cdr)?;
+            if cdr.position() == before {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn step<B: CdrEndian>(&mut self, step: &Step, cdr: &mut CdrReader<B>) -> Read<()> {
+        match step {
+            Step::Skip { size, count } => skip(cdr, *size, *count),
+            Step::SkipText => {
+                let length = cdr.read_u32()? as usize;
+                cdr.read_bytes(length).map(|_| ())
+            }
+            Step::SkipList { size } => {
+                let count = cdr.read_u32()? as usize;
+                skip(cdr, *size, count)
+            }
+            Step::Number(primitive, place) => {
+                let value = number(cdr, *primitive)?;
+                self.fields.set(*place, value);
+                Ok(())
+            }
+            Step::Text(slot) => {
+                let text = cdr.read_str()?;
+                self.fields.set_text(*slot, text);
+                Ok(())
+            }
+            Step::Names => {
+                for _ in 0..cdr.read_u32()? {
+                    let name = cdr.read_str()?;
+                    self.fields.names.push(name);
+                }
+                Ok(())
+            }
+            Step::Values(primitive) => {
+                for _ in 0..cdr.read_u32()? {
+                    let value = number(cdr, *primitive)?;
+                    self.fields.values.push(value);
+                }
+                Ok(())
+            }
+            Step::Repeat { count, steps } => {
+                let count = count.map_or_else(|| cdr.read_u32().map(|n| n as usize), Ok)?;
+                self.repeat(count, cdr, |run, cdr| run.all(steps, cdr))
+            }
+            Step::Each(steps) => {
+                self.single = false;
+                let count = cdr.read_u32()? as usize;
+                self.repeat(count, cdr, |run, cdr| {
+                    run.fields.clear();
+                    run.all(steps, cdr)?;
+                    if run.failed.is_none() {
+                        run.failed = (run.visit)(run.fields).err();
+                    }
+                    Ok(())
+                })
+            }
+            Step::Wall(_) => Err(re_cdr::Error::UnexpectedEof),
+        }
+    }
+}
+
+fn skip<B: CdrEndian>(cdr: &mut CdrReader<B>, size: usize, count: usize) -> Read<()> {
+    if count == 0 {
+        return Ok(());
+    }
+    cdr.align(size)?;
+    cdr.read_bytes(size.saturating_mul(count)).map(|_| ())
+}
+
+fn number<B: CdrEndian>(cdr: &mut CdrReader<B>, primitive: Primitive) -> Read<f64> {
+    Ok(match primitive {
+        Primitive::Bool | Primitive::U8 => cdr.read_u8()?.into(),
+        Primitive::I8 => cdr.read_i8()?.into(),
+        Primitive::I16 => cdr.read_i16()?.into(),
+        Primitive::U16 => cdr.read_u16()?.into(),
+        Primitive::I32 => cdr.read_i32()?.into(),
+        Primitive::U32 => cdr.read_u32()?.into(),
+        Primitive::I64 => cdr.read_i64()? as f64,
+        Primitive::U64 => cdr.read_u64()? as f64,
+        Primitive::F32 => cdr.read_f32()?.into(),
+        Primitive::F64 => cdr.read_f64()?,
+    })
+}
