@@ -1,9 +1,9 @@
 //! What was measured of a robot, ready for models to be fitted to it.
 //!
-//! There are two kinds of evidence. Return poses alone ([`Ends`]): a square driven in both directions shows six numbers, and
-//! exact small-sample tests exist. Whole tracks ([`Observed`]): tick logs with absolute poses on the way, where almost every
-//! effect leaves a trace of its own. [`Level::of`] says which kind a dataset holds; [`AnyEvidence`] is either of them, and what
-//! both offer is the trait [`Evidence`].
+//! There are two kinds of evidence. Return poses alone (`Ends`): a square driven in both directions shows six numbers, and exact
+//! small-sample tests exist. Whole tracks ([`Observed`]): tick logs with absolute poses on the way, where almost every effect
+//! leaves a trace of its own. [`Level::of`] says which kind a dataset holds. `AnyEvidence` is either of them, and the trait
+//! `Evidence` says what both offer.
 
 mod drives;
 pub(crate) mod ends;

@@ -14,7 +14,7 @@ pub use gears::{GearCalibration, GearError, calibrate_gears};
 pub use story::{Error, Learnt, Step};
 
 use crate::dataset::Dataset;
-use crate::diagnose;
+use crate::diagnose::Options;
 use crate::effect::Model;
 use crate::evidence::{AnyEvidence, FitError, robot_of};
 use crate::watch::Watch;
@@ -30,19 +30,14 @@ use crate::watch::Watch;
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn learn(data: &Dataset, options: &diagnose::Options) -> Result<Learnt, FitError> {
+pub fn learn(data: &Dataset, options: &Options) -> Result<Learnt, FitError> {
     let robot = robot_of(data)?;
     Watch::nobody(|watch| learn_from(data, &Model::new(robot), options, watch))
 }
 
 /// [`learn`] that starts with the effects of a model, such as a formula to try. Free effects are fitted after E_d, E_b and (from
 /// tracks) E_s. Once stopped, it ends with its current step.
-pub fn learn_from(
-    data: &Dataset,
-    start: &Model,
-    options: &diagnose::Options,
-    watch: &Watch,
-) -> Result<Learnt, FitError> {
+pub fn learn_from(data: &Dataset, start: &Model, options: &Options, watch: &Watch) -> Result<Learnt, FitError> {
     start.check_robot(robot_of(data)?)?;
     match AnyEvidence::of(data, options.level(data))? {
         AnyEvidence::Ends(ends) => ends::learn(&ends, start, options, watch),

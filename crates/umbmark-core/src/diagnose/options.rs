@@ -15,7 +15,7 @@ pub struct Options {
     /// Whether to use return poses alone, even where the runs were observed on the way.
     pub ends_only: bool,
     /// Which of the laws that stand out is added first where no effect of the catalogue explains what repeats: 1 for the one that would be
-    /// taken, 2 for the first of its [`Repeated::others`], and so on.
+    /// taken, 2 for the first of its [`Repeated::others`](super::Repeated::others), and so on.
     pub law: usize,
 }
 
