@@ -82,7 +82,7 @@ pub(super) fn compare(
     }
     if !ends.enough() {
         let [cw, ccw] = ends.counts();
-        remarks.push(format!("Few runs, {cw} cw and {ccw} ccw: p-values say little below 3 + 3."));
+        remarks.push(format!("Few runs, {cw} cw and {ccw} ccw: p-values are unreliable below 3 + 3."));
     }
     if Level::of(data) == Level::Tracks {
         remarks.push("The runs were observed on the way; their return poses alone are compared here.".into());
@@ -120,10 +120,8 @@ fn sentences(statistics: &[Statistic], size: f64, in_doubt: bool) -> Vec<String>
         let failing: Vec<String> = all.iter().filter(|s| s.p < least).map(|s| phrase(s)).collect();
         let verdict = match (all.is_empty(), failing.is_empty()) {
             (true, _) => return None,
-            (false, true) if in_doubt => "nothing can be said while the return errors are in doubt".to_owned(),
-            (false, true) => {
-                "all is explained: means, spread and correlation are as simulated tests have them".to_owned()
-            }
+            (false, true) if in_doubt => "no statement while the return errors are in doubt".to_owned(),
+            (false, true) => "explained: means, spread and correlation agree with simulated tests".to_owned(),
             (false, false) => format!("not explained: {}", failing.join("; ")),
         };
         Some(format!("{} runs: {verdict}.", direction.name()))
@@ -135,7 +133,7 @@ fn phrase(statistic: &Statistic) -> String {
     let quantity = statistic.quantity;
     let (scale, unit) = quantity.display();
     format!(
-        "{} is {:.2}{unit} where {:.2}{unit} is predicted (p = {:.3})",
+        "{} is {:.2}{unit}, predicted {:.2}{unit} (p = {:.3})",
         quantity.name(),
         scale * statistic.measured,
         scale * statistic.predicted,

@@ -255,15 +255,16 @@ fn remarks(observed: &Observed) -> Vec<String> {
     let mut remarks = Vec::new();
     let runs = observed.runs.len();
     if runs < 5 {
-        remarks
-            .push(format!("Few runs, {runs} in all: intervals and p-values rest on how runs differ and say little."));
+        remarks.push(format!(
+            "Few runs, {runs} in all: intervals and p-values rest on the scatter between runs and are uncertain."
+        ));
     }
     if observed.runs.iter().any(|run| !run.start_seen) {
-        remarks.push("START was not measured in every run: it is trusted there.".into());
+        remarks.push("START was not measured in every run: there it is assumed to be exact.".into());
     }
     if observed.runs.iter().any(|run| run.blocks.iter().all(|block| block.headings == 0)) {
         remarks.push(
-            "Headings were not measured in every run: errors to the side hold what earlier errors of the heading do, and are \
+            "Headings were not measured in every run: sideways errors then contain the result of earlier heading errors, and are \
              not tested."
                 .into(),
         );

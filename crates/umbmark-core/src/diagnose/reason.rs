@@ -95,16 +95,16 @@ impl Reason {
         match self {
             Reason::Fault(fault) => format!("{}; {}", fault.sentence(), fault.remedy()),
             Reason::NoiseAtLimit { what, value, unit } => format!(
-                "the {what} is at the limit of what is searched ({value:.3} {unit}): what the model leaves is not noise"
+                "the {what} reached the limit of its search ({value:.3} {unit}): what the model leaves is not noise"
             ),
             Reason::NoiseTooLarge { what, value, most, unit } => format!(
-                "the {what} is {value:.2} {unit}; robots like this have {most:.2} {unit} at most, so the model leaves something that is not noise"
+                "the {what} is {value:.2} {unit}; robots like this have at most {most:.2} {unit}, so the model leaves more than noise"
             ),
             Reason::SameInEveryRun { repeats, left, heading } => {
                 let (scale, unit) = if *heading { (1f64.to_degrees(), "deg") } else { (1e3, "mm") };
                 let low = repeats.interval.map_or(0.0, |interval| interval.low);
                 format!(
-                    "{:.2} {unit} are left, and at least {:.2} {unit} of them are the same in every run of one path",
+                    "the model leaves {:.2} {unit}, and at least {:.2} {unit} of it repeats in every run of one path",
                     scale * left,
                     scale * low
                 )
@@ -112,18 +112,18 @@ impl Reason {
             Reason::LargerThanNoise { place, left, expected, heading } => {
                 let (scale, unit) = if *heading { (1f64.to_degrees(), "deg") } else { (1e3, "mm") };
                 format!(
-                    "{:.2} {unit} are left {place}, where the fitted noise would leave {:.2} {unit} at most",
+                    "the model leaves {:.2} {unit} {place}; the fitted noise explains at most {:.2} {unit}",
                     scale * left,
                     scale * expected
                 )
             }
             Reason::WorseThanNominal { left_out, nominal } => format!(
-                "runs that were left out are predicted to {:.1} mm, worse than by the nominal robot ({:.1} mm)",
+                "the cross-validated error is {:.1} mm, worse than that of the nominal robot ({:.1} mm)",
                 1e3 * left_out,
                 1e3 * nominal
             ),
             Reason::LeftOutFarWorse { left_out, inside } => format!(
-                "runs that were left out are predicted to {:.1} mm and those that were fitted to {:.1} mm: the runs do not agree, or are too few",
+                "the cross-validated error is {:.1} mm and the error of the fitted runs {:.1} mm: the runs disagree, or are too few",
                 1e3 * left_out,
                 1e3 * inside
             ),

@@ -232,7 +232,7 @@ impl Remains {
         let pairs = match self.pairs {
             0 => {
                 return format!(
-                    "{left} are left. No two runs drive one path, so pairs of runs cannot tell what is the same in all from chance"
+                    "The model leaves {left}. No two runs drive the same path, so pairs of runs cannot separate what repeats from chance"
                 );
             }
             1 => "one pair of runs of one path".to_owned(),
@@ -242,11 +242,11 @@ impl Remains {
         let shown = told(&|repeats| Some(repeats.interval?.low).filter(|low| *low > 0.0));
         if shown.is_empty() {
             return format!(
-                "{left} are left. Nothing of that is shown to be the same in every run (at most {most}; {pairs})"
+                "The model leaves {left}. No part of it is shown to repeat in every run (at most {most}; {pairs})"
             );
         }
         format!(
-            "{left} are left. At least {shown} of that are the same in every run (at most {most}; {pairs}); the rest is chance, or differs \
+            "The model leaves {left}. The part that repeats in every run is at least {shown} (at most {most}; {pairs}); the rest is chance, or differs \
              between runs"
         )
     }
@@ -255,7 +255,7 @@ impl Remains {
         let total = self.chance.iter().map(|chance| chance.position.powi(2)).sum::<f64>().sqrt();
         if total > UNDONE * self.position.rms {
             return Some(format!(
-                "The noise that was found would leave {}: from pose to pose there is more of it than adds up, as with counts of whole ticks",
+                "The fitted noise alone would leave {}: part of the noise from pose to pose does not accumulate, as with whole encoder ticks",
                 MILLIMETRES.text(total)
             ));
         }
@@ -264,7 +264,7 @@ impl Remains {
         told.sort_by(|a, b| b.position.total_cmp(&a.position));
         let one = |chance: &&Chance| format!("the {} leaves {}", chance.source, MILLIMETRES.text(chance.position));
         let told: Vec<String> = told.iter().map(one).collect();
-        (!told.is_empty()).then(|| format!("By itself, {}", told.join(", ")))
+        (!told.is_empty()).then(|| format!("By chance alone, {}", told.join(", ")))
     }
 
     fn of_disturbances(&self) -> Option<String> {
@@ -294,7 +294,7 @@ impl Remains {
                 count => (format!("{count} times"), if count > NAMED { "among them " } else { "" }),
             };
             parts.push(format!(
-                "{times} a bump or a slip met by chance moves a run by more than that: {among}{}",
+                "{times} a chance bump or slip moves a run by more than that: {among}{}",
                 told.join("; ")
             ));
         }
@@ -302,10 +302,7 @@ impl Remains {
             let most = passing.iter().map(|at| at.by[0].hypot(at.by[1])).fold(0.0, f64::max);
             let poses = if passing.len() == 1 { "pose" } else { "poses" };
             let count = passing.len();
-            parts.push(format!(
-                "{count} {poses} of the reference off for a moment, by up to {}",
-                MILLIMETRES.text(most)
-            ));
+            parts.push(format!("{count} reference {poses} briefly wrong, by up to {}", MILLIMETRES.text(most)));
         }
         (!parts.is_empty()).then(|| parts.join("; "))
     }

@@ -42,7 +42,7 @@ pub(super) fn learn(ends: &Ends, start: &Model, options: &Options, watch: &Watch
                 (story, diagnosis) = further;
                 continue;
             }
-            Ok(None) => "runs that are left out are predicted no better with it".to_owned(),
+            Ok(None) => "it does not lower the cross-validated error".to_owned(),
             // A model that cannot be fitted or tested is skipped.
             Err(error @ (FitError::NotConverged { .. } | FitError::OutOfBounds { .. })) => error.to_string(),
             Err(error) => return Err(error),

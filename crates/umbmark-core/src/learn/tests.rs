@@ -60,7 +60,8 @@ fn adding_the_true_effect_lowers_the_error_left_out_and_adding_a_wrong_one_does_
             let ends = Ends::new(data).unwrap();
             let model = base_model(&Robot::labmate()).unwrap();
             let options = Options { draws: 299, ..Options::default() };
-            let found = crate::diagnose::ends::diagnose(&ends, &model, &options).unwrap().certified().first().cloned()?;
+            let found =
+                crate::diagnose::ends::diagnose(&ends, &model, &options).unwrap().certified().first().cloned()?;
             let error = |effects: &[&'static str]| held_out(data, effects).weighted;
             let (before, with, other) = (error(&[]), error(&["floor_slope"]), wrong[i % wrong.len()]);
             let alone = error(&[other]);

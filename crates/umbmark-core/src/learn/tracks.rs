@@ -90,11 +90,11 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
         steps.push(Step { law, ..step_of(&written, Some(told)) });
     }
     remarks.extend(own.iter().filter(|effect| search.is_needless(effect)).map(|effect| {
-        format!("{effect}, of the model given, is not needed beside the others: the interval of each of its sizes holds zero.")
+        format!("{effect} of the given model is not needed: the interval of each of its sizes holds zero.")
     }));
     if options.law > 1 && search.has_law() && !search.laws().any(|number| number == options.law) {
         remarks.push(format!(
-            "Law {} of the table was not added, since the fit does not bear it out: another was taken.",
+            "Law {} of the table was not added: the fit does not confirm it. Another law was taken.",
             options.law
         ));
     }
@@ -111,8 +111,7 @@ fn uncertified(effect: &str, step: &Step, before: &Error, options: &Options) -> 
     let gain = fall(step.held_out.position, before.position).max(heading);
     (p > options.size || gain < LEAST_GAIN).then(|| {
         format!(
-            "{effect}, of the model given, has no certificate: p = {p:.3}, and runs left out are predicted to {:.1} mm with it, {:.1} mm \
-             without.",
+            "{effect} of the given model is not certified: p = {p:.3}, and the cross-validated error is {:.1} mm with it, {:.1} mm without.",
             1e3 * step.held_out.position,
             1e3 * before.position
         )
@@ -155,12 +154,15 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     let Conclusion { verdict, mut reasons, repeats, remains, dependence, mut experiments, mut hints } = told;
     let more = search.left.effect.is_some();
     hints.extend(search.removed.iter().map(|effect| {
-        format!("{effect} was added on the way and taken out again: beside the others it no longer predicts runs that are left out better.")
+        format!("{effect} was added and removed again: beside the other effects it no longer lowers the cross-validated error.")
     }));
     let has_law = search.has_law();
-    hints.extend(search.harmful.iter().map(|effect| {
-        format!("{effect} is significant, and with it runs that are left out are predicted worse; it was not added.")
-    }));
+    hints.extend(
+        search
+            .harmful
+            .iter()
+            .map(|effect| format!("{effect} is significant but was not added: it raises the cross-validated error.")),
+    );
     let (left, harmful, runs) = (search.left, search.harmful, search.exams[0].fitted.observed.runs.len());
     let Some(last) = search.exams.pop() else { return Err(FitError::NotConverged { how: "has no model" }) };
     let written = search.written.pop().map_or_else(|| last.fitted.clone(), Alone::into_fitted);
@@ -188,7 +190,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     let asked = ranking.first().filter(|s| s.p_adjusted <= options.size && !harmful.contains(&s.best));
     if let Some(suspect) = asked {
         remarks.push(format!(
-            "{} is significant (p = {:.1e}) but was not added: runs that are left out are predicted better by less than {:.0} %.",
+            "{} is significant (p = {:.1e}) but was not added: it lowers the cross-validated error by less than {:.0} %.",
             suspect.class.join(" or "),
             suspect.p_adjusted,
             100.0 * LEAST_GAIN

@@ -240,9 +240,9 @@ impl Fitted {
 }
 
 /// What is to be said of values under noise of the usual sizes.
-pub const USUAL_NOISE: &str = "Runs left out are predicted nearer by the values under noise of the usual sizes than by the likeliest ones: \
-     the noise that was fitted has taken up something that the model lacks. The values are those under noise of the usual sizes; their \
-     intervals come from leaving out one run after the other.";
+pub const USUAL_NOISE: &str = "The cross-validated error is lower with noise of the usual sizes than with the fitted noise: the fitted noise \
+     has absorbed something that the model lacks. The values are those under noise of the usual sizes; their intervals come from \
+     leaving out one run after the other.";
 
 /// The free values of a model, and behind them the sizes of the effects of the reference.
 struct Tracks<'a> {

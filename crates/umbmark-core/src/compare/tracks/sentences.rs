@@ -17,7 +17,7 @@ pub(super) fn of(judged: &TracksJudged, size: f64) -> Vec<String> {
     sentences.extend(levels(judged, least));
     sentences.extend(dependences(judged, least));
     if judged.tests > 0 && sentences.is_empty() {
-        sentences.push(format!("Explained: none of {} tests shows an error that repeats.", judged.tests));
+        sentences.push(format!("Explained: none of {} tests shows a repeating error.", judged.tests));
     }
     sentences.extend(seen_to(judged));
     sentences.extend(where_made(&judged.parts));
@@ -29,7 +29,7 @@ fn levels(judged: &TracksJudged, least: f64) -> Vec<String> {
     let told = accused.map(|o| {
         let (scale, unit) = o.rate.display();
         let value = with_interval(&o.mean, scale);
-        format!("Not explained: {} is off by {value} {unit} on the whole.", o.rate.name())
+        format!("Not explained: {} is off by {value} {unit} overall.", o.rate.name())
     });
     told.collect()
 }
@@ -61,7 +61,7 @@ fn seen_to(judged: &TracksJudged) -> Option<String> {
         Some(format!("{} to ± {:.2} {unit}", o.rate.name(), scale * 0.5 * (interval.high - interval.low)))
     };
     let seen: Vec<String> = judged.overall.iter().filter_map(half).collect();
-    (!seen.is_empty()).then(|| format!("Seen on the whole: {}.", seen.join(", ")))
+    (!seen.is_empty()).then(|| format!("Overall intervals: {}.", seen.join(", ")))
 }
 
 fn where_made(parts: &[Part]) -> Option<String> {
@@ -73,7 +73,7 @@ fn where_made(parts: &[Part]) -> Option<String> {
         format!("{}{direction} ({:.0} %)", part.name, 100.0 * part.share.position)
     };
     let told: Vec<String> = moves.iter().take(NAMED).map(told).collect();
-    (!told.is_empty()).then(|| format!("Most of the error of the position is made in {}.", told.join(", ")))
+    (!told.is_empty()).then(|| format!("Most of the position error is made in {}.", told.join(", ")))
 }
 
 fn with_interval(mean: &Mean, scale: f64) -> String {

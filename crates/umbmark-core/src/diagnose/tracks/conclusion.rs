@@ -93,9 +93,7 @@ fn next_experiments(exam: &Examination, added: &Added) -> Result<(Vec<Experiment
             let how = [suspect.best, other].map(|name| find(name).map(|effect| effect.about.separated_by));
             let [own, others] = [how[0].clone()?, how[1].clone()?];
             let best = suspect.best;
-            hints.push(format!(
-                "No drive that was tried on paper tells {best} from {other}. {best}: {own}. {other}: {others}."
-            ));
+            hints.push(format!("No planned drive separates {best} from {other}. {best}: {own}. {other}: {others}."));
         }
     }
     Ok((told, hints))
@@ -105,8 +103,7 @@ fn next_experiments(exam: &Examination, added: &Added) -> Result<(Vec<Experiment
 pub(crate) fn uncertified(asked: &[Suspect], options: &Options) -> Option<String> {
     let loud = asked.first().filter(|s| s.p < LOUD && s.p_adjusted > options.size)?;
     Some(format!(
-        "{} stands out by F (p = {:.0e}), but with the signs of whole runs flipped as much comes about by chance (p = {:.2}): \
-         more runs would tell.",
+        "{} is significant by F (p = {:.0e}), but not under sign flips of whole runs (p = {:.2}): more runs are needed.",
         loud.class.join(" or "),
         loud.p,
         loud.p_adjusted
@@ -241,7 +238,7 @@ fn remarks(exam: &Examination, unlisted: Option<&Dependence>) -> Vec<String> {
     let mut remarks = Vec::new();
     if let Some(told) = unlisted {
         remarks.push(format!(
-            "Something that the catalogue does not list acts on the {} motion; it depends on {} (p = {:.2e}).",
+            "An effect outside the catalogue acts on the {} motion and depends on {} (p = {:.2e}).",
             told.acts_on, told.title, told.p_adjusted
         ));
         if let Some((effect, share)) = told.nearest.filter(|(_, share)| *share >= NEAR) {

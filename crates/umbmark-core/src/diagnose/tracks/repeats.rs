@@ -116,7 +116,7 @@ mod tests {
         let doubt = |deviations: f64, gain: f64, runs: usize| {
             let law = UnlistedLaw { gain, ..repeated.law.clone() };
             let doubted = Repeated { p: 0.3, deviations, laws: 4000, runs, law, ..repeated.clone() };
-            assert!(!doubted.counts(0.0) && doubted.sentence().starts_with("what is left may repeat ("));
+            assert!(!doubted.counts(0.0) && doubted.sentence().starts_with("what the model leaves may repeat ("));
             doubted.is_doubt(0.02)
         };
         assert!(doubt(8.0, 0.1, 4));

@@ -135,14 +135,14 @@ impl Repeated {
         let [before, after] = self.law.left_out;
         let p = if self.p < 0.001 { "p < 0.001".to_owned() } else { format!("p = {:.3}", self.p) };
         let told = match self.counts(0.0) {
-            true => format!("what is left repeats ({p} among {} laws)", self.laws),
+            true => format!("what the model leaves repeats ({p} among {} laws)", self.laws),
             false => format!(
-                "what is left may repeat ({:.1} standard deviations, the largest of {} laws; sign flips of these runs do not confirm it, {p})",
+                "what the model leaves may repeat ({:.1} standard deviations, the largest of {} laws; sign flips of these runs do not confirm it, {p})",
                 self.deviations, self.laws
             ),
         };
         format!(
-            "{told}: {}; with that, runs left out would be predicted to {:.1} mm instead of {:.1} mm",
+            "{told}: {}; with that law, the cross-validated error would be {:.1} mm instead of {:.1} mm",
             self.law.words(),
             1e3 * after,
             1e3 * before
