@@ -435,7 +435,10 @@ mod tests {
         assert!(held >= 34, "{held}");
         let remains = Remains::of(&trails(5, 0.02, 1), 0.95);
         let said = &remains.sentences()[0];
-        assert!(said.contains("of that are the same in every run") && said.contains("20 pairs"), "{said}");
+        assert!(
+            said.contains("The part that repeats in every run is at least ") && said.contains("20 pairs"),
+            "{said}"
+        );
     }
 
     #[test]
@@ -450,7 +453,7 @@ mod tests {
     fn runs_of_other_paths_are_no_pairs_and_two_runs_have_no_interval() {
         let mut few = trails(1, 0.02, 1);
         assert_eq!(Remains::of(&few, 0.95).pairs, 0);
-        assert!(Remains::of(&few, 0.95).sentences()[0].contains("No two runs drive one path"));
+        assert!(Remains::of(&few, 0.95).sentences()[0].contains("No two runs drive the same path"));
         few.push(trails(1, 0.02, 2).remove(0));
         let remains = Remains::of(&few, 0.95);
         let repeats = remains.position.repeats.unwrap();

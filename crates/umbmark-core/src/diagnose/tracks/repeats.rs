@@ -234,6 +234,6 @@ mod tests {
         let repeated = beside(&exam, 1).unwrap();
         assert!(repeated.counts(0.02), "{repeated:?}");
         let said = repeated.sentence();
-        assert!(said.starts_with("what is left repeats (p = ") && said.contains(&repeated.law.by()), "{said}");
+        assert!(said.starts_with("what the model leaves repeats (p = ") && said.contains(&repeated.law.by()), "{said}");
     }
 }
