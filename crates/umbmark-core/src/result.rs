@@ -44,6 +44,7 @@ results! {
     score: Score;
     sensitivity: Sensitivity;
     setup;
+    spin: Spin;
     study: MonteCarlo;
     sweep: Sweep;
     tolerance: Tolerance;
