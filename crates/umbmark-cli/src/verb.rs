@@ -64,8 +64,6 @@ verbs! {
     Init(init),
     /// List the effects that make a robot err, or explain one
     Effects(effects),
-    /// What a turn on the spot takes
-    Spin(spin),
     /// Print shell completions or the manual page
     Completions(completions),
 }

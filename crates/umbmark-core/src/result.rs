@@ -44,7 +44,6 @@ results! {
     score: Score;
     sensitivity: Sensitivity;
     setup;
-    spin: Spin;
     study: MonteCarlo;
     sweep: Sweep;
     tolerance: Tolerance;

@@ -26,7 +26,6 @@ mod run;
 mod score;
 mod sensitivity;
 mod simulate;
-mod spin;
 mod sweep;
 mod tolerance;
 mod work;
@@ -76,8 +75,6 @@ mod _umbmark {
     use super::sensitivity::{Sobol, sensitivity};
     #[pymodule_export]
     use super::simulate::simulate;
-    #[pymodule_export]
-    use super::spin::spin;
     #[pymodule_export]
     use super::sweep::sweep;
     #[pymodule_export]

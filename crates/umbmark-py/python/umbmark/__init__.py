@@ -39,7 +39,6 @@ from umbmark._report import Report, figures, plot, report
 from umbmark._scores import Score, score
 from umbmark._sensitivity import Sensitivity, sensitivity
 from umbmark._simulation import simulate
-from umbmark._spin import Spin, spin
 from umbmark._sweep import Sweep, sweep
 from umbmark._tolerance import Tolerance, tolerance
 from umbmark._umbmark import (
@@ -82,7 +81,6 @@ __all__ = [
     "Sensitivity",
     "Separation",
     "Setup",
-    "Spin",
     "Study",
     "Sweep",
     "Tolerance",
@@ -111,7 +109,6 @@ __all__ = [
     "sensitivity",
     "separate",
     "simulate",
-    "spin",
     "sweep",
     "tolerance",
 ]

@@ -2662,24 +2662,6 @@ class OfPair(Record, frozen=True):
     of: tuple[str, str]
 
 
-class Spin(Result, frozen=True):
-    """What a turn on the spot takes.
-
-    Attributes
-    ----------
-    robot : str
-        Name of the robot.
-    travel_m : float
-        How far each wheel rolls, in m.
-    version : str
-        Version of umbmark.
-    """
-
-    robot: str
-    travel_m: float
-    version: str
-
-
 class MonteCarlo(Result, frozen=True):
     """What a study found.
 

@@ -42,7 +42,6 @@ __all__ = [
     "sensitivity",
     "separate",
     "simulate",
-    "spin",
     "sweep",
     "tolerance",
     "write",
@@ -342,7 +341,6 @@ class Sobol:
     def sums(self, first: int, end: int) -> Floats: ...
     def document(self, numbers: Floats) -> str: ...
 
-def spin(robot: Robot) -> str: ...
 def sweep(
     study: Study,
     axes: Sequence[tuple[str, float, float, int]],
