@@ -35,6 +35,9 @@ def test_a_robot_has_the_keys_of_its_file_and_reads_back() -> None:
     ("keys", "words"),
     [
         ({"wheelbase_m": -1.0}, "Robot: wheelbase_m must be between 0.001 and 100 m, got -1.0"),
+        ({"wheelbase_m": 500.0}, "wheelbase_m must be between 0.001 and 100 m, got 500.0"),
+        ({"encoder_rate_hz": 0.0}, "encoder_rate_hz must be between 0.001 and 1000000 Hz"),
+        ({"counter_bits": 63}, "counter_bits must be between 1 and 62, got 63"),
         ({"wheelbse_m": 0.3}, 'unknown key "wheelbse_m" in [robot]; did you mean "wheelbase_m"?'),
         ({"track_width_m": 0.3}, "says what"),
         ({"encoder_rate_hz": "often"}, 'or "every tick", got "often"'),
