@@ -25,6 +25,7 @@ register! {
     circle,
     straight,
     spin,
+    triangle,
     waypoints,
 }
 
