@@ -25,7 +25,6 @@ register! {
     circle,
     straight,
     spin,
-    triangle,
     waypoints,
 }
 
