@@ -12,6 +12,7 @@ macro_rules! every_drive {
             Synchro(synchro::SynchroDrive),
             Clapper(clapper::ClapperDrive),
             Ackermann(ackermann::AckermannDrive),
+            Tracked(tracked::TrackedDrive),
         }
     };
 }
