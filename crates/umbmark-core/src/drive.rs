@@ -12,7 +12,6 @@ macro_rules! every_drive {
             Synchro(synchro::SynchroDrive),
             Clapper(clapper::ClapperDrive),
             Ackermann(ackermann::AckermannDrive),
-            Tracked(tracked::TrackedDrive),
         }
     };
 }
