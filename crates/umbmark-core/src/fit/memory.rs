@@ -32,7 +32,7 @@ impl Memory {
             DMatrix::from_columns(&last.windows(2).map(|pair| &pair[1] - &pair[0]).collect::<Vec<_>>())
         };
         let (moved, turned) = (change(&self.values), change(&self.steps));
-        let information = jacobian.tr_mul(&jacobian);
+        let information = jacobian.tr_mul(jacobian);
         let products = turned.tr_mul(&(&information * &turned));
         let least = RANK_TOLERANCE * RANK_TOLERANCE * products.trace();
         let share = products.svd(true, true).solve(&turned.tr_mul(&(&information * step)), least).ok()?;
