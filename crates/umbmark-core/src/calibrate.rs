@@ -157,32 +157,6 @@ fn doubts_of_data(setup: &Setup, level: Level, robot: &Robot) -> Vec<String> {
     }
 }
 
-/// Return headings \[rad\], clockwise and counter-clockwise, that a robot has whose E_d and E_b explain the median return positions;
-/// `None` where these do not show both.
-pub(crate) fn by_positions(returns: &[Vec<ReturnError>; 2], robot: &Robot, path: &Path) -> Option<[f64; 2]> {
-    if !robot.drive.kind().has_axle_wheels() {
-        return None;
-    }
-    let median = |of: fn(&ReturnError) -> f64, own: &[ReturnError]| {
-        let mut values: Vec<f64> = own.iter().map(of).collect();
-        values.sort_by(f64::total_cmp);
-        values.get(values.len() / 2).copied()
-    };
-    let run = |direction: Direction| {
-        let own = &returns[direction as usize];
-        let returned = ReturnError { x: median(|e| e.x, own)?, y: median(|e| e.y, own)?, heading: None };
-        let (name, direction, test) = (direction.name().to_owned(), Some(direction), TestKind::Systematic);
-        Some(Run { name, number: 1, direction, test, log: None, returned: Some(returned) })
-    };
-    let runs = Direction::BOTH.map(run).into_iter().collect::<Option<Vec<_>>>()?;
-    let data = Dataset { robot: Some(robot.clone()), path: Some(path.clone()), runs, ..Dataset::default() };
-    let exact = exact::exact(&Observations::new(&data, robot, None).ok()?, robot);
-    let headings = Direction::BOTH.map(|direction| {
-        drive_again(robot, path, direction, &exact.correction, &Correction::NONE).and_then(|returned| returned.heading)
-    });
-    (exact.shown[0] && exact.shown[1]).then_some(headings[0].zip(headings[1])?.into())
-}
-
 fn exact_estimate(
     observed: &Observations,
     robot: &Robot,

@@ -12,6 +12,7 @@
 //! Return errors are looked at by themselves (`returns`): runs far from the others, and columns in another unit.
 
 mod agreement;
+mod by_positions;
 mod cheapest;
 mod clock;
 mod disturbances;

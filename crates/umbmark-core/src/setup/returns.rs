@@ -12,7 +12,7 @@
 //! the number of sizes i, of coordinates and of tests (Bonferroni), so normal scatter gives a false alarm in at most [`FALSE_ALARMS`] of all data sets.
 
 use super::Fault;
-use crate::calibrate::by_positions;
+use super::by_positions::headings_by_positions;
 use crate::drive::{Robot, WheelTravel};
 use crate::effect::TestKind;
 use crate::geometry::wrap;
@@ -212,7 +212,7 @@ fn in_degrees(runs: &[Run], robot: &Robot, path: Option<&Path>) -> Option<Fault>
     if !enough || headings.iter().flatten().all(|heading| heading.abs() < NEAR) {
         return None;
     }
-    let expected = by_positions(&both, robot, path)?;
+    let expected = headings_by_positions(&both, robot, path)?;
     let degrees = 1f64.to_degrees();
     let (mut as_given, mut as_degrees, mut certain) = (0.0, 0.0, false);
     let (mut turns, mut places) = (Vec::new(), Vec::new());
