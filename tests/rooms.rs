@@ -21,11 +21,11 @@ fn rooms() -> Vec<String> {
     rows.flat_map(|row| -> Vec<String> { names(row) }).collect()
 }
 
-/// What a file names after `crate::`, outside tests, and the files of the modules that it declares.
+/// What a file names after `crate::`, outside tests, and the modules of tests that it declares.
 #[derive(Default)]
 struct Named {
     rooms: BTreeSet<String>,
-    modules: Vec<String>,
+    tests: Vec<String>,
 }
 
 fn is_test(attributes: &[syn::Attribute]) -> bool {
@@ -34,10 +34,9 @@ fn is_test(attributes: &[syn::Attribute]) -> bool {
 
 impl Visit<'_> for Named {
     fn visit_item_mod(&mut self, module: &syn::ItemMod) {
-        match (is_test(&module.attrs), &module.content) {
-            (true, _) => {}
-            (false, None) => self.modules.push(module.ident.to_string()),
-            (false, Some(_)) => visit::visit_item_mod(self, module),
+        match is_test(&module.attrs) {
+            true => self.tests.push(module.ident.to_string()),
+            false => visit::visit_item_mod(self, module),
         }
     }
 
@@ -90,14 +89,18 @@ impl Named {
     }
 }
 
-/// What the file of a module and those below it name, each with the file.
-fn named_by(file: &Path, below: &Path, found: &mut Vec<(String, PathBuf)>) {
-    let text = std::fs::read_to_string(file).unwrap_or_else(|why| panic!("{}: {why}", file.display()));
-    let mut named = Named::default();
+/// What the file of a module and those in its folder name, each with the file.
+fn named_by(module: &Path, found: &mut Vec<(String, PathBuf)>) {
+    let (file, mut named) = (module.with_extension("rs"), Named::default());
+    let text = std::fs::read_to_string(&file).unwrap_or_else(|why| panic!("{}: {why}", file.display()));
     named.visit_file(&syn::parse_file(&text).unwrap());
-    found.extend(named.rooms.into_iter().map(|room| (room, file.to_owned())));
-    for module in named.modules {
-        named_by(&below.join(format!("{module}.rs")), &below.join(&module), found);
+    found.extend(named.rooms.into_iter().map(|room| (room, file.clone())));
+    let below = std::fs::read_dir(module).into_iter().flatten().map(|entry| entry.unwrap().path());
+    let modules = below.filter(|path| path.extension().is_some_and(|ending| ending == "rs"));
+    for module in modules.map(|path| path.with_extension("")) {
+        if !named.tests.iter().any(|test| module.ends_with(test)) {
+            named_by(&module, found);
+        }
     }
 }
 
@@ -117,7 +120,7 @@ fn every_room_is_in_the_table_and_names_only_those_before_it() {
     let mut against = Vec::new();
     for (floor, room) in rooms.iter().enumerate() {
         let mut named = Vec::new();
-        named_by(&core.join(format!("{room}.rs")), &core.join(room), &mut named);
+        named_by(&core.join(room), &mut named);
         let above = named.into_iter().filter(|(other, _)| rooms[floor + 1..].contains(other));
         against.extend(above.map(|(other, file)| format!("{room} names {other} in {}", file.display())));
     }

@@ -20,12 +20,10 @@ mod outcome;
 mod square;
 mod warning;
 
-use crate::dataset::{Dataset, ReturnError, Run};
-use crate::drive::Robot;
-use crate::effect::TestKind;
+use crate::dataset::Dataset;
+use crate::drive::{Kind, Robot};
 use crate::evidence::{FitError, Level, robot_of};
 use crate::likelihood::Taken;
-use crate::path::{Direction, Path};
 use crate::score::{sentence, summarise};
 use crate::setup::{Fault, Setup};
 use observations::Observations;

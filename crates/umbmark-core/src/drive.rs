@@ -26,7 +26,7 @@ pub use encoder::{Encoder, MAX_COUNTER_BITS, Wiring, roll_over};
 pub use kind::{Kind, Kinds};
 pub use kinematics::Spelling;
 
-use crate::parameter::{Parameter, ParameterError};
+use crate::parameter::{Parameter, ParameterError, Sizes};
 use kinematics::Kinematics;
 use std::ops::Deref;
 
@@ -249,6 +249,16 @@ pub struct Robot {
     pub drive: Drive,
     /// Encoders, the same kind on all wheels.
     pub encoder: Encoder,
+}
+
+impl Sizes for Robot {
+    fn wheelbase(&self) -> f64 {
+        self.drive.wheelbase()
+    }
+
+    fn wheel_radius(&self) -> f64 {
+        0.25 * (self.drive.wheel_diameter_left() + self.drive.wheel_diameter_right())
+    }
 }
 
 impl Robot {

@@ -3,8 +3,6 @@
 //! Robots, effects, path shapes and speed profiles describe their numbers with the same type, so that files, flags, sweeps, help
 //! and error messages are all made from one description.
 
-use crate::drive::Robot;
-
 /// The description of one number.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
@@ -49,12 +47,21 @@ pub enum DefaultValue {
     /// A number.
     Value(f64),
     /// A number that the robot has.
-    OfRobot(fn(&Robot) -> f64),
+    OfRobot(fn(&dyn Sizes) -> f64),
+}
+
+/// The sizes of a robot that numbers nobody set may be taken from.
+pub trait Sizes {
+    /// \[m\]
+    fn wheelbase(&self) -> f64;
+
+    /// Mean radius of its wheels \[m\].
+    fn wheel_radius(&self) -> f64;
 }
 
 impl DefaultValue {
     /// The number itself.
-    pub fn resolve(&self, robot: &Robot) -> f64 {
+    pub fn resolve(&self, robot: &dyn Sizes) -> f64 {
         match self {
             DefaultValue::Value(value) => *value,
             DefaultValue::OfRobot(of) => of(robot),
@@ -178,7 +185,7 @@ impl Parameter {
     }
 
     /// A value at which it does something: the typical departure from the one that does nothing, else the default.
-    pub fn usual(&self, robot: &Robot) -> f64 {
+    pub fn usual(&self, robot: &dyn Sizes) -> f64 {
         self.nothing().map_or_else(|| self.default.resolve(robot), |nothing| nothing + self.typical)
     }
 

@@ -1,9 +1,9 @@
 use super::*;
-use crate::dataset::Run;
+use crate::dataset::{ReturnError, Run};
 use crate::drive::DifferentialDrive;
 use crate::effect::{Model, TestKind};
 use crate::geometry::{Displacement2, Pose2, seeded};
-use crate::path::{Direction, RECTANGLE, SPIN, SQUARE, STRAIGHT, SpeedProfile, WAYPOINTS};
+use crate::path::{Direction, Path, RECTANGLE, SPIN, SQUARE, STRAIGHT, SpeedProfile, WAYPOINTS};
 use crate::replay::Track;
 use crate::score::{Cluster, Scatter};
 use nalgebra::Matrix2;

@@ -80,9 +80,7 @@ pub(super) const HEIGHT: Parameter =
     Parameter::shape("height_m", "bump-height", "m", 0.010, (0.0, 1.0), "height of the obstacle");
 
 pub(super) const WHEEL_RADIUS: Parameter = Parameter {
-    default: DefaultValue::OfRobot(|robot| {
-        0.25 * (robot.drive.wheel_diameter_left() + robot.drive.wheel_diameter_right())
-    }),
+    default: DefaultValue::OfRobot(|robot| robot.wheel_radius()),
     ..Parameter::shape(
         "wheel_radius_m",
         "bump-wheel-radius",

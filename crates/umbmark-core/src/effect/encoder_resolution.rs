@@ -27,7 +27,7 @@ impl Effect for EncoderResolution {
                 "travel of a wheel per count that it is read to",
             ),
             Parameter {
-                default: DefaultValue::OfRobot(|robot| robot.drive.wheelbase()),
+                default: DefaultValue::OfRobot(|robot| robot.wheelbase()),
                 ..Parameter::shape(
                     "wheelbase_m",
                     "encoder-quantum-wheelbase",
