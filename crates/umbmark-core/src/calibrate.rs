@@ -21,7 +21,7 @@ mod square;
 mod warning;
 
 use crate::dataset::Dataset;
-use crate::drive::{Kind, Robot};
+use crate::drive::Robot;
 use crate::evidence::{FitError, Level, robot_of};
 use crate::likelihood::Taken;
 use crate::score::{sentence, summarise};

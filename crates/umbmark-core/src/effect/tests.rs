@@ -214,7 +214,7 @@ fn each_number_but_those_of_chance_shows_and_its_derivative_is_that_of_finite_di
     let mut silent = Vec::new();
     for entry in CATALOGUE {
         let probes = probes_of(entry);
-        let model = alone(entry, Parameter::usual);
+        let model = alone(entry, |p, robot| p.usual(robot));
         for (i, p) in entry.about.parameters.iter().enumerate() {
             let exact = column(&model, i, &probes);
             let h = 1e-3 * p.typical.max(1e-6);
@@ -361,7 +361,7 @@ fn contexts() -> [Context; 2] {
 fn an_effect_says_whether_it_depends_on_where_and_how_the_robot_drives() {
     let travel = WheelTravel { left: 0.005, right: 0.035 };
     for entry in CATALOGUE {
-        let model = alone(entry, Parameter::usual);
+        let model = alone(entry, |p, robot| p.usual(robot));
         let chain = model.chain();
         let anywhere = chain.displacement(&Context::default(), &travel);
         let depends = contexts().iter().any(|at| chain.displacement(at, &travel) != anywhere);
@@ -411,7 +411,7 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
 #[test]
 fn an_effect_changes_what_it_says_and_nothing_else() {
     for entry in CATALOGUE {
-        let values: Vec<f64> = alone(entry, Parameter::usual).values().collect();
+        let values: Vec<f64> = alone(entry, |p, robot| p.usual(robot)).values().collect();
         assert_eq!(changed(entry, &values), entry.changes, "{}", entry.about.name);
     }
 }
@@ -421,7 +421,7 @@ fn an_effect_varies_from_the_first_of_its_sizes_that_is_not_zero_and_not_before(
     for entry in CATALOGUE {
         let nothing = alone(entry, neutral);
         assert!(!nothing.varies(), "{}", entry.about.name);
-        if !alone(entry, Parameter::usual).varies() {
+        if !alone(entry, |p, robot| p.usual(robot)).varies() {
             continue;
         }
         for p in entry.about.parameters.iter().filter(|p| matches!(p.role, Role::Size | Role::Scatter)) {
@@ -437,7 +437,7 @@ fn an_effect_says_what_its_numbers_mean_in_a_sentence_that_changes_with_their_si
     let robot = Robot::labmate();
     for entry in CATALOGUE {
         let said = |model: Model| model.meaning(entry.about.name).unwrap_or_else(|| panic!("{}", entry.about.name));
-        let usual = said(alone(entry, Parameter::usual));
+        let usual = said(alone(entry, |p, robot| p.usual(robot)));
         assert!(usual.ends_with('.') && usual.contains(|c: char| c.is_ascii_digit()), "{}: {usual}", entry.about.name);
         assert!(!usual.contains("NaN") && !usual.contains("inf") && !usual.contains("  "), "{usual}");
         let sized = |p: &Parameter, robot: &Robot| {
