@@ -33,6 +33,7 @@ mod tracks_report;
 mod unlisted;
 mod vary;
 mod verb;
+mod words;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -85,7 +86,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(code) => code,
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            let _ = writeln!(io::stderr(), "error: {error:#}");
+            let _ = writeln!(io::stderr(), "error: {}", words::worded(&error));
             ExitCode::from(1)
         }
     }

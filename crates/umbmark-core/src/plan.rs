@@ -58,9 +58,7 @@ pub enum PlanError {
     #[error(transparent)]
     Path(#[from] PathError),
     /// Runs that do not scatter.
-    #[error(
-        "the runs of this robot do not scatter, so one run shows everything; say what makes them scatter (--wheel-noise 0.001)"
-    )]
+    #[error("the runs of this robot do not scatter, so one run shows everything; say what makes them scatter")]
     NoScatter,
     /// Data without a path.
     #[error("the path is not known: put a [path] into robot.toml")]

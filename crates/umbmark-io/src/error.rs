@@ -1,6 +1,7 @@
 //! What can be wrong with measurements, and what to do about it.
 
 use super::layout::mcap::McapProblem;
+use super::remedy::{Remedy, Words};
 use umbmark_core::dataset::NoRobot;
 
 /// What makes a dataset, a robot file or a model file unusable.
@@ -27,12 +28,12 @@ pub enum DatasetError {
         reason: String,
     },
     /// A file that would be overwritten.
-    #[error("{file}: is there already; {remedy}")]
+    #[error("{file}: is there already; {}", .remedy.worded(&Words::PLAIN))]
     AlreadyThere {
         /// The file.
         file: String,
         /// What to do.
-        remedy: &'static str,
+        remedy: Remedy,
     },
     /// A file or folder that is no dataset.
     #[error("{file}: is not a dataset: {found}; {remedy}")]
@@ -401,6 +402,19 @@ pub enum DatasetError {
         /// What to do; may be empty.
         remedy: Box<str>,
     },
+}
+
+impl DatasetError {
+    /// The message, which names the arguments as an edge does.
+    pub fn worded(&self, words: &Words) -> String {
+        match self {
+            DatasetError::AlreadyThere { file, remedy } => {
+                format!("{file}: is there already; {}", remedy.worded(words))
+            }
+            DatasetError::Mcap { file, problem } => format!("{file}: {}", problem.worded(words)),
+            _ => self.to_string(),
+        }
+    }
 }
 
 fn after(remedy: &str) -> String {

@@ -2,6 +2,7 @@
 
 use super::error::DatasetError;
 use super::layout::csv::{RETURNS, RUNS};
+use super::remedy::Remedy;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -70,14 +71,14 @@ fn refuse_existing(
     let refuse = |file: PathBuf, remedy| DatasetError::AlreadyThere { file: file.display().to_string(), remedy };
     let there = files.keys().map(|name| folder.join(name)).find(|file| file.exists());
     if let (Some(file), Existing::Keep) = (there, existing) {
-        return Err(refuse(file, "choose another folder, or say --force to replace it"));
+        return Err(refuse(file, Remedy::Replace { another: "folder" }));
     }
     let logs = std::fs::read_dir(folder.join(RUNS)).into_iter().flatten().flatten();
     let mut others = logs.map(|entry| Path::new(RUNS).join(entry.file_name()));
     let of_dataset = files.keys().any(|name| name.starts_with(RUNS) || name.as_path() == Path::new(RETURNS));
     match others.find(|name| of_dataset && !files.contains_key(name)) {
         Some(other) => {
-            Err(refuse(folder.join(other), "it is the log of another run: choose another folder, or delete it"))
+            Err(refuse(folder.join(other), "it is the log of another run: choose another folder, or delete it".into()))
         }
         None => Ok(()),
     }

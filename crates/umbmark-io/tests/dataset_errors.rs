@@ -7,7 +7,7 @@ mod bad_input;
 mod sentences;
 
 use bad_input::{Case, cases};
-use sentences::sentences;
+use sentences::{COMMAND, sentences};
 use std::path::Path;
 
 /// What loading a case says, without the path of its folder.
@@ -18,7 +18,7 @@ fn said(case: &Case) -> String {
     let path = if case.load.is_empty() { folder.path().to_owned() } else { folder.path().join(&case.load) };
     let said = match umbmark_io::load(path) {
         Ok(data) => format!("no error, and {:?}", data.warnings),
-        Err(error) => error.to_string(),
+        Err(error) => error.worded(&COMMAND),
     };
     assert_eq!(contents(case, folder.path()), before, "{}: loading touched the files", case.name);
     case.without_folder(&said, folder.path())

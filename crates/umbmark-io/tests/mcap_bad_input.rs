@@ -8,7 +8,7 @@ mod sentences;
 
 use mcap::{Compression, WriteOptions};
 use mcap_log::*;
-use sentences::sentences;
+use sentences::{COMMAND, sentences};
 use std::collections::BTreeMap;
 use umbmark_io::Topics;
 
@@ -37,7 +37,7 @@ fn said(case: &Case) -> String {
     std::fs::write(&file, &case.file).unwrap();
     let said = match umbmark_io::load_with(&file, &case.topics) {
         Ok(data) => format!("no error, and {:?}", data.warnings),
-        Err(error) => error.to_string(),
+        Err(error) => error.worded(&COMMAND),
     };
     assert_eq!(std::fs::read(&file).unwrap(), case.file, "{}: reading touched the file", case.name);
     said.replace(&format!("{}/", folder.path().display()), "")

@@ -122,7 +122,7 @@ fn odometry_of_the_robot_is_no_reference_of_itself_unless_the_user_says_so() {
     };
     let data = load(&made("odom"));
     assert!(log(&data).reference.is_empty());
-    assert!(data.warnings[0].contains("say --reference /odom if it is one"), "{:?}", data.warnings);
+    assert!(data.warnings[0].contains("name the topic /odom as the reference if it is one"), "{:?}", data.warnings);
     let said = Topics { ticks: None, reference: Some("/odom".into()) };
     assert_eq!(log(&load_with(&made("odom"), &said).unwrap()).reference.len(), 100);
     assert_eq!(log(&load(&made("map"))).reference.len(), 100);

@@ -16,7 +16,7 @@ use crate::path::{DIRECTIONS, Path};
 use crate::robot::Robot;
 use crate::run::{Run, TESTS};
 use crate::work::{detached, watched};
-use crate::{choice, existing, json, refused, unwritten};
+use crate::{choice, existing, json, refused, refused_data};
 
 /// A robot and its runs, measured or simulated. Frozen; ``umbmark.load_dataset`` reads one.
 ///
@@ -139,7 +139,7 @@ impl Dataset {
             Some(name) => choice("layout", name, &Layout::written().map(named).collect::<Vec<_>>())?,
             None => Layout::of_place(&place),
         };
-        detached(py, || layout.write(&self.0, &place, existing(replace)))?.map_err(unwritten)
+        detached(py, || layout.write(&self.0, &place, existing(replace)))?.map_err(refused_data)
     }
 
     /// Draw the return errors, cw and ccw, or the tracks.
@@ -235,7 +235,7 @@ pub fn load_dataset(
 ) -> PyResult<Dataset> {
     let topics = Topics { ticks, reference };
     let read = watched(py, 0, None, move |_| umbmark_io::load_with(&place, &topics))?;
-    read.map(Dataset::from).map_err(refused)
+    read.map(Dataset::from).map_err(refused_data)
 }
 
 /// What a dataset holds, whether it is any good, and what it can determine.
@@ -270,6 +270,6 @@ pub fn inspect(py: Python<'_>, data: &Dataset, place: &str) -> PyResult<String> 
 #[pyfunction]
 #[pyo3(signature = (folder=PathBuf::from("."), *, replace=false))]
 pub fn init(folder: PathBuf, replace: bool) -> PyResult<(PathBuf, PathBuf)> {
-    let [robot, returns] = write_template(&folder, existing(replace)).map_err(unwritten)?;
+    let [robot, returns] = write_template(&folder, existing(replace)).map_err(refused_data)?;
     Ok((robot, returns))
 }

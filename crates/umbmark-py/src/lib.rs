@@ -32,7 +32,8 @@ mod work;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use umbmark_io::Existing;
+use umbmark_io::whole_file::FileError;
+use umbmark_io::{DatasetError, Existing, Words};
 
 /// The odometry error of wheeled robots: UMBmark.
 #[pymodule]
@@ -91,14 +92,17 @@ fn refused(error: impl std::error::Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// What is not written because something is there already, in Python's words.
-fn unwritten(error: impl std::fmt::Display) -> PyErr {
-    let text = error.to_string();
-    let text = match text.strip_suffix("exists already") {
-        Some(_) => format!("{text}; replace=True replaces it"),
-        None => text.replace("say --force", "say replace=True"),
-    };
-    PyValueError::new_err(text)
+/// What is wrong with a file of a data set, or why one is not written, in Python's words.
+fn refused_data(error: DatasetError) -> PyErr {
+    PyValueError::new_err(error.worded(&Words { replace: "say replace=True", before: "", between: "=" }))
+}
+
+/// Why a file is not written, in Python's words.
+fn unwritten(error: FileError) -> PyErr {
+    PyValueError::new_err(match error {
+        FileError::Exists(_) => format!("{error}; replace=True replaces it"),
+        error => error.to_string(),
+    })
 }
 
 /// A file that is there is kept, unless it may be replaced.

@@ -44,6 +44,7 @@ use crate::error::{DatasetError, quoted};
 use crate::label;
 use crate::probe::{Probe, stem};
 use crate::recording::Recording;
+use crate::remedy::{Argument, Remedy};
 use crate::track_rows::TrackRows;
 use clock::Clock;
 use container::{Damage, Record};
@@ -184,16 +185,17 @@ impl Survey {
 
     /// Decoders for the topics that were chosen.
     fn decoding(&self, ticks: &Chosen, reference: Option<&Chosen>) -> Result<Decoding, McapProblem> {
-        let problem = |topic: &str, found: String, remedy: &str| McapProblem::Topic {
-            topic: quoted(topic),
-            found,
-            remedy: remedy.to_owned(),
-        };
+        let problem =
+            |topic: &str, found: String, remedy: Remedy| McapProblem::Topic { topic: quoted(topic), found, remedy };
         if reference.is_some_and(|reference| reference.topic == ticks.topic) {
             let found = "it cannot be both the wheels and the reference".to_owned();
-            return Err(problem(&ticks.topic, found, "name another with --ticks or --reference"));
+            return Err(problem(&ticks.topic, found, Remedy::NameAnother));
         }
-        let remedy = "name the wheels as --ticks TOPIC:LEFT,RIGHT (joints), TOPIC:left,right or TOPIC:right,left (lists of counts)";
+        let remedy = Remedy::Name {
+            purpose: "name the wheels as",
+            argument: Argument::Ticks,
+            value: "TOPIC:LEFT,RIGHT (joints), TOPIC:left,right or TOPIC:right,left (lists of counts)",
+        };
         let wheels = Wheels::new(&self.known(ticks)?.1, ticks.part.as_deref());
         let wheels = wheels.map_err(|found| problem(&ticks.topic, found, remedy))?;
         let track = reference.map(|reference| Ok(Track::new(&self.known(reference)?.1))).transpose()?;
@@ -202,8 +204,9 @@ impl Survey {
             let Some(chosen) = chosen else { continue };
             let (encoding, kind) = self.known(chosen)?;
             for (id, schema) in self.channels_of(&chosen.topic) {
-                let decoder = Decoder::new(encoding, &kind, &schema.name, &schema.data)
-                    .map_err(|found| problem(&chosen.topic, found, "record it with the schema of its messages"))?;
+                let decoder = Decoder::new(encoding, &kind, &schema.name, &schema.data).map_err(|found| {
+                    problem(&chosen.topic, found, "record it with the schema of its messages".into())
+                })?;
                 decoders.push((id, decoder, role));
             }
         }
@@ -216,11 +219,13 @@ impl Survey {
         match (damage, wheels.missing_joints()) {
             (Some(damage), _) => McapProblem::Damaged { damage: self.place(&damage) },
             (None, Some(found)) => {
-                let remedy = "name the joints with --ticks TOPIC:LEFT,RIGHT".to_owned();
+                let (purpose, value) = ("name the joints with", "TOPIC:LEFT,RIGHT");
+                let remedy = Remedy::Name { purpose, argument: Argument::Ticks, value };
                 McapProblem::Topic { topic: topic.to_owned(), found, remedy }
             }
             (None, None) => {
-                let remedy = "choose another with --ticks TOPIC".to_owned();
+                let (purpose, value) = ("choose another with", "TOPIC");
+                let remedy = Remedy::Name { purpose, argument: Argument::Ticks, value };
                 McapProblem::Topic { topic: topic.to_owned(), found: "there are no messages".to_owned(), remedy }
             }
         }
@@ -269,7 +274,7 @@ impl Decoding {
             return Err(McapProblem::Topic {
                 topic: self.topics[place].clone(),
                 found: format!("there are more than {MOST_MESSAGES} messages"),
-                remedy: "cut the log into runs".to_owned(),
+                remedy: "cut the log into runs".into(),
             });
         }
         Ok(())

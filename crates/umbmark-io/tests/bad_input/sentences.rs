@@ -1,5 +1,8 @@
 //! What is said of each case in a file of cases.
 
+/// How the command words what is said.
+pub const COMMAND: umbmark_io::Words = umbmark_io::Words { replace: "say --force", before: "--", between: " " };
+
 /// The name of each case and its sentence, in the order of the file.
 pub fn sentences(cases: &'static str) -> Vec<(&'static str, &'static str)> {
     let mut sentences: Vec<(&str, &str)> = Vec::new();

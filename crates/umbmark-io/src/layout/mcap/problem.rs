@@ -1,5 +1,6 @@
 //! What can be wrong with an MCAP log.
 
+use crate::remedy::{Argument, Remedy, Words};
 use std::fmt;
 
 /// What makes an MCAP log unusable, without the name of its file.
@@ -27,34 +28,34 @@ pub enum McapProblem {
         topics: String,
     },
     /// Two topics or more could be meant.
-    #[error("{role} could be {topics}; say which with {flag} TOPIC")]
+    #[error("{}", self.worded(&Words::PLAIN))]
     AmbiguousTopic {
         /// "the wheels" or "the reference".
         role: &'static str,
         /// The candidates.
         topics: String,
-        /// The flag that decides.
-        flag: &'static str,
+        /// The argument that decides.
+        argument: Argument,
     },
     /// A topic that was asked for and is not there.
-    #[error("there is no topic {topic} for {flag}; {remedy}")]
+    #[error("{}", self.worded(&Words::PLAIN))]
     UnknownTopic {
         /// What was asked for, quoted.
         topic: String,
-        /// The flag.
-        flag: &'static str,
-        /// What is there.
-        remedy: String,
+        /// The argument that asked for it.
+        argument: Argument,
+        /// The topics that are there.
+        topics: String,
     },
     /// A topic whose messages cannot be what it is needed for.
-    #[error("topic {topic}: {found}; {remedy}")]
+    #[error("{}", self.worded(&Words::PLAIN))]
     Topic {
         /// The topic, quoted.
         topic: String,
         /// What is wrong with it.
         found: String,
         /// What to do.
-        remedy: String,
+        remedy: Remedy,
     },
     /// A message that cannot be decoded, or that holds what cannot be.
     #[error("topic {topic}: message {number} {found}; record again, or cut the message out")]
@@ -66,6 +67,22 @@ pub enum McapProblem {
         /// What is wrong with it.
         found: String,
     },
+}
+
+impl McapProblem {
+    /// The message, which names the arguments as an edge does.
+    pub fn worded(&self, words: &Words) -> String {
+        match self {
+            McapProblem::AmbiguousTopic { role, topics, argument } => {
+                format!("{role} could be {topics}; {}", Remedy::which(*argument).worded(words))
+            }
+            McapProblem::UnknownTopic { topic, argument, topics } => {
+                format!("there is no topic {topic} for {}; there are: {topics}", words.name(*argument))
+            }
+            McapProblem::Topic { topic, found, remedy } => format!("topic {topic}: {found}; {}", remedy.worded(words)),
+            _ => self.to_string(),
+        }
+    }
 }
 
 /// Names for a message: as they are, separated by commas, and no more than a few.

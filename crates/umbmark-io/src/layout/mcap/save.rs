@@ -5,6 +5,7 @@ use super::clock::is_calendar;
 use super::write::{nanoseconds, write};
 use crate::RobotFile;
 use crate::error::DatasetError;
+use crate::remedy::Remedy;
 use crate::save::{Existing, unwritable};
 use std::io::{Cursor, Write};
 use std::path::Path;
@@ -61,7 +62,7 @@ fn save_log(
     existing: Existing,
 ) -> Result<TickLog, DatasetError> {
     if existing == Existing::Keep && file.exists() {
-        let (file, remedy) = (file.display().to_string(), "choose another name, or say --force to replace it");
+        let (file, remedy) = (file.display().to_string(), Remedy::Replace { another: "name" });
         return Err(DatasetError::AlreadyThere { file, remedy });
     }
     let refuse = |reason: String| DatasetError::Unwritable { file: file.display().to_string(), reason };

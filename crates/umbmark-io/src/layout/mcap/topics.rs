@@ -7,6 +7,7 @@
 use super::message_type::{Encoding, MessageType};
 use super::problem::{McapProblem, listed};
 use crate::error::quoted;
+use crate::remedy::{Argument, Remedy};
 
 /// Topics of MCAP logs that hold what is measured; those that are not named are found by type.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -44,13 +45,13 @@ pub(super) struct Chosen {
 
 struct Role {
     name: &'static str,
-    flag: &'static str,
+    argument: Argument,
     rank: fn(&MessageType) -> Option<u8>,
 }
 
 const TICKS: Role = Role {
     name: "the wheels",
-    flag: "--ticks",
+    argument: Argument::Ticks,
     rank: |kind| match kind {
         MessageType::Counts { .. } => Some(0),
         MessageType::Joints => Some(1),
@@ -62,7 +63,7 @@ const TICKS: Role = Role {
 
 const REFERENCE: Role = Role {
     name: "the reference",
-    flag: "--reference",
+    argument: Argument::Reference,
     rank: |kind| match kind {
         MessageType::Pose(_) => Some(0),
         MessageType::Transform => Some(1),
@@ -102,13 +103,15 @@ impl Role {
             let (name, part) = wish.rsplit_once(':')?;
             topics.iter().find(|topic| topic.name == name).map(|topic| (topic, Some(part.to_owned())))
         });
-        let unknown = |remedy| McapProblem::UnknownTopic { topic: quoted(wish), flag: self.flag, remedy };
-        let (topic, part) =
-            found.ok_or_else(|| unknown(format!("there are: {}", listed(topics.iter().map(described)))))?;
+        let (topic, part) = found.ok_or_else(|| McapProblem::UnknownTopic {
+            topic: quoted(wish),
+            argument: self.argument,
+            topics: listed(topics.iter().map(described)),
+        })?;
         if self.rank(topic).is_none() {
             let found = format!("its type {} does not tell {}", quoted(&topic.schema), self.name);
             let able = topics.iter().filter(|topic| self.rank(topic).is_some()).map(described);
-            let remedy = format!("{} can be: {}", self.flag, listed(able));
+            let remedy = Remedy::CanBe { argument: self.argument, values: listed(able) };
             return Err(McapProblem::Topic { topic: quoted(&topic.name), found, remedy });
         }
         Ok(Chosen { topic: topic.name.clone(), part, named: true })
@@ -124,7 +127,7 @@ impl Role {
             [topic] => Ok(Some(Chosen { topic: topic.name.clone(), part: None, named: false })),
             _ => {
                 let topics = listed(candidates.into_iter().map(described));
-                Err(McapProblem::AmbiguousTopic { role: self.name, topics, flag: self.flag })
+                Err(McapProblem::AmbiguousTopic { role: self.name, topics, argument: self.argument })
             }
         }
     }

@@ -5,6 +5,7 @@ use super::fields::{Fields, Number};
 use super::message_type::MessageType;
 use super::problem::{McapProblem, listed};
 use super::topics::{Chosen, shown};
+use crate::remedy::Argument;
 use crate::track_rows::TrackRows;
 
 /// More pairs of frames are not kept apart.
@@ -61,7 +62,7 @@ impl Track {
             self.frames.retain(|frames| bare(&frames.child) == bare(part) || bare(&frames.frame) == bare(part));
             if self.frames.is_empty() {
                 let found = format!("it has no frame {}", crate::error::quoted(part));
-                let remedy = format!("its frames are: {}", listed(names));
+                let remedy = format!("its frames are: {}", listed(names)).into();
                 return Err(McapProblem::Topic { topic: shown(&chosen.topic), found, remedy });
             }
         } else if !chosen.named
@@ -72,7 +73,7 @@ impl Track {
             if !self.frames.is_empty() && self.frames.iter().all(own) {
                 let topic = shown(&chosen.topic);
                 warnings.push(format!(
-                    "{topic} is given in frame odom, so it is odometry and no reference; say --reference {topic} if it is one"
+                    "{topic} is given in frame odom, so it is odometry and no reference; name the topic {topic} as the reference if it is one"
                 ));
             }
             self.frames.retain(|frames| !own(frames));
@@ -86,8 +87,8 @@ impl Track {
                 "" => format!("{topic}:{}", shown(&frames.frame)),
                 child => format!("{topic}:{} (in {})", shown(child), shown(&frames.frame)),
             });
-            let (role, flag) = ("the reference", "--reference");
-            return Err(McapProblem::AmbiguousTopic { role, topics: listed(frames), flag });
+            let (role, argument) = ("the reference", Argument::Reference);
+            return Err(McapProblem::AmbiguousTopic { role, topics: listed(frames), argument });
         }
         Ok(self.frames.pop().map(|frames| frames.rows).unwrap_or_default())
     }
