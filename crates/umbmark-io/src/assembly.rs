@@ -1,7 +1,7 @@
 //! Runs put together from return rows and logs.
 
 use super::RobotFile;
-use super::error::DatasetError;
+use super::error::{At, DatasetError};
 use super::label::{self, Named};
 use super::layout::csv::ReturnRow;
 use super::recording::Recording;
@@ -150,8 +150,7 @@ impl Assembly {
         let key = (run.test, run.direction, run.number);
         if let Some(&first) = self.index.get(&key) {
             return Err(DatasetError::DuplicateRun {
-                file: file.to_owned(),
-                line,
+                at: At::new(file, line),
                 run: label::spoken(run.test, run.direction, run.number),
                 first: self.places[first].clone(),
             });
@@ -198,8 +197,7 @@ impl Assembly {
         let run = &mut self.runs[row];
         if run.log.is_some() {
             return Err(DatasetError::DuplicateRun {
-                file: file.to_owned(),
-                line: 1,
+                at: At::new(file, 1),
                 run: label::spoken(run.test, run.direction, run.number),
                 first: self.places[row].clone(),
             });

@@ -1,6 +1,6 @@
 //! Columns by name and unit, and the numbers in their cells.
 
-use super::error::{DatasetError, did_you_mean, quoted};
+use super::error::{At, DatasetError, did_you_mean, quoted};
 use super::sheet::{Row, Sheet};
 use super::source::Source;
 use std::collections::BTreeSet;
@@ -86,8 +86,7 @@ impl<'s> Columns<'s> {
             if let Some(first) = found {
                 let (first, second) = (first.name, name.clone());
                 return Err(DatasetError::ColumnTwice {
-                    file: self.file(),
-                    line: self.sheet.header_line,
+                    at: At::new(self.file(), self.sheet.header_line),
                     first,
                     second,
                 });
@@ -118,7 +117,7 @@ impl<'s> Columns<'s> {
             Some(near) => format!("is it {}? {remedy}", quoted(near)),
             None => remedy.to_owned(),
         };
-        DatasetError::MissingColumn { file: self.file(), line: self.sheet.header_line, column, remedy }
+        DatasetError::MissingColumn { at: At::new(self.file(), self.sheet.header_line), column, remedy }
     }
 
     /// Ends the search: columns that nobody asked for are refused where they resemble one that could have been meant,
@@ -133,8 +132,7 @@ impl<'s> Columns<'s> {
             if let Some(nearest) = umbmark_core::parameter::nearest(header, free.iter().copied()) {
                 let (column, nearest) = (quoted(header), nearest.to_owned());
                 return Err(DatasetError::UnknownColumn {
-                    file: self.file(),
-                    line: self.sheet.header_line,
+                    at: At::new(self.file(), self.sheet.header_line),
                     column,
                     nearest,
                 });
@@ -152,8 +150,7 @@ impl<'s> Columns<'s> {
         self.used.insert(column.index);
         match self.leaders.iter().find(|(q, _)| *q == quantity) {
             Some((_, leader)) if leader.unit != column.unit => Err(DatasetError::MixedUnits {
-                file: self.file(),
-                line: self.sheet.header_line,
+                at: At::new(self.file(), self.sheet.header_line),
                 first: leader.name.clone(),
                 second: column.name.clone(),
                 quantity: quantity.name(),
@@ -183,7 +180,7 @@ impl<'s> Columns<'s> {
             let allowed =
                 quantity.units().iter().map(|unit| format!("_{}", unit.name)).collect::<Vec<_>>().join(" or ");
             let (column, line) = (quoted(header), self.sheet.header_line);
-            return Err(DatasetError::Unit { file: self.file(), line, column, found, allowed });
+            return Err(DatasetError::Unit { at: At::new(self.file(), line), column, found, allowed });
         }
         Ok(())
     }
@@ -253,8 +250,7 @@ impl<'r> Row<'r> {
 
     fn wrong_cell(&self, name: &str, text: &str, allowed: &str, remedy: &str) -> DatasetError {
         DatasetError::Cell {
-            file: self.file.to_owned(),
-            line: self.line,
+            at: At::new(self.file, self.line),
             column: name.to_owned(),
             value: if text.is_empty() { "nothing".into() } else { quoted(text) },
             allowed: allowed.into(),

@@ -1,6 +1,6 @@
 //! TOML with positions: tables that know their file and line, and say what they expected.
 
-use super::error::{DatasetError, quoted};
+use super::error::{At, DatasetError, quoted};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use umbmark_core::parameter::{Parameter, nearest};
@@ -19,7 +19,7 @@ impl<'a> Source<'a> {
             let before = self.text.get(..at).unwrap_or(self.text);
             let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
             let reason = error.message().lines().collect::<Vec<_>>().join(", ");
-            DatasetError::Syntax { file: self.file.to_owned(), line: self.line(at), column, reason }
+            DatasetError::Syntax { at: At::new(self.file, self.line(at)), column, reason }
         })
     }
 
@@ -67,8 +67,7 @@ impl<'a> Table<'a> {
             None => format!("it takes {}", allowed.join(", ")),
         };
         Err(DatasetError::UnknownKey {
-            file: self.source.file.to_owned(),
-            line: self.source.line(key.span().start),
+            at: At::new(self.source.file, self.source.line(key.span().start)),
             table: self.name.clone(),
             key: quoted(key.get_ref()),
             remedy,
@@ -102,8 +101,7 @@ impl<'a> Table<'a> {
     /// The error of a key that is not there.
     pub fn missing(&self, key: &str, example: &str) -> DatasetError {
         DatasetError::MissingKey {
-            file: self.source.file.to_owned(),
-            line: self.line,
+            at: At::new(self.source.file, self.line),
             table: self.name.clone(),
             key: key.to_owned(),
             example: example.to_owned(),
@@ -136,8 +134,7 @@ impl<'a> Entry<'a> {
     pub fn again(&self, second: &Entry) -> DatasetError {
         let (first, second) = if self.at <= second.at { (self, second) } else { (second, self) };
         DatasetError::KeyTwice {
-            file: self.source.file.to_owned(),
-            line: second.line(),
+            at: At::new(self.source.file, second.line()),
             second: second.key.to_owned(),
             first: first.key.to_owned(),
             first_line: first.line(),
@@ -216,8 +213,7 @@ impl<'a> Entry<'a> {
     /// The same for a value that goes by another name than its key.
     pub fn wrong_value(&self, key: String, allowed: &str, remedy: &str) -> DatasetError {
         DatasetError::Value {
-            file: self.source.file.to_owned(),
-            line: self.line(),
+            at: At::new(self.source.file, self.line()),
             key,
             value: self.shown(),
             allowed: allowed.into(),

@@ -2,6 +2,7 @@
 
 use super::layout::mcap::McapProblem;
 use super::remedy::{Remedy, Words};
+use std::fmt;
 use umbmark_core::dataset::NoRobot;
 
 /// What makes a dataset, a robot file or a model file unusable.
@@ -57,12 +58,10 @@ pub enum DatasetError {
         problem: Box<McapProblem>,
     },
     /// Something that the format allows and this version does not do.
-    #[error("{file}:{line}: {key} {value} is not supported yet; {remedy}")]
+    #[error("{at}: {key} {value} is not supported yet; {remedy}")]
     NotYet {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// The key.
         key: String,
         /// What it was given, quoted.
@@ -72,12 +71,10 @@ pub enum DatasetError {
     },
 
     /// Bytes that are not UTF-8.
-    #[error("{file}:{line}: {found}; save the file as UTF-8 text")]
+    #[error("{at}: {found}; save the file as UTF-8 text")]
     NotUtf8 {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// What it looks like.
         found: &'static str,
     },
@@ -92,36 +89,28 @@ pub enum DatasetError {
         remedy: String,
     },
     /// The first line is not a header.
-    #[error(
-        "{file}:{line}: the first row is data ({value}); put a header line with the column names above it, not behind a #"
-    )]
+    #[error("{at}: the first row is data ({value}); put a header line with the column names above it, not behind a #")]
     NoHeader {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// Its first cell, quoted.
         value: String,
     },
     /// Cells that are not separated by commas.
     #[error(
-        "{file}:{line}: the cells are separated by {found}; separate them by commas and write decimals with a point (0.123, not 0,123)"
+        "{at}: the cells are separated by {found}; separate them by commas and write decimals with a point (0.123, not 0,123)"
     )]
     Separator {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// What separates them.
         found: &'static str,
     },
     /// A row with more or fewer cells than the header.
-    #[error("{file}:{line}: {got} cells where the header has {expected}; {remedy}")]
+    #[error("{at}: {got} cells where the header has {expected}; {remedy}")]
     Ragged {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// Cells in the row.
         got: usize,
         /// Columns of the header.
@@ -130,36 +119,30 @@ pub enum DatasetError {
         remedy: &'static str,
     },
     /// A column that is needed and not there.
-    #[error("{file}:{line}: there is no column {column}; {remedy}")]
+    #[error("{at}: there is no column {column}; {remedy}")]
     MissingColumn {
-        /// The file.
-        file: String,
-        /// The line of the header.
-        line: usize,
+        /// Where.
+        at: At,
         /// The column, with its unit.
         column: String,
         /// What to do.
         remedy: String,
     },
     /// A column that nobody knows but that resembles one.
-    #[error("{file}:{line}: unknown column {column}; did you mean \"{nearest}\"?")]
+    #[error("{at}: unknown column {column}; did you mean \"{nearest}\"?")]
     UnknownColumn {
-        /// The file.
-        file: String,
-        /// The line of the header.
-        line: usize,
+        /// Where.
+        at: At,
         /// The column, quoted.
         column: String,
         /// What may have been meant.
         nearest: String,
     },
     /// A column without a unit, or with one that nobody knows.
-    #[error("{file}:{line}: column {column}: {found}; end its name in {allowed}")]
+    #[error("{at}: column {column}: {found}; end its name in {allowed}")]
     Unit {
-        /// The file.
-        file: String,
-        /// The line of the header.
-        line: usize,
+        /// Where.
+        at: At,
         /// The column, quoted.
         column: String,
         /// What is there.
@@ -169,13 +152,11 @@ pub enum DatasetError {
     },
     /// Two units of the same quantity in one file.
     #[error(
-        "{file}:{line}: column \"{first}\" and column \"{second}\" have different units; use one unit of {quantity} in the whole file"
+        "{at}: column \"{first}\" and column \"{second}\" have different units; use one unit of {quantity} in the whole file"
     )]
     MixedUnits {
-        /// The file.
-        file: String,
-        /// The line of the header.
-        line: usize,
+        /// Where.
+        at: At,
         /// A column.
         first: String,
         /// Another column.
@@ -184,12 +165,10 @@ pub enum DatasetError {
         quantity: &'static str,
     },
     /// Two columns for the same thing.
-    #[error("{file}:{line}: column \"{first}\" and column \"{second}\" say the same; keep one of them")]
+    #[error("{at}: column \"{first}\" and column \"{second}\" say the same; keep one of them")]
     ColumnTwice {
-        /// The file.
-        file: String,
-        /// The line of the header.
-        line: usize,
+        /// Where.
+        at: At,
         /// A column.
         first: String,
         /// Another column.
@@ -197,25 +176,21 @@ pub enum DatasetError {
     },
     /// Two ways of saying the same return.
     #[error(
-        "{file}:{line}: both end poses (\"{poses}\") and their errors (\"{errors}\") are given; keep the poses or the errors, not both"
+        "{at}: both end poses (\"{poses}\") and their errors (\"{errors}\") are given; keep the poses or the errors, not both"
     )]
     BothConventions {
-        /// The file.
-        file: String,
-        /// The line of the header.
-        line: usize,
+        /// Where.
+        at: At,
         /// A column of a pose.
         poses: String,
         /// A column of an error.
         errors: String,
     },
     /// A cell that cannot be what it is.
-    #[error("{file}:{line}: column \"{column}\" must be {allowed}, got {value}{}", after(remedy))]
+    #[error("{at}: column \"{column}\" must be {allowed}, got {value}{}", after(remedy))]
     Cell {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// The column.
         column: String,
         /// What it holds, quoted.
@@ -226,26 +201,20 @@ pub enum DatasetError {
         remedy: Box<str>,
     },
     /// The same run twice.
-    #[error(
-        "{file}:{line}: {run} stands twice, first in {first}; number the runs of each direction and test without repeating"
-    )]
+    #[error("{at}: {run} stands twice, first in {first}; number the runs of each direction and test without repeating")]
     DuplicateRun {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// The run, in words.
         run: String,
         /// Where it stands already.
         first: String,
     },
     /// Time that does not go forward.
-    #[error("{file}:{line}: column \"{column}\" must increase, got {after} s after {before} s; {remedy}")]
+    #[error("{at}: column \"{column}\" must increase, got {after} s after {before} s; {remedy}")]
     Time {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// The column.
         column: String,
         /// Time of the row before \[s\].
@@ -281,13 +250,11 @@ pub enum DatasetError {
     },
     /// A wheel that moved faster than a wheel can.
     #[error(
-        "{file}:{line}: column \"{column}\" goes from {before} to {after} ticks in {seconds} s, {speed} m/s at the wheel where {limit} m/s is allowed; {remedy}"
+        "{at}: column \"{column}\" goes from {before} to {after} ticks in {seconds} s, {speed} m/s at the wheel where {limit} m/s is allowed; {remedy}"
     )]
     Jump {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// The column.
         column: String,
         /// Count of the row before.
@@ -305,13 +272,11 @@ pub enum DatasetError {
     },
     /// A count that jumps as a counter does that rolls over.
     #[error(
-        "{file}:{line}: column \"{column}\" goes from {before} to {after} ticks, as a counter of {bits} bits does when it rolls over; say counter_bits = {bits} in robot.toml"
+        "{at}: column \"{column}\" goes from {before} to {after} ticks, as a counter of {bits} bits does when it rolls over; say counter_bits = {bits} in robot.toml"
     )]
     RolledOver {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// The column.
         column: String,
         /// Count of the row before.
@@ -333,24 +298,20 @@ pub enum DatasetError {
     },
 
     /// Not TOML.
-    #[error("{file}:{line}: not valid TOML at character {column}: {reason}")]
+    #[error("{at}: not valid TOML at character {column}: {reason}")]
     Syntax {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// The character in the line, from 1.
         column: usize,
         /// What the parser says.
         reason: String,
     },
     /// A key that nobody knows.
-    #[error("{file}:{line}: unknown key {key} in {table}; {remedy}")]
+    #[error("{at}: unknown key {key} in {table}; {remedy}")]
     UnknownKey {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// The table, in brackets.
         table: String,
         /// The key, quoted.
@@ -359,12 +320,10 @@ pub enum DatasetError {
         remedy: String,
     },
     /// A key that is needed and not there.
-    #[error("{file}:{line}: {table} has no {key}; add {example}")]
+    #[error("{at}: {table} has no {key}; add {example}")]
     MissingKey {
-        /// The file.
-        file: String,
-        /// The line of the table, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// The table, in brackets.
         table: String,
         /// The key.
@@ -373,12 +332,10 @@ pub enum DatasetError {
         example: String,
     },
     /// Two keys for the same thing.
-    #[error("{file}:{line}: {second} says what {first} in line {first_line} says already; keep one of them")]
+    #[error("{at}: {second} says what {first} in line {first_line} says already; keep one of them")]
     KeyTwice {
-        /// The file.
-        file: String,
-        /// The line of the second, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// The second.
         second: String,
         /// The first.
@@ -387,12 +344,10 @@ pub enum DatasetError {
         first_line: usize,
     },
     /// A value that cannot be.
-    #[error("{file}:{line}: {key} must be {allowed}, got {value}{}", after(remedy))]
+    #[error("{at}: {key} must be {allowed}, got {value}{}", after(remedy))]
     Value {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: usize,
+        /// Where.
+        at: At,
         /// The key.
         key: String,
         /// What it was given.
@@ -404,7 +359,56 @@ pub enum DatasetError {
     },
 }
 
+/// A line of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct At {
+    /// The file.
+    pub file: String,
+    /// The line, from 1.
+    pub line: usize,
+}
+
+impl At {
+    pub(super) fn new(file: impl Into<String>, line: usize) -> At {
+        At { file: file.into(), line }
+    }
+}
+
+impl fmt::Display for At {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.file, self.line)
+    }
+}
+
 impl DatasetError {
+    /// The line that the message begins with, where it does.
+    pub fn at(&self) -> Option<&At> {
+        match self {
+            DatasetError::NotYet { at, .. }
+            | DatasetError::NotUtf8 { at, .. }
+            | DatasetError::NoHeader { at, .. }
+            | DatasetError::Separator { at, .. }
+            | DatasetError::Ragged { at, .. }
+            | DatasetError::MissingColumn { at, .. }
+            | DatasetError::UnknownColumn { at, .. }
+            | DatasetError::Unit { at, .. }
+            | DatasetError::MixedUnits { at, .. }
+            | DatasetError::ColumnTwice { at, .. }
+            | DatasetError::BothConventions { at, .. }
+            | DatasetError::Cell { at, .. }
+            | DatasetError::DuplicateRun { at, .. }
+            | DatasetError::Time { at, .. }
+            | DatasetError::Jump { at, .. }
+            | DatasetError::RolledOver { at, .. }
+            | DatasetError::Syntax { at, .. }
+            | DatasetError::UnknownKey { at, .. }
+            | DatasetError::MissingKey { at, .. }
+            | DatasetError::KeyTwice { at, .. }
+            | DatasetError::Value { at, .. } => Some(at),
+            _ => None,
+        }
+    }
+
     /// The message, which names the arguments as an edge does.
     pub fn worded(&self, words: &Words) -> String {
         match self {

@@ -44,7 +44,7 @@ mod template;
 mod track_rows;
 pub mod whole_file;
 
-pub use error::DatasetError;
+pub use error::{At, DatasetError};
 pub use layout::Layout;
 pub use layout::csv::save;
 pub use layout::mcap::{McapProblem, Topics, save_mcap};

@@ -2,7 +2,7 @@
 
 mod order;
 
-use super::error::DatasetError;
+use super::error::{At, DatasetError};
 use super::lines::Lines;
 use umbmark_core::dataset::{Mended, ReferencePose, TickLog};
 use umbmark_core::drive::{Robot, roll_over};
@@ -156,8 +156,7 @@ impl Recording {
 
     fn fractional(&self, wheel: usize, at: usize, reading: f64) -> DatasetError {
         DatasetError::Cell {
-            file: self.file.clone(),
-            line: self.lines.of(at),
+            at: At::new(self.file.clone(), self.lines.of(at)),
             column: self.columns[wheel + 1].clone(),
             value: reading.to_string(),
             allowed: "a whole number of ticks where the robot has counter_bits".into(),
@@ -167,8 +166,7 @@ impl Recording {
 
     fn rolled_over(&self, wheel: usize, at: usize, [before, after]: [f64; 2], bits: u32) -> DatasetError {
         DatasetError::RolledOver {
-            file: self.file.clone(),
-            line: self.lines.of(at),
+            at: At::new(self.file.clone(), self.lines.of(at)),
             column: self.columns[wheel + 1].clone(),
             before,
             after,
@@ -181,8 +179,7 @@ impl Recording {
             format!("has another width than {bits} bits")
         });
         DatasetError::Jump {
-            file: self.file.clone(),
-            line: self.lines.of(at),
+            at: At::new(self.file.clone(), self.lines.of(at)),
             column: self.columns[wheel + 1].clone(),
             before,
             after,
@@ -232,8 +229,7 @@ pub(super) fn time_error(
     remedy: &str,
 ) -> DatasetError {
     DatasetError::Time {
-        file: file.to_owned(),
-        line: lines.of(at),
+        at: At::new(file, lines.of(at)),
         column: column.to_owned(),
         before: time[at.saturating_sub(1)],
         after: time[at],

@@ -1,6 +1,6 @@
 //! The bytes of a file, packed or not, a block at a time.
 
-use super::error::DatasetError;
+use super::error::{At, DatasetError};
 use flate2::read::MultiGzDecoder;
 use std::io::{self, Cursor, Read};
 use std::path::Path;
@@ -156,7 +156,7 @@ fn block_of(bytes: &mut impl Read) -> Result<Vec<u8>, (usize, io::Error)> {
 const NOT_UTF8: &str = "there are bytes that are not UTF-8";
 
 fn not_utf8(file: &str, line: usize, found: &'static str) -> DatasetError {
-    DatasetError::NotUtf8 { file: file.to_owned(), line, found }
+    DatasetError::NotUtf8 { at: At::new(file, line), found }
 }
 
 fn damaged(file: &str, read: usize, error: &io::Error) -> DatasetError {

@@ -50,12 +50,7 @@ fn value(key: &str, given: &Bound<'_, PyAny>) -> PyResult<Value> {
 }
 
 /// What the reader of a table refuses, without the line of a file that is none.
-pub fn refused(error: &DatasetError, made: &str) -> PyErr {
+pub fn refused(error: &DatasetError) -> PyErr {
     let text = error.to_string();
-    let line = text.strip_prefix(made).and_then(|rest| rest.strip_prefix(':'));
-    let words = line.and_then(|rest| rest.split_once(": ")).filter(|(n, _)| n.bytes().all(|b| b.is_ascii_digit()));
-    PyValueError::new_err(match words {
-        Some((_, words)) => format!("{made}: {words}"),
-        None => text,
-    })
+    PyValueError::new_err(error.at().map_or(text.clone(), |at| text.replacen(&at.to_string(), &at.file, 1)))
 }

@@ -186,7 +186,7 @@ impl Model {
         let effects = Value::Array(effects.into_iter().map(Value::Table).collect());
         let text = Table::from_iter([("effect".to_owned(), effects)]).to_string();
         let file = ModelFile::parse("Model", &text, Some(self.model.robot()));
-        let ModelFile { model, draws, .. } = file.map_err(|error| keys::refused(&error, "Model"))?;
+        let ModelFile { model, draws, .. } = file.map_err(|error| keys::refused(&error))?;
         Ok(Model { model, draws })
     }
 

@@ -17,7 +17,7 @@ const CALL: &str = "parameters";
 pub fn read(given: &Bound<'_, PyAny>, study: &Study) -> PyResult<ParameterFile> {
     if let Ok(table) = given.cast::<PyDict>() {
         let text = keys::table(Some(table))?.to_string();
-        return parse_parameters(CALL, &text, study).map_err(|error| keys::refused(&error, CALL));
+        return parse_parameters(CALL, &text, study).map_err(|error| keys::refused(&error));
     }
     read_parameters(given.extract::<PathBuf>()?, study).map_err(refused)
 }

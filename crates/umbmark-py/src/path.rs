@@ -60,7 +60,7 @@ impl Path {
         // A file has a robot; which one does not matter to the path.
         let robot = RobotFile::new(drive::Robot::labmate(), None).text();
         let file = format!("{}\n{robot}", Table::from_iter([("path".to_owned(), Value::Table(path))]));
-        let file = RobotFile::parse("Path", &file).map_err(|error| keys::refused(&error, "Path"))?;
+        let file = RobotFile::parse("Path", &file).map_err(|error| keys::refused(&error))?;
         Ok(Path(file.path.unwrap_or_else(path::Path::umbmark)))
     }
 

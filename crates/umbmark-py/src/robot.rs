@@ -43,7 +43,7 @@ impl Robot {
     #[pyo3(signature = (**keys))]
     fn new(keys: Option<&Bound<'_, PyDict>>) -> PyResult<Robot> {
         let file = Table::from_iter([("robot".to_owned(), Value::Table(keys::table(keys)?))]);
-        let file = RobotFile::parse("Robot", &file.to_string()).map_err(|error| keys::refused(&error, "Robot"))?;
+        let file = RobotFile::parse("Robot", &file.to_string()).map_err(|error| keys::refused(&error))?;
         Ok(Robot(file.robot))
     }
 

@@ -16,7 +16,7 @@
 //! counter-clockwise as seen from above.
 
 use super::Layout;
-use crate::error::{DatasetError, quoted};
+use crate::error::{At, DatasetError, quoted};
 use crate::sheet::Rows;
 use crate::source::Source;
 use crate::track_rows::TrackRows;
@@ -169,8 +169,7 @@ fn per_metre_of(file: &str, line: usize, unit: &str) -> Result<f64, DatasetError
         "Centimeters" => Ok(100.0),
         "Millimeters" => Ok(1000.0),
         _ => Err(DatasetError::Value {
-            file: file.to_owned(),
-            line,
+            at: At::new(file, line),
             key: "Length Units".into(),
             value: quoted(unit),
             allowed: "Meters, Centimeters or Millimeters".into(),

@@ -4,7 +4,7 @@
 //! orientation only the heading is used.
 
 use super::Layout;
-use crate::error::DatasetError;
+use crate::error::{At, DatasetError};
 use crate::label::label;
 use crate::save::{Existing, put};
 use crate::sheet::Rows;
@@ -39,7 +39,7 @@ pub(crate) fn parse_tum(source: Source, _: &mut Vec<String>) -> Result<TrackRows
         let cells: Vec<&str> = row.cells().flat_map(str::split_whitespace).collect();
         if cells.len() != NAMES.len() {
             let remedy = "a TUM trajectory has t tx ty tz qx qy qz qw, separated by spaces";
-            return Err(DatasetError::Ragged { file: file.to_owned(), line, got: cells.len(), expected: 8, remedy });
+            return Err(DatasetError::Ragged { at: At::new(file, line), got: cells.len(), expected: 8, remedy });
         }
         let mut numbers = [0.0; 8];
         for (i, cell) in cells.iter().enumerate() {
@@ -49,8 +49,7 @@ pub(crate) fn parse_tum(source: Source, _: &mut Vec<String>) -> Result<TrackRows
         let length = (qx * qx + qy * qy + qz * qz + qw * qw).sqrt();
         if !UNIT.contains(&length) {
             return Err(DatasetError::Cell {
-                file: file.to_owned(),
-                line,
+                at: At::new(file, line),
                 column: "qx qy qz qw".into(),
                 value: format!("{length:.3}"),
                 allowed: "a quaternion of length 1".into(),

@@ -2,7 +2,7 @@
 
 use crate::columns::{Column, Columns, Quantity};
 use crate::csv_text::CsvText;
-use crate::error::DatasetError;
+use crate::error::{At, DatasetError};
 use crate::label::{DIRECTIONS, TESTS};
 use crate::sheet::{Row, Sheet};
 use crate::source::Source;
@@ -93,8 +93,7 @@ impl Convention {
             |base: &&str| sheet.header.iter().find(|h| h.strip_prefix(*base).is_some_and(|r| r.starts_with('_')));
         match (poses.iter().find_map(stands), errors.iter().find_map(stands)) {
             (Some(poses), Some(errors)) => Err(DatasetError::BothConventions {
-                file: sheet.file().to_owned(),
-                line: sheet.header_line,
+                at: At::new(sheet.file(), sheet.header_line),
                 poses: poses.clone(),
                 errors: errors.clone(),
             }),
