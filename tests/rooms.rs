@@ -13,11 +13,17 @@ fn top() -> PathBuf {
 
 /// The rooms in the order of the table: `a`, `b` in one row stand in this order too.
 fn rooms() -> Vec<String> {
-    let page = std::fs::read_to_string(top().join("CONTRIBUTING.md")).unwrap();
+    let page = std::fs::read_to_string(top().join("CONTRIBUTING.md")).expect("the page is there");
     let table = page.split_once("| room of `umbmark-core` | holds |").expect("CONTRIBUTING.md has the table").1;
     let rows = table.lines().skip(2).take_while(|line| line.starts_with('|'));
-    let names =
-        |row: &str| row.split('|').nth(1).unwrap().split(',').map(|n| n.trim_matches([' ', '`']).to_owned()).collect();
+    let names = |row: &str| {
+        row.split('|')
+            .nth(1)
+            .expect("a row has cells")
+            .split(',')
+            .map(|n| n.trim_matches([' ', '`']).to_owned())
+            .collect()
+    };
     rows.flat_map(|row| -> Vec<String> { names(row) }).collect()
 }
 
@@ -93,9 +99,9 @@ impl Named {
 fn named_by(module: &Path, found: &mut Vec<(String, PathBuf)>) {
     let (file, mut named) = (module.with_extension("rs"), Named::default());
     let text = std::fs::read_to_string(&file).unwrap_or_else(|why| panic!("{}: {why}", file.display()));
-    named.visit_file(&syn::parse_file(&text).unwrap());
+    named.visit_file(&syn::parse_file(&text).expect("it compiles"));
     found.extend(named.rooms.into_iter().map(|room| (room, file.clone())));
-    let below = std::fs::read_dir(module).into_iter().flatten().map(|entry| entry.unwrap().path());
+    let below = std::fs::read_dir(module).into_iter().flatten().flatten().map(|entry| entry.path());
     let modules = below.filter(|path| path.extension().is_some_and(|ending| ending == "rs"));
     for module in modules.map(|path| path.with_extension("")) {
         if !named.tests.iter().any(|test| module.ends_with(test)) {

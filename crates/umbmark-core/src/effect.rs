@@ -2,7 +2,7 @@
 //!
 //! An [`Effect`] is written once, in one file, as a change of motion from believed to true. The same change serves
 //! simulation (believed = commanded) and replay (believed = recorded ticks), with values (`f64`) or with derivatives
-//! ([`Dual`]). To add one: write its file, and its line in the [`CATALOGUE`].
+//! ([`Dual`](crate::geometry::Dual)). To add one: write its file, and its line in the [`CATALOGUE`].
 //!
 //! ```text
 //! believed wheel travel -> [wheels] -> true wheel travel -> kinematics -> [body] -> true motion -> true pose

@@ -60,7 +60,7 @@ impl RandomLaws {
     };
 }
 
-/// An effect as data: of the catalogue, or of a program that adds its own by [`Model::add_entry`].
+/// An effect as data: of the catalogue, or of a program that adds its own by [`Model::add_entry`](crate::effect::Model::add_entry).
 ///
 /// ```
 /// use umbmark_core::{drive::Robot, geometry::{Displacement2, Real}, parameter::Parameter};

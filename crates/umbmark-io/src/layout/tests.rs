@@ -47,7 +47,7 @@ fn layout(name: &str) -> &'static Layout {
 fn round_trip(data: &Dataset, name: &str) -> (Dataset, Vec<String>) {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path().join("out");
-    let lost = layout(name).write(&data, &folder, Existing::Keep).unwrap();
+    let lost = layout(name).write(data, &folder, Existing::Keep).unwrap();
     (crate::load(&folder).unwrap_or_else(|error| panic!("{name}: {error}")), lost)
 }
 
