@@ -1,6 +1,6 @@
 //! Figures of UMBmark studies, drawn the same in a page, a paper and a terminal.
 //!
-//! A [`study::Study`] is a dataset beside a model, each part of it worked out once. A [`kind::Kind`] builds a [`figure::Figure`] from
+//! A [`study::Study`] is a dataset beside a model, each part of it worked out once. A [`kind::FigureKind`] builds a [`figure::Figure`] from
 //! it: numbers, their meaning and three sentences. [`render`] draws figures as Plotly's JSON, SVG, PNG, PDF and characters;
 //! [`page`] puts a whole study on one page.
 //!
