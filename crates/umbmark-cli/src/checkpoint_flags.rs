@@ -1,4 +1,4 @@
-//! The flags of studies that are written down and taken up again.
+//! The flags of studies that are saved and continued.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -7,11 +7,11 @@ use umbmark_io::checkpoint::{Checkpoint, CheckpointError, Found};
 
 use crate::numbers::number;
 
-/// Where a study is written down.
+/// Where a study is saved.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Long studies")]
 pub struct CheckpointFlags {
-    /// Write what is done to this file now and then, for --resume and `umbmark merge`
+    /// Regularly save the finished trials to this file, for --resume and `umbmark merge`
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
 
@@ -19,13 +19,13 @@ pub struct CheckpointFlags {
     #[arg(long, value_name = "SECONDS", default_value_t = 2.0, value_parser = number, requires = "checkpoint")]
     checkpoint_every: f64,
 
-    /// Go on with the study of the checkpoint file, if it is there
+    /// Continue the study of the checkpoint file, if it exists
     #[arg(long, requires = "checkpoint", conflicts_with = "out")]
     resume: bool,
 }
 
 impl CheckpointFlags {
-    /// The same for the core; with `force` a file that is there is replaced.
+    /// The same for the core; with `force` a file that exists is replaced.
     pub fn checkpoint(&self, force: bool) -> anyhow::Result<Option<Checkpoint>> {
         let found = match (self.resume, force) {
             (true, _) => Found::Resume,
@@ -38,10 +38,10 @@ impl CheckpointFlags {
     }
 }
 
-/// What to do about a checkpoint that is there.
+/// What to do about a checkpoint that exists.
 pub fn with_remedy(error: CheckpointError) -> anyhow::Error {
     match error {
-        CheckpointError::Exists(_) => anyhow::anyhow!("{error}; --resume goes on with it, --force begins anew"),
+        CheckpointError::Exists(_) => anyhow::anyhow!("{error}; --resume continues it, --force begins anew"),
         error => error.into(),
     }
 }

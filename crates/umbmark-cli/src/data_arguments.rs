@@ -12,12 +12,12 @@ pub struct DataArguments {
     #[arg(value_name = "DATA")]
     pub data: PathBuf,
 
-    /// Topic of the wheels in MCAP logs, where it is not found by type; :LEFT,RIGHT behind it names the joints,
-    /// :left,right or :right,left the order in a list of counts
+    /// Topic of the wheels in MCAP logs, if it is not found by type; append :LEFT,RIGHT for the names of the joints, or
+    /// :left,right or :right,left for the order in a list of counts
     #[arg(long, value_name = "TOPIC", help_heading = "MCAP logs")]
     ticks: Option<String>,
 
-    /// Topic of the absolute poses in MCAP logs; :FRAME behind it picks one of several transforms, "none" reads no poses
+    /// Topic of the absolute poses in MCAP logs; append :FRAME to choose one of several transforms; "none" reads no poses
     #[arg(long, value_name = "TOPIC", help_heading = "MCAP logs")]
     reference: Option<String>,
 }

@@ -8,7 +8,7 @@ use crate::distribution_text::distribution_words;
 use crate::table::{table, with_precision_of};
 use crate::terminal::histogram;
 
-/// An ensemble and what is to be said of it.
+/// An ensemble and what its report contains.
 #[derive(Debug)]
 pub struct Report<'a> {
     /// What the study is.
@@ -17,7 +17,7 @@ pub struct Report<'a> {
     pub seed: u64,
     /// What was found.
     pub ensemble: &'a Ensemble,
-    /// Whether trials that were asked for are not done.
+    /// Whether requested trials are not done.
     pub partial: bool,
     /// How long it took \[s\], and for how many trials, where that is known.
     pub took: Option<(f64, u64)>,
@@ -47,7 +47,7 @@ impl Report<'_> {
             text += &distribution_of(e_max, unicode);
         }
         let speed = self.trials_per_s().map(|speed| format!(", {speed:.0} trials/s")).unwrap_or_default();
-        let partial = if self.partial { ", PARTIAL: not all trials are done" } else { "" };
+        let partial = if self.partial { ", PARTIAL: not all trials were done" } else { "" };
         let (seed, version) = (self.seed, umbmark_core::VERSION);
         text + &format!("\nseed {seed}{speed}, umbmark {version}{partial}\n")
     }

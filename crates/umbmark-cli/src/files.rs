@@ -1,4 +1,4 @@
-//! Files that the command writes: whole or not at all, and none replaced unless it is said.
+//! Files that the command writes: whole or not at all, and none is replaced unless the user says so.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -39,12 +39,12 @@ impl Pending {
     }
 }
 
-/// What `--force` says of files that are there.
+/// Whether `--force` replaces files that exist.
 pub fn existing(force: bool) -> Existing {
     if force { Existing::Replace } else { Existing::Keep }
 }
 
-/// What to do about a file that is there.
+/// What to do about a file that exists.
 fn with_remedy(error: FileError) -> anyhow::Error {
     match error {
         FileError::Exists(_) => anyhow::anyhow!("{error}; --force replaces it"),

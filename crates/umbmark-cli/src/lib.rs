@@ -46,16 +46,15 @@ pub use verb::Verb;
 
 /// Measure, explain and correct the odometry error of wheeled robots.
 ///
-/// UMBmark (Borenstein & Feng, 1995): drive a square in both directions, compare where the robot is with where it thinks
-/// it is. This tool simulates such tests by the thousand, scores measured ones, calibrates the robot and finds what else is wrong
-/// with it.
+/// UMBmark (Borenstein & Feng, 1995): drive a square in both directions, and compare where the robot ends with where its odometry
+/// says it is. This tool scores such tests, calibrates the robot, and finds other error sources. It also simulates thousands of tests.
 #[derive(Debug, Parser)]
 #[command(
     name = "umbmark",
     version,
     propagate_version = true,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done; 1 the data or the arguments are unusable; 2 wrong usage; 3 with --check: something is missing."
+    after_help = "Exit codes: 0 done; 1 the data or the arguments are unusable; 2 wrong usage; 3 with --check: the model does not explain the data."
 )]
 struct Cli {
     #[command(subcommand)]

@@ -18,7 +18,7 @@ use crate::prose::hanging;
 use crate::session::Session;
 use crate::table::{table, with_precision_of};
 
-/// The model of a file, or the one that is asked first.
+/// The model of a file, or the one that is fitted first.
 pub fn model_of(file: Option<&Path>, data: &Dataset, session: &Session) -> anyhow::Result<Model> {
     file.map_or_else(|| Ok(first_model(data)?), |file| read_model(file, data, session))
 }
@@ -58,7 +58,7 @@ pub fn estimates_table(estimates: &[Estimate], level: f64) -> String {
 /// What the fitted effects mean for the robot, a paragraph each.
 pub fn meaning_text(estimates: &[Estimate], model: &Model) -> String {
     let paragraphs: String = meaning(estimates, model).iter().map(|(_, said)| hanging("", 2, said)).collect();
-    if paragraphs.is_empty() { paragraphs } else { format!("\nthat is\n{paragraphs}") }
+    if paragraphs.is_empty() { paragraphs } else { format!("\nthis means\n{paragraphs}") }
 }
 
 /// Disturbed places that are told one by one; --json has all.

@@ -1,4 +1,4 @@
-//! What is said of a plan: for people, and as a document.
+//! The report of a plan: for people, and as a document.
 
 use umbmark_core::diagnose::{Experiment, Unseen, Why};
 use umbmark_core::plan::{Alternative, Answer, Drift, Findings, MOST_RUNS, OfRuns, Request, Setting, Shown, Sought};
@@ -17,13 +17,13 @@ const EXPERIMENTS: usize = 5;
 /// Where the robot and its scatter are from.
 #[derive(Debug)]
 pub struct Known {
-    /// What nobody said and was assumed, a phrase each.
+    /// What was assumed, a phrase each.
     pub assumed: Vec<String>,
     /// Whether they are from measured runs.
     pub from_data: bool,
 }
 
-/// All that is said.
+/// All that the report contains.
 #[derive(Debug)]
 pub struct Report<'a> {
     /// What is driven.
@@ -78,7 +78,7 @@ pub fn text(report: &Report) -> String {
 fn heading(report: &Report) -> String {
     let setting = report.setting;
     let mut text = String::new();
-    let from = if report.known.from_data { "the data's" } else { "expected" };
+    let from = if report.known.from_data { "from the data" } else { "expected" };
     let interval = report.request.sigma_interval;
     let between = interval.map(|i| format!(" ({} to {})", millimetres(i.low), millimetres(i.high))).unwrap_or_default();
     text += &hanging(
@@ -116,9 +116,9 @@ fn answers(report: &Report) -> String {
             format!("{:.1} %", 100.0 * a.power),
         ]
     };
-    let title = format!("to see with {:.0} %", 100.0 * report.request.power);
+    let title = format!("to detect with {:.0} %", 100.0 * report.request.power);
     let header =
-        [title.as_str(), "runs a direction", "if sigma is off", &format!("seen with {0} + {0}", report.request.runs)];
+        [title.as_str(), "runs a direction", "over sigma's interval", &format!("power with {0} + {0}", report.request.runs)];
     let mut text = format!("\n{}\n", table(&header, report.findings.answers.iter().map(row)));
     for answer in &report.findings.answers {
         let name = answer.sought.effect.about.name;
@@ -127,12 +127,12 @@ fn answers(report: &Report) -> String {
             Shown::Absorbed(by) => {
                 let best = answer.separable.iter().find(|e| e.sd >= ENOUGH).or(answer.separable.first());
                 let advice = best.map_or(String::new(), |e| {
-                    format!(" To tell them apart: {} ({:.1} sd in {:.0} min).", e.experiment, e.sd, e.minutes)
+                    format!(" To separate them: {} ({:.1} standard deviations in {:.0} min).", e.experiment, e.sd, e.minutes)
                 });
-                format!("{name} shows in no return pose: {} does what it does.{advice}", by.join(" with "))
+                format!("{name} cannot be seen in return poses: it is indistinguishable from {} there.{advice}", by.join(" with "))
             }
             Shown::BelowNoise => format!(
-                "with {0} + {0} runs diagnose does not ask for {name}: at its usual size it is below half a standard deviation of the means",
+                "with {0} + {0} runs diagnose does not test {name}: its usual size is below half a standard deviation of the means",
                 report.request.runs
             ),
         };
@@ -156,14 +156,14 @@ fn intervals(report: &Report) -> String {
             millimetres(i.noise_band),
         ]
     };
-    let header = ["runs", "min", "E_max,sys reads [mm]", "interval ± [mm]", "holds [%]", "chance alone [mm]"];
+    let header = ["runs", "min", "E_max,sys reads [mm]", "interval ± [mm]", "coverage [%]", "chance alone [mm]"];
     format!("\n{}\n", table(&header, report.findings.by_runs.iter().map(row)))
 }
 
 fn least(report: &Report) -> String {
     let runs: Vec<&OfRuns> =
         report.findings.by_runs.iter().filter(|row| LEAST_AT.contains(&row.interval.runs)).collect();
-    let mut header = vec![format!("least size seen with {:.0} %, runs:", 100.0 * report.request.power)];
+    let mut header = vec![format!("least size detected with {:.0} %, runs:", 100.0 * report.request.power)];
     header.extend(runs.iter().map(|row| row.interval.runs.to_string()));
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let row = |(i, sought): (usize, &Sought)| {
@@ -220,14 +220,14 @@ fn orders(report: &Report) -> String {
     format!("\n{}\n", table(&header, report.findings.drifts.iter().map(row)))
 }
 
-/// Experiments that tell two effects apart.
+/// Experiments that separate two effects.
 #[derive(Debug)]
 pub struct Separation {
     /// The two.
     pub pair: [String; 2],
-    /// What they come on top of.
+    /// The data that they are added to.
     pub after: String,
-    /// The most telling per minute first.
+    /// The most informative per minute first.
     pub experiments: Vec<Experiment>,
 }
 
@@ -235,9 +235,9 @@ impl Separation {
     /// For people.
     pub fn text(&self) -> String {
         let [a, b] = &self.pair;
-        let mut text = format!("To tell {a} from {b}, beside {}\n\n", self.after);
+        let mut text = format!("Experiments that separate {a} from {b}, together with {}\n\n", self.after);
         if self.experiments.iter().all(|e| e.sd < 1.0) {
-            text += &hanging("", 2, "Nothing on offer tells them apart by as much as a standard deviation.");
+            text += &hanging("", 2, "No experiment on offer separates them by one standard deviation.");
             return text;
         }
         text += "    sd  min  sd^2/min\n";
@@ -250,7 +250,7 @@ impl Separation {
         text += &hanging(
             "",
             2,
-            "sd: how far apart they then are, at usual sizes; from 3.24 on, nine cases of ten are told at 5 %.",
+            "sd: distance between the two, in standard deviations, at usual sizes. From 3.24 on, 90 % of cases are separated at 5 % false alarms.",
         );
         text
     }

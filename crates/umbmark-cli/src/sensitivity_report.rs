@@ -25,7 +25,7 @@ pub struct SensitivityReport<'a> {
     pub study: &'a Study,
     /// Whether tests are simulated with their noise.
     pub noisy: bool,
-    /// What nobody said and was assumed.
+    /// What was assumed.
     pub assumed: &'a [String],
     /// Whether bars may be drawn in more than ASCII.
     pub unicode: bool,
@@ -38,7 +38,7 @@ impl SensitivityReport<'_> {
         names.chain(self.noisy.then_some("noise")).collect()
     }
 
-    /// Whether less was done than was asked for.
+    /// Whether less was done than requested.
     pub fn is_partial(&self) -> bool {
         self.found.is_partial()
     }
@@ -65,7 +65,7 @@ impl SensitivityReport<'_> {
             Found::Morris(s) => format!("Morris screening by {} trajectories, {} tests", s.trajectories, s.evaluations),
             Found::Local(_) => format!("Derivatives at the medians, {} tests each side", self.study.trials),
         };
-        let kind = if self.noisy { "whole tests, noise and all" } else { "exact kinematics, without noise" };
+        let kind = if self.noisy { "whole tests with noise" } else { "exact kinematics, without noise" };
         let mut text = format!("{asked} ({kind})\n{}, {}\n", self.study.robot().name, self.study.path.shape().name);
         let wide = self.names().iter().map(|name| name.len()).max().unwrap_or(0);
         for (quantity, distribution) in &self.varied.parameters {
@@ -82,7 +82,7 @@ impl SensitivityReport<'_> {
         let output = self.metrics.iter().position(|metric| *metric == self.metric);
         text += &output.map_or(String::new(), |output| self.in_full(output));
         text += &self.overview();
-        let partial = if self.is_partial() { ", PARTIAL: not all was done that was asked for" } else { "" };
+        let partial = if self.is_partial() { ", PARTIAL: not all requested tests were done" } else { "" };
         text + &format!("\nseed {}, umbmark {}{partial}\n", self.study.seed, umbmark_core::VERSION)
     }
 
@@ -117,9 +117,9 @@ impl SensitivityReport<'_> {
         text += &table(&["share of the variance", "alone, S", "with others, T", ""], rows);
         text.push('\n');
         if self.varied.correlations.is_empty() && output.interactions().is_finite() {
-            text += &format!("what no one explains alone: {:.3}\n", output.interactions());
+            text += &format!("share of interactions: {:.3}\n", output.interactions());
         } else if !self.varied.correlations.is_empty() {
-            text += "correlated: S counts what goes with a parameter, T only what is its own\n";
+            text += "correlated: S includes the share of correlated parameters, T only the own share\n";
         }
         if !output.second.is_empty() {
             let mut pairs: Vec<_> = output.second.iter().collect();
@@ -127,7 +127,7 @@ impl SensitivityReport<'_> {
             let rows = pairs.iter().take(PAIRS).map(|([i, j], estimate)| {
                 vec![format!("{} x {}", names[*i], names[*j]), share(estimate), self.bars(estimate.value)]
             });
-            text += &format!("\n{}\n", table(&["pairs beyond each alone", "S_ij", ""], rows));
+            text += &format!("\n{}\n", table(&["interaction of pairs", "S_ij", ""], rows));
         }
         text
     }

@@ -25,7 +25,7 @@ pub struct Options {
     #[arg(long, global = true, default_value_t = 1, value_name = "N", value_parser = crate::numbers::whole)]
     pub seed: u64,
 
-    /// Threads to use; the results do not depend on it [default: all processors]
+    /// Threads to use; results do not depend on this number [default: all processors]
     #[arg(long, global = true, value_name = "N", value_parser = crate::numbers::whole_in::<u16>(1..=1024))]
     pub threads: Option<u16>,
 

@@ -82,7 +82,7 @@ pub struct Setup {
     pub draws: Vec<Draw>,
     /// What was taken from the paper, a phrase each.
     pub sources: Vec<String>,
-    /// What nobody said and was assumed, a phrase each.
+    /// What was assumed, a phrase each.
     pub assumed: Vec<String>,
     /// What the paper measured of this robot.
     pub published: Option<Published>,
@@ -102,7 +102,7 @@ impl SetupFlags {
             self.robot.is_none()
                 && self.model.is_none()
                 && self.robot_flags.robot(model.robot().clone())? == *model.robot(),
-            "the robot is that of the data; leave --robot, --model and the flags of the robot out"
+            "the robot is that of the data; remove --robot, --model and the flags of the robot"
         );
         let path = self.robot_flags.path(path)?;
         let mut draws = Vec::new();

@@ -11,10 +11,10 @@ use crate::table::with_precision_of;
 /// So many jumps are told one by one; --json has all.
 const JUMPS: usize = 5;
 
-/// Faults first, with the line that mends each.
+/// Faults first, with the line that corrects each.
 pub fn faults_text(setup: &Setup) -> String {
     let fault =
-        |(sentence, remedy): (String, String)| hanging("FAULT", 10, &format!("{sentence}. To mend it, {remedy}."));
+        |(sentence, remedy): (String, String)| hanging("FAULT", 10, &format!("{sentence}. To correct it, {remedy}."));
     setup.all_faults().map(|fault| (fault.sentence(), fault.remedy())).map(fault).collect()
 }
 
@@ -48,7 +48,7 @@ pub fn taken_text(taken: &[Taken]) -> String {
     let one = |own: &Taken| {
         let values = own.values.iter().flatten();
         let values: Vec<String> = values.map(|(name, value)| format!("{name} {}", number(value, 1.0, ""))).collect();
-        let said = format!("{} was taken from the motion before anything else: {}", own.effect, values.join(", "));
+        let said = format!("{} was estimated from the motion before the fit: {}", own.effect, values.join(", "));
         hanging("taken", 10, said.trim_end())
     };
     taken.iter().map(one).collect()
@@ -86,7 +86,7 @@ pub fn disturbances_text(setup: &Setup) -> String {
 pub fn returns_text(setup: &Setup) -> String {
     let outlying = &setup.returned.outlying;
     let one =
-        |run: &OutlyingReturn| hanging("RETURN", 10, &format!("{}. To mend it, {}.", run.sentence(), run.remedy()));
+        |run: &OutlyingReturn| hanging("RETURN", 10, &format!("{}. To correct it, {}.", run.sentence(), run.remedy()));
     let mut text: String = outlying.iter().take(JUMPS).map(one).collect();
     if let rest @ 1.. = outlying.len().saturating_sub(JUMPS) {
         text += &hanging("", 10, &format!("and {rest} more (--json)"));

@@ -32,7 +32,7 @@ pub struct Signature {
     pub runs: [Vec<Moment>; 2],
 }
 
-/// A moment of a run: the pose seen, from where the robot believes to be.
+/// A moment of a run: the true pose relative to that of the odometry.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
     /// How far the wheels have rolled, on average and whatever way \[m\].
@@ -79,7 +79,7 @@ impl Signature {
     pub fn picture(&self, indent: usize) -> String {
         let head = format!("{} = {} on a {}", self.parameter.name, self.value, self.path);
         let mut text =
-            hanging("picture", indent, &format!("{head}: where the robot is, seen from where it believes to be"));
+            hanging("picture", indent, &format!("{head}: true position and heading relative to the odometry"));
         text += &format!("{:indent$}{:WIDTH$}  {}\n", "", "driven ccw", "driven cw");
         for (name, value, written) in QUANTITIES {
             let most = self.runs.iter().flatten().map(|m| value(m).abs()).fold(0.0, f64::max);

@@ -21,7 +21,7 @@ pub struct StudyArguments {
 }
 
 impl StudyArguments {
-    /// A study of a dataset and a model from a file, or the one that it teaches.
+    /// A study of a dataset and a model from a file, or the one that is learnt from it.
     pub fn study(&self, name: &str, data: Dataset, model: Option<&Path>, session: &Session) -> anyhow::Result<Study> {
         let given = match model {
             None => None,

@@ -10,7 +10,7 @@ use crate::setup::{Setup, SetupFlags};
 /// How the robot computes its pose.
 #[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
 enum OdometryKind {
-    /// At the encoder rate where there is one, else at every tick
+    /// At the encoder rate if there is one, else at every tick
     Robot,
     /// At every tick
     Ticks,
@@ -40,12 +40,12 @@ enum PhaseKind {
     Edge,
 }
 
-/// What is to be said of a study beside its numbers.
+/// What a report says of a study beside its numbers.
 #[derive(Debug)]
 pub struct Known {
     /// Where its numbers come from.
     pub sources: Vec<String>,
-    /// What nobody said and was assumed.
+    /// What was assumed.
     pub assumed: Vec<String>,
     /// What was published of such a robot.
     pub published: Option<Published>,

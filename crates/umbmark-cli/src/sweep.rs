@@ -54,7 +54,7 @@ fn given(text: &str) -> Result<Given, String> {
     Ok(Given { name: name.to_owned(), first, last, count: count.parse().map_err(|_| wrong())? })
 }
 
-/// Where a sweep is written down, and what may be replaced.
+/// Where a sweep is saved, and what may be replaced.
 #[derive(Debug)]
 pub struct Files<'a> {
     /// What `--checkpoint` says.
@@ -184,7 +184,7 @@ impl SweepReport<'_> {
         if count > ROWS && axes.len() != 2 {
             text += &format!("... {} more points; -o sweep.csv writes all of them\n", count - ROWS);
         }
-        let partial = if (count as u64) < self.sweep.points() { ", PARTIAL: not all points are done" } else { "" };
+        let partial = if (count as u64) < self.sweep.points() { ", PARTIAL: not all points were done" } else { "" };
         text + &format!("\nseed {}, umbmark {}{partial}\n", study.seed, umbmark_core::VERSION)
     }
 

@@ -7,7 +7,7 @@ use crate::Session;
 /// How to test.
 #[derive(Debug, clap::Args)]
 pub struct TestArguments {
-    /// Use return poses alone, even where the runs were observed on the way
+    /// Use return poses alone, even if the runs were tracked
     #[arg(long)]
     return_poses: bool,
 
@@ -15,7 +15,7 @@ pub struct TestArguments {
     #[arg(long, default_value_t = 999, value_name = "N", value_parser = crate::numbers::whole_in::<u32>(99..=99_999))]
     draws: u32,
 
-    /// Probability with which a complete model is accused all the same
+    /// False-alarm rate: probability with which a complete model is accused
     #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = crate::numbers::probability)]
     size: f64,
 }

@@ -18,7 +18,7 @@ pub fn text(comparison: &TrackComparison, options: &Options, terminal: bool) -> 
     let [cw, ccw, neither] = comparison.runs;
     let others = if neither > 0 { format!(" + {neither} other") } else { String::new() };
     let (poses, models) = (comparison.poses, comparison.models.len());
-    let mut text = format!("{cw} cw + {ccw} ccw{others} tracks, {poses} poses, against {models} model(s)\n\n");
+    let mut text = format!("Comparison of {models} model(s) with {cw} cw + {ccw} ccw{others} tracks, {poses} poses\n\n");
     let row = |m: &TracksJudged| {
         let explains = m.explains(options.size).map_or("-", |explains| if explains { "yes" } else { "no" });
         let [along, end] = [&m.along, &m.end].map(|rms| [mm(rms.position), rms.heading.map_or("-".into(), deg)]);
@@ -30,8 +30,8 @@ pub fn text(comparison: &TrackComparison, options: &Options, terminal: bool) -> 
         comparison.models.iter().map(row),
     );
     text += "\n\n";
-    let legend = "along, end: root mean square error of all measured poses, and of the last of each run. p: the smallest of all \
-                  tests below, times their number.";
+    let legend = "along, end: root mean square error of all measured poses, and of the last pose of each run. p: smallest of all tests \
+                  below, Bonferroni-corrected.";
     text += &hanging("", 0, legend);
     text += &(faults_text(&comparison.setup) + &disturbances_text(&comparison.setup));
     for judged in &comparison.models {
@@ -68,7 +68,7 @@ fn half_width(mean: &Mean) -> Option<f64> {
 /// Where the error is made, a line for each part of the way.
 fn parts_text(judged: &TracksJudged, size: f64) -> String {
     let mut text = format!(
-        "\nwhere it is made: mean ± ({} %), sd of single ones, share of the squared error\n\n{:<18} {:>17} {:>17} {:>18} {:>4}\n",
+        "\nwhere the error is made: mean ± ({} %), standard deviation, share of the squared error\n\n{:<18} {:>17} {:>17} {:>18} {:>4}\n",
         100.0 * (1.0 - size),
         "",
         "forward [mm]",
@@ -120,8 +120,8 @@ fn rates_text(judged: &TracksJudged, terminal: bool, size: f64) -> String {
         let value = format!("{:.3}", scale * o.mean.value);
         vec![o.rate.name().to_owned(), value, half, unit.to_owned(), o.p.map_or("-".into(), p_text)]
     };
-    let mut text = table(&["on the whole", "error", "±", "", "p"], judged.overall.iter().map(row));
-    text += "\n\nwhat it depends on: bins of each, and p of no dependence\n\n";
+    let mut text = table(&["over all", "error", "±", "", "p"], judged.overall.iter().map(row));
+    text += "\n\nwhat the error depends on: bins of each variable, and p of no dependence\n\n";
     text += format!("{:<17}", "").as_str();
     for rate in Rate::DEPENDING {
         text += &format!(" {:<14}", if rate == Rate::Turn { "in turns" } else { rate.name() });

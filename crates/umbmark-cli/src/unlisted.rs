@@ -41,7 +41,7 @@ fn unlisted_text(told: &Dependence, terminal: bool) -> String {
 pub fn laws_text(repeated: &Repeated) -> String {
     let [before, after] = repeated.law.left_out.map(|error| 1e3 * error);
     let said = format!(
-        "{} (p = {} among {} laws; runs left out {before:.1} mm before, {after:.1} mm with it)",
+        "{} (p = {} among {} laws; cross-validated error {before:.1} mm without it, {after:.1} mm with it)",
         repeated.law.words(),
         p_text(repeated.p),
         repeated.laws
@@ -50,10 +50,10 @@ pub fn laws_text(repeated: &Repeated) -> String {
     text += &hanging("", 10, &formula_of(&repeated.law));
     let alike: Vec<String> = repeated.others.iter().filter(|law| law.is_alike()).map(UnlistedLaw::words).collect();
     if !alike.is_empty() {
-        text += &hanging("alike", 10, &format!("these runs cannot tell it from: {}", alike.join("; ")));
+        text += &hanging("alike", 10, &format!("these runs cannot distinguish it from: {}", alike.join("; ")));
     }
     if let Some((effect, share)) = repeated.law.nearest.filter(|(_, share)| *share >= NEAR) {
-        let said = format!("{effect} of the catalogue comes nearest, and makes {:.0} % of it", 100.0 * share);
+        let said = format!("{effect} of the catalogue is most similar, and explains {:.0} % of it", 100.0 * share);
         text += &hanging("nearest", 10, &said);
     }
     text += "\n --law  left out [mm]  length  formula\n";
@@ -92,7 +92,7 @@ fn law_text(reasons: &[Reason]) -> String {
         Reason::Repeats(repeated) => repeated.law.model.as_ref(),
         _ => None,
     });
-    let what = "a formula for what repeats; save it as FILE and try `umbmark learn DATA --model FILE`";
+    let what = "a formula for the repeating error; save it as FILE and try `umbmark learn DATA --model FILE`";
     law.map_or_else(String::new, |law| format!("\n{}\n{}", hanging("", 0, what), effects_text(law)))
 }
 

@@ -69,13 +69,13 @@ impl VaryFlags {
         }
         anyhow::ensure!(
             !varied.parameters.is_empty(),
-            "nothing is varied; say which parameters and how, as in --vary ed=normal:1:0.001 --vary eb=normal:1:0.003"
+            "no parameter varies; give parameters and distributions, as in --vary ed=normal:1:0.001 --vary eb=normal:1:0.003"
         );
         for (one, two, value) in &self.correlate {
             let place = |name: &str| -> anyhow::Result<usize> {
                 let key = Quantity::find(name, study).context("--correlate")?.key();
                 let place = varied.parameters.iter().position(|(quantity, _)| quantity.key() == key);
-                place.with_context(|| format!("--correlate: {name} is not varied; give it a distribution with --vary"))
+                place.with_context(|| format!("--correlate: {name} does not vary; give it a distribution with --vary"))
             };
             let of = [place(one)?, place(two)?];
             varied.correlations.push(Correlation { of, value: *value });

@@ -32,37 +32,37 @@ verbs! {
     Merge(merge),
     /// Simulate one test and write it as a dataset
     Simulate(simulate),
-    /// Repeat the paper's experiments, beside its numbers
+    /// Repeat the paper's experiments and compare with its numbers
     Paper(paper),
     /// Score a measured test: E_max,sys, centroids, sigma, extended test
     Score(score),
-    /// Calibrate a measured robot: E_d, E_b, E_s, and files to put them to use
+    /// Calibrate a measured robot: E_d, E_b, E_s, and files for ROS 2, TOML or C
     Calibrate(calibrate),
-    /// Hold models against a measured robot: what is explained, what not, in which direction
+    /// Compare the predictions of models with a measured robot: where is the error made?
     Compare(compare),
     /// Find which class of effects a model is missing, and what to measure next
     Diagnose(diagnose),
-    /// Plan a test: how many runs, what they would show, and the sheet to drive by
+    /// Plan a test: how many runs, what they would show, and a protocol to print
     Plan(plan),
     /// Fit the free effects of a model
     Fit(fit),
-    /// Learn a model: fit, diagnose, add, until nothing is missing
+    /// Learn a model: fit, diagnose and add effects until nothing is missing
     Learn(learn),
-    /// Which parameter drives which metric: Sobol indices, Morris screening, derivatives
+    /// Show which parameter changes which metric: Sobol indices, Morris screening, derivatives
     Sensitivity(sensitivity),
-    /// How many robots are good enough, and the cheapest tolerances that make it enough
+    /// Find the cheapest tolerances with which enough robots keep a target
     Tolerance(tolerance),
-    /// Put everything on one page: a report to send
+    /// Write everything on one HTML page
     Report(report),
     /// Draw one figure as SVG, PNG or PDF
     Plot(plot),
-    /// Look at a dataset: what it holds, whether it is any good, what it can determine
+    /// Check a dataset: what it contains, how good it is, what it can determine
     Inspect(inspect),
-    /// Write a dataset in another layout; sets clocks that disagree by the motion
+    /// Write a dataset in another layout; aligns separate clocks from the motion
     Convert(convert),
     /// Write a robot.toml and a returns.csv to fill in
     Init(init),
-    /// List the effects that make a robot err, or explain one
+    /// List the known error sources, or explain one
     Effects(effects),
     /// Print shell completions or the manual page
     Completions(completions),

@@ -98,7 +98,7 @@ pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usi
                 sections.push(list_section(studies, "next", "What to measure next", unseen::next));
             }
             "runs" => {
-                sections.push(list_section(studies, "quality", "Is the data any good?", quality::quality));
+                sections.push(list_section(studies, "quality", "Is the data good?", quality::quality));
             }
             _ => {}
         }

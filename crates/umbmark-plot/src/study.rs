@@ -113,7 +113,7 @@ impl Study {
     pub(crate) fn begin(&self) -> Result<(), Absent> {
         if self.stop.load(Ordering::Relaxed) {
             self.cut_short.store(true, Ordering::Relaxed);
-            return Err(Absent("It was stopped before this was worked out.".into()));
+            return Err(Absent("The work was stopped before this part was finished.".into()));
         }
         Ok(())
     }
@@ -211,7 +211,7 @@ impl Study {
         let work = || {
             let along = compare_tracks(&self.data, &self.models()?, &self.options.diagnose).map_err(Absent::because)?;
             match along.poses {
-                0 => Err(Absent("The runs were not observed on the way, only at their ends.".into())),
+                0 => Err(Absent("The runs were measured at their ends only, not on the way.".into())),
                 _ => Ok(along),
             }
         };

@@ -34,9 +34,9 @@ enum MethodKind {
 /// The wheelbase in the closed forms' rotation radius.
 #[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
 enum WheelbaseKind {
-    /// The nominal one, as the paper's companion has it
+    /// The nominal one, as in the paper's companion
     Nominal,
-    /// The corrected one, where the wheels really are, as OptiOdom has it
+    /// The corrected one, as in OptiOdom
     Corrected,
 }
 
@@ -49,7 +49,7 @@ pub struct Arguments {
     #[command(flatten)]
     intervals: LevelArgument,
 
-    /// Metres that a radian of heading error counts as when whole tracks are fitted
+    /// Weight of headings in fits of whole tracks: a radian of heading error counts as so many metres
     /// [default: root mean square distance of the poses from START]
     #[arg(long, value_name = "M", value_parser = crate::numbers::number)]
     heading_arm: Option<f64>,
@@ -78,7 +78,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = MethodKind::Exact, value_name = "METHOD", help_heading = "Export")]
     method: MethodKind,
 
-    /// Replace files that exist, and write lengths that are in doubt
+    /// Replace files that exist, and write lengths even if they are in doubt
     #[arg(long)]
     force: bool,
 }
@@ -132,7 +132,7 @@ fn told_what_is_withheld(arguments: &Arguments, withheld: bool) -> anyhow::Resul
     if withheld && !files.is_empty() {
         let verb = if files.len() > 1 { "were" } else { "was" };
         anyhow::bail!(
-            "{}: {verb} not written, since the lengths are in doubt (see the warnings); --force writes them all the same",
+            "{}: {verb} not written, because the lengths are in doubt (see the warnings); --force writes them anyway",
             files.join(", ")
         );
     }
@@ -198,14 +198,14 @@ fn text(robot: &Robot, calibration: &Calibration, level: f64) -> String {
     );
     let estimates = &calibration.estimates;
     text += &table(&["", "E_d", "E_b", "E_s"], estimates.iter().map(|e| ratio_row(e, level)));
-    text += &format!("\n\n± holds with {} %.", 100.0 * level);
+    text += &format!("\n\n±: half of the {} % interval.", 100.0 * level);
     if let Some(before) = estimates.iter().find_map(|e| e.e_max_sys_before) {
         text += &format!(" E_max,sys as driven: {:.1} mm; with the correction:", 1e3 * before);
     }
     text += "\n\n";
     let header = ["", "b [mm]", "D_left [mm]", "D_right [mm]", "predicted", "replayed [mm]"];
     text += &table(&header, estimates.iter().map(|e| length_row(robot, e)));
-    text += "\n\npredicted: the same test driven again; replayed: recorded ticks computed again\n";
+    text += "\n\npredicted: E_max,sys of the same test, driven with the correction; replayed: E_max,sys of the recorded\nticks, computed with the correction\n";
     text
 }
 

@@ -27,7 +27,7 @@ pub struct Arguments {
     #[command(flatten)]
     data: DataArguments,
 
-    /// A model to hold against it, with the values it has; may be given more than once
+    /// A model to compare with the data, its values unchanged; may be given more than once
     /// [default: the nominal robot, and E_d and E_b (on tracks E_s too) fitted to this data]
     #[arg(long, value_name = "FILE")]
     model: Vec<PathBuf>,
@@ -92,7 +92,7 @@ fn models(
 
 fn text(comparison: &Comparison, options: &Options) -> String {
     let [cw, ccw] = comparison.runs;
-    let mut text = format!("{cw} cw + {ccw} ccw return poses against {} model(s)\n\n", comparison.models.len());
+    let mut text = format!("Comparison of {} model(s) with {cw} cw + {ccw} ccw return poses\n\n", comparison.models.len());
     let row = |m: &Judged| {
         let heading = m.heading_rmse.map_or("-".to_owned(), |h| format!("{:.2}", h.to_degrees()));
         let explains = if m.explains(options.size) { "yes" } else { "no" };
@@ -125,9 +125,9 @@ fn text(comparison: &Comparison, options: &Options) -> String {
 
 fn noise(source: NoiseSource) -> &'static str {
     match source {
-        NoiseSource::Model => "Simulated tests scatter by the model's own random effects.",
+        NoiseSource::Model => "p: from simulated tests that scatter by the model's own random effects.",
         NoiseSource::Pooled => {
-            "The model has no scatter of its own: simulated tests scatter as these runs do, both directions pooled."
+            "p: from simulated tests that scatter as these runs do (pooled over both directions), because the model has no random effect."
         }
     }
 }

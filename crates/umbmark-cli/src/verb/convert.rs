@@ -28,7 +28,7 @@ pub struct Arguments {
 fn about() -> String {
     format!(
         "{}\nWhere a track has a clock of its own (reference/NAME.csv or .tum beside runs/NAME.csv; *_opti.csv of OptiOdom), \
-         its clock is set by the motion, and its poses are written into the log.",
+         its clock is aligned from the motion, and its poses are written into the log.",
         layouts()
     )
 }
@@ -66,7 +66,7 @@ fn text(arguments: &OutputArguments, data: &Dataset, lost: &[String]) -> String 
     text
 }
 
-/// Clocks set by the motion, each with half its 95 % interval.
+/// Clocks aligned from the motion, each with half its 95 % interval.
 pub(super) fn clocks_table(clocks: &[RunClock]) -> String {
     let rows = clocks.iter().map(|clock| {
         let a = &clock.alignment;

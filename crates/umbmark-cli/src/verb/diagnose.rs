@@ -31,14 +31,14 @@ pub struct Arguments {
     #[command(flatten)]
     data: DataArguments,
 
-    /// The model to question; its free effects are fitted [default: E_d and E_b, on tracks E_s too]
+    /// The model to test; its free effects are fitted [default: E_d and E_b, on tracks E_s too]
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
 
     #[command(flatten)]
     test: TestArguments,
 
-    /// Exit with code 3 if something is missing
+    /// Exit with code 3 if the model does not explain the data
     #[arg(long)]
     check: bool,
 }
@@ -64,12 +64,12 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
 /// A verdict in a sentence.
 pub(super) fn in_words(verdict: Verdict) -> &'static str {
     match verdict {
-        Verdict::Explained => "no sign of a further effect",
-        Verdict::MissingEffect => "one class of effects is missing",
-        Verdict::SeveralMissing => "more than one class of effects is missing",
-        Verdict::UnlistedEffect => "something is missing that no single effect of the catalogue explains",
-        Verdict::NotEnoughData => "not enough data to tell",
-        Verdict::NotExplained => "not explained, though no single effect is certified as missing",
+        Verdict::Explained => "explained: the model accounts for the measured error, and no test shows a further effect",
+        Verdict::MissingEffect => "the robot has an error source that the model lacks",
+        Verdict::SeveralMissing => "the robot has several error sources that the model lacks",
+        Verdict::UnlistedEffect => "the robot has an error source that no single effect of the catalogue explains",
+        Verdict::NotEnoughData => "not enough data to test the model",
+        Verdict::NotExplained => "not explained: the model does not account for the measured error, but no single missing effect is certified",
     }
 }
 
@@ -87,13 +87,12 @@ fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, terminal: bool
         let said = suspect.meaning(diagnosis.model.robot());
         text += &said.map_or_else(String::new, |said| hanging("", 10, &said));
     }
-    text += &(taken_text(&diagnosis.taken) + &disturbances_text(&diagnosis.setup));
-    text += &outliers_text(&diagnosis.outliers, &diagnosis.setup);
-    text += &remains_text(diagnosis.remains.as_ref());
-    for remark in &diagnosis.remarks {
-        text += &hanging("note", 10, remark);
-    }
     text += &next_text(diagnosis);
+    let found = taken_text(&diagnosis.taken) + &disturbances_text(&diagnosis.setup);
+    let left = outliers_text(&diagnosis.outliers, &diagnosis.setup) + &remains_text(diagnosis.remains.as_ref());
+    let notes: String = diagnosis.remarks.iter().map(|remark| hanging("note", 10, remark)).collect();
+    let details = found + &left + &notes;
+    text += &if details.is_empty() { details } else { format!("\n{details}") };
     text += &missing_text(diagnosis, terminal);
     if !diagnosis.fitted.is_empty() {
         text += &format!("\n{}\n", estimates_table(&diagnosis.fitted, 1.0 - options.size));
@@ -115,21 +114,21 @@ fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, terminal: bool
 /// What to do now: with the model, and with the robot.
 fn next_text(diagnosis: &Diagnosis) -> String {
     let with_the_model = match diagnosis.verdict {
-        Verdict::Explained => "nothing asks to be added; what these runs cannot show stands at the end.",
+        Verdict::Explained => "use the model; the end of this text lists what these runs cannot show.",
         Verdict::MissingEffect | Verdict::SeveralMissing => {
-            "umbmark learn adds what is missing, fits it, and tells by how much runs that are left out are predicted better."
+            "umbmark learn adds the missing effect, fits it, and prints the cross-validated error with it."
         }
         Verdict::UnlistedEffect => {
-            "umbmark learn --model FILE tries a formula of your own; umbmark compare shows where the error is made."
+            "umbmark learn --model FILE tries your own formula; umbmark compare shows where the error is made."
         }
-        Verdict::NotEnoughData => "drive at least three runs each way; umbmark plan says how many show what.",
+        Verdict::NotEnoughData => "drive at least three runs each way; umbmark plan says how many runs show which effect.",
         Verdict::NotExplained => {
-            "mend what the reasons name, then diagnose again; umbmark inspect shows more of the data."
+            "correct what the reasons name, then diagnose again; umbmark inspect checks the data."
         }
     };
     let mut text = format!("\nnext\n{}", hanging("", 2, with_the_model));
     if !diagnosis.next_experiments.is_empty() {
-        text += "  to measure, the most telling per minute first\n";
+        text += "  further drives, the most informative per minute first\n";
         text += &experiments_text(&diagnosis.next_experiments);
     }
     text
@@ -160,8 +159,8 @@ fn identifiability_text(identifiability: &Identifiability) -> String {
     for hidden in &identifiability.hidden {
         let names: Vec<&str> = hidden.weights.iter().map(|(name, _)| *name).collect();
         let said = match hidden.ratio {
-            Some(ratio) => format!("{} does what {ratio:.2} times as much {} does", names[0], names[1]),
-            None => format!("{} shows nowhere", names.join(" with ")),
+            Some(ratio) => format!("{} acts like {ratio:.2} times as much {}", names[0], names[1]),
+            None => format!("{} cannot be seen", names.join(" with ")),
         };
         text += &hanging("hidden", 10, &format!("rank {}: {said}", identifiability.rank));
     }
@@ -187,13 +186,13 @@ fn ranking_text(ranking: &[Suspect]) -> String {
             p_text(s.p_adjusted),
         ]
     };
-    let mut text = String::from("\nasked, the likeliest first (p of all: among all that were asked)\n\n");
+    let mut text = String::from("\neffects that were tested, the likeliest first (adjusted p: for the number of tests)\n\n");
     let told = &ranking[..ranking.len().min(SUSPECTS)];
-    text += &table(&["effect", "size", "F", "p", "p of all"], told.iter().map(row));
+    text += &table(&["effect", "size", "F", "p", "adjusted p"], told.iter().map(row));
     text += "\n";
     for suspect in told.iter().filter(|suspect| suspect.class.len() > 1) {
         let others: Vec<&str> = suspect.class.iter().copied().filter(|name| *name != suspect.best).collect();
-        text += &hanging("", 2, &format!("{} may as well be {}", suspect.best, others.join(" or ")));
+        text += &hanging("", 2, &format!("{} cannot be distinguished from {}", suspect.best, others.join(" or ")));
     }
     if let rest @ 1.. = ranking.len() - told.len() {
         text += &hanging("", 2, &format!("and {rest} more (--json)"));
@@ -205,7 +204,7 @@ fn unseen_text(diagnosis: &Diagnosis) -> String {
     let mut text = String::new();
     let sizes = diagnosis.least_sizes();
     if !sizes.is_empty() {
-        text += "\nthis test would have shown, in four cases of five, sizes above\n";
+        text += "\nsmallest sizes that this test would show with 80 % probability\n";
         let one = |d: &&Detectable| format!("{} {:.2e}", d.parameter, d.size);
         for effect in &sizes {
             let own: Vec<String> = effect.iter().map(one).collect();
@@ -214,13 +213,13 @@ fn unseen_text(diagnosis: &Diagnosis) -> String {
     }
     let (absorbed, below) = (diagnosis.absorbed(), diagnosis.below_noise());
     if !(absorbed.is_empty() && below.is_empty()) {
-        text += "\nit cannot show\n";
+        text += "\nthis test cannot show\n";
     }
     for (by, names) in absorbed {
-        text += &hanging("", 2, &format!("what {} does as well: {}", by.join(" with "), names.join(", ")));
+        text += &hanging("", 2, &format!("indistinguishable from {} here: {}", by.join(" with "), names.join(", ")));
     }
     if !below.is_empty() {
-        text += &hanging("", 2, &format!("what is below the scatter at its usual size: {}", below.join(", ")));
+        text += &hanging("", 2, &format!("smaller than the scatter at the usual size: {}", below.join(", ")));
     }
     text
 }
@@ -236,7 +235,7 @@ fn experiments_text(experiments: &[Experiment]) -> String {
     text
 }
 
-/// An experiment with what it tells, in a line.
+/// An experiment with what it separates, in a line.
 pub(super) fn experiment_text(e: &Experiment) -> String {
     let [own, other] = e.separates.map(|name| match name.strip_prefix("law_") {
         Some(number) => format!("law {number} of the table"),

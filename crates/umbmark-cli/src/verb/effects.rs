@@ -19,7 +19,7 @@ const INDENT: usize = 14;
 /// Arguments of `effects`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// The effect to explain; all are listed where none is named
+    /// The effect to explain; without a name, all are listed
     name: Option<String>,
 }
 
@@ -51,7 +51,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
 
 fn list() -> String {
     let wide = CATALOGUE.iter().map(|entry| entry.about.name.len()).max().unwrap_or(0) + 2;
-    let mut text = String::from("Effects, by what they change, and then in the order in which they act:\n");
+    let mut text = String::from("Known error sources, grouped by what they change, in the order in which they act:\n");
     for kind in ActsOn::ALL {
         text += &format!("\n{}\n", kind.name());
         for entry in CATALOGUE.iter().filter(|entry| entry.about.acts_on == kind) {
@@ -77,7 +77,7 @@ fn variables() -> String {
 /// How to write an effect that is not listed.
 fn own() -> String {
     let mut text = String::from(
-        "\nOne of your own is a formula in model.toml, for every verb that takes a model:\n\n  \
+        "\nYou can write your own effect as a formula in model.toml; every verb that takes a model reads it:\n\n  \
          [[effect]]\n  name = \"carpet\"\n  acts_on = \"heading_per_metre\"\n  formula = \"k * sin(heading - h0)\"\n  \
          parameters = { k = 0.0, h0 = 0.5 }\n  free = true\n\n",
     );
@@ -86,14 +86,14 @@ fn own() -> String {
             "acts_on",
             "heading_per_metre [rad/m], sideways_per_metre [m/m] to the left, forward_per_radian, sideways_per_radian [m/rad], \
              heading_per_second [rad/s], forward_per_second, sideways_per_second [m/s], \
-             forward_scale, turn_scale, left_wheel_scale or right_wheel_scale: what the formula adds to the motion that odometry \
-             believes, so that 0 does nothing",
+             forward_scale, turn_scale, left_wheel_scale or right_wheel_scale: the part of the motion to which the formula adds, so that 0 \
+             has no effect",
         ),
         (
             "variables",
             &format!("{}; heading, x and y are those in the room, from START, as the model predicts them", variables()),
         ),
-        ("besides", "+ - * /, ^ with a whole number, ( ), pi, sin cos tan exp log sqrt abs sign min max tanh"),
+        ("operators", "+ - * /, ^ with a whole number, ( ), pi, sin cos tan exp log sqrt abs sign min max tanh"),
     ] {
         text += &hanging(&format!("  {head}"), INDENT, body);
     }
@@ -112,7 +112,7 @@ fn explanation(entry: &Entry, signature: Option<&Signature>) -> String {
         ("physics", about.physics),
         ("signature", about.signature),
         ("looks like", &confused),
-        ("told apart by", about.separated_by),
+        ("separated by", about.separated_by),
         ("source", about.source),
     ] {
         text += &hanging(head, INDENT + 2, body);

@@ -48,7 +48,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         model.add(effect)?.free = true;
     }
     if model.parts().iter().all(|part| !part.free) {
-        anyhow::bail!("no effect of the model is free: say free = true in its file, or --add EFFECT");
+        anyhow::bail!("no effect of the model is free: write free = true in its file, or use --add EFFECT");
     }
     let fitted = session.on_threads(|| fit(&data, &model))??;
     let Fit { model, estimates, outliers, usual_noise, setup, taken } = &fitted;
@@ -63,7 +63,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         session.message("warning", warning);
     }
     for effect in result::not_shown(model, estimates) {
-        let why = "this data does not show it apart from the rest of the model; it keeps its values";
+        let why = "this data cannot separate it from the rest of the model; it keeps its values";
         session.message("warning", &format!("{effect} was not fitted: {why}"));
     }
     writeln!(session.out(), "{}", estimates_table(estimates, arguments.intervals.level))?;

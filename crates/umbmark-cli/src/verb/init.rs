@@ -12,7 +12,7 @@ use crate::Session;
 /// Arguments of `init`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// The folder to write robot.toml and returns.csv into; it is made where it is not there
+    /// The folder for robot.toml and returns.csv; it is created if it does not exist
     #[arg(default_value = ".")]
     folder: PathBuf,
 
@@ -32,9 +32,9 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let folder = shlex::try_quote(&folder)?;
     write!(
         session.out(),
-        "wrote {robot}\n  say what your robot believes of itself: wheelbase, wheels, encoders, path\n\
+        "wrote {robot}\n  enter the values of your robot's software: wheelbase, wheels, encoders, path\n\
          wrote {returns}\n  add one row for each drive round the path; the file says how to measure\n\n\
-         then\n  umbmark inspect {folder}      is the data any good?\n  \
+         then\n  umbmark inspect {folder}      is the data good?\n  \
          umbmark score {folder}        how large are the errors?\n  \
          umbmark calibrate {folder}    what corrects them?\n"
     )?;

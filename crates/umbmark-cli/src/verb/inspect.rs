@@ -68,13 +68,13 @@ fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
         text += &format!("\n{}\n", topics_table(&data.topics));
     }
     if !data.clocks.is_empty() {
-        text += &format!("\nclocks set by the motion while reading\n\n{}\n", clocks_table(&data.clocks));
+        text += &format!("\nclocks, aligned from the motion while reading\n\n{}\n", clocks_table(&data.clocks));
     }
     let found = inspection.setup.as_ref().map(|setup| mounting_text(setup) + &disturbances_text(setup));
     if let Some(found) = found.filter(|found| !found.is_empty()) {
         text += &format!("\n{found}");
     }
-    text += "\nis it any good?\n";
+    text += "\nis the data good?\n";
     for check in &inspection.checks {
         let mark = if check.ok { "ok" } else { "LOOK" };
         text += &hanging(&format!("  {mark:<6}{}", check.name), 32, &check.found);

@@ -27,7 +27,7 @@ pub struct Arguments {
     #[command(flatten)]
     data: DataArguments,
 
-    /// Begin with the effects of this model, beside E_d and E_b (on tracks E_s too): a formula to try, say
+    /// Begin with the effects of this model, beside E_d and E_b (on tracks E_s too), for example with your own formula
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
 
@@ -35,7 +35,7 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 
-    /// Where no effect of the catalogue explains what repeats: add the law of this number in the table of laws, not the first
+    /// Number of the law to add, from the table of laws, if no effect of the catalogue explains the repeating error
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = crate::numbers::whole_in::<u32>(1..=16))]
     law: u32,
 
@@ -56,7 +56,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         None => Model::new(data.nominal_robot()?),
     };
     let learnt =
-        session.watched("per mille of the steps at most", |watch| learn_from(&data, &start, &options, watch))??;
+        session.watched("‰ of the steps at most", |watch| learn_from(&data, &start, &options, watch))??;
     if learnt.partial {
         session.message("partial", "stopped while an effect was still missing");
     }
@@ -76,7 +76,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     }
     match &arguments.output {
         Some(file) if withheld => anyhow::bail!(
-            "{}: was not written, since the model does not explain the runs (see the reasons); --force writes it all the same",
+            "{}: was not written, because the model does not explain the runs (see the reasons); --force writes it anyway",
             file.display()
         ),
         Some(file) if !session.json() => writeln!(session.out(), "\nwrote {}", file.display())?,
@@ -87,7 +87,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
 
 fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> String {
     let robot = data.robot.as_ref().map_or("", |robot| robot.name.as_str());
-    let mut text = format!("What {robot} taught\n\n");
+    let mut text = format!("Model learnt for {robot}\n\n");
     let header = ["added", "p", "error [mm]", "left out [mm]", "[deg]", "AICc"];
     text += &table(&header, learnt.steps.iter().map(row));
     text += "\n\n";
@@ -96,8 +96,8 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
         Level::Tracks => "all measured poses",
     };
     let legend = format!(
-        "error: root mean square distance of {of} from the model's, in the runs it was fitted to; left out: of runs that neither \
-         the choice of effects nor the fit saw. AICc decides nothing."
+        "error: root mean square distance of {of} from the model's, in the fitted runs. left out: cross-validated error, of runs \
+         that were used neither to choose effects nor to fit. AICc is not used for decisions."
     );
     text += &hanging("", 0, &legend);
     text += "\n";
@@ -110,7 +110,7 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     let diagnosis = &learnt.diagnosis;
     text += &(faults_text(&diagnosis.setup) + &reasons_text(&diagnosis.reasons) + &taken_text(&diagnosis.taken));
     for step in learnt.steps.iter().filter(|s| s.class.len() > 1) {
-        text += &hanging("class", 10, &format!("{} cannot be told apart here", step.class.join(", ")));
+        text += &hanging("class", 10, &format!("{} cannot be distinguished here", step.class.join(", ")));
     }
     let unsure = learnt.steps.iter().rev().find(|s| s.class.len() > 1);
     let tells = |e: &&Experiment| unsure.is_some_and(|s| e.separates.iter().all(|name| s.class.contains(name)));
@@ -140,7 +140,7 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
 
 /// The verdict where what was missing was added as a law.
 const BY_A_LAW: &str =
-    "a law that the catalogue does not have, added as a formula; beside it there is no sign of a further effect";
+    "explained, by a law that the catalogue does not have (added as a formula); no test shows a further effect";
 
 fn row(step: &Step) -> Vec<String> {
     let others = step.class.len().saturating_sub(1);

@@ -20,7 +20,7 @@ use crate::{Session, files};
 /// Arguments of `mc`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Trials: whole tests, each with all its runs [default: 1000; as many as it takes with --until-std-error]
+    /// Trials: whole tests, each with all its runs [default: 1000; with --until-std-error as many as needed]
     #[arg(short = 'n', long, value_name = "N", value_parser = crate::numbers::whole)]
     trials: Option<u64>,
 
@@ -39,7 +39,7 @@ pub struct Arguments {
     #[command(flatten)]
     checkpoint: CheckpointFlags,
 
-    /// Run the I-th of K shards, for `umbmark merge` to put together
+    /// Run the I-th of K shards; `umbmark merge` combines them
     #[arg(long, value_name = "I/K", default_value_t = Shard::WHOLE, conflicts_with = "until_std_error",
           requires = "checkpoint", help_heading = "Long studies")]
     shard: Shard,
@@ -121,7 +121,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if partial {
         session.message("partial", &format!("stopped after {} of {} trials", ensemble.trials(), all.end - all.start));
     } else if arguments.until_std_error.is_some() && !precise {
-        session.message("warning", "all trials are done, and the standard error that was asked for is not reached");
+        session.message("warning", "all trials are done, but the requested standard error is not reached");
     }
     let took = Some((seconds, ensemble.trials() - before));
     let report = Report { study: told, seed: *seed, ensemble, partial, took };

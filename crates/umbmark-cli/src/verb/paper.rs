@@ -70,7 +70,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let (trials, seed) = (arguments.trials, session.seed());
     let (mut found, mut texts) = (Paper::new(seed), Vec::new());
     for (_, run) in EXPERIMENTS.iter().filter(|(experiment, _)| wanted(*experiment)) {
-        let text = session.told("per mille of the tests", |progress| {
+        let text = session.told("‰ of the tests", |progress| {
             let stop = AtomicBool::new(false);
             run(&Bench { trials, seed, watch: &Watch { stop: &stop, progress } }, &mut found)
         });
@@ -113,8 +113,8 @@ fn table_one(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
     let header = ["Table I", "E_max,sys [mm]", "simulated", "middle 95 %", "below it", "sigma [mm]", "simulated"];
     Ok(format!(
         "{}\n\n{} simulated tests of each. \"below it\": the share of them below the published E_max,sys.\n\
-         The CLAPPER's 22 mm are more than noise of its published sigma makes (2.71 sigma/sqrt(5) = 13 mm at most in 95 %): they are\n\
-         systematic, the paper does not say of what, and nothing was invented to make them. Each of these alone would:\n{would}{notes}",
+         Noise with the CLAPPER's published sigma would give 13 mm at most in 95 % of tests (2.71 sigma/sqrt(5)). Its 22 mm are therefore\n\
+         systematic. The paper does not give the cause, and the simulation has none. Each of these alone would be enough:\n{would}{notes}",
         table(&header, rows),
         found.trials
     ))
@@ -137,11 +137,11 @@ fn table_two(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
         "{}\n\n{} simulated tests of each, ten bumps of 10 mm under the inside wheel on the first leg.\n\
          recomputed: half of Eq. (5), the mean over all runs, from the printed headings; the printed 8.35 of the LabMate needs\n\
          its two systematic means exchanged. \"its runs\": the least and the largest deviation of a single run.\n\
-         The LabMate is taken to be the calibrated one, whose systematic headings are the smaller; the paper does not say which.\n\
+         The LabMate is assumed to be the calibrated one, whose systematic headings are smaller; the paper does not say which.\n\
          The K2A turns by D/(2 sqrt(3) rho) a bump if three equal wheels share its slip: that rests on the assumed wheels and circle,\n\
          and is not fitted to the printed number.\n\
          CLAPPER: {:.1} deg with its correction off, {:.3} deg with it: {:.0} times less. \"+-0.4 deg\": the same where each heading is\n\
-         measured that well (standard deviation 0.4/sqrt(3) deg), as is reported, at second hand, of a sonar device for such tests.",
+         measured to this accuracy (standard deviation 0.4/sqrt(3) deg), as reported, at second hand, for a sonar device in such tests.",
         table(&header, rows),
         found.trials,
         off.to_degrees(),
@@ -167,7 +167,7 @@ fn both_ways(rows: &[BothWays]) -> String {
 fn masking(_: &Bench, all: &mut Paper) -> Result<String, PaperError> {
     let found = all.figure_2.insert(paper::masking()?);
     Ok(format!(
-        "Figures 2 to 4: errors that compensate for each other in one direction\n\n{}\n\nE_d = {:.5}, E_b = {:.5}, LabMate, 4 x 4 m, \
+        "Figures 2 to 4: errors that cancel each other in one direction\n\n{}\n\nE_d = {:.5}, E_b = {:.5}, LabMate, 4 x 4 m, \
          exact kinematics without noise",
         both_ways(&found.rows),
         found.e_d,
@@ -213,7 +213,7 @@ fn figure_eight(_: &Bench, all: &mut Paper) -> Result<String, PaperError> {
     let found = all.figure_eight.insert(paper::figure_eight()?);
     Ok(format!(
         "Section 3.1: the figure-eight (two circles of 2 m) hides E_d from a tape measure and E_b from a compass,\n\
-         whichever way it is driven: with positions alone it has the shortcoming that the paper says, with headings it has not\n\n{}",
+         in both directions of driving: with positions alone it has the shortcoming named in the paper, with headings it does not\n\n{}",
         both_ways(found)
     ))
 }

@@ -24,7 +24,7 @@ const RUNS: std::ops::RangeInclusive<usize> = 3..=30;
 /// The order in which runs are driven.
 #[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
 enum OrderKind {
-    /// Clockwise and counter-clockwise in turn, every other pair the other way round
+    /// Clockwise and counter-clockwise in turn, every second pair in reverse order
     Mirrored,
     /// Clockwise and counter-clockwise in turn
     Alternating,
@@ -45,15 +45,15 @@ impl From<OrderKind> for Order {
 /// Arguments of `plan`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Measured runs of the robot, whose errors and scatter are planned with, instead of the paper's LabMate
+    /// Measured runs of the robot: plan with its errors and scatter instead of those of the paper's LabMate
     #[arg(value_name = "DATA")]
     data: Option<PathBuf>,
 
-    /// A size that is to be seen, as the flag of any effect or its name in files, as in eb=1.005 or slope-x=0.002
+    /// A size to detect, by the flag of any effect or its name in files: eb=1.005 or slope-x=0.002
     #[arg(long, value_name = "SIZE=VALUE", value_parser = assignment)]
     see: Vec<(String, f64)>,
 
-    /// Two effects that are to be told apart: ranks experiments by what they tell per minute
+    /// Two effects to separate: ranks experiments by their information per minute
     #[arg(long, num_args = 2, value_names = ["EFFECT", "EFFECT"], value_parser = effect_names(),
           conflicts_with = "see")]
     separate: Vec<String>,
@@ -62,15 +62,15 @@ pub struct Arguments {
     #[arg(long, value_name = "LENGTH", value_parser = super::mc::length)]
     sigma: Option<f64>,
 
-    /// Probability with which it is to be seen
+    /// Probability with which the size is detected
     #[arg(long, default_value_t = 0.9, value_name = "P", value_parser = crate::numbers::probability)]
     power: f64,
 
-    /// Probability with which a robot without it is accused all the same
+    /// False-alarm rate: probability with which a robot without the effect is accused
     #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = crate::numbers::probability)]
     size: f64,
 
-    /// Runs in each direction that are planned
+    /// Planned runs in each direction
     #[arg(long, default_value_t = 5, value_name = "N", value_parser = crate::numbers::whole_in::<u16>(3..=1000))]
     runs: u16,
 
@@ -78,15 +78,15 @@ pub struct Arguments {
     #[arg(long)]
     no_heading: bool,
 
-    /// Simulated tests behind every figure that has no closed form
+    /// Simulated tests for each figure that has no closed form
     #[arg(long, default_value_t = 999, value_name = "N", value_parser = crate::numbers::whole_in::<u32>(99..=99_999))]
     draws: u32,
 
-    /// Write the sheet to drive by: steps and the empty table, as text (.md) or to print on one page (.html)
+    /// Write the protocol: steps and an empty table, as text (.md) or to print on one page (.html)
     #[arg(short, long, value_name = "protocol.md")]
     output: Vec<PathBuf>,
 
-    /// Order of the runs on the sheet
+    /// Order of the runs in the protocol
     #[arg(long, value_enum, default_value_t = OrderKind::Mirrored, value_name = "ORDER")]
     order: OrderKind,
 
@@ -111,7 +111,7 @@ fn effect_names() -> clap::builder::PossibleValuesParser {
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     anyhow::ensure!(
         arguments.setup.direction == Directions::Both,
-        "runs in one direction have no E_max,sys and do not tell E_d from E_b; leave --direction out"
+        "runs in one direction have no E_max,sys and cannot separate E_d from E_b; remove --direction"
     );
     anyhow::ensure!(arguments.power > arguments.size, "--power must be greater than --size, {}", arguments.size);
     let options =
@@ -135,9 +135,9 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let numbers: Vec<usize> = if session.json() { RUNS.collect() } else { plan_report::PRINTED.to_vec() };
     let (runs, power) = (usize::from(arguments.runs), arguments.power);
     let request = Request { runs, see: &see, power, numbers: &numbers, sigma_interval, options };
-    let findings = session.watched("per mille", |watch| request.findings(&setting, watch))??;
+    let findings = session.watched("‰", |watch| request.findings(&setting, watch))??;
     if findings.partial {
-        session.message("partial", "stopped before all was looked at");
+        session.message("partial", "stopped before all results were computed");
     }
     let report =
         Report { summary: &sheet.summary, setting: &setting, known: &known, request: &request, findings: &findings };
@@ -166,7 +166,7 @@ impl Arguments {
             }
         };
         let Setup { path, model, draws, mut assumed, .. } = setup;
-        anyhow::ensure!(draws.is_empty(), "one robot is planned for; leave --{}-sd out", draws[0].parameter().flag);
+        anyhow::ensure!(draws.is_empty(), "a plan is for one robot; remove --{}-sd", draws[0].parameter().flag);
         let (setting, more) = Setting::expecting(&path, &model, self.sigma, seed)?;
         assumed.extend(more.map(str::to_owned));
         let setting = setting.with_heading(with_heading && !self.no_heading);
@@ -185,9 +185,9 @@ impl Arguments {
             let text = match ending.as_str() {
                 "html" | "htm" => sheet.html(),
                 "md" | "txt" => sheet.markdown(),
-                _ => anyhow::bail!("{}: a sheet ends in .md, .txt or .html", file.display()),
+                _ => anyhow::bail!("{}: the name of a protocol ends in .md, .txt or .html", file.display()),
             };
-            Pending::write_whole(file, self.force, &text).context("the sheet was not written")?;
+            Pending::write_whole(file, self.force, &text).context("the protocol was not written")?;
             session.message("wrote", &file.display().to_string());
         }
         Ok(())

@@ -53,7 +53,7 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE", value_parser = drawing)]
     output: Drawing,
 
-    /// A model with the values that it has, its free ones fitted [default: the one that the data teaches]
+    /// A model; its free effects are fitted [default: the model learnt from the data]
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
 

@@ -25,12 +25,12 @@ const MAX_SIDE_BY_SIDE: usize = 2;
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A dataset folder or file; two of them are put side by side, as before and after a calibration
+    /// A dataset folder or file; two are shown side by side, for example before and after a calibration
     #[arg(value_name = "DATA", required = true, num_args = 1..=MAX_SIDE_BY_SIDE)]
     data: Vec<PathBuf>,
 
-    /// A model with the values that it has, its free ones fitted; two of them are put side by side
-    /// [default: the one that the data teaches]
+    /// A model; its free effects are fitted; two are shown side by side
+    /// [default: the model learnt from the data]
     #[arg(long, value_name = "FILE")]
     model: Vec<PathBuf>,
 
@@ -64,22 +64,22 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     for study in studies.iter().filter(|study| study.given.is_none()) {
         let poses: usize = study.data.runs.iter().flat_map(|run| &run.log).map(|log| log.reference.len()).sum();
         if poses > MANY && !study.options.diagnose.ends_only {
-            let cost = "takes minutes; --model FILE spares it, --return-poses learns from return poses alone";
+            let cost = "takes minutes; with --model FILE nothing is learnt, --return-poses learns from return poses alone";
             session.message("note", &format!("learning from {poses} measured poses {cost}"));
         }
         // Why nothing could be learnt, the page says.
-        let _ = session.told("per mille of the steps at most of learning", |tell| study.learn(tell).is_ok())?;
+        let _ = session.told("‰ of the steps of learning at most", |tell| study.learn(tell).is_ok())?;
     }
     let mut progress = session.progress(KINDS.len() as u64, "figures");
     let made = session.on_threads(|| page(&studies, &provenance, |done| progress.at(done as u64)))?;
     drop(progress);
-    let text = made.context("the page cannot be put together")?;
+    let text = made.context("cannot make the page")?;
     file.write_all(text.as_bytes()).with_context(|| file.failed())?;
     file.finish()?;
     let output = arguments.output.display().to_string();
     let partial = studies.iter().any(Study::is_partial);
     if partial {
-        session.message("partial", "stopped before all was worked out; the page says what is missing");
+        session.message("partial", "stopped before all parts were finished; the page says what is missing");
     }
     let verdicts: Vec<Said> = studies.iter().map(said).collect();
     if session.json() {

@@ -18,7 +18,7 @@ use crate::table::table;
 const WIDE: usize = 64;
 const HIGH: usize = 24;
 
-/// How Eq. 5 joins both directions.
+/// How Eq. 5 combines both directions.
 #[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
 enum ConventionKind {
     /// Mean of both directions: half of Eq. 5, as in Table II of the paper
@@ -36,7 +36,7 @@ pub struct Arguments {
     #[command(flatten)]
     intervals: LevelArgument,
 
-    /// How the extended test joins both directions
+    /// How the extended test combines both directions
     #[arg(long, value_enum, default_value_t = ConventionKind::Mean, value_name = "HOW")]
     convention: ConventionKind,
 }
@@ -73,11 +73,11 @@ fn text(score: &Score, convention: Convention) -> String {
     text += "\n";
     if let Some(band) = score.noise_band {
         let judged = match summary.e_max_sys() {
-            Some(e_max) if e_max <= band => "no sign of a systematic error",
-            _ => "more than chance",
+            Some(e_max) if e_max <= band => "E_max,sys shows no systematic error",
+            _ => "E_max,sys shows a systematic error",
         };
         text +=
-            &format!("\nScatter alone gives E_max,sys up to {:.1} mm in {percent} % of tests: {judged}.\n", 1e3 * band);
+            &format!("\n{judged}: chance alone stays below {:.1} mm in {percent} % of tests.\n", 1e3 * band);
     }
     text
 }

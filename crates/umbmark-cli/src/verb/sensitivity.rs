@@ -46,7 +46,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = crate::numbers::whole)]
     trials: u64,
 
-    /// Ask the return of exact kinematics, without noise, bumps and quantisation, and not whole tests
+    /// Compute exact kinematics, without noise, bumps and quantisation, instead of whole tests
     #[arg(long)]
     noise_free: bool,
 
@@ -81,7 +81,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         unicode: session.on_terminal(),
     };
     if report.is_partial() {
-        session.message("partial", "stopped before all tests that were asked for");
+        session.message("partial", "stopped before all requested tests were done");
     }
     if session.json() {
         session.print_json(&report.result())?;
@@ -95,7 +95,7 @@ fn find(arguments: &Arguments, tests: &Tests, inputs: &Inputs, session: &Session
     let Arguments { method, base_points, second_order, trajectories, trials, .. } = *arguments;
     let seed = session.seed();
     let options = SobolOptions { base_points, second_order, seed };
-    Ok(session.watched("per mille", |watch| match method {
+    Ok(session.watched("‰", |watch| match method {
         Method::Sobol => sobol_indices(tests, inputs, &options, watch).map(Found::Sobol),
         Method::Morris => screen(tests, inputs, trajectories, seed, watch).map(Found::Morris),
         Method::Local => local_derivatives(tests, inputs, trials, watch).map(Found::Local),

@@ -25,7 +25,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = crate::numbers::whole_in::<u32>(1..=10_000))]
     runs: Option<u32>,
 
-    /// How often the absolute pose is measured on the way; 0 for the end pose alone
+    /// Rate at which the absolute pose is measured on the way; 0 for the end pose alone
     #[arg(long, default_value_t = 20.0, value_name = "HZ", value_parser = crate::numbers::number)]
     reference_rate: f64,
 
@@ -46,7 +46,7 @@ impl Arguments {
             return Ok(direction.runs(self.runs.unwrap_or(5) as usize));
         }
         if let Some(runs @ 2..) = self.runs {
-            anyhow::bail!("an MCAP log holds one run, got --runs {runs}; leave it out, or name a folder");
+            anyhow::bail!("an MCAP log holds one run, got --runs {runs}; remove it, or give a folder");
         }
         let direction = if direction == Directions::Both { Directions::Ccw } else { direction };
         Ok(direction.runs(1))
@@ -68,7 +68,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if !kind.has_tick_logs() {
         let name = kind.name();
         session
-            .message("note", &format!("a robot with drive = \"{name}\" has no tick logs: returns alone were written"));
+            .message("note", &format!("a robot with drive = \"{name}\" has no tick logs: only returns were written"));
     }
     for text in &assumed {
         session.message("assumed", text);

@@ -20,11 +20,11 @@ use crate::terminal::histogram;
 /// Arguments of `tolerance`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// The parameters with their distributions, and the grades that each can be had in with their costs
+    /// The parameters with their distributions, and the grades of each with their costs
     #[arg(value_name = "parameters.toml")]
     file: PathBuf,
 
-    /// The most that the metric may be: 50mm, or 2deg for a heading
+    /// Largest allowed value of the metric: 50mm, or 2deg for a heading
     #[arg(long, value_name = "SIZE", value_parser = size, default_value = "50mm")]
     target: (f64, bool),
 
@@ -32,7 +32,7 @@ pub struct Arguments {
     #[arg(long, value_name = "SHARE", value_parser = crate::numbers::probability, default_value = "0.95")]
     share: f64,
 
-    /// The metric of the target; its size counts where it has a sign
+    /// The metric of the target; of a metric with a sign its absolute value
     #[arg(long, value_name = "METRIC", default_value = "e_max_sys_m")]
     metric: String,
 
@@ -40,7 +40,7 @@ pub struct Arguments {
     #[arg(short = 'n', long, value_name = "N", default_value_t = 10_000, value_parser = crate::numbers::whole)]
     robots: u64,
 
-    /// Judge what a whole test with its noise shows of each robot, not the robot's own systematic error
+    /// Apply the target to whole tests with their noise, instead of the robot's own systematic error
     #[arg(long)]
     with_noise: bool,
 
@@ -77,11 +77,11 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         robots: arguments.robots,
         seed: session.seed(),
     };
-    let findings = session.watched("per mille of all choices", |watch| tolerances.search(&target, watch))??;
+    let findings = session.watched("‰ of all choices", |watch| tolerances.search(&target, watch))??;
     let assumed = if arguments.with_noise { known.assumed } else { Vec::new() };
     let report = Report { findings: &findings, file: &file, target: &target, metric, assumed: &assumed };
     if findings.partial {
-        session.message("partial", "stopped before all choices were looked at");
+        session.message("partial", "stopped before all choices were tested");
     }
     if session.json() {
         let wanted = Wanted {
@@ -114,7 +114,7 @@ impl Report<'_> {
         let (unit, factor) = unit(self.metric);
         let now = &self.findings.now;
         let kind =
-            if with_noise { "as whole tests with their noise show it" } else { "the robots' own, without noise" };
+            if with_noise { "in whole tests with their noise" } else { "the robots' own, without noise" };
         let mut text = format!("{} of {} robots, {kind}\n", self.metric.name(), now.robots.sizes().len());
         self.assumed.iter().for_each(|assumption| text += &format!("  assumed: {assumption}\n"));
         let sizes = now.robots.sizes();
@@ -140,7 +140,7 @@ impl Report<'_> {
         }
         rows.push(row("all at their last grade".to_owned(), &self.findings.last));
         if let Some(choice) = &self.findings.cheapest {
-            rows.push(row("cheapest that keeps it".to_owned(), choice));
+            rows.push(row("cheapest that keeps the target".to_owned(), choice));
         }
         let quantile = format!("{:.0} % keep [{unit}]", 100.0 * self.target.share);
         text += &table(&["grades", "cost", "within [%]", "95 %", &quantile, "95 %"], rows);
@@ -161,21 +161,21 @@ impl Report<'_> {
         let looked_at = self.findings.looked_at;
         match &self.findings.cheapest {
             Some(choice) if choice.grades == self.findings.now.grades => {
-                "The robots keep the target as they are.\n".to_owned()
+                "The robots keep the target with the present grades.\n".to_owned()
             }
             Some(choice) => format!(
                 "Buy: {} (cost {}, {} more than now).\n\
-                 Judged by {} robots that the search of {looked_at} choices did not see.\n",
+                 Tested with {} robots that the search of {looked_at} choices did not use.\n",
                 self.changes(choice),
                 trimmed(choice.cost),
                 trimmed(choice.cost - self.findings.now.cost),
                 choice.robots.sizes().len(),
             ),
             None if self.findings.partial => {
-                format!("None of the {looked_at} cheapest choices keeps the target surely.\n")
+                format!("None of the {looked_at} cheapest choices certainly keeps the target.\n")
             }
             None => format!(
-                "None of the {looked_at} choices keeps the target surely; offer tighter grades, or draw more robots.\n"
+                "None of the {looked_at} choices certainly keeps the target; offer tighter grades, or draw more robots.\n"
             ),
         }
     }

@@ -18,9 +18,9 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
     let circle = &study.diagnosis()?.circle;
     let path = study.data.path.as_ref().filter(|path| std::ptr::eq(path.shape(), &SQUARE));
     let side = path.map(|path| path.values()[0]);
-    let side = side.ok_or_else(|| Absent("The circle through START is one of squares; this path is none.".into()))?;
+    let side = side.ok_or_else(|| Absent("The circle through START exists for squares only, and this path is not a square.".into()))?;
     if circle.is_empty() {
-        return Err(Absent("The circle needs two runs of a direction.".into()));
+        return Err(Absent("The circle needs at least two runs in one direction.".into()));
     }
     let clouds: Vec<Cloud> = Direction::BOTH.into_iter().filter_map(|d| Cloud::new(study, d, side)).collect();
     let (least, most) = clouds
@@ -97,7 +97,7 @@ impl Cloud {
             .saying(self.names.clone())
             .from_runs(self.runs.clone());
         let mark = self.heading.map(|heading| {
-            let said = format!("{name}: where the mean return heading, {:.2} deg, would turn it", heading.to_degrees());
+            let said = format!("{name}: place that follows from the mean return heading, {:.2} deg", heading.to_degrees());
             Layer::new(format!("{name} by heading"), tone, Mark::Crosses, [turned(side, heading)])
                 .of(self.direction)
                 .saying(vec![said])
@@ -109,16 +109,16 @@ impl Cloud {
 fn told(circle: &[OnCircle], level: f64) -> Told {
     let one = |c: &OnCircle| {
         let half = 0.5 * MM * (c.off_interval.high - c.off_interval.low);
-        let judged = if c.explained() { "on it" } else { "off it, or turned otherwise than their heading says" };
+        let judged = if c.explained() { "on it" } else { "off it, or not where their heading puts them" };
         let off = crate::scale::written(MM * c.mean_off, 0);
         format!("{} runs end {off} ± {half:.0} mm outside the circle: {judged}", c.direction.name())
     };
     Told {
         shows:
-            "Whatever repeats on every side of the square turns the end point about the square's centre, by as much \
-                as the heading turns: along the circle. Crosses are where the measured mean headings put it."
+            "An error that is the same on every side of the square turns the end point about the square's centre, by as much \
+                as the heading turns: along the circle. Crosses show the place that follows from the measured mean headings."
                 .into(),
-        good: "Dots lie on the circle, around the cross of their direction; then E_d and E_b can explain them.".into(),
+        good: "Dots lie on the circle, around the cross of their direction: E_d and E_b can explain them.".into(),
         says: format!("{} ({:.0} % intervals).", circle.iter().map(one).collect::<Vec<_>>().join("; "), 100.0 * level),
     }
 }

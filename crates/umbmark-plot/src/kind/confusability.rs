@@ -13,22 +13,22 @@ pub(super) static FIGURE: FigureKind =
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let likeness = &study.diagnosis()?.likeness;
     if likeness.effects.len() < 2 {
-        return Err(Absent("Fewer than two effects outside the model can be seen in these runs.".into()));
+        return Err(Absent("These runs can show fewer than two effects outside the model.".into()));
     }
     let order = neighbours(&likeness.values);
     let names: Vec<String> = order.iter().map(|i| likeness.effects[*i].to_owned()).collect();
     let values: Vec<Vec<f64>> = order.iter().map(|i| order.iter().map(|j| likeness.values[*i][*j]).collect()).collect();
     let alike = alike(&names, &values);
     let says = match alike.len() {
-        0 => format!("Each of the {} effects that these runs would show can be told from all others.", names.len()),
-        _ => format!("Cannot be told apart here: {}.", phrases(&alike)),
+        0 => format!("These runs can distinguish each of the {} effects that they would show from all others.", names.len()),
+        _ => format!("Cannot be distinguished here: {}.", phrases(&alike)),
     };
     let told = Told {
-        shows: "How alike effects outside the model look in these runs, in units of the noise and beside the model: 1 is the \
+        shows: "Similarity of effects outside the model in these runs, relative to the noise and beside the model: 1 is the \
                 same trace, 0 a different one."
             .into(),
-        good: "Pale but for the diagonal: then whatever is missing can be named. Dark squares are classes; the next experiment \
-               should split those."
+        good: "Pale except for the diagonal: any missing effect can be named. Dark squares are classes; the next experiment \
+               should separate them."
             .into(),
         says,
     };
@@ -68,7 +68,7 @@ fn phrases(alike: &[(String, String, f64)]) -> String {
     let first: Vec<String> = alike.iter().take(MAX_PAIRS).map(|(a, b, _)| format!("{a} and {b}")).collect();
     match alike.len().saturating_sub(MAX_PAIRS) {
         0 => first.join("; "),
-        rest => format!("{}; and {rest} pairs more", first.join("; ")),
+        rest => format!("{}; and {rest} more pairs", first.join("; ")),
     }
 }
 

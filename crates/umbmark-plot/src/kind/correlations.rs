@@ -16,9 +16,9 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
         return Err(Absent("Correlations need two fitted numbers and their covariance.".into()));
     }
     let told = Told {
-        shows: "How far an error of one fitted number would be made up for by another: correlations of the estimates."
+        shows: "Correlations of the estimates: how far an error of one fitted number can compensate for an error of another."
             .into(),
-        good: "Pale off the diagonal. Near +1 or −1 the runs tell a combination of the two only.".into(),
+        good: "Pale off the diagonal. Near +1 or −1 the runs determine only a combination of the two.".into(),
         says: strongest(&names, values),
     };
     let layers = vec![cells(&names, values, |a, b, value| format!("{a} and {b}: {value:+.2}"))];

@@ -68,13 +68,13 @@ fn panel(name: &str, repeated: &Repeated) -> Panel {
         Layer::new("without a law", Tone::Quiet, Mark::Dashes, [[0.0, MM * before], [longest, MM * before]]),
         Layer::new("best law up to this length", Tone::Model, Mark::Line, front(&shown, longest)),
         Layer::new("laws", Tone::Computed, Mark::Rings, shown.iter().map(|(_, law)| place(law))).saying(said.collect()),
-        Layer::new("the law that was taken", Tone::Model, Mark::Dots, [place(&repeated.law)]),
+        Layer::new("the chosen law", Tone::Model, Mark::Dots, [place(&repeated.law)]),
         Layer::new("", Tone::Quiet, Mark::Words(labels), beside),
     ];
     Panel {
         title: name.to_owned(),
         x: Axis::of("length of the formula").from_to(0.0, longest),
-        y: Axis::of("error of runs left out [mm]").from_to(0.0, 1.05 * MM * most),
+        y: Axis::of("cross-validated error [mm]").from_to(0.0, 1.05 * MM * most),
         equal: false,
         layers,
     }
@@ -101,13 +101,13 @@ fn told(laws: &[(&'static str, &Repeated)]) -> Told {
     let one = |(name, repeated): &(&str, &Repeated)| {
         let [before, after] = repeated.law.left_out.map(|error| MM * error);
         let law = repeated.law.words();
-        format!("{name}: {law} ({}; runs left out {before:.1} to {after:.1} mm).", p_is(repeated.p))
+        format!("{name}: {law} ({}; cross-validated error {before:.1} to {after:.1} mm).", p_is(repeated.p))
     };
     Told {
-        shows: "The error of runs left out with each law that was tried, by the length of its formula: operations, variables and numbers. \
+        shows: "The cross-validated error with each law that was tried, against the length of its formula: operations, variables and numbers. \
                 The numbers are those of `umbmark learn --law`."
             .into(),
-        good: "One short law far below the rest. Where several are as low, the shortest is taken, and a drive that tells them apart is \
+        good: "One short law far below the rest. If several are as low, the shortest is chosen; a drive that separates them is \
                worth more than their order."
             .into(),
         says: laws.iter().map(one).collect::<Vec<_>>().join(" "),

@@ -44,7 +44,7 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
     };
     Ok(Figure {
         kind: "learning",
-        title: "How the error fell".into(),
+        title: "The error after each effect".into(),
         told: told(learnt),
         panels: vec![panel],
         table: table(&learnt.steps),
@@ -67,17 +67,17 @@ fn told(learnt: &Learnt) -> Told {
         format!("Nothing was added; the error is {:.1} mm.", MM * last)
     } else {
         format!(
-            "In runs left out the error fell from {:.1} to {:.1} mm with {}.",
+            "The cross-validated error fell from {:.1} to {:.1} mm with {}.",
             MM * first,
             MM * last,
             added.join(", ")
         )
     };
     Told {
-        shows: "The distance of measured poses from those of the model, after each effect that was added: in the runs \
-                that the model was fitted to, and in runs that neither the choice of effects nor the fit saw."
+        shows: "The distance of measured poses from those of the model, after each added effect: in the runs \
+                that the model was fitted to, and in runs that were used neither to choose effects nor to fit."
             .into(),
-        good: "Both fall together and end at the scatter of the runs; a gap that opens is a model that learnt noise."
+        good: "Both fall together and end at the scatter of the runs. A growing gap means that the model learnt noise."
             .into(),
         says,
     }

@@ -48,10 +48,10 @@ fn told(statistics: &Statistics, measured: Option<f64>, below: Option<f64>, nois
     let says = match (measured, below) {
         (Some(e_max), Some(below)) => {
             let outside = !(0.025..=0.975).contains(&below);
-            let judged = if outside { "the model hardly brings it about" } else { "the model may well bring it about" };
+            let judged = if outside { "the model hardly explains it" } else { "the model can explain it" };
             let of_tests = 100.0 * below;
             format!(
-                "The measured E_max,sys, {:.0} mm, is above that of {of_tests:.0} % of the tests: {judged}.",
+                "The measured E_max,sys, {:.0} mm, is larger than in {of_tests:.0} % of the tests: {judged}.",
                 MM * e_max
             )
         }
@@ -59,11 +59,11 @@ fn told(statistics: &Statistics, measured: Option<f64>, below: Option<f64>, nois
     };
     Told {
         shows: format!(
-            "E_max,sys of {} simulated tests of {}, each with as many runs as were driven, with {noise}.",
+            "E_max,sys of {} simulated tests of {}, each with the measured number of runs, with {noise}.",
             statistics.count(),
             study.model_name()
         ),
-        good: "The measured value stands among the bars, not beside them.".into(),
+        good: "The measured value is among the bars, not outside them.".into(),
         says,
     }
 }

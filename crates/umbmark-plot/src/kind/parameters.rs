@@ -96,7 +96,7 @@ impl Number {
         if self.half() > 0.0 {
             format!("{} = {} ± {}", self.name, self.written(self.value), self.written(self.half()))
         } else {
-            format!("{} = {}, interval not known", self.name, self.written(self.value))
+            format!("{} = {}, interval unknown", self.name, self.written(self.value))
         }
     }
 
@@ -109,17 +109,17 @@ fn told(numbers: &[Number], study: &Study) -> Told {
     let percent = 100.0 * study.level();
     let certain: Vec<String> = numbers.iter().filter(|n| n.certain()).map(Number::said).collect();
     let says = if certain.is_empty() {
-        "No interval keeps clear of zero.".to_owned()
+        "Every interval contains zero.".to_owned()
     } else {
-        format!("Clear of zero: {}.", certain.join("; "))
+        format!("Different from zero: {}.", certain.join("; "))
     };
     Told {
         shows: format!(
-            "How far each fitted number of {} is from where it does nothing, with its {percent:.0} % interval. The unit \
-             of each is the size that is usual among robots.",
+            "Distance of each fitted number of {} from the value that has no effect, with its {percent:.0} % interval. The unit \
+             of each is its usual size among robots.",
             study.model_name()
         ),
-        good: "Intervals are short, and those of effects that were found keep clear of the dashed line at zero.".into(),
+        good: "Intervals are short, and those of found effects do not contain the dashed line at zero.".into(),
         says,
     }
 }

@@ -39,16 +39,16 @@ pub(super) fn by(
         })
         .collect();
     if pairs.is_empty() {
-        return Err(Absent(format!("The runs have no range of {title}, or are too few to say what depends on it.")));
+        return Err(Absent(format!("The runs have no range of {title}, or are too few to test dependence on it.")));
     }
     let told = Told {
         shows: format!(
-            "Errors made from one measured pose to the next, in proportion to what was driven, against {title}: of the \
-             nominal robot and of {}, with {:.0} % intervals that rest on how runs differ.",
+            "Errors from one measured pose to the next, divided by the driven distance or angle, against {title}: of the \
+             nominal robot and of {}, with {:.0} % intervals from the differences between runs.",
             study.model_name(),
             100.0 * study.level()
         ),
-        good: "Those of the model lie on the dashed line at zero everywhere; a slope or a wave is an effect that it lacks."
+        good: "Those of the model lie on the dashed line at zero everywhere; a slope or a wave is a missing effect."
             .into(),
         says: says(title, &pairs, model.tests, study.options.diagnose.size),
     };
@@ -70,10 +70,10 @@ fn says(title: &str, pairs: &[(&Against, &Against)], tests: usize, size: f64) ->
         .map(|(_, model)| format!("{} ({} of all {tests} tests)", model.rate.name(), p_is(all(model))))
         .collect();
     if !depending.is_empty() {
-        return format!("What the model leaves depends on {title}: {}.", depending.join(", "));
+        return format!("The residual of the model depends on {title}: {}.", depending.join(", "));
     }
     let least = pairs.iter().map(|(_, model)| p_of(model)).fold(1.0, f64::min);
-    format!("What the model leaves is not seen to depend on {title} (smallest {}, one of {tests} tests).", p_is(least))
+    format!("The residual of the model shows no dependence on {title} (smallest {}, one of {tests} tests).", p_is(least))
 }
 
 fn against_panel(nominal: &Against, model: &Against) -> Panel {

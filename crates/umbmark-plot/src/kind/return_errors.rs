@@ -62,7 +62,7 @@ fn of(score: &Score, direction: Direction) -> (Option<Cluster>, Option<CentroidI
 fn circles(score: &Score) -> Vec<Layer> {
     let around = |radius: f64| ellipse(0.0, 0.0, MM * radius, MM * radius, 0.0);
     let mut layers = Vec::new();
-    layers.extend(score.noise_band.map(|band| Layer::new("scatter alone", Tone::Quiet, Mark::Dashes, around(band))));
+    layers.extend(score.noise_band.map(|band| Layer::new("chance alone", Tone::Quiet, Mark::Dashes, around(band))));
     layers
         .extend(score.summary.e_max_sys().map(|e_max| Layer::new("E_max,sys", Tone::Limit, Mark::Line, around(e_max))));
     layers.push(Layer::new("START", Tone::Measured, Mark::Crosses, [[0.0, 0.0]]).saying(vec!["START".into()]));
@@ -122,21 +122,21 @@ fn centre(score: &Score, direction: Direction) -> Vec<Layer> {
 fn told(score: &Score) -> Told {
     let percent = 100.0 * score.level;
     let shows = format!(
-        "Each dot is where one run came back to, seen from where the robot believed to be. Crosses are the centres of \
+        "Each dot is the end of one run, relative to where the odometry says it is. Crosses are the centres of \
          gravity, ellipses where these may truly lie ({percent:.0} %); the circle about START reaches as far as the worse \
          of them, E_max,sys."
     );
-    let good = "Both centres lie on START, and the circle is no larger than the dashed one, which scatter alone would \
+    let good = "Both centres lie on START, and the circle is not larger than the dashed one, which chance alone would \
                 reach.";
     let says = match (score.summary.e_max_sys(), score.intervals.as_ref().and_then(|i| i.e_max_sys)) {
-        (None, _) => "One direction is missing, so there is no E_max,sys: in one direction errors can cancel.".into(),
+        (None, _) => "One direction is missing, so there is no E_max,sys: in one direction alone, errors can cancel.".into(),
         (Some(e_max), interval) => {
             let interval = interval
                 .map(|i| format!(" ({percent:.0} %: {:.0} to {:.0} mm)", MM * i.low, MM * i.high))
                 .unwrap_or_default();
             let beside = score.noise_band.map(|band| {
-                let judged = if e_max > band { "more than" } else { "no more than" };
-                format!(", {judged} the {:.0} mm that scatter alone would reach", MM * band)
+                let judged = if e_max > band { "more than" } else { "not more than" };
+                format!(", {judged} the {:.0} mm that chance alone would reach", MM * band)
             });
             format!("E_max,sys is {:.0} mm{interval}{}.", MM * e_max, beside.unwrap_or_default())
         }

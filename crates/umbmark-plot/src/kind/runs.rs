@@ -26,7 +26,7 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
         all.extend(among(&study.returns(TestKind::Systematic, direction), direction));
     }
     if all.is_empty() {
-        return Err(Absent(format!("It takes {FEWEST} runs of a direction to say whether one of them is unusual.")));
+        return Err(Absent(format!("At least {FEWEST} runs in one direction are needed to find unusual ones.")));
     }
     let name = |run: usize| study.data.runs[run].name.clone();
     let count = all.len() as f64;
@@ -56,15 +56,15 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
     let unusual: Vec<String> = all.iter().filter(|a| a.p < UNUSUAL / count).map(|a| name(a.run)).collect();
     let says = match unusual.len() {
         0 => "No run is unusual.".to_owned(),
-        _ => format!("Look at {}: bumped, mistyped, or measured otherwise?", unusual.join(", ")),
+        _ => format!("Check {}: was it bumped, mistyped, or measured in another way?", unusual.join(", ")),
     };
     let told = Told {
-        shows: "How far each end point lies from those of the other runs of its direction, as the probability p of so far or \
-                farther by scatter alone (Hotelling's T², the run itself left out)."
+        shows: "Distance of each end point from those of the other runs of its direction, as the probability p that chance gives \
+                this distance or more (Hotelling's T², the run itself left out)."
             .into(),
         good: format!(
-            "All dots lie below the dashed line, which the highest of them passes in {:.0} % of tests without a spoilt run, and \
-             they rise or fall nowhere along the session.",
+            "All dots lie below the dashed line, with no trend along the session. Without a bad run, the highest dot is above the line in {:.0} % of \
+             tests.",
             100.0 * UNUSUAL
         ),
         says,

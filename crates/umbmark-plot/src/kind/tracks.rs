@@ -28,7 +28,7 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
     }
     let (largest, run) = largest(paths);
     let name = &study.data.runs[run].name;
-    let computed = if paths.recorded { "what the robot computed from its ticks" } else { "the path that it was told" };
+    let computed = if paths.recorded { "the path that the robot computed from its ticks" } else { "the commanded path" };
     let times = if scale > 1.0 { format!("{scale:.0} times magnified") } else { "to scale".into() };
     Ok(Figure {
         kind: "tracks",
@@ -38,11 +38,11 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
                 "Measured and modelled paths beside {computed}; distances from it are {times}. The model is {}.",
                 study.model_name()
             ),
-            good: "The modelled path runs through the measured places; in a calibrated robot both lie on the computed \
+            good: "The modelled path goes through the measured places. For a calibrated robot both lie on the computed \
                    path."
                 .into(),
             says: format!(
-                "The measured place farthest from the computed one is {:.0} mm off, in {name}.",
+                "The largest distance from the computed to the measured place is {:.0} mm, in {name}.",
                 1e3 * largest
             ),
         },

@@ -39,12 +39,12 @@ fn models(study: &Study) -> Option<List> {
     let comparison = study.comparison().ok()?;
     let size = study.options.diagnose.size;
     let row = |model: &Judged| {
-        let verdict = if model.explains(size) { "nothing speaks against it" } else { "does not explain the runs" };
+        let verdict = if model.explains(size) { "agrees with the runs" } else { "does not explain the runs" };
         let heading = model.heading_rmse.map_or("–".to_owned(), |h| format!("{:.2}", h.to_degrees()));
         vec![model.name.clone(), format!("{:.1}", 1e3 * model.rmse), heading, format!("{:.3}", model.p), verdict.into()]
     };
     let header = ["model", "error of ends [mm]", "[deg]", "p", ""];
-    Some(table("Models beside the return poses", &header, comparison.models.iter().map(row).collect()))
+    Some(table("Models compared with the return poses", &header, comparison.models.iter().map(row).collect()))
 }
 
 fn table(title: &str, header: &[&str], rows: Vec<Vec<String>>) -> List {

@@ -13,7 +13,7 @@ pub(super) fn unseen(study: &Study) -> Vec<List> {
     let mut sentences = hidden(diagnosis);
     sentences.extend(diagnosis.remarks.iter().cloned());
     if sentences.is_empty() && diagnosis.minimum_detectable.is_empty() {
-        return vec![nothing("No test could be made, so nothing can be said of what is not seen.")];
+        return vec![nothing("No test was possible, so it is unknown what cannot be seen.")];
     }
     let rows = diagnosis
         .least_sizes()
@@ -23,7 +23,7 @@ pub(super) fn unseen(study: &Study) -> Vec<List> {
     let table = Rows { header: ["effect", "parameter", "least size"].map(str::to_owned).into(), rows: rows.collect() };
     let mut lists = vec![List { sentences, ..List::default() }];
     if !table.rows.is_empty() {
-        let title = "Sizes that would have been seen in four cases of five".into();
+        let title = "Smallest sizes that would be seen with 80 % probability".into();
         lists.push(List { title, table: Some(table), ..List::default() });
     }
     lists
@@ -32,12 +32,12 @@ pub(super) fn unseen(study: &Study) -> Vec<List> {
 fn hidden(diagnosis: &Diagnosis) -> Vec<String> {
     let absorbed = diagnosis.absorbed().into_iter();
     let mut sentences: Vec<String> = absorbed
-        .map(|(by, names)| format!("What {} of the model does as well: {}.", by.join(" with "), names.join(", ")))
+        .map(|(by, names)| format!("Indistinguishable from {} of the model with this path: {}.", by.join(" with "), names.join(", ")))
         .collect();
     let below = diagnosis.below_noise();
     if !below.is_empty() {
         sentences
-            .push(format!("What moves the runs by less than their scatter at its usual size: {}.", below.join(", ")));
+            .push(format!("Smaller than the scatter of the runs at the usual size: {}.", below.join(", ")));
     }
     sentences
 }
@@ -46,16 +46,16 @@ pub(super) fn next(study: &Study) -> Vec<List> {
     let Ok(diagnosis) = study.diagnosis() else { return vec![nothing("There is no diagnosis.")] };
     let experiments = &diagnosis.next_experiments;
     if experiments.is_empty() {
-        return vec![nothing("No experiment is needed to tell effects apart that these runs leave alike.")];
+        return vec![nothing("No further experiment is needed to separate effects.")];
     }
     let row = |e: &umbmark_core::diagnose::Experiment| {
         let [a, b] = e.separates;
         vec![e.experiment.clone(), format!("{a} from {b}"), format!("{:.1}", e.sd), format!("{:.0}", e.minutes)]
     };
-    let header = ["experiment", "tells", "standard deviations", "minutes"].map(str::to_owned).into();
+    let header = ["experiment", "separates", "standard deviations", "minutes"].map(str::to_owned).into();
     let table = Rows { header, rows: experiments.iter().take(MAX_EXPERIMENTS).map(row).collect() };
     let sentence =
-        "The most telling per minute first; 3.3 standard deviations are seen in nine cases of ten.".to_owned();
+        "The most informative per minute first; 3.3 standard deviations are seen in 90 % of cases.".to_owned();
     vec![List { sentences: vec![sentence], table: Some(table), ..List::default() }]
 }
 

@@ -23,15 +23,15 @@ fn verdict(study: &Study) -> String {
     let robot = study.data.robot.as_ref().map_or("The robot", |robot| robot.name.as_str());
     let missed = match study.score() {
         Ok(score) => {
-            score.summary.e_max_sys().map_or("has no E_max,sys, being driven in one direction".into(), |e_max| {
-                format!("comes back {:.0} mm off START (E_max,sys)", 1e3 * e_max)
+            score.summary.e_max_sys().map_or("has no E_max,sys, because it was driven in one direction only".into(), |e_max| {
+                format!("ends {:.0} mm from START (E_max,sys)", 1e3 * e_max)
             })
         }
         Err(why) => format!("has no score ({why})"),
     };
     let diagnosis = study.diagnosis();
     let left = diagnosis.as_ref().ok().and_then(|diagnosis| left_by(diagnosis)).unwrap_or_default();
-    let cause = diagnosis.map_or_else(|why| format!("what is missing cannot be said: {why}"), cause);
+    let cause = diagnosis.map_or_else(|why| format!("the runs cannot be diagnosed: {why}"), cause);
     format!("{robot} {missed}; {cause}{left}.")
 }
 
@@ -39,45 +39,39 @@ fn verdict(study: &Study) -> String {
 fn left_by(diagnosis: &Diagnosis) -> Option<String> {
     let left = 1e3 * diagnosis.remains.as_ref()?.position.rms;
     Some(match diagnosis.level {
-        Level::Tracks => format!("; {left:.1} mm are left along the way"),
-        Level::Ends => format!("; {left:.0} mm are left of the return errors"),
+        Level::Tracks => format!("; the error along the way is then {left:.1} mm"),
+        Level::Ends => format!("; the return error is then {left:.0} mm"),
     })
 }
 
 fn cause(diagnosis: &Diagnosis) -> String {
     let parts = diagnosis.model.parts().iter().filter(|part| part.free).map(|part| part.effect.name());
     let names: Vec<&str> = parts.collect();
-    let model = if names.is_empty() { "its model".to_owned() } else { joined(&names, "and") };
+    let model = if names.is_empty() { "the model".to_owned() } else { format!("the model with {}", joined(&names, "and")) };
     let missing = || diagnosis.certified().iter().map(|s| joined(&s.class, "or")).collect::<Vec<_>>().join("; and ");
     match diagnosis.verdict {
         Verdict::Explained => {
-            format!("{model} {} what these runs can show, with no sign of a further effect", explains(&names))
+            format!("{model} fully accounts for the measured error, with no sign of a further effect")
         }
-        Verdict::MissingEffect => format!("beside {model} one class of effects is missing: {}", missing()),
-        Verdict::SeveralMissing => format!("beside {model} several classes of effects are missing: {}", missing()),
+        Verdict::MissingEffect => format!("it has an error source that {model} cannot explain: {}", missing()),
+        Verdict::SeveralMissing => format!("it has several error sources that {model} cannot explain: {}", missing()),
         Verdict::UnlistedEffect if diagnosis.dependence.is_none() && has_formula(diagnosis) => format!(
-            "{model} {} what these runs can show, by a law that the catalogue does not list and with no sign of a further effect",
-            explains(&names)
+            "{model} fully accounts for the measured error, by a law that the catalogue does not list and with no sign of a further effect"
         ),
         Verdict::UnlistedEffect => {
             let on = diagnosis.dependence.as_ref().map(|told| format!("; it depends on {}", told.title));
-            format!("beside {model} something is missing that the catalogue does not list{}", on.unwrap_or_default())
+            format!("it has an error source that the catalogue does not list, besides {model}{}", on.unwrap_or_default())
         }
         Verdict::NotExplained => {
-            format!("{model} does not explain these runs, though no single effect is certified as missing")
+            format!("{model} does not account for the measured error, but no single missing effect is certified")
         }
-        Verdict::NotEnoughData => "these runs are not enough to say what is missing".into(),
+        Verdict::NotEnoughData => "these runs are not enough to find what is missing".into(),
     }
 }
 
 /// Whether a formula is fitted.
 fn has_formula(diagnosis: &Diagnosis) -> bool {
     diagnosis.model.parts().iter().any(|part| part.free && part.effect.formula().is_some())
-}
-
-/// The verb for one subject or for many.
-fn explains(names: &[&str]) -> &'static str {
-    if names.len() > 1 { "explain" } else { "explains" }
 }
 
 fn joined(names: &[&str], word: &str) -> String {
@@ -94,7 +88,6 @@ mod tests {
 
     #[test]
     fn names_are_joined_as_people_do() {
-        assert_eq!([explains(&[]), explains(&["a"]), explains(&["a", "b"])], ["explains", "explains", "explain"]);
         assert_eq!(joined(&["a"], "and"), "a");
         assert_eq!(joined(&["a", "b", "c"], "or"), "a, b or c");
     }

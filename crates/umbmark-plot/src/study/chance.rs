@@ -27,7 +27,7 @@ impl Chance {
         let own = model.get("wheel_noise", "k_sqrt_m").is_some_and(|k| k > 0.0);
         let mut matched_noise = None;
         if !own {
-            let sigma = sigma.ok_or_else(|| Absent("One run a direction has no scatter to simulate.".into()))?;
+            let sigma = sigma.ok_or_else(|| Absent("One run in each direction has no scatter to simulate.".into()))?;
             let found = run(study, with_noise(&model, TRIED.0)?, TRIED.1)?;
             let found = found.get(Metric::Sigma).map(|s| s.quantile(0.5)).filter(|found| *found > 0.0);
             let found = found.ok_or_else(|| Absent("Simulated runs have no scatter.".into()))?;

@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
     for effect in &calibration.not_shown {
         session.message(
             "warning",
-            &format!("{effect} is not determined: this data does not show it, or not apart from the rest"),
+            &format!("{effect} is not determined: this data does not show it, or cannot separate it from the others"),
         );
     }
     write!(session.out(), "{}", text(&calibration, robot, arguments.intervals.level))?;
@@ -65,7 +65,7 @@ fn text(calibration: &GearCalibration, robot: &Robot, level: f64) -> String {
     text += &estimates_table(&calibration.estimates, level);
     if let Some(i) = &calibration.identifiability {
         text += &format!(
-            "\n\nReturn poses of this path determine {} of {} combinations of them that they show.",
+            "\n\nReturn poses of this path determine {} of the {} combinations of them that matter.",
             i.rank,
             i.shares.len()
         );
