@@ -117,8 +117,12 @@ fn answers(report: &Report) -> String {
         ]
     };
     let title = format!("to detect with {:.0} %", 100.0 * report.request.power);
-    let header =
-        [title.as_str(), "runs a direction", "over sigma's interval", &format!("power with {0} + {0}", report.request.runs)];
+    let header = [
+        title.as_str(),
+        "runs a direction",
+        "for sigma's range",
+        &format!("power with {0} + {0}", report.request.runs),
+    ];
     let mut text = format!("\n{}\n", table(&header, report.findings.answers.iter().map(row)));
     for answer in &report.findings.answers {
         let name = answer.sought.effect.about.name;
@@ -127,9 +131,15 @@ fn answers(report: &Report) -> String {
             Shown::Absorbed(by) => {
                 let best = answer.separable.iter().find(|e| e.sd >= ENOUGH).or(answer.separable.first());
                 let advice = best.map_or(String::new(), |e| {
-                    format!(" To separate them: {} ({:.1} standard deviations in {:.0} min).", e.experiment, e.sd, e.minutes)
+                    format!(
+                        " To separate them: {} ({:.1} standard deviations in {:.0} min).",
+                        e.experiment, e.sd, e.minutes
+                    )
                 });
-                format!("{name} cannot be seen in return poses: it is indistinguishable from {} there.{advice}", by.join(" with "))
+                format!(
+                    "{name} cannot be seen in return poses: it is indistinguishable from {} there.{advice}",
+                    by.join(" with ")
+                )
             }
             Shown::BelowNoise => format!(
                 "with {0} + {0} runs diagnose does not test {name}: its usual size is below half a standard deviation of the means",
@@ -156,7 +166,7 @@ fn intervals(report: &Report) -> String {
             millimetres(i.noise_band),
         ]
     };
-    let header = ["runs", "min", "E_max,sys reads [mm]", "interval ± [mm]", "coverage [%]", "chance alone [mm]"];
+    let header = ["runs", "min", "E_max,sys reads [mm]", "interval ± [mm]", "covers [%]", "chance alone [mm]"];
     format!("\n{}\n", table(&header, report.findings.by_runs.iter().map(row)))
 }
 

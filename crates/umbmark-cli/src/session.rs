@@ -11,7 +11,7 @@ use umbmark_core::watch::Watch;
 use umbmark_plot::render::terminal::Look;
 
 /// Steps of the bar of work that tells a share.
-const STEPS: f64 = 1000.0;
+const STEPS: f64 = 100.0;
 
 /// The options of every verb.
 #[derive(Clone, Debug, clap::Args)]
@@ -98,13 +98,13 @@ impl Session {
         Ok(pool.install(work))
     }
 
-    /// Runs `work` on the threads that were asked for: Ctrl-C stops it, and a bar of a thousand steps of `unit` shows how far it is.
+    /// Runs `work` on the threads that were asked for: Ctrl-C stops it, and a bar of a hundred steps of `unit` shows how far it is.
     pub fn watched<R: Send>(&self, unit: &'static str, work: impl FnOnce(&Watch) -> R + Send) -> anyhow::Result<R> {
         let stop = self.catch_interrupt()?;
         self.told(unit, |progress| work(&Watch { stop: &stop, progress }))
     }
 
-    /// Runs `work` on the threads that were asked for; a bar of a thousand steps of `unit` shows the share that it tells.
+    /// Runs `work` on the threads that were asked for; a bar of a hundred steps of `unit` shows the share that it tells.
     pub fn told<R: Send>(
         &self,
         unit: &'static str,

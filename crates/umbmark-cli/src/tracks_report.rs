@@ -18,7 +18,8 @@ pub fn text(comparison: &TrackComparison, options: &Options, terminal: bool) -> 
     let [cw, ccw, neither] = comparison.runs;
     let others = if neither > 0 { format!(" + {neither} other") } else { String::new() };
     let (poses, models) = (comparison.poses, comparison.models.len());
-    let mut text = format!("Comparison of {models} model(s) with {cw} cw + {ccw} ccw{others} tracks, {poses} poses\n\n");
+    let mut text =
+        format!("Comparison of {models} model(s) with {cw} cw + {ccw} ccw{others} tracks, {poses} poses\n\n");
     let row = |m: &TracksJudged| {
         let explains = m.explains(options.size).map_or("-", |explains| if explains { "yes" } else { "no" });
         let [along, end] = [&m.along, &m.end].map(|rms| [mm(rms.position), rms.heading.map_or("-".into(), deg)]);
@@ -68,7 +69,7 @@ fn half_width(mean: &Mean) -> Option<f64> {
 /// Where the error is made, a line for each part of the way.
 fn parts_text(judged: &TracksJudged, size: f64) -> String {
     let mut text = format!(
-        "\nwhere the error is made: mean ± ({} %), standard deviation, share of the squared error\n\n{:<18} {:>17} {:>17} {:>18} {:>4}\n",
+        "\nwhere the error is made: mean ± ({} %), std dev, share of the squared error\n\n{:<18} {:>17} {:>17} {:>18} {:>4}\n",
         100.0 * (1.0 - size),
         "",
         "forward [mm]",

@@ -8,8 +8,8 @@ use serde_json::Value;
 use snapbox::{Data, assert_data_eq};
 use std::path::Path;
 use std::process::Command;
-use umbmark_core::drive::{Drive, Kind, Robot};
-use umbmark_core::effect::{ActsOn, of_drive};
+use umbmark_core::drive::{Drive, Kind, Kinds, Robot};
+use umbmark_core::effect::{ActsOn, CATALOGUE};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::SHAPES;
 
@@ -35,7 +35,8 @@ fn the_page_of_the_commands_is_their_help() {
     let verbs = list.lines().filter_map(|line| line.strip_prefix("  ")).filter(|line| !line.starts_with(' '));
     let verbs: Vec<&str> = verbs.map(|line| line.split(' ').next().unwrap()).filter(|verb| *verb != "help").collect();
     assert!(verbs.contains(&"mc") && verbs.contains(&"learn"), "{verbs:?}");
-    let mut text = String::from("# Commands\n\nWhat `umbmark --help` and each verb's `--help` say.\n");
+    let mut text =
+        String::from("# Commands\n\nThis page has the output of `umbmark --help` and of the `--help` of each verb.\n");
     text += &format!("\n```text\n{}\n```\n", without_trailing_blanks(&help));
     for verb in verbs {
         let help = without_trailing_blanks(&umbmark(&[verb, "--help"]));
@@ -49,9 +50,9 @@ fn the_page_of_the_catalogue_has_every_effect() {
     let document: Value = serde_json::from_str(&umbmark(&["effects", "--json"])).unwrap();
     let effects = document["effects"].as_array().unwrap();
     let mut text = String::from(
-        "# The catalogue of effects\n\nWhat can make a wheeled robot err, as `umbmark effects NAME` explains it. The values are \
-         between the\nbounds in the tables; the usual one is what diagnosis takes for a typical size. The pictures show where the\n\
-         robot is, seen from where it believes to be, as it drives round a square of 4 m.\n",
+        "# The catalogue of effects\n\nThe known error sources of wheeled robots, as `umbmark effects NAME` explains them. The tables have the bounds of each\n\
+         parameter; diagnosis takes the usual value for a typical size. The pictures show the true position and heading of the\n\
+         robot relative to its odometry, as it drives round a square of 4 m.\n",
     );
     for kind in ActsOn::ALL {
         text += &format!("\n## Acting on {}\n", kind.name());
@@ -65,25 +66,31 @@ fn the_page_of_the_catalogue_has_every_effect() {
 #[test]
 fn the_page_of_the_drives_has_every_kind_and_its_keys() {
     let mut text = String::from(
-        "# Drives\n\nWhat `drive` in `[robot]` of a [robot.toml](files.md#robottoml) may be, and the keys beside it. Those of a\n\
-         differential drive have other names too.\n",
+        "# Drives\n\nThis page lists the values of `drive` in `[robot]` of a [robot.toml](files.md#robottoml), with the keys of each. Those of\n\
+         a differential drive also have other names. [The last table](#effects) groups the known effects by drive.\n",
     );
     for kind in Kind::ALL {
         let drive = kind.usual();
         text += &format!("\n## {}\n\n{}\n\n", kind.name(), kind.about());
-        text += "| key | allowed | where it is left out | meaning |\n|---|---|---|---|\n";
+        text += "| key | allowed | if left out | meaning |\n|---|---|---|---|\n";
         for p in kind.parameters() {
             let left_out = if p.nothing().is_some() { "0" } else { "refused" };
             text += &format!("| `{}` | {} | {left_out} | {} |\n", p.name, p.allowed(), p.meaning);
         }
         let counters = kind.counters().map(|counter| format!("`ticks_{counter}`"));
-        let columns =
-            if kind.has_tick_logs() { listed(counters) } else { "none, it is known by its returns".to_owned() };
+        let columns = if kind.has_tick_logs() { listed(counters) } else { "none, only return poses".to_owned() };
         let paths = SHAPES.iter().filter(|shape| shape.usual().suits(&robot(drive))).map(|shape| shape.name);
         text += &format!("\n- **Columns of its logs**: {columns}\n");
         text += &format!("- **Paths that it can drive**: {}\n", listed(paths));
         text += &format!("- **Effects that are fitted first**: {}\n", listed(drive.first_effects().map(effect_link)));
-        text += &format!("- **Effects**: {}\n", listed(of_drive(*kind).map(|entry| effect_link(entry.about.name))));
+    }
+    text += "\n## Effects\n\n| drives | effects |\n|---|---|\n";
+    let mut groups: Vec<Kinds> = CATALOGUE.iter().map(|entry| entry.drives).collect();
+    groups.sort_by_key(|drives| (std::cmp::Reverse(drives.each().count()), drives.to_string()));
+    groups.dedup();
+    for drives in groups {
+        let own = CATALOGUE.iter().filter(|entry| entry.drives == drives);
+        text += &format!("| {drives} | {} |\n", listed(own.map(|entry| effect_link(entry.about.name))));
     }
     assert_data_eq!(text, page("drives.md").raw());
 }
@@ -91,8 +98,8 @@ fn the_page_of_the_drives_has_every_kind_and_its_keys() {
 #[test]
 fn the_page_of_the_paths_has_every_shape_and_its_keys() {
     let mut text = String::from(
-        "# Paths\n\nWhat `shape` in `[path]` of a [robot.toml](files.md#robottoml) may be, and the sizes beside it. Those that go round end\n\
-         at START after whole turns, waypoints where their last point lies.\n\n\
+        "# Paths\n\nThis page lists the values of `shape` in `[path]` of a [robot.toml](files.md#robottoml), with their sizes. Closed paths\n\
+         end at START after whole turns; waypoints end at their last point.\n\n\
          | shape | is | ends at START | drives that can make it |\n|---|---|---|---|\n",
     );
     for shape in SHAPES {
@@ -136,7 +143,7 @@ fn section(effect: &Value) -> String {
     text += &format!("- **Signature**: {}\n", word(effect, "signature"));
     let alike = list("confused_with", "`");
     text += &format!("- **Looks like**: {}\n", if alike.is_empty() { "nothing else" } else { &alike });
-    text += &format!("- **Told apart by**: {}\n", word(effect, "separated_by"));
+    text += &format!("- **Separated by**: {}\n", word(effect, "separated_by"));
     text += &format!("- **Source**: {}\n", word(effect, "source"));
     text += "\n| parameter | unit | bounds | default | usual | flag | meaning |\n|---|---|---|---|---|---|---|\n";
     for parameter in effect["parameters"].as_array().unwrap() {

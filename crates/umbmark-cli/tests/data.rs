@@ -127,7 +127,7 @@ fn convert_sets_the_clock_of_a_track_and_tells_it() {
     assert_eq!(document["clocks"].as_array().unwrap().len(), 2);
     let told = said(&["inspect", &from]);
     fits_the_terminal(&told);
-    assert!(told.contains("clocks set by the motion while reading"), "{told}");
+    assert!(told.contains("clocks, aligned from the motion while reading"), "{told}");
 }
 
 #[test]

@@ -26,7 +26,7 @@ fn said(folder: &Path, arguments: &[&str]) -> String {
 fn a_wave_is_added_with_what_it_means_and_with_the_drive_that_tells_it_from_what_looks_the_same() {
     let text = said(Path::new("."), &["learn"]);
     for part in [
-        "verdict a law that the catalogue does not have, added as a formula",
+        "verdict explained, by a law that the catalogue does not have (added as a formula)",
         "separates periodic_yaw from law 2 of the table",
         "The robot turns by up to 0.6",
         "to the left and to the right in turn, once in 17.0",
@@ -60,6 +60,7 @@ fn the_page_says_of_a_law_what_learn_says() {
     let folder = tempfile::tempdir().unwrap();
     said(folder.path(), &["report", "-o", "page.html"]);
     let page = std::fs::read_to_string(folder.path().join("page.html")).unwrap();
-    let verdict = "scale and periodic_yaw explain what these runs can show, by a law that the catalogue does not list";
-    assert!(page.contains(verdict) && page.contains("3.3 mm are left along the way"));
+    let verdict =
+        "scale and periodic_yaw fully accounts for the measured error, by a law that the catalogue does not list";
+    assert!(page.contains(verdict) && page.contains("the error along the way is then 3.3 mm"));
 }

@@ -193,7 +193,7 @@ fn a_fit_is_told_with_intervals_and_written_as_a_model() {
     assert!(fitted["fitted"].as_array().unwrap().len() == 4 && fitted["not_shown"].as_array().unwrap().is_empty());
     let scale = umbmark(folder.path(), &["fit", ".", "--add", "scale"]);
     let warned = String::from_utf8_lossy(&scale.stderr).into_owned();
-    assert!(warned.starts_with("warning: scale was not fitted: this data does not show it apart"), "{warned}");
+    assert!(warned.starts_with("warning: scale was not fitted: this data cannot separate it"), "{warned}");
     assert_eq!(
         refused(folder.path(), &["fit", ".", "--add", "floor_slop"]),
         "error: there is no effect \"floor_slop\"; did you mean \"floor_slope\"?\n"

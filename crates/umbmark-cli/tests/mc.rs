@@ -321,7 +321,7 @@ error: [..]1.json is of another study or shard; give the robot, path, seed and n
 
 "#]]);
     mc(&["-n", "3000", "--checkpoint", &one]).code(1).stderr_eq(str![[r#"
-error: [..]1.json exists already; --resume goes on with it, --force begins anew
+error: [..]1.json exists already; --resume continues it, --force begins anew
 
 "#]]);
     std::fs::write(folder.path().join("1.json"), "{}").unwrap();
@@ -339,7 +339,7 @@ fn a_study_stops_when_it_is_precise_and_at_the_same_trial_for_any_number_of_thre
     let error = one["metrics"]["e_max_sys_m"]["std_error"].as_f64().unwrap();
     assert!(error <= 0.2e-3 && one["partial"] == false, "{error}");
     mc(&["-n", "500", "--until-std-error", "0.001mm"]).success().stderr_eq(str![[r#"
-warning: all trials are done, and the standard error that was asked for is not reached
+warning: all trials are done, but the requested standard error is not reached
 
 "#]]);
     mc(&["--until-std-error", "0.1"]).code(2);

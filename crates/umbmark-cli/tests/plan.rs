@@ -77,12 +77,12 @@ fn sheets_are_written_whole_with_the_columns_of_returns_and_not_over_files_that_
 fn what_cannot_be_planned_is_refused_with_what_to_do() {
     let cases = [
         (vec!["--see", "ebb=1.1"], "no effect has a size \"ebb\"; did you mean \"eb\"?"),
-        (vec!["--see", "eb=1"], "eb = 1 does nothing"),
-        (vec!["--direction", "cw"], "leave --direction out"),
+        (vec!["--see", "eb=1"], "eb = 1 has no effect"),
+        (vec!["--direction", "cw"], "remove --direction"),
         (vec!["--power", "0.04"], "--power must be greater than --size"),
-        (vec!["--eb-sd", "0.01"], "leave --eb-sd out"),
+        (vec!["--eb-sd", "0.01"], "remove --eb-sd"),
         (vec!["labmate", "--wheelbase", "0.5"], "the robot is that of the data"),
-        (vec!["-o", "sheet.pdf"], "a sheet ends in .md, .txt or .html"),
+        (vec!["-o", "sheet.pdf"], "the name of a protocol ends in .md, .txt or .html"),
         (vec!["--separate", "scale", "scale"], "--separate needs two effects"),
     ];
     for (arguments, sentence) in cases {

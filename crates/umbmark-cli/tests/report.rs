@@ -71,7 +71,7 @@ fn what_cannot_be_drawn_is_refused_with_the_reason() {
     assert_eq!(output.status.code(), Some(1));
     let error = said(&output).1;
     assert!(error.contains("residuals_along cannot be drawn from"), "{error}");
-    assert!(error.contains("not observed on the way"), "{error}");
+    assert!(error.contains("not on the way"), "{error}");
     assert!(!folder.path().join("a.svg").exists());
 }
 
@@ -86,7 +86,7 @@ fn a_report_tells_the_verdict_its_files_and_its_command() {
     assert_eq!(document["bytes"], page.len());
     assert!(page.len() < 5_000_000);
     let verdict = document["studies"][0]["verdict"].as_str().unwrap();
-    assert!(verdict.starts_with("TRC LabMate comes back 267 mm off START (E_max,sys);"), "{verdict}");
+    assert!(verdict.starts_with("TRC LabMate ends 267 mm from START (E_max,sys);"), "{verdict}");
     assert!(page.contains("E_max,sys"));
     // SHA-256 of the sheet, as any other tool gives it.
     let sheet = PathBuf::from(&labmate).join("returns.csv");

@@ -76,7 +76,7 @@ fn millimetres_in_columns_of_metres_are_refused_with_their_names() {
     let (code, text) = said(place, &["inspect", "."]);
     assert!(code == 0 && text.starts_with("FAULT the return errors are in mm") && text.contains("ex_mm"), "{text}");
     let (code, text) = said(place, &["calibrate", "."]);
-    assert!(code == 1 && text.contains("nothing can be said of the robot yet"), "{text}");
+    assert!(code == 1 && text.contains("the robot cannot be judged yet"), "{text}");
     let (code, text) = said(place, &["diagnose", ".", "--check"]);
     assert!(code == 3 && text.contains("the return errors are in mm"), "{text}");
     let (code, text) = said(place, &["compare", ".", "--check"]);

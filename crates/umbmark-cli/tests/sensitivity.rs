@@ -36,9 +36,9 @@ E_max,sys: mean [..] mm, standard deviation [..] mm
  share of the variance [..]
  ed [..]
  eb [..]
-what no one explains alone: [..]
+share of interactions: [..]
 
- pairs beyond each alone [..]
+ interaction of pairs [..]
  ed x eb [..]
 
  T of every metric [..]
@@ -127,7 +127,7 @@ fn files_and_correlations_are_used_and_flags_override_them() {
     assert_eq!(document["parameters"][1]["distribution"]["mean"], 1.0);
     assert_eq!(document["correlations"][0]["value"], 0.6);
     let text = stdout(&study);
-    assert!(text.contains("S counts what goes with a parameter") && !text.contains("no one explains"), "{text}");
+    assert!(text.contains("S includes the share of correlated parameters") && !text.contains("interactions"), "{text}");
     umbmark(&[&study[..], &["--second-order"]].concat()).code(1).stderr_eq(str![[r#"
 error: the index of a pair is defined for independent parameters only; leave the correlations out, or ask for Sobol indices without it
 
@@ -138,7 +138,7 @@ error: the index of a pair is defined for independent parameters only; leave the
 fn unusable_arguments_get_one_clear_error_and_exit_one() {
     let vary = |text| vec!["sensitivity", "--vary", text];
     for (arguments, message) in [
-        (vec!["sensitivity"], "error: nothing is varied; say which parameters and how, as in [..]\n"),
+        (vec!["sensitivity"], "error: no parameter varies; give parameters and distributions, as in [..]\n"),
         (vary("edd=normal:1:0.1"), "error: --vary: there is no parameter \"edd\"; did you mean \"ed\"?\n"),
         (vary("ed=normal:9:0.1"), "error: --vary ed: e_d must be between 0.5 and 2, got 9\n"),
         (vary("bump-profile=uniform:0:1"), "error: --vary: profile is one of cable, edge: it cannot be varied\n"),
@@ -152,7 +152,7 @@ fn unusable_arguments_get_one_clear_error_and_exit_one() {
         ),
         (
             [vary("ed=normal:1:0.1"), vec!["--correlate", "ed,eb=0.3"]].concat(),
-            "error: --correlate: eb is not varied; give it a distribution with --vary\n",
+            "error: --correlate: eb does not vary; give it a distribution with --vary\n",
         ),
         ([vary("radius=uniform:1:2"), vec![]].concat(), "error: radius_m is not a size of a square\n"),
         (vec!["mc", "--sweep", "ed=1:1.1:0"], "error: --sweep: a sweep has between 1 and 10000000 points, got 0\n"),
@@ -211,7 +211,7 @@ error: [..]sweep.json is of another sweep; give the robot, path, seed and number
 
 "#]]);
     umbmark(&[&SWEEP[..], &checkpoint].concat()).code(1).stderr_eq(str![[r#"
-error: [..]sweep.json exists already; --resume goes on with it, --force begins anew
+error: [..]sweep.json exists already; --resume continues it, --force begins anew
 
 "#]]);
 }
@@ -230,7 +230,7 @@ fn the_cheapest_tolerances_of_the_example_keep_the_target() {
     let text = stdout(&study);
     assert!(text.contains("Buy: ") && text.contains("all at their last grade"), "{text}");
     let hopeless = stdout(&["tolerance", file, "-n", "1000", "--target", "1mm"]);
-    assert!(hopeless.contains("None of the 27 choices keeps the target surely"), "{hopeless}");
+    assert!(hopeless.contains("None of the 27 choices certainly keeps the target"), "{hopeless}");
     umbmark(&["tolerance", file, "--target", "2deg"]).code(1).stderr_eq(str![[r#"
 error: --target: e_max_sys_m needs a length, as in 50mm
 

@@ -119,7 +119,7 @@ error: [..]run.mcap: there is no topic "/wheels" for --ticks; there are: /ground
     assert_eq!(topics.split_whitespace().collect::<Vec<_>>(), ["run", "/joint_states", "/ground_truth"]);
     simulate(&["-o", name]).code(1);
     simulate(&["-o", name, "--force", "--runs", "2"]).code(1).stderr_eq(str![[r#"
-error: an MCAP log holds one run, got --runs 2; leave it out, or name a folder
+error: an MCAP log holds one run, got --runs 2; remove it, or give a folder
 
 "#]]);
 }

@@ -124,7 +124,7 @@ fn runs_check(groups: &[Group]) -> Check {
     Check {
         name: "runs",
         found: format!("{cw} cw, {ccw} ccw"),
-        good: "5 or more each way; fewer than 3 say nothing of the scatter",
+        good: "5 or more each way; fewer than 3 do not show the scatter",
         ok: cw.min(ccw) >= 5,
     }
 }
@@ -134,7 +134,7 @@ fn headings_check(groups: &[Group]) -> Option<Check> {
     (returns > 0).then(|| Check {
         name: "return headings",
         found: format!("{headings} of {returns} measured"),
-        good: "all: they are a second way to the same calibration",
+        good: "all: headings give an independent estimate of the same ratios",
         ok: headings == returns,
     })
 }
@@ -210,11 +210,11 @@ fn mended_checks(logs: &[LogFacts], robot: Option<&Robot>) -> Vec<Check> {
         Check {
             name: "counter resets",
             found: if resets == 0 { "none".into() } else { format!("{resets}, counted on from zero") },
-            good: "none: what the wheels turned around a reset is lost",
+            good: "none: the travel around a reset is lost",
             ok: resets == 0,
         },
         Check {
-            name: "rows and poses mended",
+            name: "rows and poses repaired",
             found: match late + repeated + stale {
                 0 => "none".into(),
                 _ => format!("{late} out of order, {repeated} repeated, {stale} stale poses"),
@@ -283,7 +283,7 @@ fn clock_check(mounting: &Mounting, logs: &[LogFacts], (shown, within): Told) ->
     let Mounting { delay, rate, .. } = mounting;
     let half = delay.interval.high - delay.value;
     if !(half <= VAGUE_DELAY) {
-        let found = "cannot be told: the motion is too even, or agrees too little".into();
+        let found = "unknown: the motion is too uniform, or agrees too little".into();
         return Check { name: "clock of the poses", found, good: GOOD_CLOCK, ok: false };
     }
     let mut found = format!("{} ms late", shown(delay, 1e3));
@@ -305,8 +305,8 @@ fn clock_check(mounting: &Mounting, logs: &[LogFacts], (shown, within): Told) ->
 fn clock_unknown(setup: &Setup) -> Check {
     let unlike = |fault: &Fault| matches!(fault, Fault::OtherMotion { .. });
     let found = match setup.faults.is_empty() || setup.faults.iter().any(unlike) {
-        true => "cannot be told: poses and wheels do not move alike",
-        false => "cannot be told before the faults are mended",
+        true => "unknown: poses and wheels do not move alike",
+        false => "unknown until the faults are corrected",
     };
     Check { name: "clock of the poses", found: found.into(), good: GOOD_CLOCK, ok: false }
 }
@@ -360,7 +360,7 @@ fn sheet_check(runs: &[Run], robot: &Robot) -> Option<Check> {
     Some(Check {
         name: "returns against logs",
         found: format!("{:.1} mm apart at most", 1e3 * largest),
-        good: "10 mm or less: both tell of the same runs",
+        good: "10 mm or less: both describe the same runs",
         ok: largest <= 0.010,
     })
 }

@@ -54,7 +54,7 @@ pub enum PlanError {
     /// The data cannot be used.
     #[error(transparent)]
     Diagnose(#[from] FitError),
-    /// A path that is none.
+    /// Invalid path.
     #[error(transparent)]
     Path(#[from] PathError),
     /// Runs that do not scatter.
@@ -65,7 +65,7 @@ pub enum PlanError {
     NoPath,
     /// Data with too little scatter to plan by.
     #[error(
-        "the runs of the data say nothing of their scatter: 3 or more a direction are needed, each as it was measured"
+        "the runs of the data do not show their scatter: 3 or more in each direction are needed, each as it was measured"
     )]
     TooFewRuns,
     /// Too few runs to plan.
@@ -83,7 +83,7 @@ pub enum PlanError {
         nearest: Option<&'static str>,
     },
     /// A size at which its effect does nothing.
-    #[error("{name} = {value} does nothing: there is nothing to see")]
+    #[error("{name} = {value} has no effect: there is nothing to detect")]
     NoSize {
         /// The parameter's flag.
         name: &'static str,
@@ -181,7 +181,7 @@ impl Setting {
         let mut noisy = truth.clone();
         noisy.set("wheel_noise", "k_sqrt_m", 1e-3)?;
         let setting = Setting::new(path, &noisy, seed)?.with_sigma(sigma);
-        Ok((setting, Some("the runs scatter as those of evenly noisy wheels")))
+        Ok((setting, Some("the runs scatter as with equal white noise on both wheels")))
     }
 
     /// The same robot, with or without its return headings measured.

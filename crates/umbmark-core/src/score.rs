@@ -40,7 +40,7 @@ pub enum ScoreError {
         /// How many runs there are.
         runs: usize,
     },
-    /// A probability that is none.
+    /// Invalid probability.
     #[error("confidence level must be between 0 and 1, both excluded, got {value}")]
     Level {
         /// What was given.
@@ -221,7 +221,7 @@ fn warn_of_missing_direction(n_cw: usize, n_ccw: usize, warnings: &mut Vec<Strin
     };
     warnings.push(format!(
         "E_max,sys is refused: there are no {missing} runs. In {present} runs alone, unequal wheel diameters and a wrong \
-         wheelbase can cancel, and a robot with large errors scores well. Drive the path the other way round as well."
+         wheelbase can cancel, and a robot with large errors scores well. Drive the path in the other direction as well."
     ));
 }
 

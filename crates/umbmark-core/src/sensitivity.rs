@@ -61,7 +61,7 @@ pub enum SensitivityError {
         /// The parameter.
         name: String,
     },
-    /// A correlation that is none.
+    /// Invalid correlation.
     #[error(
         "a correlation must lie between -1 and 1, both excluded, and join two different parameters; got {value} of {one} and {two}"
     )]

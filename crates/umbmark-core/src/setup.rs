@@ -270,7 +270,7 @@ impl Setup {
     /// What has to be known before the return errors are believed, a sentence each without a full stop: faults, jumps and wrong poses
     /// of tracks, runs whose return is far from the others. Of many of a kind, the first [`TOLD`] are listed and the rest counted.
     pub fn notices(&self) -> Vec<String> {
-        let told = |fault: &Fault| format!("{}; to mend it, {}", fault.sentence(), fault.remedy());
+        let told = |fault: &Fault| format!("{}; to correct it, {}", fault.sentence(), fault.remedy());
         let mut notices: Vec<String> = self.all_faults().map(told).collect();
         let jumps = self.runs.iter().flat_map(|run| run.jumps.iter().map(|jump| jump.notice(&run.run)));
         notices.extend(shortened(jumps.collect(), "jumps of tracks"));

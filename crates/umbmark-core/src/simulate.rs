@@ -74,7 +74,7 @@ pub enum SimulateError {
     /// A robot or an update rule that the integrator refuses.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// An encoder that is none.
+    /// Invalid encoder.
     #[error(transparent)]
     Drive(#[from] DriveError),
     /// A recording without a sampling rate.

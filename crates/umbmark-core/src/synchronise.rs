@@ -77,12 +77,12 @@ impl Alignment {
     }
 }
 
-/// Why two clocks could not be set by the motion.
+/// Why two clocks could not be aligned from the motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SynchroniseError {
     /// Too little of anything.
-    #[error("it has {found}; at least {needed} are needed to set its clock by the motion")]
+    #[error("it has {found}; at least {needed} are needed to align its clock from the motion")]
     TooShort {
         /// What there is.
         found: String,
@@ -91,7 +91,7 @@ pub enum SynchroniseError {
     },
     /// The two do not show the same motion.
     #[error(
-        "its motion agrees with that of the ticks to {agreement:.2} of 1 at best, and 0.6 is needed; look whether both are of the same run, and whether the ticks' columns are named as they are"
+        "its motion agrees with that of the ticks to {agreement:.2} of 1 at best, and 0.6 is needed; check whether both are of the same run, and whether the ticks' columns are named as they are"
     )]
     Disagree {
         /// Correlation at the best offset and rate.
@@ -99,7 +99,7 @@ pub enum SynchroniseError {
     },
     /// The same stops, but other turns or ways.
     #[error(
-        "it agrees with the ticks only if they turn {gain:.2} and drive {scale:.2} times what they say; look whether left and right are exchanged or a counter runs backward, and at the robot's sizes"
+        "it agrees with the ticks only if they turn {gain:.2} and drive {scale:.2} times what they say; check whether left and right are exchanged or a counter runs backward, and at the robot's sizes"
     )]
     Scaled {
         /// Turning by the track over turning by the ticks.

@@ -232,7 +232,7 @@ fn attach(
         return Err(DatasetError::Clocks { file: file.to_owned(), reason: reason.to_owned() });
     }
     let of_axle = if found.yaw.is_some() { ", and its poses turned into those of the axle's centre" } else { "" };
-    warnings.push(format!("{file}: its clock was set by the motion{of_axle}"));
+    warnings.push(format!("{file}: its clock was aligned from the motion{of_axle}"));
     if dropped > 0 {
         warnings.push(format!(
             "{file}: {dropped} poses fall into gaps of the ticks, or outside of them, and were left out"

@@ -163,7 +163,7 @@ impl<'s> Columns<'s> {
         }
     }
 
-    /// Refuses `base` without a unit, or with one that is none.
+    /// Refuses `base` without a unit, or with an unknown one.
     fn check_unit(&self, base: &str, quantity: Quantity) -> Result<(), DatasetError> {
         if quantity == Quantity::Bare {
             return Ok(());

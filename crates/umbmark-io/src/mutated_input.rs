@@ -218,7 +218,7 @@ fn damaged_optiodom_files() {
     survive(run, 7, |text| optiodom::parse_run(source(text)).is_ok_and(|recording| finished(recording, None)));
 }
 
-/// What a log does with a track: it is put between its samples by any clock, and set by the motion where there is enough of it.
+/// What a log does with a track: it is put between its samples by any clock, and aligned from the motion where there is enough of it.
 fn placed(track: &ReferenceTrack) -> bool {
     assert!(track.time.windows(2).all(|pair| pair[0] < pair[1]));
     let values = || track.x.iter().chain(&track.y).chain(&track.time).chain(track.heading.iter().flatten());

@@ -1,4 +1,4 @@
-//! Two clocks set by the motion, on the unsynchronised originals of OptiOdom, against the files that their authors
+//! Two clocks aligned from the motion, on the unsynchronised originals of OptiOdom, against the files that their authors
 //! synchronised by hand.
 
 #![allow(clippy::unwrap_used)]

@@ -117,7 +117,7 @@ fn a_page_that_is_stopped_says_so_and_what_is_missing() {
     let last = |done: usize| stop.store(done >= 1, std::sync::atomic::Ordering::Relaxed);
     let text = page(&stopped, &Provenance::default(), last).unwrap();
     assert!(stopped[0].is_partial());
-    for part in ["<strong>PARTIAL.</strong>", "It was stopped before this was worked out.", "comes back"] {
+    for part in ["<strong>PARTIAL.</strong>", "The work was stopped before this part was finished.", "from START"] {
         assert!(text.contains(part), "{part}");
     }
     assert!(!page(std::slice::from_ref(&*SLOPE), &Provenance::default(), |_| ()).unwrap().contains("PARTIAL"));

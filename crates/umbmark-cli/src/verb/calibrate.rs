@@ -200,12 +200,12 @@ fn text(robot: &Robot, calibration: &Calibration, level: f64) -> String {
     text += &table(&["", "E_d", "E_b", "E_s"], estimates.iter().map(|e| ratio_row(e, level)));
     text += &format!("\n\n±: half of the {} % interval.", 100.0 * level);
     if let Some(before) = estimates.iter().find_map(|e| e.e_max_sys_before) {
-        text += &format!(" E_max,sys as driven: {:.1} mm; with the correction:", 1e3 * before);
+        text += &format!("\nE_max,sys as driven: {:.1} mm; with the correction:", 1e3 * before);
     }
     text += "\n\n";
     let header = ["", "b [mm]", "D_left [mm]", "D_right [mm]", "predicted", "replayed [mm]"];
     text += &table(&header, estimates.iter().map(|e| length_row(robot, e)));
-    text += "\n\npredicted: E_max,sys of the same test, driven with the correction; replayed: E_max,sys of the recorded\nticks, computed with the correction\n";
+    text += "\n\npredicted: E_max,sys of the same test with the correction\nreplayed: E_max,sys of the recorded ticks with the correction\n";
     text
 }
 

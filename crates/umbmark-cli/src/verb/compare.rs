@@ -92,7 +92,8 @@ fn models(
 
 fn text(comparison: &Comparison, options: &Options) -> String {
     let [cw, ccw] = comparison.runs;
-    let mut text = format!("Comparison of {} model(s) with {cw} cw + {ccw} ccw return poses\n\n", comparison.models.len());
+    let mut text =
+        format!("Comparison of {} model(s) with {cw} cw + {ccw} ccw return poses\n\n", comparison.models.len());
     let row = |m: &Judged| {
         let heading = m.heading_rmse.map_or("-".to_owned(), |h| format!("{:.2}", h.to_degrees()));
         let explains = if m.explains(options.size) { "yes" } else { "no" };

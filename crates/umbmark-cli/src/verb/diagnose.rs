@@ -64,12 +64,16 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
 /// A verdict in a sentence.
 pub(super) fn in_words(verdict: Verdict) -> &'static str {
     match verdict {
-        Verdict::Explained => "explained: the model accounts for the measured error, and no test shows a further effect",
+        Verdict::Explained => {
+            "explained: the model accounts for the measured error, and no test shows a further effect"
+        }
         Verdict::MissingEffect => "the robot has an error source that the model lacks",
         Verdict::SeveralMissing => "the robot has several error sources that the model lacks",
         Verdict::UnlistedEffect => "the robot has an error source that no single effect of the catalogue explains",
         Verdict::NotEnoughData => "not enough data to test the model",
-        Verdict::NotExplained => "not explained: the model does not account for the measured error, but no single missing effect is certified",
+        Verdict::NotExplained => {
+            "not explained: the model does not account for the measured error, but no single missing effect is certified"
+        }
     }
 }
 
@@ -121,10 +125,10 @@ fn next_text(diagnosis: &Diagnosis) -> String {
         Verdict::UnlistedEffect => {
             "umbmark learn --model FILE tries your own formula; umbmark compare shows where the error is made."
         }
-        Verdict::NotEnoughData => "drive at least three runs each way; umbmark plan says how many runs show which effect.",
-        Verdict::NotExplained => {
-            "correct what the reasons name, then diagnose again; umbmark inspect checks the data."
+        Verdict::NotEnoughData => {
+            "drive at least three runs each way; umbmark plan says how many runs show which effect."
         }
+        Verdict::NotExplained => "correct what the reasons name, then diagnose again; umbmark inspect checks the data.",
     };
     let mut text = format!("\nnext\n{}", hanging("", 2, with_the_model));
     if !diagnosis.next_experiments.is_empty() {
@@ -186,7 +190,8 @@ fn ranking_text(ranking: &[Suspect]) -> String {
             p_text(s.p_adjusted),
         ]
     };
-    let mut text = String::from("\neffects that were tested, the likeliest first (adjusted p: for the number of tests)\n\n");
+    let mut text =
+        String::from("\neffects tested, the likeliest first (adjusted p: for the number of tests)\n\n");
     let told = &ranking[..ranking.len().min(SUSPECTS)];
     text += &table(&["effect", "size", "F", "p", "adjusted p"], told.iter().map(row));
     text += "\n";

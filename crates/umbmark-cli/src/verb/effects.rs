@@ -51,7 +51,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
 
 fn list() -> String {
     let wide = CATALOGUE.iter().map(|entry| entry.about.name.len()).max().unwrap_or(0) + 2;
-    let mut text = String::from("Known error sources, grouped by what they change, in the order in which they act:\n");
+    let mut text = String::from("Known error sources, grouped by what they change, in the order they act:\n");
     for kind in ActsOn::ALL {
         text += &format!("\n{}\n", kind.name());
         for entry in CATALOGUE.iter().filter(|entry| entry.about.acts_on == kind) {

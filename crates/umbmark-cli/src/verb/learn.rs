@@ -55,8 +55,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         Some(start) => start,
         None => Model::new(data.nominal_robot()?),
     };
-    let learnt =
-        session.watched("‰ of the steps at most", |watch| learn_from(&data, &start, &options, watch))??;
+    let learnt = session.watched("% of the steps at most", |watch| learn_from(&data, &start, &options, watch))??;
     if learnt.partial {
         session.message("partial", "stopped while an effect was still missing");
     }

@@ -70,7 +70,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let (trials, seed) = (arguments.trials, session.seed());
     let (mut found, mut texts) = (Paper::new(seed), Vec::new());
     for (_, run) in EXPERIMENTS.iter().filter(|(experiment, _)| wanted(*experiment)) {
-        let text = session.told("‰ of the tests", |progress| {
+        let text = session.told("% of the tests", |progress| {
             let stop = AtomicBool::new(false);
             run(&Bench { trials, seed, watch: &Watch { stop: &stop, progress } }, &mut found)
         });

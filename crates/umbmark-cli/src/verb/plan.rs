@@ -135,7 +135,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let numbers: Vec<usize> = if session.json() { RUNS.collect() } else { plan_report::PRINTED.to_vec() };
     let (runs, power) = (usize::from(arguments.runs), arguments.power);
     let request = Request { runs, see: &see, power, numbers: &numbers, sigma_interval, options };
-    let findings = session.watched("‰", |watch| request.findings(&setting, watch))??;
+    let findings = session.watched("%", |watch| request.findings(&setting, watch))??;
     if findings.partial {
         session.message("partial", "stopped before all results were computed");
     }

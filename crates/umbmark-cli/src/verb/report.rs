@@ -64,11 +64,12 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     for study in studies.iter().filter(|study| study.given.is_none()) {
         let poses: usize = study.data.runs.iter().flat_map(|run| &run.log).map(|log| log.reference.len()).sum();
         if poses > MANY && !study.options.diagnose.ends_only {
-            let cost = "takes minutes; with --model FILE nothing is learnt, --return-poses learns from return poses alone";
+            let cost =
+                "takes minutes; with --model FILE nothing is learnt, --return-poses learns from return poses alone";
             session.message("note", &format!("learning from {poses} measured poses {cost}"));
         }
         // Why nothing could be learnt, the page says.
-        let _ = session.told("‰ of the steps of learning at most", |tell| study.learn(tell).is_ok())?;
+        let _ = session.told("% of the steps of learning at most", |tell| study.learn(tell).is_ok())?;
     }
     let mut progress = session.progress(KINDS.len() as u64, "figures");
     let made = session.on_threads(|| page(&studies, &provenance, |done| progress.at(done as u64)))?;

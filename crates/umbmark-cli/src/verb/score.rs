@@ -76,8 +76,7 @@ fn text(score: &Score, convention: Convention) -> String {
             Some(e_max) if e_max <= band => "E_max,sys shows no systematic error",
             _ => "E_max,sys shows a systematic error",
         };
-        text +=
-            &format!("\n{judged}: chance alone stays below {:.1} mm in {percent} % of tests.\n", 1e3 * band);
+        text += &format!("\n{judged}.\nChance alone stays below {:.1} mm in {percent} % of tests.\n", 1e3 * band);
     }
     text
 }

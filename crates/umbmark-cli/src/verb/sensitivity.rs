@@ -95,7 +95,7 @@ fn find(arguments: &Arguments, tests: &Tests, inputs: &Inputs, session: &Session
     let Arguments { method, base_points, second_order, trajectories, trials, .. } = *arguments;
     let seed = session.seed();
     let options = SobolOptions { base_points, second_order, seed };
-    Ok(session.watched("‰", |watch| match method {
+    Ok(session.watched("%", |watch| match method {
         Method::Sobol => sobol_indices(tests, inputs, &options, watch).map(Found::Sobol),
         Method::Morris => screen(tests, inputs, trajectories, seed, watch).map(Found::Morris),
         Method::Local => local_derivatives(tests, inputs, trials, watch).map(Found::Local),

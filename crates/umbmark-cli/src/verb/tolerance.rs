@@ -77,7 +77,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         robots: arguments.robots,
         seed: session.seed(),
     };
-    let findings = session.watched("‰ of all choices", |watch| tolerances.search(&target, watch))??;
+    let findings = session.watched("% of all choices", |watch| tolerances.search(&target, watch))??;
     let assumed = if arguments.with_noise { known.assumed } else { Vec::new() };
     let report = Report { findings: &findings, file: &file, target: &target, metric, assumed: &assumed };
     if findings.partial {
@@ -113,8 +113,7 @@ impl Report<'_> {
     fn text(&self, with_noise: bool, unicode: bool) -> String {
         let (unit, factor) = unit(self.metric);
         let now = &self.findings.now;
-        let kind =
-            if with_noise { "in whole tests with their noise" } else { "the robots' own, without noise" };
+        let kind = if with_noise { "in whole tests with their noise" } else { "the robots' own, without noise" };
         let mut text = format!("{} of {} robots, {kind}\n", self.metric.name(), now.robots.sizes().len());
         self.assumed.iter().for_each(|assumption| text += &format!("  assumed: {assumption}\n"));
         let sizes = now.robots.sizes();

@@ -45,7 +45,7 @@ impl Scalar for f64 {
     }
 }
 
-/// Eight numbers, on each of which is done what is done on `f64`: one that is none spoils no other.
+/// Eight independent `f64` lanes; a NaN in one does not affect the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
 pub struct Eight(pub [f64; EIGHT]);

@@ -84,13 +84,13 @@ pub(super) fn determine(
                 "these returns give E_b/E_s only; measure the pose at a stop on the way, or a straight"
             }
             (false, 2) => {
-                "these returns do not tell it from the others; measure the pose at a stop on the way, or a straight"
+                "these returns cannot separate it from the others; measure the pose at a stop on the way, or a straight"
             }
             _ if alone >= SMALL * usual[column] => "this path does not show it; drive a square both ways",
             _ if seen.directions.len() < 2 => {
-                "one direction gives one combination of both and cannot tell them apart; drive the other direction as well"
+                "one direction gives one combination of both and cannot separate them; drive the other direction as well"
             }
-            _ => "these runs give one combination of both and cannot tell them apart; drive a square both ways",
+            _ => "these runs give one combination of both and cannot separate them; drive a square both ways",
         };
         let std_error = Some(std_error).filter(|error| seen.poses > 0 && *error < NOT_SHOWN);
         Determined { quantity: names[column], yes, std_error, usual: Some(usual[column]), because }

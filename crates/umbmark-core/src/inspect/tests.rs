@@ -194,7 +194,7 @@ fn what_was_mended_in_a_log_is_counted_and_only_a_roll_over_is_harmless() {
     let said = |name| (check(&found, name).found.as_str(), check(&found, name).ok);
     assert_eq!(said("counter roll-overs"), ("3 of counters of 16 bits, undone", true));
     assert_eq!(said("counter resets"), ("1, counted on from zero", false));
-    assert_eq!(said("rows and poses mended"), ("2 out of order, 0 repeated, 4 stale poses", false));
+    assert_eq!(said("rows and poses repaired"), ("2 out of order, 0 repeated, 4 stale poses", false));
 }
 
 #[test]

@@ -126,7 +126,7 @@ fn triangular([min, mode, max]: [f64; 3], u: f64) -> f64 {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DistributionError {
-    /// A standard deviation that is none.
+    /// Invalid standard deviation.
     #[error("standard deviation of {name} must be finite and 0 or more, got {value}")]
     Deviation {
         /// The parameter.

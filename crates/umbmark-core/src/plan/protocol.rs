@@ -125,8 +125,8 @@ fn steps(setting: &Setting, order: Order, bumps: f64) -> Vec<String> {
         ),
         "Before each run put the robot on its marks and set its odometry to 0, 0, 0.".to_owned(),
         format!(
-            "Drive the path once by the robot's own odometry, at {speed} m/s or slower{}. It need not hit START: it stops where it \
-             believes START to be.",
+            "Drive the path once by the robot's own odometry, at {speed} m/s or slower{}. It need not end on START: it stops where \
+             its odometry puts START.",
             if on_the_spot > 0 {
                 format!(", with a stop before and after each of its {on_the_spot} turns on the spot")
             } else {

@@ -1,4 +1,4 @@
-//! Clocks that were set by the motion.
+//! Clocks that were aligned from the motion.
 
 use schemars::JsonSchema;
 use serde::Serialize;

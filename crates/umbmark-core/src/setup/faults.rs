@@ -81,14 +81,14 @@ impl Fault {
     /// Why nothing is fitted where there are some: each with what to do.
     pub(crate) fn refusal(faults: &[Fault]) -> String {
         let told: Vec<String> = faults.iter().map(|f| format!("{}; {}", f.sentence(), f.remedy())).collect();
-        format!("nothing can be said of the robot yet: {}", told.join("; and "))
+        format!("the robot cannot be judged yet: {}", told.join("; and "))
     }
 
     /// What is wrong, in words.
     pub fn sentence(&self) -> String {
         match self {
             Fault::Exchanged => {
-                "left and right are exchanged: the robot turns the other way than its counts say".into()
+                "left and right are exchanged: the robot turns opposite to its counts".into()
             }
             Fault::Backward { names: [first, second], counters, exchanged } => {
                 let which = match counters {
@@ -100,7 +100,7 @@ impl Fault {
                 format!("{which} backward when the robot drives forward{and}")
             }
             Fault::HeadingClockwise => {
-                "the measured heading grows clockwise: it turns the other way than the robot and its track".into()
+                "the measured heading grows clockwise: it turns opposite to the robot and its track".into()
             }
             Fault::PositionsMirrored => {
                 "the measured track is mirrored: x and y are of a left-handed frame, the headings are not".into()
@@ -152,14 +152,14 @@ impl Fault {
             Fault::HeadingInDegrees => "call the column theta_ref_deg".into(),
             Fault::LengthsIn { unit: unit @ ("mm" | "cm"), .. } => format!("call the columns x_ref_{unit} and y_ref_{unit}"),
             Fault::LengthsIn { .. } => "convert the columns to metres".into(),
-            Fault::OtherScale { .. } => "look at the unit of the positions and at [robot] in robot.toml".into(),
+            Fault::OtherScale { .. } => "check the unit of the positions and [robot] in robot.toml".into(),
             Fault::InRuns { fault, runs } => format!(
-                "mend the recordings of {} ({}), or keep them in a folder of their own and {} there",
+                "correct the recordings of {} ({}), or keep them in a folder of their own and {} there",
                 named(runs),
                 fault.in_recording(),
                 fault.remedy()
             ),
-            Fault::OtherMotion { .. } => "look whether each file holds ticks and poses of the same drive".into(),
+            Fault::OtherMotion { .. } => "check whether each file has ticks and poses of the same drive".into(),
             Fault::ReturnsIn { unit: "mm", .. } => {
                 "write the unit into the names of the columns of returns.csv: ex_mm and ey_mm, or x_abs_mm, y_abs_mm, x_calc_mm and y_calc_mm".into()
             }
@@ -186,7 +186,7 @@ impl Fault {
             Fault::HeadingClockwise => "change the sign of the measured heading".into(),
             Fault::PositionsMirrored => "change the sign of y".into(),
             Fault::HeadingInDegrees => "write the measured heading in radians".into(),
-            _ => "look at their columns".into(),
+            _ => "check their columns".into(),
         }
     }
 }

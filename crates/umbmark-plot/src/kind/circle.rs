@@ -18,7 +18,9 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
     let circle = &study.diagnosis()?.circle;
     let path = study.data.path.as_ref().filter(|path| std::ptr::eq(path.shape(), &SQUARE));
     let side = path.map(|path| path.values()[0]);
-    let side = side.ok_or_else(|| Absent("The circle through START exists for squares only, and this path is not a square.".into()))?;
+    let side = side.ok_or_else(|| {
+        Absent("The circle through START exists for squares only, and this path is not a square.".into())
+    })?;
     if circle.is_empty() {
         return Err(Absent("The circle needs at least two runs in one direction.".into()));
     }
@@ -97,7 +99,8 @@ impl Cloud {
             .saying(self.names.clone())
             .from_runs(self.runs.clone());
         let mark = self.heading.map(|heading| {
-            let said = format!("{name}: place that follows from the mean return heading, {:.2} deg", heading.to_degrees());
+            let said =
+                format!("{name}: place that follows from the mean return heading, {:.2} deg", heading.to_degrees());
             Layer::new(format!("{name} by heading"), tone, Mark::Crosses, [turned(side, heading)])
                 .of(self.direction)
                 .saying(vec![said])

@@ -20,7 +20,10 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
     let values: Vec<Vec<f64>> = order.iter().map(|i| order.iter().map(|j| likeness.values[*i][*j]).collect()).collect();
     let alike = alike(&names, &values);
     let says = match alike.len() {
-        0 => format!("These runs can distinguish each of the {} effects that they would show from all others.", names.len()),
+        0 => format!(
+            "These runs can distinguish each of the {} effects that they would show from all others.",
+            names.len()
+        ),
         _ => format!("Cannot be distinguished here: {}.", phrases(&alike)),
     };
     let told = Told {

@@ -6,7 +6,7 @@ use crate::study::{Absent, Study};
 use crate::tone::Tone;
 
 pub(super) static FIGURE: FigureKind =
-    FigureKind { name: "correlations", about: "how far the model's numbers are tied", build: figure };
+    FigureKind { name: "correlations", about: "correlations of the model's numbers", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let diagnosis = study.diagnosis()?;

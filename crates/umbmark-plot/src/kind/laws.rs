@@ -19,7 +19,7 @@ const BESIDE: f64 = 0.3;
 const WIDE: f64 = 0.35;
 
 pub(super) static FIGURE: FigureKind =
-    FigureKind { name: "laws", about: "laws that no catalogue lists: error left out against length", build: figure };
+    FigureKind { name: "laws", about: "laws that no catalogue lists: cross-validated error against length", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let learnt = study.learnt()?;

@@ -11,7 +11,7 @@ use crate::tone::Tone;
 const MM: f64 = 1e3;
 
 pub(super) static FIGURE: FigureKind =
-    FigureKind { name: "learning", about: "the error falling as effects are added", build: figure };
+    FigureKind { name: "learning", about: "the error after each added effect", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let learnt = study.learnt()?;

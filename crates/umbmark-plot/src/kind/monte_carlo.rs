@@ -14,7 +14,7 @@ const BARS: f64 = 16.0;
 
 pub(super) static FIGURE: FigureKind = FigureKind {
     name: "monte_carlo",
-    about: "E_max,sys of simulated tests, the measured one among them",
+    about: "E_max,sys of simulated tests, compared with the measured one",
     build: figure,
 };
 

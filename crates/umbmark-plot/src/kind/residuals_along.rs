@@ -42,7 +42,7 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
     }
     let panel = |(layers, (component, _, unit)): (Vec<Layer>, (&str, f64, &str))| Panel {
         title: component.to_owned(),
-        x: Axis::of("way rolled [m]"),
+        x: Axis::of("distance driven [m]"),
         y: Axis::of(format!("error [{unit}]")),
         equal: false,
         layers,
@@ -55,10 +55,10 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
         title: "Residuals along the way".into(),
         told: Told {
             shows: format!(
-                "Where the robot is, seen from where {} has it, along each run: forward, to the left, and turned to the left.",
+                "The measured pose relative to that of {}, along each run: forward, to the left, and turned to the left.",
                 study.model_name()
             ),
-            good: "Lines wander about zero, each its own way; runs that stray together show what the model lacks."
+            good: "Lines vary randomly about zero. If all runs deviate in the same way, the model lacks an effect."
                 .into(),
             says: format!(
                 "The root mean square distance is {} mm along the way, {} mm for the nominal robot.",

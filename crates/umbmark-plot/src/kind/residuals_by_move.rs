@@ -26,7 +26,7 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
         let of = |parts: &[Part]| parts.iter().map(|part| Some(part.mean[k])).collect::<Vec<_>>();
         Panel {
             title: component.to_owned(),
-            x: Axis::of(format!("error made there [{unit}]")),
+            x: Axis::of(format!("error added there [{unit}]")),
             y: Axis::named(labels.clone()).falling(),
             equal: false,
             layers: pair_of_layers(&labels, &of(&nominal), &of(&model), scale, unit),
@@ -36,7 +36,7 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
     let says = most.map_or(String::new(), |part| {
         let share = 100.0 * part.share.position;
         format!(
-            "Of the squared error that the model leaves, {share:.0} % comes from {}, more than from any other.",
+            "{share:.0} % of the squared error of the model comes from {}, more than from any other.",
             name(part)
         )
     });
@@ -60,12 +60,12 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
         title: "Residuals by leg and turn".into(),
         told: Told {
             shows: format!(
-                "The error that each leg and turn adds, as the robot sees it, had it begun without any: mean over the runs with \
+                "Error added by each leg and turn alone, in the frame of the robot: mean over the runs with \
                  its {:.0} % interval, of the nominal robot and of {}.",
                 100.0 * study.level(),
                 study.model_name()
             ),
-            good: "Those of the model lie on the dashed line at zero; one leg apart points to a place, all legs alike to the robot."
+            good: "Those of the model lie on the dashed line at zero. One different leg points to a place; if all legs are alike, the cause is in the robot."
                 .into(),
             says,
         },

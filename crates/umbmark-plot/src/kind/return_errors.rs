@@ -129,7 +129,9 @@ fn told(score: &Score) -> Told {
     let good = "Both centres lie on START, and the circle is not larger than the dashed one, which chance alone would \
                 reach.";
     let says = match (score.summary.e_max_sys(), score.intervals.as_ref().and_then(|i| i.e_max_sys)) {
-        (None, _) => "One direction is missing, so there is no E_max,sys: in one direction alone, errors can cancel.".into(),
+        (None, _) => {
+            "One direction is missing, so there is no E_max,sys: in one direction alone, errors can cancel.".into()
+        }
         (Some(e_max), interval) => {
             let interval = interval
                 .map(|i| format!(" ({percent:.0} %: {:.0} to {:.0} mm)", MM * i.low, MM * i.high))

@@ -11,7 +11,7 @@ use crate::tone::Tone;
 const SHARE: f64 = 0.2;
 
 pub(super) static FIGURE: FigureKind =
-    FigureKind { name: "tracks", about: "measured, computed and modelled path, the error magnified", build: figure };
+    FigureKind { name: "tracks", about: "measured, computed and modelled path, with the error magnified", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let paths = study.paths()?;
@@ -28,7 +28,8 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
     }
     let (largest, run) = largest(paths);
     let name = &study.data.runs[run].name;
-    let computed = if paths.recorded { "the path that the robot computed from its ticks" } else { "the commanded path" };
+    let computed =
+        if paths.recorded { "the path that the robot computed from its ticks" } else { "the commanded path" };
     let times = if scale > 1.0 { format!("{scale:.0} times magnified") } else { "to scale".into() };
     Ok(Figure {
         kind: "tracks",
@@ -38,9 +39,10 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
                 "Measured and modelled paths beside {computed}; distances from it are {times}. The model is {}.",
                 study.model_name()
             ),
-            good: "The modelled path goes through the measured places. For a calibrated robot both lie on the computed \
+            good:
+                "The modelled path goes through the measured places. For a calibrated robot both lie on the computed \
                    path."
-                .into(),
+                    .into(),
             says: format!(
                 "The largest distance from the computed to the measured place is {:.0} mm, in {name}.",
                 1e3 * largest

@@ -32,12 +32,13 @@ pub(super) fn unseen(study: &Study) -> Vec<List> {
 fn hidden(diagnosis: &Diagnosis) -> Vec<String> {
     let absorbed = diagnosis.absorbed().into_iter();
     let mut sentences: Vec<String> = absorbed
-        .map(|(by, names)| format!("Indistinguishable from {} of the model with this path: {}.", by.join(" with "), names.join(", ")))
+        .map(|(by, names)| {
+            format!("Indistinguishable from {} of the model with this path: {}.", by.join(" with "), names.join(", "))
+        })
         .collect();
     let below = diagnosis.below_noise();
     if !below.is_empty() {
-        sentences
-            .push(format!("Smaller than the scatter of the runs at the usual size: {}.", below.join(", ")));
+        sentences.push(format!("Smaller than the scatter of the runs at the usual size: {}.", below.join(", ")));
     }
     sentences
 }

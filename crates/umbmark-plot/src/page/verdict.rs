@@ -22,11 +22,12 @@ fn notices(study: &Study) -> Vec<String> {
 fn verdict(study: &Study) -> String {
     let robot = study.data.robot.as_ref().map_or("The robot", |robot| robot.name.as_str());
     let missed = match study.score() {
-        Ok(score) => {
-            score.summary.e_max_sys().map_or("has no E_max,sys, because it was driven in one direction only".into(), |e_max| {
+        Ok(score) => score
+            .summary
+            .e_max_sys()
+            .map_or("has no E_max,sys, because it was driven in one direction only".into(), |e_max| {
                 format!("ends {:.0} mm from START (E_max,sys)", 1e3 * e_max)
-            })
-        }
+            }),
         Err(why) => format!("has no score ({why})"),
     };
     let diagnosis = study.diagnosis();
@@ -47,7 +48,8 @@ fn left_by(diagnosis: &Diagnosis) -> Option<String> {
 fn cause(diagnosis: &Diagnosis) -> String {
     let parts = diagnosis.model.parts().iter().filter(|part| part.free).map(|part| part.effect.name());
     let names: Vec<&str> = parts.collect();
-    let model = if names.is_empty() { "the model".to_owned() } else { format!("the model with {}", joined(&names, "and")) };
+    let model =
+        if names.is_empty() { "the model".to_owned() } else { format!("the model with {}", joined(&names, "and")) };
     let missing = || diagnosis.certified().iter().map(|s| joined(&s.class, "or")).collect::<Vec<_>>().join("; and ");
     match diagnosis.verdict {
         Verdict::Explained => {
@@ -60,7 +62,10 @@ fn cause(diagnosis: &Diagnosis) -> String {
         ),
         Verdict::UnlistedEffect => {
             let on = diagnosis.dependence.as_ref().map(|told| format!("; it depends on {}", told.title));
-            format!("it has an error source that the catalogue does not list, besides {model}{}", on.unwrap_or_default())
+            format!(
+                "it has an error source that the catalogue does not list, besides {model}{}",
+                on.unwrap_or_default()
+            )
         }
         Verdict::NotExplained => {
             format!("{model} does not account for the measured error, but no single missing effect is certified")

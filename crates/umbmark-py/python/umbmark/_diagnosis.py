@@ -180,7 +180,7 @@ def learn(
     ([None, 'wheel_diameter_ratio', 'wheelbase'], 'explained')
     """
     options = (size, draws, seed)
-    with Bar(progress, 1000, "per mille") as bar:
+    with Bar(progress, 1000, "steps") as bar:
         document, learnt = _umbmark.learn(
             data_of(data), model, options, return_poses, threads, bar.at
         )

@@ -125,5 +125,5 @@ def paper(
     >>> [f"{x:.2f} m, {y:.2f} m" for x, y, _ in (both.ccw, both.cw)]
     ['-0.00 m, 0.00 m', '-0.70 m, -1.02 m']
     """
-    with Bar(progress, 1000, "per mille") as bar:
+    with Bar(progress, 1000, "steps") as bar:
         return Paper._of(_umbmark.paper([*experiments], n, seed, threads, bar.at))

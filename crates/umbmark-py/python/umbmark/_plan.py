@@ -164,7 +164,7 @@ def plan(
     """
     sizes = [(name, float(value)) for name, value in (see or {}).items()]
     whose = _Whose(_read(data), model, path, sigma_m, with_heading, seed)
-    with Bar(progress, 1000, "per mille") as bar:
+    with Bar(progress, 1000, "steps") as bar:
         document, markdown, html = _umbmark.plan(
             whose,
             runs,

@@ -104,7 +104,7 @@ def plot(
         None if model is None else ("the model", model),
     )
     how = ((size, draws, seed), return_poses, n)
-    with Bar(progress, 1000, "per mille") as bar:
+    with Bar(progress, 1000, "steps") as bar:
         return _umbmark.figure(kind, asked, how, threads, bar.at)
 
 
@@ -164,13 +164,13 @@ def report(
     >>> data = umbmark.simulate(truth, reference_rate_hz=0)
     >>> page = umbmark.report({"my robot": data}, truth)
     >>> page.studies[0].verdict.split("; ")[1]
-    'its model explains what these runs can show, with no sign of a further effect'
+    'the model fully accounts for the measured error, with no sign of a further effect'
     """
     asked = _studies(data, model)
     places = [place for one in _named(data).values() if (place := _place(one)) is not None]
     how = ((size, draws, seed), return_poses, n)
     call = f"umbmark.report({', '.join([*map(repr, places), f'seed={seed}'])})"
-    with Bar(progress, 1000, "per mille") as bar:
+    with Bar(progress, 1000, "steps") as bar:
         document, page = _umbmark.report(asked, how, call, places, threads, bar.at)
     return Report._of(document, html=page)
 

@@ -113,7 +113,7 @@ def sensitivity(
         phase=phase,
     )
     keys = None if parameters is None else keys_of(parameters, correlations)
-    with Bar(progress, 1000, "per mille") as bar:
+    with Bar(progress, 1000, "steps") as bar:
         document = _umbmark.sensitivity(
             study, keys, method, effort or 1, second_order, noise_free, threads, bar.at
         )

@@ -137,7 +137,7 @@ def tolerance(
         phase=phase,
     )
     keys = keys_of(parameters, correlations)
-    with Bar(progress, 1000, "per mille") as bar:
+    with Bar(progress, 1000, "steps") as bar:
         document, sizes = _umbmark.tolerance(
             study, keys, metric, (target, share), robots, with_noise, threads, bar.at
         )
