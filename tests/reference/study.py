@@ -53,7 +53,7 @@ class Answer:
 
     @property
     def besides(self) -> bool:
-        """Whether something was added that is none of the causes."""
+        """Whether something besides the causes was added."""
         return any(
             not any(one & acceptable for acceptable in self.hidden) for one in self.classes
         ) or len(self.classes) > len(self.hidden)

@@ -55,7 +55,7 @@ struct WrittenSweep {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
-    /// The file is there, and nobody said what to do with it.
+    /// The file exists, and the caller did not say what to do with it.
     #[error("{} exists already", .0.display())]
     Exists(PathBuf),
     /// It cannot be read.

@@ -176,7 +176,7 @@ fn schemas() -> Vec<Case> {
         case("a schema that is too deep", with(&format!("a/T0 x\n{rest}{deep}===\nMSG: a/T50\nint8 x\n"))),
         case("a schema that doubles again and again", with(&format!("a/T0 x\n{rest}{wide}===\nMSG: a/T14\nint8 x\n"))),
         case("wide text before the positions", with(&format!("wstring w\n{rest}"))),
-        case("a protobuf schema that is none", protobuf("nonsense", &[])),
+        case("an invalid protobuf schema", protobuf("nonsense", &[])),
     ]
 }
 

@@ -167,7 +167,7 @@ impl Study {
     /// Raises
     /// ------
     /// ValueError
-    ///     If what is known, or the file, is of another study or shard; or the file is there, and nobody said what to do.
+    ///     If what is known, or the file, is of another study or shard; or the file exists and the caller did not say what to do.
     #[pyo3(signature = (shard=(0, 1), *, known=None, checkpoint=None, resume=false, replace=false, threads=0,
                         until_std_error_m=None, keep=false, progress=None))]
     #[allow(clippy::too_many_arguments)]

@@ -89,7 +89,7 @@ pub struct Comparison {
     pub setup: Setup,
     /// What else should be said.
     pub remarks: Vec<String>,
-    /// Probability with which a right model is accused all the same.
+    /// False-alarm rate: probability with which a right model is accused.
     pub size: f64,
     /// Simulated tests for the p-values.
     pub draws: usize,

@@ -291,7 +291,7 @@ pub struct Diagnosis {
     pub repeats: Option<Repeated>,
     /// What else should be said.
     pub remarks: Vec<String>,
-    /// Probability with which a complete model is accused all the same.
+    /// False-alarm rate: probability with which a complete model is accused.
     pub size: f64,
     /// Simulated tests for p-values that have no closed form.
     pub draws: usize,

@@ -217,7 +217,7 @@ pub struct Plan {
     pub with_heading: bool,
     /// Probability with which a size is to be seen.
     pub power: f64,
-    /// Probability with which a robot without it is accused all the same.
+    /// False-alarm rate: probability with which a robot without it is accused.
     pub size: f64,
     /// Simulated tests behind every figure that has no closed form.
     pub draws: usize,
@@ -235,7 +235,7 @@ pub struct Plan {
     pub extended: Option<ExtendedTest>,
     /// What a drift of the session does in each order of the runs.
     pub order: Vec<Drift>,
-    /// What nobody said and was assumed, a phrase each.
+    /// What was assumed, a phrase each.
     pub assumed: Vec<String>,
     /// Whether it was stopped before all was looked at.
     pub partial: bool,
@@ -244,7 +244,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// What a planned test would show; `assumed` is what nobody said, a phrase each.
+    /// What a planned test would show; `assumed` is what was assumed, a phrase each.
     pub fn new(setting: &Setting, request: &Request, findings: &Findings, assumed: &[String]) -> Plan {
         let of_runs = |row: &plan::OfRuns| OfRuns::new(setting, &findings.sizes, row);
         let extended = |e: plan::ExtendedTest| ExtendedTest {

@@ -43,7 +43,7 @@ pub struct Asked<'a> {
     pub study: &'a Study,
     /// Whether tests are simulated with their noise.
     pub noisy: bool,
-    /// What nobody said and was assumed.
+    /// What was assumed.
     pub assumed: &'a [String],
 }
 
@@ -204,7 +204,7 @@ pub struct Sensitivity {
     pub correlations: Vec<Correlation>,
     /// Sensitivities of each metric; "noise" stands for all that is random in a test.
     pub metrics: Keyed<OfMetric>,
-    /// What nobody said and was assumed, a phrase each.
+    /// What was assumed, a phrase each.
     pub assumed: Vec<String>,
     /// Version of umbmark.
     pub version: &'static str,

@@ -131,7 +131,7 @@ pub struct Study {
     pub effects: Vec<Keyed<Setting>>,
     /// Where values are from, a phrase each.
     pub sources: Vec<String>,
-    /// What nobody said and was assumed, a phrase each.
+    /// What was assumed, a phrase each.
     pub assumed: Vec<String>,
     /// What was published of this test; null where nothing was.
     pub published: Option<Published>,
@@ -144,7 +144,7 @@ pub struct Study {
 pub struct Told<'a> {
     /// Where values are from, a phrase each.
     pub sources: &'a [String],
-    /// What nobody said and was assumed, a phrase each.
+    /// What was assumed, a phrase each.
     pub assumed: &'a [String],
     /// What was published of this test.
     pub published: Option<preset::Published>,

@@ -86,14 +86,14 @@ pub struct Sweep {
     pub partial: bool,
     /// The points, in order.
     pub points: Vec<Point>,
-    /// What nobody said and was assumed, a phrase each.
+    /// What was assumed, a phrase each.
     pub assumed: Vec<String>,
     /// Version of umbmark.
     pub version: &'static str,
 }
 
 impl Sweep {
-    /// The points of a sweep that are done; `assumed` is what nobody said, a phrase each.
+    /// The points of a sweep that are done; `assumed` is what was assumed, a phrase each.
     pub fn new(sweep: &monte_carlo::Sweep, points: &[SweepPoint], assumed: &[String]) -> Sweep {
         Sweep {
             axes: sweep.axes().iter().map(Axis::from).collect(),

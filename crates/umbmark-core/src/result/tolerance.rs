@@ -22,7 +22,7 @@ pub struct Wanted<'a> {
     pub noise: Noise,
     /// Seed of the robots.
     pub seed: u64,
-    /// What nobody said and was assumed, a phrase each.
+    /// What was assumed, a phrase each.
     pub assumed: &'a [String],
 }
 
@@ -104,7 +104,7 @@ pub struct Tolerance {
     pub cheapest: Option<Choice>,
     /// Number of choices that were looked at.
     pub choices_looked_at: u64,
-    /// What nobody said and was assumed, a phrase each.
+    /// What was assumed, a phrase each.
     pub assumed: Vec<String>,
     /// Version of umbmark.
     pub version: &'static str,

@@ -250,7 +250,7 @@ pub struct TrackComparison {
     /// What was found of the data before anything was fitted: faults, clock and mounting of the reference, jumps, wrong poses, runs far from
     /// the others.
     pub setup: Setup,
-    /// Probability with which a right model is accused all the same.
+    /// False-alarm rate: probability with which a right model is accused.
     pub size: f64,
     /// Version of umbmark.
     pub version: &'static str,

@@ -47,8 +47,7 @@ impl By {
 
 /// A part of the way, and the error that is made there.
 ///
-/// The error of one move, or of one run, is that of its end as the robot sees it from where it was predicted, had it begun
-/// without any: P⁻¹ M with P the predicted and M the measured motion from its beginning to its end, a stop that follows included.
+/// The error of one move, or of one run, is the error that it adds alone, in the frame of the predicted end: P⁻¹ M with P the predicted and M the measured motion from its beginning to its end, a stop that follows included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// By what it is gathered.
