@@ -77,7 +77,7 @@ fn variables() -> String {
 /// How to write an effect that is not listed.
 fn own() -> String {
     let mut text = String::from(
-        "\nYou can write your own effect as a formula in model.toml; every verb that takes a model reads it:\n\n  \
+        "\nYou can write your own effect as a formula in model.toml:\n\n  \
          [[effect]]\n  name = \"carpet\"\n  acts_on = \"heading_per_metre\"\n  formula = \"k * sin(heading - h0)\"\n  \
          parameters = { k = 0.0, h0 = 0.5 }\n  free = true\n\n",
     );
