@@ -85,11 +85,11 @@ fn the_page_of_the_drives_has_every_kind_and_its_keys() {
         text += &format!("- **Effects that are fitted first**: {}\n", listed(drive.first_effects().map(effect_link)));
     }
     text += "\n## Effects\n\n| drives | effects |\n|---|---|\n";
-    let mut groups: Vec<Kinds> = CATALOGUE.iter().map(|entry| entry.drives).collect();
+    let mut groups: Vec<Kinds> = CATALOGUE.iter().map(|entry| entry.drives()).collect();
     groups.sort_by_key(|drives| (std::cmp::Reverse(drives.each().count()), drives.to_string()));
     groups.dedup();
     for drives in groups {
-        let own = CATALOGUE.iter().filter(|entry| entry.drives == drives);
+        let own = CATALOGUE.iter().filter(|entry| entry.drives() == drives);
         text += &format!("| {drives} | {} |\n", listed(own.map(|entry| effect_link(entry.about.name))));
     }
     assert_data_eq!(text, page("drives.md").raw());

@@ -128,7 +128,7 @@ impl Arguments {
             (places, [model]) => places.iter().map(|place| of(place, Some(model), &short(place))).collect(),
             (_, models) => {
                 anyhow::bail!(
-                    "{} models are too many: {MAX_SIDE_BY_SIDE} studies at most stand side by side",
+                    "{} models are too many: {MAX_SIDE_BY_SIDE} studies at most are shown side by side",
                     models.len()
                 )
             }

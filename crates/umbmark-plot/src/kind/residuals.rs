@@ -73,7 +73,10 @@ fn says(title: &str, pairs: &[(&Against, &Against)], tests: usize, size: f64) ->
         return format!("The residual of the model depends on {title}: {}.", depending.join(", "));
     }
     let least = pairs.iter().map(|(_, model)| p_of(model)).fold(1.0, f64::min);
-    format!("The residual of the model shows no dependence on {title} (smallest {}, one of {tests} tests).", p_is(least))
+    format!(
+        "The residual of the model shows no dependence on {title} (smallest {}, one of {tests} tests).",
+        p_is(least)
+    )
 }
 
 fn against_panel(nominal: &Against, model: &Against) -> Panel {
