@@ -391,7 +391,7 @@ class Comparison(Result, frozen=True):
     remarks : tuple[str, ...]
         What else should be said.
     size : float
-        Probability with which a right model is accused all the same.
+        False-alarm rate: probability with which a right model is accused.
     draws : int
         Simulated tests for the p-values.
     seed : int
@@ -704,7 +704,7 @@ class Diagnosis(Result, frozen=True):
     remarks : tuple[str, ...]
         What else should be said.
     size : float
-        Probability with which a complete model is accused all the same.
+        False-alarm rate: probability with which a complete model is accused.
     draws : int
         Simulated tests for p-values that have no closed form.
     seed : int
@@ -2090,7 +2090,7 @@ class Plan(Result, frozen=True):
     power : float
         Probability with which a size is to be seen.
     size : float
-        Probability with which a robot without it is accused all the same.
+        False-alarm rate: probability with which a robot without it is accused.
     draws : int
         Simulated tests behind every figure that has no closed form.
     seed : int
@@ -2108,7 +2108,7 @@ class Plan(Result, frozen=True):
     order : tuple[Drift, ...]
         What a drift of the session does in each order of the runs.
     assumed : tuple[str, ...]
-        What nobody said and was assumed, a phrase each.
+        What was assumed, a phrase each.
     partial : bool
         Whether it was stopped before all was looked at.
     version : str
@@ -2537,7 +2537,7 @@ class Sensitivity(Result, frozen=True, kw_only=True):
     metrics : dict[str, OfMetric]
         Sensitivities of each metric; "noise" stands for all that is random in a test.
     assumed : tuple[str, ...]
-        What nobody said and was assumed, a phrase each.
+        What was assumed, a phrase each.
     version : str
         Version of umbmark.
     """
@@ -2691,7 +2691,7 @@ class MonteCarlo(Result, frozen=True):
     sources : tuple[str, ...]
         Where values are from, a phrase each.
     assumed : tuple[str, ...]
-        What nobody said and was assumed, a phrase each.
+        What was assumed, a phrase each.
     published : Published or None
         What was published of this test; None where nothing was.
     version : str
@@ -2806,7 +2806,7 @@ class Sweep(Result, frozen=True):
     points : tuple[Point, ...]
         The points, in order.
     assumed : tuple[str, ...]
-        What nobody said and was assumed, a phrase each.
+        What was assumed, a phrase each.
     version : str
         Version of umbmark.
     """
@@ -2909,7 +2909,7 @@ class Tolerance(Result, frozen=True):
     choices_looked_at : int
         Number of choices that were looked at.
     assumed : tuple[str, ...]
-        What nobody said and was assumed, a phrase each.
+        What was assumed, a phrase each.
     version : str
         Version of umbmark.
     """
@@ -3009,7 +3009,7 @@ class TrackComparison(Result, frozen=True):
         What was found of the data before anything was fitted: faults, clock and mounting of the
         reference, jumps, wrong poses, runs far from the others.
     size : float
-        Probability with which a right model is accused all the same.
+        False-alarm rate: probability with which a right model is accused.
     version : str
         Version of umbmark.
     left_m : float or None
