@@ -49,7 +49,7 @@ fn value(key: &str, given: &Bound<'_, PyAny>) -> PyResult<Value> {
     }
 }
 
-/// What the reader of a table refuses, without the line of a file that is none.
+/// What the reader of a table refuses, without the line, because there is no file.
 pub fn refused(error: &DatasetError) -> PyErr {
     let text = error.to_string();
     PyValueError::new_err(error.at().map_or(text.clone(), |at| text.replacen(&at.to_string(), &at.file, 1)))
