@@ -190,8 +190,7 @@ fn ranking_text(ranking: &[Suspect]) -> String {
             p_text(s.p_adjusted),
         ]
     };
-    let mut text =
-        String::from("\neffects tested, the likeliest first (adjusted p: for the number of tests)\n\n");
+    let mut text = String::from("\neffects tested, the likeliest first (adjusted p: for the number of tests)\n\n");
     let told = &ranking[..ranking.len().min(SUSPECTS)];
     text += &table(&["effect", "size", "F", "p", "adjusted p"], told.iter().map(row));
     text += "\n";

@@ -18,8 +18,11 @@ const BESIDE: f64 = 0.3;
 /// A digit is so wide, in lengths.
 const WIDE: f64 = 0.35;
 
-pub(super) static FIGURE: FigureKind =
-    FigureKind { name: "laws", about: "laws that no catalogue lists: cross-validated error against length", build: figure };
+pub(super) static FIGURE: FigureKind = FigureKind {
+    name: "laws",
+    about: "laws that no catalogue lists: cross-validated error against length",
+    build: figure,
+};
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let learnt = study.learnt()?;

@@ -35,10 +35,7 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
     let most = model.iter().max_by(|a, b| a.share.position.total_cmp(&b.share.position));
     let says = most.map_or(String::new(), |part| {
         let share = 100.0 * part.share.position;
-        format!(
-            "{share:.0} % of the squared error of the model comes from {}, more than from any other.",
-            name(part)
-        )
+        format!("{share:.0} % of the squared error of the model comes from {}, more than from any other.", name(part))
     });
     let rows = model.iter().zip(&nominal).zip(&labels).map(|((model, nominal), label)| {
         let cell = |part: &Part, k: usize| with_half(&part.mean[k], COMPONENTS[k].1);

@@ -10,8 +10,11 @@ use crate::tone::Tone;
 /// The largest error is drawn no longer than this share of the path's width.
 const SHARE: f64 = 0.2;
 
-pub(super) static FIGURE: FigureKind =
-    FigureKind { name: "tracks", about: "measured, computed and modelled path, with the error magnified", build: figure };
+pub(super) static FIGURE: FigureKind = FigureKind {
+    name: "tracks",
+    about: "measured, computed and modelled path, with the error magnified",
+    build: figure,
+};
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let paths = study.paths()?;
