@@ -121,5 +121,5 @@ fn returns_in_millimetres_are_refused_with_the_names_of_the_columns() {
     let all = scattered().into_iter().map(|(d, e)| (d, ReturnError { x: 1e3 * e.x, y: 1e3 * e.y, ..e }));
     let data = dataset(&Robot::labmate(), &Path::umbmark(), &all.collect::<Vec<_>>());
     let error = calibrate(&data, &Options::default()).unwrap_err().to_string();
-    assert!(error.starts_with("nothing can be said of the robot yet") && error.contains("ex_mm"), "{error}");
+    assert!(error.starts_with("the robot cannot be judged yet") && error.contains("ex_mm"), "{error}");
 }
