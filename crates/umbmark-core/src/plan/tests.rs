@@ -241,7 +241,7 @@ fn what_cannot_be_planned_is_refused_with_the_reason() {
     let robot = Robot::labmate();
     let refuse = |name, value| Sought::named(name, value, &robot).unwrap_err().to_string();
     assert!(refuse("e_bb", 1.0).contains("no effect has a size \"e_bb\""));
-    assert_eq!(refuse("eb", 1.0), "eb = 1 does nothing: there is nothing to see");
+    assert_eq!(refuse("eb", 1.0), "eb = 1 has no effect: there is nothing to detect");
     assert!(refuse("eb", -1.0).contains("e_b must be between"));
     let setting = setting(&Path::umbmark());
     assert_eq!(

@@ -287,7 +287,7 @@ fn runs_that_were_wired_otherwise_are_named_and_only_these() {
         let expected: Vec<String> = exchanged.iter().map(|run| format!("run_{run}")).collect();
         let [Fault::InRuns { fault, runs }] = &found.faults[..] else { panic!("{exchanged:?}: {:?}", found.faults) };
         assert_eq!((&**fault, runs), (&Fault::Exchanged, &expected));
-        assert!(!found.is_sound() && found.faults[0].remedy().contains("mend the recordings of"));
+        assert!(!found.is_sound() && found.faults[0].remedy().contains("correct the recordings of"));
         assert!(expected.iter().all(|name| found.faults[0].sentence().contains(name)));
     }
     // All of them are wired alike: no run differs.
