@@ -54,7 +54,7 @@ pub struct Identifiability {
 /// assert_eq!(one_way.rank, 1);
 /// assert!((one_way.hidden[0].ratio.unwrap() + 7.49).abs() < 0.01);
 /// assert_eq!(identifiability(&model, &Path::umbmark(), &Direction::BOTH, true)?.rank, 2);
-/// # Ok::<(), umbmark_core::diagnose::FitError>(())
+/// # Ok::<(), umbmark_core::evidence::FitError>(())
 /// ```
 pub fn identifiability(
     model: &Model,
