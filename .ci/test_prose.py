@@ -1,4 +1,4 @@
-"""Plain words: messages, help, docs and comments have none of the idioms that readers stumble over."""
+"""Plain words: messages, help, docs and comments have none of the idioms that are hard to read."""
 
 import re
 import subprocess
