@@ -156,18 +156,25 @@ pub(super) fn compare(
     })
 }
 
-/// A model with what the motion says of the reference, where the model says nothing of it and then predicts the steps between
-/// measurements better: what looks like a lever arm may be a sideways motion that the model has already.
+/// A model with what the motion says of the reference, where the model says nothing of it, less what makes the steps between
+/// measurements worse: what looks like a lever arm may be a sideways motion that the model has already. All is put on before anything is
+/// taken off, because a clock's offset and its rate are one line: neither helps alone.
 fn with_reference(observed: &Observed, model: &Model) -> Result<(Model, Vec<Taken>), FitError> {
-    let (mut model, mut taken) = (model.clone(), Vec::new());
-    for found in observed.reference_beside(&model) {
+    let with = |taken: &[Taken]| {
         let mut with = model.clone();
-        found.put_on(&mut with)?;
-        if step_errors(observed, &with) < step_errors(observed, &model) {
-            (model, taken) = (with, [taken, vec![found]].concat());
+        taken.iter().try_for_each(|found| found.put_on(&mut with))?;
+        Ok::<_, FitError>(with)
+    };
+    let mut taken = observed.reference_beside(model);
+    let mut best = with(&taken)?;
+    for found in taken.clone() {
+        let rest: Vec<Taken> = taken.iter().filter(|other| **other != found).copied().collect();
+        let less = with(&rest)?;
+        if step_errors(observed, &less) <= step_errors(observed, &best) {
+            (best, taken) = (less, rest);
         }
     }
-    Ok((model, taken))
+    Ok((best, taken))
 }
 
 /// Sum of the squared errors of position that single steps add \[m²\].

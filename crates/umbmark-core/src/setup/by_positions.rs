@@ -1,5 +1,6 @@
 //! Return headings that go with return positions.
 
+use super::returns::median;
 use crate::drive::Robot;
 use crate::effect::{Evaluate, Model};
 use crate::fit::{Options, Problem, RANK_TOLERANCE, least_squares, null_directions};
@@ -21,7 +22,7 @@ pub(super) fn headings_by_positions(returns: &[Vec<ReturnError>; 2], robot: &Rob
     let mut drives = Vec::new();
     for direction in Direction::BOTH {
         let own = &returns[direction as usize];
-        let [x, y] = [|e: &ReturnError| e.x, |e: &ReturnError| e.y].map(|of| middle(own.iter().map(of).collect()));
+        let [x, y] = [|e: &ReturnError| e.x, |e: &ReturnError| e.y].map(|of| median(own.iter().map(of).collect()));
         drives.push(Drive {
             track: Track::from_path(path, direction, robot),
             told: path.end(direction),
@@ -37,12 +38,6 @@ pub(super) fn headings_by_positions(returns: &[Vec<ReturnError>; 2], robot: &Rob
     let ends = problem.ends(&fit.values);
     let headings = problem.drives.iter().zip(ends).map(|(drive, end)| wrap(end.heading - drive.told.heading));
     headings.collect::<Vec<f64>>().try_into().ok()
-}
-
-/// The upper of two middle values.
-fn middle(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }
 
 /// The path driven in one direction.

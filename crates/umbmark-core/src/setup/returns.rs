@@ -183,7 +183,7 @@ fn way(log: &TickLog, robot: &Robot) -> Option<f64> {
     (way > 0.0 && way.is_finite()).then_some(way)
 }
 
-fn median(mut values: Vec<f64>) -> Option<f64> {
+pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let n = values.len();
     (n > 0).then(|| 0.5 * (values[(n - 1) / 2] + values[n / 2]))

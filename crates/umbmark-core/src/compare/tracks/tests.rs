@@ -206,6 +206,18 @@ fn the_place_of_the_marker_is_taken_from_the_motion_only_where_the_model_does_no
     assert!(right.along.position < 1.1 * without.along.position, "{} {}", right.along.position, without.along.position);
 }
 
+/// A clock that is off by 60 ms at START and right in the middle of a run: without its rate the offset makes the poses worse.
+#[test]
+fn offset_and_rate_of_the_clock_are_taken_together_though_neither_helps_alone() {
+    let model = robot_with(&[]);
+    let duration = watched(&model, 1, 3).runs[0].log.as_ref().unwrap().time.last().copied().unwrap();
+    let clock = [("reference_delay", "delay_s", 0.06), ("reference_clock_rate", "ratio", -0.12 / duration)];
+    let judged = judged(&watched(&robot_with(&clock), 5, 3), &model);
+    let taken: Vec<&str> = judged.taken.iter().map(|taken| taken.effect).collect();
+    assert_eq!(taken, ["reference_delay", "reference_clock_rate"]);
+    assert!(judged.along.position < 0.03, "{:?}", judged.along);
+}
+
 /// Seeds 100 on. p of each test and of all together, for the true model and for one fitted to the same runs; on squares and on
 /// circles.
 #[test]
