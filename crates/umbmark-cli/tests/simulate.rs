@@ -53,6 +53,29 @@ fn the_same_seed_writes_the_same_bytes_and_nothing_is_replaced_unasked() {
 }
 
 #[test]
+fn a_robot_that_is_wired_otherwise_is_written_as_its_wires_are_and_reads_back_as_it_drove() {
+    let folder = tempfile::tempdir().unwrap();
+    let written = |name: &str, wiring: &str| {
+        let (robot, place) = (folder.path().join(format!("{name}.toml")), folder.path().join(name));
+        let text = format!("[robot]\nwheelbase_m = 0.3\nwheel_diameter_m = 0.1\nticks_per_revolution = 2000\n{wiring}");
+        std::fs::write(&robot, text).unwrap();
+        let path = |path: &Path| path.to_str().unwrap().to_owned();
+        simulate(&["--robot", &path(&robot), "-o", &path(&place), "--side", "0.5", "--runs", "1", "--ed", "1.01"])
+            .success();
+        let log = std::fs::read_to_string(place.join("runs/ccw_01.csv")).unwrap();
+        let last = log.lines().last().unwrap().split(',').skip(1).take(2).map(|cell| cell.parse().unwrap());
+        let [left, right] = last.collect::<Vec<f64>>().try_into().unwrap();
+        ([left, right], umbmark_io::load(&place).unwrap())
+    };
+    let ([left, right], plain) = written("plain", "");
+    let (columns, wired) = written("wired", "wheels_exchanged = true\nleft_counts_backward = true\n");
+    assert_ne!(left, right);
+    assert_eq!(columns, [-right, left]);
+    let logs = [&plain, &wired].map(|data| data.runs[0].log.as_ref().unwrap().clone());
+    assert_eq!((&logs[0].left, &logs[0].right), (&logs[1].left, &logs[1].right));
+}
+
+#[test]
 fn with_a_tape_measure_only_the_end_pose_is_known() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("tape");
