@@ -1,7 +1,7 @@
 //! What one effect of usual size does along a path, ccw and cw.
 
 use serde_json::{Value, json};
-use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::drive::{DriveKind, Robot};
 use umbmark_core::effect::{Entry, Model};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{CIRCLE, Direction, Path, SpeedProfile};
@@ -51,7 +51,7 @@ impl Signature {
     /// The signature of an effect's first number that has one, on the paper's square, or on a circle where the square shows nothing; `None` where it
     /// acts by chance only. The robot is the LabMate, and the CLAPPER where only that may have it.
     pub fn of(entry: &'static Entry) -> anyhow::Result<Option<Signature>> {
-        let trucks = entry.drives().each().all(Kind::has_trucks);
+        let trucks = entry.drives().each().all(DriveKind::has_trucks);
         let robot = match Preset::find("clapper") {
             Ok(preset) if trucks => preset.robot(),
             _ => Robot::labmate(),

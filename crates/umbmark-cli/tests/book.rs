@@ -8,7 +8,7 @@ use serde_json::Value;
 use snapbox::{Data, assert_data_eq};
 use std::path::Path;
 use std::process::Command;
-use umbmark_core::drive::{Drive, Kind, Kinds, Robot};
+use umbmark_core::drive::{Drive, DriveKind, DriveKinds, Robot};
 use umbmark_core::effect::{ActsOn, CATALOGUE};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::SHAPES;
@@ -69,7 +69,7 @@ fn the_page_of_the_drives_has_every_kind_and_its_keys() {
         "# Drives\n\nThis page lists the values of `drive` in `[robot]` of a [robot.toml](files.md#robottoml), with the keys of each. Those of\n\
          a differential drive also have other names. [The last table](#effects) groups the known effects by drive.\n",
     );
-    for kind in Kind::ALL {
+    for kind in DriveKind::ALL {
         let drive = kind.usual();
         text += &format!("\n## {}\n\n{}\n\n", kind.name(), kind.about());
         text += "| key | allowed | if left out | meaning |\n|---|---|---|---|\n";
@@ -85,7 +85,7 @@ fn the_page_of_the_drives_has_every_kind_and_its_keys() {
         text += &format!("- **Effects that are fitted first**: {}\n", listed(drive.first_effects().map(effect_link)));
     }
     text += "\n## Effects\n\n| drives | effects |\n|---|---|\n";
-    let mut groups: Vec<Kinds> = CATALOGUE.iter().map(|entry| entry.drives()).collect();
+    let mut groups: Vec<DriveKinds> = CATALOGUE.iter().map(|entry| entry.drives()).collect();
     groups.sort_by_key(|drives| (std::cmp::Reverse(drives.each().count()), drives.to_string()));
     groups.dedup();
     for drives in groups {
@@ -103,7 +103,8 @@ fn the_page_of_the_paths_has_every_shape_and_its_keys() {
          | shape | is | ends at START | drives that can make it |\n|---|---|---|---|\n",
     );
     for shape in SHAPES {
-        let drives = Kind::ALL.iter().filter(|kind| shape.usual().suits(&robot(kind.usual()))).map(|kind| kind.name());
+        let drives =
+            DriveKind::ALL.iter().filter(|kind| shape.usual().suits(&robot(kind.usual()))).map(|kind| kind.name());
         let ends = if shape.closed { "yes" } else { "no" };
         text += &format!("| `{}` | {} | {ends} | {} |\n", shape.name, shape.about, listed(drives));
     }

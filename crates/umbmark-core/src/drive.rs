@@ -23,7 +23,7 @@ mod kinematics;
 pub use clapper::LinkReading;
 pub use differential::WheelTravel;
 pub use encoder::{Encoder, MAX_COUNTER_BITS, Wiring, roll_over};
-pub use kind::{Kind, Kinds};
+pub use kind::{DriveKind, DriveKinds};
 pub use kinematics::Spelling;
 
 use crate::parameter::{Parameter, ParameterError, Sizes};
@@ -103,13 +103,13 @@ macro_rules! drives {
 
         impl Drive {
             /// Its kind.
-            pub fn kind(&self) -> Kind {
+            pub fn kind(&self) -> DriveKind {
                 match self {
-                    $(Drive::$kind(_) => Kind::$kind,)+
+                    $(Drive::$kind(_) => DriveKind::$kind,)+
                 }
             }
 
-            /// The numbers that its kind [lists](Kind::parameters), in that order.
+            /// The numbers that its kind [lists](DriveKind::parameters), in that order.
             pub fn values(&self) -> Vec<f64> {
                 match self {
                     $(Drive::$kind(drive) => drive.values(),)+
@@ -185,8 +185,8 @@ macro_rules! drives {
 every_drive!(drives);
 
 impl Drive {
-    /// A drive from the numbers that its kind [lists](Kind::parameters), in that order.
-    pub fn from_values(kind: Kind, values: &[f64]) -> Result<Drive, DriveError> {
+    /// A drive from the numbers that its kind [lists](DriveKind::parameters), in that order.
+    pub fn from_values(kind: DriveKind, values: &[f64]) -> Result<Drive, DriveError> {
         kind.drive(values)
     }
 
@@ -298,7 +298,7 @@ impl Robot {
 
     /// Ticks of the axle's wheels since START, as logs hold them, for readings of the drive's own counters.
     pub fn axle_ticks(&self, counters: [Vec<f64>; 2]) -> [Vec<f64>; 2] {
-        if self.drive.kind().counters() == Kind::Differential.counters() {
+        if self.drive.kind().counters() == DriveKind::Differential.counters() {
             return counters;
         }
         let per_tick = self.metres_per_tick();
@@ -317,7 +317,7 @@ impl Robot {
 
     /// Whole readings of the drive's own counters from which [`Robot::axle_ticks`] makes these ticks of the axle's wheels.
     pub fn counters(&self, ticks: [&[f64]; 2]) -> [Vec<f64>; 2] {
-        if self.drive.kind().counters() == Kind::Differential.counters() || ticks[0].is_empty() {
+        if self.drive.kind().counters() == DriveKind::Differential.counters() || ticks[0].is_empty() {
             return ticks.map(<[f64]>::to_vec);
         }
         let per_tick = self.metres_per_tick();
@@ -355,7 +355,7 @@ mod tests {
     #[test]
     fn the_counts_of_every_drive_mean_the_motion_that_made_them() {
         let encoder = Robot::labmate().encoder;
-        for drive in Kind::ALL.iter().map(|kind| kind.usual()) {
+        for drive in DriveKind::ALL.iter().map(|kind| kind.usual()) {
             for (forward, rotation) in [(4.0, 0.0), (-0.3, 0.0), (0.0, 1.5), (0.0, -1.5), (3.0, 1.0), (3.0, -1.0)] {
                 let Some(Counting { per_count: [first, second], gain, held }) =
                     drive.counting(&encoder, forward, rotation)
@@ -379,7 +379,7 @@ mod tests {
 
     #[test]
     fn every_drive_is_made_of_its_values() {
-        for kind in Kind::ALL {
+        for kind in DriveKind::ALL {
             let drive = kind.usual();
             assert_eq!((drive.kind(), Drive::from_values(*kind, &drive.values())), (*kind, Ok(drive)));
         }

@@ -27,7 +27,7 @@ mod number;
 mod text;
 mod words;
 
-use crate::drive::{Kind, Kinds, Robot, Wheel, WheelTravel};
+use crate::drive::{DriveKind, DriveKinds, Robot, Wheel, WheelTravel};
 use crate::parameter::{Parameter, nearest};
 use crate::path::Direction;
 use crate::register;
@@ -35,7 +35,7 @@ use crate::register;
 pub use bumps::extra_travel;
 pub use chain::Chain;
 pub use changes::Changes;
-pub use context::{Context, Place, Progress, Sight};
+pub use context::{Context, Progress, RunContext, Sight};
 pub use conversion::{CONVERTED, Conversion};
 pub use entry::{Entry, Evaluate, MeanLaws, RandomLaws};
 pub use formula::{Formula, FormulaError, FormulaVariable, Target};
@@ -114,7 +114,7 @@ register! {
 pub const MAX_PARAMETERS: usize = 6;
 
 /// The effects that a robot with this drive may have.
-pub fn of_drive(kind: Kind) -> impl Iterator<Item = &'static Entry> + Clone {
+pub fn of_drive(kind: DriveKind) -> impl Iterator<Item = &'static Entry> + Clone {
     CATALOGUE.iter().copied().filter(move |entry| entry.drives().contains(kind))
 }
 
@@ -241,7 +241,7 @@ pub trait Effect {
     const ABOUT: About;
 
     /// The drives that may have it.
-    const DRIVES: Kinds = Kinds::of(Kind::Differential);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential);
 
     /// What these values mean for the robot: a sentence. Empty where there is nothing to say.
     fn means(_p: &[f64], _robot: &Robot) -> String {

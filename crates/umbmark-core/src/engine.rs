@@ -52,7 +52,7 @@ mod word;
 pub use crate::geometry::Instructions;
 #[cfg(test)]
 pub(crate) use convoy::tests as convoy_tests;
-pub use convoy::{Convoy, Floor, Predicted, Step, Trucks};
+pub use convoy::{Convoy, ConvoyStep, Floor, Predicted, Trucks};
 pub use integrator::{Integrator, Method, Segment};
 pub use monoid::Monoid;
 pub use motion::Motion;

@@ -19,7 +19,9 @@ use crate::watch::Watch;
 pub use figures::{
     BothWays, BumpPlace, Cluster, Hidden, Masking, Rectangle, bump_places, clusters, figure_eight, masking, rectangle,
 };
-pub use tables::{From, LinkError, Place, RobotOfTableOne, RobotOfTableTwo, TableOne, TableTwo, table_one, table_two};
+pub use tables::{
+    From, LinkError, PublishedNumber, RobotOfTableOne, RobotOfTableTwo, TableOne, TableTwo, table_one, table_two,
+};
 
 /// An experiment that cannot be repeated.
 #[derive(Debug, thiserror::Error)]

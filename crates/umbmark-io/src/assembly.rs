@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use umbmark_core::dataset::NoRobot;
 use umbmark_core::dataset::ReferenceFrame;
 use umbmark_core::dataset::{Dataset, Run, RunClock, RunTopics, TickLog};
-use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::drive::{DriveKind, Robot};
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::{Direction, Path};
 use umbmark_core::run::StartKnown;
@@ -72,8 +72,8 @@ impl Assembly {
     }
 
     /// The robot's drive; differential where there is no robot.
-    pub fn kind(&self) -> Kind {
-        self.robot.as_ref().map_or_else(Kind::default, |robot| robot.drive.kind())
+    pub fn kind(&self) -> DriveKind {
+        self.robot.as_ref().map_or_else(DriveKind::default, |robot| robot.drive.kind())
     }
 
     /// Adds the recording of a file that is called `stem`, with the poses that a tracking system saw of it, where there are some.

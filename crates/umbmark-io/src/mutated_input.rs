@@ -15,7 +15,7 @@ use super::stale::drop_stale;
 use super::start_frame::move_to_start;
 use std::io::Read;
 use umbmark_core::dataset::TickLog;
-use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::drive::{DriveKind, Robot};
 use umbmark_core::random::Stream;
 use umbmark_core::run::{PoseRow, ReferenceTrack, place};
 use umbmark_core::synchronise::synchronise;
@@ -119,7 +119,7 @@ fn damaged_tick_logs() {
     for (purpose, bits) in [(2, Some(16)), (3, None)] {
         let good = if bits.is_some() { good.to_owned() } else { good.replace("655", "") };
         survive(&good, purpose, |text| {
-            parse_tick_log(source(text), Kind::default(), &mut Vec::new())
+            parse_tick_log(source(text), DriveKind::default(), &mut Vec::new())
                 .is_ok_and(|recording| finished(recording, bits))
         });
     }
@@ -169,7 +169,7 @@ fn a_log_is_the_same_however_its_bytes_arrive() {
         let bytes = damage(good.as_bytes(), &mut stream);
         let read = |source: Result<Source, DatasetError>| {
             let mut noticed = Vec::new();
-            let read = source.and_then(|source| parse_tick_log(source, Kind::default(), &mut noticed));
+            let read = source.and_then(|source| parse_tick_log(source, DriveKind::default(), &mut noticed));
             (read.map_err(|error| error.to_string()), noticed)
         };
         let dribble = Dribble(&bytes, 1 + (round % 40) as usize);
@@ -259,7 +259,7 @@ fn damaged_counters_with_time_stamps_out_of_order() {
     let reset = "t_s,ticks_left,ticks_right\n0,1000,1000\n0.01,1003,1003\n0.03,3,2\n0.02,0,0\n0.04,6,6\n0.04,7,6\n";
     for (purpose, bits) in [(12, Some(16)), (13, None)] {
         survive(reset, purpose, |text| {
-            parse_tick_log(source(text), Kind::default(), &mut Vec::new())
+            parse_tick_log(source(text), DriveKind::default(), &mut Vec::new())
                 .is_ok_and(|recording| finished(recording, bits))
         });
     }

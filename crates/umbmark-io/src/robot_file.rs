@@ -4,7 +4,7 @@ use super::document::{Entry, Source, Table};
 use super::error::{DatasetError, did_you_mean};
 use super::source::read_text;
 use umbmark_core::dataset::ReferenceFrame;
-use umbmark_core::drive::{Drive, Encoder, Kind, Robot, Spelling, Wiring};
+use umbmark_core::drive::{Drive, DriveKind, Encoder, Robot, Spelling, Wiring};
 use umbmark_core::parameter::Parameter;
 use umbmark_core::path::{Path, PathError, SHAPES, Shape, SpeedProfile, WAYPOINTS};
 
@@ -47,7 +47,7 @@ impl RobotFile {
 
 /// The table of a robot.
 pub(super) fn read_robot_table(table: &Table) -> Result<Robot, DatasetError> {
-    let kind = table.get("drive").map_or_else(|| Ok(Kind::default()), |drive| read_kind(&drive))?;
+    let kind = table.get("drive").map_or_else(|| Ok(DriveKind::default()), |drive| read_kind(&drive))?;
     let backward = kind.counters().map(|counter| format!("{counter}_counts_backward"));
     let mut keys = vec!["name", "drive", EXCHANGED, &backward[0], &backward[1]];
     keys.extend(kind.parameters().iter().map(|p| p.name));
@@ -66,16 +66,16 @@ pub(super) fn read_robot_table(table: &Table) -> Result<Robot, DatasetError> {
     }
 }
 
-fn read_kind(drive: &Entry) -> Result<Kind, DatasetError> {
-    let names: Vec<&str> = Kind::ALL.iter().map(|kind| kind.name()).collect();
+fn read_kind(drive: &Entry) -> Result<DriveKind, DatasetError> {
+    let names: Vec<&str> = DriveKind::ALL.iter().map(|kind| kind.name()).collect();
     let allowed = format!("one of {}", names.join(", "));
     let word = drive.word(&allowed)?;
-    let kind = Kind::ALL.iter().copied().find(|kind| kind.name() == word);
+    let kind = DriveKind::ALL.iter().copied().find(|kind| kind.name() == word);
     kind.ok_or_else(|| drive.wrong(&allowed, &did_you_mean(word, names)))
 }
 
 /// A number of a drive, by whichever of its keys is there; one that may do nothing may be left out.
-fn read_number(table: &Table, kind: Kind, parameter: &Parameter) -> Result<f64, DatasetError> {
+fn read_number(table: &Table, kind: DriveKind, parameter: &Parameter) -> Result<f64, DatasetError> {
     let spellings: Vec<&Spelling> = kind.spellings().iter().filter(|s| s.of.contains(&parameter.name)).collect();
     let names: Vec<&str> = spellings.iter().map(|s| s.parameter.name).collect();
     let own = [parameter.name];

@@ -17,7 +17,7 @@ use crate::{existing, json, refused, unwritten};
 const EVERY: Duration = Duration::from_secs(2);
 
 /// Where a study is written down, as Python says it.
-pub struct Place {
+pub struct CheckpointOptions {
     /// The file.
     pub file: PathBuf,
     /// Whether to go on with it.
@@ -26,7 +26,7 @@ pub struct Place {
     pub replace: bool,
 }
 
-impl Place {
+impl CheckpointOptions {
     /// The same for the core.
     pub fn checkpoint(self) -> Checkpoint {
         let found = match (self.resume, self.replace) {

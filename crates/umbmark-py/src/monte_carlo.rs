@@ -16,7 +16,7 @@ use umbmark_core::result::{self, MonteCarlo, NoiseFree, Told};
 use umbmark_core::simulate::{Odometry, Phase};
 use umbmark_io::checkpoint::Keeper;
 
-use crate::checkpoint::{Place, unusable};
+use crate::checkpoint::{CheckpointOptions, unusable};
 use crate::model::Model;
 use crate::path::Path;
 use crate::work::{Watch, detached, watched, watched_to_its_end};
@@ -185,7 +185,7 @@ impl Study {
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Ensemble, Option<Bound<'py, PyDict>>, f64)> {
         let shard = Shard::new(shard.0, shard.1).map_err(refused)?;
-        let checkpoint = checkpoint.map(|file| Place { file, resume, replace }.checkpoint());
+        let checkpoint = checkpoint.map(|file| CheckpointOptions { file, resume, replace }.checkpoint());
         if checkpoint.is_some() && (known.is_some() || (keep && resume)) {
             return Err(PyValueError::new_err("what is known stands in the checkpoint: leave known, or keep, out"));
         }

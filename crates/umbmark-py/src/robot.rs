@@ -56,7 +56,7 @@ impl Robot {
     /// Give the names of all drives, each with what it is.
     #[staticmethod]
     fn drives(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-        drive::Kind::ALL.iter().map(|kind| (kind.name(), kind.about())).into_py_dict(py)
+        drive::DriveKind::ALL.iter().map(|kind| (kind.name(), kind.about())).into_py_dict(py)
     }
 
     /// Read the robot of a robot.toml.

@@ -9,7 +9,7 @@ use umbmark_core::monte_carlo::{Axis, Quantity, Sweep};
 use umbmark_core::result;
 use umbmark_io::checkpoint::Keeper;
 
-use crate::checkpoint::{Place, unusable};
+use crate::checkpoint::{CheckpointOptions, unusable};
 use crate::monte_carlo::Study;
 use crate::work::{Watch, watched, watched_to_its_end};
 use crate::{json, refused};
@@ -31,7 +31,7 @@ pub fn sweep(
     };
     let axes = axes.iter().map(axis).collect::<PyResult<Vec<Axis>>>()?;
     let sweep = Sweep::new(study, &axes).map_err(refused)?;
-    let checkpoint = checkpoint.map(|(file, resume, replace)| Place { file, resume, replace }.checkpoint());
+    let checkpoint = checkpoint.map(|(file, resume, replace)| CheckpointOptions { file, resume, replace }.checkpoint());
     let known = checkpoint.as_ref().map(|checkpoint| checkpoint.begin_sweep(&sweep)).transpose();
     let mut points = known.map_err(unusable)?.unwrap_or_default();
     let watched = if checkpoint.is_some() { watched_to_its_end } else { watched };

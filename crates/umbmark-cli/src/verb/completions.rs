@@ -7,7 +7,7 @@ use crate::Session;
 
 /// What to print.
 #[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
-enum Kind {
+enum Script {
     Bash,
     Zsh,
     Fish,
@@ -20,18 +20,18 @@ enum Kind {
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// The shell, or `man`
-    kind: Kind,
+    kind: Script,
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let mut command = crate::command();
     let mut text = Vec::new();
     let shell = match arguments.kind {
-        Kind::Bash => Some(clap_complete::Shell::Bash),
-        Kind::Zsh => Some(clap_complete::Shell::Zsh),
-        Kind::Fish => Some(clap_complete::Shell::Fish),
-        Kind::PowerShell => Some(clap_complete::Shell::PowerShell),
-        Kind::Man => None,
+        Script::Bash => Some(clap_complete::Shell::Bash),
+        Script::Zsh => Some(clap_complete::Shell::Zsh),
+        Script::Fish => Some(clap_complete::Shell::Fish),
+        Script::PowerShell => Some(clap_complete::Shell::PowerShell),
+        Script::Man => None,
     };
     match shell {
         Some(shell) => clap_complete::generate(shell, &mut command, "umbmark", &mut text),

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use umbmark_core::paper::{self, Bench, BothWays, LinkError, PaperError, Place};
+use umbmark_core::paper::{self, Bench, BothWays, LinkError, PaperError, PublishedNumber};
 use umbmark_core::result::Paper;
 use umbmark_core::watch::Watch;
 
@@ -85,7 +85,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
 }
 
 /// Cells of a published number, in a unit of which so many are one of SI.
-fn cells(place: &Place, factor: f64) -> Vec<String> {
+fn cells(place: &PublishedNumber, factor: f64) -> Vec<String> {
     let [low, high] = place.middle_95;
     let scaled = |value: f64| format!("{:.*}", if factor > 500.0 { 0 } else { 2 }, value * factor);
     vec![

@@ -71,7 +71,7 @@ impl Replicas {
         (statistics, (1 + as_small) as f64 / (1 + self.tests.len()) as f64)
     }
 
-    fn place(&self, measured: &Errors, predicted: &Errors, group: usize, quantity: Quantity) -> Place {
+    fn place(&self, measured: &Errors, predicted: &Errors, group: usize, quantity: Quantity) -> PredictiveCheck {
         let mut draws: Vec<f64> = self.tests.iter().map(|test| quantity.of(&test[group])).collect();
         let centre = match quantity.mean_of() {
             Some(_) => quantity.of(&predicted[group]),
@@ -99,11 +99,11 @@ impl Replicas {
             let equal = sorted.len() - below - above;
             (2.0 * (1 + equal + below.min(above)) as f64 / (1 + sorted.len()) as f64).min(1.0)
         };
-        Place { predicted: centre, p: p(seen), of_replicas: draws.iter().map(|d| p(*d)).collect() }
+        PredictiveCheck { predicted: centre, p: p(seen), of_replicas: draws.iter().map(|d| p(*d)).collect() }
     }
 }
 
-struct Place {
+struct PredictiveCheck {
     predicted: f64,
     p: f64,
     /// p of each simulated test among the others.

@@ -24,7 +24,7 @@ use crate::inspect::moves_of;
 use crate::likelihood::{Observed, Taken};
 use crate::path::Direction;
 use crate::setup::Setup;
-use followed::Followed;
+use followed::{Followed, MeasuredBlock};
 use std::sync::Arc;
 
 pub use covariate::{COVARIATES, Covariate, Rate, Span};
@@ -244,7 +244,7 @@ fn rms(runs: &[Followed], first: impl Fn(&Followed) -> usize) -> Rms {
 }
 
 fn residuals(run: &Followed) -> TrackResiduals {
-    let seen = |place: &followed::Place| {
+    let seen = |place: &MeasuredBlock| {
         let error = place.predicted.between(&place.measured);
         [error.x, error.y, error.heading]
     };

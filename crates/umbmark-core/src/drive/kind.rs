@@ -9,17 +9,17 @@ macro_rules! kinds {
     ($($kind:ident($file:ident::$drive:ident),)+) => {
         /// A kind of drive.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        pub enum Kind {
+        pub enum DriveKind {
             $(#[doc = concat!("That of [`", stringify!($drive), "`](super::", stringify!($drive), ").")] $kind,)+
         }
 
-        impl Kind {
+        impl DriveKind {
             /// All of them.
-            pub const ALL: &[Kind] = &[$(Kind::$kind,)+];
+            pub const ALL: &[DriveKind] = &[$(DriveKind::$kind,)+];
 
             const fn facts(self) -> &'static Facts {
                 match self {
-                    $(Kind::$kind => const { &Facts::of::<super::$drive>() },)+
+                    $(DriveKind::$kind => const { &Facts::of::<super::$drive>() },)+
                 }
             }
         }
@@ -60,14 +60,14 @@ impl Facts {
     }
 }
 
-impl Default for Kind {
+impl Default for DriveKind {
     /// Two driven wheels on one axle, as in the paper.
-    fn default() -> Kind {
-        Kind::Differential
+    fn default() -> DriveKind {
+        DriveKind::Differential
     }
 }
 
-impl Kind {
+impl DriveKind {
     /// As in files.
     pub fn name(self) -> &'static str {
         self.facts().name
@@ -132,7 +132,7 @@ impl Kind {
         self.drive(&usual).expect("usual numbers make a drive")
     }
 
-    /// A drive from the numbers that the kind [lists](Kind::parameters), in that order.
+    /// A drive from the numbers that the kind [lists](DriveKind::parameters), in that order.
     pub(super) fn drive(self, values: &[f64]) -> Result<Drive, DriveError> {
         (self.facts().from_values)(values)
     }
@@ -140,40 +140,40 @@ impl Kind {
 
 /// Some kinds of drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Kinds(u8);
+pub struct DriveKinds(u8);
 
-impl Kinds {
+impl DriveKinds {
     /// Every drive.
-    pub const ALL: Kinds = Kinds((1 << Kind::ALL.len()) - 1);
+    pub const ALL: DriveKinds = DriveKinds((1 << DriveKind::ALL.len()) - 1);
 
     /// One kind.
-    pub const fn of(kind: Kind) -> Kinds {
-        Kinds(1 << kind as u8)
+    pub const fn of(kind: DriveKind) -> DriveKinds {
+        DriveKinds(1 << kind as u8)
     }
 
     /// These and another.
-    pub const fn and(self, kind: Kind) -> Kinds {
-        Kinds(self.0 | 1 << kind as u8)
+    pub const fn and(self, kind: DriveKind) -> DriveKinds {
+        DriveKinds(self.0 | 1 << kind as u8)
     }
 
     /// Whether a kind is among them.
-    pub const fn contains(self, kind: Kind) -> bool {
+    pub const fn contains(self, kind: DriveKind) -> bool {
         self.0 & 1 << kind as u8 != 0
     }
 
     /// Each of them.
-    pub fn each(self) -> impl Iterator<Item = Kind> {
-        Kind::ALL.iter().copied().filter(move |kind| self.contains(*kind))
+    pub fn each(self) -> impl Iterator<Item = DriveKind> {
+        DriveKind::ALL.iter().copied().filter(move |kind| self.contains(*kind))
     }
 }
 
-impl std::fmt::Display for Kinds {
+impl std::fmt::Display for DriveKinds {
     /// "synchro", "differential and ackermann", "differential, synchro and clapper", "all".
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        if *self == Kinds::ALL {
+        if *self == DriveKinds::ALL {
             return f.write_str("all");
         }
-        let names: Vec<&str> = self.each().map(Kind::name).collect();
+        let names: Vec<&str> = self.each().map(DriveKind::name).collect();
         match names.split_last() {
             Some((last, others)) if !others.is_empty() => write!(f, "{} and {last}", others.join(", ")),
             _ => f.write_str(&names.concat()),

@@ -38,16 +38,16 @@ pub(super) trait Kinematics: Sized {
     /// Effects that it may have beside those which name it in their [`DRIVES`](crate::effect::Effect::DRIVES).
     const EFFECTS: &'static [&'static str] = &[];
 
-    /// See [`Kind::has_tick_logs`](super::Kind::has_tick_logs).
+    /// See [`DriveKind::has_tick_logs`](super::DriveKind::has_tick_logs).
     const HAS_TICK_LOGS: bool = true;
 
-    /// See [`Kind::has_axle_wheels`](super::Kind::has_axle_wheels).
+    /// See [`DriveKind::has_axle_wheels`](super::DriveKind::has_axle_wheels).
     const HAS_AXLE_WHEELS: bool = false;
 
-    /// See [`Kind::steers`](super::Kind::steers).
+    /// See [`DriveKind::steers`](super::DriveKind::steers).
     const STEERS: bool = false;
 
-    /// See [`Kind::has_trucks`](super::Kind::has_trucks).
+    /// See [`DriveKind::has_trucks`](super::DriveKind::has_trucks).
     const HAS_TRUCKS: bool = false;
 
     /// See [`Drive::first_effects`](super::Drive::first_effects).

@@ -2,7 +2,7 @@
 
 use super::words::{deg, either, percent};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
-use crate::drive::{Kind, Kinds, Robot};
+use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 use std::f64::consts::FRAC_PI_2;
@@ -33,7 +33,7 @@ impl Effect for AxleDistance {
         source: "kinematics; Lee, Chung & Yoo (2010) calibrate cars by such a square",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Ackermann);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let off = p[0] - 1.0;

@@ -2,7 +2,7 @@
 
 use super::words::{deg, side};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
-use crate::drive::{Kind, Kinds, Robot};
+use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -44,7 +44,7 @@ impl Effect for BaseYaw {
         source: "kinematics of three wheels on a circle; 1 mrad per metre is assumed",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Synchro);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Synchro);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let angle = libm::atan2(p[1], p[0]);

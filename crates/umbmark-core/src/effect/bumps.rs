@@ -2,7 +2,7 @@
 
 use super::words::{deg, size};
 use super::{About, ActsOn, Bump, BumpLaw, Effect, Entry, Stretch};
-use crate::drive::{Kind, Kinds, Robot, Wheel};
+use crate::drive::{DriveKind, DriveKinds, Robot, Wheel};
 use crate::parameter::{DefaultValue, Parameter};
 use crate::random::Stream;
 
@@ -40,7 +40,7 @@ impl Effect for Bumps {
                  for wheel radii of 66 to 75 mm",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential).and(DriveKind::Synchro);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let lost = lost_travel(p[1], p[2], p[3]);

@@ -2,7 +2,7 @@
 
 use super::floor_slope::{DRIFT, DRIFT_X, DRIFT_Y, carried, drift};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
-use crate::drive::{Kinds, Robot};
+use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -38,7 +38,7 @@ impl Effect for CarpetNap {
         source: "the carpet-drift vector of vacuum robots (patents of iRobot, US 9,223,312 and family); size assumed",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: DriveKinds = DriveKinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("{}.", carried(p, "on each metre"))

@@ -2,7 +2,7 @@
 
 use super::words::{either, mm};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
-use crate::drive::{Kind, Kinds, Robot};
+use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 use std::f64::consts::FRAC_PI_2;
@@ -35,7 +35,7 @@ impl Effect for ContactTrail {
         source: "kinematics; first-order theory of side-periodic errors on closed paths",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Synchro).and(Kind::Ackermann);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Synchro).and(DriveKind::Ackermann);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let way = mm(p[0] * FRAC_PI_2);

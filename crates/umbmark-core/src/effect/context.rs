@@ -122,7 +122,7 @@ impl<T> Context<T> {
 
 /// Where a run stands among the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Place {
+pub struct RunContext {
     /// Its number in the session, from 0.
     pub run: usize,
     /// Path length driven in the session before it \[m\].
@@ -168,7 +168,7 @@ pub struct Progress {
 
 impl Progress {
     /// A run of `robot` that begins at START.
-    pub fn new(robot: &Robot, place: Place, recorded: bool) -> Progress {
+    pub fn new(robot: &Robot, place: RunContext, recorded: bool) -> Progress {
         let per_tick = robot.metres_per_tick();
         let now = Context {
             session_distance: place.session_distance,
@@ -268,7 +268,7 @@ mod tests {
     use super::*;
 
     fn drive(pieces: &[(f64, f64)]) -> Vec<Context> {
-        let mut progress = Progress::new(&Robot::labmate(), Place::default(), true);
+        let mut progress = Progress::new(&Robot::labmate(), RunContext::default(), true);
         let travel = |(left, right): &(f64, f64)| WheelTravel { left: *left, right: *right };
         pieces.iter().map(|p| progress.piece(&travel(p), 0.1, [0.0; 2], [0.1; 2])).collect()
     }
@@ -288,7 +288,7 @@ mod tests {
 
     #[test]
     fn counters_that_tremble_in_a_turn_make_no_way_and_driving_backward_does() {
-        let mut progress = Progress::new(&Robot::labmate(), Place::default(), true);
+        let mut progress = Progress::new(&Robot::labmate(), RunContext::default(), true);
         let mut piece = |left: f64, right: f64, speeds: [f64; 2]| {
             progress.piece(&WheelTravel { left, right }, 0.01, speeds, speeds);
             progress.session_distance()
@@ -324,7 +324,7 @@ mod tests {
         let piece = drive(&[(0.005, 0.005)])[0];
         assert!((piece.speed - 0.05).abs() < 1e-15 && (piece.acceleration() - 1.0).abs() < 1e-12);
         assert_eq!(Context::<f64>::default().acceleration(), 0.0);
-        let mut progress = Progress::new(&Robot::labmate(), Place::default(), true);
+        let mut progress = Progress::new(&Robot::labmate(), RunContext::default(), true);
         let turn = progress.piece(&WheelTravel::default(), 0.5, [0.0; 2], [-0.034, 0.034]);
         assert!((turn.turn_acceleration() - 0.4).abs() < 1e-12, "{}", turn.turn_acceleration());
     }

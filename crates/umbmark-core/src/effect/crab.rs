@@ -2,7 +2,7 @@
 
 use super::words::{deg, mm, side};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
-use crate::drive::{Kinds, Robot};
+use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -34,7 +34,7 @@ impl Effect for Crab {
         source: "geometry; first-order theory of side-periodic errors on closed paths; size assumed",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: DriveKinds = DriveKinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

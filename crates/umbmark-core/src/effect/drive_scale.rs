@@ -2,7 +2,7 @@
 
 use super::words::{either, mm};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
-use crate::drive::{Kind, Kinds, Robot};
+use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -32,7 +32,7 @@ impl Effect for DriveScale {
         source: "kinematics; Martinelli (2002) has the same error per way",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Synchro);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Synchro);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let off = p[0] - 1.0;

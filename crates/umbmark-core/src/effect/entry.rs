@@ -2,7 +2,7 @@
 
 use super::laws::{BodyLaw, BumpLaw, ClockLaw, DiffusionLaw, LinkLaw, MeasurementLaw, SightLaw, StartLaw, WheelLaw};
 use super::{About, Bump, CATALOGUE, Changes, Context, Effect, MAX_PARAMETERS, Stretch, WheelVariance};
-use crate::drive::{Kind, Kinds, LinkReading, Robot, WheelTravel};
+use crate::drive::{DriveKind, DriveKinds, LinkReading, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Dual, Instructions, Pose2, Real};
 use crate::random::Stream;
 
@@ -99,7 +99,7 @@ impl RandomLaws {
 pub struct Entry {
     /// What people should know of it.
     pub about: About,
-    drives: Kinds,
+    drives: DriveKinds,
     /// What its laws change.
     pub changes: Changes,
     /// See [`Effect::means`].
@@ -207,8 +207,8 @@ impl Entry {
     }
 
     /// The drives that may have it: those of [`Effect::DRIVES`], and those that name it.
-    pub fn drives(&self) -> Kinds {
-        let adopting = Kind::ALL.iter().filter(|kind| kind.adopts(self.about.name));
+    pub fn drives(&self) -> DriveKinds {
+        let adopting = DriveKind::ALL.iter().filter(|kind| kind.adopts(self.about.name));
         adopting.fold(self.drives, |drives, kind| drives.and(*kind))
     }
 

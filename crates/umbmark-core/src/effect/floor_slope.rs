@@ -2,7 +2,7 @@
 
 use super::words::mm;
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
-use crate::drive::{Kinds, Robot};
+use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -59,7 +59,7 @@ impl Effect for FloorSlope {
                  against the slip whatever its size, 1 mm per radian assumed",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: DriveKinds = DriveKinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let (drift, slide) = (&p[..2], &p[2..]);

@@ -2,7 +2,7 @@
 
 use super::words::deg;
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
-use crate::drive::{Kinds, Robot};
+use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -62,7 +62,7 @@ impl Effect for FloorSlopeYaw {
         source: "load transfer on a slope, 1 mrad per metre assumed; Coulomb friction of scrubbing tyres, 5 mrad per radian assumed",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: DriveKinds = DriveKinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let most = |p: &[f64]| (deg(libm::hypot(p[0], p[1])), libm::round(libm::atan2(p[1], p[0]).to_degrees()));

@@ -2,7 +2,7 @@
 
 use super::words::{either, percent};
 use super::{About, ActsOn, Effect, Entry, LinkLaw};
-use crate::drive::{Kind, Kinds, LinkReading, Robot};
+use crate::drive::{DriveKind, DriveKinds, LinkReading, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -33,7 +33,7 @@ impl Effect for LinkLength {
         source: "kinematics of the corner; the paper (section 4.5) names errors of this kind and gives no size",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Clapper);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Clapper);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let word = either(p[0] - 1.0, "longer", "shorter");

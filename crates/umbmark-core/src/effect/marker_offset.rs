@@ -2,7 +2,7 @@
 
 use super::words::{either, mm, side};
 use super::{About, ActsOn, Effect, Entry, SightLaw};
-use crate::drive::{Kinds, Robot};
+use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -44,7 +44,7 @@ impl Effect for MarkerOffset {
         source: "rigid-body geometry; 5 mm is assumed",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: DriveKinds = DriveKinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

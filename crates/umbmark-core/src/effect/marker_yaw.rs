@@ -2,7 +2,7 @@
 
 use super::words::{deg, side};
 use super::{About, ActsOn, Effect, Entry, SightLaw};
-use crate::drive::{Kinds, Robot};
+use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
@@ -34,7 +34,7 @@ impl Effect for MarkerYaw {
         source: "a gauge freedom of the reference frame; 0.38 degree of it, or of crab, is in the public OptiOdom runs",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: DriveKinds = DriveKinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("The marker faces {} to the {} of where the robot does.", deg(p[0]), side(p[0]))

@@ -2,7 +2,7 @@
 
 use super::chain::{Acting, ActingLaws, Chain};
 use super::{Context, Entry, Evaluate, Formula, Law, MAX_PARAMETERS, find};
-use crate::drive::{Kinds, Robot};
+use crate::drive::{DriveKinds, Robot};
 use crate::parameter::{Parameter, ParameterError, Role, nearest};
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ pub enum ModelError {
         /// The effect.
         effect: &'static str,
         /// The drives that may have it.
-        drives: Kinds,
+        drives: DriveKinds,
         /// The robot's.
         drive: &'static str,
     },

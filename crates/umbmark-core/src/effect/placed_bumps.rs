@@ -3,7 +3,7 @@
 use super::bumps::{HEIGHT, PROFILE, WHEEL_RADIUS, lost_travel};
 use super::words::{deg, mm, size};
 use super::{About, ActsOn, Bump, BumpLaw, Context, Effect, Entry, Stretch, TestKind, WheelLaw};
-use crate::drive::{Kind, Kinds, Robot, Wheel, WheelTravel};
+use crate::drive::{DriveKind, DriveKinds, Robot, Wheel, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 use crate::path::Direction;
@@ -52,7 +52,7 @@ impl Effect for PlacedBumps {
         source: "Borenstein & Feng (1995), section 3.3 and Table II",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Synchro).and(Kind::Clapper);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential).and(DriveKind::Synchro).and(DriveKind::Clapper);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let (single, share) = (lost_travel(p[1], p[2], p[3]), p[4]);

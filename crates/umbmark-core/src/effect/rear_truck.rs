@@ -2,7 +2,7 @@
 
 use super::words::{either, percent};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, WheelLaw};
-use crate::drive::{Kind, Kinds, Robot, WheelTravel};
+use crate::drive::{DriveKind, DriveKinds, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -35,7 +35,7 @@ impl Effect for RearTruck {
         source: "Borenstein & Feng (1995), sections 2 and 4.5",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Clapper);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Clapper);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let more = |value: f64| format!("{} {}", percent(value - 1.0), either(value - 1.0, "more", "less"));

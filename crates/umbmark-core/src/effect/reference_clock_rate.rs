@@ -2,7 +2,7 @@
 
 use super::words::{either, size};
 use super::{About, ActsOn, ClockLaw, Effect, Entry};
-use crate::drive::{Kinds, Robot};
+use crate::drive::{DriveKinds, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -34,7 +34,7 @@ impl Effect for ReferenceClockRate {
         source: "two free-running clocks; 200 parts in a million are assumed",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: DriveKinds = DriveKinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("The clock of the reference {} {} ms in a minute.", either(p[0], "loses", "gains"), size(6e4 * p[0]))

@@ -2,7 +2,7 @@
 
 use super::words::{either, mm, size};
 use super::{About, ActsOn, ClockLaw, Effect, Entry};
-use crate::drive::{Kinds, Robot};
+use crate::drive::{DriveKinds, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -33,7 +33,7 @@ impl Effect for ReferenceDelay {
         source: "delays that makers and users of motion capture state",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: DriveKinds = DriveKinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

@@ -2,7 +2,7 @@
 
 use super::words::{deg, mm};
 use super::{About, ActsOn, Effect, Entry, MeasurementLaw};
-use crate::drive::{Kinds, Robot};
+use crate::drive::{DriveKinds, Robot};
 use crate::geometry::Pose2;
 use crate::parameter::Parameter;
 use crate::random::Stream;
@@ -45,7 +45,7 @@ impl Effect for ReferenceNoise {
         source: "usual sizes of tape and motion capture",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: DriveKinds = DriveKinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("A measured position scatters by {} along each axis, a heading by {}.", mm(p[0]), deg(p[1]))

@@ -2,7 +2,7 @@
 
 use super::words::{deg, either, percent};
 use super::{About, ActsOn, Effect, Entry, LinkLaw};
-use crate::drive::{Kind, Kinds, LinkReading, Robot};
+use crate::drive::{DriveKind, DriveKinds, LinkReading, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 use std::f64::consts::FRAC_PI_2;
@@ -34,7 +34,7 @@ impl Effect for RotaryGain {
         source: "kinematics of the corner",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Clapper);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Clapper);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let more = either(p[0], "more", "less");

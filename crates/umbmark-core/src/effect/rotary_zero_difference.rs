@@ -2,7 +2,7 @@
 
 use super::words::{deg, side};
 use super::{About, ActsOn, Effect, Entry, LinkLaw};
-use crate::drive::{Kind, Kinds, LinkReading, Robot};
+use crate::drive::{DriveKind, DriveKinds, LinkReading, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -34,7 +34,7 @@ impl Effect for RotaryZeroDifference {
         source: "kinematics of two trucks; the paper (section 4.5) names errors of this kind and gives no size",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Clapper);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Clapper);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let link = robot.drive.trucks().map_or(1.0, |trucks| trucks.link());

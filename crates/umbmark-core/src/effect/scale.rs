@@ -2,7 +2,7 @@
 
 use super::words::{either, mm};
 use super::{About, ActsOn, Context, Effect, Entry, WheelLaw};
-use crate::drive::{Kind, Kinds, Robot, WheelTravel};
+use crate::drive::{DriveKind, DriveKinds, Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -41,7 +41,8 @@ impl Effect for Scale {
         source: "Borenstein & Feng (1995), section 2",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Ackermann).and(Kind::Clapper);
+    const DRIVES: DriveKinds =
+        DriveKinds::of(DriveKind::Differential).and(DriveKind::Ackermann).and(DriveKind::Clapper);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let (off, word) = (p[0] - 1.0, either(p[0] - 1.0, "long", "short"));

@@ -2,7 +2,7 @@
 
 use super::words::{deg, either, mm, side};
 use super::{About, ActsOn, Effect, Entry, StartLaw};
-use crate::drive::{Kinds, Robot};
+use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 use crate::random::Stream;
@@ -57,7 +57,7 @@ impl Effect for StartPose {
         source: "Borenstein & Feng (1995), section 3.4, step 1",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: DriveKinds = DriveKinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!(

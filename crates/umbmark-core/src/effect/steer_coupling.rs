@@ -2,7 +2,7 @@
 
 use super::words::{deg, side};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
-use crate::drive::{Kind, Kinds, Robot};
+use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -33,7 +33,7 @@ impl Effect for SteerCoupling {
         source: "kinematics; unequal radii turn the base at a mean rate, and with it the course",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Synchro);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Synchro);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("Each metre ahead turns the course by {} to the {}, whatever is steered.", deg(p[0]), side(p[0]))

@@ -2,7 +2,7 @@
 
 use super::words::deg;
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
-use crate::drive::{Kind, Kinds, Robot};
+use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 use std::f64::consts::FRAC_PI_2;
@@ -27,7 +27,7 @@ impl Effect for SteerScale {
         source: "kinematics",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Synchro);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Synchro);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("Where the steering counts 90 degrees the course turns by {}.", deg(p[0] * FRAC_PI_2))

@@ -2,7 +2,7 @@
 
 use super::words::{deg, side};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
-use crate::drive::{Kind, Kinds, Robot};
+use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -32,7 +32,7 @@ impl Effect for SteeringZero {
         source: "kinematics",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Ackermann);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("Where straight ahead is believed, the wheel is steered {} to the {}.", deg(p[0]), side(p[0]))

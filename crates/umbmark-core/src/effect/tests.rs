@@ -101,7 +101,7 @@ pub(super) fn probes() -> Vec<Track> {
 
 /// Tracks on which an effect shows: of its own drive, where it has only that.
 fn probes_of(entry: &Entry) -> Vec<Track> {
-    if !entry.drives().each().all(Kind::has_trucks) {
+    if !entry.drives().each().all(DriveKind::has_trucks) {
         return probes();
     }
     let square = Path::new(&SQUARE, &[1.0], SpeedProfile::default()).unwrap();
@@ -163,7 +163,7 @@ fn the_catalogue_is_complete_and_consistent() {
 }
 
 /// A drive of usual numbers, and with each of the words that one of them may stand for.
-fn drives_of(kind: Kind) -> Vec<Drive> {
+fn drives_of(kind: DriveKind) -> Vec<Drive> {
     let words = kind.parameters().iter().flat_map(|p| (0..p.choices().len()).map(|word| (p.name, word as f64)));
     let worded = words.map(|(name, word)| kind.usual().with(name, word).unwrap());
     std::iter::once(kind.usual()).chain(worded).collect()
@@ -171,7 +171,7 @@ fn drives_of(kind: Kind) -> Vec<Drive> {
 
 #[test]
 fn every_drive_may_have_its_first_effects_whose_default_values_correct_nothing() {
-    for drive in Kind::ALL.iter().flat_map(|kind| drives_of(*kind)) {
+    for drive in DriveKind::ALL.iter().flat_map(|kind| drives_of(*kind)) {
         let first = drive.first_effects().map(|name| find(name).unwrap());
         for entry in first {
             assert!(entry.drives().contains(drive.kind()), "{} of {}", entry.about.name, drive.kind().name());
@@ -252,7 +252,7 @@ fn derivatives_taken_together_are_those_of_each_number_alone_to_the_last_bit() {
     model.add_formula(nap, &[0.02, 0.5]).unwrap();
     let own =
         [("wheelbase", "e_b"), ("caster_kick", "kick_rad"), ("caster_kick", "trail_m"), ("nap", "k"), ("nap", "h0")];
-    let listed = of_drive(Kind::default()).filter(|entry| entry.about.name != "caster_kick");
+    let listed = of_drive(DriveKind::default()).filter(|entry| entry.about.name != "caster_kick");
     let listed = listed.flat_map(|entry| entry.about.parameters.iter().map(move |p| (entry.about.name, p.name)));
     let number = |(effect, parameter)| Number { effect, parameter, shape: None };
     let mut numbers: Vec<Number> = own.into_iter().chain(listed).map(number).collect();

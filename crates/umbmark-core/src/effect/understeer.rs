@@ -3,7 +3,7 @@
 use super::steering_zero::{steer_on, steered};
 use super::words::{deg, either};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
-use crate::drive::{Kind, Kinds, Robot};
+use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -33,7 +33,7 @@ impl Effect for Understeer {
         source: "linear single-track model of vehicle dynamics; the size is assumed",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Ackermann);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Ackermann);
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         let less = either(p[0], "less", "more");

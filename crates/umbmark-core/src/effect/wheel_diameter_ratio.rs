@@ -2,7 +2,7 @@
 
 use super::words::{deg, either, mm, side};
 use super::{About, ActsOn, Context, Effect, Entry, WheelLaw};
-use crate::drive::{Kind, Kinds, Robot, WheelTravel};
+use crate::drive::{DriveKind, DriveKinds, Robot, WheelTravel};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
@@ -40,7 +40,7 @@ impl Effect for WheelDiameterRatio {
                  Automation 12(6)",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Clapper);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential).and(DriveKind::Clapper);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let ratio = 2.0 * (p[0] - 1.0) / (p[0] + 1.0);

@@ -2,7 +2,7 @@
 
 use super::words::{deg, mm};
 use super::{About, ActsOn, DiffusionLaw, Effect, Entry, WheelVariance};
-use crate::drive::{Kinds, Robot, WheelTravel};
+use crate::drive::{DriveKinds, Robot, WheelTravel};
 use crate::parameter::Parameter;
 
 /// White noise on each wheel's travel over ground.
@@ -33,7 +33,7 @@ impl Effect for WheelNoise {
         source: "Chong & Kleeman (1997), ICRA, accurate odometry and error modelling",
     };
 
-    const DRIVES: Kinds = Kinds::ALL;
+    const DRIVES: DriveKinds = DriveKinds::ALL;
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let scattered = p[0] * libm::sqrt(10.0);

@@ -2,7 +2,7 @@
 
 use super::words::{deg, mm};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
-use crate::drive::{Kind, Kinds, Robot};
+use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
@@ -27,7 +27,7 @@ impl Effect for Wheelbase {
         source: "Borenstein & Feng (1995), section 2",
     };
 
-    const DRIVES: Kinds = Kinds::of(Kind::Differential).and(Kind::Clapper);
+    const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential).and(DriveKind::Clapper);
 
     fn means(p: &[f64], robot: &Robot) -> String {
         let b = robot.drive.wheelbase();

@@ -13,7 +13,7 @@
 //! differs is the [`Floor`] that the trucks meet.
 
 use crate::drive::{ClapperDrive, LinkReading, Robot, WheelTravel};
-use crate::effect::{Chain, Context, Evaluate, Place, Progress};
+use crate::effect::{Chain, Context, Evaluate, Progress, RunContext};
 use crate::geometry::{Displacement2, Pose2, Real, direction, wrap};
 use crate::path::{Direction, Move, Path, SpeedProfile, Trapezoid};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -27,7 +27,7 @@ const LOOK_AHEAD: f64 = 0.5;
 
 /// What both trucks, the front one first, are to do in a period.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Step {
+pub struct ConvoyStep {
     /// Number of the move of the path.
     pub index: usize,
     /// Share of that move's own way done before and at the end of it.
@@ -57,7 +57,8 @@ pub struct Trucks<T = f64> {
 /// What makes true motion of believed travel, and readings of the link.
 pub trait Floor<T: Real> {
     /// True motion of a truck that believes to roll so and is truly there.
-    fn moved(&mut self, step: &Step, truck: usize, believed: WheelTravel<T>, real: &Pose2<T>) -> Displacement2<T>;
+    fn moved(&mut self, step: &ConvoyStep, truck: usize, believed: WheelTravel<T>, real: &Pose2<T>)
+    -> Displacement2<T>;
 
     /// What the link's encoders show of it.
     fn shown(&mut self, link: LinkReading<T>) -> LinkReading<T>;
@@ -78,7 +79,13 @@ impl<'a, T: Evaluate> Predicted<'a, T> {
 
 impl<T: Evaluate> Floor<T> for Predicted<'_, T> {
     #[inline]
-    fn moved(&mut self, step: &Step, truck: usize, believed: WheelTravel<T>, real: &Pose2<T>) -> Displacement2<T> {
+    fn moved(
+        &mut self,
+        step: &ConvoyStep,
+        truck: usize,
+        believed: WheelTravel<T>,
+        real: &Pose2<T>,
+    ) -> Displacement2<T> {
         let at = step.contexts[truck].at_pose(real);
         self.chain.body(&at, &self.chain.rolled(&at, believed))
     }
@@ -93,7 +100,7 @@ impl<T: Evaluate> Floor<T> for Predicted<'_, T> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convoy {
     drive: ClapperDrive,
-    steps: Vec<Step>,
+    steps: Vec<ConvoyStep>,
     /// How many steps are made when each move of the path is done.
     stops: Vec<usize>,
 }
@@ -102,7 +109,7 @@ impl Convoy {
     /// The plan of a CLAPPER; `None` for other drives, and for paths with arcs.
     pub fn new(robot: &Robot, path: &Path, direction: Direction) -> Option<Convoy> {
         let drive = *robot.drive.trucks()?;
-        let place = Place { direction: Some(direction), ..Place::default() };
+        let place = RunContext { direction: Some(direction), ..RunContext::default() };
         let mut planner = Planner {
             drive,
             speed: path.speed,
@@ -123,7 +130,7 @@ impl Convoy {
     }
 
     /// What the trucks do, period by period.
-    pub fn steps(&self) -> &[Step] {
+    pub fn steps(&self) -> &[ConvoyStep] {
         &self.steps
     }
 
@@ -154,7 +161,7 @@ impl Convoy {
 
     /// Drives a period.
     #[inline]
-    pub fn step<T: Real>(&self, step: &Step, trucks: &mut Trucks<T>, floor: &mut impl Floor<T>) {
+    pub fn step<T: Real>(&self, step: &ConvoyStep, trucks: &mut Trucks<T>, floor: &mut impl Floor<T>) {
         self.roll(step, trucks, floor);
         if self.drive.corrects() {
             self.correct(trucks, floor);
@@ -163,7 +170,7 @@ impl Convoy {
 
     /// Both trucks roll, each by its own odometry.
     #[inline]
-    pub(crate) fn roll<T: Real>(&self, step: &Step, trucks: &mut Trucks<T>, floor: &mut impl Floor<T>) {
+    pub(crate) fn roll<T: Real>(&self, step: &ConvoyStep, trucks: &mut Trucks<T>, floor: &mut impl Floor<T>) {
         for truck in 0..2 {
             let (motion, travel) = self.steered(&trucks.believed[truck], step, truck);
             let moved = floor.moved(step, truck, travel, &trucks.real[truck]);
@@ -174,7 +181,12 @@ impl Convoy {
 
     /// The motion that a truck gives itself, what is planned and back towards the plan, and the wheel travel that makes it.
     #[inline]
-    fn steered<T: Real>(&self, believed: &Pose2<T>, step: &Step, truck: usize) -> (Displacement2<T>, WheelTravel<T>) {
+    fn steered<T: Real>(
+        &self,
+        believed: &Pose2<T>,
+        step: &ConvoyStep,
+        truck: usize,
+    ) -> (Displacement2<T>, WheelTravel<T>) {
         let (planned, target) = (&step.motion[truck], &step.target[truck].lift());
         let ahead = believed.between(target);
         let (mut forward, mut off) = (T::from(0.0), wrapped(ahead.heading - planned.rotation));
@@ -263,7 +275,7 @@ struct Planner {
     period: f64,
     progress: [Progress; 2],
     target: [Pose2; 2],
-    steps: Vec<Step>,
+    steps: Vec<ConvoyStep>,
 }
 
 impl Planner {
@@ -304,7 +316,7 @@ impl Planner {
             Context { truck: truck as f64, ..at }
         });
         let time = self.progress[0].time();
-        self.steps.push(Step { index, shares, time, contexts, travel, speeds: to, motion, target: self.target });
+        self.steps.push(ConvoyStep { index, shares, time, contexts, travel, speeds: to, motion, target: self.target });
     }
 
     /// The pause after a move.
@@ -360,7 +372,7 @@ pub(crate) mod tests {
     struct Even;
 
     impl Floor<f64> for Even {
-        fn moved(&mut self, _: &Step, _: usize, believed: WheelTravel, _: &Pose2) -> Displacement2 {
+        fn moved(&mut self, _: &ConvoyStep, _: usize, believed: WheelTravel, _: &Pose2) -> Displacement2 {
             let truck = DifferentialDrive::new(0.34, 0.15, 0.15).unwrap();
             truck.displacement(&believed)
         }

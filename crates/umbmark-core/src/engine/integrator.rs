@@ -49,11 +49,11 @@ impl AsRef<WheelLine> for Segment {
 /// which thread or on which processor.
 #[derive(Clone, Debug)]
 pub struct Integrator {
-    kind: Kind,
+    kind: Engine,
 }
 
 #[derive(Clone, Debug)]
-enum Kind {
+enum Engine {
     EveryTick(TickOdometry),
     EveryTickOneByOne(TickGeometry),
     Sampled(SampledOdometry),
@@ -64,10 +64,10 @@ impl Integrator {
     /// An integrator with these tick lengths and this wheelbase.
     pub fn new(geometry: TickGeometry, method: Method) -> Integrator {
         let kind = match method {
-            Method::EveryTick => Kind::EveryTick(TickOdometry::new(geometry)),
-            Method::EveryTickOneByOne => Kind::EveryTickOneByOne(geometry),
-            Method::Sampled(update) => Kind::Sampled(SampledOdometry::new(geometry, update)),
-            Method::SampledOneByOne(update) => Kind::SampledOneByOne(SampledOdometry::new(geometry, update)),
+            Method::EveryTick => Engine::EveryTick(TickOdometry::new(geometry)),
+            Method::EveryTickOneByOne => Engine::EveryTickOneByOne(geometry),
+            Method::Sampled(update) => Engine::Sampled(SampledOdometry::new(geometry, update)),
+            Method::SampledOneByOne(update) => Engine::SampledOneByOne(SampledOdometry::new(geometry, update)),
         };
         Integrator { kind }
     }
@@ -75,8 +75,8 @@ impl Integrator {
     /// The same integrator, with registers no wider than these: the same bits, maybe slower.
     pub fn limited_to(self, instructions: Instructions) -> Integrator {
         let kind = match self.kind {
-            Kind::EveryTick(odometry) => Kind::EveryTick(odometry.limited_to(instructions)),
-            Kind::Sampled(odometry) => Kind::Sampled(odometry.limited_to(instructions)),
+            Engine::EveryTick(odometry) => Engine::EveryTick(odometry.limited_to(instructions)),
+            Engine::Sampled(odometry) => Engine::Sampled(odometry.limited_to(instructions)),
             one_by_one => one_by_one,
         };
         Integrator { kind }
@@ -85,9 +85,9 @@ impl Integrator {
     /// What a tick is worth.
     pub fn geometry(&self) -> &TickGeometry {
         match &self.kind {
-            Kind::EveryTick(odometry) => odometry.geometry(),
-            Kind::EveryTickOneByOne(geometry) => geometry,
-            Kind::Sampled(odometry) | Kind::SampledOneByOne(odometry) => odometry.geometry(),
+            Engine::EveryTick(odometry) => odometry.geometry(),
+            Engine::EveryTickOneByOne(geometry) => geometry,
+            Engine::Sampled(odometry) | Engine::SampledOneByOne(odometry) => odometry.geometry(),
         }
     }
 
@@ -95,10 +95,10 @@ impl Integrator {
     #[inline]
     pub fn motion(&mut self, segment: &Segment) -> Motion {
         match &mut self.kind {
-            Kind::EveryTick(odometry) => odometry.motion(&segment.line),
-            Kind::EveryTickOneByOne(geometry) => oracle::motion(geometry, &segment.line),
-            Kind::Sampled(odometry) => odometry.at_constant_rate(&segment.line, segment.readings),
-            Kind::SampledOneByOne(odometry) => odometry.one_by_one(&segment.line, segment.readings),
+            Engine::EveryTick(odometry) => odometry.motion(&segment.line),
+            Engine::EveryTickOneByOne(geometry) => oracle::motion(geometry, &segment.line),
+            Engine::Sampled(odometry) => odometry.at_constant_rate(&segment.line, segment.readings),
+            Engine::SampledOneByOne(odometry) => odometry.one_by_one(&segment.line, segment.readings),
         }
     }
 
@@ -108,7 +108,7 @@ impl Integrator {
     /// two slices has.
     pub fn motions(&mut self, segments: &[Segment], motions: &mut [Motion]) {
         match &mut self.kind {
-            Kind::EveryTick(odometry) => odometry.motions(segments, motions),
+            Engine::EveryTick(odometry) => odometry.motions(segments, motions),
             _ => segments.iter().zip(motions).for_each(|(segment, motion)| *motion = self.motion(segment)),
         }
     }

@@ -115,10 +115,10 @@ fn moves(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<MoveDone> {
         let length: f64 = poses[start..=end].windows(2).map(|p| libm::hypot(p[1].x - p[0].x, p[1].y - p[0].y)).sum();
         let angle = poses[end].heading - poses[start].heading;
         let done = match same[0] {
-            Kind::Standing => (time[end] - time[start] > LEAST_STOP).then_some(Done::Stop),
-            Kind::Turning => (angle.abs() > LEAST_TURN).then_some(Done::Turn { angle }),
-            Kind::Going if angle.abs() < CORNER => Some(Done::Leg { length }),
-            Kind::Going => Some(Done::Arc { length, angle }),
+            MotionState::Standing => (time[end] - time[start] > LEAST_STOP).then_some(Done::Stop),
+            MotionState::Turning => (angle.abs() > LEAST_TURN).then_some(Done::Turn { angle }),
+            MotionState::Going if angle.abs() < CORNER => Some(Done::Leg { length }),
+            MotionState::Going => Some(Done::Arc { length, angle }),
         };
         pieces.extend(done.map(|done| MoveDone { done, from: start, to: end }));
         start = end;
@@ -155,14 +155,14 @@ fn together(before: Done, after: Done) -> Option<Done> {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum MotionState {
     Standing,
     Going,
     Turning,
 }
 
 /// What the robot does at each sample, by how far it goes in the time around it.
-fn kinds(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<Kind> {
+fn kinds(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<MotionState> {
     let around = |i: usize| {
         let from = time.partition_point(|t| *t < time[i] - 0.5 * OVER).min(i.saturating_sub(1));
         let to = (time.partition_point(|t| *t <= time[i] + 0.5 * OVER) - 1).max((i + 1).min(time.len() - 1));
@@ -173,9 +173,9 @@ fn kinds(time: &[f64], poses: &[Pose2], arm: f64) -> Vec<Kind> {
     let speeds: Vec<(f64, f64)> = (0..time.len()).map(around).collect();
     let fastest = speeds.iter().map(|(forward, turn)| forward + turn).fold(0.0, f64::max);
     let kind = |(forward, turn): &(f64, f64)| match () {
-        () if forward + turn <= STANDING * fastest => Kind::Standing,
-        () if *forward < 0.5 * turn => Kind::Turning,
-        () => Kind::Going,
+        () if forward + turn <= STANDING * fastest => MotionState::Standing,
+        () if *forward < 0.5 * turn => MotionState::Turning,
+        () => MotionState::Going,
     };
     speeds.iter().map(kind).collect()
 }

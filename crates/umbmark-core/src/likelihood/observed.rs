@@ -9,7 +9,7 @@ mod walk;
 
 use crate::dataset::Dataset;
 use crate::drive::Robot;
-use crate::effect::{Chain, Model, Place, TestKind};
+use crate::effect::{Chain, Model, RunContext, TestKind};
 use crate::geometry::{Pose2, wrap};
 use crate::path::{Direction, Path};
 use crate::replay::{Moment, ReplayError, Track};
@@ -119,7 +119,7 @@ impl Observed {
         let mut runs = Vec::new();
         let (mut session_distance, mut first_start) = (0.0, None);
         for run in data.runs.iter().filter(|run| run.test == TestKind::Systematic) {
-            let place = Place { run: runs.len(), session_distance, direction: run.direction };
+            let place = RunContext { run: runs.len(), session_distance, direction: run.direction };
             let origin = run.log.as_ref().map_or(Pose2::IDENTITY, |log| match log.start.known {
                 StartKnown::Given => Pose2::IDENTITY,
                 _ => in_one_room(first_start.get_or_insert(log.start.pose()), &log.start.pose()),
@@ -170,7 +170,7 @@ impl ObservedRun {
     fn new(
         run: &Run,
         robot: &Robot,
-        place: Place,
+        place: RunContext,
         found: Option<&RunSetup>,
         origin: Pose2,
     ) -> Result<Option<ObservedRun>, ReplayError> {

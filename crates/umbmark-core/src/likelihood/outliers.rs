@@ -28,7 +28,7 @@ const MAX_SHARE: f64 = 0.01;
 const SPENT: usize = 2;
 
 /// A block that is beyond noise, by run and number.
-pub(super) type Place = (usize, usize);
+pub(super) type BlockIndex = (usize, usize);
 
 impl Observed {
     /// The jumps that were found before anything was fitted.
@@ -49,7 +49,7 @@ impl Observed {
 
 impl Fitted {
     /// Blocks beyond noise at which the run does not restart yet.
-    pub(super) fn beyond_noise(&self) -> BTreeSet<(Place, u64)> {
+    pub(super) fn beyond_noise(&self) -> BTreeSet<(BlockIndex, u64)> {
         let wheelbase = self.observed.robot.drive.wheelbase();
         let runs: Vec<Vec<f64>> = self.observed.runs.par_iter().map(|run| self.deviations(run)).collect();
         let ways: Vec<Vec<f64>> = self.observed.runs.iter().map(|run| run.rolled(wheelbase)).collect();
@@ -88,7 +88,7 @@ impl Fitted {
     }
 
     /// Describes a disturbed place.
-    pub(super) fn outlier(&self, (run, block): Place, deviations: f64) -> Outlier {
+    pub(super) fn outlier(&self, (run, block): BlockIndex, deviations: f64) -> Outlier {
         let run = &self.observed.runs[run];
         let residuals = run.residuals_along(&self.model.chain());
         let [dx, dy, turned] = [0, 1, 2].map(|k| residuals[block][k] - residuals[block - 1][k]);

@@ -25,7 +25,7 @@ pub struct Shard {
 
 /// No shard.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("a shard is I/K with 1 <= I <= K <= {}, as in 3/16; got {given}", Shard::MOST)]
+#[error("a shard is I/K with 1 <= I <= K <= {}, as in 3/16; got {given}", Shard::MAX_COUNT)]
 pub struct ShardError {
     given: String,
 }
@@ -35,11 +35,11 @@ impl Shard {
     pub const WHOLE: Shard = Shard { index: 0, count: 1 };
 
     /// The most shards of a study.
-    pub const MOST: u64 = 1_000_000;
+    pub const MAX_COUNT: u64 = 1_000_000;
 
     /// Shard `index`, from 0, of `count`.
     pub fn new(index: u64, count: u64) -> Result<Shard, ShardError> {
-        if index < count && count <= Shard::MOST {
+        if index < count && count <= Shard::MAX_COUNT {
             Ok(Shard { index, count })
         } else {
             Err(ShardError { given: format!("{}/{count}", index.saturating_add(1)) })

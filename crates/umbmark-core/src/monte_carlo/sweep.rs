@@ -112,7 +112,7 @@ impl SweepPoint {
 
 impl Sweep {
     /// The most points of a grid.
-    pub const MOST: u64 = 10_000_000;
+    pub const MAX_POINTS: u64 = 10_000_000;
 
     /// A grid of studies; the last axis varies fastest.
     pub fn new(study: &Study, axes: &[Axis]) -> Result<Sweep, SweepError> {
@@ -122,8 +122,8 @@ impl Sweep {
             }
         }
         let points = axes.iter().map(|axis| u128::from(axis.count)).product();
-        if axes.is_empty() || !(1..=u128::from(Self::MOST)).contains(&points) {
-            return Err(SweepError::Points { most: Self::MOST, got: if axes.is_empty() { 0 } else { points } });
+        if axes.is_empty() || !(1..=u128::from(Self::MAX_POINTS)).contains(&points) {
+            return Err(SweepError::Points { most: Self::MAX_POINTS, got: if axes.is_empty() { 0 } else { points } });
         }
         let sweep = Sweep { study: study.clone(), axes: axes.to_vec() };
         // The corners show whether values are possible before any work is done.

@@ -15,7 +15,7 @@ use crate::replay::Track;
 
 /// A published number among those that were simulated, in SI.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct Place {
+pub struct PublishedNumber {
     /// What the paper says, or what follows from it.
     pub published: f64,
     /// Mean of the simulated tests.
@@ -28,13 +28,13 @@ pub struct Place {
     pub inside: bool,
 }
 
-impl Place {
-    fn of(published: f64, simulated: &Statistics) -> Place {
+impl PublishedNumber {
+    fn of(published: f64, simulated: &Statistics) -> PublishedNumber {
         let middle_95 = [0.025, 0.975].map(|q| simulated.quantile(q));
         let [low, high] = middle_95;
         let share_below_published = simulated.share_below(published);
         let inside = (low..=high).contains(&published);
-        Place { published, mean: simulated.mean(), middle_95, share_below_published, inside }
+        PublishedNumber { published, mean: simulated.mean(), middle_95, share_below_published, inside }
     }
 }
 
@@ -68,9 +68,9 @@ pub struct RobotOfTableOne {
     /// Its name in flags.
     pub robot: &'static str,
     /// E_max,sys, in m.
-    pub e_max_sys_m: Place,
+    pub e_max_sys_m: PublishedNumber,
     /// Standard deviation of one coordinate, in m.
-    pub sigma_m: Place,
+    pub sigma_m: PublishedNumber,
     /// Where its numbers are from.
     pub from: From,
 }
@@ -107,7 +107,7 @@ pub struct RobotOfTableTwo {
     /// The average as printed, in rad.
     pub printed_rad: f64,
     /// The average as it follows from the printed headings, in rad.
-    pub recomputed: Place,
+    pub recomputed: PublishedNumber,
     /// Standard deviation with which headings were measured in the simulated tests, in rad.
     pub heading_noise_rad: f64,
     /// The least and the largest deviation of a single run, in rad.
@@ -138,8 +138,8 @@ pub fn table_one(bench: &Bench) -> Result<TableOne, PaperError> {
         rows.push(RobotOfTableOne {
             row: preset.published.row,
             robot: preset.name,
-            e_max_sys_m: Place::of(preset.published.e_max_sys, e_max),
-            sigma_m: Place::of(preset.published.sigma, sigma),
+            e_max_sys_m: PublishedNumber::of(preset.published.e_max_sys, e_max),
+            sigma_m: PublishedNumber::of(preset.published.sigma, sigma),
             from: From { sources: preset.sources, assumed: preset.assumed },
         });
     }
@@ -192,7 +192,7 @@ pub fn table_two(bench: &Bench) -> Result<TableTwo, PaperError> {
             robot: column.robot,
             preset: column.preset,
             printed_rad: column.average.to_radians(),
-            recomputed: Place::of(column.recomputed().to_radians(), simulated),
+            recomputed: PublishedNumber::of(column.recomputed().to_radians(), simulated),
             heading_noise_rad,
             runs_rad: [extreme(f64::min), extreme(f64::max)].map(f64::to_radians),
         });

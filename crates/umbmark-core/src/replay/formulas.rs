@@ -3,7 +3,7 @@
 use super::track::Track;
 use crate::drive::{LinkReading, WheelTravel};
 use crate::effect::{Model, ModelError};
-use crate::engine::{Floor, Predicted, Step};
+use crate::engine::{ConvoyStep, Floor, Predicted};
 use crate::geometry::{Displacement2, Pose2};
 use crate::path::{Direction, Path};
 
@@ -49,7 +49,7 @@ struct Checked<'a> {
 }
 
 impl Floor<f64> for Checked<'_> {
-    fn moved(&mut self, step: &Step, truck: usize, believed: WheelTravel, real: &Pose2) -> Displacement2 {
+    fn moved(&mut self, step: &ConvoyStep, truck: usize, believed: WheelTravel, real: &Pose2) -> Displacement2 {
         if self.found.is_ok() {
             self.found = self.model.check_along([&step.contexts[truck].at_pose(real)]);
         }

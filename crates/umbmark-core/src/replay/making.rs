@@ -5,7 +5,7 @@ use super::pace;
 use super::track::Track;
 use crate::dataset::TickLog;
 use crate::drive::{Robot, WheelTravel};
-use crate::effect::{Place, Progress, Sight};
+use crate::effect::{Progress, RunContext, Sight};
 use crate::engine::Convoy;
 use crate::path::{Direction, Path, Pieces, SpeedProfile};
 use std::sync::Arc;
@@ -15,11 +15,11 @@ impl Track {
     ///
     /// It stands first in its session; see [`Track::from_log_at`].
     pub fn from_log(log: &TickLog, robot: &Robot) -> Result<Track, ReplayError> {
-        Track::from_log_at(log, robot, Place::default())
+        Track::from_log_at(log, robot, RunContext::default())
     }
 
     /// [`Track::from_log`] of a run with its place among others.
-    pub fn from_log_at(log: &TickLog, robot: &Robot, place: Place) -> Result<Track, ReplayError> {
+    pub fn from_log_at(log: &TickLog, robot: &Robot, place: RunContext) -> Result<Track, ReplayError> {
         Track::from_log_seen(log, robot, place, log.reference.iter().map(|reference| reference.sample))
     }
 
@@ -27,7 +27,7 @@ impl Track {
     pub fn from_log_seen(
         log: &TickLog,
         robot: &Robot,
-        place: Place,
+        place: RunContext,
         samples: impl Iterator<Item = usize>,
     ) -> Result<Track, ReplayError> {
         check(log)?;
@@ -84,7 +84,7 @@ impl Track {
         if let Some(convoy) = Convoy::new(robot, path, direction) {
             return Track::of_trucks(convoy, robot, observed);
         }
-        let place = Place { direction: Some(direction), ..Place::default() };
+        let place = RunContext { direction: Some(direction), ..RunContext::default() };
         let mut progress = Progress::new(robot, place, false);
         let mut track = Track::empty();
         let moves = path.moves(direction);

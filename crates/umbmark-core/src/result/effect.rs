@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{NumberOrWord, finite};
-use crate::drive::Kind;
+use crate::drive::DriveKind;
 use crate::effect::Entry;
 use crate::parameter::{self, DefaultValue};
 
@@ -85,7 +85,7 @@ impl From<&Entry> for Effect {
             name: about.name,
             title: about.title,
             acts_on: about.acts_on.name(),
-            drives: entry.drives().each().map(Kind::name).collect(),
+            drives: entry.drives().each().map(DriveKind::name).collect(),
             equation: about.equation,
             physics: about.physics,
             signature: about.signature,

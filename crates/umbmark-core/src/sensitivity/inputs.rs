@@ -58,12 +58,12 @@ struct Copula {
 
 impl Inputs {
     /// The most inputs that there are points for.
-    pub const MOST: usize = SobolPoints::MOST_DIMENSIONS / 2;
+    pub const MAX_INPUTS: usize = SobolPoints::MOST_DIMENSIONS / 2;
 
     /// Some inputs, joined by correlations where they are listed.
     pub fn new(inputs: Vec<Input>, correlations: &[Correlation]) -> Result<Inputs, SensitivityError> {
-        if inputs.is_empty() || inputs.len() > Self::MOST {
-            return Err(SensitivityError::Inputs { most: Self::MOST, got: inputs.len() });
+        if inputs.is_empty() || inputs.len() > Self::MAX_INPUTS {
+            return Err(SensitivityError::Inputs { most: Self::MAX_INPUTS, got: inputs.len() });
         }
         let again = |(place, input): (usize, &Input)| inputs[..place].iter().any(|i| i.name == input.name);
         if let Some((_, input)) = inputs.iter().enumerate().find(|one| again(*one)) {

@@ -23,11 +23,11 @@ impl SobolOptions {
     pub const REPLICATES: u64 = 16;
 
     /// The most base points.
-    pub const MOST: u64 = 1 << 30;
+    pub const MAX_POINTS: u64 = 1 << 30;
 
     fn check(&self) -> Result<(), SensitivityError> {
         let count = self.base_points;
-        if count.is_power_of_two() && (2 * Self::REPLICATES..=Self::MOST).contains(&count) {
+        if count.is_power_of_two() && (2 * Self::REPLICATES..=Self::MAX_POINTS).contains(&count) {
             return Ok(());
         }
         Err(SensitivityError::Count { what: "base points", allowed: "a power of two from 32 to 2^30", value: count })

@@ -1,6 +1,6 @@
 //! The cheapest way through the poses of a run (Viterbi 1967): which poses are kept, and where the track jumps.
 
-use super::edges::{JUMP, Sighting, Spread, Step};
+use super::edges::{Edge, JUMP, Sighting, Spread};
 
 /// What a jump costs, in half squares of standard deviations; what the first pose costs that is passed over, and each after it.
 const COSTS: [f64; 3] = [0.5 * JUMP * JUMP, 32.0, 10.0];
@@ -48,7 +48,7 @@ impl Way {
         Way { kept }
     }
 
-    pub fn steps(&self, run: &[Sighting], spread: &Spread) -> Vec<Step> {
-        self.kept.windows(2).map(|pair| Step::between(run, pair[0], pair[1], spread)).collect()
+    pub fn steps(&self, run: &[Sighting], spread: &Spread) -> Vec<Edge> {
+        self.kept.windows(2).map(|pair| Edge::between(run, pair[0], pair[1], spread)).collect()
     }
 }

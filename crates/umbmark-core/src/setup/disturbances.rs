@@ -7,7 +7,7 @@
 //! do not change.
 
 use super::cheapest::{LONGEST, Way};
-use super::edges::{JUMP, LARGE, Sighting, Spread, Step, difference};
+use super::edges::{Edge, JUMP, LARGE, Sighting, Spread, difference};
 use super::shared::Shared;
 use super::{PoseNoise, stretches};
 
@@ -49,14 +49,14 @@ pub(super) struct Leap {
 pub(super) fn search(runs: &[Vec<Sighting>]) -> (Vec<Found>, PoseNoise) {
     let (spread, noise) = Spread::of(runs);
     let ways: Vec<Way> = runs.iter().map(|run| Way::cheapest(run, &spread)).collect();
-    let steps: Vec<Vec<Step>> = runs.iter().zip(&ways).map(|(run, way)| way.steps(run, &spread)).collect();
-    let large = |(run, steps): (&Vec<Sighting>, &Vec<Step>)| {
+    let steps: Vec<Vec<Edge>> = runs.iter().zip(&ways).map(|(run, way)| way.steps(run, &spread)).collect();
+    let large = |(run, steps): (&Vec<Sighting>, &Vec<Edge>)| {
         steps.iter().filter(|step| step.deviations > LARGE).map(|step| run[step.to].rolled).collect()
     };
     let shared = Shared::new(runs, runs.iter().zip(&steps).map(large).collect());
     let left = |(index, run): (usize, &Vec<Sighting>)| {
-        let own = |step: &&Step| step.deviations > JUMP && !shared.stands_elsewhere(index, run[step.to].rolled);
-        let jumps = steps[index].iter().filter(own).copied().collect::<Vec<Step>>();
+        let own = |step: &&Edge| step.deviations > JUMP && !shared.stands_elsewhere(index, run[step.to].rolled);
+        let jumps = steps[index].iter().filter(own).copied().collect::<Vec<Edge>>();
         sorted_out(run, &ways[index].kept, jumps, &spread)
     };
     let (kept, jumps): (Vec<_>, Vec<_>) = runs.iter().enumerate().map(left).unzip();
@@ -66,7 +66,7 @@ pub(super) fn search(runs: &[Vec<Sighting>]) -> (Vec<Found>, PoseNoise) {
 }
 
 /// Jumps that are taken back soon are wrong poses: the poses that are kept then, and the jumps that are left.
-fn sorted_out(run: &[Sighting], kept: &[usize], jumps: Vec<Step>, spread: &Spread) -> (Vec<usize>, Vec<Step>) {
+fn sorted_out(run: &[Sighting], kept: &[usize], jumps: Vec<Edge>, spread: &Spread) -> (Vec<usize>, Vec<Edge>) {
     let mut jumps = jumps;
     let mut kept = kept.to_vec();
     let longest = ((APART.0 * run.len() as f64) as usize).max(LONGEST);
@@ -88,7 +88,7 @@ fn sorted_out(run: &[Sighting], kept: &[usize], jumps: Vec<Step>, spread: &Sprea
 
 impl Found {
     /// Poses that are not kept are wrong, but for those within a jump that lasts.
-    fn of(run: &[Sighting], kept: &[usize], jumps: Vec<Step>) -> Found {
+    fn of(run: &[Sighting], kept: &[usize], jumps: Vec<Edge>) -> Found {
         let mut wrong = Vec::new();
         let mut next = 0;
         for pose in 0..run.len() {
@@ -101,10 +101,10 @@ impl Found {
             let ([x, y], turned) = difference(&run[from], &run[pose]);
             wrong.push(Wrong { pose, moved: libm::hypot(x, y), turned });
         }
-        let lasts = |jump: &Step| kept.iter().any(|pose| jump.from < *pose && *pose < jump.to);
-        let lasting: Vec<Step> = jumps.iter().filter(|jump| lasts(jump)).copied().collect();
+        let lasts = |jump: &Edge| kept.iter().any(|pose| jump.from < *pose && *pose < jump.to);
+        let lasting: Vec<Edge> = jumps.iter().filter(|jump| lasts(jump)).copied().collect();
         wrong.retain(|wrong| !lasting.iter().any(|jump| jump.from < wrong.pose && wrong.pose < jump.to));
-        let jumps = jumps.into_iter().map(|Step { from, to, deviations }| {
+        let jumps = jumps.into_iter().map(|Edge { from, to, deviations }| {
             let ([x, y], turned) = difference(&run[from], &run[to]);
             Leap { from, pose: to, moved: libm::hypot(x, y), turned, deviations }
         });

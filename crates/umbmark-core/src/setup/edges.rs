@@ -115,14 +115,14 @@ fn rising(points: &[(f64, f64)]) -> [f64; 2] {
 
 /// From one kept pose to another.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Step {
+pub(super) struct Edge {
     pub from: usize,
     pub to: usize,
     pub deviations: f64,
 }
 
-impl Step {
-    pub fn between(run: &[Sighting], from: usize, to: usize, spread: &Spread) -> Step {
-        Step { from, to, deviations: spread.deviations(&run[from], &run[to]) }
+impl Edge {
+    pub fn between(run: &[Sighting], from: usize, to: usize, spread: &Spread) -> Edge {
+        Edge { from, to, deviations: spread.deviations(&run[from], &run[to]) }
     }
 }

@@ -1,7 +1,7 @@
 //! Columns that are not what they are called.
 
 use super::agreement::{Agreement, Beside, Reading};
-use crate::drive::{Kind, Robot};
+use crate::drive::{DriveKind, Robot};
 use std::f64::consts::FRAC_PI_2;
 
 /// Where so much of the motion disagrees, another reading is tried; it is believed where it leaves so much less.
@@ -281,7 +281,7 @@ pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
 }
 
 /// What signs and exchanges make of an agreement.
-fn turned(found: &Agreement, Reading { opposed, clockwise }: Reading, kind: Kind) -> Vec<Fault> {
+fn turned(found: &Agreement, Reading { opposed, clockwise }: Reading, kind: DriveKind) -> Vec<Fault> {
     let [way, turns] = found.shown;
     let backward = way && found.yaw().abs() > FRAC_PI_2;
     let other_way = turns && found.turn[0] < -LEAST_GAIN;

@@ -4,7 +4,7 @@
 //! looked at as edges are, and one that is far beyond the others of its length is an accident. What a law of the robot does,
 //! it does in more of them, or at the same place of other runs.
 
-use super::edges::{JUMP, LARGE, Sighting, Spread, Step};
+use super::edges::{Edge, JUMP, LARGE, Sighting, Spread};
 use super::robust::quantile;
 use super::shared::Shared;
 
@@ -27,42 +27,42 @@ const ACCIDENTS: f64 = 0.1;
 pub(super) fn search(
     runs: &[Vec<Sighting>],
     kept: &[Vec<usize>],
-    jumps: Vec<Vec<Step>>,
+    jumps: Vec<Vec<Edge>>,
     spread: &Spread,
-) -> Vec<Vec<Step>> {
-    let join = |found: Vec<Vec<Step>>| -> Vec<Vec<Step>> {
+) -> Vec<Vec<Edge>> {
+    let join = |found: Vec<Vec<Edge>>| -> Vec<Vec<Edge>> {
         runs.iter().zip(found).map(|(run, found)| joined(run, found, TOGETHER, spread)).collect()
     };
     let mut found = join(jumps);
     let poses: usize = kept.iter().map(Vec::len).sum();
     let longest = kept.iter().map(Vec::len).max().unwrap_or(0);
     for length in std::iter::successors(Some(2), |length| Some(2 * length)).take_while(|length| *length < longest) {
-        let of_run = |((run, kept), found): ((&Vec<Sighting>, &Vec<usize>), &Vec<Step>)| {
+        let of_run = |((run, kept), found): ((&Vec<Sighting>, &Vec<usize>), &Vec<Edge>)| {
             windows(run, kept, found, length, spread)
         };
-        let windows: Vec<Vec<Step>> = runs.iter().zip(kept).zip(&found).map(of_run).collect();
+        let windows: Vec<Vec<Edge>> = runs.iter().zip(kept).zip(&found).map(of_run).collect();
         let all = windows.iter().flatten().map(|window| window.deviations);
         let beyond = LEAST.max(BEYOND.0 * quantile(all, BEYOND.1));
         let of_size = |index: usize, size: f64| {
             let windows = windows[index].iter().filter(move |window| window.deviations > size).copied();
             joined(&runs[index], windows, 0.0, spread)
         };
-        let peak = |index: usize, s: &Step| {
+        let peak = |index: usize, s: &Edge| {
             let within = windows[index].iter().filter(|window| s.from <= window.from && window.to <= s.to);
             within.map(|window| window.deviations).fold(0.0, f64::max)
         };
-        let middle = |index: usize, s: &Step| runs[index][(s.from + s.to) / 2].rolled;
+        let middle = |index: usize, s: &Edge| runs[index][(s.from + s.to) / 2].rolled;
         let large = |index| of_size(index, LARGE).iter().map(|stretch| middle(index, stretch)).collect();
         let shared = Shared::new(runs, (0..runs.len()).map(large).collect());
         let of_run = |index: usize| {
-            let seconds = |s: &Step| runs[index][s.to].time - runs[index][s.from].time;
-            let own = |s: &Step| {
+            let seconds = |s: &Edge| runs[index][s.to].time - runs[index][s.from].time;
+            let own = |s: &Edge| {
                 let is_brief = seconds(s) <= SEEMING * LONGEST;
                 is_brief && peak(index, s) > beyond && !shared.stands_elsewhere(index, middle(index, s))
             };
             of_size(index, ENDS * beyond).into_iter().filter(own).collect()
         };
-        let new: Vec<Vec<Step>> = (0..runs.len()).map(of_run).collect();
+        let new: Vec<Vec<Edge>> = (0..runs.len()).map(of_run).collect();
         let filled: usize = new.iter().flatten().map(|stretch| stretch.to - stretch.from).sum();
         if filled as f64 <= ACCIDENTS * poses as f64 {
             for (found, new) in found.iter_mut().zip(new) {
@@ -75,12 +75,12 @@ pub(super) fn search(
 }
 
 /// Those that overlap or follow each other in less than so much time \[s\] as one each.
-fn joined(run: &[Sighting], steps: impl IntoIterator<Item = Step>, seconds: f64, spread: &Spread) -> Vec<Step> {
-    let mut joined: Vec<Step> = Vec::new();
+fn joined(run: &[Sighting], steps: impl IntoIterator<Item = Edge>, seconds: f64, spread: &Spread) -> Vec<Edge> {
+    let mut joined: Vec<Edge> = Vec::new();
     for step in steps {
         match joined.last_mut() {
             Some(last) if run[step.from].time - run[last.to].time < seconds => {
-                *last = Step::between(run, last.from, step.to, spread);
+                *last = Edge::between(run, last.from, step.to, spread);
             }
             _ => joined.push(step),
         }
@@ -89,12 +89,12 @@ fn joined(run: &[Sighting], steps: impl IntoIterator<Item = Step>, seconds: f64,
 }
 
 /// All windows over so many poses of a run that no accident falls into and that last no longer than a stretch.
-fn windows(run: &[Sighting], kept: &[usize], found: &[Step], length: usize, spread: &Spread) -> Vec<Step> {
+fn windows(run: &[Sighting], kept: &[usize], found: &[Edge], length: usize, spread: &Spread) -> Vec<Edge> {
     let is_clear = |from: usize, to: usize| {
         let next = found.partition_point(|stretch| stretch.to <= from);
         found.get(next).is_none_or(|stretch| stretch.from >= to)
     };
     let pairs = kept.iter().zip(kept.iter().skip(length)).map(|(from, to)| (*from, *to));
     let brief = pairs.filter(|(from, to)| run[*to].time - run[*from].time <= LONGEST && is_clear(*from, *to));
-    brief.map(|(from, to)| Step::between(run, from, to, spread)).collect()
+    brief.map(|(from, to)| Edge::between(run, from, to, spread)).collect()
 }

@@ -1,8 +1,8 @@
 //! Simulation against replay, effect by effect: both give a law the same pieces, so both make the same motion of it.
 
 use super::*;
-use crate::drive::Kind;
-use crate::effect::{CATALOGUE, Changes, Entry, Model, Place};
+use crate::drive::DriveKind;
+use crate::effect::{CATALOGUE, Changes, Entry, Model, RunContext};
 use crate::parameter::{Parameter, Role};
 use crate::path::{CIRCLE, FIGURE_EIGHT, SQUARE, SpeedProfile};
 use crate::preset::Preset;
@@ -28,7 +28,7 @@ fn models() -> Vec<(&'static str, Model)> {
     for entry in CATALOGUE {
         let mut alone = nothing.clone();
         put(&mut alone, entry, false);
-        if entry.drives().contains(Kind::default()) {
+        if entry.drives().contains(DriveKind::default()) {
             put(&mut together, entry, false);
         }
         models.push((entry.about.name, alone));
@@ -79,7 +79,7 @@ fn replay_gap(model: &Model, path: &Path) -> [f64; 2] {
     let (mut simulator, mut truth) =
         opened(model, path, Odometry::Sampled { rate: 100.0, update: Update::Arc }, Phase::Random);
     let chain = model.chain();
-    let (mut place, mut worst) = (Place::default(), [0.0_f64; 2]);
+    let (mut place, mut worst) = (RunContext::default(), [0.0_f64; 2]);
     for direction in Direction::BOTH.into_iter().flat_map(|d| [d; 2]) {
         place.direction = Some(direction);
         let recording = simulator.record(&mut truth, direction, TestKind::Systematic, [100.0, 20.0]).unwrap();
@@ -140,7 +140,7 @@ fn everything_measured(model: &Model) -> Vec<f64> {
 #[test]
 fn every_number_of_every_effect_shows_in_what_is_measured() {
     for entry in CATALOGUE {
-        let of_trucks = entry.drives().each().all(Kind::has_trucks);
+        let of_trucks = entry.drives().each().all(DriveKind::has_trucks);
         let robot = if of_trucks { Preset::find("clapper").unwrap().robot() } else { Robot::labmate() };
         let mut usual = Model::new(&robot);
         put(&mut usual, entry, true);

@@ -17,7 +17,7 @@ pub fn is_extended(model: &Model) -> bool {
 
 /// Drives tests of as many runs \[cw, ccw\] each and writes them down: ticks at the robot's encoder rate, or at 100 Hz, and
 /// absolute poses `reference_rate` times a second; at 0 Hz only the last one. Of a drive without [tick
-/// logs](crate::drive::Kind::has_tick_logs), returns alone. Its random numbers are those of a trial of a seed.
+/// logs](crate::drive::DriveKind::has_tick_logs), returns alone. Its random numbers are those of a trial of a seed.
 ///
 /// ```
 /// use umbmark_core::{drive::Robot, effect::{Model, TestKind}, path::Path, simulate::record_test};

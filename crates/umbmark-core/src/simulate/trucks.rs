@@ -4,7 +4,7 @@ use super::{Leg, Truth, return_error};
 use crate::dataset::ReturnError;
 use crate::drive::{ClapperDrive, LinkReading, Robot, Wheel, WheelTravel};
 use crate::effect::{Bump, Sight, Stretch, TestKind};
-use crate::engine::{Convoy, Floor, Step};
+use crate::engine::{Convoy, ConvoyStep, Floor};
 use crate::geometry::{Displacement2, Pose2};
 use crate::path::{Direction, Path};
 
@@ -50,7 +50,7 @@ struct Met<'a> {
 }
 
 impl Floor<f64> for Met<'_> {
-    fn moved(&mut self, step: &Step, truck: usize, believed: WheelTravel, real: &Pose2) -> Displacement2 {
+    fn moved(&mut self, step: &ConvoyStep, truck: usize, believed: WheelTravel, real: &Pose2) -> Displacement2 {
         if self.begun != Some(step.index) {
             let leg = &self.legs[step.index];
             let stretch = Stretch { index: step.index, direction: self.direction, test: self.test, travel: leg.travel };

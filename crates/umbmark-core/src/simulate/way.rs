@@ -2,7 +2,7 @@
 
 use super::Leg;
 use crate::drive::{Robot, WheelTravel};
-use crate::effect::{Context, Place, Progress};
+use crate::effect::{Context, Progress, RunContext};
 use crate::geometry::{Displacement2, Pose2};
 use crate::path::{Direction, Pieces, SpeedProfile};
 
@@ -28,7 +28,7 @@ impl Way {
     pub(super) fn new(robot: &Robot, follows: bool) -> Way {
         Way {
             robot: robot.clone(),
-            progress: Progress::new(robot, Place::default(), false),
+            progress: Progress::new(robot, RunContext::default(), false),
             pieces: Pieces::of(&WheelTravel::default(), &SpeedProfile::default()),
             at: Context::default(),
             pose: Pose2::IDENTITY,
@@ -48,7 +48,7 @@ impl Way {
     #[inline(never)]
     pub(super) fn start(&mut self, direction: Direction, recorded: bool, pose: Pose2) {
         let session_distance = if self.next_run == 0 { 0.0 } else { self.progress.session_distance() };
-        let place = Place { run: self.next_run, session_distance, direction: Some(direction) };
+        let place = RunContext { run: self.next_run, session_distance, direction: Some(direction) };
         self.progress = Progress::new(&self.robot, place, recorded);
         self.at = Context::default();
         self.pose = pose;

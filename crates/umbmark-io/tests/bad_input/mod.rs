@@ -1,7 +1,7 @@
 //! Reader of `cases.txt`: input that cannot be used, and what is said of it.
 
 use std::path::Path;
-use umbmark_core::drive::Kind;
+use umbmark_core::drive::DriveKind;
 use umbmark_core::path::SHAPES;
 
 const ROBOT: &str = "[robot]\nwheelbase_m = 0.340\nwheel_diameter_m = 0.150\nticks_per_revolution = 2000\n";
@@ -63,7 +63,7 @@ pub fn cases() -> Vec<Case> {
 /// What is said, with all names in place of what stands for them.
 fn with_lists(says: &str) -> String {
     let shapes: Vec<&str> = SHAPES.iter().map(|shape| shape.name).collect();
-    let drives: Vec<&str> = Kind::ALL.iter().map(|kind| kind.name()).collect();
+    let drives: Vec<&str> = DriveKind::ALL.iter().map(|kind| kind.name()).collect();
     says.replace("{shapes}", &shapes.join(", ")).replace("{drives}", &drives.join(", "))
 }
 

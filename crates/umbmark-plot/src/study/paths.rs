@@ -2,7 +2,7 @@
 
 use umbmark_core::dataset::{ReferencePose, Run, TickLog};
 use umbmark_core::drive::Robot;
-use umbmark_core::effect::{Model, Place, TestKind};
+use umbmark_core::effect::{Model, RunContext, TestKind};
 use umbmark_core::geometry::Pose2;
 use umbmark_core::path::{Direction, Path};
 use umbmark_core::replay::Track;
@@ -59,7 +59,7 @@ impl Paths {
         let (mut runs, mut session_distance) = (Vec::new(), 0.0);
         for (index, run) in regular() {
             let Some(log) = &run.log else { continue };
-            let place = Place { run: runs.len(), session_distance, direction: run.direction };
+            let place = RunContext { run: runs.len(), session_distance, direction: run.direction };
             let (path, length) = driven(log, robot, model, place, most)?;
             session_distance += length;
             runs.push(RunPath { run: index, ..path });
@@ -93,7 +93,13 @@ fn told(index: usize, run: &Run, path: &Path, model: &Model) -> Option<RunPath> 
 }
 
 /// A run with its ticks, and the way driven \[m\].
-fn driven(log: &TickLog, robot: &Robot, model: &Model, place: Place, most: usize) -> Result<(RunPath, f64), Absent> {
+fn driven(
+    log: &TickLog,
+    robot: &Robot,
+    model: &Model,
+    place: RunContext,
+    most: usize,
+) -> Result<(RunPath, f64), Absent> {
     let column = |of: fn(&ReferencePose) -> f64| log.reference.iter().map(of).collect::<Vec<f64>>();
     let seen = thin(&[&column(|r| r.x), &column(|r| r.y)], most);
     let mut watched: Vec<(ReferencePose, bool)> = seen.iter().map(|i| (log.reference[*i], true)).collect();

@@ -1873,9 +1873,9 @@ class RobotOfTableOne(Record, frozen=True):
         Its name there.
     robot : str
         Its name in flags.
-    e_max_sys_m : Place
+    e_max_sys_m : PublishedNumber
         E_max,sys, in m.
-    sigma_m : Place
+    sigma_m : PublishedNumber
         Standard deviation of one coordinate, in m.
     from_ : From
         Where its numbers are from.
@@ -1883,12 +1883,12 @@ class RobotOfTableOne(Record, frozen=True):
 
     row: str
     robot: str
-    e_max_sys_m: Place
-    sigma_m: Place
+    e_max_sys_m: PublishedNumber
+    sigma_m: PublishedNumber
     from_: From = msgspec.field(name="from")
 
 
-class Place(Record, frozen=True):
+class PublishedNumber(Record, frozen=True):
     """A published number among those that were simulated, in SI.
 
     Attributes
@@ -1977,7 +1977,7 @@ class RobotOfTableTwo(Record, frozen=True):
         Its name in flags.
     printed_rad : float
         The average as printed, in rad.
-    recomputed : Place
+    recomputed : PublishedNumber
         The average as it follows from the printed headings, in rad.
     heading_noise_rad : float
         Standard deviation with which headings were measured in the simulated tests, in rad.
@@ -1988,7 +1988,7 @@ class RobotOfTableTwo(Record, frozen=True):
     robot: str
     preset: str
     printed_rad: float
-    recomputed: Place
+    recomputed: PublishedNumber
     heading_noise_rad: float
     runs_rad: Interval
 

@@ -59,7 +59,7 @@ class Paper(_documents.Paper, frozen=True):
         return _plots.paper(self, ax, quantity)
 
 
-def _row(experiment: str, what: str, quantity: str, place: _documents.Place) -> Row:
+def _row(experiment: str, what: str, quantity: str, place: _documents.PublishedNumber) -> Row:
     low, high = place.middle_95
     return {
         "experiment": experiment,

@@ -1,6 +1,6 @@
 //! What errors may depend on, and how it is cut into bins.
 
-use super::followed::{Conditions, Step};
+use super::followed::{Conditions, ErrorIncrement};
 use crate::drive::Robot;
 use std::f64::consts::TAU;
 
@@ -80,7 +80,7 @@ impl Rate {
     }
 
     /// Error and amount of driving of a step, where it counts.
-    pub(super) fn of(self, step: &Step) -> Option<[f64; 2]> {
+    pub(super) fn of(self, step: &ErrorIncrement) -> Option<[f64; 2]> {
         let ([forward, sideways, yaw], [way, rotation]) = (step.own, step.motion);
         let amount = if self.of_turns() { rotation } else { way };
         let error = match self {
@@ -280,7 +280,7 @@ impl Covariate {
     }
 
     /// Cuts the range that it has in some steps.
-    pub(super) fn bins<'a>(&self, rate: Rate, steps: impl Iterator<Item = &'a Step>) -> Option<Bins> {
+    pub(super) fn bins<'a>(&self, rate: Rate, steps: impl Iterator<Item = &'a ErrorIncrement>) -> Option<Bins> {
         let value = self.value(rate)?;
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for v in steps.map(|step| value(&step.at)) {
@@ -323,7 +323,7 @@ impl Bins {
     }
 
     /// Which of them a step lies in; `None` where it has no sense to be put in one by.
-    pub fn index(&self, step: &Step) -> Option<usize> {
+    pub fn index(&self, step: &ErrorIncrement) -> Option<usize> {
         let mut value = (self.value)(&step.at);
         if self.cyclic {
             value = self.edges[0] + libm::fmod(libm::fmod(value - self.edges[0], TAU) + TAU, TAU);

@@ -19,15 +19,15 @@ pub(super) struct Followed<'a> {
     pub observed: &'a ObservedRun,
     pub direction: Option<Direction>,
     /// Poses predicted and measured, first those at START: both in the frame in which the robot stands there.
-    pub places: Vec<Place>,
+    pub places: Vec<MeasuredBlock>,
     /// From each place to the next that is near enough.
-    pub steps: Vec<Step>,
+    pub steps: Vec<ErrorIncrement>,
     pub with_heading: bool,
 }
 
 /// A block of measurements, where the model has it and where it was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct MeasuredBlock {
     pub predicted: Pose2,
     pub measured: Pose2,
     /// How many pieces of the track are made, and how far the wheels have rolled on average by then \[m\].
@@ -39,7 +39,7 @@ pub(super) struct Place {
 
 /// What lies between two neighbouring places.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Step {
+pub(super) struct ErrorIncrement {
     /// Error that it adds, seen by the robot: forward, to the left \[m\], rotation \[rad\].
     pub own: [f64; 3],
     /// Predicted motion: forward \[m\], rotation \[rad\].
@@ -75,7 +75,7 @@ impl<'a> Followed<'a> {
     /// `observed` must lie along the model of `chain`.
     pub fn new(observed: &'a ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Followed<'a> {
         let places = places(observed, chain, noise);
-        let short = |step: &Step| step.motion[0].abs() <= LONGEST.0 && step.motion[1].abs() <= LONGEST.1;
+        let short = |step: &ErrorIncrement| step.motion[0].abs() <= LONGEST.0 && step.motion[1].abs() <= LONGEST.1;
         let steps = places.windows(2).filter_map(|pair| step(&observed.track, pair)).filter(short).collect();
         let with_heading = observed.blocks.iter().any(|block| block.headings > 0);
         Followed { observed, direction: observed.direction, places, steps, with_heading }
@@ -84,13 +84,13 @@ impl<'a> Followed<'a> {
 
 /// Measured poses are moved so that they agree with the model at START, which is fitted to the first of them where it was measured, and
 /// anew where the track jumps; else START is trusted. A heading that was not measured errs as the last one did.
-fn places(run: &ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Vec<Place> {
+fn places(run: &ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Vec<MeasuredBlock> {
     let rolled = rolled(&run.track);
     let residuals = run.residuals(chain);
     let mut places = Vec::with_capacity(run.blocks.len() + 1);
     if !run.start_seen {
         let start = run.track.start(chain);
-        places.push(Place { predicted: start, measured: start, made: 0, rolled: 0.0, starts: true });
+        places.push(MeasuredBlock { predicted: start, measured: start, made: 0, rolled: 0.0, starts: true });
     }
     for stretch in run.stretches([noise.position, noise.heading]) {
         let mut turned = 0.0;
@@ -104,7 +104,7 @@ fn places(run: &ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Vec<Place>
             let starts = !stretch.told().contains(&index);
             let off = if starts { [0.0; 3] } else { [dx, dy, turned] };
             let measured = Pose2::new(predicted.x + off[0], predicted.y + off[1], predicted.heading + off[2]);
-            places.push(Place { predicted, measured, made, rolled: rolled[made], starts });
+            places.push(MeasuredBlock { predicted, measured, made, rolled: rolled[made], starts });
         }
     }
     places
@@ -120,7 +120,7 @@ pub(super) fn rolled(track: &Track) -> Vec<f64> {
     std::iter::once(0.0).chain(after).collect()
 }
 
-fn step(track: &Track, pair: &[Place]) -> Option<Step> {
+fn step(track: &Track, pair: &[MeasuredBlock]) -> Option<ErrorIncrement> {
     let (a, b) = (&pair[0], &pair[1]);
     // Steps across a jump do not count.
     if b.starts {
@@ -130,7 +130,7 @@ fn step(track: &Track, pair: &[Place]) -> Option<Step> {
     let own = predicted.between(&a.measured.between(&b.measured));
     let forward = predicted.log().forward;
     let (at, turning) = conditions(track, a.made..b.made, 0.5 * (a.predicted.heading + b.predicted.heading))?;
-    Some(Step { own: [own.x, own.y, own.heading], motion: [forward, predicted.heading], turning, at })
+    Some(ErrorIncrement { own: [own.x, own.y, own.heading], motion: [forward, predicted.heading], turning, at })
 }
 
 /// Conditions of some pieces, and whether most of their rolling is turning; `None` where nothing moves.

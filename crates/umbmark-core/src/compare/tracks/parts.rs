@@ -94,7 +94,7 @@ impl Share {
 
 /// What is done in a move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum MoveKind {
     Leg,
     Turn,
     Arc,
@@ -102,13 +102,13 @@ enum Kind {
     Several,
 }
 
-impl Kind {
+impl MoveKind {
     fn name(self) -> &'static str {
         match self {
-            Kind::Leg => "leg",
-            Kind::Turn => "turn",
-            Kind::Arc => "arc",
-            Kind::Several => "moves",
+            MoveKind::Leg => "leg",
+            MoveKind::Turn => "turn",
+            MoveKind::Arc => "arc",
+            MoveKind::Several => "moves",
         }
     }
 }
@@ -117,7 +117,7 @@ impl Kind {
 pub(super) struct Made {
     run: usize,
     direction: Option<Direction>,
-    kind: Kind,
+    kind: MoveKind,
     name: String,
     /// \[m/s\], of turns \[rad/s\]
     speed: f64,
@@ -165,19 +165,19 @@ pub(super) fn made(index: usize, run: &Followed, moves: &[MoveDone], time: &[f64
 /// A move with its number among all moves of its run, and its name.
 type Numbered<'a> = (usize, &'a MoveDone, String);
 
-fn kind(done: &Done) -> Kind {
+fn kind(done: &Done) -> MoveKind {
     match done {
-        Done::Turn { .. } => Kind::Turn,
-        Done::Arc { .. } => Kind::Arc,
-        Done::Leg { .. } | Done::Stop => Kind::Leg,
+        Done::Turn { .. } => MoveKind::Turn,
+        Done::Arc { .. } => MoveKind::Arc,
+        Done::Leg { .. } | Done::Stop => MoveKind::Leg,
     }
 }
 
 /// Kind, name, sense and mean speed of what was driven between two places.
-fn told(moves: &[Numbered], time: &[f64]) -> (Kind, String, f64, f64) {
+fn told(moves: &[Numbered], time: &[f64]) -> (MoveKind, String, f64, f64) {
     let [(_, m, name)] = moves else {
         let (first, last) = (moves.first().map_or(0, |m| m.0), moves.last().map_or(0, |m| m.0));
-        return (Kind::Several, format!("moves {first} to {last}"), 0.0, 0.0);
+        return (MoveKind::Several, format!("moves {first} to {last}"), 0.0, 0.0);
     };
     let seconds = (time[m.to] - time[m.from]).max(f64::MIN_POSITIVE);
     let (size, sense) = match m.done {
@@ -267,9 +267,9 @@ pub(super) fn gathered(runs: &[Followed], made: &[Made], confidence: f64) -> Vec
 fn key(by: By, m: &Made) -> Option<(String, Option<Direction>)> {
     match (by, m.kind) {
         (By::Move, _) => Some((m.name.clone(), m.direction)),
-        (By::Kind, Kind::Several) => Some(("several moves".to_owned(), m.direction)),
+        (By::Kind, MoveKind::Several) => Some(("several moves".to_owned(), m.direction)),
         (By::Kind, kind) => Some((format!("all {}s", kind.name()), m.direction)),
-        (By::Sense, Kind::Turn | Kind::Arc) => {
+        (By::Sense, MoveKind::Turn | MoveKind::Arc) => {
             Some((format!("{}s to the {}", m.kind.name(), if m.sense > 0.0 { "left" } else { "right" }), None))
         }
         _ => None,
@@ -278,17 +278,17 @@ fn key(by: By, m: &Made) -> Option<(String, Option<Direction>)> {
 
 /// Names by kind and speed, where a kind is driven at several.
 fn speeds(made: &[Made]) -> Vec<Option<(String, Option<Direction>)>> {
-    let groups = |kind: Kind| {
+    let groups = |kind: MoveKind| {
         let mut speeds: Vec<f64> = made.iter().filter(|m| m.kind == kind).map(|m| m.speed).collect();
         speeds.sort_by(f64::total_cmp);
         let groups: Vec<Vec<f64>> = speeds.chunk_by(|a, b| *b <= *a * (1.0 + APART)).map(<[f64]>::to_vec).collect();
         groups
     };
-    let all = [Kind::Leg, Kind::Turn, Kind::Arc].map(|kind| (kind, groups(kind)));
+    let all = [MoveKind::Leg, MoveKind::Turn, MoveKind::Arc].map(|kind| (kind, groups(kind)));
     let name = |m: &Made| {
         let (kind, groups) = all.iter().find(|(kind, groups)| *kind == m.kind && groups.len() > 1)?;
         let own = groups.iter().find(|g| g.contains(&m.speed))?;
-        let unit = if *kind == Kind::Turn { "rad/s" } else { "m/s" };
+        let unit = if *kind == MoveKind::Turn { "rad/s" } else { "m/s" };
         let mean = own.iter().sum::<f64>() / own.len() as f64;
         Some((format!("{}s at {mean:.2} {unit}", kind.name()), None))
     };

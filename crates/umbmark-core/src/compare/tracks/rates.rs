@@ -1,7 +1,7 @@
 //! Errors in proportion to what was driven: whether there are any, and what they depend on.
 
 use super::covariate::{COVARIATES, Covariate, Rate, Span, Value};
-use super::followed::{Followed, Step};
+use super::followed::{ErrorIncrement, Followed};
 use super::mean::{Mean, Sum, p_of_slope, p_of_zero, shared};
 use crate::drive::Robot;
 
@@ -58,7 +58,7 @@ pub(super) fn overall(runs: &[Followed], robot: &Robot, confidence: f64) -> Vec<
 }
 
 /// The errors of a run in each of `bins`.
-fn sums(steps: &[Step], rate: Rate, bins: usize, bin: impl Fn(&Step) -> Option<usize>) -> Vec<Sum> {
+fn sums(steps: &[ErrorIncrement], rate: Rate, bins: usize, bin: impl Fn(&ErrorIncrement) -> Option<usize>) -> Vec<Sum> {
     let mut sums = vec![Sum::default(); bins];
     let mut before: Option<usize> = None;
     for step in steps {

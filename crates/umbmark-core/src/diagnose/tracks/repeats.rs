@@ -30,7 +30,7 @@ use laws::Laws;
 use pick::{picks, sense_of};
 use rayon::prelude::*;
 use signs::{Asked, Sums, of_run, p_of_all};
-use steps::{Step, steps};
+use steps::{TrackStep, steps};
 
 pub(super) use added::suspect;
 pub use law::{Repeated, UnlistedLaw};
@@ -46,7 +46,7 @@ pub fn what_repeats(
     seed: u64,
 ) -> Option<Repeated> {
     let chain = model.chain();
-    let steps: Vec<Vec<Step>> = observed.runs.par_iter().map(|run| steps(run, &chain)).collect();
+    let steps: Vec<Vec<TrackStep>> = observed.runs.par_iter().map(|run| steps(run, &chain)).collect();
     let laws = Laws::of(&steps);
     let runs = observed.runs.par_iter().zip(own).zip(&steps).enumerate();
     let sums = runs.flat_map_iter(|(index, ((run, own), steps))| of_run(index, run, own, &laws, steps, noise));
@@ -150,7 +150,7 @@ mod tests {
         let model = Model::new(&Robot::labmate());
         let observed = Observed::new(&watched(&model, 1, 3), &Robot::labmate()).unwrap();
         let chain = model.chain();
-        let steps: Vec<Vec<Step>> = observed.runs.iter().map(|run| steps(run, &chain)).collect();
+        let steps: Vec<Vec<TrackStep>> = observed.runs.iter().map(|run| steps(run, &chain)).collect();
         let laws = Laws::of(&steps);
         for (words, per, motion, target, formula) in [
             ("a wave of 2 times the heading", "metre", 2, Target::HeadingPerMetre, "cos(2 * heading)"),
@@ -182,7 +182,7 @@ mod tests {
         let model = Model::new(&Robot::labmate());
         let observed = Observed::new(&watched(&model, 1, 3), &Robot::labmate()).unwrap();
         let chain = model.chain();
-        let steps: Vec<Vec<Step>> = observed.runs.iter().map(|run| steps(run, &chain)).collect();
+        let steps: Vec<Vec<TrackStep>> = observed.runs.iter().map(|run| steps(run, &chain)).collect();
         let laws = Laws::of(&steps);
         let (mut written, mut lost) = (0, Vec::new());
         for term in 0..laws.terms.len() {

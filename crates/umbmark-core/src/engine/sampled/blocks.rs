@@ -10,7 +10,7 @@
 //! of real numbers in it are summed each for itself and put together at the end.
 
 use super::carries::{Carries, OneByOne, WORD};
-use super::constant_rate::{EqualPieces, Step};
+use super::constant_rate::{EqualPieces, PoseIncrement};
 use super::directions::Directions;
 use super::{TickGeometry, Update};
 use crate::engine::Instructions;
@@ -97,7 +97,7 @@ struct Rates {
 struct Motions {
     rates: Rates,
     /// By left carry + 2 right carry.
-    single: [Step; 4],
+    single: [PoseIncrement; 4],
     /// By place of the left word + 76 times place of the right one.
     eight: Vec<Factors>,
 }
@@ -123,10 +123,11 @@ impl Motions {
     fn new(geometry: &TickGeometry, update: Update, pieces: &EqualPieces) -> Motions {
         let single = pieces.steps(geometry, update);
         // Four readings first, for all pairs of half words.
-        let half_words: Vec<Step> = (0..256_usize)
+        let half_words: Vec<PoseIncrement> = (0..256_usize)
             .map(|pair| {
-                (0..4)
-                    .fold(Step::IDENTITY, |motion, i| motion.then(&single[(pair >> i & 1) + 2 * (pair >> (4 + i) & 1)]))
+                (0..4).fold(PoseIncrement::IDENTITY, |motion, i| {
+                    motion.then(&single[(pair >> i & 1) + 2 * (pair >> (4 + i) & 1)])
+                })
             })
             .collect();
         let eight = POSSIBLE

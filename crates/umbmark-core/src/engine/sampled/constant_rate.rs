@@ -43,39 +43,39 @@ impl EqualPieces {
     }
 
     /// What the four kinds of readings do, by left carry + 2 right carry.
-    pub fn steps(&self, geometry: &TickGeometry, update: Update) -> [Step; 4] {
+    pub fn steps(&self, geometry: &TickGeometry, update: Update) -> [PoseIncrement; 4] {
         [[0, 0], [1, 0], [0, 1], [1, 1]].map(|carries| {
             let change = [0, 1].map(|i| self.sign[i] * (self.whole[i] + carries[i]));
-            Step::new(geometry, update, change)
+            PoseIncrement::new(geometry, update, change)
         })
     }
 }
 
 /// What one reading does to the pose: a step in the old frame, then a rotation.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Step {
+pub(super) struct PoseIncrement {
     pub x: f64,
     pub y: f64,
     pub cosine: f64,
     pub sine: f64,
 }
 
-impl Step {
-    pub const IDENTITY: Step = Step { x: 0.0, y: 0.0, cosine: 1.0, sine: 0.0 };
+impl PoseIncrement {
+    pub const IDENTITY: PoseIncrement = PoseIncrement { x: 0.0, y: 0.0, cosine: 1.0, sine: 0.0 };
 
-    pub fn new(geometry: &TickGeometry, update: Update, change: [i64; 2]) -> Step {
+    pub fn new(geometry: &TickGeometry, update: Update, change: [i64; 2]) -> PoseIncrement {
         let rotation = geometry.heading(change);
         let (length, turned) = update.step(geometry.distance(change), rotation);
         let (side, ahead) = turned.sine_cosine();
         let (sine, cosine) = rotation.sine_cosine();
-        Step { x: length * ahead, y: length * side, cosine, sine }
+        PoseIncrement { x: length * ahead, y: length * side, cosine, sine }
     }
 
     /// This step, then `next`.
     #[inline(always)]
-    pub fn then(&self, next: &Step) -> Step {
-        let Step { x, y, cosine, sine } = *self;
-        Step {
+    pub fn then(&self, next: &PoseIncrement) -> PoseIncrement {
+        let PoseIncrement { x, y, cosine, sine } = *self;
+        PoseIncrement {
             x: x + (cosine * next.x - sine * next.y),
             y: y + (sine * next.x + cosine * next.y),
             cosine: cosine * next.cosine - sine * next.sine,
@@ -123,7 +123,7 @@ impl SampledOdometry {
 fn one_by_one(geometry: &TickGeometry, update: Update, pieces: &EqualPieces) -> (f64, f64) {
     let steps = pieces.steps(geometry, update);
     let ([mut left, mut right], [left_rest, right_rest]) = (pieces.phase, pieces.rest);
-    let mut motion = Step::IDENTITY;
+    let mut motion = PoseIncrement::IDENTITY;
     for _ in 0..pieces.readings {
         let (left_carry, right_carry);
         (left, left_carry) = left.overflowing_add(left_rest);

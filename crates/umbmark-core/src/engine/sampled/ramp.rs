@@ -1,6 +1,6 @@
 //! Readings along a profile, acceleration ramps above all: the counts of all of them first, then two look-ups for each.
 
-use super::constant_rate::Step;
+use super::constant_rate::PoseIncrement;
 use super::directions::{Directions, sum, turned};
 use super::{Profile, SampledOdometry, TickGeometry, Update};
 use crate::engine::{Instructions, Motion, UNITS_PER_TICK, WheelLine};
@@ -15,7 +15,7 @@ const FEWEST_READINGS: usize = 16;
 /// What readings do to the pose: from rest to full speed, a few tens of changes of the two counters come again and again.
 #[derive(Clone, Debug, Default)]
 struct Steps {
-    known: Vec<Step>,
+    known: Vec<PoseIncrement>,
 }
 
 impl Steps {
@@ -27,13 +27,13 @@ impl Steps {
         if self.known.is_empty() {
             let changes = || -Self::REACH..=Self::REACH;
             let pairs = changes().flat_map(|left| changes().map(move |right| [left, right]));
-            self.known = pairs.map(|change| Step::new(geometry, update, change.map(i64::from))).collect();
+            self.known = pairs.map(|change| PoseIncrement::new(geometry, update, change.map(i64::from))).collect();
         }
     }
 
     /// The step of a change, if it is among those kept.
     #[inline(always)]
-    fn get(&self, change: [i64; 2]) -> Option<&Step> {
+    fn get(&self, change: [i64; 2]) -> Option<&PoseIncrement> {
         let width = i64::from(Self::WIDTH);
         let [left, right] = change.map(|ticks| ticks + i64::from(Self::REACH));
         let kept = (0..width).contains(&left) && (0..width).contains(&right);
@@ -124,7 +124,7 @@ impl SampledOdometry {
         }
         let known = &self.ramps.steps.known;
         let end = steps.iter().zip(headings).fold([0.0; 2], |end, (step, heading)| {
-            let Step { x, y, .. } = known[*step as usize];
+            let PoseIncrement { x, y, .. } = known[*step as usize];
             sum(end, turned(directions[*heading as usize], [x, y]))
         });
         let last = counts.each_ref().map(|counts| counts.last().map_or(0, |count| i64::from(*count)));
@@ -152,13 +152,13 @@ impl SampledOdometry {
         {
             return motion;
         }
-        let (mut pose, mut before) = (Step::IDENTITY, [0; 2]);
+        let (mut pose, mut before) = (PoseIncrement::IDENTITY, [0; 2]);
         for counts in profile.counts(line) {
             let change = [counts[0] - before[0], counts[1] - before[1]];
             if change != [0; 2] {
                 pose = match self.ramps.steps.get(change) {
                     Some(step) => pose.then(step),
-                    None => pose.then(&Step::new(&self.geometry, self.update, change)),
+                    None => pose.then(&PoseIncrement::new(&self.geometry, self.update, change)),
                 };
                 before = counts;
             }

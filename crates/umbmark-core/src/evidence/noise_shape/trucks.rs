@@ -1,7 +1,7 @@
 //! The scatter that evenly noisy wheels give the front one of two trucks, through its steering and the correction by its link.
 
 use crate::drive::{DifferentialDrive, LinkReading, WheelTravel};
-use crate::engine::{Convoy, Floor, Step, Trucks};
+use crate::engine::{Convoy, ConvoyStep, Floor, Trucks};
 use crate::geometry::{Displacement2, Dual, LANES, Pose2, Real};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use std::ops::Range;
@@ -75,7 +75,13 @@ struct Even<'a> {
 }
 
 impl<T: Real> Floor<T> for Even<'_> {
-    fn moved(&mut self, _step: &Step, _truck: usize, believed: WheelTravel<T>, _real: &Pose2<T>) -> Displacement2<T> {
+    fn moved(
+        &mut self,
+        _step: &ConvoyStep,
+        _truck: usize,
+        believed: WheelTravel<T>,
+        _real: &Pose2<T>,
+    ) -> Displacement2<T> {
         self.truck.displacement(&believed)
     }
 

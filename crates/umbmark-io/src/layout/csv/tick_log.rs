@@ -8,7 +8,7 @@ use crate::sheet::{Row, Sheet};
 use crate::source::Source;
 use Quantity::{Angle, Bare, Length, Time};
 use umbmark_core::dataset::{ReferencePose, TickLog};
-use umbmark_core::drive::{Kind, Robot};
+use umbmark_core::drive::{DriveKind, Robot};
 
 /// The columns of the absolute poses.
 const REFERENCE: [&str; 3] = ["x_ref_m", "y_ref_m", "theta_ref_rad"];
@@ -31,7 +31,7 @@ struct LogColumns {
 /// The rows of a log.
 pub(crate) fn parse_tick_log(
     source: Source,
-    kind: Kind,
+    kind: DriveKind,
     warnings: &mut Vec<String>,
 ) -> Result<Recording, DatasetError> {
     if !kind.has_tick_logs() {
@@ -47,10 +47,10 @@ pub(crate) fn parse_tick_log(
 }
 
 impl LogColumns {
-    fn find(sheet: &Sheet, kind: Kind, warnings: &mut Vec<String>) -> Result<LogColumns, DatasetError> {
+    fn find(sheet: &Sheet, kind: DriveKind, warnings: &mut Vec<String>) -> Result<LogColumns, DatasetError> {
         let mut columns = Columns::of(sheet);
         let [first, second] = kind.counters().map(|counter| format!("ticks_{counter}"));
-        let of = if kind == Kind::default() {
+        let of = if kind == DriveKind::default() {
             String::new()
         } else {
             format!(" of a robot with drive = \"{}\"", kind.name())

@@ -4,7 +4,7 @@
 //! are left, and nothing is allocated for what a message only claims to hold.
 
 use super::fields::{Fields, Layout, Number, Slot, Wanted, same_field};
-use super::schema::{Count, Field, Kind, Primitive, Schema};
+use super::schema::{Count, Field, FieldType, Primitive, Schema};
 use re_cdr::{BigEndian, CdrEndian, CdrReader, LittleEndian};
 
 /// Definitions in definitions, at most so deep.
@@ -14,7 +14,7 @@ const LONGEST: usize = 4096;
 
 /// A step through a message.
 #[derive(Clone, Debug)]
-enum Step {
+enum Instruction {
     /// Numbers of a size, `count` of them.
     Skip {
         size: usize,
@@ -32,10 +32,10 @@ enum Step {
     /// Something that is there `count` times, or as often as the message says.
     Repeat {
         count: Option<usize>,
-        steps: Box<[Step]>,
+        steps: Box<[Instruction]>,
     },
     /// The list whose elements are messages of their own.
-    Each(Box<[Step]>),
+    Each(Box<[Instruction]>),
     /// What nobody can step over.
     Wall(&'static str),
 }
@@ -43,7 +43,7 @@ enum Step {
 /// How to decode the messages of a topic.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
-    steps: Box<[Step]>,
+    steps: Box<[Instruction]>,
 }
 
 type Read<T> = re_cdr::Result<T>;
@@ -98,14 +98,14 @@ struct Compiler<'s> {
 
 impl Compiler<'_> {
     /// The steps of a definition; `path` is where it is, or nothing where no field of it can be wanted.
-    fn message(&mut self, name: &str, path: Option<&str>, depth: usize) -> Result<Vec<Step>, String> {
+    fn message(&mut self, name: &str, path: Option<&str>, depth: usize) -> Result<Vec<Instruction>, String> {
         const TIME: [&str; 2] = ["builtin_interfaces/Time", "builtin_interfaces/Duration"];
         if depth > DEEPEST {
             return Err(format!("its schema is deeper than {DEEPEST} types in each other"));
         }
         let part = |name: &str, primitive| Field {
             name: name.to_owned(),
-            kind: Kind::Primitive(primitive),
+            kind: FieldType::Primitive(primitive),
             count: Count::One,
         };
         let time = [part("sec", Primitive::I32), part("nanosec", Primitive::U32)];
@@ -126,32 +126,36 @@ impl Compiler<'_> {
             steps.extend(step);
         }
         // A definition without fields takes a byte.
-        Ok(if fields.is_empty() { vec![Step::Skip { size: 1, count: 1 }] } else { steps })
+        Ok(if fields.is_empty() { vec![Instruction::Skip { size: 1, count: 1 }] } else { steps })
     }
 
-    fn field(&mut self, field: &Field, path: Option<&str>, depth: usize) -> Result<Vec<Step>, String> {
+    fn field(&mut self, field: &Field, path: Option<&str>, depth: usize) -> Result<Vec<Instruction>, String> {
         let slot = path.and_then(|path| self.slot(path));
         let each = self.layout.each.filter(|each| Some(*each) == path && field.count == Count::Any);
         Ok(match (&field.kind, field.count, slot) {
-            (Kind::Primitive(primitive), Count::One, Some(Slot::Number(number))) => {
-                vec![Step::Number(*primitive, number)]
+            (FieldType::Primitive(primitive), Count::One, Some(Slot::Number(number))) => {
+                vec![Instruction::Number(*primitive, number)]
             }
-            (Kind::Primitive(primitive), Count::Any, Some(Slot::Values)) => vec![Step::Values(*primitive)],
-            (Kind::Text, Count::One, Some(slot @ (Slot::Frame | Slot::Child))) => vec![Step::Text(slot)],
-            (Kind::Text, Count::Any, Some(Slot::Names)) => vec![Step::Names],
+            (FieldType::Primitive(primitive), Count::Any, Some(Slot::Values)) => vec![Instruction::Values(*primitive)],
+            (FieldType::Text, Count::One, Some(slot @ (Slot::Frame | Slot::Child))) => vec![Instruction::Text(slot)],
+            (FieldType::Text, Count::Any, Some(Slot::Names)) => vec![Instruction::Names],
             (.., Some(_)) => return Err(format!("its field {} has another type than it should", path.unwrap_or(""))),
-            (Kind::Primitive(primitive), Count::Any, None) => vec![Step::SkipList { size: primitive.size() }],
-            (Kind::Primitive(primitive), Count::One, None) => vec![Step::Skip { size: primitive.size(), count: 1 }],
-            (Kind::Primitive(primitive), Count::Exactly(count), None) => {
-                vec![Step::Skip { size: primitive.size(), count }]
+            (FieldType::Primitive(primitive), Count::Any, None) => {
+                vec![Instruction::SkipList { size: primitive.size() }]
             }
-            (Kind::Text, count, None) => repeated(count, vec![Step::SkipText]),
-            (Kind::WideText, ..) => vec![Step::Wall("wide text")],
-            (Kind::Message(name), ..) if each.is_some() => {
-                vec![Step::Each(self.message(name, path, depth + 1)?.into())]
+            (FieldType::Primitive(primitive), Count::One, None) => {
+                vec![Instruction::Skip { size: primitive.size(), count: 1 }]
             }
-            (Kind::Message(name), Count::One, None) => self.message(name, path, depth + 1)?,
-            (Kind::Message(name), count, None) => repeated(count, self.message(name, None, depth + 1)?),
+            (FieldType::Primitive(primitive), Count::Exactly(count), None) => {
+                vec![Instruction::Skip { size: primitive.size(), count }]
+            }
+            (FieldType::Text, count, None) => repeated(count, vec![Instruction::SkipText]),
+            (FieldType::WideText, ..) => vec![Instruction::Wall("wide text")],
+            (FieldType::Message(name), ..) if each.is_some() => {
+                vec![Instruction::Each(self.message(name, path, depth + 1)?.into())]
+            }
+            (FieldType::Message(name), Count::One, None) => self.message(name, path, depth + 1)?,
+            (FieldType::Message(name), count, None) => repeated(count, self.message(name, None, depth + 1)?),
         })
     }
 
@@ -171,26 +175,35 @@ impl Compiler<'_> {
     }
 }
 
-fn repeated(count: Count, steps: Vec<Step>) -> Vec<Step> {
+fn repeated(count: Count, steps: Vec<Instruction>) -> Vec<Instruction> {
     match count {
         Count::One => steps,
-        Count::Any => vec![Step::Repeat { count: None, steps: steps.into() }],
-        Count::Exactly(count) => vec![Step::Repeat { count: Some(count), steps: steps.into() }],
+        Count::Any => vec![Instruction::Repeat { count: None, steps: steps.into() }],
+        Count::Exactly(count) => vec![Instruction::Repeat { count: Some(count), steps: steps.into() }],
     }
 }
 
-fn takes(step: &Step) -> bool {
-    matches!(step, Step::Number(..) | Step::Text(_) | Step::Names | Step::Values(_) | Step::Each(_))
+fn takes(step: &Instruction) -> bool {
+    matches!(
+        step,
+        Instruction::Number(..)
+            | Instruction::Text(_)
+            | Instruction::Names
+            | Instruction::Values(_)
+            | Instruction::Each(_)
+    )
 }
 
 /// Leaves out what comes behind the last field that is wanted, and joins what is stepped over.
-fn shorten(steps: &mut Vec<Step>) {
+fn shorten(steps: &mut Vec<Instruction>) {
     let end = steps.iter().rposition(takes).map_or(0, |last| last + 1);
     steps.truncate(end);
-    let mut joined: Vec<Step> = Vec::with_capacity(steps.len());
+    let mut joined: Vec<Instruction> = Vec::with_capacity(steps.len());
     for step in steps.drain(..) {
         match (joined.last_mut(), &step) {
-            (Some(Step::Skip { size, count }), Step::Skip { size: next, count: more }) if size == next => {
+            (Some(Instruction::Skip { size, count }), Instruction::Skip { size: next, count: more })
+                if size == next =>
+            {
                 *count = count.saturating_add(*more);
             }
             _ => joined.push(step),
@@ -199,10 +212,10 @@ fn shorten(steps: &mut Vec<Step>) {
     *steps = joined;
 }
 
-fn wall(steps: &[Step]) -> Option<&'static str> {
+fn wall(steps: &[Instruction]) -> Option<&'static str> {
     steps.iter().find_map(|step| match step {
-        Step::Wall(what) => Some(*what),
-        Step::Each(steps) | Step::Repeat { steps, .. } => wall(steps),
+        Instruction::Wall(what) => Some(*what),
+        Instruction::Each(steps) | Instruction::Repeat { steps, .. } => wall(steps),
         _ => None,
     })
 }
@@ -216,7 +229,7 @@ struct Run<'r, E> {
 }
 
 impl<E> Run<'_, E> {
-    fn all<B: CdrEndian>(&mut self, steps: &[Step], cdr: &mut CdrReader<B>) -> Read<()> {
+    fn all<B: CdrEndian>(&mut self, steps: &[Instruction], cdr: &mut CdrReader<B>) -> Read<()> {
         steps.iter().try_for_each(|step| self.step(step, cdr))
     }
 
@@ -237,46 +250,46 @@ impl<E> Run<'_, E> {
         Ok(())
     }
 
-    fn step<B: CdrEndian>(&mut self, step: &Step, cdr: &mut CdrReader<B>) -> Read<()> {
+    fn step<B: CdrEndian>(&mut self, step: &Instruction, cdr: &mut CdrReader<B>) -> Read<()> {
         match step {
-            Step::Skip { size, count } => skip(cdr, *size, *count),
-            Step::SkipText => {
+            Instruction::Skip { size, count } => skip(cdr, *size, *count),
+            Instruction::SkipText => {
                 let length = cdr.read_u32()? as usize;
                 cdr.read_bytes(length).map(|_| ())
             }
-            Step::SkipList { size } => {
+            Instruction::SkipList { size } => {
                 let count = cdr.read_u32()? as usize;
                 skip(cdr, *size, count)
             }
-            Step::Number(primitive, place) => {
+            Instruction::Number(primitive, place) => {
                 let value = number(cdr, *primitive)?;
                 self.fields.set(*place, value);
                 Ok(())
             }
-            Step::Text(slot) => {
+            Instruction::Text(slot) => {
                 let text = cdr.read_str()?;
                 self.fields.set_text(*slot, text);
                 Ok(())
             }
-            Step::Names => {
+            Instruction::Names => {
                 for _ in 0..cdr.read_u32()? {
                     let name = cdr.read_str()?;
                     self.fields.names.push(name);
                 }
                 Ok(())
             }
-            Step::Values(primitive) => {
+            Instruction::Values(primitive) => {
                 for _ in 0..cdr.read_u32()? {
                     let value = number(cdr, *primitive)?;
                     self.fields.values.push(value);
                 }
                 Ok(())
             }
-            Step::Repeat { count, steps } => {
+            Instruction::Repeat { count, steps } => {
                 let count = count.map_or_else(|| cdr.read_u32().map(|n| n as usize), Ok)?;
                 self.repeat(count, cdr, |run, cdr| run.all(steps, cdr))
             }
-            Step::Each(steps) => {
+            Instruction::Each(steps) => {
                 self.single = false;
                 let count = cdr.read_u32()? as usize;
                 self.repeat(count, cdr, |run, cdr| {
@@ -288,7 +301,7 @@ impl<E> Run<'_, E> {
                     Ok(())
                 })
             }
-            Step::Wall(_) => Err(re_cdr::Error::UnexpectedEof),
+            Instruction::Wall(_) => Err(re_cdr::Error::UnexpectedEof),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Types of messages that mean something here, and what is read of them.
 
 use super::fields::{Layout, Number, Slot};
-use super::schema::{Count, Kind, Schema};
+use super::schema::{Count, FieldType, Schema};
 use serde_json::Value;
 
 /// What a message is.
@@ -124,7 +124,7 @@ fn counts(integers: &[String]) -> Option<MessageType> {
 
 fn integers(schema: &Schema) -> Vec<String> {
     let fields = schema.fields(&schema.root).unwrap_or_default();
-    let integer = |kind: &Kind| matches!(kind, Kind::Primitive(primitive) if primitive.is_integer());
+    let integer = |kind: &FieldType| matches!(kind, FieldType::Primitive(primitive) if primitive.is_integer());
     let integers = fields.iter().filter(|field| integer(&field.kind) && field.count == Count::One);
     integers.map(|field| field.name.clone()).collect()
 }

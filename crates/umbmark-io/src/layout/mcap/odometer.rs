@@ -2,13 +2,13 @@
 
 use super::clock::Times;
 use super::fields::{Fields, Number};
-use super::track::{Place, place};
+use super::track::{PlanarPose, place};
 use umbmark_core::geometry::wrap;
 
 /// Sums from message to message: by the poses, and by the speeds for robots that fill in only these.
 #[derive(Default)]
 pub(super) struct Odometer {
-    before: Option<(Times, Place)>,
+    before: Option<(Times, PlanarPose)>,
     /// Distance \[m\] and turn \[rad\] by the poses.
     by_pose: [f64; 2],
     by_twist: [f64; 2],

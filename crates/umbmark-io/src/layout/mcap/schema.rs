@@ -56,7 +56,7 @@ impl Primitive {
 
 /// What a field is made of.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum FieldType {
     Primitive(Primitive),
     Text,
     /// Text of wide characters, whose width on the wire differs between systems.
@@ -77,7 +77,7 @@ pub(super) enum Count {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Field {
     pub name: String,
-    pub kind: Kind,
+    pub kind: FieldType,
     pub count: Count,
 }
 
@@ -144,17 +144,17 @@ fn field(line: &str, of: &str) -> Result<Option<Field>, String> {
     Ok(Some(Field { name: name.to_owned(), kind: kind(base, of), count }))
 }
 
-fn kind(base: &str, of: &str) -> Kind {
+fn kind(base: &str, of: &str) -> FieldType {
     match base {
-        "string" => Kind::Text,
-        "wstring" => Kind::WideText,
-        "time" => Kind::Message("builtin_interfaces/Time".to_owned()),
-        "duration" => Kind::Message("builtin_interfaces/Duration".to_owned()),
-        "Header" => Kind::Message("std_msgs/Header".to_owned()),
+        "string" => FieldType::Text,
+        "wstring" => FieldType::WideText,
+        "time" => FieldType::Message("builtin_interfaces/Time".to_owned()),
+        "duration" => FieldType::Message("builtin_interfaces/Duration".to_owned()),
+        "Header" => FieldType::Message("std_msgs/Header".to_owned()),
         _ => match (Primitive::of(base), base.contains('/'), of.rsplit_once('/')) {
-            (Some(primitive), ..) => Kind::Primitive(primitive),
-            (None, false, Some((package, _))) => Kind::Message(format!("{package}/{base}")),
-            _ => Kind::Message(normal(base)),
+            (Some(primitive), ..) => FieldType::Primitive(primitive),
+            (None, false, Some((package, _))) => FieldType::Message(format!("{package}/{base}")),
+            _ => FieldType::Message(normal(base)),
         },
     }
 }
@@ -174,7 +174,7 @@ mod tests {
         assert_eq!(names, ["number", "name", "bounded", "fixed", "points", "header"]);
         assert_eq!(fields[2].count, Count::Any);
         assert_eq!(fields[3].count, Count::Exactly(36));
-        assert_eq!(fields[4].kind, Kind::Message("demo/Point".into()));
+        assert_eq!(fields[4].kind, FieldType::Message("demo/Point".into()));
         assert_eq!(schema.fields("demo/Point").unwrap().len(), 1);
     }
 

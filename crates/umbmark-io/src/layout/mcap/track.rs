@@ -15,7 +15,7 @@ const FARTHEST: f64 = 1e6;
 
 /// A pose in the plane, without its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct PlanarPose {
     pub x: f64,
     pub y: f64,
     /// Missing where the orientation is all zeros.
@@ -26,7 +26,7 @@ pub(super) struct Place {
 struct Frames {
     frame: String,
     child: String,
-    rows: Vec<(Times, Place)>,
+    rows: Vec<(Times, PlanarPose)>,
 }
 
 /// The poses of a topic.
@@ -56,7 +56,11 @@ impl Track {
     }
 
     /// The rows of the frames that are the reference; nothing, and why, where there are none.
-    pub fn choose(mut self, chosen: &Chosen, warnings: &mut Vec<String>) -> Result<Vec<(Times, Place)>, McapProblem> {
+    pub fn choose(
+        mut self,
+        chosen: &Chosen,
+        warnings: &mut Vec<String>,
+    ) -> Result<Vec<(Times, PlanarPose)>, McapProblem> {
         if let Some(part) = &chosen.part {
             let names: Vec<String> = self.frames.iter().map(|frames| shown(&frames.child)).collect();
             self.frames.retain(|frames| bare(&frames.child) == bare(part) || bare(&frames.frame) == bare(part));
@@ -106,7 +110,7 @@ fn bare(frame: &str) -> &str {
 }
 
 /// The pose of a message, seen from above.
-pub(super) fn place(fields: &Fields) -> Result<Place, String> {
+pub(super) fn place(fields: &Fields) -> Result<PlanarPose, String> {
     let [x, y] = [Number::X, Number::Y].map(|number| fields.number(number));
     if let Some(value) = [x, y].into_iter().find(|value| !(value.abs() <= FARTHEST)) {
         return Err(format!("has position {value}, where a finite number in m of at most {FARTHEST:e} is allowed"));
@@ -114,17 +118,17 @@ pub(super) fn place(fields: &Fields) -> Result<Place, String> {
     let [qx, qy, qz, qw] = [Number::Qx, Number::Qy, Number::Qz, Number::Qw].map(|number| fields.number(number));
     let square = qx * qx + qy * qy + qz * qz + qw * qw;
     if square == 0.0 {
-        return Ok(Place { x, y, heading: None });
+        return Ok(PlanarPose { x, y, heading: None });
     }
     if !(0.98..=1.02).contains(&square) {
         return Err(format!("has orientation [{qx}, {qy}, {qz}, {qw}], which is no unit quaternion"));
     }
     let heading = libm::atan2(2.0 * (qw * qz + qx * qy), qw * qw + qx * qx - qy * qy - qz * qz);
-    Ok(Place { x, y, heading: Some(heading) })
+    Ok(PlanarPose { x, y, heading: Some(heading) })
 }
 
 /// The rows on a clock, as those of any track.
-pub(super) fn timed(rows: Vec<(Times, Place)>, clock: &Clock, file: &str, topic: &str) -> TrackRows {
+pub(super) fn timed(rows: Vec<(Times, PlanarPose)>, clock: &Clock, file: &str, topic: &str) -> TrackRows {
     TrackRows {
         file: file.to_owned(),
         column: format!("{topic} {}", clock.name()),

@@ -1,6 +1,6 @@
 //! How far runs go in everything that a law may depend on.
 
-use super::steps::Step;
+use super::steps::TrackStep;
 use std::f64::consts::TAU;
 
 /// The extent of what runs do.
@@ -21,7 +21,7 @@ pub struct Extent {
 }
 
 /// How far along a direction in the room a step is \[m\].
-pub fn along(step: &Step, direction: f64) -> f64 {
+pub fn along(step: &TrackStep, direction: f64) -> f64 {
     let (sine, cosine) = libm::sincos(direction);
     step.middle.x * cosine + step.middle.y * sine
 }
@@ -32,10 +32,10 @@ pub fn direction(k: usize) -> f64 {
 }
 
 impl Extent {
-    pub fn of(steps: &[Vec<Step>]) -> Extent {
-        let most = |of: fn(&Step) -> f64| steps.iter().flatten().map(of).fold(1e-9, f64::max);
-        let least = |of: fn(&Step) -> f64| steps.iter().flatten().map(of).fold(0.0, f64::min);
-        let sum = |of: fn(&Step) -> f64| steps.iter().flatten().map(of).sum::<f64>();
+    pub fn of(steps: &[Vec<TrackStep>]) -> Extent {
+        let most = |of: fn(&TrackStep) -> f64| steps.iter().flatten().map(of).fold(1e-9, f64::max);
+        let least = |of: fn(&TrackStep) -> f64| steps.iter().flatten().map(of).fold(0.0, f64::min);
+        let sum = |of: fn(&TrackStep) -> f64| steps.iter().flatten().map(of).sum::<f64>();
         Extent {
             way: sum(|s| s.way),
             back: sum(|s| if s.speed < 0.0 { s.way } else { 0.0 }),

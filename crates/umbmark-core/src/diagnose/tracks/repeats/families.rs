@@ -2,7 +2,7 @@
 
 use super::extent::{Extent, along, direction};
 use super::laws::{Function, Laws, SHAPE, Term, Written};
-use super::steps::{Per, Step};
+use super::steps::{Per, TrackStep};
 use std::f64::consts::TAU;
 
 /// Periods from the least to the largest \[s\] and \[m\].
@@ -289,7 +289,7 @@ impl Laws {
         words: String,
         formula: Written,
         per: &[Per],
-        value: impl Fn(&Step) -> f64 + Send + Sync + 'static,
+        value: impl Fn(&TrackStep) -> f64 + Send + Sync + 'static,
     ) {
         self.add_shaped(words, formula, per, move |step, _| value(step));
     }
@@ -300,7 +300,7 @@ impl Laws {
         words: String,
         formula: Written,
         per: &[Per],
-        value: impl Fn(&Step, &[f64]) -> f64 + Send + Sync + 'static,
+        value: impl Fn(&TrackStep, &[f64]) -> f64 + Send + Sync + 'static,
     ) {
         let function = self.functions.len();
         self.functions.push(Function { words, formula, value: Box::new(value) });
@@ -313,8 +313,8 @@ impl Laws {
         words: String,
         (size_text, angle_text, value): (&str, &str, Option<f64>),
         per: &[Per],
-        size: impl Fn(&Step) -> f64 + Copy + Send + Sync + 'static,
-        angle: impl Fn(&Step, &[f64]) -> f64 + Copy + Send + Sync + 'static,
+        size: impl Fn(&TrackStep) -> f64 + Copy + Send + Sync + 'static,
+        angle: impl Fn(&TrackStep, &[f64]) -> f64 + Copy + Send + Sync + 'static,
     ) {
         let first = self.terms.len();
         let shapes: Vec<_> = value.map(|c| (SHAPE, c)).into_iter().collect();
@@ -330,7 +330,7 @@ impl Laws {
         words: &str,
         formulas: [&str; 2],
         per: &[Per],
-        values: impl Fn(&Step) -> [f64; 2] + Copy + Send + Sync + 'static,
+        values: impl Fn(&TrackStep) -> [f64; 2] + Copy + Send + Sync + 'static,
     ) {
         let first = self.terms.len();
         for (k, formula) in formulas.into_iter().enumerate() {

@@ -3,7 +3,7 @@
 use super::law::UnlistedLaw;
 use super::laws::Laws;
 use super::pick::Pick;
-use super::steps::Step;
+use super::steps::TrackStep;
 use crate::diagnose::tracks::smooth::Motion;
 use crate::evidence::tracks::{Errors, Projected, System};
 use crate::likelihood::{Column, Noise, Observed, ObservedRun};
@@ -20,10 +20,10 @@ pub fn front(
     noise: &Noise,
     own: &[Vec<Column>],
     laws: &Laws,
-    steps: &[Vec<Step>],
+    steps: &[Vec<TrackStep>],
     picks: &[Pick],
 ) -> Vec<UnlistedLaw> {
-    let of_run = |((run, own), steps): ((&ObservedRun, &Vec<Column>), &Vec<Step>)| {
+    let of_run = |((run, own), steps): ((&ObservedRun, &Vec<Column>), &Vec<TrackStep>)| {
         let (residual, base) = own.split_last().map_or((Column::new(), own.as_slice()), |(r, b)| (r.clone(), b));
         let laws = picks.iter().flat_map(|pick| pick.columns(&[&pick.shapes], run, laws, steps));
         base.iter().cloned().chain(laws).chain([residual]).collect()

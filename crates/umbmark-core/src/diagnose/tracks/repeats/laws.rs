@@ -1,7 +1,7 @@
 //! The laws that are tested: functions of how and where the robot drives, per second, metre or radian.
 
 use super::extent::Extent;
-use super::steps::{Per, Step};
+use super::steps::{Per, TrackStep};
 use crate::diagnose::tracks::smooth::Motion;
 use crate::drive::Robot;
 use crate::effect::{Formula, Model, Target};
@@ -18,7 +18,7 @@ pub(super) struct Function {
 }
 
 /// A number for a step and the numbers that shape a function.
-pub(super) type Value = dyn Fn(&Step, &[f64]) -> f64 + Send + Sync;
+pub(super) type Value = dyn Fn(&TrackStep, &[f64]) -> f64 + Send + Sync;
 
 /// A formula of the user's own, and the parameters that shape it, with start values.
 pub(super) type Written = (String, Vec<(&'static str, f64)>);
@@ -51,7 +51,7 @@ pub struct Laws {
 
 impl Laws {
     /// Those of the steps of some runs.
-    pub fn of(steps: &[Vec<Step>]) -> Laws {
+    pub fn of(steps: &[Vec<TrackStep>]) -> Laws {
         let extent = Extent::of(steps);
         let mut laws = Laws { functions: Vec::new(), reverses: extent.back > BACK * extent.way, terms: Vec::new() };
         laws.fill(&extent);
@@ -162,14 +162,14 @@ impl Laws {
     }
 
     /// The columns of some terms for each motion in turn, in the [`steps`] of a run.
-    pub fn columns(&self, terms: &[usize], run: &ObservedRun, steps: &[Step]) -> Vec<Column> {
+    pub fn columns(&self, terms: &[usize], run: &ObservedRun, steps: &[TrackStep]) -> Vec<Column> {
         let shapes: Vec<Vec<f64>> = terms.iter().map(|term| self.shapes(*term)).collect();
         let shaped: Vec<(usize, &[f64])> = terms.iter().copied().zip(shapes.iter().map(Vec::as_slice)).collect();
         self.shaped_columns(&shaped, run, steps)
     }
 
     /// The same of terms with the numbers that shape each.
-    pub fn shaped_columns(&self, terms: &[(usize, &[f64])], run: &ObservedRun, steps: &[Step]) -> Vec<Column> {
+    pub fn shaped_columns(&self, terms: &[(usize, &[f64])], run: &ObservedRun, steps: &[TrackStep]) -> Vec<Column> {
         let own: Vec<(Term, &[f64])> = terms.iter().map(|(term, by)| (self.terms[*term], *by)).collect();
         let mut sums: [Vec<f64>; 5] = std::array::from_fn(|_| vec![0.0; own.len()]);
         let mut columns = vec![vec![[0.0; 3]; run.blocks.len()]; 3 * own.len()];

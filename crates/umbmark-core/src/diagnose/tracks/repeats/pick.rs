@@ -2,7 +2,7 @@
 
 use super::laws::Laws;
 use super::signs::Asked;
-use super::steps::Step;
+use super::steps::TrackStep;
 use crate::diagnose::tracks::smooth::Motion;
 use crate::likelihood::{Column, ObservedRun};
 
@@ -22,7 +22,7 @@ pub struct Pick {
 
 impl Pick {
     /// The columns of its term, and of its twin, in a run: for each of some numbers that shape it.
-    pub fn columns(&self, shapes: &[&[f64]], run: &ObservedRun, laws: &Laws, steps: &[Step]) -> Vec<Column> {
+    pub fn columns(&self, shapes: &[&[f64]], run: &ObservedRun, laws: &Laws, steps: &[TrackStep]) -> Vec<Column> {
         let sense = if self.with_sense { sense_of(run) } else { 1.0 };
         let shaped = shapes.iter().flat_map(|by| laws.both(self.term).map(move |term| (term, *by)));
         let columns = laws.shaped_columns(&shaped.collect::<Vec<_>>(), run, steps);

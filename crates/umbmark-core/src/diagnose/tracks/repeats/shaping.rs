@@ -8,7 +8,7 @@
 
 use super::laws::Laws;
 use super::pick::Pick;
-use super::steps::Step;
+use super::steps::TrackStep;
 use crate::evidence::tracks::Projected;
 use crate::likelihood::{Column, Noise, Observed, Whitened};
 use nalgebra::DMatrix;
@@ -32,7 +32,7 @@ pub(super) fn shape(
     picks: &mut Vec<Pick>,
     (observed, noise, own): (&Observed, &Noise, &[Vec<Column>]),
     laws: &Laws,
-    steps: &[Vec<Step>],
+    steps: &[Vec<TrackStep>],
 ) {
     let ground = Ground::new(observed, noise, own, laws, steps);
     let shaped = picks.par_iter_mut().take(MAX_LAWS).filter(|pick| !pick.shapes.is_empty());
@@ -64,7 +64,7 @@ struct Ground<'a> {
     observed: &'a Observed,
     noise: &'a Noise,
     laws: &'a Laws,
-    steps: &'a [Vec<Step>],
+    steps: &'a [Vec<TrackStep>],
     white: Vec<Whitened>,
     /// Products of these columns over all runs, the residual last.
     products: DMatrix<f64>,
@@ -76,7 +76,7 @@ impl<'a> Ground<'a> {
         noise: &'a Noise,
         own: &[Vec<Column>],
         laws: &'a Laws,
-        steps: &'a [Vec<Step>],
+        steps: &'a [Vec<TrackStep>],
     ) -> Ground<'a> {
         let runs = observed.runs.par_iter().zip(own);
         let white: Vec<Whitened> =

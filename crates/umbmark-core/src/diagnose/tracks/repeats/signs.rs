@@ -1,7 +1,7 @@
 //! The test itself: sums over units of every law's column, and the greatest of them as signs are flipped.
 
 use super::laws::Laws;
-use super::steps::Step;
+use super::steps::TrackStep;
 use crate::diagnose::tracks::smooth::Motion;
 use crate::likelihood::{Column, Noise, ObservedRun, ScaledCholesky, scaled_cholesky};
 use crate::random::Stream;
@@ -41,7 +41,7 @@ pub(super) fn of_run(
     run: &ObservedRun,
     own: &[Column],
     laws: &Laws,
-    steps: &[Step],
+    steps: &[TrackStep],
     noise: &Noise,
 ) -> Vec<Sums> {
     let all: Vec<usize> = (0..laws.terms.len()).collect();

@@ -28,7 +28,7 @@ impl Per {
         }
     }
 
-    pub fn of(self, step: &Step) -> f64 {
+    pub fn of(self, step: &TrackStep) -> f64 {
         match self {
             Per::Second => step.duration,
             Per::Metre => step.way,
@@ -40,7 +40,7 @@ impl Per {
 
 /// A short part of a run, with means over it.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Step {
+pub struct TrackStep {
     /// The block that it belongs to.
     pub block: usize,
     /// Where the robot is in the middle of it, and how it stands.
@@ -74,26 +74,26 @@ const STEP: (f64, f64, f64) = (0.02, 0.05, 0.1);
 const ALIKE: f64 = 0.05;
 
 /// The steps of a run along a model.
-pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
+pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<TrackStep> {
     let track = &run.track;
     let (mut pose, mut made, mut steps) = (track.start(chain), 0, Vec::new());
     for (block, own) in run.blocks.iter().enumerate() {
         let until = run.made_at(own).max(made);
-        let (mut step, mut wheels, mut change) = (Step::default(), [0.0; 2], [0.0; 2]);
+        let (mut step, mut wheels, mut change) = (TrackStep::default(), [0.0; 2], [0.0; 2]);
         let mut begin = pose;
         let pieces = track.travel()[made..until].iter().zip(&track.contexts()[made..until]);
         let count = until - made;
         for (index, (travel, at)) in pieces.enumerate() {
             if step.duration == 0.0 {
                 begin = pose;
-                step = Step {
+                step = TrackStep {
                     block,
                     time: at.time,
                     distance: at.distance,
                     wheel_angle: at.wheel_angle,
                     since_turn: at.since_turn,
                     last_turn: at.last_turn,
-                    ..Step::default()
+                    ..TrackStep::default()
                 };
                 (wheels, change) = ([0.0; 2], [0.0; 2]);
             }
@@ -107,7 +107,7 @@ pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<Step> {
             change = [change[0] + at.acceleration() * at.duration, change[1] + at.turn_acceleration() * at.duration];
             let full = step.way >= STEP.0 || step.rotation.abs() >= STEP.1 || step.duration >= STEP.2;
             if (full || index + 1 == count) && step.duration > 0.0 {
-                let Step { duration, way, rotation, .. } = step;
+                let TrackStep { duration, way, rotation, .. } = step;
                 let between = begin.between(&pose);
                 step.middle = begin.moved(&Displacement2 {
                     forward: 0.5 * between.x,
