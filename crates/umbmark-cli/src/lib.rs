@@ -3,6 +3,7 @@
 //! Parsing only parses: each verb's `Arguments` are turned into one resolved configuration of the core before anything is
 //! computed. Results go to stdout, messages and progress to stderr.
 
+mod answer;
 mod checkpoint_flags;
 mod data_arguments;
 mod distribution_text;

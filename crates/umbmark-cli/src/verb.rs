@@ -34,6 +34,8 @@ verbs! {
     Simulate(simulate),
     /// Repeat the paper's experiments and compare with its numbers
     Paper(paper),
+    /// Answer for a measured robot: what to write into it, what that is worth, what remains
+    Solve(solve),
     /// Score a measured test: E_max,sys, centroids, sigma, extended test
     Score(score),
     /// Calibrate a measured robot: E_d, E_b, E_s, and files for ROS 2, TOML or C

@@ -5,9 +5,11 @@
 //! | closed form from x, y, their mean | mean return position (Borenstein & Feng) | the square, both directions |
 //! | heading form | mean return heading (Jung & Chung) | the square, both directions |
 //! | exact | everything measured, full kinematics | any |
+//! | model | the same, with all other effects that the runs show; learnt by [`solve`](crate::solve) | any |
 //!
 //! The closed forms are small-angle estimates from part of the data, kept because they are published and can be worked by
-//! hand; their disagreement shows effects outside E_d and E_b. The exact fit is the one to use.
+//! hand; their disagreement shows effects outside E_d and E_b. The learnt model is the one to use, and the exact fit where the runs are
+//! too few to learn from.
 
 mod closed_form;
 mod correction;
@@ -68,6 +70,12 @@ pub struct Calibration {
 }
 
 impl Calibration {
+    /// The estimate to write into a robot: that of the learnt model, or of the exact fit where no model shows both E_d and E_b.
+    pub fn to_write(&self) -> Option<&Estimate> {
+        let both = |estimate: &&Estimate| estimate.shown[0] && estimate.shown[1];
+        [Method::Model, Method::Exact].into_iter().find_map(|method| self.estimate(method).filter(both))
+    }
+
     /// The estimate of a method.
     pub fn estimate(&self, method: Method) -> Option<&Estimate> {
         self.estimates.iter().find(|estimate| estimate.method == method)
@@ -99,6 +107,15 @@ impl Calibration {
 /// # Ok::<(), umbmark_core::calibrate::CalibrateError>(())
 /// ```
 pub fn calibrate(data: &Dataset, options: &Options) -> Result<Calibration, CalibrateError> {
+    calibrate_beside(data, options, None)
+}
+
+/// [`calibrate`] with one estimate more, that of a model which was learnt.
+pub fn calibrate_beside(
+    data: &Dataset,
+    options: &Options,
+    learnt: Option<Estimate>,
+) -> Result<Calibration, CalibrateError> {
     if let Some(value) = options.heading_arm.filter(|arm| !(*arm > 0.0 && arm.is_finite())) {
         return Err(CalibrateError::HeadingArm { value });
     }
@@ -126,7 +143,7 @@ pub fn calibrate(data: &Dataset, options: &Options) -> Result<Calibration, Calib
     let mut estimates: Vec<Estimate> =
         square.map(|s| s.estimates(options.radius_wheelbase, &mut warnings)).unwrap_or_default();
     let truth = fitted.as_ref().filter(|e| e.shown[0] && e.shown[1]).map(|e| e.correction);
-    estimates.extend(fitted);
+    estimates.extend(fitted.into_iter().chain(learnt));
     let summary = summarise(&cw, &ccw);
     let forecast = truth.zip(data.path.as_ref()).map(|(truth, path)| Forecast { robot, path, truth, summary });
     for estimate in &mut estimates {

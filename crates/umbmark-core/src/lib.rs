@@ -39,6 +39,7 @@ pub mod score;
 pub mod sensitivity;
 pub mod setup;
 pub mod simulate;
+pub mod solve;
 pub mod stats;
 pub mod synchronise;
 pub mod watch;

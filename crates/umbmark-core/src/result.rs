@@ -44,6 +44,7 @@ results! {
     score: Score;
     sensitivity: Sensitivity;
     setup;
+    solution: Solution;
     study: MonteCarlo;
     sweep: Sweep;
     tolerance: Tolerance;

@@ -13,10 +13,11 @@ use umbmark_core::diagnose::{self, Diagnosis, diagnose};
 use umbmark_core::effect::{Model, TestKind};
 use umbmark_core::geometry::wrap;
 use umbmark_core::inspect::Inspection;
-use umbmark_core::learn::{Learnt, learn_from};
+use umbmark_core::learn::Learnt;
 use umbmark_core::path::Direction;
 use umbmark_core::replay::Track;
 use umbmark_core::score::{Score, score_dataset};
+use umbmark_core::solve::{Solution, solve};
 use umbmark_core::watch::Watch;
 
 pub use chance::Chance;
@@ -62,7 +63,7 @@ pub struct Study {
     inspection: OnceLock<Inspection>,
     score: OnceLock<Result<Score, Absent>>,
     calibration: OnceLock<Result<Calibration, Absent>>,
-    learnt: OnceLock<Result<Learnt, Absent>>,
+    solution: OnceLock<Result<Solution, Absent>>,
     diagnosis: OnceLock<Result<Diagnosis, Absent>>,
     comparison: OnceLock<Result<Comparison, Absent>>,
     along: OnceLock<Result<TrackComparison, Absent>>,
@@ -88,7 +89,7 @@ impl Study {
             inspection: OnceLock::new(),
             score: OnceLock::new(),
             calibration: OnceLock::new(),
-            learnt: OnceLock::new(),
+            solution: OnceLock::new(),
             diagnosis: OnceLock::new(),
             comparison: OnceLock::new(),
             along: OnceLock::new(),
@@ -132,15 +133,24 @@ impl Study {
 
     /// How the model was learnt; `progress` is told the share of the steps that are done.
     pub fn learn(&self, progress: &(dyn Fn(f64) + Sync)) -> Result<&Learnt, Absent> {
+        self.solve(progress).map(|solution| &solution.learnt)
+    }
+
+    /// The one answer about the robot, from the model that was learnt.
+    pub fn solution(&self) -> Result<&Solution, Absent> {
+        self.solve(&|_| ())
+    }
+
+    fn solve(&self, progress: &(dyn Fn(f64) + Sync)) -> Result<&Solution, Absent> {
         if let Some((name, _)) = &self.given {
             return Err(Absent(format!("The model was given ({name}), not learnt.")));
         }
-        self.once(&self.learnt, || {
+        self.once(&self.solution, || {
             let start = Model::new(self.data.nominal_robot().map_err(Absent::because)?);
             let watch = Watch { stop: &self.stop, progress };
-            let learnt = learn_from(&self.data, &start, &self.options.diagnose, &watch).map_err(Absent::because)?;
-            self.cut_short.fetch_or(learnt.partial, Ordering::Relaxed);
-            Ok(learnt)
+            let solution = solve(&self.data, &start, &self.options.diagnose, &watch).map_err(Absent::because)?;
+            self.cut_short.fetch_or(solution.learnt.partial, Ordering::Relaxed);
+            Ok(solution)
         })
     }
 

@@ -4,16 +4,15 @@ use std::sync::Arc;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use umbmark_core::calibrate::{self as core, Correction, Options, RadiusWheelbase};
-use umbmark_core::learn;
-use umbmark_core::result;
+use umbmark_core::calibrate::{Correction, Options, RadiusWheelbase};
+use umbmark_core::{diagnose, learn, result, solve};
 use umbmark_io::{RobotFile, export as texts};
 
 use crate::dataset::Dataset;
 use crate::model::Model;
 use crate::path::Path;
 use crate::robot::Robot;
-use crate::work::watched;
+use crate::work::{Watch, watched};
 use crate::{choice, json, probability, refused};
 
 const WHEELBASES: [(&str, RadiusWheelbase); 2] =
@@ -40,14 +39,16 @@ pub fn calibrate(
         return Err(PyValueError::new_err(words));
     }
     let shared = Arc::clone(&data.0);
-    let mut calibration = watched(py, 1, None, move |_| core::calibrate(&shared, &options))?.map_err(refused)?;
+    let testing = diagnose::Options::default();
+    let work = move |told: &Watch| told.work(|watch| solve::calibrate_beside(&shared, &options, &testing, watch));
+    let (mut calibration, answer) = watched(py, 0, None, work)?.map_err(refused)?;
     if calibration.estimates.is_empty() {
         let why = calibration.warnings.join("\n");
         return Err(PyValueError::new_err(format!("nothing can be calibrated from these runs\n{why}")));
     }
     let noticed = calibration.setup.notices().len();
     calibration.warnings.splice(noticed..noticed, data.0.warnings.iter().cloned());
-    json(&result::Calibration::new(robot, &calibration, level))
+    json(&result::Calibration::new(robot, &calibration, answer.as_ref(), level))
 }
 
 /// A calibration of any drive by its first effects: the document, the model, and the corrected robot.

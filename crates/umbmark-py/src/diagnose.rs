@@ -8,7 +8,8 @@ use umbmark_core::compare::{self as comparing, Compared};
 use umbmark_core::diagnose::{self as core, Options, first_model};
 use umbmark_core::evidence::FitError;
 use umbmark_core::result::{self, Comparison, TrackComparison};
-use umbmark_core::{effect, evidence, learn as learning};
+use umbmark_core::solve::{self as solving, Solution};
+use umbmark_core::{effect, evidence};
 
 use crate::dataset::Dataset;
 use crate::model::Model;
@@ -101,9 +102,36 @@ pub fn learn(
         Some(start) => start.of_data(py, &data.0)?,
         None => effect::Model::new(data.0.nominal_robot().map_err(refused)?),
     };
-    let work = move |told: &Watch| told.work(|watch| learning::learn_from(&shared, &start, &options, watch));
-    let learnt = watched(py, threads, progress, work)?.map_err(refused)?;
-    Ok((json(&result::Learnt::new(&learnt, &options))?, learnt.model.into()))
+    let solution = solved(py, shared, start, options, threads, progress)?;
+    Ok((json(&result::Learnt::new(&solution, &options))?, solution.learnt.model.into()))
+}
+
+/// The one answer, and the model that it rests on.
+#[pyfunction]
+pub fn solve(
+    py: Python<'_>,
+    data: &Dataset,
+    options: (f64, usize, u64),
+    return_poses: bool,
+    threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(String, Model)> {
+    let options = options_of(options, return_poses)?;
+    let start = effect::Model::new(data.0.nominal_robot().map_err(refused)?);
+    let solution = solved(py, Arc::clone(&data.0), start, options, threads, progress)?;
+    Ok((json(&result::Solution::new(&solution, &options))?, solution.learnt.model.into()))
+}
+
+fn solved(
+    py: Python<'_>,
+    data: Arc<umbmark_core::dataset::Dataset>,
+    start: effect::Model,
+    options: Options,
+    threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Solution> {
+    let work = move |told: &Watch| told.work(|watch| solving::solve(&data, &start, &options, watch));
+    watched(py, threads, progress, work)?.map_err(refused)
 }
 
 /// The model that is asked about, the usual first one where none is given.

@@ -47,7 +47,7 @@ mod _umbmark {
     #[pymodule_export]
     use super::dataset::{Dataset, init, inspect, load_dataset};
     #[pymodule_export]
-    use super::diagnose::{compare, diagnose, fit, learn};
+    use super::diagnose::{compare, diagnose, fit, learn, solve};
     #[pymodule_export]
     use super::effect::{effects, formula_variables};
     #[pymodule_export]

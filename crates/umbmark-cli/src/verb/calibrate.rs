@@ -7,17 +7,21 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use umbmark_core::calibrate::{Calibration, Estimate, Method, Options, RadiusWheelbase, Ratio, calibrate};
+use umbmark_core::calibrate::{Calibration, Estimate, Method, Options, RadiusWheelbase, Ratio};
 use umbmark_core::dataset::Dataset;
+use umbmark_core::diagnose;
 use umbmark_core::drive::Robot;
 use umbmark_core::evidence::Level;
 use umbmark_core::result;
+use umbmark_core::solve::calibrate_beside;
 use umbmark_io::{RobotFile, export};
 
 use crate::Session;
+use crate::answer::answer_text;
 use crate::data_arguments::DataArguments;
 use crate::files::Pending;
 use crate::level_argument::LevelArgument;
+use crate::prose::hanging;
 use crate::setup_report::taken_text;
 use crate::table::{table, with_precision_of};
 
@@ -29,6 +33,7 @@ enum MethodKind {
     ClosedFormMean,
     Heading,
     Exact,
+    Model,
 }
 
 /// The wheelbase in the closed forms' rotation radius.
@@ -74,9 +79,9 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", help_heading = "Export")]
     export_c: Option<PathBuf>,
 
-    /// Method whose result is exported
-    #[arg(long, value_enum, default_value_t = MethodKind::Exact, value_name = "METHOD", help_heading = "Export")]
-    method: MethodKind,
+    /// Method whose result is exported [default: the learnt model, or the exact fit where the runs are too few for one]
+    #[arg(long, value_enum, value_name = "METHOD", help_heading = "Export")]
+    method: Option<MethodKind>,
 
     /// Replace files that exist, and write lengths even if they are in doubt
     #[arg(long)]
@@ -92,8 +97,14 @@ impl Arguments {
         Options { heading_arm: self.heading_arm, radius_wheelbase }
     }
 
-    fn exported_method(&self) -> Method {
-        Method::ALL[self.method as usize]
+    /// The estimate to export: that of the method that was asked for, or the one to write.
+    fn exported<'a>(&self, calibration: &'a Calibration) -> anyhow::Result<&'a Estimate> {
+        let Some(method) = self.method.map(|method| Method::ALL[method as usize]) else {
+            return calibration.to_write().context("nothing to export: no method gives both E_d and E_b");
+        };
+        let both = |estimate: &&Estimate| estimate.shown[0] && estimate.shown[1];
+        let found = calibration.estimate(method).filter(both);
+        found.with_context(|| format!("nothing to export: {} does not give both E_d and E_b", method.name()))
     }
 }
 
@@ -102,7 +113,10 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if !data.nominal_robot()?.drive.kind().has_axle_wheels() {
         return gears::run(&arguments, &data, session);
     }
-    let mut calibration = calibrate(&data, &arguments.options())?;
+    let testing = diagnose::Options { seed: session.seed(), ..diagnose::Options::default() };
+    let (mut calibration, answer) = session.watched("% of the steps of learning at most", |watch| {
+        calibrate_beside(&data, &arguments.options(), &testing, watch)
+    })??;
     let robot = data.nominal_robot()?;
     if calibration.estimates.is_empty() {
         anyhow::bail!("nothing can be calibrated from these runs\n{}", calibration.warnings.join("\n"));
@@ -112,13 +126,17 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let withheld = !calibration.doubts.is_empty() && !arguments.force;
     let written = if withheld { Vec::new() } else { export_files(&arguments, &data, robot, &calibration)? };
     if session.json() {
-        session.print_json(&result::Calibration::new(robot, &calibration, arguments.intervals.level))?;
+        session.print_json(&result::Calibration::new(robot, &calibration, answer.as_ref(), arguments.intervals.level))?;
         return told_what_is_withheld(&arguments, withheld);
     }
     for warning in &calibration.warnings {
         session.message("warning", warning);
     }
-    write!(session.out(), "{}", text(robot, &calibration, arguments.intervals.level))?;
+    let mut text = text(robot, &calibration, arguments.intervals.level);
+    if let Some(answer) = &answer {
+        text += &format!("\n{}", answer_text(answer, 1.0 - testing.size));
+    }
+    write!(session.out(), "{text}")?;
     for file in written {
         writeln!(session.out(), "wrote {file}")?;
     }
@@ -150,12 +168,7 @@ fn export_files(
     if asked.iter().all(|file| file.is_none()) {
         return Ok(Vec::new());
     }
-    let method = arguments.exported_method();
-    let estimate = calibration
-        .estimate(method)
-        .filter(|e| e.shown[0] && e.shown[1])
-        .with_context(|| format!("nothing to export: {} does not give both E_d and E_b", method.name()))?;
-    let correction = &estimate.correction;
+    let correction = &arguments.exported(calibration)?.correction;
     let texts = [
         export::ros2_control(robot, correction, &arguments.controller),
         export::robot_toml(&RobotFile::beside(data, robot.clone()), correction)?,
@@ -178,6 +191,7 @@ fn title(method: Method) -> &'static str {
         "closed_form_y" => "closed form, y",
         "closed_form_mean" => "closed form, mean",
         "heading" => "heading form",
+        "model" => "learnt model",
         _ => "exact fit",
     }
 }
@@ -206,6 +220,13 @@ fn text(robot: &Robot, calibration: &Calibration, level: f64) -> String {
     let header = ["", "b [mm]", "D_left [mm]", "D_right [mm]", "predicted", "replayed [mm]"];
     text += &table(&header, estimates.iter().map(|e| length_row(robot, e)));
     text += "\n\npredicted: E_max,sys of the same test with the correction\nreplayed: E_max,sys of the recorded ticks with the correction\n";
+    let why = |estimate: &Estimate| match estimate.method {
+        Method::Model => "the learnt model: it has all effects that the runs show, and the other rows have E_d, E_b and E_s only",
+        _ => "the exact fit: the runs are too few to learn a model",
+    };
+    if let Some(estimate) = calibration.to_write() {
+        text += &hanging("exported:", 10, why(estimate));
+    }
     text
 }
 

@@ -5,14 +5,16 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use umbmark_core::dataset::Dataset;
-use umbmark_core::diagnose::{Experiment, Options, Reason, Verdict};
+use umbmark_core::diagnose::{Experiment, Options, Verdict};
 use umbmark_core::effect::Model;
 use umbmark_core::evidence::Level;
 use umbmark_core::learn::{Learnt, Step, learn_from};
 use umbmark_core::result;
+use umbmark_core::solve::Solution;
 
 use super::diagnose::{experiment_text, in_words};
 use crate::Session;
+use crate::answer::answer_text;
 use crate::data_arguments::DataArguments;
 use crate::model_report::{estimates_table, meaning_text, outliers_text, p_text, read_model, write_model};
 use crate::prose::hanging;
@@ -59,18 +61,20 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if learnt.partial {
         session.message("partial", "stopped while an effect was still missing");
     }
-    let of_data = learnt.diagnosis.reasons.iter().any(Reason::is_of_data);
-    let withheld = (learnt.verdict == Verdict::NotExplained || of_data) && !arguments.force;
+    let solution = session.on_threads(|| Solution::of(&data, learnt, &options))??;
+    let learnt = &solution.learnt;
+    let withheld = learnt.is_in_doubt() && !arguments.force;
     if let Some(file) = arguments.output.as_ref().filter(|_| !withheld) {
         write_model(&learnt.model, file, arguments.force)?;
     }
     if session.json() {
-        session.print_json(&result::Learnt::new(&learnt, &options))?;
+        session.print_json(&result::Learnt::new(&solution, &options))?;
     } else {
         for warning in &data.warnings {
             session.message("warning", warning);
         }
-        let text = text(&data, &learnt, &options, session.on_terminal());
+        let mut text = text(&data, learnt, &options, session.on_terminal());
+        text += &format!("\n{}", answer_text(&solution, 1.0 - options.size));
         write!(session.out(), "{text}")?;
     }
     match &arguments.output {

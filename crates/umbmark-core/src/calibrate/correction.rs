@@ -1,7 +1,7 @@
 //! The three ratios that a calibration finds, and what they make of a robot.
 
 use crate::drive::{DriveError, Robot};
-use crate::effect::{Model, ModelError};
+use crate::effect::{Model, ModelError, find};
 
 /// One of the ratios.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +40,8 @@ impl Ratio {
 ///
 /// Lengths in metres follow only as far as E_s is known: return poses of a closed path show E_b/E_s, and E_s = 1 is then
 /// assumed, which is the paper's own precondition (section 2: E_s is measured by tape and corrected first).
+///
+/// Of a robot with another drive, the three are the values of its own [first effects](crate::drive::Drive::first_effects).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correction {
     /// E_d: true over nominal D_R/D_L.
@@ -62,6 +64,25 @@ impl Correction {
     /// From E_d, E_b, E_s.
     pub fn from_values([e_d, e_b, e_s]: [f64; 3]) -> Correction {
         Correction { e_d, e_b, e_s }
+    }
+
+    /// What a model says of the numbers of its robot: the values of its first effects, each as it does nothing where the model lacks
+    /// it.
+    ///
+    /// ```
+    /// use umbmark_core::{calibrate::Correction, drive::Robot, effect::Model};
+    /// let mut model = Model::new(&Robot::labmate());
+    /// model.set("wheelbase", "e_b", 0.99)?;
+    /// model.set("crab", "angle_rad", 0.01)?;
+    /// assert_eq!(Correction::of(&model), Correction { e_b: 0.99, ..Correction::NONE });
+    /// # Ok::<(), umbmark_core::effect::ModelError>(())
+    /// ```
+    pub fn of(model: &Model) -> Correction {
+        let value = |effect: &'static str| {
+            let first = find(effect).ok().and_then(|entry| entry.about.parameters.first())?;
+            Some(model.get(effect, first.name).unwrap_or_else(|| first.default.resolve(model.robot())))
+        };
+        Correction::from_values(model.robot().drive.first_effects().map(|effect| value(effect).unwrap_or(1.0)))
     }
 
     /// Factors of the left and right wheel diameter: 2 E_s/(1 + E_d) and 2 E_s E_d/(1 + E_d).

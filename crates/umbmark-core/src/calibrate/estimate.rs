@@ -14,16 +14,19 @@ pub enum Method {
     ClosedForm(ClosedForm),
     /// The non-linear fit of the full kinematics.
     Exact,
+    /// The model that was learnt: E_d, E_b and E_s beside all other effects that the runs show.
+    Model,
 }
 
 impl Method {
     /// All, in the order in which they are listed.
-    pub const ALL: [Method; 5] = [
+    pub const ALL: [Method; 6] = [
         Method::ClosedForm(ClosedForm::X),
         Method::ClosedForm(ClosedForm::Y),
         Method::ClosedForm(ClosedForm::Mean),
         Method::ClosedForm(ClosedForm::Heading),
         Method::Exact,
+        Method::Model,
     ];
 
     /// Its name in files.
@@ -34,6 +37,7 @@ impl Method {
             Method::ClosedForm(ClosedForm::Mean) => "closed_form_mean",
             Method::ClosedForm(ClosedForm::Heading) => "heading",
             Method::Exact => "exact",
+            Method::Model => "model",
         }
     }
 }
@@ -65,7 +69,7 @@ pub struct Estimate {
 
 impl Estimate {
     /// E_d and E_b alone, without their uncertainty and consequences.
-    pub(super) fn new(method: Method, correction: Correction, degrees_of_freedom: f64) -> Estimate {
+    pub(crate) fn new(method: Method, correction: Correction, degrees_of_freedom: f64) -> Estimate {
         Estimate {
             method,
             correction,

@@ -213,6 +213,14 @@ fn judge(name: &str, data: &Dataset, observed: &Observed, model: &Model, options
     judged
 }
 
+/// Root mean square error \[m\] of the positions along the way that a model leaves as it is, START fitted.
+pub(crate) fn error_along(observed: &Observed, model: &Model) -> f64 {
+    let (observed, chain) = (observed.along(model), model.chain());
+    let runs: Vec<Followed> =
+        observed.runs.iter().map(|run| Followed::new(run, &chain, observed.setup.noise)).collect();
+    rms(&runs, |_| 0).position
+}
+
 /// The logs of a dataset whose runs are observed, in the order of these.
 fn parts(data: &Dataset, observed: &Observed, runs: &[Followed], confidence: f64) -> Vec<Part> {
     let mut logs = data.runs.iter().filter_map(|run| Some((&run.name, run.log.as_ref()?)));

@@ -1,5 +1,6 @@
 //! Calibration of any drive: its first effects fitted, and the robot that follows.
 
+use crate::calibrate::Correction;
 use crate::dataset::{Dataset, ReturnError};
 use crate::diagnose::{Identifiability, first_model, identifiability};
 use crate::drive::{DriveError, Robot};
@@ -55,13 +56,7 @@ pub fn calibrate_gears(data: &Dataset) -> Result<GearCalibration, GearError> {
     let asked = first_model(data)?;
     let Fit { model, estimates, .. } = fit(data, &asked)?;
     let shown = |effect: &str| estimates.iter().any(|e| e.effect == effect);
-    let first = robot.drive.first_effects();
-    let mut all = model.clone();
-    let mut values = [0.0; 3];
-    for (value, effect) in values.iter_mut().zip(first) {
-        *value = all.add(effect).map_err(FitError::from)?.values[0];
-    }
-    let corrected = Robot { drive: robot.drive.corrected(values)?, ..robot.clone() };
+    let corrected = Correction::of(&model).apply(robot)?;
     let directions: Vec<Direction> = Direction::BOTH
         .into_iter()
         .filter(|direction| data.returns(TestKind::Systematic, *direction).next().is_some())

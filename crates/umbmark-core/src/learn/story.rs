@@ -1,6 +1,6 @@
 //! How a model was learnt, step by step.
 
-use crate::diagnose::{Diagnosis, Repeated, Verdict};
+use crate::diagnose::{Diagnosis, Reason, Repeated, Verdict};
 use crate::effect::Model;
 use crate::evidence::Evidence;
 
@@ -57,6 +57,11 @@ pub struct Learnt {
 }
 
 impl Learnt {
+    /// Whether the model must not be used as it is: it does not explain the runs, or the data are in doubt.
+    pub fn is_in_doubt(&self) -> bool {
+        self.verdict == Verdict::NotExplained || self.diagnosis.reasons.iter().any(Reason::is_of_data)
+    }
+
     /// Columns that are not what they are called teach nothing of the robot.
     pub(super) fn of_faults(evidence: &dyn Evidence, steps: Vec<Step>) -> Learnt {
         let model = Model::new(evidence.robot());

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Keyed, Setup, Taken, ends, taken};
+use crate::solve::Solution;
 use crate::calibrate::{self, Method, Ratio};
 use crate::drive::Robot;
 
@@ -95,8 +96,13 @@ impl Correction {
 /// A calibration by every method that the data allows.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Calibration {
-    /// The corrections by "closed_form_x", "closed_form_y", "closed_form_mean", "heading" and "exact"; null where the data does not allow it.
+    /// The corrections by "closed_form_x", "closed_form_y", "closed_form_mean", "heading", "exact" and "model"; null where the data does not
+    /// allow it.
     pub methods: Keyed<Option<Correction>>,
+    /// The method whose correction is to be written into the robot; null where none gives both E_d and E_b.
+    pub exported: Option<&'static str>,
+    /// The answer in words, as of `solve`; null where no model could be learnt.
+    pub sentence: Option<String>,
     /// "end_poses" or "tracks".
     pub observed: &'static str,
     /// Metres that a radian of heading counted as, where whole tracks were fitted; else null.
@@ -117,11 +123,18 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// A calibration of a robot; intervals hold with probability `level`.
-    pub fn new(robot: &Robot, calibration: &calibrate::Calibration, level: f64) -> Calibration {
+    /// A calibration of a robot, and the answer beside it; intervals hold with probability `level`.
+    pub fn new(
+        robot: &Robot,
+        calibration: &calibrate::Calibration,
+        answer: Option<&Solution>,
+        level: f64,
+    ) -> Calibration {
         let of = |method| calibration.estimate(method).map(|estimate| Correction::new(robot, estimate, level));
         Calibration {
             methods: Method::ALL.into_iter().map(|method| (method.name(), of(method))).collect(),
+            exported: calibration.to_write().map(|estimate| estimate.method.name()),
+            sentence: answer.map(Solution::sentence),
             observed: calibration.level.name(),
             heading_arm_m: calibration.heading_arm,
             level,

@@ -6,9 +6,11 @@ use serde::Serialize;
 use super::diagnosis::{Experiment, Unlisted, experiments};
 use super::fitted::{Estimate, Outlier, estimates, meaning};
 use super::law::Repeated;
+use super::solution::{Changes, changes};
 use super::{Keyed, Leaves, Model, Setup, Taken, finite, reasons, taken};
 use crate::diagnose::Options;
 use crate::learn;
+use crate::solve::Solution;
 
 /// One line of the story of a learnt model.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -80,6 +82,10 @@ pub struct Learnt {
     pub reasons: Vec<String>,
     /// What repeats most beside the model, whether it counts or not; null without tracks.
     pub repeats: Option<Repeated>,
+    /// The new numbers of the robot by their keys in robot.toml, as of `solve`; empty where these runs show none.
+    pub correction: Changes,
+    /// The answer in words, as of `solve`.
+    pub sentence: String,
     /// What else should be said.
     pub remarks: Vec<String>,
     /// Whether it was stopped while an effect was still missing.
@@ -98,8 +104,9 @@ pub struct Learnt {
 }
 
 impl Learnt {
-    /// What was learnt with `options`.
-    pub fn new(learnt: &learn::Learnt, options: &Options) -> Learnt {
+    /// What was learnt with `options`, and the answer that it gives.
+    pub fn new(solution: &Solution, options: &Options) -> Learnt {
+        let learnt = &solution.learnt;
         let diagnosis = &learnt.diagnosis;
         Learnt {
             steps: learnt.steps.iter().map(Step::from).collect(),
@@ -114,6 +121,8 @@ impl Learnt {
             taken: taken(&diagnosis.taken),
             reasons: reasons(&diagnosis.reasons),
             repeats: diagnosis.repeats.as_ref().map(Repeated::from),
+            correction: changes(&solution.changes),
+            sentence: solution.sentence(),
             remarks: learnt.remarks.clone(),
             partial: learnt.partial,
             size: options.size,

@@ -18,8 +18,15 @@ fn notices(study: &Study) -> Vec<String> {
     notices.iter().map(|notice| format!("{}.", super::spoken(notice))).collect()
 }
 
-/// What a study comes to, in one sentence.
+/// What a study comes to: the answer of the model that was learnt; of one that was given, what it leaves unexplained.
 fn verdict(study: &Study) -> String {
+    match study.solution() {
+        Ok(solution) => solution.sentence(),
+        Err(_) => of_given(study),
+    }
+}
+
+fn of_given(study: &Study) -> String {
     let robot = study.data.robot.as_ref().map_or("The robot", |robot| robot.name.as_str());
     let missed = match study.score() {
         Ok(score) => score

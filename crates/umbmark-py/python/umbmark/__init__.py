@@ -12,6 +12,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``score``, ``calibrate``           E_max,sys and the rest; E_d, E_b and E_s
 ``calibrate_gears``                the same for drives other than the differential one
 ``compare``, ``diagnose``          what models explain, and what they are missing
+``solve``                          the one answer: what to write into the robot
 ``fit``, ``learn``                 fit a model; add what is missing until nothing is
 ``report``, ``plot``               everything on one page; one figure of it
 ``simulate``, ``monte_carlo``      one test, recorded; thousands of tests
@@ -39,6 +40,7 @@ from umbmark._report import Report, figures, plot, report
 from umbmark._scores import Score, score
 from umbmark._sensitivity import Sensitivity, sensitivity
 from umbmark._simulation import simulate
+from umbmark._solution import Solution, solve
 from umbmark._sweep import Sweep, sweep
 from umbmark._tolerance import Tolerance, tolerance
 from umbmark._umbmark import (
@@ -81,6 +83,7 @@ __all__ = [
     "Sensitivity",
     "Separation",
     "Setup",
+    "Solution",
     "Study",
     "Sweep",
     "Tolerance",
@@ -109,6 +112,7 @@ __all__ = [
     "sensitivity",
     "separate",
     "simulate",
+    "solve",
     "sweep",
     "tolerance",
 ]

@@ -43,7 +43,7 @@ class Calibration(_documents.Calibration, frozen=True):
         self,
         format: str,
         *,
-        method: str = "exact",
+        method: str | None = None,
         controller: str = "diff_drive_controller",
         force: bool = False,
     ) -> str:
@@ -53,8 +53,8 @@ class Calibration(_documents.Calibration, frozen=True):
         ----------
         format : str
             "ros2_control" (parameters of diff_drive_controller), "robot_toml" or "c_header".
-        method : str, default "exact"
-            Whose corrections.
+        method : str, optional
+            Whose corrections; those of ``exported`` where none is given.
         controller : str
             Name of the controller in the parameters of ros2_control.
         force : bool, default False
@@ -69,6 +69,7 @@ class Calibration(_documents.Calibration, frozen=True):
         if self.doubts and not force:
             why = " ".join(self.doubts)
             raise ValueError(f"the lengths are in doubt; force=True gives them all the same. {why}")
+        method = method or self.exported or "exact"
         found = self._of_method(method)
         if found.e_d is None or found.e_b is None:
             raise ValueError(f"nothing to export: {method} does not give both E_d and E_b")
@@ -106,7 +107,8 @@ def calibrate(
 ) -> Calibration:
     """Calibrate a differential drive: E_d, E_b, and E_s where the data shows it.
 
-    The paper's closed forms (Eqs. 7 to 20), the heading form, and the exact fit.
+    The paper's closed forms (Eqs. 7 to 20), the heading form, the exact fit, and the numbers of the
+    learnt model, which are exported (see ``solve``).
 
     Parameters
     ----------

@@ -42,6 +42,7 @@ __all__ = [
     "sensitivity",
     "separate",
     "simulate",
+    "solve",
     "sweep",
     "tolerance",
     "write",
@@ -407,6 +408,13 @@ def fit(
 def learn(
     data: Dataset,
     start: Model | None,
+    options: tuple[float, int, int],
+    return_poses: bool,
+    threads: int,
+    progress: Callable[[int], object] | None,
+) -> tuple[str, Model]: ...
+def solve(
+    data: Dataset,
     options: tuple[float, int, int],
     return_poses: bool,
     threads: int,

@@ -5,13 +5,17 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use umbmark_core::dataset::Dataset;
+use umbmark_core::diagnose;
 use umbmark_core::drive::Robot;
+use umbmark_core::effect::Model;
 use umbmark_core::learn::{GearCalibration, calibrate_gears};
 use umbmark_core::result;
+use umbmark_core::solve::solve;
 use umbmark_io::RobotFile;
 
 use super::Arguments;
 use crate::Session;
+use crate::answer::answer_text;
 use crate::files::Pending;
 use crate::model_report::estimates_table;
 use crate::table::table;
@@ -31,8 +35,13 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
             "nothing can be calibrated from these runs: drive a closed path in both directions, or measure poses on the way"
         );
     }
-    if let Some(file) = &arguments.export_toml {
-        let text = RobotFile::beside(data, calibration.corrected.clone()).text();
+    let testing = diagnose::Options { seed: session.seed(), ..diagnose::Options::default() };
+    let start = Model::new(robot);
+    let answer = session.watched("% of the steps of learning at most", |watch| solve(data, &start, &testing, watch))??;
+    let withheld = !answer.is_trusted() && !arguments.force;
+    if let Some(file) = arguments.export_toml.as_ref().filter(|_| !withheld) {
+        let corrected = if answer.changes.is_empty() { calibration.corrected.clone() } else { answer.corrected()? };
+        let text = RobotFile::beside(data, corrected).text();
         Pending::write_whole(file, arguments.force, &text).context("the corrected robot was not written")?;
     }
     if session.json() {
@@ -42,7 +51,7 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
             arguments.intervals.level,
             &data.warnings,
         ))?;
-        return Ok(ExitCode::SUCCESS);
+        return super::told_what_is_withheld(arguments, withheld);
     }
     for warning in &data.warnings {
         session.message("warning", warning);
@@ -53,11 +62,12 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
             &format!("{effect} is not determined: this data does not show it, or cannot separate it from the others"),
         );
     }
-    write!(session.out(), "{}", text(&calibration, robot, arguments.intervals.level))?;
-    if let Some(file) = &arguments.export_toml {
+    let text = text(&calibration, robot, arguments.intervals.level);
+    write!(session.out(), "{text}\n{}", answer_text(&answer, 1.0 - testing.size))?;
+    if let Some(file) = arguments.export_toml.as_ref().filter(|_| !withheld) {
         writeln!(session.out(), "wrote {}", file.display())?;
     }
-    Ok(ExitCode::SUCCESS)
+    super::told_what_is_withheld(arguments, withheld)
 }
 
 fn text(calibration: &GearCalibration, robot: &Robot, level: f64) -> String {

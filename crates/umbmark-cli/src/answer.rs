@@ -1,0 +1,86 @@
+//! The one answer about a robot, for people: the last lines of every verb that finds its numbers.
+
+use umbmark_core::solve::{Change, Measure, Part, Solution};
+
+use crate::prose::hanging;
+use crate::table::{table, with_precision_of};
+
+/// The sentence, the new numbers, and what to do next.
+pub fn answer_text(solution: &Solution, level: f64) -> String {
+    let mut text = hanging("", 0, &solution.sentence());
+    if !solution.changes.is_empty() {
+        text += &format!("\n{}\n", numbers_table(solution, level));
+    }
+    let next = solution.next();
+    if !next.is_empty() {
+        text += "\nnext\n";
+        for (number, step) in next.iter().enumerate() {
+            text += &hanging(&format!("  {}.", number + 1), 5, step);
+        }
+    }
+    text
+}
+
+/// Old and new numbers of the robot.
+fn numbers_table(solution: &Solution, level: f64) -> String {
+    let from = format!("{:.0} % from", 100.0 * level);
+    let title = match (solution.is_trusted(), solution.needed) {
+        (false, _) => "not to be written yet",
+        (true, false) => "nothing to write",
+        (true, true) => "write",
+    };
+    table(&[title, "old", "new", &from, "to", "worth [mm]"], solution.changes.iter().map(row))
+}
+
+fn row(change: &Change) -> Vec<String> {
+    let (name, scale) = match change.key.strip_suffix("_m").filter(|name| !name.ends_with("rad_per")) {
+        Some(name) => (format!("{name} [mm]"), 1e3),
+        None => (change.key.to_owned(), 1.0),
+    };
+    let half = change.interval.map_or(1e-4 * change.new.abs(), |i| 0.5 * (i.high - i.low));
+    let number = |value: f64| plain(&with_precision_of(scale * value, scale * half));
+    let end = |of: Option<f64>| of.map_or("-".to_owned(), number);
+    vec![
+        name.replace('_', " "),
+        number(change.old),
+        number(change.new),
+        end(change.interval.map(|i| i.low)),
+        end(change.interval.map(|i| i.high)),
+        change.worth.map_or("-".to_owned(), |worth| millimetres(worth)),
+    ]
+}
+
+/// How far off the robot is, step by step.
+pub fn parts_text(solution: &Solution) -> String {
+    let Some(off) = &solution.off else { return String::new() };
+    let what = match off.measure {
+        Measure::Returns => "error: E_max,sys of the recorded runs [mm]",
+        Measure::Ends => "error: of the ends of the recorded runs, root mean square [mm]",
+        Measure::Along => "error: of all measured positions, root mean square [mm]",
+    };
+    let part = |part: &Part| vec![format!("  {}", part.name), millimetres(part.worth), String::new()];
+    let total = |what: &str, error: f64| vec![what.to_owned(), String::new(), millimetres(error)];
+    let mut rows = vec![total("as driven", off.driven)];
+    rows.extend(off.reference.iter().map(part));
+    rows.extend(off.written.iter().map(part));
+    rows.push(total("with the new numbers", off.with_numbers));
+    if !off.known.is_empty() {
+        rows.extend(off.known.iter().map(part));
+        rows.push(total("with all that is known", off.rest));
+    }
+    if let Some(chance) = off.chance {
+        rows.push(total("chance alone, in 95 % of tests below", chance));
+    }
+    format!("\n{}\n", table(&[what, "worth", "error"], rows))
+}
+
+fn millimetres(metres: f64) -> String {
+    plain(&format!("{:.1}", 1e3 * metres))
+}
+
+/// No number is minus zero.
+fn plain(number: &str) -> String {
+    let unsigned = number.trim_start_matches('-');
+    let is_zero = number.starts_with('-') && unsigned.chars().all(|digit| matches!(digit, '0' | '.')) && !unsigned.is_empty();
+    if is_zero { unsigned.to_owned() } else { number.to_owned() }
+}

@@ -1,0 +1,169 @@
+//! One answer: how far off the robot is, which numbers to write into it, what remains, and what to do next.
+//!
+//! The model is [`learn`](crate::learn)'s. Its first effects are numbers of the robot, and become new values of them. The other effects are
+//! known but no number of a robot holds them; those of the reference are not the robot's at all. What each is worth is told in metres of the
+//! error of the recorded runs:
+//!
+//! ```text
+//! as driven → without the reference's effects → with the new numbers → with all that is known
+//! ```
+//!
+//! Each step is the fall of one [`Measure`] when the recorded runs are computed again, so the steps add up to the whole. Within a step, what
+//! one effect is worth depends on which others are there already: it is the mean over all orders (the Shapley value), so that these add up
+//! too. They are falls in the runs that the model was fitted to; on another path they differ.
+//!
+//! Source: Shapley (1953), A value for n-person games.
+
+mod numbers;
+mod off;
+mod words;
+
+pub use numbers::Change;
+pub use off::{Measure, Off, Part};
+
+use crate::calibrate::{self, CalibrateError, Calibration, Correction, Estimate};
+use crate::dataset::Dataset;
+use crate::diagnose::{Options, Verdict};
+use crate::drive::{DriveError, Robot};
+use crate::effect::Model;
+use crate::evidence::{AnyEvidence, FitError, robot_of};
+use crate::learn::{Learnt, learn_from};
+use crate::setup::Fault;
+use crate::watch::Watch;
+use off::Meter;
+
+/// The one answer about a measured robot.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// The model, and how it was learnt.
+    pub learnt: Learnt,
+    /// Numbers of the robot that these runs show, with their new values.
+    pub changes: Vec<Change>,
+    /// Whether the new values differ from the old ones by more than chance.
+    pub needed: bool,
+    /// How far off the robot is, and what of it is what; `None` where nothing is known of the robot yet.
+    pub off: Option<Off>,
+    /// First effects of the robot's drive that these runs do not show; the numbers are as if these did nothing.
+    pub not_shown: Vec<&'static str>,
+}
+
+/// Answers for a dataset. Once stopped, it ends with the current step of learning.
+///
+/// ```
+/// use umbmark_core::{dataset::{Dataset, ReturnError, Run}, diagnose::Options, drive::Robot, path::{Direction, Path}};
+/// use umbmark_core::{calibrate::{Correction, drive_again}, effect::{Model, TestKind}, solve::solve, watch::Watch};
+/// let (robot, path) = (Robot::labmate(), Path::umbmark());
+/// let truth = Correction { e_d: 1.002, e_b: 0.99, e_s: 1.0 };
+/// let run = |number: u32| {
+///     let direction = Direction::BOTH[number as usize % 2];
+///     let error = drive_again(&robot, &path, direction, &truth, &Correction::NONE).unwrap();
+///     let scatter = 1e-3 * f64::from(number * number % 7);
+///     let returned = Some(ReturnError { x: error.x + scatter, y: error.y - scatter, ..error });
+///     Run { name: format!("run {number}"), number, direction: Some(direction), test: TestKind::Systematic, log: None, returned }
+/// };
+/// let (robot, path) = (Some(robot.clone()), Some(path.clone()));
+/// let data = Dataset { robot, path, runs: (0..10).map(run).collect(), ..Dataset::default() };
+/// let start = Model::new(data.nominal_robot()?);
+/// let answer = Watch::nobody(|watch| solve(&data, &start, &Options::default(), watch))?;
+/// let wheelbase = answer.change("wheelbase_m").unwrap();
+/// assert!(answer.needed && (wheelbase.new - 0.99 * wheelbase.old).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn solve(data: &Dataset, start: &Model, options: &Options, watch: &Watch) -> Result<Solution, FitError> {
+    let learnt = learn_from(data, start, options, watch)?;
+    Solution::of(data, learnt, options)
+}
+
+/// Calibrates by every method, the learnt model's numbers as one more row, which is the one to write; with the answer that says why, where
+/// a model could be learnt.
+pub fn calibrate_beside(
+    data: &Dataset,
+    options: &calibrate::Options,
+    testing: &Options,
+    watch: &Watch,
+) -> Result<(Calibration, Option<Solution>), CalibrateError> {
+    let learnt = solve(data, &Model::new(robot_of(data)?), testing, watch);
+    let answer = learnt.as_ref().ok();
+    let mut calibration = calibrate::calibrate_beside(data, options, answer.and_then(Solution::estimate))?;
+    if let Err(error) = &learnt {
+        calibration.warnings.push(format!("No model could be learnt from these runs ({error}): the exact fit is exported."));
+    }
+    let doubt = answer.and_then(words::doubt);
+    calibration.doubts.extend(doubt.clone());
+    calibration.warnings.extend(doubt.or_else(|| answer.and_then(words::beyond_wheels)));
+    Ok((calibration, learnt.ok()))
+}
+
+impl Solution {
+    /// The answer that a learnt model gives about the robot of its data.
+    pub fn of(data: &Dataset, learnt: Learnt, options: &Options) -> Result<Solution, FitError> {
+        let robot = robot_of(data)?;
+        let not_shown: Vec<&str> = {
+            let has = |effect: &&str| learnt.model.parts().iter().any(|part| part.effect.name() == *effect);
+            robot.drive.first_effects().into_iter().filter(|effect| !has(effect)).collect()
+        };
+        if learnt.diagnosis.setup.all_faults().next().is_some() {
+            return Ok(Solution { learnt, changes: Vec::new(), needed: false, off: None, not_shown });
+        }
+        let evidence = AnyEvidence::of(data, options.level(data))?;
+        let off = Meter::new(data, &evidence).map(|meter| Off::of(&meter, &learnt));
+        let (mut changes, needed) = numbers::of(&learnt, options.size);
+        if let Some(off) = &off {
+            numbers::share(&mut changes, off, &learnt.model);
+        }
+        Ok(Solution { learnt, changes, needed, off, not_shown })
+    }
+
+    /// A number of the robot, by its key in robot.toml.
+    pub fn change(&self, key: &str) -> Option<&Change> {
+        self.changes.iter().find(|change| change.key == key)
+    }
+
+    /// What is wrong with the data and has to be corrected before anything else.
+    pub fn faults(&self) -> Vec<&Fault> {
+        self.learnt.diagnosis.setup.all_faults().collect()
+    }
+
+    /// Whether the new numbers are to be trusted: the model explains the runs, and the data are in order.
+    pub fn is_trusted(&self) -> bool {
+        !self.learnt.is_in_doubt()
+    }
+
+    /// Whether the robot has an error source that the model does not have: nothing is known to be complete then.
+    pub fn misses_something(&self) -> bool {
+        match self.learnt.verdict {
+            Verdict::Explained | Verdict::NotEnoughData => false,
+            Verdict::UnlistedEffect => self.learnt.diagnosis.dependence.is_some(),
+            Verdict::MissingEffect | Verdict::SeveralMissing | Verdict::NotExplained => true,
+        }
+    }
+
+    /// E_d, E_b and E_s of the model, as far as it shows them; `None` of a drive that has others, or where nothing was fitted.
+    pub fn estimate(&self) -> Option<Estimate> {
+        let has_wheels = self.learnt.model.robot().drive.kind().has_axle_wheels();
+        has_wheels.then(|| numbers::estimate(&self.learnt)).flatten()
+    }
+
+    /// The correction of the robot's odometry.
+    pub fn correction(&self) -> Correction {
+        Correction::of(&self.learnt.model)
+    }
+
+    /// The robot with the new numbers.
+    pub fn corrected(&self) -> Result<Robot, DriveError> {
+        self.correction().apply(self.learnt.model.robot())
+    }
+
+    /// The answer in one or two sentences for people.
+    pub fn sentence(&self) -> String {
+        words::sentence(self)
+    }
+
+    /// What to do next, a sentence each, the most urgent first.
+    pub fn next(&self) -> Vec<String> {
+        words::next(self)
+    }
+}
+
+#[cfg(test)]
+mod tests;

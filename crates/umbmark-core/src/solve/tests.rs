@@ -1,0 +1,94 @@
+//! Answers for simulated robots, whose numbers are known.
+
+use super::off::Measure;
+use super::*;
+use crate::calibrate::Method;
+use crate::diagnose::tests::{robot_with, simulated};
+use crate::likelihood::watched::{watched, watched_on};
+use crate::path::{Path, STRAIGHT, SpeedProfile};
+
+fn answer(data: &Dataset) -> Solution {
+    let start = Model::new(data.nominal_robot().unwrap());
+    Watch::nobody(|watch| solve(data, &start, &Options::default(), watch)).unwrap()
+}
+
+fn robot(effects: &[(&'static str, &'static str, f64)]) -> Model {
+    let mut model = Model::new(&Robot::labmate());
+    let noise = [("wheel_noise", "k_sqrt_m", 3e-4), ("reference_noise", "position_sd_m", 1e-3)];
+    for (effect, parameter, value) in noise.iter().chain(effects) {
+        model.set(effect, parameter, *value).unwrap();
+    }
+    model
+}
+
+fn total(parts: &[Part]) -> f64 {
+    parts.iter().map(|part| part.worth).sum()
+}
+
+/// Wheels, wheelbase and a floor that turns the robot: the numbers are those of the wheels, the floor is known beside them, and what each
+/// is worth adds up.
+#[test]
+fn a_floor_is_no_number_of_the_robot_and_what_everything_is_worth_adds_up() {
+    let truth = [
+        ("wheel_diameter_ratio", "e_d", 1.001),
+        ("wheelbase", "e_b", 0.995),
+        ("scale", "e_s", 0.998),
+        ("floor_slope_yaw", "sine_rad_per_m", 0.03),
+    ];
+    let data = watched(&robot(&truth), 5, 3);
+    let answer = answer(&data);
+    let off = answer.off.as_ref().unwrap();
+    assert_eq!((off.measure, answer.learnt.verdict), (Measure::Returns, Verdict::Explained));
+    assert_eq!(off.known.iter().map(|part| part.name).collect::<Vec<_>>(), ["floor_slope_yaw"]);
+    let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
+    near(off.driven - total(&off.reference) - total(&off.written), off.with_numbers);
+    near(off.with_numbers - total(&off.known), off.rest);
+    near(answer.changes.iter().map(|change| change.worth.unwrap()).sum(), total(&off.written));
+    let lengths = [("wheelbase_m", 0.995), ("wheel_diameter_left_m", 0.998 * 2.0 / 2.001), ("wheel_diameter_right_m", 0.998 * 2.002 / 2.001)];
+    for (key, ratio) in lengths {
+        let change = answer.change(key).unwrap();
+        assert!(change.interval.unwrap().contains(change.old * ratio), "{change:?}");
+        assert!(!change.interval.unwrap().contains(change.old), "{change:?}");
+    }
+    assert!(answer.needed && answer.is_trusted() && !answer.misses_something());
+    assert!(answer.sentence().contains("yaw on a sloping floor"), "{}", answer.sentence());
+    // Beside it, the fit of the wheels alone takes the floor for wheels.
+    let options = calibrate::Options::default();
+    let (calibration, _) =
+        Watch::nobody(|watch| calibrate_beside(&data, &options, &Options::default(), watch)).unwrap();
+    assert_eq!(calibration.to_write().unwrap().method, Method::Model);
+    let warned = calibration.warnings.iter().any(|warning| warning.contains("do not explain these runs"));
+    assert!(warned, "{:?}", calibration.warnings);
+}
+
+#[test]
+fn a_robot_without_errors_gets_nothing_to_write() {
+    let data = simulated(&robot_with(&[("wheel_diameter_ratio", "e_d", 1.0), ("wheelbase", "e_b", 1.0)]), &Path::umbmark(), 5, 2, 0..1);
+    let answer = answer(&data[0]);
+    assert!(!answer.needed, "{:?}", answer.changes);
+    assert!(answer.sentence().ends_with("nothing is to be written."), "{}", answer.sentence());
+    assert!(answer.next().iter().all(|step| !step.contains("Write")), "{:?}", answer.next());
+}
+
+#[test]
+fn straight_runs_give_the_wheels_and_no_wheelbase() {
+    let truth = [("wheel_diameter_ratio", "e_d", 1.002), ("wheelbase", "e_b", 0.97), ("scale", "e_s", 0.99)];
+    let path = Path::new(&STRAIGHT, &[4.0], SpeedProfile::default()).unwrap();
+    let answer = answer(&watched_on(&path, &robot(&truth), 4, 5));
+    let keys: Vec<&str> = answer.changes.iter().map(|change| change.key).collect();
+    assert_eq!(keys, ["wheel_diameter_left_m", "wheel_diameter_right_m"]);
+    assert_eq!(answer.not_shown, ["wheelbase"]);
+    assert!(answer.next().iter().any(|step| step.contains("do not show the wheelbase")), "{:?}", answer.next());
+}
+
+#[test]
+fn exchanged_wheels_come_first_and_no_number_is_given() {
+    let mut data = watched(&robot(&[("wheelbase", "e_b", 0.98)]), 3, 4);
+    for log in data.runs.iter_mut().filter_map(|run| run.log.as_mut()) {
+        std::mem::swap(&mut log.left, &mut log.right);
+    }
+    let answer = answer(&data);
+    assert!(answer.changes.is_empty() && !answer.is_trusted());
+    assert!(answer.sentence().contains("write wheels_exchanged = true"), "{}", answer.sentence());
+    assert!(answer.next()[0].starts_with("Write wheels_exchanged = true"), "{:?}", answer.next());
+}

@@ -1,0 +1,210 @@
+//! The answer in words.
+
+use super::{Measure, Off, Part, Solution};
+use crate::diagnose::{Experiment, Verdict};
+use crate::effect::find;
+
+/// An error is told in tenths of a millimetre below this \[m\].
+const FINE: f64 = 0.01;
+/// A part is told where it is more than this share of the whole.
+const TOLD: f64 = 0.02;
+
+pub(super) fn sentence(solution: &Solution) -> String {
+    if let Some(fault) = solution.faults().first() {
+        return format!("Nothing can be said of the robot yet: {}. First {}.", fault.sentence(), fault.remedy());
+    }
+    let Some(off) = &solution.off else {
+        return "These data do not show how far off the robot is: no run has a measured pose at its end.".into();
+    };
+    let mut said = vec![how_far(off)];
+    let reference: f64 = off.reference.iter().map(|part| part.worth).sum();
+    if reference > TOLD * off.driven {
+        said.push(format!("{} of it is the reference's, not the robot's: {}.", mm(reference), titles(&off.reference)));
+    }
+    said.extend(of_numbers(solution, off));
+    said.join(" ")
+}
+
+/// How far off the robot is.
+fn how_far(off: &Off) -> String {
+    let far = mm(off.driven);
+    match off.measure {
+        Measure::Returns => format!("The robot comes back {far} off."),
+        Measure::Ends => format!("The robot ends {far} from where its odometry says it is."),
+        Measure::Along => format!("The robot is {far} from where its odometry says it is, on average along the way."),
+    }
+}
+
+/// What new numbers do, and what they leave.
+fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
+    let verdict = solution.learnt.verdict;
+    if solution.changes.is_empty() {
+        return vec![match verdict {
+            Verdict::NotEnoughData => "These runs are too few to say why.".into(),
+            _ => "These runs do not show the numbers of the robot.".into(),
+        }];
+    }
+    if !solution.is_trusted() {
+        return vec!["No model explains these runs, so do not write the new numbers below into the robot yet.".into()];
+    }
+    let mut said = Vec::new();
+    let known: f64 = off.known.iter().map(|part| part.worth).sum();
+    let explained = verdict == Verdict::Explained;
+    let is_chance = |error: f64| off.chance.map_or(explained, |chance| error <= chance);
+    if !solution.needed {
+        let all = match known.abs() > TOLD * off.driven {
+            false if is_chance(off.driven) => "That is no more than chance makes, and its numbers are right",
+            _ => "Its numbers are right",
+        };
+        said.push(format!("{all}: nothing is to be written."));
+    } else {
+        let (count, these) = match solution.changes.len() {
+            1 => ("the new number".to_owned(), "it"),
+            count => (format!("the {count} new numbers"), "them"),
+        };
+        let left = mm(off.with_numbers);
+        let names = listed(&names(solution));
+        said.push(match off.with_numbers < off.driven {
+            true => format!("Write {count} ({names}): with {these}, {left} are left."),
+            false => format!(
+                "Write {count} ({names}). With {these} alone, {left} are left on this path: what they do not hold had hidden \
+                 a part of their error."
+            ),
+        });
+    }
+    if !off.known.is_empty() {
+        let titles = titles(&off.known);
+        said.push(match known > TOLD * off.driven {
+            true => format!("{} of it is known but no number of the robot can hold it: {titles}.", mm(known)),
+            false => format!("Known besides, and no number of the robot can hold it: {titles}."),
+        });
+    }
+    if solution.misses_something() {
+        said.push("The robot has a further error source, which the model lacks.".into());
+    } else if solution.needed || !off.known.is_empty() {
+        let chance = if is_chance(off.rest) { ", no more than chance makes" } else { "" };
+        said.push(format!("The rest is {}{chance}.", mm(off.rest)));
+    }
+    said
+}
+
+/// Why the numbers of a model are not to be written, where they are not.
+pub(super) fn doubt(solution: &Solution) -> Option<String> {
+    let reasons = solution.learnt.diagnosis.reasons.iter().map(|reason| reason.sentence());
+    let told = reasons.collect::<Vec<_>>().join("; ");
+    (!solution.is_trusted()).then(|| format!("No model explains these runs: {told}."))
+}
+
+/// What else the runs show where E_d, E_b and E_s do not explain them.
+pub(super) fn beyond_wheels(solution: &Solution) -> Option<String> {
+    let known = &solution.off.as_ref()?.known;
+    let more = match (known.is_empty(), solution.misses_something()) {
+        (true, false) => return None,
+        (true, true) => "there is a further error source, which no model explains".to_owned(),
+        (false, _) => format!("there is also {}", titles(known)),
+    };
+    Some(format!(
+        "E_d, E_b and E_s do not explain these runs: {more}. The other methods take that for wheels and wheelbase; the learnt \
+         model does not."
+    ))
+}
+
+pub(super) fn next(solution: &Solution) -> Vec<String> {
+    let faults = solution.faults();
+    if !faults.is_empty() {
+        let told = faults.iter().map(|fault| capital(&format!("{}, then solve again.", fault.remedy())));
+        return told.collect();
+    }
+    let mut next = Vec::new();
+    let diagnosis = &solution.learnt.diagnosis;
+    let enough = solution.learnt.verdict != Verdict::NotEnoughData;
+    if !solution.is_trusted() {
+        next.extend(diagnosis.reasons.iter().map(|reason| capital(&format!("{}.", reason.sentence()))));
+        next.push("Correct what is named above, or measure again; `umbmark inspect DATA` checks the data.".into());
+    } else if solution.needed && !solution.changes.is_empty() {
+        next.push(
+            "Write the new numbers: `umbmark solve DATA -o model.toml`, then `umbmark export model.toml --to ros2_control -o \
+             robot.yaml` (or toml, c, urdf)."
+                .into(),
+        );
+        next.push("Then drive the same test again: `umbmark score` shows whether it is better.".into());
+    }
+    if !enough {
+        next.push("Drive at least three runs in each direction, or log poses on the way, then solve again.".into());
+    }
+    let has = |words: &[&str]| solution.not_shown.iter().any(|effect| words.contains(effect));
+    if has(&["scale", "drive_scale"]) && !solution.changes.is_empty() {
+        next.push(
+            "Measure one straight leg by tape, or a pose on the way: these runs do not show whether the wheels are too large \
+             or too small on the whole."
+                .into(),
+        );
+    }
+    if has(&["wheelbase"]) && enough {
+        next.push("Drive turns: these runs do not show the wheelbase.".into());
+    }
+    if solution.is_trusted() && solution.off.as_ref().is_some_and(|off| !off.known.is_empty()) {
+        next.push(
+            "Correct logs by all that is known: `umbmark apply LOG --model model.toml -o corrected.csv`.".into(),
+        );
+    }
+    next.extend(unsure(solution).map(|e| {
+        let [own, other] = e.separates;
+        format!("To tell {own} from {other}: {} ({:.0} min).", e.experiment, e.minutes)
+    }));
+    next
+}
+
+/// The experiment that tells effects of one class apart, of which one was added.
+fn unsure(solution: &Solution) -> Option<&Experiment> {
+    let classes = || solution.learnt.steps.iter().filter(|step| step.class.len() > 1);
+    let tells = |e: &&Experiment| classes().any(|step| e.separates.iter().all(|name| step.class.contains(name)));
+    solution.learnt.diagnosis.next_experiments.iter().find(tells)
+}
+
+/// What effects are called, the largest part first.
+fn titles(parts: &[Part]) -> String {
+    let mut parts: Vec<&Part> = parts.iter().collect();
+    parts.sort_by(|a, b| b.worth.abs().total_cmp(&a.worth.abs()));
+    let title = |part: &&Part| find(part.name).map_or(part.name, |entry| entry.about.title).to_owned();
+    listed(&parts.iter().map(title).collect::<Vec<_>>())
+}
+
+/// What the new numbers are called; two of which only the side differs are one.
+fn names(solution: &Solution) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for change in &solution.changes {
+        let name = without_unit(change.key);
+        let both = ["_left", "_right"].into_iter().find_map(|side| name.strip_suffix(side));
+        let name = both.map_or(name.to_owned(), |both| format!("{both}s")).replace('_', " ");
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// A key without its unit.
+fn without_unit(key: &str) -> &str {
+    ["_rad_per_m", "_m", "_rad"].into_iter().find_map(|unit| key.strip_suffix(unit)).unwrap_or(key)
+}
+
+/// "a", "a and b", "a, b and c".
+fn listed(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.clone(),
+        [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
+    }
+}
+
+/// Millimetres; tenths of small ones.
+fn mm(metres: f64) -> String {
+    let decimals = usize::from(metres.abs() < FINE);
+    format!("{:.decimals$} mm", 1e3 * metres)
+}
+
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
