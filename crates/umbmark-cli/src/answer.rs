@@ -81,6 +81,7 @@ fn millimetres(metres: f64) -> String {
 /// No number is minus zero.
 fn plain(number: &str) -> String {
     let unsigned = number.trim_start_matches('-');
-    let is_zero = number.starts_with('-') && unsigned.chars().all(|digit| matches!(digit, '0' | '.')) && !unsigned.is_empty();
+    let is_zero =
+        number.starts_with('-') && unsigned.chars().all(|digit| matches!(digit, '0' | '.')) && !unsigned.is_empty();
     if is_zero { unsigned.to_owned() } else { number.to_owned() }
 }

@@ -86,7 +86,9 @@ pub fn calibrate_beside(
     let answer = learnt.as_ref().ok();
     let mut calibration = calibrate::calibrate_beside(data, options, answer.and_then(Solution::estimate))?;
     if let Err(error) = &learnt {
-        calibration.warnings.push(format!("No model could be learnt from these runs ({error}): the exact fit is exported."));
+        calibration
+            .warnings
+            .push(format!("No model could be learnt from these runs ({error}): the exact fit is exported."));
     }
     let doubt = answer.and_then(words::doubt);
     calibration.doubts.extend(doubt.clone());

@@ -126,7 +126,12 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let withheld = !calibration.doubts.is_empty() && !arguments.force;
     let written = if withheld { Vec::new() } else { export_files(&arguments, &data, robot, &calibration)? };
     if session.json() {
-        session.print_json(&result::Calibration::new(robot, &calibration, answer.as_ref(), arguments.intervals.level))?;
+        session.print_json(&result::Calibration::new(
+            robot,
+            &calibration,
+            answer.as_ref(),
+            arguments.intervals.level,
+        ))?;
         return told_what_is_withheld(&arguments, withheld);
     }
     for warning in &calibration.warnings {
@@ -221,7 +226,9 @@ fn text(robot: &Robot, calibration: &Calibration, level: f64) -> String {
     text += &table(&header, estimates.iter().map(|e| length_row(robot, e)));
     text += "\n\npredicted: E_max,sys of the same test with the correction\nreplayed: E_max,sys of the recorded ticks with the correction\n";
     let why = |estimate: &Estimate| match estimate.method {
-        Method::Model => "the learnt model: it has all effects that the runs show, and the other rows have E_d, E_b and E_s only",
+        Method::Model => {
+            "the learnt model: it has all effects that the runs show, and the other rows have E_d, E_b and E_s only"
+        }
         _ => "the exact fit: the runs are too few to learn a model",
     };
     if let Some(estimate) = calibration.to_write() {

@@ -4,9 +4,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Keyed, Setup, Taken, ends, taken};
-use crate::solve::Solution;
 use crate::calibrate::{self, Method, Ratio};
 use crate::drive::Robot;
+use crate::solve::Solution;
 
 /// Return errors of the recorded runs, their ticks computed again.
 #[derive(Clone, Debug, Serialize, JsonSchema)]

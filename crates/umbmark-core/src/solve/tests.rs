@@ -44,7 +44,11 @@ fn a_floor_is_no_number_of_the_robot_and_what_everything_is_worth_adds_up() {
     near(off.driven - total(&off.reference) - total(&off.written), off.with_numbers);
     near(off.with_numbers - total(&off.known), off.rest);
     near(answer.changes.iter().map(|change| change.worth.unwrap()).sum(), total(&off.written));
-    let lengths = [("wheelbase_m", 0.995), ("wheel_diameter_left_m", 0.998 * 2.0 / 2.001), ("wheel_diameter_right_m", 0.998 * 2.002 / 2.001)];
+    let lengths = [
+        ("wheelbase_m", 0.995),
+        ("wheel_diameter_left_m", 0.998 * 2.0 / 2.001),
+        ("wheel_diameter_right_m", 0.998 * 2.002 / 2.001),
+    ];
     for (key, ratio) in lengths {
         let change = answer.change(key).unwrap();
         assert!(change.interval.unwrap().contains(change.old * ratio), "{change:?}");
@@ -63,7 +67,13 @@ fn a_floor_is_no_number_of_the_robot_and_what_everything_is_worth_adds_up() {
 
 #[test]
 fn a_robot_without_errors_gets_nothing_to_write() {
-    let data = simulated(&robot_with(&[("wheel_diameter_ratio", "e_d", 1.0), ("wheelbase", "e_b", 1.0)]), &Path::umbmark(), 5, 2, 0..1);
+    let data = simulated(
+        &robot_with(&[("wheel_diameter_ratio", "e_d", 1.0), ("wheelbase", "e_b", 1.0)]),
+        &Path::umbmark(),
+        5,
+        2,
+        0..1,
+    );
     let answer = answer(&data[0]);
     assert!(!answer.needed, "{:?}", answer.changes);
     assert!(answer.sentence().ends_with("nothing is to be written."), "{}", answer.sentence());

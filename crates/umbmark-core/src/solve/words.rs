@@ -144,9 +144,7 @@ pub(super) fn next(solution: &Solution) -> Vec<String> {
         next.push("Drive turns: these runs do not show the wheelbase.".into());
     }
     if solution.is_trusted() && solution.off.as_ref().is_some_and(|off| !off.known.is_empty()) {
-        next.push(
-            "Correct logs by all that is known: `umbmark apply LOG --model model.toml -o corrected.csv`.".into(),
-        );
+        next.push("Correct logs by all that is known: `umbmark apply LOG --model model.toml -o corrected.csv`.".into());
     }
     next.extend(unsure(solution).map(|e| {
         let [own, other] = e.separates;

@@ -37,7 +37,8 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
     }
     let testing = diagnose::Options { seed: session.seed(), ..diagnose::Options::default() };
     let start = Model::new(robot);
-    let answer = session.watched("% of the steps of learning at most", |watch| solve(data, &start, &testing, watch))??;
+    let answer =
+        session.watched("% of the steps of learning at most", |watch| solve(data, &start, &testing, watch))??;
     let withheld = !answer.is_trusted() && !arguments.force;
     if let Some(file) = arguments.export_toml.as_ref().filter(|_| !withheld) {
         let corrected = if answer.changes.is_empty() { calibration.corrected.clone() } else { answer.corrected()? };
