@@ -50,6 +50,8 @@ verbs! {
     Fit(fit),
     /// Learn a model: fit, diagnose and add effects until nothing is missing
     Learn(learn),
+    /// Write a model for the robot or another program: ROS 2, a C header, a robot.toml
+    Export(export),
     /// Show which parameter changes which metric: Sobol indices, Morris screening, derivatives
     Sensitivity(sensitivity),
     /// Find the cheapest tolerances with which enough robots keep a target

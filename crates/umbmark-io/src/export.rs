@@ -1,160 +1,286 @@
-//! Corrections as text for robots.
+//! Models as files of other programs: what a robot needs in order to be right, one target a file.
+//!
+//! A target writes what it can hold. What it cannot hold, for example the slope of a floor, is said in the file and beside it, so
+//! that nobody believes that it is corrected.
+
+mod covariance;
+mod text;
+
+pub use urdf::UrdfFile;
 
 use super::RobotFile;
-use umbmark_core::VERSION;
+use std::fmt;
 use umbmark_core::calibrate::Correction;
-use umbmark_core::drive::{DifferentialDrive, DriveError, Robot};
+use umbmark_core::drive::{Drive, DriveError, Robot};
+use umbmark_core::effect::{Changes, Model, ModelError, Part};
+use umbmark_core::likelihood::Noise;
+use umbmark_core::parameter::Parameter;
+use umbmark_core::register;
 
-/// A float that every reader takes for a float: always with a decimal point.
-fn decimal(value: f64) -> String {
-    let text = format!("{value:.9}");
-    let text = text.trim_end_matches('0');
-    if text.ends_with('.') { format!("{text}0") } else { text.to_owned() }
+register! {
+    /// Every target there is.
+    pub TARGETS: Target = TARGET in
+    ros2_control,
+    amcl,
+    robot_localization,
+    toml,
+    c,
+    urdf,
+    gazebo,
+    mujoco,
 }
 
-/// Parameters of `diff_drive_controller` of ros2_control, to be loaded with the controller: they are read-only later.
-///
-/// The controller multiplies: left_wheel_radius_multiplier 2 E_s/(1 + E_d), right 2 E_s E_d/(1 + E_d),
-/// wheel_separation_multiplier E_b, where the nominal wheels are the same; else each wheel's ratio to the mean.
-///
-/// ```
-/// use umbmark_core::{calibrate::Correction, drive::Robot};
-/// use umbmark_io::export;
-/// let correction = Correction { e_d: 1.0, e_b: 0.99, e_s: 1.0 };
-/// let yaml = export::ros2_control(&Robot::labmate(), &correction, "diff_drive_controller");
-/// assert!(yaml.contains("    wheel_separation_multiplier: 0.99\n    left_wheel_radius_multiplier: 1.0\n"));
-/// ```
-pub fn ros2_control(robot: &Robot, correction: &Correction, controller: &str) -> String {
-    let drive = &robot.drive;
-    let radius = 0.25 * (drive.wheel_diameter_left() + drive.wheel_diameter_right());
-    let (left, right) = correction.wheel_factors();
-    let lines = [
-        ("wheel_separation", drive.wheelbase()),
-        ("wheel_radius", radius),
-        ("wheel_separation_multiplier", correction.e_b),
-        ("left_wheel_radius_multiplier", left * 0.5 * drive.wheel_diameter_left() / radius),
-        ("right_wheel_radius_multiplier", right * 0.5 * drive.wheel_diameter_right() / radius),
+/// A program, or a kind of file, for which numbers of a model are written.
+#[derive(Debug)]
+pub struct Target {
+    /// What it is called.
+    pub name: &'static str,
+    /// What it is.
+    pub about: &'static str,
+    write: fn(&Export) -> Result<Written, ExportError>,
+}
+
+impl Target {
+    /// The target of a name.
+    pub fn named(name: &str) -> Option<&'static Target> {
+        TARGETS.iter().find(|target| target.name == name).copied()
+    }
+
+    /// Writes a model as a file of this target.
+    ///
+    /// ```
+    /// use umbmark_core::{drive::Robot, effect::Model};
+    /// use umbmark_io::export::{Export, Target};
+    /// let mut model = Model::new(&Robot::labmate());
+    /// model.set("wheelbase", "e_b", 0.99)?;
+    /// let yaml = Target::named("ros2_control").unwrap().write(&Export::of(&model))?.text;
+    /// assert!(yaml.contains("    wheel_separation_multiplier: 0.99\n    left_wheel_radius_multiplier: 1.0\n"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Where the target cannot have such a robot, or needs something that is missing.
+    pub fn write(&self, export: &Export) -> Result<Written, ExportError> {
+        export.model.check_drive()?;
+        (self.write)(export)
+    }
+}
+
+/// A file as text, and what has to be said of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Written {
+    /// The file.
+    pub text: String,
+    /// What the file does not hold, a sentence each; it stands in the file too, where comments may be added.
+    pub notes: Vec<String>,
+}
+
+/// What keeps a file from being written.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// A drive that the target cannot have.
+    #[error("{target} has no {drive} drive; {remedy}")]
+    Drive {
+        /// Name of the target.
+        target: &'static str,
+        /// Kind of the drive.
+        drive: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// Something that the target cannot do without.
+    #[error("{target}: {what}")]
+    Missing {
+        /// Name of the target.
+        target: &'static str,
+        /// What is missing, and what to do.
+        what: &'static str,
+    },
+    /// A file to be edited that cannot be read.
+    #[error("{file}: cannot be read: {reason}")]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// Why.
+        reason: String,
+    },
+    /// A file to be edited that is not as it should be.
+    #[error("{file}:{line}: {problem}")]
+    File {
+        /// The file.
+        file: String,
+        /// Its line.
+        line: u32,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
+    /// A correction that leaves no possible robot.
+    #[error("the model belongs to no possible robot ({0}); are signs, units and directions right?")]
+    Impossible(#[from] DriveError),
+    /// An effect that the drive cannot have.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}
+
+/// A model to be written, and how.
+#[derive(Clone, Debug)]
+pub struct Export<'a> {
+    /// The model with its nominal robot.
+    pub model: &'a Model,
+    /// Sizes of what is random, where they were fitted.
+    pub noise: Option<Noise>,
+    /// Name of the controller in parameters of ros2_control; that of its type where none is given.
+    pub controller: Option<String>,
+    /// What a robot.toml says besides the robot.
+    pub beside: Option<RobotFile>,
+    /// The user's own description of the robot, to be edited.
+    pub urdf: Option<UrdfFile>,
+    /// How the robot is usually driven: constant covariances are those of this motion.
+    pub usual: Usual,
+}
+
+/// The motion for which a covariance that has to be constant is right.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Usual {
+    /// Speed of the axle's centre \[m/s\].
+    pub speed: f64,
+    /// Turn rate, either way \[rad/s\].
+    pub turn_rate: f64,
+    /// How often odometry is published \[Hz\].
+    pub rate: f64,
+}
+
+impl Usual {
+    /// Its numbers: flags, keys, bounds and defaults.
+    pub const PARAMETERS: [Parameter; 3] = [
+        Parameter::shape(
+            "speed_m_s",
+            "speed",
+            "m/s",
+            0.2,
+            (1e-3, 100.0),
+            "usual speed, for which a constant covariance is computed",
+        ),
+        Parameter::shape(
+            "turn_rate_rad_s",
+            "turn-rate",
+            "rad/s",
+            0.5,
+            (0.0, 100.0),
+            "usual turn rate, for which a constant covariance is computed",
+        ),
+        Parameter::shape("rate_hz", "rate", "Hz", 50.0, (0.1, 1e5), "rate at which the robot publishes its odometry"),
     ];
-    let mut text = format!("# {}\n{controller}:\n  ros__parameters:\n", heading(correction));
-    for (key, value) in lines {
-        text += &format!("    {key}: {}\n", decimal(value));
-    }
-    text
 }
 
-/// A `robot.toml` whose lengths are corrected, to the nanometre.
-pub fn robot_toml(file: &RobotFile, correction: &Correction) -> Result<String, DriveError> {
-    let corrected = correction.apply(&file.robot)?;
-    let lengths =
-        [corrected.drive.wheelbase(), corrected.drive.wheel_diameter_left(), corrected.drive.wheel_diameter_right()];
-    let [wheelbase, left, right] = lengths.map(|length| (length * 1e9).round() / 1e9);
-    let robot = Robot { drive: DifferentialDrive::new(wheelbase, left, right)?.into(), ..corrected };
-    Ok(format!("# {}\n{}", heading(correction), RobotFile { robot, ..file.clone() }.text()))
+impl Default for Usual {
+    fn default() -> Usual {
+        let [speed, turn_rate, rate] = Usual::PARAMETERS.map(|parameter| parameter.typical);
+        Usual { speed, turn_rate, rate }
+    }
 }
 
-/// A C header with the corrected lengths and the ratios.
-pub fn c_header(robot: &Robot, correction: &Correction) -> Result<String, DriveError> {
-    let corrected = correction.apply(robot)?;
-    let per_tick = corrected.metres_per_tick();
-    let mut text = format!(
-        "/* {} */\n#ifndef UMBMARK_ODOMETRY_H\n#define UMBMARK_ODOMETRY_H\n\n",
-        heading(correction).replace("*/", "* /")
-    );
-    for (name, value, meaning) in [
-        ("WHEELBASE_M", corrected.drive.wheelbase(), "distance between the wheels' contact points"),
-        ("WHEEL_DIAMETER_LEFT_M", corrected.drive.wheel_diameter_left(), "left wheel"),
-        ("WHEEL_DIAMETER_RIGHT_M", corrected.drive.wheel_diameter_right(), "right wheel"),
-    ] {
-        text += &format!("#define UMBMARK_{name} {} /* {meaning} */\n", decimal(value));
+impl<'a> Export<'a> {
+    /// A model without noise, as it is usually written.
+    pub fn of(model: &'a Model) -> Export<'a> {
+        Export { model, noise: None, controller: None, beside: None, urdf: None, usual: Usual::default() }
     }
-    for (side, value) in [("LEFT", per_tick.left), ("RIGHT", per_tick.right)] {
-        text += &format!("#define UMBMARK_METRES_PER_TICK_{side} {value:.12e}\n");
+
+    /// The nominal robot.
+    fn robot(&self) -> &'a Robot {
+        self.model.robot()
     }
-    Ok(text + "\n#endif\n")
+
+    /// The robot with the numbers that its odometry should have.
+    fn corrected(&self) -> Result<Robot, ExportError> {
+        let mut drive = self.robot().drive.corrected(Correction::of(self.model).values())?;
+        for (effect, parameter, key) in LENGTHS {
+            if let (Some(ratio), Some(nominal)) = (self.model.get(effect, parameter), drive.number(key)) {
+                drive = drive.with(key, ratio * nominal)?;
+            }
+        }
+        Ok(Robot { drive, ..self.robot().clone() })
+    }
+
+    /// The error of a drive that a target cannot have.
+    fn no_drive(&self, target: &'static str) -> ExportError {
+        let remedy = "toml and c hold the numbers of every drive";
+        ExportError::Drive { target, drive: self.robot().drive.kind().name(), remedy }
+    }
+
+    /// Effects of the model that its corrected numbers do not undo, a sentence each.
+    fn uncorrected(&self) -> Vec<String> {
+        let drive: &Drive = &self.robot().drive;
+        let corrected =
+            |name: &str| drive.first_effects().contains(&name) || LENGTHS.iter().any(|(effect, ..)| *effect == name);
+        let said = |part: &&Part| moves(part, self.robot()) && !corrected(part.effect.name());
+        self.model.parts().iter().filter(said).map(|part| not_corrected(part)).collect()
+    }
+
+    /// What every file says first: what wrote it, and which errors are corrected in it.
+    fn heading(&self) -> String {
+        let kind = self.robot().drive.kind();
+        let names = self.robot().drive.first_effects();
+        let values = Correction::of(self.model).values();
+        let ratio = |name: &str| if kind.has_axle_wheels() { letters(name) } else { name.to_owned() };
+        let values: Vec<String> =
+            names.iter().zip(values).map(|(name, value)| format!("{} {}", ratio(name), text::number(value))).collect();
+        format!("umbmark {}: {}", umbmark_core::VERSION, values.join(", "))
+    }
 }
 
-fn heading(correction: &Correction) -> String {
-    let [e_d, e_b, e_s] = correction.values().map(decimal);
-    format!("umbmark {VERSION} calibrate: E_d {e_d}, E_b {e_b}, E_s {e_s}")
+/// Effects beside the first ones that a number of the drive corrects: effect, parameter, and the number's key.
+const LENGTHS: [(&str, &str, &str); 1] = [("axle_distance", "ratio", "axle_distance_m")];
+
+/// The letters of the paper.
+fn letters(effect: &str) -> String {
+    match effect {
+        "wheel_diameter_ratio" => "E_d",
+        "wheelbase" => "E_b",
+        "scale" => "E_s",
+        other => other,
+    }
+    .to_owned()
+}
+
+/// Whether a part makes the robot move otherwise than its odometry believes, at its present values.
+fn moves(part: &Part, robot: &Robot) -> bool {
+    let Some(entry) = part.effect.entry() else { return true };
+    let at_rest = part.effect.parameters().iter().map(|parameter| parameter.default.resolve(robot));
+    entry.changes.include(Changes::WHEELS.and(Changes::BODY).and(Changes::LINK))
+        && !at_rest.eq(part.values.iter().copied())
+}
+
+fn not_corrected(part: &Part) -> String {
+    let name = part.effect.name();
+    let what = part.effect.entry().map_or("an effect by a formula of your own", |entry| entry.about.title);
+    format!("not corrected by this file: {name} ({what})")
+}
+
+/// How a language marks a comment.
+#[derive(Clone, Copy, Debug)]
+enum Comment {
+    Hash,
+    C,
+    Xml,
+}
+
+impl Comment {
+    /// Sentences as comments, a line each.
+    fn lines<S: fmt::Display>(self, said: impl IntoIterator<Item = S>) -> String {
+        said.into_iter().map(|sentence| self.line(&sentence.to_string())).collect()
+    }
+
+    fn line(self, said: &str) -> String {
+        match self {
+            Comment::Hash => format!("# {said}\n"),
+            Comment::C => format!("/* {} */\n", said.replace("*/", "* /")),
+            Comment::Xml => format!("<!-- {} -->\n", said.replace("--", "- -")),
+        }
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use umbmark_core::drive::Encoder;
-    use umbmark_core::path::{CIRCLE, Path, SQUARE, SpeedProfile, WAYPOINTS};
-
-    const CORRECTION: Correction = Correction { e_d: 1.00121, e_b: 337.2 / 340.0, e_s: 1.0 };
-
-    #[test]
-    fn the_robot_file_reads_back_as_the_corrected_robot_with_its_path() {
-        let robot = Robot {
-            name: "a \"quoted\" \\ robot".into(),
-            drive: DifferentialDrive::new(0.34, 0.151, 0.149).unwrap().into(),
-            encoder: Encoder::new(2796.8, Some(50.0), Some(16)).unwrap(),
-        };
-        let speed = SpeedProfile::new(0.3, 0.4, 0.0).unwrap();
-        for path in [
-            Path::new(&SQUARE, &[4.0], speed).unwrap(),
-            Path::new(&CIRCLE, &[1.0, 2.0], speed).unwrap(),
-            Path::new(&WAYPOINTS, &[1.0, 0.0, 1.0, 2.5], speed).unwrap(),
-        ] {
-            let text = robot_toml(&RobotFile::new(robot.clone(), Some(path.clone())), &CORRECTION).unwrap();
-            let RobotFile { robot: read, path: read_path, .. } = RobotFile::parse("exported", &text).unwrap();
-            let expected = CORRECTION.apply(&robot).unwrap();
-            assert_eq!((&read.name, read.encoder), (&expected.name, expected.encoder));
-            assert!((read.drive.wheelbase() - expected.drive.wheelbase()).abs() < 1e-9);
-            assert!((read.drive.wheel_diameter_left() - expected.drive.wheel_diameter_left()).abs() < 1e-9);
-            assert!((read.drive.wheel_diameter_right() - expected.drive.wheel_diameter_right()).abs() < 1e-9);
-            let read_path = read_path.unwrap();
-            assert_eq!((read_path.shape().name, read_path.values()), (path.shape().name, path.values()));
-            assert_eq!(read_path.speed.values(), [0.3, 0.4, 0.0]);
-        }
-    }
-
-    /// Oracle: the multipliers of dependencies.md 2.8, 2/(E_d + 1), 2/(1/E_d + 1), E_b.
-    #[test]
-    fn the_ros2_file_multiplies_and_every_number_in_it_has_a_decimal_point() {
-        let yaml = ros2_control(&Robot::labmate(), &CORRECTION, "base");
-        let value = |key: &str| -> f64 {
-            let line = yaml.lines().find(|l| l.trim().starts_with(&format!("{key}:"))).unwrap();
-            let number = line.split(": ").nth(1).unwrap();
-            assert!(number.contains('.') && !number.contains('e'), "{line}");
-            number.parse().unwrap()
-        };
-        assert!(yaml.contains("\nbase:\n  ros__parameters:\n    wheel_separation: 0.34\n    wheel_radius: 0.075\n"));
-        assert!((value("left_wheel_radius_multiplier") - 2.0 / 2.00121).abs() < 1e-9);
-        assert!((value("right_wheel_radius_multiplier") - 2.0 / (1.0 / 1.00121 + 1.0)).abs() < 1e-9);
-        assert!((value("wheel_separation_multiplier") - 337.2 / 340.0).abs() < 1e-9);
-        let unequal = Robot { drive: DifferentialDrive::new(1.0, 0.2, 0.1).unwrap().into(), ..Robot::labmate() };
-        let yaml = ros2_control(&unequal, &Correction::NONE, "base");
-        assert!(
-            yaml.contains("left_wheel_radius_multiplier: 1.333333333\n") && yaml.contains("wheel_separation: 1.0\n")
-        );
-    }
-
-    #[test]
-    fn the_c_header_is_guarded_and_holds_the_corrected_lengths() {
-        let text = c_header(&Robot::labmate(), &CORRECTION).unwrap();
-        assert!(text.contains("#ifndef UMBMARK_ODOMETRY_H\n#define UMBMARK_ODOMETRY_H\n"));
-        assert!(text.contains("#define UMBMARK_WHEELBASE_M 0.3372 /*"), "{text}");
-        assert_eq!(text.matches("/*").count(), text.matches("*/").count());
-        assert!(text.ends_with("#endif\n"));
-    }
-
-    #[test]
-    fn every_file_says_first_what_wrote_it_and_which_ratios_are_in_it() {
-        let robot = Robot::labmate();
-        let line = format!("umbmark {VERSION} calibrate: E_d 1.00121, E_b 0.991764706, E_s 1.0");
-        assert!(ros2_control(&robot, &CORRECTION, "base").starts_with(&format!("# {line}\n")));
-        assert!(
-            robot_toml(&RobotFile::new(robot.clone(), None), &CORRECTION).unwrap().starts_with(&format!("# {line}\n"))
-        );
-        assert!(c_header(&robot, &CORRECTION).unwrap().starts_with(&format!("/* {line} */\n")));
-    }
-
-    #[test]
-    fn whole_numbers_keep_a_decimal_point_and_fractions_their_digits() {
-        assert_eq!([1.0, 0.25, 1e-9, 2796.8, -3.0].map(decimal), ["1.0", "0.25", "0.000000001", "2796.8", "-3.0"]);
-    }
-}
+mod tests;

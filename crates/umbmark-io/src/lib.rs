@@ -42,6 +42,7 @@ mod start_frame;
 mod template;
 
 mod track_rows;
+mod wheel_names;
 pub mod whole_file;
 
 pub use error::{At, DatasetError};

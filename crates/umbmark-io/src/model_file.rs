@@ -13,6 +13,10 @@ use umbmark_core::parameter::Parameter;
 /// Keys of an effect of the user's own, those first that no other has.
 const OWN: [&str; 5] = ["acts_on", "formula", "parameters", "name", "free"];
 
+/// What is missing in a model of nobody.
+const WHOSE: &str =
+    "a table [robot] as in robot.toml, the nominal robot that the numbers belong to (`umbmark learn -o` writes it)";
+
 /// What a `model.toml` says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelFile {
@@ -29,6 +33,15 @@ impl ModelFile {
     pub fn read(file: impl AsRef<std::path::Path>, robot: Option<&Robot>) -> Result<ModelFile, DatasetError> {
         let file = file.as_ref();
         ModelFile::parse(&file.display().to_string(), &read_text(file)?, robot)
+    }
+
+    /// Reads a `model.toml` that has to say which nominal robot it is of.
+    pub fn read_with_robot(file: impl AsRef<std::path::Path>) -> Result<ModelFile, DatasetError> {
+        let file = file.as_ref();
+        let (name, text) = (file.display().to_string(), read_text(file)?);
+        let source = Source { file: &name, text: &text };
+        Table::root(&source, &source.parse()?).need("robot", WHOSE)?;
+        ModelFile::parse(&name, &text, None)
     }
 
     /// The same from text; `file` is what messages call it.

@@ -6,7 +6,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_core::calibrate::{Correction, Options, RadiusWheelbase};
 use umbmark_core::{diagnose, learn, result, solve};
-use umbmark_io::{RobotFile, export as texts};
+use umbmark_io::RobotFile;
+use umbmark_io::export::{Export, Target};
 
 use crate::dataset::Dataset;
 use crate::model::Model;
@@ -17,6 +18,9 @@ use crate::{choice, json, probability, refused};
 
 const WHEELBASES: [(&str, RadiusWheelbase); 2] =
     [("nominal", RadiusWheelbase::Nominal), ("corrected", RadiusWheelbase::Corrected)];
+
+/// Formats by the targets that write them.
+const FORMATS: [(&str, &str); 3] = [("ros2_control", "ros2_control"), ("robot_toml", "toml"), ("c_header", "c")];
 
 /// A calibration by every method that the data allows.
 #[pyfunction]
@@ -74,16 +78,17 @@ pub fn export(
     path: Option<&Path>,
     ratios: (f64, f64, Option<f64>),
     format: &str,
-    controller: &str,
+    controller: Option<&str>,
 ) -> PyResult<String> {
     let (e_d, e_b, e_s) = ratios;
     let correction = Correction { e_d, e_b, e_s: e_s.unwrap_or(1.0) };
-    match choice("format", format, &["ros2_control", "robot_toml", "c_header"].map(|name| (name, name)))? {
-        "ros2_control" => Ok(texts::ros2_control(&robot.0, &correction, controller)),
-        "robot_toml" => {
-            texts::robot_toml(&RobotFile::new(robot.0.clone(), path.map(|path| path.0.clone())), &correction)
-                .map_err(refused)
-        }
-        _ => texts::c_header(&robot.0, &correction).map_err(refused),
-    }
+    let target = choice("format", format, &FORMATS)?;
+    let model = correction.model(&robot.0).map_err(refused)?;
+    let export = Export {
+        controller: controller.map(str::to_owned),
+        beside: Some(RobotFile::new(robot.0.clone(), path.map(|path| path.0.clone()))),
+        ..Export::of(&model)
+    };
+    let target = Target::named(target).ok_or_else(|| PyValueError::new_err(format!("there is no target {target}")))?;
+    Ok(target.write(&export).map_err(refused)?.text)
 }

@@ -11,10 +11,12 @@ use umbmark_core::calibrate::{Calibration, Estimate, Method, Options, RadiusWhee
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose;
 use umbmark_core::drive::Robot;
+use umbmark_core::effect::Model;
 use umbmark_core::evidence::Level;
 use umbmark_core::result;
 use umbmark_core::solve::calibrate_beside;
-use umbmark_io::{RobotFile, export};
+use umbmark_io::RobotFile;
+use umbmark_io::export::{Export, Target};
 
 use crate::Session;
 use crate::answer::answer_text;
@@ -63,13 +65,13 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = WheelbaseKind::Nominal, value_name = "WHICH")]
     radius_wheelbase: WheelbaseKind,
 
-    /// Write launch-time parameters for diff_drive_controller of ros2_control
+    /// Write launch-time parameters for a controller of ros2_control
     #[arg(long, value_name = "FILE", help_heading = "Export")]
     export_ros2: Option<PathBuf>,
 
-    /// Name of the controller in that file
-    #[arg(long, default_value = "diff_drive_controller", value_name = "NAME", help_heading = "Export")]
-    controller: String,
+    /// Name of the controller in that file [default: that of its type]
+    #[arg(long, value_name = "NAME", help_heading = "Export")]
+    controller: Option<String>,
 
     /// Write a robot.toml with the corrected lengths
     #[arg(long, value_name = "FILE", help_heading = "Export")]
@@ -174,17 +176,24 @@ fn export_files(
         return Ok(Vec::new());
     }
     let correction = &arguments.exported(calibration)?.correction;
-    let texts = [
-        export::ros2_control(robot, correction, &arguments.controller),
-        export::robot_toml(&RobotFile::beside(data, robot.clone()), correction)?,
-        export::c_header(robot, correction)?,
-    ];
+    write_targets(arguments, data, &correction.model(robot)?)
+}
+
+/// Writes a model to the files that were asked for; gives their names.
+fn write_targets(arguments: &Arguments, data: &Dataset, model: &Model) -> anyhow::Result<Vec<String>> {
+    let asked =
+        [("ros2_control", &arguments.export_ros2), ("toml", &arguments.export_toml), ("c", &arguments.export_c)];
+    let export = Export {
+        controller: arguments.controller.clone(),
+        beside: Some(RobotFile::beside(data, model.robot().clone())),
+        ..Export::of(model)
+    };
     let mut written = Vec::new();
-    for (file, text) in asked.into_iter().zip(texts) {
-        if let Some(file) = file {
-            Pending::write_whole(file, arguments.force, &text)?;
-            written.push(file.display().to_string());
-        }
+    for (name, file) in asked {
+        let Some(file) = file else { continue };
+        let target = Target::named(name).with_context(|| format!("no target {name}"))?;
+        Pending::write_whole(file, arguments.force, &target.write(&export)?.text)?;
+        written.push(file.display().to_string());
     }
     Ok(written)
 }

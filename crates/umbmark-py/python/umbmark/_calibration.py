@@ -44,7 +44,7 @@ class Calibration(_documents.Calibration, frozen=True):
         format: str,
         *,
         method: str | None = None,
-        controller: str = "diff_drive_controller",
+        controller: str | None = None,
         force: bool = False,
     ) -> str:
         """Give the corrected lengths as the text of a file of another program.
@@ -55,8 +55,9 @@ class Calibration(_documents.Calibration, frozen=True):
             "ros2_control" (parameters of diff_drive_controller), "robot_toml" or "c_header".
         method : str, optional
             Whose corrections; those of ``exported`` where none is given.
-        controller : str
-            Name of the controller in the parameters of ros2_control.
+        controller : str, optional
+            Name of the controller in the parameters of ros2_control; that of its type where none
+            is given.
         force : bool, default False
             Whether to give lengths that are in doubt.
 

@@ -386,7 +386,7 @@ def export(
     path: Path | None,
     ratios: tuple[float, float, float | None],
     format: str,
-    controller: str,
+    controller: str | None,
 ) -> str: ...
 def compare(
     data: Dataset,

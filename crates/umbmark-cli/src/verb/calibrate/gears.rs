@@ -3,7 +3,6 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use anyhow::Context;
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose;
 use umbmark_core::drive::Robot;
@@ -11,24 +10,15 @@ use umbmark_core::effect::Model;
 use umbmark_core::learn::{GearCalibration, calibrate_gears};
 use umbmark_core::result;
 use umbmark_core::solve::solve;
-use umbmark_io::RobotFile;
 
-use super::Arguments;
+use super::{Arguments, write_targets};
 use crate::Session;
 use crate::answer::answer_text;
-use crate::files::Pending;
 use crate::model_report::estimates_table;
 use crate::table::table;
 
 pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) -> anyhow::Result<ExitCode> {
     let robot = data.nominal_robot()?;
-    let kind = robot.drive.kind().name();
-    for (given, flag) in [(&arguments.export_ros2, "--export-ros2"), (&arguments.export_c, "--export-c")] {
-        anyhow::ensure!(
-            given.is_none(),
-            "{flag} is for differential drives, and the robot has drive = \"{kind}\"; use --export-toml"
-        );
-    }
     let calibration = calibrate_gears(data)?;
     if calibration.estimates.is_empty() {
         anyhow::bail!(
@@ -40,11 +30,8 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
     let answer =
         session.watched("% of the steps of learning at most", |watch| solve(data, &start, &testing, watch))??;
     let withheld = !answer.is_trusted() && !arguments.force;
-    if let Some(file) = arguments.export_toml.as_ref().filter(|_| !withheld) {
-        let corrected = if answer.changes.is_empty() { calibration.corrected.clone() } else { answer.corrected()? };
-        let text = RobotFile::beside(data, corrected).text();
-        Pending::write_whole(file, arguments.force, &text).context("the corrected robot was not written")?;
-    }
+    let model = if answer.changes.is_empty() { &calibration.model } else { &answer.learnt.model };
+    let written = if withheld { Vec::new() } else { write_targets(arguments, data, model)? };
     if session.json() {
         session.print_json(&result::GearCalibration::new(
             robot,
@@ -65,8 +52,8 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
     }
     let text = text(&calibration, robot, arguments.intervals.level);
     write!(session.out(), "{text}\n{}", answer_text(&answer, 1.0 - testing.size))?;
-    if let Some(file) = arguments.export_toml.as_ref().filter(|_| !withheld) {
-        writeln!(session.out(), "wrote {}", file.display())?;
+    for file in written {
+        writeln!(session.out(), "wrote {file}")?;
     }
     super::told_what_is_withheld(arguments, withheld)
 }

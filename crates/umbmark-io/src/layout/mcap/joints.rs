@@ -3,6 +3,7 @@
 use super::fields::{Fields, Names};
 use super::problem::listed;
 use crate::error::quoted;
+use crate::wheel_names::{Side, candidates};
 
 /// The joints of the left and the right wheel.
 pub(super) struct Joints {
@@ -62,7 +63,7 @@ impl Joints {
         if let Some([left, right]) = &self.chosen {
             return place(left).zip(place(right)).map(|(left, right)| [left, right]);
         }
-        let (left, right) = (candidates(names, Side::Left), candidates(names, Side::Right));
+        let (left, right) = (candidates(names.iter(), Side::Left), candidates(names.iter(), Side::Right));
         if left.is_empty() || right.is_empty() {
             return None;
         }
@@ -73,34 +74,5 @@ impl Joints {
         };
         self.chosen = Some([(*left).to_owned(), (*right).to_owned()]);
         place(left).zip(place(right)).map(|(left, right)| [left, right])
-    }
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Side {
-    Left,
-    Right,
-}
-
-/// The joints whose names say that they are on a side; only wheels, where some of them say that they are wheels.
-fn candidates(names: &Names, side: Side) -> Vec<&str> {
-    let on_side: Vec<&str> = names.iter().filter(|name| side_of(name) == Some(side)).collect();
-    let wheels: Vec<&str> = on_side.iter().copied().filter(|name| name.to_lowercase().contains("wheel")).collect();
-    if wheels.is_empty() { on_side } else { wheels }
-}
-
-/// The side that a name says: by the word left or right in it, or by l or r as a word of its own.
-fn side_of(name: &str) -> Option<Side> {
-    let name = name.to_lowercase();
-    let word = |word: &str| name.split(|c: char| !c.is_ascii_alphanumeric()).any(|part| part == word);
-    match (name.contains("left"), name.contains("right")) {
-        (true, false) => Some(Side::Left),
-        (false, true) => Some(Side::Right),
-        (true, true) => None,
-        (false, false) => match (word("l"), word("r")) {
-            (true, false) => Some(Side::Left),
-            (false, true) => Some(Side::Right),
-            _ => None,
-        },
     }
 }
