@@ -50,7 +50,7 @@ verbs! {
     Fit(fit),
     /// Learn a model: fit, diagnose and add effects until nothing is missing
     Learn(learn),
-    /// Write a model for the robot or another program: ROS 2, a C header, a robot.toml
+    /// Write a model's numbers for a robot: ROS 2, Nav2, URDF, C, robot.toml, Gazebo, MuJoCo
     Export(export),
     /// Show which parameter changes which metric: Sobol indices, Morris screening, derivatives
     Sensitivity(sensitivity),

@@ -216,7 +216,7 @@ impl<'a> Export<'a> {
         let corrected =
             |name: &str| drive.first_effects().contains(&name) || LENGTHS.iter().any(|(effect, ..)| *effect == name);
         let said = |part: &&Part| moves(part, self.robot()) && !corrected(part.effect.name());
-        self.model.parts().iter().filter(said).map(|part| not_corrected(part)).collect()
+        self.model.parts().iter().filter(said).map(not_corrected).collect()
     }
 
     /// What every file says first: what wrote it, and which errors are corrected in it.

@@ -1,5 +1,5 @@
 use super::*;
-use umbmark_core::drive::{DifferentialDrive, Encoder, Kind};
+use umbmark_core::drive::{DifferentialDrive, DriveKind, Encoder};
 use umbmark_core::path::{CIRCLE, Path, SQUARE, SpeedProfile, WAYPOINTS};
 
 const RATIOS: [(&str, &str, f64); 2] = [("wheel_diameter_ratio", "e_d", 1.00121), ("wheelbase", "e_b", 337.2 / 340.0)];
@@ -66,7 +66,7 @@ fn the_ros2_file_multiplies_and_every_number_in_it_has_a_decimal_point() {
 
 #[test]
 fn a_car_gets_its_lengths_and_its_steering_is_named_as_left_over() {
-    let car = Robot { drive: Kind::Ackermann.usual(), ..Robot::labmate() };
+    let car = Robot { drive: DriveKind::Ackermann.usual(), ..Robot::labmate() };
     let first = car.drive.first_effects();
     let model =
         model_of(&car, &[(first[0], "angle_rad", 0.004), (first[2], "e_s", 1.01), ("axle_distance", "ratio", 0.98)]);
@@ -110,13 +110,13 @@ fn the_c_header_is_guarded_and_holds_the_corrected_lengths() {
 
 #[test]
 fn every_drive_has_a_robot_file_and_a_header() {
-    for kind in Kind::ALL {
+    for kind in DriveKind::ALL {
         let robot = Robot { drive: kind.usual(), ..Robot::labmate() };
         let model = Model::new(&robot);
         let export = Export::of(&model);
         let read = RobotFile::parse("exported", &written("toml", &export).text).unwrap().robot;
         assert_eq!(read.drive, robot.drive);
-        assert_eq!(written("c", &export).text.matches("#define UMBMARK_").count() > kind.parameters().len(), true);
+        assert!(written("c", &export).text.matches("#define UMBMARK_").count() > kind.parameters().len());
     }
 }
 
@@ -148,7 +148,7 @@ fn what_lengths_cannot_correct_is_said_in_the_file_and_beside_it() {
 
 #[test]
 fn a_drive_that_a_target_cannot_have_is_refused_with_those_that_can() {
-    let robot = Robot { drive: Kind::Synchro.usual(), ..Robot::labmate() };
+    let robot = Robot { drive: DriveKind::Synchro.usual(), ..Robot::labmate() };
     let model = Model::new(&robot);
     let said = Target::named("ros2_control").unwrap().write(&Export::of(&model)).unwrap_err().to_string();
     assert_eq!(said, "ros2_control has no synchro drive; toml and c hold the numbers of every drive");
