@@ -7,7 +7,7 @@ use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Contrast, OnCircle, first_model};
 use umbmark_core::effect::{Model, find};
 use umbmark_core::evidence::Estimate;
-use umbmark_core::likelihood::Outlier;
+use umbmark_core::likelihood::{Noise, Outlier};
 use umbmark_core::result::meaning;
 use umbmark_core::setup::Setup;
 use umbmark_core::stats::Interval;
@@ -32,9 +32,10 @@ pub fn read_model(file: &Path, data: &Dataset, session: &Session) -> anyhow::Res
     Ok(read.model)
 }
 
-/// Writes a `model.toml`.
-pub fn write_model(model: &Model, file: &Path, force: bool) -> anyhow::Result<()> {
-    Pending::write_whole(file, force, &ModelFile::new(model.clone()).text()).context("the model was not written")
+/// Writes a `model.toml`, with the noise that was fitted with the model.
+pub fn write_model(model: &Model, noise: Option<Noise>, file: &Path, force: bool) -> anyhow::Result<()> {
+    let written = ModelFile { noise, ..ModelFile::new(model.clone()) };
+    Pending::write_whole(file, force, &written.text()).context("the model was not written")
 }
 
 /// The unit of a parameter, with a space before it.

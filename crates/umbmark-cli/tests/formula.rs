@@ -46,7 +46,14 @@ fn a_formula_is_simulated_fitted_written_diagnosed_and_compared() {
     let [k, h0] = ["k", "h0"].map(|name| effect["parameters"][name].as_f64().unwrap());
     // Behind the robot that it was fitted with.
     let written = std::fs::read_to_string(here.join("fitted.toml")).unwrap();
-    assert!(written.starts_with("[robot]\n") && written.ends_with(&carpet(k, h0)), "{written}");
+    let (before, noise) = written.split_once("\n[noise]\n").unwrap();
+    assert!(before.starts_with("[robot]\n") && before.ends_with(&carpet(k, h0)), "{written}");
+    // Last the noise, in the file as in the document.
+    for line in noise.lines() {
+        let (key, value) = line.split_once(" = ").unwrap();
+        assert_eq!(fitted["model"]["noise"][key].as_f64(), Some(value.parse().unwrap()), "{line}");
+    }
+    assert!(noise.lines().count() == 10 && fitted["model"]["noise"]["forward_m_per_sqrt_m"].as_f64() > Some(0.0));
     let diagnosis = document(here, &["diagnose", "set", "--model", "fitted.toml"]);
     assert_eq!(diagnosis["verdict"], "explained", "{diagnosis}");
     let compared = document(here, &["compare", "set", "--model", "fitted.toml"]);

@@ -7,6 +7,7 @@ use super::robot_file::read_robot_table;
 use super::source::read_text;
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::{CATALOGUE, CONVERTED, Conversion, Entry as Effect, Formula, FormulaError, Model, Target};
+use umbmark_core::likelihood::Noise;
 use umbmark_core::monte_carlo::{Distribution, Draw};
 use umbmark_core::parameter::Parameter;
 
@@ -26,6 +27,8 @@ pub struct ModelFile {
     pub draws: Vec<Draw>,
     /// What was changed where the file has another nominal robot.
     pub conversion: Option<Conversion>,
+    /// The sizes of the noise, where they were fitted.
+    pub noise: Option<Noise>,
 }
 
 impl ModelFile {
@@ -59,21 +62,34 @@ impl ModelFile {
         let source = Source { file, text };
         let root = source.parse()?;
         let root = Table::root(&source, &root);
-        root.only(&["robot", "effect"])?;
+        root.only(&["robot", "effect", "noise"])?;
         let made_for = root.get("robot").map(|entry| read_robot_table(&entry.table("[robot]".into())?)).transpose()?;
         let own = made_for.as_ref().or(robot).cloned().unwrap_or_else(Robot::labmate);
         let (model, draws) = read_effects(&root, &own)?;
+        let noise = root.get("noise").map(|entry| read_noise(&entry.table("[noise]".into())?)).transpose()?;
         let (Some(robot), Some(entry)) = (robot, root.get("robot")) else {
-            return Ok(ModelFile { model, draws, conversion: None });
+            return Ok(ModelFile { model, draws, conversion: None, noise });
         };
         let refuse = |reason: &str| entry.wrong("the nominal robot that the model is used for", reason);
         let (model, conversion) = model.converted(robot).map_err(|error| refuse(&error.to_string()))?;
         let drawn = draws.iter().any(|draw| CONVERTED.contains(&draw.effect()));
         match conversion {
             Some(_) if drawn => Err(refuse("E_d, E_b or E_s is drawn, and distributions are not converted")),
-            _ => Ok(ModelFile { model, draws, conversion }),
+            _ => Ok(ModelFile { model, draws, conversion, noise }),
         }
     }
+}
+
+/// The sizes of the noise; what is not given is 0.
+fn read_noise(table: &Table) -> Result<Noise, DatasetError> {
+    table.only(&Noise::WRITTEN.each_ref().map(|size| size.name))?;
+    let mut sizes = [0.0; Noise::WRITTEN.len()];
+    for (value, size) in sizes.iter_mut().zip(&Noise::WRITTEN) {
+        if let Some(entry) = table.get(size.name) {
+            *value = entry.number(size)?;
+        }
+    }
+    Ok(Noise::of_written(sizes))
 }
 
 /// The effects of a file on a robot, and those of their parameters that are drawn.
@@ -228,6 +244,24 @@ mod tests {
         );
         let without = ModelFile::parse("model.toml", &(robot("0.17") + effects), None).unwrap();
         assert_eq!((without.model.robot().drive.wheelbase(), without.conversion), (0.17, None));
+    }
+
+    #[test]
+    fn noise_that_is_not_given_is_none_and_a_size_out_of_range_is_refused() {
+        let of = |lines: &str| ModelFile::parse("model.toml", &format!("[noise]\n{lines}\n"), None);
+        let noise = of("forward_m_per_sqrt_m = 2e-4").unwrap().noise.unwrap();
+        assert_eq!((noise.forward_per_metre, noise.heading_per_metre, noise.within_position), (2e-4, 0.0, 0.0));
+        assert_eq!(ModelFile::parse("model.toml", "", None).unwrap().noise, None);
+        for (line, said) in [
+            ("forward_m_per_sqrt_m = -1e-4", "forward_m_per_sqrt_m must be between 0 and 10 m/√m, got -1e-4"),
+            ("reference_time_s = nan", "reference_time_s must be between 0 and 10 s, got nan"),
+            (
+                "heading_rad_per_sqrtm = 1e-3",
+                "unknown key \"heading_rad_per_sqrtm\" in [noise]; did you mean \"heading_rad_per_sqrt_m\"?",
+            ),
+        ] {
+            assert_eq!(of(line).unwrap_err().to_string(), format!("model.toml:2: {said}"));
+        }
     }
 
     #[test]

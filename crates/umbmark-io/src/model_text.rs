@@ -3,12 +3,13 @@
 use super::ModelFile;
 use super::robot_text::robot_text;
 use umbmark_core::effect::{Model, effects_text_with};
+use umbmark_core::likelihood::Noise;
 use umbmark_core::monte_carlo::{Distribution, Draw};
 
 impl ModelFile {
     /// A model whose parameters are not drawn.
     pub fn new(model: Model) -> ModelFile {
-        ModelFile { model, draws: Vec::new(), conversion: None }
+        ModelFile { model, draws: Vec::new(), conversion: None, noise: None }
     }
 
     /// A `model.toml` that reads back as this, to the last bit, with its nominal robot. Effects that a program has added to the
@@ -25,10 +26,17 @@ impl ModelFile {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn text(&self) -> String {
-        let robot = robot_text(self.model.robot());
         let effects = effects_with(&self.model, &self.draws);
-        if effects.is_empty() { robot } else { format!("{robot}\n{effects}") }
+        let noise = self.noise.as_ref().map(noise_text).unwrap_or_default();
+        let tables = [robot_text(self.model.robot()), effects, noise];
+        tables.into_iter().filter(|table| !table.is_empty()).collect::<Vec<_>>().join("\n")
     }
+}
+
+/// The sizes of the noise, a line each.
+fn noise_text(noise: &Noise) -> String {
+    let lines = Noise::WRITTEN.iter().zip(noise.written()).map(|(size, value)| format!("{} = {value:?}\n", size.name));
+    std::iter::once("[noise]\n".to_owned()).chain(lines).collect()
 }
 
 /// The effects of a model, with the distributions of what is drawn.
@@ -70,7 +78,12 @@ mod tests {
         let file = ModelFile::new(model);
         assert_eq!(ModelFile::parse("model.toml", &file.text(), None).unwrap(), file);
         assert_eq!(ModelFile::parse("model.toml", &effects_text(&file.model), Some(&robot)).unwrap(), file);
+        let noise = Noise { heading_per_metre: 1e-3 / 3.0, within_heading: 0.0, ..Noise::default() };
+        let file = ModelFile { noise: Some(noise), ..file };
+        assert!(file.text().contains("\n[noise]\nheading_rad_per_sqrt_m = 0.000333"));
+        assert_eq!(ModelFile::parse("model.toml", &file.text(), None).unwrap(), file);
     }
+
     #[test]
     fn what_is_drawn_reads_back_with_its_distribution() {
         let text = "[[effect]]\nname = \"scale\"\ne_s = { mean = 1.002, sd = 0.0005 }\n\n\

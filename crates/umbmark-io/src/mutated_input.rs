@@ -189,10 +189,11 @@ fn damaged_robots_and_models() {
         })
     });
     let model = "[robot]\nwheelbase_m = 0.34\nwheel_diameter_m = 0.15\nticks_per_revolution = 2000\n\n[[effect]]\nname = \"wheelbase\"\ne_b = { mean = 1.01, sd = 0.002 }\nfree = true\n\n\
-                 [[effect]]\nname = \"placed_bumps\"\ncount = 10\nheight_m = { min = 0.0, max = 0.02 }\nprofile = \"cable\"\n";
+                 [[effect]]\nname = \"placed_bumps\"\ncount = 10\nheight_m = { min = 0.0, max = 0.02 }\nprofile = \"cable\"\n\n\
+                 [noise]\nheading_rad_per_sqrt_m = 0.001\nreference_time_s = 5e-4\n";
     survive(model, 5, |text| {
-        ModelFile::parse("file", text, Some(&Robot::labmate())).is_ok_and(|ModelFile { model, .. }| {
-            assert!(model.values().all(f64::is_finite));
+        ModelFile::parse("file", text, Some(&Robot::labmate())).is_ok_and(|ModelFile { model, noise, .. }| {
+            assert!(model.values().chain(noise.iter().flat_map(|noise| noise.written())).all(f64::is_finite));
             true
         })
     });

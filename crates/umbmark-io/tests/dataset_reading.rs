@@ -314,11 +314,15 @@ fn a_gap_in_which_the_wheels_rolled_on_is_not_taken_for_a_roll_over() {
 
 #[test]
 fn the_model_in_the_documents_is_one() {
-    let text = include_str!("../../../docs/files.md").split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    let blocks = include_str!("../../../docs/files.md").split("```toml\n").skip(1);
+    let blocks: Vec<&str> = blocks.filter_map(|block| block.split("```").next()).collect();
+    let effects = blocks[1];
+    let noise = blocks.iter().find(|block| block.starts_with("[noise]")).unwrap();
     let robot = umbmark_core::drive::Robot::labmate();
-    let umbmark_io::ModelFile { model, draws, .. } =
-        umbmark_io::ModelFile::parse("files.md", text, Some(&robot)).unwrap();
+    let umbmark_io::ModelFile { model, draws, noise, .. } =
+        umbmark_io::ModelFile::parse("files.md", &format!("{effects}\n{noise}"), Some(&robot)).unwrap();
     assert_eq!((model.parts().len(), draws.len()), (3, 2));
+    assert_eq!(noise, Some(umbmark_core::likelihood::Noise::default()));
 }
 
 fn warnings_of(text: &str) -> (Dataset, String) {

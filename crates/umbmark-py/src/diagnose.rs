@@ -82,7 +82,7 @@ pub fn fit(
     }
     let shared = Arc::clone(&data.0);
     let fitted = watched(py, 1, None, move |_| evidence::fit(&shared, &model))?.map_err(refused)?;
-    Ok((json(&result::Fitted::new(&fitted, level))?, fitted.model.into()))
+    Ok((json(&result::Fitted::new(&fitted, level))?, Model { noise: fitted.noise, ..fitted.model.into() }))
 }
 
 /// The whole loop, from a model where one is given, and the model that was learnt.
@@ -103,7 +103,7 @@ pub fn learn(
         None => effect::Model::new(data.0.nominal_robot().map_err(refused)?),
     };
     let solution = solved(py, shared, start, options, threads, progress)?;
-    Ok((json(&result::Learnt::new(&solution, &options))?, solution.learnt.model.into()))
+    Ok((json(&result::Learnt::new(&solution, &options))?, with_noise(solution.learnt)))
 }
 
 /// The one answer, and the model that it rests on.
@@ -119,7 +119,7 @@ pub fn solve(
     let options = options_of(options, return_poses)?;
     let start = effect::Model::new(data.0.nominal_robot().map_err(refused)?);
     let solution = solved(py, Arc::clone(&data.0), start, options, threads, progress)?;
-    Ok((json(&result::Solution::new(&solution, &options))?, solution.learnt.model.into()))
+    Ok((json(&result::Solution::new(&solution, &options))?, with_noise(solution.learnt)))
 }
 
 fn solved(
@@ -132,6 +132,11 @@ fn solved(
 ) -> PyResult<Solution> {
     let work = move |told: &Watch| told.work(|watch| solving::solve(&data, &start, &options, watch));
     watched(py, threads, progress, work)?.map_err(refused)
+}
+
+/// A model that was learnt, with its noise.
+fn with_noise(learnt: umbmark_core::learn::Learnt) -> Model {
+    Model { noise: learnt.noise, ..learnt.model.into() }
 }
 
 /// The model that is asked about, the usual first one where none is given.

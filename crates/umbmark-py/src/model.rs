@@ -1,11 +1,13 @@
 //! `umbmark.Model`.
 
+use std::collections::BTreeMap;
 use std::ffi::CString;
 
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use toml::{Table, Value};
+use umbmark_core::likelihood::Noise;
 use umbmark_core::monte_carlo::Draw;
 use umbmark_core::{dataset, drive, effect, result};
 use umbmark_io::ModelFile;
@@ -47,6 +49,8 @@ pub struct Model {
     pub model: effect::Model,
     /// Parameters that differ from trial to trial.
     pub draws: Vec<Draw>,
+    /// The noise that was fitted with it.
+    pub noise: Option<Noise>,
 }
 
 #[pymethods]
@@ -131,6 +135,13 @@ impl Model {
         self.model.get(effect, parameter)
     }
 
+    /// Sizes of the noise that was fitted to tracks with it, under the keys of ``[noise]`` in a model.toml; None without.
+    #[getter]
+    fn noise(&self) -> Option<BTreeMap<&'static str, f64>> {
+        let sizes = |noise: Noise| Noise::WRITTEN.iter().map(|size| size.name).zip(noise.written()).collect();
+        self.noise.map(sizes)
+    }
+
     /// The nominal robot.
     #[getter]
     fn robot(&self) -> Robot {
@@ -145,13 +156,13 @@ impl Model {
 
     /// Write it as the text of a model.toml with its robot, which reads back to the last bit.
     fn to_toml(&self) -> String {
-        let (model, draws) = (self.model.clone(), self.draws.clone());
-        ModelFile { model, draws, conversion: None }.text()
+        let Model { model, draws, noise } = self.clone();
+        ModelFile { model, draws, noise, conversion: None }.text()
     }
 
     /// Give its effects, as results have them.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        as_python(py, &result::Model::from(&self.model))
+        as_python(py, &result::Model::with_noise(&self.model, self.noise.as_ref()))
     }
 
     fn __repr__(&self) -> String {
@@ -187,16 +198,16 @@ impl Model {
         let text = Table::from_iter([("effect".to_owned(), effects)]).to_string();
         let file = ModelFile::parse("Model", &text, Some(self.model.robot()));
         let ModelFile { model, draws, .. } = file.map_err(|error| keys::refused(&error))?;
-        Ok(Model { model, draws })
+        Ok(Model { model, draws, noise: self.noise })
     }
 
     /// What was read, with a warning of what was converted.
     fn of_file(py: Python<'_>, file: ModelFile, name: &str) -> PyResult<Model> {
-        let ModelFile { model, draws, conversion } = file;
+        let ModelFile { model, draws, conversion, noise } = file;
         if let Some(conversion) = conversion {
             warn(py, &format!("{name} {conversion}"))?;
         }
-        Ok(Model { model, draws })
+        Ok(Model { model, draws, noise })
     }
 
     /// The effects for the robot of a dataset, with a warning of what was converted.
@@ -212,7 +223,7 @@ impl Model {
 
 impl From<effect::Model> for Model {
     fn from(model: effect::Model) -> Model {
-        Model { model, draws: Vec::new() }
+        Model { model, draws: Vec::new(), noise: None }
     }
 }
 

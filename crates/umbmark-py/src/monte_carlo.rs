@@ -75,7 +75,7 @@ impl Study {
         update: &str,
         phase: &str,
     ) -> PyResult<Study> {
-        let Model { model, draws } = model.clone();
+        let Model { model, draws, .. } = model.clone();
         let base = core::Study::new(model, n, seed);
         let sampled = |update| match base.robot().encoder.rate() {
             Some(rate) => Odometry::Sampled { rate, update },
@@ -116,7 +116,7 @@ impl Study {
     /// The robot and its effects.
     #[getter]
     fn model(&self) -> Model {
-        Model { model: self.study.model.clone(), draws: self.study.draws.clone() }
+        Model { draws: self.study.draws.clone(), ..self.study.model.clone().into() }
     }
 
     /// The path.

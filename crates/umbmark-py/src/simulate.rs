@@ -24,7 +24,7 @@ pub fn simulate(
     seed: u64,
     trial: u64,
 ) -> PyResult<Dataset> {
-    let Model { model, draws } = model.clone();
+    let Model { model, draws, .. } = model.clone();
     let path = path.map_or_else(CorePath::umbmark, |path| path.0.clone());
     check_on_path(&model, &path).map_err(refused)?;
     let drawn = draw_parameters(&model, &draws, seed, trial).map_err(refused)?;

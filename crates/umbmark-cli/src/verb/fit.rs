@@ -51,9 +51,9 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         anyhow::bail!("no effect of the model is free: write free = true in its file, or use --add EFFECT");
     }
     let fitted = session.on_threads(|| fit(&data, &model))??;
-    let Fit { model, estimates, outliers, usual_noise, setup, taken } = &fitted;
+    let Fit { model, estimates, noise, outliers, usual_noise, setup, taken } = &fitted;
     if let Some(file) = &arguments.output {
-        write_model(model, file, arguments.force)?;
+        write_model(model, *noise, file, arguments.force)?;
     }
     if session.json() {
         session.print_json(&result::Fitted::new(&fitted, arguments.intervals.level))?;

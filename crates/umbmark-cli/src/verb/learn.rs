@@ -65,7 +65,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let learnt = &solution.learnt;
     let withheld = learnt.is_in_doubt() && !arguments.force;
     if let Some(file) = arguments.output.as_ref().filter(|_| !withheld) {
-        write_model(&learnt.model, file, arguments.force)?;
+        write_model(&learnt.model, learnt.noise, file, arguments.force)?;
     }
     if session.json() {
         session.print_json(&result::Learnt::new(&solution, &options))?;

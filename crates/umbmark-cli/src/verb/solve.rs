@@ -51,7 +51,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     }
     let withheld = !solution.is_trusted() && !arguments.force;
     if let Some(file) = arguments.output.as_ref().filter(|_| !withheld) {
-        write_model(&solution.learnt.model, file, arguments.force)?;
+        write_model(&solution.learnt.model, solution.learnt.noise, file, arguments.force)?;
     }
     if session.json() {
         session.print_json(&result::Solution::new(&solution, &options))?;

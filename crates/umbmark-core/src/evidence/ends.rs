@@ -199,7 +199,7 @@ impl Evidence for Ends {
         self.check_columns()?;
         let Fitted { model, estimates, .. } = Fitted::new(self, model)?;
         let setup = Arc::clone(&self.setup);
-        Ok(Fit { model, estimates, outliers: Vec::new(), usual_noise: false, setup, taken: Vec::new() })
+        Ok(Fit { model, estimates, noise: None, outliers: Vec::new(), usual_noise: false, setup, taken: Vec::new() })
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{AnyEvidence, Ends, Evidence, FitError, Level, robot_of};
 use crate::dataset::Dataset;
 use crate::effect::Model;
-use crate::likelihood::{Outlier, Taken};
+use crate::likelihood::{Noise, Outlier, Taken};
 use crate::setup::Setup;
 use crate::stats::{Interval, student_t_quantile};
 use std::sync::Arc;
@@ -38,6 +38,8 @@ pub struct Fit {
     pub model: Model,
     /// What was fitted.
     pub estimates: Vec<Estimate>,
+    /// The sizes of the noise under which the runs are likeliest; from tracks only.
+    pub noise: Option<Noise>,
     /// Where runs were disturbed, and what happened there left out; from tracks only.
     pub outliers: Vec<Outlier>,
     /// Whether the values are those under noise of the usual sizes, as [`USUAL_NOISE`](crate::likelihood::USUAL_NOISE) says.

@@ -45,8 +45,8 @@ impl Evidence for Observed {
     fn fit(&self, model: &Model) -> Result<Fit, FitError> {
         let fitted = trusted(fit(self, model)?)?.into_fitted();
         let estimates = estimates(&fitted);
-        let Fitted { model, outliers, usual_noise, taken, observed, .. } = fitted;
-        Ok(Fit { model, estimates, outliers, usual_noise, setup: observed.setup, taken })
+        let Fitted { model, noise, outliers, usual_noise, taken, observed, .. } = fitted;
+        Ok(Fit { model, estimates, noise: Some(noise), outliers, usual_noise, setup: observed.setup, taken })
     }
 }
 

@@ -53,7 +53,7 @@ pub(super) fn learn(ends: &Ends, start: &Model, options: &Options, watch: &Watch
     }
     remarks.extend(diagnosis.remarks.iter().cloned());
     let (steps, model, verdict) = (story.steps, story.model, diagnosis.verdict);
-    Ok(Learnt { steps, verdict, model, diagnosis, remarks, partial })
+    Ok(Learnt { steps, verdict, model, noise: None, diagnosis, remarks, partial })
 }
 
 /// A model as it grows, on all runs and without each of them.

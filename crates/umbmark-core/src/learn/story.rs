@@ -3,6 +3,7 @@
 use crate::diagnose::{Diagnosis, Reason, Repeated, Verdict};
 use crate::effect::Model;
 use crate::evidence::Evidence;
+use crate::likelihood::Noise;
 
 /// No model is given more effects than this.
 pub(super) const MOST_EFFECTS: usize = 6;
@@ -48,6 +49,8 @@ pub struct Learnt {
     pub verdict: Verdict,
     /// The model, its free parameters fitted.
     pub model: Model,
+    /// The sizes of the noise under which the runs are likeliest; from tracks only.
+    pub noise: Option<Noise>,
     /// The last diagnosis: of the model that was learnt.
     pub diagnosis: Diagnosis,
     /// Further remarks, a sentence each.
@@ -66,6 +69,6 @@ impl Learnt {
     pub(super) fn of_faults(evidence: &dyn Evidence, steps: Vec<Step>) -> Learnt {
         let model = Model::new(evidence.robot());
         let diagnosis = Diagnosis::of_faults(evidence, &model);
-        Learnt { steps, verdict: diagnosis.verdict, model, diagnosis, remarks: Vec::new(), partial: false }
+        Learnt { steps, verdict: diagnosis.verdict, model, noise: None, diagnosis, remarks: Vec::new(), partial: false }
     }
 }

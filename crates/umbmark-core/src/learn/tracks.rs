@@ -213,7 +213,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         next_experiments: experiments,
         ..diagnosis
     };
-    Ok(Learnt { steps, verdict, model, remarks, diagnosis, partial: false })
+    Ok(Learnt { steps, verdict, model, noise: Some(written.noise), remarks, diagnosis, partial: false })
 }
 
 /// What is to be said of lengths, times and thresholds that the runs do not show: they keep the values with which they began.

@@ -1,5 +1,7 @@
 //! The sizes of the noise, and how they are found.
 
+mod written;
+
 use super::descent::Descent;
 use super::observed::{Column, Growth, Observed, ObservedRun};
 use super::products::{gram, solver};

@@ -98,7 +98,7 @@ impl Fitted {
             usual_noise: fit.usual_noise,
             setup: fit.setup.as_ref().into(),
             taken: taken(&fit.taken),
-            model: (&fit.model).into(),
+            model: Model::with_noise(&fit.model, fit.noise.as_ref()),
             level,
             version: crate::VERSION,
         }

@@ -113,7 +113,7 @@ impl Learnt {
             verdict: learnt.verdict.name(),
             unlisted: diagnosis.dependence.as_ref().map(Unlisted::from),
             next_experiments: experiments(&diagnosis.next_experiments),
-            model: (&learnt.model).into(),
+            model: Model::with_noise(&learnt.model, learnt.noise.as_ref()),
             fitted: estimates(&diagnosis.fitted, 1.0 - options.size),
             meaning: meaning(&diagnosis.fitted, &learnt.model),
             outliers: diagnosis.outliers.iter().map(Outlier::from).collect(),

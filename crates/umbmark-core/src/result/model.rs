@@ -4,7 +4,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
+use super::Keyed;
 use crate::effect;
+use crate::likelihood::Noise;
 use crate::parameter::Parameter;
 
 /// A model, as in `model.toml`.
@@ -12,11 +14,22 @@ use crate::parameter::Parameter;
 pub struct Model {
     /// Its effects in the order in which they act: each with its name, its parameters and whether it is free.
     pub effect: Vec<Map<String, Value>>,
+    /// The sizes of the noise, where it was fitted to tracks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub noise: Option<Keyed<f64>>,
+}
+
+impl Model {
+    /// A model with the noise that was fitted with it.
+    pub fn with_noise(model: &effect::Model, noise: Option<&Noise>) -> Model {
+        let sizes = |noise: &Noise| Noise::WRITTEN.iter().map(|size| size.name).zip(noise.written()).collect();
+        Model { noise: noise.map(sizes), ..model.into() }
+    }
 }
 
 impl From<&effect::Model> for Model {
     fn from(model: &effect::Model) -> Self {
-        Model { effect: model.parts().iter().map(part).collect() }
+        Model { effect: model.parts().iter().map(part).collect(), noise: None }
     }
 }
 
