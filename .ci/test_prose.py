@@ -22,7 +22,14 @@ TERSE = {
     "to mend it,": "to correct it,",
     "nobody said": "was assumed",
     "under each flip but": "under every flip except the identity",
-    "accused all the same": "false-alarm rate",
+    "is accused": "false-alarm rate",
+    "told apart": "separated",
+    "tell apart": "separate",
+    "not what they are called": "contradict their names",
+    "not what it is called": "contradicts its name",
+    "most telling": "most informative",
+    " on offer": "available",
+    "say its own numbers": "give its own numbers",
 }
 """What is not written, and what to say in its place."""
 READ = {".rs", ".py", ".pyi", ".md", ".html", ".txt", ".err", ".toml", ".svg"}
