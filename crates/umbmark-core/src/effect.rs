@@ -10,8 +10,8 @@
 //!                                                                          measured pose <- [measured] <- [seen]
 //! ```
 //!
-//! What an effect may depend on (speed, heading, wheel angle, way since the last turn ...) stands in a [`Context`], which
-//! the engine fills for each piece of the way.
+//! The variables that an effect may depend on (speed, heading, wheel angle, distance since the last turn ...) are in a [`Context`], which
+//! the engine fills for each piece of the path.
 
 mod chain;
 mod changes;
@@ -48,12 +48,11 @@ pub use text::{effects_text, effects_text_with};
 register! {
     /// Every effect there is, in the order in which they act.
     ///
-    /// The order is that of cause: what was counted, what shape the wheels have and what drives them, how they grip, what the
-    /// floor does, and last where the robot was put and how it was measured. Within a kind, what changes all motion stands
-    /// before what changes some of it. Effects on the wheels act before effects on the body wherever they stand, so for small
-    /// effects another order would change return poses by products of two of them only.
+    /// The order is that of cause: counts, shape and drive of the wheels, grip, floor, and last the start pose and the measurement. Within
+    /// a kind, effects on all motion come before effects on some of it. Effects on the wheels always act before effects on the body, so for
+    /// small effects another order would change return poses only by products of two of them.
     pub CATALOGUE: Entry = EFFECT in
-    // What the encoders make of the wheels' rotation.
+    // The encoders.
     missed_counts,
     encoder_skew,
     encoder_sampling,
@@ -137,7 +136,7 @@ pub enum ActsOn {
     Start,
     /// The measurement of the absolute pose.
     Reference,
-    /// What the robot's odometry makes of its wheels, while they roll as they should.
+    /// The robot's odometry, with wheels that roll correctly.
     Odometry,
 }
 
@@ -157,7 +156,7 @@ impl ActsOn {
     }
 }
 
-/// What people should know of an effect.
+/// The description of an effect.
 #[derive(Debug)]
 pub struct About {
     /// Its name in files.
@@ -172,13 +171,13 @@ pub struct About {
     pub equation: &'static str,
     /// The cause.
     pub physics: &'static str,
-    /// What it does to a square driven both ways.
+    /// Its influence on a square driven in both directions.
     pub signature: &'static str,
-    /// What looks the same in return poses, or in a track where those do not show it.
+    /// Effects that look the same in return poses, or in tracks if return poses do not show them.
     pub confused_with: &'static [&'static str],
-    /// The experiment that tells it from those.
+    /// The experiment that separates it from those.
     pub separated_by: &'static str,
-    /// Where all this is from.
+    /// The source of this description.
     pub source: &'static str,
 }
 
@@ -214,7 +213,7 @@ pub struct Stretch {
     pub travel: WheelTravel,
 }
 
-/// A wheel rolls over something, and its travel over ground falls short of what its encoder counts.
+/// A wheel rolls over an obstacle, and its travel over ground is less than its encoder counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bump {
     /// Where in the stretch, as a share of its travel in [0, 1].
@@ -243,19 +242,18 @@ pub trait Effect {
     /// The drives that may have it.
     const DRIVES: DriveKinds = DriveKinds::of(DriveKind::Differential);
 
-    /// What these values mean for the robot: a sentence. Empty where there is nothing to say.
+    /// Meaning of these values for the robot, in a sentence; empty if there is none.
     fn means(_p: &[f64], _robot: &Robot) -> String {
         String::new()
     }
 
-    /// Whether with these values its change of motion depends on the [`Context`], so that driving has to be cut into small
-    /// pieces for it.
+    /// Whether, with these values, it depends on the [`Context`], so that the path must be cut into small pieces.
     fn varies(_p: &[f64]) -> bool {
         false
     }
 }
 
-/// Whether an effect whose numbers are all sizes is at work.
+/// Whether an effect whose numbers are all sizes is active.
 fn at_work(sizes: &[f64]) -> bool {
     sizes.iter().any(|size| *size != 0.0)
 }

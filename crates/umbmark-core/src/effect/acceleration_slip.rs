@@ -25,11 +25,12 @@ impl Effect for AccelerationSlip {
             "share of the travel that is lost per m/s^2 of acceleration",
         )],
         equation: "s_w ← (1 - k d|v_w|/dt) s_w",
-        physics: "A wheel that pulls turns more than it gets ahead; one that brakes is pushed along and turns less.",
-        signature: "k v²/2 is lost at the start of each leg and gained at its stop: nothing is left in return poses or at \
-                    stops. A track shows the robot late while it drives.",
+        physics: "A driven wheel creeps when it pulls: it turns further than it moves forward. When it brakes, the robot pushes it, and \
+                  it turns less than it moves.",
+        signature: "Each leg loses k v²/2 while the robot speeds up and gains it back while it slows down, so return poses and stops \
+                    show nothing. While the robot drives, a track shows it behind its odometry.",
         confused_with: &["reference_delay"],
-        separated_by: "a second acceleration at the same speed: a delay does not care",
+        separated_by: "driving at the same speed with another acceleration: a delay of the reference stays the same, this slip does not",
         source: "linear creep of a rolling tyre; 2 % per m/s² is assumed",
     };
 
@@ -54,7 +55,7 @@ impl WheelLaw for AccelerationSlip {
     }
 }
 
-/// How fast a wheel's speed grows in size \[m/s²\].
+/// Rate of change of the size of a wheel's speed \[m/s²\].
 fn gain<T>(at: &Context<T>, wheel: usize) -> f64 {
     if at.duration > 0.0 { at.speed_change[wheel] * at.wheel_speed[wheel].signum() / at.duration } else { 0.0 }
 }

@@ -25,11 +25,12 @@ impl Effect for AxleDistance {
             "true / nominal distance of the steered wheel from the axle",
         )],
         equation: "Δθ ← Δθ / r",
-        physics: "The distance is not what it is believed to be, or the wheel touches the floor before or behind its axis.",
-        signature: "Every corner is too sharp or too blunt, opposite in ccw and cw. On corners of one radius nothing tells it from the \
-                    gain of the steering.",
+        physics: "The distance from the axle to the steered wheel was measured wrongly, or the wheel touches the floor in front of or \
+                  behind its steering axis.",
+        signature: "Every corner is too sharp or too blunt, with opposite signs in ccw and cw. If all corners have one radius, it \
+                    cannot be distinguished from an error of the steering gain.",
         confused_with: &["steering_gain"],
-        separated_by: "circles of two radii: a gain of the steering acts more than in proportion where it is steered far",
+        separated_by: "circles of two radii: an error of the steering gain grows faster than in proportion at large steering angles",
         source: "kinematics; Lee, Chung & Yoo (2010) calibrate cars by such a square",
     };
 

@@ -25,11 +25,12 @@ impl Effect for Backlash {
             "play at the rim, counted and not driven when a wheel reverses",
         )],
         equation: "s_w ← s_w ∓ w  where the wheel begins to roll forward (-) or backward (+) after the opposite",
-        physics: "An encoder on the motor's shaft counts while the teeth change flanks and the wheel stands still.",
-        signature: "The heading steps by w/b when a turn begins and back when the next leg does. Only the last turn stays \
-                    in the return pose: -w/b in ccw and +w/b in cw, often less than the scatter.",
+        physics: "The encoder sits on the motor's shaft. When the motor changes direction, it counts while the gear teeth cross their \
+                  play and the wheel stands still.",
+        signature: "The heading steps by w/b when a turn begins, and steps back when the next leg begins. Only the step of the last \
+                    turn remains in the return pose: -w/b in ccw and +w/b in cw, often less than the scatter.",
         confused_with: &["caster_kick"],
-        separated_by: "turning each wheel by hand with its motor held; a track",
+        separated_by: "turning each wheel by hand while its motor is held; a track, which shows the steps",
         source: "geometry; hobby drives with about 1 degree of body heading are reported, 0.5 mm is assumed",
     };
 

@@ -35,12 +35,13 @@ impl Effect for BaseYaw {
             ),
         ],
         equation: "Δθ ← Δθ + (c cos σ + s sin σ) · forward,  σ the steering since START",
-        physics: "One wheel is larger than the others, or stands askew: as it is now ahead of the centre and now beside it, it turns the \
-                  base one way or the other, and the wheels with it. The odometry knows the steering and not the base.",
-        signature: "Opposite sides bend opposite ways: the heading comes right again and the position does not. Return heading and \
-                    position no longer belong together, as in the paper's K2A.",
+        physics: "One wheel is larger than the others or is misaligned. As the wheels steer, it is now in front of the centre and now \
+                  beside it, so it turns the base to one side or the other, and the wheels with the base. The odometry measures the \
+                  steering angle but not the angle of the base.",
+        signature: "Opposite sides of the square bend in opposite directions, so the heading error cancels and the position error does \
+                    not. Return heading and return position no longer fit together, as for the paper's K2A.",
         confused_with: &["floor_slope_yaw"],
-        separated_by: "starting the square with the base turned by 90 degrees; a mark on the base watched along the way",
+        separated_by: "starting the square with the base turned by 90 degrees; tracking a mark on the base",
         source: "kinematics of three wheels on a circle; 1 mrad per metre is assumed",
     };
 

@@ -1,4 +1,4 @@
-//! Bumps met by chance, and the geometry of one.
+//! Accidental bumps, and the geometry of a bump.
 
 use super::words::{deg, size};
 use super::{About, ActsOn, Bump, BumpLaw, Effect, Entry, Stretch};
@@ -30,12 +30,12 @@ impl Effect for Bumps {
             Parameter { flag: "random-bump-profile", ..PROFILE },
         ],
         equation: EXTRA_TRAVEL,
-        physics: "A wheel that climbs over an obstacle rolls along its wheel-centre path, which is longer than the floor \
-                  below it: the encoder counts more than the body advances. Uneven floors do so at random places.",
-        signature: "Mean: the robot falls short, a scale error of -rate · D. Scatter: spiky heading steps of D/b towards the \
-                    bumped wheel, adding rate · D² per metre to the variance of each wheel.",
+        physics: "A wheel that climbs over an obstacle follows a path that is longer than the floor below it, so its encoder counts \
+                  more than the body advances. An uneven floor has such obstacles at random places.",
+        signature: "On average the robot falls short, by a scale error of -rate · D. The scatter consists of sharp heading steps of D/b \
+                    towards the wheel that was bumped; it adds rate · D² per metre to the variance of each wheel.",
         confused_with: &["wheel_noise", "scale"],
-        separated_by: "heading increments of the track: skewed and spiky where wheel noise is smooth",
+        separated_by: "the heading increments of a track: they are skewed and have spikes, while those of wheel noise are smooth",
         source: "geometry of a rolling circle; the 0.6 degree of Borenstein & Feng (1995), section 3.3, for 10 mm follows \
                  for wheel radii of 66 to 75 mm",
     };

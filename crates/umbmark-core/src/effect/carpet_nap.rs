@@ -6,7 +6,7 @@ use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
-/// A drift along the pile, whatever the heading.
+/// A drift along the pile, for any heading.
 pub struct CarpetNap;
 
 pub(super) static EFFECT: Entry = Entry::of::<CarpetNap>().body::<CarpetNap>();
@@ -29,12 +29,13 @@ impl Effect for CarpetNap {
             },
         ],
         equation: DRIFT,
-        physics: "Fibres that lean one way lie down under the wheel and carry it along: a drift with the pile, proportional \
-                  to the way driven.",
-        signature: "That of a sloping floor, to the last digit: the return point is off by the drift times the length of the \
-                    path, alike in ccw and cw. It ends where the carpet does.",
+        physics: "The fibres of a carpet lean one way. They bend under a rolling wheel and carry it along: the robot drifts with the \
+                  pile, in proportion to the distance driven.",
+        signature: "The same as a sloping floor: the return point is off by the drift times the length of the path, equally in ccw and \
+                    cw. The drift ends where the carpet ends.",
         confused_with: &["floor_slope", "start_pose"],
-        separated_by: "turning the carpet by 90 degrees: nap turns with it, slope stays. Nothing else does",
+        separated_by: "turning the carpet by 90 degrees, and nothing else: drift from the nap turns with the carpet, drift from a slope \
+                       does not",
         source: "the carpet-drift vector of vacuum robots (patents of iRobot, US 9,223,312 and family); size assumed",
     };
 

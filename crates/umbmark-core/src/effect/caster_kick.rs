@@ -32,12 +32,13 @@ impl Effect for CasterKick {
             },
         ],
         equation: "Δθ ← Δθ + κ · (sense of the last turn) · (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since that turn",
-        physics: "After a turn on the spot the casters lie across the new course. As the robot drives off they swing round, \
-                  and drag its rear aside until they trail.",
-        signature: "A heading step in the first decimetres of legs 2 to 4, opposite in ccw and cw: mostly E_b. Leg 1 has \
-                    none, which leaves a closure error of -κ.",
+        physics: "After a turn on the spot the casters point across the new course. When the robot drives off they swing round, and \
+                  pull its rear aside until they trail again.",
+        signature: "The heading steps in the first decimetres of legs 2 to 4, with opposite signs in ccw and cw, so most of the error \
+                    looks like E_b. Leg 1 has no step, which leaves a closure error of -κ.",
         confused_with: &["backlash", "wheelbase"],
-        separated_by: "a track; 0.3 m of driving straight before each turn, on and off; ball casters",
+        separated_by: "a track; tests with and without 0.3 m of straight driving before each turn; ball casters in place of swivel \
+                       casters",
         source: "users' reports of drift after a change of direction; 0.2 degree and 5 cm are assumed",
     };
 
@@ -64,7 +65,7 @@ impl BodyLaw for CasterKick {
 
 pub(super) const TRAIL: Parameter = Parameter::shape("trail_m", "", "m", 0.05, (1e-3, 100.0), "");
 
-/// The share of a kick that is made within a piece: e^(-d₀/λ) - e^(-d₁/λ).
+/// The share of a kick within a piece: e^(-d₀/λ) - e^(-d₁/λ).
 #[inline(always)]
 pub(super) fn faded<T: Real>(at: &Context<T>, trail: T) -> T {
     let rate = -trail.recip();

@@ -25,11 +25,12 @@ impl Effect for CentripetalLoad {
             "difference of the wheel radii per m/s^2 towards the centre of the arc, as a share",
         )],
         equation: "s_R ← (1 - c v ω/2) s_R,  s_L ← (1 + c v ω/2) s_L",
-        physics: "In an arc load moves to the outer wheel, by height over width of the robot, and its tyre is compressed.",
-        signature: "None on the square, where the robot either drives or turns. Circles come out too wide, the more the \
-                    faster: on arcs of one speed as E_b.",
+        physics: "In a curve, load moves to the outer wheel, in proportion to the height of the centre of mass over the width of the \
+                  robot. The load compresses the outer tyre, so its rolling radius becomes smaller.",
+        signature: "A square shows nothing, because the robot either drives straight or turns on the spot. Circles come out too wide, \
+                    and more so at higher speed. On arcs of a single speed it looks like E_b.",
         confused_with: &["wheelbase"],
-        separated_by: "circles driven slowly and fast, both ways",
+        separated_by: "circles at a low and a high speed, in both directions",
         source: "load transfer on a linear tyre; 0.1 % per m/s² is assumed",
     };
 

@@ -1,4 +1,4 @@
-//! The effects of a model at work: from believed to true motion, and to what is seen of it.
+//! The effects of a model, applied: from believed to true motion, and to its measurement.
 
 use super::{Changes, Context, Evaluate, Formula, MAX_PARAMETERS, MeanLaws, Sight};
 use crate::drive::{DifferentialDrive, LinkReading, WheelTravel};
@@ -22,7 +22,7 @@ pub(super) struct Acting<T: Evaluate> {
     pub values: [T; MAX_PARAMETERS],
 }
 
-/// What an effect does: the functions of an entry of the catalogue, or a formula.
+/// The law of an effect: the functions of an entry of the catalogue, or a formula.
 #[derive(Clone, Debug)]
 pub(super) enum ActingLaws<T: Evaluate> {
     Entry(MeanLaws<T>),
@@ -55,7 +55,7 @@ impl<T: Evaluate> Chain<T> {
         self.reads_place
     }
 
-    /// Where the robot truly stands at START on average, seen from where it is believed to stand.
+    /// Mean true pose at START, relative to the believed one.
     pub fn start(&self) -> Pose2<T> {
         let start = Pose2::IDENTITY.lift();
         self.acting(Changes::START).fold(start, |pose, acting| match &acting.laws {
@@ -70,7 +70,7 @@ impl<T: Evaluate> Chain<T> {
         self.rolled(at, WheelTravel { left: T::from(believed.left), right: T::from(believed.right) })
     }
 
-    /// The same of a believed travel that has itself a derivative: that of a robot which steers by what the effects change.
+    /// The same for a believed travel that itself has a derivative: that of a robot whose steering reacts to the effects.
     #[inline(always)]
     pub fn rolled(&self, at: &Context<T>, believed: WheelTravel<T>) -> WheelTravel<T> {
         let mut travel = [believed];
@@ -79,7 +79,7 @@ impl<T: Evaluate> Chain<T> {
         travel
     }
 
-    /// What the encoders of a link show of it.
+    /// The reading of a link's encoders.
     #[inline]
     pub fn link(&self, reading: LinkReading<T>) -> LinkReading<T> {
         self.acting(Changes::LINK).fold(reading, |mut shown, acting| {
@@ -90,7 +90,7 @@ impl<T: Evaluate> Chain<T> {
         })
     }
 
-    /// Makes true wheel travels of believed ones, all in one place: effect after effect, so that no travel waits for another.
+    /// Turns believed wheel travels into true ones in place, effect after effect, so that no travel waits for another.
     #[inline(always)]
     pub(crate) fn change_wheels(&self, at: &Context<T>, travels: &mut [WheelTravel<T>]) {
         for acting in self.acting(Changes::WHEELS) {
@@ -103,7 +103,7 @@ impl<T: Evaluate> Chain<T> {
         }
     }
 
-    /// Body motion that a true wheel travel makes.
+    /// Body motion from a true wheel travel.
     #[inline(always)]
     pub fn body(&self, at: &Context<T>, travel: &WheelTravel<T>) -> Displacement2<T> {
         let mut motion = [self.drive.displacement(travel)];
@@ -112,7 +112,7 @@ impl<T: Evaluate> Chain<T> {
         motion
     }
 
-    /// Body motions that true wheel travels make, all in one place, into `motions`.
+    /// Body motions from true wheel travels, at one context, written into `motions`.
     pub(crate) fn bodies(&self, at: &Context<T>, travels: &[WheelTravel<T>], motions: &mut Vec<Displacement2<T>>) {
         motions.clear();
         motions.extend(travels.iter().map(|travel| self.drive.displacement(travel)));
@@ -137,13 +137,13 @@ impl<T: Evaluate> Chain<T> {
         self.body(at, &self.wheel_travel(at, believed))
     }
 
-    /// Whether measurements may be older, or younger, than their stamps say.
+    /// Whether measurements may be delayed relative to their time stamps.
     #[inline]
     pub fn has_clock(&self) -> bool {
         self.acting(Changes::CLOCK).next().is_some()
     }
 
-    /// By how much older than its stamp a measurement is that is stamped `time` after the run began \[s\].
+    /// Age \[s\] of a measurement whose time stamp is `time` after the run began.
     #[inline]
     pub fn late(&self, time: f64) -> T {
         self.acting(Changes::CLOCK).fold(T::from(0.0), |mut late, acting| {
@@ -154,8 +154,8 @@ impl<T: Evaluate> Chain<T> {
         })
     }
 
-    /// What a measurement without noise shows of a true pose, that of `at.late` before its stamp. What it is later than that is
-    /// small: the robot is taken to move on as it does.
+    /// A measurement without noise of a true pose, taken `at.late` before its time stamp. Any further delay is small, so the robot is
+    /// assumed to keep its velocity.
     #[inline]
     pub fn seen(&self, at: &Sight, pose: &Pose2<T>) -> Pose2<T> {
         let mut seen = *pose;

@@ -1,6 +1,6 @@
 //! Which laws an effect has.
 
-/// What an effect changes: the laws that its [`Entry`](super::Entry) lists. The others are not called.
+/// What an effect changes: the laws that its [`Entry`](super::Entry) lists. Other laws are not called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Changes(u16);
 
@@ -25,9 +25,9 @@ impl Changes {
     pub const LINK: Changes = Changes(1 << 8);
     /// [`ClockLaw::late`](super::ClockLaw::late).
     pub const CLOCK: Changes = Changes(1 << 9);
-    /// What moves the mean of where a robot is.
+    /// Changes of the mean pose of a robot.
     pub const MOTION: Changes = Changes::WHEELS.and(Changes::BODY).and(Changes::START).and(Changes::LINK);
-    /// What moves the mean of what is observed.
+    /// Changes of the mean of observations.
     pub const MEAN: Changes = Changes::MOTION.and(Changes::SEEN).and(Changes::CLOCK);
     /// Nothing.
     pub const NOTHING: Changes = Changes(0);

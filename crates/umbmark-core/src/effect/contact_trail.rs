@@ -1,4 +1,4 @@
-//! Way that is made while the robot turns, and not counted.
+//! Distance that the robot moves while it turns, and that is not counted.
 
 use super::words::{either, mm};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
@@ -26,12 +26,13 @@ impl Effect for ContactTrail {
             "way per radian of turn to the left that no encoder counts",
         )],
         equation: "forward ← forward + t · Δθ",
-        physics: "The wheels of a synchro drive touch the floor behind their steering axes, and roll as they are steered. The \
-                  encoder of an Ackermann drive counts a wheel t to the left of the axle's middle, which is the inner one in left turns.",
-        signature: "Each corner shifts the path by the same amount in the robot's own frame: a closed path closes, and return poses \
-                    do not show it.",
+        physics: "The wheels of a synchro drive touch the floor behind their steering axes, so they roll while they are steered. The \
+                  encoder of an Ackermann drive counts a wheel at t to the left of the axle's middle, which is the inner wheel in left \
+                  turns.",
+        signature: "Each corner shifts the path by the same amount in the robot's own frame. On a closed path these shifts cancel, so \
+                    return poses do not show them.",
         confused_with: &[],
-        separated_by: "steering on the spot while the centre is watched; the pose at a stop",
+        separated_by: "tracking the robot's centre while it steers on the spot; measuring its pose at a stop",
         source: "kinematics; first-order theory of side-periodic errors on closed paths",
     };
 

@@ -1,4 +1,4 @@
-//! Where and how a robot drives, as effects may depend on it.
+//! Where and how a robot drives: the variables that effects may depend on.
 
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::{Pose2, Real};
@@ -6,7 +6,7 @@ use crate::path::Direction;
 
 /// One piece of a run, in the terms of the robot's own odometry.
 ///
-/// Quantities that add up along the run stand as they are at the beginning of the piece, rates as their mean over it.
+/// Cumulative quantities have their value at the beginning of the piece, rates their mean over it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Context<T = f64> {
     /// Heading in the room \[rad\], counter-clockwise from the heading at START, at the beginning of the piece.
@@ -16,7 +16,7 @@ pub struct Context<T = f64> {
     pub x: T,
     /// The same to the left of it \[m\].
     pub y: T,
-    /// How long the piece takes \[s\].
+    /// Duration of the piece \[s\].
     pub duration: f64,
     /// Speed of the axle's centre \[m/s\], forward positive.
     pub speed: f64,
@@ -24,15 +24,15 @@ pub struct Context<T = f64> {
     pub turn_rate: f64,
     /// Speeds of the left and the right wheel \[m/s\].
     pub wheel_speed: [f64; 2],
-    /// How much faster the left and the right wheel are at the end of the piece than at its beginning \[m/s\].
+    /// Change of the speeds of the left and the right wheel during the piece \[m/s\].
     pub speed_change: [f64; 2],
-    /// How much greater the turn rate is at the end of the piece than at its beginning \[rad/s\].
+    /// Change of the turn rate during the piece \[rad/s\].
     pub turn_rate_change: f64,
     /// Angles of the left and the right wheel since START \[rad\].
     pub wheel_angle: [f64; 2],
-    /// How far each wheel turns on in the piece \[rad\].
+    /// Rotation of each wheel during the piece \[rad\].
     pub wheel_rotation: [f64; 2],
-    /// +1 or -1 where the left or the right wheel has just begun to roll forward or backward after the opposite.
+    /// +1 or -1 if the left or the right wheel has just reversed to forward or backward.
     pub reversed: [f64; 2],
     /// Path length driven in this run \[m\].
     pub distance: f64,
@@ -40,16 +40,16 @@ pub struct Context<T = f64> {
     pub time: f64,
     /// Path length driven in all runs of the session so far \[m\].
     pub session_distance: f64,
-    /// Path length since the last turn \[m\]; since START where there was none.
+    /// Path length since the last turn \[m\], or since START before the first turn.
     pub since_turn: f64,
-    /// Path length of the piece \[m\]; less than 0 where it was recorded against the sense of driving, as single counts are.
+    /// Path length of the piece \[m\]; negative if its counts are opposite to the direction of driving, as single counts can be.
     pub length: f64,
     /// Sense of the last turn: +1 to the left, -1 to the right, 0 before the first.
     pub last_turn: f64,
     /// Heading that the odometry believes at the beginning of the piece \[rad\], 0 at START; of a synchro drive, how far its wheels
     /// are steered from there.
     pub believed_heading: f64,
-    /// Which of two trucks: 0 for the front one, whose pose is measured, and for a robot that is one body; 1 for the rear one.
+    /// Which of two trucks: 0 for the front one, whose pose is measured, and for a robot with a single body; 1 for the rear one.
     pub truck: f64,
     /// Distance of the steered wheel from the axle \[m\]; see [`Drive::axle_distance`](crate::drive::Drive::axle_distance).
     pub axle_distance: f64,
@@ -57,7 +57,7 @@ pub struct Context<T = f64> {
     pub run: f64,
     /// Sense of the run: +1 counter-clockwise, -1 clockwise, 0 where it has none.
     pub direction: f64,
-    /// Whether the wheel travel was recorded by encoders; otherwise it is what the robot was told to drive.
+    /// Whether the wheel travel was recorded by encoders; otherwise it is the commanded one.
     pub recorded: bool,
 }
 
@@ -120,7 +120,7 @@ impl<T> Context<T> {
     }
 }
 
-/// Where a run stands among the others.
+/// The place of a run in its session.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RunContext {
     /// Its number in the session, from 0.
@@ -136,7 +136,7 @@ pub struct RunContext {
 pub struct Sight {
     /// Time since the run began by its stamp \[s\].
     pub time: f64,
-    /// By how much that is later than the moment of the pose that is asked about \[s\].
+    /// Delay of the stamp after the moment of the pose \[s\].
     pub late: f64,
     /// Speed of the axle's centre at the moment of that pose \[m/s\].
     pub speed: f64,
@@ -146,22 +146,22 @@ pub struct Sight {
 
 /// A turn is rotation by more than this \[rad\] about a point within a wheelbase of the axle's centre.
 const LEAST_TURN: f64 = 0.35;
-/// A turn is over when the robot has gone so far \[m\].
+/// A turn ends when the robot has moved this far \[m\].
 const AWAY_FROM_TURN: f64 = 0.01;
-/// A wheel has reversed when it has rolled back by more than this \[m\] from where it was farthest.
+/// A wheel has reversed if it has rolled back by more than this \[m\] from its farthest point.
 const LEAST_REVERSAL: f64 = 0.5e-3;
 
-/// Follows a run piece by piece and keeps what effects may depend on, but for its place in the room.
+/// Follows a run piece by piece and tracks the variables of effects, except the place in the room.
 #[derive(Clone, Debug)]
 pub struct Progress {
     now: Context,
     wheelbase: f64,
     radius: [f64; 2],
     least_reversal: [f64; 2],
-    /// Rotation of the turn under way \[rad\], and distance gone since it rotated last \[m\].
+    /// Rotation of the present turn \[rad\], and distance since the last rotation \[m\].
     turned: f64,
     gone: f64,
-    /// Sense in which each wheel rolls, and how far it is behind its farthest point \[m\].
+    /// Rolling direction of each wheel, and its distance behind its farthest point \[m\].
     sense: [f64; 2],
     behind: [f64; 2],
 }
@@ -206,7 +206,7 @@ impl Progress {
         now.speed_change = [to[0] - from[0], to[1] - from[1]];
         now.turn_rate_change = (now.speed_change[1] - now.speed_change[0]) / self.wheelbase;
         now.wheel_rotation = [0, 1].map(|w| wheels[w] / self.radius[w]);
-        // Counters that tremble about zero, as in a turn on the spot, make no way.
+        // Counters that oscillate about zero, as in a turn on the spot, add no path length.
         now.length = if now.speed == 0.0 { forward.abs() } else { forward * now.speed.signum() };
         now.reversed =
             [0, 1].map(|w| reversal(&mut self.sense[w], &mut self.behind[w], wheels[w], self.least_reversal[w]));

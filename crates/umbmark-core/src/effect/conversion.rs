@@ -1,12 +1,12 @@
-//! A model of one nominal robot as that of another: the same true robot, seen from other numbers.
+//! A model of one nominal robot converted to another nominal robot: the true robot stays the same.
 
 use super::{Changes, Law, Model, ModelError};
 use crate::drive::Robot;
 
-/// Nominal numbers that differ by no more than this share are the same.
+/// Nominal numbers are equal if they differ by no more than this share.
 const SAME: f64 = 1e-9;
-/// Where nominal lengths differ by more than this share, only E_d, E_b and E_s are converted: what else depends on speed or way is
-/// off by as much.
+/// If nominal lengths differ by more than this share, only E_d, E_b and E_s can be converted: other effects that depend on speed or
+/// distance would be wrong by this share.
 const NEAR: f64 = 0.05;
 /// The effects that are converted.
 pub const CONVERTED: [&str; 3] = ["wheel_diameter_ratio", "wheelbase", "scale"];
@@ -18,7 +18,7 @@ pub struct Conversion {
     pub differs: Vec<(&'static str, f64, f64)>,
     /// E_d, E_b and E_s there, and here.
     pub ratios: [[f64; 3]; 2],
-    /// Other effects that see the robot's motion, and were kept as they are.
+    /// Other effects that depend on the robot's motion and were not converted.
     pub kept: Vec<&'static str>,
 }
 

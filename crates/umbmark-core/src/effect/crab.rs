@@ -1,4 +1,4 @@
-//! Crab: wheels that stand askew, both to the same side.
+//! Crab: both wheels are misaligned to the same side.
 
 use super::words::{deg, mm, side};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
@@ -25,12 +25,12 @@ impl Effect for Crab {
             "how far the course points to the left of the heading",
         )],
         equation: "(forward, sideways) ← R(τ) (forward, sideways)",
-        physics: "The axle is not square to what is called the robot's front, or both wheels are toed the same way. 0.3 \
-                  degree is assumed as usual; 0.38 degree of it, or of marker yaw, is in the public OptiOdom runs.",
-        signature: "The whole path is turned about START by the angle and closes again: return poses do not show it. Along \
-                    the track, course and heading differ by a constant.",
+        physics: "The axle is not perpendicular to the robot's x axis, or both wheels have the same toe angle. The usual size is \
+                  assumed as 0.3 degree; the public OptiOdom runs have 0.38 degree of it or of marker yaw.",
+        signature: "The whole path is rotated about START by the angle and closes again, so return poses do not show it. Along the \
+                    track, the direction of motion and the heading differ by a constant angle.",
         confused_with: &["marker_yaw", "encoder_skew"],
-        separated_by: "from encoder skew, a second speed; from marker yaw, nothing but how the marker is mounted",
+        separated_by: "from encoder skew: a second speed. From marker yaw: no drive separates them; inspect how the marker is mounted",
         source: "geometry; first-order theory of side-periodic errors on closed paths; size assumed",
     };
 

@@ -35,9 +35,9 @@ impl Effect for DiameterDrift {
             ),
         ],
         equation: "s_R ← (1 + d/2) s_R,  s_L ← (1 - d/2) s_L,  d = k · way in the run + k' · way in the session",
-        physics: "Tyres warm up, wear, and lose air; a battery or a load shifts. One wheel does so more than the other.",
-        signature: "Later legs curve more than earlier ones: the path does not close as any constant E_d would leave it. Over \
-                    a session the return poses wander with the number of the run.",
+        physics: "Tyres warm up, wear and lose air, or the battery or load moves. It happens to one wheel more than to the other.",
+        signature: "Later legs curve more than earlier ones, so the path does not close as it would with a constant E_d. Over a session \
+                    the return poses drift with the number of the run.",
         confused_with: &[],
         separated_by: "the heading along the track; cw and ccw runs in random order",
         source: "0.12 % over a run is assumed",

@@ -25,12 +25,12 @@ impl Effect for DirectionDependentWheelbase {
             "wheelbase in left turns less that in right turns, as a share of their mean",
         )],
         equation: "Δθ ← Δθ / (1 + sgn(ω) δ/2)",
-        physics: "Coned or worn tyres, a caster or a cable that drags to one side: the wheels' contact moves outward in \
-                  turns of one sense and inward in those of the other.",
-        signature: "Left turns fall short and right turns go too far, so the heading is off to the right in both directions \
-                    of driving: E_d exactly, as far as return poses can tell.",
+        physics: "Coned or worn tyres, or a caster or cable that drags on one side. The contact points of the wheels move outward in \
+                  turns one way and inward in turns the other way.",
+        signature: "Left turns are too small and right turns too large, so the heading is off to the right in both driving directions. \
+                    Return poses cannot distinguish this from E_d.",
         confused_with: &["wheel_diameter_ratio", "leg_kick"],
-        separated_by: "spins both ways, or a heading at each corner before and after the turn",
+        separated_by: "turns on the spot in both directions; the heading before and after the turn at each corner",
         source: "first-order theory of side-periodic errors; 0.4 % is assumed",
     };
 

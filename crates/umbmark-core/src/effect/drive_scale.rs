@@ -24,11 +24,11 @@ impl Effect for DriveScale {
             "true / nominal way per count of the drive",
         )],
         equation: "forward ← E_s forward",
-        physics: "The wheels' diameter differs from the nominal one. All wheels are driven by one shaft, and the course is set by \
-                  another: turns are right all the same.",
-        signature: "Legs are longer than believed. A closed path closes: return poses do not show it.",
+        physics: "The wheel diameter differs from the nominal one. One shaft drives all wheels and another steers them, so turns stay \
+                  correct.",
+        signature: "Legs are longer than the odometry says. A closed path still closes, so return poses do not show it.",
         confused_with: &[],
-        separated_by: "the length of one straight leg by tape, or the pose at a stop",
+        separated_by: "the length of one straight leg, by tape; the pose at a stop",
         source: "kinematics; Martinelli (2002) has the same error per way",
     };
 

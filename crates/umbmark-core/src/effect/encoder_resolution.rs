@@ -1,4 +1,4 @@
-//! What lies between two counts.
+//! The quantisation of the encoders.
 
 use super::words::mm;
 use super::{About, ActsOn, Effect, Entry, MeasurementLaw};
@@ -7,7 +7,7 @@ use crate::geometry::{Pose2, Real};
 use crate::parameter::{DefaultValue, Parameter};
 use crate::random::Stream;
 
-/// The rounding of each counter where a pose is measured.
+/// The rounding of each counter when a pose is measured.
 pub struct EncoderResolution;
 
 pub(super) static EFFECT: Entry = Entry::of::<EncoderResolution>().measured::<EncoderResolution>();
@@ -39,11 +39,11 @@ impl Effect for EncoderResolution {
             },
         ],
         equation: "(forward, Δθ) ← (forward, Δθ) + ((e_L + e_R)/2, (e_R - e_L)/b),  e_w uniform in ±q/2",
-        physics: "A counter knows its wheel to half a count only. `mc` and `simulate` count the robot's own ticks already: \
-                  this adds a reading coarser than those, or stands for it in a model.",
-        signature: "Scatter that does not grow with the length of the path: q/(b√6) in heading, q/√24 along it.",
+        physics: "An encoder gives the wheel's angle only to within half a count. `mc` and `simulate` already count the robot's own \
+                  ticks: this effect adds a coarser reading, or represents the counts in a model.",
+        signature: "The scatter does not grow with the length of the path: q/(b√6) in heading and q/√24 along the path.",
         confused_with: &["wheel_noise", "reference_noise"],
-        separated_by: "the scatter of standing poses against that of driven ones; counting finer",
+        separated_by: "comparing the scatter of poses at rest with that of driven ones; an encoder with finer counts",
         source: "variance q²/12 of rounding; a count of the assumed LabMate is 0.236 mm",
     };
 

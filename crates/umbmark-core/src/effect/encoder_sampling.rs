@@ -1,4 +1,4 @@
-//! Odometry that lays each step along the heading at its beginning.
+//! Odometry that moves along the heading at the beginning of each step.
 
 use super::crab::turn_course;
 use super::words::{deg, size};
@@ -7,7 +7,7 @@ use crate::drive::Robot;
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
-/// Euler steps of the robot's own odometry, where what it believes is not computed anew from its counts.
+/// Euler steps of the robot's own odometry, if its pose is not recomputed from its counts.
 pub struct EncoderSampling;
 
 pub(super) static EFFECT: Entry = Entry::of::<EncoderSampling>().body::<EncoderSampling>();
@@ -26,13 +26,13 @@ impl Effect for EncoderSampling {
             "time between two steps of the robot's own odometry",
         )],
         equation: "(forward, sideways) ← R(ω T/2) (forward, sideways),  not where the ticks were recorded",
-        physics: "Odometry that advances along the heading at the beginning of each step lays every chord of an arc too far \
-                  to the outside, by half the rotation of the step. Ticks that were recorded are integrated along exact \
-                  arcs, and nothing is left to correct.",
-        signature: "Nothing at all on the square, where the robot either drives or turns; on circles a course that is off by \
-                    ω T/2.",
+        physics: "Odometry that moves along the heading from the beginning of each step places every chord of an arc too far outside, \
+                  by half the rotation of the step. Recorded ticks are integrated along exact arcs here, so this effect corrects \
+                  nothing in them.",
+        signature: "A square shows nothing, because the robot either drives straight or turns on the spot. On circles the course is off \
+                    by ω T/2.",
         confused_with: &[],
-        separated_by: "replaying the recorded ticks: it must vanish",
+        separated_by: "replaying the recorded ticks: the error must disappear",
         source: "Euler's rule against the mid-point rule; 50 ms is assumed",
     };
 

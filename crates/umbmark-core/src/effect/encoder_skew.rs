@@ -25,12 +25,12 @@ impl Effect for EncoderSkew {
             "how much later the right counter is read than the left",
         )],
         equation: "s_R ← s_R - τ Δv_R",
-        physics: "The counters are read one after the other, or by two controllers with clocks of their own: the later one \
+        physics: "The two encoders are read one after the other, or by two controllers with separate clocks. The one that is read later \
                   is ahead by its speed times the delay.",
-        signature: "The heading is off by v τ/b while the robot drives and right again when it stands: return poses hardly \
-                    show it; along the track it looks like crab.",
+        signature: "The heading is off by v τ/b while the robot drives and correct when it stands still, so return poses hardly show \
+                    it. Along the track it looks like a crab angle.",
         confused_with: &["crab", "marker_yaw"],
-        separated_by: "a second speed, or the heading just before and just after a stop",
+        separated_by: "a second speed; the heading just before and just after a stop",
         source: "kinematics: 10 ms at 0.2 m/s is 0.34 degree with b = 0.34 m",
     };
 

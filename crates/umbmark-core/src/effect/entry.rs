@@ -60,7 +60,7 @@ impl RandomLaws {
     };
 }
 
-/// An effect as data: of the catalogue, or of a program that adds its own by [`Model::add_entry`](crate::effect::Model::add_entry).
+/// An effect as data: from the catalogue, or from a program that adds its own with [`Model::add_entry`](crate::effect::Model::add_entry).
 ///
 /// ```
 /// use umbmark_core::{drive::Robot, geometry::{Displacement2, Real}, parameter::Parameter};
@@ -112,7 +112,7 @@ pub struct Entry {
     pub(crate) scatter: RandomLaws,
 }
 
-/// Makes the functions that list a law which is the same for registers of every width.
+/// Makes the functions that list a law whose code is the same for all register widths.
 macro_rules! laws {
     ($($(#[$about:meta])* $name:ident: $Law:ident changes $Change:ident,)+) => {
         $($(#[$about])*
@@ -128,7 +128,7 @@ macro_rules! laws {
 }
 
 impl Entry {
-    /// The entry of an effect whose laws are listed behind. One with more than [`MAX_PARAMETERS`] parameters does not compile.
+    /// The entry of an effect; its laws are listed after it. One with more than [`MAX_PARAMETERS`] parameters does not compile.
     pub const fn of<E: Effect>() -> Entry {
         assert!(E::ABOUT.parameters.len() <= MAX_PARAMETERS);
         Entry {
@@ -236,7 +236,7 @@ impl PartialEq for Entry {
     }
 }
 
-/// A kind of number that effects can be asked for.
+/// A kind of number with which effects can be evaluated.
 pub trait Evaluate: Real {
     /// The deterministic part of an effect for this kind of number.
     fn mean(entry: &Entry) -> &MeanLaws<Self>;

@@ -6,7 +6,7 @@ use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
-/// A drift that points one way in the room, whatever the heading.
+/// A drift in a fixed direction in the room, for any heading.
 pub struct FloorSlope;
 
 pub(super) static EFFECT: Entry = Entry::of::<FloorSlope>().body::<FloorSlope>();
@@ -46,15 +46,15 @@ impl Effect for FloorSlope {
         ],
         equation: "(forward, sideways) ← (forward, sideways) + R(-h) ((g_x, g_y) · length + (c_x, c_y) · |rotation|),  h the \
                    mean heading",
-        physics: "Gravity pulls sideways on rolling tyres, which answer with a slip angle of slope over cornering stiffness: \
-                  1 % of slope and a stiffness of ten times the load per radian give 1 mm per metre. Tyres that scrub in a \
-                  turn on the spot slide already, and sliding friction holds nothing across: there the robot slides \
-                  downhill as it turns, on wide tyres even where rolling ones hold.",
-        signature: "The return point is off by the drift times the length of the path and the slide times the rotation, \
-                    the same in ccw and cw, and the heading is right: no E_d and E_b together can do that.",
+        physics: "Gravity pulls rolling tyres sideways. They respond with a slip angle of slope over cornering stiffness: a slope of 1 \
+                  % and a stiffness of ten times the load per radian give 1 mm per metre. In a turn on the spot the tyres already \
+                  scrub, and sliding friction does not hold the robot against a side force: it slides downhill while it turns, even on \
+                  wide tyres that hold while they roll.",
+        signature: "The return point is off by the drift times the length of the path, plus the slide times the rotation, equally in \
+                    ccw and cw. The return heading is correct. No combination of E_d and E_b can produce this.",
         confused_with: &["carpet_nap", "start_pose"],
-        separated_by: "starting the square turned by 90 or 180 degrees; from nap, turning the carpet; slide from drift, \
-                       a straight leg or a turn alone",
+        separated_by: "starting the square rotated by 90 or 180 degrees. From carpet nap: turning the carpet. Slide from drift: a \
+                       straight leg alone, or a turn alone",
         source: "linear tyre model, its stiffness assumed, and 3 mm per metre as a usual size; Coulomb friction, which points \
                  against the slip whatever its size, 1 mm per radian assumed",
     };
@@ -92,7 +92,7 @@ impl BodyLaw for FloorSlope {
 pub(super) const DRIFT: &str =
     "(forward, sideways) ← (forward, sideways) + R(-h) (g_x, g_y) · length,  h the mean heading";
 
-/// What drift in the room means for the robot.
+/// Meaning of a drift in the room for the robot.
 pub(super) fn carried(p: &[f64], when: &str) -> String {
     format!(
         "The floor carries the robot by {} {when}, towards {} degrees from its heading at START",

@@ -51,14 +51,14 @@ impl Effect for FloorSlopeYaw {
             ),
         ],
         equation: "Δθ ← Δθ + (c cos h + s sin h) · length + (p cos h + q sin h) · |rotation|,  h the mean heading in the room",
-        physics: "Across the slope the lower wheel carries more load and is compressed, and the casters are pushed downhill: \
-                  the robot turns, the more the steeper it is across its way. In a turn on the spot its tyres scrub and hold \
-                  nothing across: gravity swings the side of its centre of mass downhill, with the turn or against it.",
-        signature: "Opposite sides bend opposite ways: the heading comes right again and the position does not, off to one \
-                    side in ccw and to the other in cw. Bumps on one leg leave nearly the same.",
+        physics: "When the robot drives across a slope, the lower wheel carries more load and is compressed, and the casters are pushed \
+                  downhill. The robot turns, in proportion to the slope across its course. In a turn on the spot the tyres scrub and do \
+                  not hold against a side force, so gravity swings the heavy end of the robot downhill, with the turn or against it.",
+        signature: "Opposite sides of the square bend in opposite directions, so the heading error cancels. The position error does \
+                    not: it is on one side in ccw and on the other in cw. Bumps on a single leg leave nearly the same error.",
         confused_with: &["placed_bumps", "base_yaw"],
-        separated_by: "starting the square turned by 90 or 180 degrees; a heading at each corner; way from turning, a straight leg \
-                       or a turn alone",
+        separated_by: "starting the square rotated by 90 or 180 degrees; a heading at each corner. Driving from turning: a straight leg \
+                       alone, or a turn alone",
         source: "load transfer on a slope, 1 mrad per metre assumed; Coulomb friction of scrubbing tyres, 5 mrad per radian assumed",
     };
 

@@ -14,9 +14,9 @@
 //! right_wheel_scale     s_R ← (1 + f) · s_R                    f [-]
 //! ```
 //!
-//! *length* is the path length of a piece, always positive, *rotation* how far it turns and *duration* how long it takes; where they are 0,
-//! laws per metre, per radian, or per second, do nothing. f is taken in the middle of the piece: at half of the motion that the effects
-//! before it make, from where the model predicts that the piece begins. So a formula that is 0 does nothing.
+//! *length* is the path length of a piece, always positive, *rotation* how far it turns and *duration* how long it takes; where these are
+//! 0, laws per metre, per radian or per second have no influence. f is evaluated in the middle of the piece: from the predicted beginning
+//! of the piece, after half of the motion that the preceding effects give. A formula with the value 0 changes nothing.
 
 mod error;
 mod meaning;
@@ -109,7 +109,7 @@ impl Target {
         }
     }
 
-    /// What the formula is multiplied by over a piece: its length, how far it turns either way, how long it takes, or 1 for a share.
+    /// Factor of the formula for a piece: its length, its unsigned rotation, its duration, or 1 for a share.
     #[inline]
     fn exposure<T>(self, at: &Context<T>) -> f64 {
         match self {
@@ -156,7 +156,7 @@ pub struct Formula {
     program: Program,
 }
 
-/// A place where a formula is no number.
+/// A place where a formula is not finite.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Singular {
     /// The part of the formula.
@@ -192,7 +192,7 @@ impl Formula {
         })
     }
 
-    /// What formulas may depend on.
+    /// Variables of formulas.
     pub fn variables() -> &'static [FormulaVariable] {
         &VARIABLES
     }
@@ -207,12 +207,12 @@ impl Formula {
         Formula { name: lasting(name), ..self.clone() }
     }
 
-    /// How long it is: the number of its operations, variables and numbers.
+    /// Its length: the number of its operations, variables and numbers.
     pub(crate) fn length(&self) -> usize {
         self.program.ops().len()
     }
 
-    /// What it means for the robot with these values, in a sentence of its own; `None` where it is no wave of the time or of the way.
+    /// Its meaning for the robot with these values, in a sentence; `None` unless it is a wave over time or distance.
     pub fn meaning(&self, values: &[f64]) -> Option<String> {
         meaning::meaning(self, values)
     }
@@ -271,7 +271,7 @@ impl Formula {
         }
     }
 
-    /// Refuses a piece where the formula, or a derivative of it, is no finite number.
+    /// Refuses a piece on which the formula, or a derivative of it, is not finite.
     pub(super) fn finite_at(&self, values: &[f64], at: &Context) -> Result<(), Singular> {
         if self.target.exposure(at) == 0.0 {
             return Ok(());

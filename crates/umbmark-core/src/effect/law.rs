@@ -1,4 +1,4 @@
-//! What an effect of a model does: an entry, or a formula of the user's own.
+//! The law of an effect of a model: an entry, or a formula of the user.
 
 use super::{CATALOGUE, Changes, Entry, Formula, RandomLaws};
 use crate::parameter::Parameter;
@@ -31,7 +31,7 @@ impl Law {
         }
     }
 
-    /// The entry, where it is no formula.
+    /// The entry, unless it is a formula.
     pub fn entry(&self) -> Option<&'static Entry> {
         match self {
             Law::Entry(entry) => Some(entry),
@@ -39,7 +39,7 @@ impl Law {
         }
     }
 
-    /// The formula, where it is one.
+    /// The formula, if it is one.
     pub fn formula(&self) -> Option<&Formula> {
         match self {
             Law::Entry(_) => None,
@@ -47,13 +47,13 @@ impl Law {
         }
     }
 
-    /// Whether it changes motion along the way at these values; a formula is taken to.
+    /// Whether it varies along the path at these values; a formula is assumed to.
     pub fn varies(&self, values: &[f64]) -> bool {
         self.entry().is_none_or(|entry| (entry.varies)(values))
     }
 
-    /// Whether it may depend on where the robot is in the room: a formula that has x or y, or an effect that is not in the
-    /// catalogue, of which nothing is known.
+    /// Whether it may depend on the robot's place in the room: a formula with x or y, or an effect outside the catalogue, about which
+    /// nothing is known.
     pub(super) fn reads_place(&self) -> bool {
         self.formula().map_or_else(|| self.order() == CATALOGUE.len(), Formula::reads_place)
     }
@@ -81,7 +81,7 @@ impl Law {
 }
 
 impl fmt::Display for Law {
-    /// The name, and all of a formula: laws that differ are written differently.
+    /// The name, and the whole formula, so that different laws have different texts.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Law::Entry(entry) => f.write_str(entry.about.name),

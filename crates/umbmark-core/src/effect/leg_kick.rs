@@ -33,10 +33,10 @@ impl Effect for LegKick {
             },
         ],
         equation: "Δθ ← Δθ + κ (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since the last turn or START",
-        physics: "One motor answers sooner than the other, one clutch bites later, one caster lies across whatever the turn \
-                  was: the robot jerks to one side whenever it drives off.",
-        signature: "A heading step at each of the four leg starts, the same in ccw and cw: E_d in return poses, but not \
-                    growing along the leg.",
+        physics: "One motor responds sooner than the other, one clutch engages later, or one caster is not aligned. The robot jerks to \
+                  the same side whenever it drives off.",
+        signature: "The heading steps at the start of each of the four legs, with the same sign in ccw and cw. In return poses it looks \
+                    like E_d, but it does not grow along the leg.",
         confused_with: &["wheel_diameter_ratio", "direction_dependent_wheelbase"],
         separated_by: "a heading in the middle of a leg and at its end; sides of another length",
         source: "first-order theory of side-periodic errors; 0.2 degree and 5 cm are assumed",

@@ -24,12 +24,12 @@ impl Effect for LinkLength {
             "true distance of the trucks' centres over the one that the linear encoder shows",
         )],
         equation: "shown length ← length / ratio",
-        physics: "The distance of the two pivots was not measured well, or the linear encoder counts more or fewer millimetres \
-                  than there are.",
-        signature: "In a corner the trucks drive round the middle of a link that is longer than believed, so they turn it less: \
-                    opposite in ccw and cw, as with E_b of a differential drive. Nothing on legs.",
+        physics: "The distance between the two pivots was measured wrongly, or the linear encoder has more or fewer counts per \
+                  millimetre than assumed.",
+        signature: "In a corner the trucks drive round the middle of the link. If the link is longer than assumed, they turn it less: \
+                    the sign is opposite in ccw and cw, as with E_b of a differential drive. Legs show nothing.",
         confused_with: &["scale", "rear_truck"],
-        separated_by: "the length of one leg by tape, which shows the scale and not the link",
+        separated_by: "the length of one leg, by tape: it shows the scale and not the link",
         source: "kinematics of the corner; the paper (section 4.5) names errors of this kind and gives no size",
     };
 

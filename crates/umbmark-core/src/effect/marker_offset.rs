@@ -6,7 +6,7 @@ use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
-/// The lever arm from the axle's centre to what the reference sees.
+/// The lever arm from the axle's centre to the tracked point.
 pub struct MarkerOffset;
 
 pub(super) static EFFECT: Entry = Entry::of::<MarkerOffset>().seen::<MarkerOffset>();
@@ -35,12 +35,12 @@ impl Effect for MarkerOffset {
             ),
         ],
         equation: "(x, y) ← (x, y) + R(θ) a - a,  a = (forward, left)",
-        physics: "Motion capture follows its marker, not the middle of the axle. The frame is laid to START, so the arm does \
+        physics: "Motion capture tracks its marker and not the middle of the axle. The frame is aligned at START, so the offset does \
                   not show there.",
-        signature: "A circle of the arm's length in every turn, gone when the heading is as at START: return poses do not \
-                    show it, stops at the corners do.",
+        signature: "In every turn the marker moves on a circle whose radius is the offset. It is back when the heading is that of \
+                    START, so return poses do not show it; stops at the corners do.",
         confused_with: &[],
-        separated_by: "one spin: the marker's path is the circle",
+        separated_by: "one turn on the spot: the marker's path is the circle",
         source: "rigid-body geometry; 5 mm is assumed",
     };
 

@@ -1,4 +1,4 @@
-//! A marker that is mounted askew.
+//! A marker that is mounted with a yaw error.
 
 use super::words::{deg, side};
 use super::{About, ActsOn, Effect, Entry, SightLaw};
@@ -6,7 +6,7 @@ use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 
-/// The angle between what the reference calls the robot's heading and its heading.
+/// The angle between the measured and the true heading.
 pub struct MarkerYaw;
 
 pub(super) static EFFECT: Entry = Entry::of::<MarkerYaw>().seen::<MarkerYaw>();
@@ -25,12 +25,12 @@ impl Effect for MarkerYaw {
             "how far the measured heading is counter-clockwise of the true one",
         )],
         equation: "θ ← θ + ψ",
-        physics: "The marker's own axes were not laid along the robot's: every measured heading is off by the same angle, and \
-                  no position is.",
-        signature: "A constant angle between the course and the measured heading, at rest and driving: crab, but for a turn \
-                    of the whole path about START.",
+        physics: "The marker's axes were not aligned with the robot's. Every measured heading is off by the same angle, and every \
+                  position is correct.",
+        signature: "The direction of motion and the measured heading differ by a constant angle, at rest as well as in motion. A crab \
+                    angle looks the same, except that it rotates the whole path about START.",
         confused_with: &["crab", "encoder_skew"],
-        separated_by: "from encoder skew, a second speed; from crab, nothing but how the marker is mounted",
+        separated_by: "from encoder skew: a second speed. From a crab angle: no drive separates them; inspect how the marker is mounted",
         source: "a gauge freedom of the reference frame; 0.38 degree of it, or of crab, is in the public OptiOdom runs",
     };
 

@@ -43,12 +43,12 @@ impl Effect for MissedCounts {
             ),
         ],
         equation: "s_w ← (1 + k_w max(0, |v_w| - v₀)) s_w",
-        physics: "Counts come faster than an interrupt routine or an input filter takes them, and some are lost: the wheel \
-                  has rolled farther than was counted. A negative share counts edges twice.",
-        signature: "Legs driven fast curve away from the wheel that misses counts, as E_d does; both wheels alike are E_s. \
-                    Below the threshold nothing.",
+        physics: "Counts arrive faster than an interrupt routine or an input filter can take them, and some are lost: the wheel rolls \
+                  further than was counted. A negative share means that edges are counted twice.",
+        signature: "Fast legs curve away from the wheel that misses counts, as with E_d. If both wheels miss counts equally, it looks \
+                    like E_s. Below the threshold speed nothing shows.",
         confused_with: &["wheel_diameter_ratio", "speed_slip_left", "speed_slip_right"],
-        separated_by: "ten turns of each wheel by hand or motor, off the floor, counted",
+        separated_by: "lifting the robot and turning each wheel ten times, by hand or by motor, and reading its count",
         source: "reports of users of small controllers; sizes are assumed",
     };
 
@@ -75,7 +75,7 @@ impl WheelLaw for MissedCounts {
     }
 }
 
-/// By how much a wheel is faster than the threshold \[m/s\].
+/// Excess of a wheel's speed over the threshold \[m/s\].
 #[inline(always)]
 fn above<T: Real>(speed: f64, threshold: T) -> T {
     let over = -threshold + speed.abs();

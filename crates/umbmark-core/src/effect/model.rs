@@ -6,16 +6,16 @@ use crate::drive::{DriveKinds, Robot};
 use crate::parameter::{Parameter, ParameterError, Role, nearest};
 use std::sync::Arc;
 
-/// What makes a model impossible.
+/// Why a model is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
     /// An effect that the catalogue does not hold.
     #[error("there is no effect \"{name}\"{}", did_you_mean(*nearest).unwrap_or_else(listed))]
     UnknownEffect {
-        /// What was asked for.
+        /// The name that was given.
         name: String,
-        /// What may have been meant.
+        /// The most similar known name.
         nearest: Option<&'static str>,
     },
     /// A parameter that the effect does not have.
@@ -23,9 +23,9 @@ pub enum ModelError {
     UnknownParameter {
         /// The effect.
         effect: &'static str,
-        /// What was asked for.
+        /// The name that was given.
         name: String,
-        /// What may have been meant.
+        /// The most similar known name.
         nearest: Option<&'static str>,
     },
     /// A value out of range.
@@ -72,7 +72,7 @@ pub enum ModelError {
         /// How many values were given.
         values: usize,
     },
-    /// A formula that is no number somewhere on the way.
+    /// A formula that is not finite at some point of the path.
     #[error(
         "{effect}: \"{part}\", or its derivative, is not finite {time:.2} s after START in run {run}, where {values}; change \
          the formula so that it is finite there too, for instance a / max(b, 0.01) instead of a / b"
@@ -82,7 +82,7 @@ pub enum ModelError {
         effect: &'static str,
         /// The part of its formula.
         part: String,
-        /// What it depends on, there.
+        /// The values of its variables there.
         values: String,
         /// Time since START \[s\].
         time: f64,
@@ -128,7 +128,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// No effects: the robot is as its odometry believes.
+    /// No effects: the robot equals its nominal model.
     pub fn new(robot: &Robot) -> Model {
         Model { robot: robot.clone(), parts: Vec::new() }
     }
@@ -163,13 +163,13 @@ impl Model {
         }
     }
 
-    /// Adds an effect of the catalogue with its default values, or finds an effect where it is there already.
+    /// Adds an effect of the catalogue with its default values, or finds it if the model already has it.
     pub fn add(&mut self, effect: &str) -> Result<&mut Part, ModelError> {
         let law = self.law(effect)?;
         Ok(self.place(law))
     }
 
-    /// Adds an effect with its default values, in the catalogue or not, or finds it where it is there already.
+    /// Adds an effect with its default values, in the catalogue or not, or finds it if the model already has it.
     pub fn add_entry(&mut self, entry: &'static Entry) -> Result<&mut Part, ModelError> {
         match self.law(entry.about.name) {
             Ok(Law::Entry(known)) if std::ptr::eq(known, entry) => Ok(self.place(Law::Entry(known))),
@@ -215,7 +215,7 @@ impl Model {
         own.map_or_else(|| find(name).map(Law::Entry), |part| Ok(part.effect.clone()))
     }
 
-    /// The part of a law, new where there is none.
+    /// The part of a law, added if it is missing.
     fn place(&mut self, law: Law) -> &mut Part {
         let known = self.parts.iter().position(|part| part.effect == law);
         let place = known.unwrap_or_else(|| {
@@ -227,7 +227,7 @@ impl Model {
         &mut self.parts[place]
     }
 
-    /// Sets a parameter of an effect, adding the effect where it is not there.
+    /// Sets a parameter of an effect, and adds the effect if it is missing.
     pub fn set(&mut self, effect: &str, parameter: &str, value: f64) -> Result<(), ModelError> {
         let law = self.law(effect)?;
         let (effect, parameters) = (law.name(), law.parameters());
@@ -240,7 +240,7 @@ impl Model {
         Ok(())
     }
 
-    /// The model that has one of its effects alone.
+    /// The model with only one of its effects.
     pub(crate) fn only(&self, effect: &str) -> Model {
         let parts = self.parts.iter().filter(|part| part.effect.name() == effect).cloned().collect();
         Model { parts, ..self.clone() }
@@ -253,7 +253,7 @@ impl Model {
         Some(part.values[index])
     }
 
-    /// The same effects at their defaults, where most do nothing; a formula has none and stays as it is.
+    /// The same effects at their defaults, where most have no influence; a formula has no defaults and is kept.
     pub fn at_rest(&self) -> Model {
         let mut rest = self.clone();
         for part in rest.parts.iter_mut().filter(|part| part.effect.formula().is_none()) {
@@ -262,8 +262,8 @@ impl Model {
         rest
     }
 
-    /// What an effect of the model means for the robot, in a sentence of its own; `None` where it is not in the model or says
-    /// nothing, as most formulas do.
+    /// Meaning of an effect of the model for the robot, in a sentence; `None` if the model does not have it or it has none, as most
+    /// formulas.
     pub fn meaning(&self, effect: &str) -> Option<String> {
         let part = self.parts.iter().find(|part| part.effect.name() == effect)?;
         if let Some(formula) = part.effect.formula() {
@@ -284,7 +284,7 @@ impl Model {
         self.parts.iter().any(|part| part.effect.reads_place())
     }
 
-    /// Refuses formulas that are no finite numbers in some of these contexts. Those of a track have no place in the room: see
+    /// Refuses formulas that are not finite in some of these contexts. The contexts of a track have no place in the room: see
     /// [`Track::check`](crate::replay::Track::check).
     pub fn check_along<'a>(&self, contexts: impl IntoIterator<Item = &'a Context>) -> Result<(), ModelError> {
         let formulas: Vec<_> =
@@ -306,13 +306,13 @@ impl Model {
         Ok(())
     }
 
-    /// Whether some effect with its present values changes motion along the way, so that driving has to be cut into small
-    /// pieces. For derivatives see [`Model::may_vary`].
+    /// Whether some effect with its present values varies along the path, so that the path must be cut into small pieces. For derivatives
+    /// see [`Model::may_vary`].
     pub fn varies(&self) -> bool {
         self.parts.iter().any(|part| part.effect.varies(&part.values))
     }
 
-    /// Whether it would vary with some values: what a derivative must ask, since a size that is 0 has one.
+    /// Whether it would vary with some values. Derivatives depend on this, because a size of 0 has a derivative too.
     pub fn may_vary(&self) -> bool {
         self.parts.iter().any(|part| {
             let usual: Vec<f64> = part.effect.parameters().iter().map(|p| p.usual(&self.robot)).collect();
@@ -333,14 +333,13 @@ impl Model {
         Some(before + own)
     }
 
-    /// Which of the [values](Model::values) are shapes: numbers (a length, a threshold) that change nothing where their effect
-    /// is at zero.
+    /// Which of the [values](Model::values) are shapes: numbers (a length, a threshold) without influence while their effect is zero.
     pub fn shapes(&self) -> Vec<usize> {
         let shapes = self.parameters().enumerate().filter(|(_, parameter)| parameter.role == Role::Shape);
         shapes.map(|(value, _)| value).collect()
     }
 
-    /// The value of one of the [values](Model::values), named by its place, at which its effect does nothing; `None` for a shape.
+    /// The value of one of the [values](Model::values), given by its index, at which its effect has no influence; `None` for a shape.
     pub(crate) fn nothing(&self, place: usize) -> Option<f64> {
         self.parameters().nth(place)?.nothing()
     }

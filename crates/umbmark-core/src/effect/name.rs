@@ -5,10 +5,10 @@ use std::sync::{Mutex, PoisonError};
 
 static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
 
-/// The same text, kept for good, once for each text that differs.
+/// The same text with a static lifetime; each different text is stored once.
 ///
-/// Names of effects and parameters come from the catalogue or from a user's files. Results carry them, and outlive the model
-/// that they are about; a notebook that loads the same file in a loop takes no more memory for it.
+/// Names of effects and parameters come from the catalogue or from a user's files. Results carry them, and outlive the model that they are
+/// about; a notebook that loads the same file in a loop needs no more memory for it.
 pub(super) fn lasting(text: &str) -> &'static str {
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(known) = names.get(text) {

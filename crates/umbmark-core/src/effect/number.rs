@@ -1,4 +1,4 @@
-//! Derivatives of what a model predicts, by numbers that it has or may have.
+//! Derivatives of a model's predictions by numbers that it has or may have.
 
 use super::{Chain, Changes, Model, ModelError, find};
 use crate::geometry::{Dual, LANES, seeded};
@@ -6,7 +6,7 @@ use crate::geometry::{Dual, LANES, seeded};
 /// A number by which predictions are differentiated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Number {
-    /// Its effect. Where a model lacks it, it is there at its default values and does nothing.
+    /// Its effect. If the model lacks it, it is added at its default values, without influence.
     pub effect: &'static str,
     /// The number.
     pub parameter: &'static str,
@@ -21,12 +21,12 @@ pub struct Derived {
     pub chain: Chain<Dual>,
     /// Places in the list.
     pub numbers: Vec<usize>,
-    /// Whether they change nothing but the measurement, so that no motion need be replayed.
+    /// Whether they change only the measurement, so that no motion must be replayed.
     pub seen_only: bool,
 }
 
 impl Number {
-    /// Whether it changes nothing but the measurement.
+    /// Whether it changes only the measurement.
     fn seen_only(&self) -> bool {
         find(self.effect).is_ok_and(|entry| !entry.changes.include(Changes::MOTION))
     }
@@ -38,8 +38,8 @@ impl Model {
         values.chunks(LANES).map(|places| (self.chain_with(&seeded(self.values(), places)), places.len()))
     }
 
-    /// Chains that carry derivatives by all of a list of numbers, [`LANES`] at a time. Effects that the model lacks are side by side in
-    /// one chain: at their defaults, none changes anything for the others.
+    /// Chains that carry derivatives by all of a list of numbers, [`LANES`] at a time. Effects that the model lacks share one chain: at
+    /// their defaults they do not influence each other.
     pub fn derived(&self, numbers: &[Number]) -> Result<Vec<Derived>, ModelError> {
         let mut groups: Vec<Vec<usize>> = Vec::new();
         for (index, number) in numbers.iter().enumerate() {

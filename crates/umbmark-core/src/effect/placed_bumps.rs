@@ -9,8 +9,8 @@ use crate::parameter::Parameter;
 use crate::path::Direction;
 use crate::random::Stream;
 
-/// Bumps spread evenly over the first leg, under the wheel on the inside of the path: one by one in simulated runs of the
-/// extended test only, or on average in every run that a model is asked for.
+/// Bumps spread evenly over the first leg, under the wheel on the inside of the path: as single bumps only in simulated runs of the
+/// extended test, or on average in every run that a model predicts.
 pub struct PlacedBumps;
 
 pub(super) static EFFECT: Entry = Entry::of::<PlacedBumps>().wheels::<PlacedBumps>().bumps::<PlacedBumps>();
@@ -42,13 +42,13 @@ impl Effect for PlacedBumps {
         ],
         equation: "D lost per bump, or s_in ← (1 - l) s_in on the first leg.  \
                    edge: D = 2R(ψ - sin ψ), cos ψ = 1 - h/R;  cable: D = 2(R + h/2)(φ - sin φ), cos φ = (R - h/2)/(R + h/2)",
-        physics: "A cable is laid ten times under the wheel that faces the inside of the square, during the first leg. Each \
-                  time the wheel counts travel that the body does not make. `bump-loss` is the even loss l that a track shows: ten \
-                  bumps of 3.5 mm on 4 m are 0.009. It acts in runs of both tests, the bumps in those of the extended test.",
-        signature: "The heading turns by D/b per bump towards the inside wheel: the return heading error is the sum, whatever \
-                    the places; the return position depends on the places.",
+        physics: "During the first leg, a cable is laid ten times under the wheel on the inside of the square. Each time the wheel \
+                  counts travel that the body does not make. `bump-loss` is the even loss l that a track shows: ten bumps of 3.5 mm on \
+                  4 m are 0.009. This loss acts in runs of both tests, the bumps only in those of the extended test.",
+        signature: "Each bump turns the heading by D/b towards the inside wheel. The return heading error is their sum, wherever the \
+                    bumps are; the return position depends on where they are.",
         confused_with: &["start_pose", "floor_slope_yaw"],
-        separated_by: "subtracting the regular test, as Eq. (5) does",
+        separated_by: "subtracting the result of the regular test, as Eq. (5) does",
         source: "Borenstein & Feng (1995), section 3.3 and Table II",
     };
 

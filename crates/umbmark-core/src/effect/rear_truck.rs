@@ -1,4 +1,4 @@
-//! The rear one of two trucks, where its wheels are not those of the front one.
+//! The rear one of two trucks, if its wheels differ from those of the front one.
 
 use super::words::{either, percent};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, WheelLaw};
@@ -6,7 +6,7 @@ use crate::drive::{DriveKind, DriveKinds, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
-/// E_d, E_b and E_s of the rear truck, beside those of both.
+/// E_d, E_b and E_s of the rear truck, in addition to those of both.
 pub struct RearTruck;
 
 const fn ratio(name: &'static str, flag: &'static str, typical: f64, meaning: &'static str) -> Parameter {
@@ -26,12 +26,12 @@ impl Effect for RearTruck {
             ratio("e_s", "rear-es", 4e-3, "E_s of the rear truck over that of the front one"),
         ],
         equation: "of the rear truck alone: s_L ← 2 E_s s_L/(1 + E_d),  s_R ← 2 E_s E_d s_R/(1 + E_d),  Δθ ← Δθ/E_b",
-        physics: "Two trucks of one make have wheels of their own: wear, load, tape.",
-        signature: "With the correction off nothing: the rear truck follows, and the front one is measured. With it on, unequal \
-                    wheels of one truck leave the half way of a period over the link, a hundredth of what they would do alone, and corners take \
-                    most of that back. A mean scale of both trucks changes corners.",
+        physics: "The two trucks are of one design, but their wheels differ by wear, load and the error of the tape measure.",
+        signature: "With the correction off, nothing shows: the rear truck follows, and the front one is measured. With it on, unequal \
+                    wheels of one truck leave half the travel of one period over the link length, a hundredth of what they would cause \
+                    alone, and corners cancel most of that. A mean scale of both trucks changes corners.",
         confused_with: &["rotary_zero_difference", "link_length", "scale"],
-        separated_by: "each truck driven alone",
+        separated_by: "driving each truck alone",
         source: "Borenstein & Feng (1995), sections 2 and 4.5",
     };
 

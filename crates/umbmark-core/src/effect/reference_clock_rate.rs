@@ -6,7 +6,7 @@ use crate::drive::{DriveKinds, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
-/// By how much the clock of the reference and that of the encoders part, per time.
+/// Rate at which the clocks of reference and encoders drift apart.
 pub struct ReferenceClockRate;
 
 pub(super) static EFFECT: Entry = Entry::of::<ReferenceClockRate>().late::<ReferenceClockRate>();
@@ -25,12 +25,12 @@ impl Effect for ReferenceClockRate {
             "delay of the measured poses that builds up per time since the run began",
         )],
         equation: "seen(t) = true(t - ρ t)",
-        physics: "Robot and reference stamp with clocks of their own, which agree when a run begins and part at the rate of \
-                  their oscillators, or of a timer that is not quite what it is said to be.",
-        signature: "As a delay that grows through the run: early legs in time, late legs behind. Return poses at rest do not \
-                    show it.",
+        physics: "Robot and reference stamp their data with separate clocks. These agree at the start of a run and then drift apart, at \
+                  the rate error of their oscillators or of a software timer.",
+        signature: "It looks like a delay that grows during the run: the first legs are on time, the last ones are late. Return poses, \
+                    which are measured at rest, do not show it.",
         confused_with: &["reference_delay"],
-        separated_by: "the delay of the first leg against that of the last; stamping both with one clock",
+        separated_by: "comparing the delay of the first leg with that of the last; stamping both streams with one clock",
         source: "two free-running clocks; 200 parts in a million are assumed",
     };
 

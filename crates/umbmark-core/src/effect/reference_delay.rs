@@ -6,7 +6,7 @@ use crate::drive::{DriveKinds, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
-/// How old a measured pose is when it is stamped.
+/// Age of a measured pose at its time stamp.
 pub struct ReferenceDelay;
 
 pub(super) static EFFECT: Entry = Entry::of::<ReferenceDelay>().late::<ReferenceDelay>();
@@ -25,11 +25,12 @@ impl Effect for ReferenceDelay {
             "how much older the measured pose is than its time stamp says",
         )],
         equation: "seen(t) = true(t - τ)",
-        physics: "Cameras expose, compute and send before a pose gets its time: 10 to 100 ms are usual. At 1 m/s 10 ms are \
-                  10 mm.",
-        signature: "Late along the course by v τ and in turns by ω τ; right again at rest, so return poses do not show it.",
+        physics: "A camera needs time to expose, compute and send before its pose gets a time stamp, usually 10 to 100 ms. At 1 m/s, 10 \
+                  ms are 10 mm.",
+        signature: "The measured pose is late by v τ along the course and by ω τ in turns. At rest it is correct, so return poses do \
+                    not show it.",
         confused_with: &["acceleration_slip", "reference_clock_rate"],
-        separated_by: "a dense track, always, before any physics is judged",
+        separated_by: "a dense track; determine the delay before you judge any physical effect",
         source: "delays that makers and users of motion capture state",
     };
 

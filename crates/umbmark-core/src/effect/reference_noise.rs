@@ -38,8 +38,9 @@ impl Effect for ReferenceNoise {
             ),
         ],
         equation: "measured = true + N(0, diag(sd²))",
-        physics: "A tape read to 2 mm and a heading from two such readings (0.15 degree), or the noise of motion capture.",
-        signature: "Scatter that does not grow with the length of the path.",
+        physics: "A tape can be read to about 2 mm, and a heading from two such readings to 0.15 degree. Motion capture has noise of \
+                  its own.",
+        signature: "The scatter does not grow with the length of the path.",
         confused_with: &["start_pose", "encoder_resolution"],
         separated_by: "measuring the same pose twice without driving",
         source: "usual sizes of tape and motion capture",

@@ -7,7 +7,7 @@ use crate::geometry::Real;
 use crate::parameter::Parameter;
 use std::f64::consts::FRAC_PI_2;
 
-/// How much more than there is both angles show, as a share.
+/// Relative excess of both measured angles.
 pub struct RotaryGain;
 
 pub(super) static EFFECT: Entry = Entry::of::<RotaryGain>().link::<RotaryGain>();
@@ -26,9 +26,9 @@ impl Effect for RotaryGain {
             "how much more than there is both angles show, as a share",
         )],
         equation: "shown angle ← (1 + g) angle, of both trucks",
-        physics: "A gear or belt between pivot and encoder has another ratio than is believed.",
-        signature: "Nothing on legs, where the angles are zero. In corners the trucks stand not quite across, and both creep along \
-                    the link while they turn it: the same on every side, so that a closed path hides it.",
+        physics: "A gear or belt between pivot and encoder has another ratio than assumed.",
+        signature: "Legs show nothing, because there the angles are zero. In corners the trucks do not stand exactly across the link, \
+                    so both creep along it while they turn it. The error is the same at every corner, and a closed path hides it.",
         confused_with: &[],
         separated_by: "the pose after one corner",
         source: "kinematics of the corner",

@@ -1,4 +1,4 @@
-//! Zeros of a link's two rotary encoders that differ.
+//! Different zero errors of a link's two rotary encoders.
 
 use super::words::{deg, side};
 use super::{About, ActsOn, Effect, Entry, LinkLaw};
@@ -6,7 +6,7 @@ use crate::drive::{DriveKind, DriveKinds, LinkReading, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
-/// What the front angle shows more than the rear one where trucks and link are in line.
+/// Difference between the front and the rear angle when trucks and link are in line.
 pub struct RotaryZeroDifference;
 
 pub(super) static EFFECT: Entry = Entry::of::<RotaryZeroDifference>().link::<RotaryZeroDifference>();
@@ -25,12 +25,13 @@ impl Effect for RotaryZeroDifference {
             "what the front angle shows more than the rear one where trucks and link are in line",
         )],
         equation: "shown front ← angle + d/2,  shown rear ← angle - d/2",
-        physics: "The encoders were set to zero by eye, or each truck's axle is not square to its pivot. Each reading sets a \
-                  heading, so the trucks truly drive apart by d where they believe to drive in line.",
-        signature: "The line of trucks turns by d over its length a metre: legs bend the same way in ccw and cw, as with E_d of a \
-                    differential drive. A tenth of a milliradian leaves as much of a 7 x 4 m rectangle as is published.",
+        physics: "The encoders were set to zero by eye, or an axle is not perpendicular to its truck. Each reading sets a heading, so \
+                  the headings of the trucks differ by d where the odometry takes them as aligned.",
+        signature: "On each metre, the line through both trucks turns by d over its length. Legs bend the same way in ccw and cw, as \
+                    with E_d of a differential drive. A tenth of a milliradian causes an error as large as the published one on a 7 x 4 \
+                    m rectangle.",
         confused_with: &["rear_truck"],
-        separated_by: "a straight with the correction on and off; sighting along both trucks while they stand in line",
+        separated_by: "a straight leg with the correction on and off; sighting along both trucks while they stand in line",
         source: "kinematics of two trucks; the paper (section 4.5) names errors of this kind and gives no size",
     };
 

@@ -1,4 +1,4 @@
-//! Zeros of a link's two rotary encoders that are off alike.
+//! Equal zero errors of a link's two rotary encoders.
 
 use super::words::{deg, side};
 use super::{About, ActsOn, Effect, Entry, LinkLaw};
@@ -6,7 +6,7 @@ use crate::drive::{DriveKind, DriveKinds, LinkReading, Robot};
 use crate::geometry::Real;
 use crate::parameter::Parameter;
 
-/// What both angles show where trucks and link are in line.
+/// Reading of both angles when trucks and link are in line.
 pub struct RotaryZeroMean;
 
 pub(super) static EFFECT: Entry = Entry::of::<RotaryZeroMean>().link::<RotaryZeroMean>();
@@ -25,11 +25,12 @@ impl Effect for RotaryZeroMean {
             "what both angles show where trucks and link are in line",
         )],
         equation: "shown angle ← angle + a, of both trucks",
-        physics: "The link is bent, or both encoders are turned in their seats the same way.",
-        signature: "Both trucks truly head a to the left of where they believe, so the whole path is turned about START and \
-                    closes: the return heading alone is off, by a, the same in ccw and cw.",
+        physics: "The link is bent, or both encoders are rotated in their mounts by the same angle.",
+        signature: "The heading of both trucks is a to the left of what the odometry assumes. The whole path is rotated about START and \
+                    closes: only the return heading is off, by a, equally in ccw and cw.",
         confused_with: &["start_pose"],
-        separated_by: "the heading after the first leg beside its course; turning START about by hand changes nothing of it",
+        separated_by: "comparing the heading after the first leg with the direction of that leg; rotating START by hand does not change \
+                       this error",
         source: "kinematics of two trucks; the paper (section 4.5) names errors of this kind and gives no size",
     };
 

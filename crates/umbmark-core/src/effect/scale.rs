@@ -24,9 +24,9 @@ impl Effect for Scale {
             "E_s = mean true wheel diameter / mean nominal wheel diameter",
         )],
         equation: "s_L ← E_s s_L,  s_R ← E_s s_R",
-        physics: "The mean of both wheel diameters differs from the nominal one: wear, load, tape-measure error. 0.3 to \
-                  0.5 % is what a tape leaves.",
-        signature: "Legs are longer than believed, which a closed square does not show; turns are larger by the same share, \
+        physics: "The mean of both wheel diameters differs from the nominal one, by wear, load, or the error of the tape measure, which \
+                  leaves 0.3 to 0.5 %.",
+        signature: "Legs are longer than the odometry says, which a closed square does not show. Turns are larger by the same share, \
                     which looks like E_b. A square determines only E_b/E_s.",
         confused_with: &[
             "wheelbase",
@@ -37,7 +37,7 @@ impl Effect for Scale {
             "rear_truck",
             "bumps",
         ],
-        separated_by: "the length of one straight leg by tape, or the pose at a stop",
+        separated_by: "the length of one straight leg, by tape; the pose at a stop",
         source: "Borenstein & Feng (1995), section 2",
     };
 

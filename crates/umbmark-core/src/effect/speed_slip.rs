@@ -23,9 +23,9 @@ impl Effect for SpeedSlip {
         }],
         equation: "s_w ← (1 - k |v_w|) s_w  for both wheels",
         physics: CREEP,
-        signature: "Legs and turns fall short by k v: at one speed it is E_s, and so on the square looks like E_b.",
+        signature: "Legs and turns fall short by the share k v. At a single speed this is E_s, so on a square it looks like E_b.",
         confused_with: &["scale", "wheelbase", "turn_slip", "turn_slip_rate"],
-        separated_by: "one measured straight leg at each of two speeds",
+        separated_by: "one straight leg at each of two speeds, measured by tape",
         source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
     };
 
@@ -46,10 +46,10 @@ impl WheelLaw for SpeedSlip {
     }
 }
 
-pub(super) const CREEP: &str = "Rolling resistance grows with speed, and a tyre passes on force only by creeping: the wheel turns \
-     a little more than it gets ahead.";
+pub(super) const CREEP: &str = "A tyre transmits force only if it creeps, and rolling resistance grows with speed: the faster the \
+     robot, the further the wheel turns beyond what it moves forward.";
 
-/// What creep in proportion to speed means for the robot.
+/// Meaning of creep in proportion to speed for the robot.
 pub(super) fn creeps(k: f64, who: &str) -> String {
     format!("At 0.5 m/s {who} {} {} than counted.", percent(0.5 * k), either(k, "less far", "farther"))
 }

@@ -23,9 +23,10 @@ impl Effect for SpeedSlipRight {
         }],
         equation: "s_R ← (1 - k |v_R|) s_R",
         physics: CREEP,
-        signature: "Legs curve to the right by k v/b per metre; turns lose half the share. At one speed as E_d on the legs.",
+        signature: "Legs curve to the right by k v/b per metre, and turns lose half the share. On legs of a single speed it looks like \
+                    E_d.",
         confused_with: &["wheel_diameter_ratio", "speed_slip_left", "missed_counts"],
-        separated_by: "a long straight at two speeds: the curvature of E_d stays",
+        separated_by: "a long straight leg at two speeds: the curvature from E_d is the same at both",
         source: "linear creep of a rolling tyre; 1.5 % per m/s is assumed",
     };
 

@@ -7,7 +7,7 @@ use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
 use crate::random::Stream;
 
-/// The robot does not stand where its odometry is told that it stands.
+/// The difference between the robot's true pose and the pose that its odometry is set to.
 pub struct StartPose;
 
 const EITHER_WAY: (f64, f64) = (-10.0, 10.0);
@@ -49,11 +49,12 @@ impl Effect for StartPose {
             ),
         ],
         equation: "world_from_start ← world_from_start · (x, y, δ), with (x, y, δ) ~ N(bias, diag(sd²))",
-        physics: "The robot is pushed to a mark on the floor, and its odometry set to zero whether it stands there or not.",
-        signature: "A heading error δ turns the whole path about START: invisible at the end of a closed path but for the \
-                    heading itself. A position error shifts the return by as much.",
+        physics: "The robot is pushed by hand to a mark on the floor. Then its odometry is set to zero, although it never stands \
+                  exactly on the mark.",
+        signature: "A heading error δ rotates the whole path about START. At the end of a closed path only the heading shows it. A \
+                    position error shifts the return point by the same amount.",
         confused_with: &["floor_slope", "carpet_nap", "placed_bumps", "rotary_zero_mean", "reference_noise"],
-        separated_by: "measuring START in every run",
+        separated_by: "measuring the start pose of every run",
         source: "Borenstein & Feng (1995), section 3.4, step 1",
     };
 

@@ -25,11 +25,11 @@ impl Effect for SteerCoupling {
             "turn of the course per metre driven",
         )],
         equation: "Δθ ← Δθ + e · forward",
-        physics: "The shafts of drive and steering are concentric, and the bevel gears of one carry the other along a little; or the \
-                  wheels' radii differ, and the base turns, with the wheels in it.",
+        physics: "The shafts for driving and steering are concentric, and the bevel gears of one carry the other along a little. Or the \
+                  wheel radii differ, which turns the base and the wheels with it.",
         signature: "Every leg bends the same way in ccw and cw, as with E_d of a differential drive (e = (E_d - 1)/b).",
         confused_with: &[],
-        separated_by: "a long straight; steering on the spot shows nothing of it",
+        separated_by: "a long straight leg; steering on the spot does not show it",
         source: "kinematics; unequal radii turn the base at a mean rate, and with it the course",
     };
 

@@ -19,11 +19,11 @@ impl Effect for SteerScale {
         acts_on: ActsOn::Body,
         parameters: &[Parameter::ratio("ratio", "steer-scale", 3e-3, (0.2, 5.0), "true / believed turn of the course")],
         equation: "Δθ ← r Δθ",
-        physics: "Counts per revolution of the steering are not what is believed, or its belts slip.",
-        signature: "Every corner is too sharp or too blunt: return headings are opposite in ccw and cw, as E_b is in a \
+        physics: "The steering has other counts per revolution than assumed, or its belts slip.",
+        signature: "Every corner is too sharp or too blunt. The return headings have opposite signs in ccw and cw, as with E_b of a \
                     differential drive (r = 1/E_b).",
         confused_with: &[],
-        separated_by: "ten turns of the steering on the spot",
+        separated_by: "ten full turns of the steering on the spot",
         source: "kinematics",
     };
 

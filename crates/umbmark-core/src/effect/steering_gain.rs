@@ -7,7 +7,7 @@ use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
-/// How much farther than believed the wheel is steered, as a share.
+/// Relative excess of the true steering angle.
 pub struct SteeringGain;
 
 /// A usual angle of steering \[rad\].
@@ -29,10 +29,10 @@ impl Effect for SteeringGain {
             "how much farther than believed the wheel is steered, as a share of the angle",
         )],
         equation: "Δθ = forward · tan((1 + g) δ)/W,  tan δ = W · believed Δθ/forward",
-        physics: "Counts per revolution of the steering are not what is believed, or its linkage is not as it is drawn.",
-        signature: "Every corner is too sharp or too blunt, opposite in ccw and cw, as with E_b of a differential drive.",
+        physics: "The steering has other counts per revolution than assumed, or its linkage has another ratio than in the drawing.",
+        signature: "Every corner is too sharp or too blunt, with opposite signs in ccw and cw, as with E_b of a differential drive.",
         confused_with: &["axle_distance", "understeer"],
-        separated_by: "circles of two radii; a protractor at the wheel",
+        separated_by: "circles of two radii; a protractor at the steered wheel",
         source: "kinematics",
     };
 

@@ -1,4 +1,4 @@
-//! A steered wheel that does not stand straight where its counter says so.
+//! A steered wheel that is not straight when its counter shows zero.
 
 use super::words::{deg, side};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
@@ -6,7 +6,7 @@ use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
-/// The true steering angle where it is believed to be zero.
+/// The true steering angle when the odometry takes it as zero.
 pub struct SteeringZero;
 
 pub(super) static EFFECT: Entry = Entry::of::<SteeringZero>().body::<SteeringZero>();
@@ -25,10 +25,10 @@ impl Effect for SteeringZero {
             "steering angle to the left where straight ahead is believed",
         )],
         equation: "Δθ = forward · tan(δ + δ₀)/W,  tan δ = W · believed Δθ/forward",
-        physics: "The steering encoder was set to zero by eye, or the axle is not square to the robot.",
+        physics: "The steering encoder was set to zero by eye, or the axle is not perpendicular to the robot's x axis.",
         signature: "Legs and corners bend the same way in ccw and cw, as with E_d of a differential drive.",
         confused_with: &[],
-        separated_by: "a straight, forward and backward",
+        separated_by: "a straight leg, driven forward and backward",
         source: "kinematics",
     };
 
@@ -52,11 +52,10 @@ impl BodyLaw for SteeringZero {
     }
 }
 
-/// A wheel that would be steered farther than this is none: turns on the spot have no steering angle. tan of 1.4 rad.
+/// Maximum tangent of a steering angle, tan of 1.4 rad: turns on the spot have no steering angle.
 const MAX_TANGENT: f64 = 5.8;
 
-/// The tangent of the steering angle that a motion is made with; `None` on the spot, and where it is not known how the robot is
-/// steered.
+/// The tangent of the steering angle of a motion; `None` for turns on the spot, and if the steering is unknown.
 #[inline(always)]
 pub(super) fn steered<T: Real>(at: &Context<T>, motion: &Displacement2<T>) -> Option<T> {
     let across = motion.rotation * at.axle_distance;

@@ -1,4 +1,4 @@
-//! What holds for every effect, and the paths that single effects are tested on.
+//! Properties that hold for every effect, and the paths for the tests of single effects.
 
 use super::*;
 use crate::drive::{Drive, LinkReading, Robot};

@@ -25,12 +25,12 @@ impl Effect for TurnSlip {
             "share of the rotation that turns on the spot lose",
         )],
         equation: "Δθ ← (1 - k) Δθ  where |v_R - v_L| > |v|: a turn about a point within a wheelbase",
-        physics: "Tyres that turn about the middle of their contact area scrub sideways and give way. Up to 1 % with two \
-                  wheels and casters; robots that skid-steer lose a quarter to a half.",
-        signature: "Every turn falls short by the same share. On the square that is E_b to the last digit; only arcs differ, \
-                    which it leaves alone.",
+        physics: "Tyres that turn about the middle of their contact area scrub sideways and slip. Two wheels with casters lose up to 1 \
+                  % of a turn; skid-steered robots lose a quarter to a half.",
+        signature: "Every turn falls short by the same share. On a square this cannot be distinguished from E_b. Only arcs show the \
+                    difference, because this slip does not change them.",
         confused_with: &["wheelbase", "scale", "turn_slip_rate", "speed_slip"],
-        separated_by: "another surface or load; wide arcs beside spins",
+        separated_by: "another surface or load; comparing wide arcs with turns on the spot",
         source: "Borenstein & Feng (1995), section 2 (up to 1 %); factors 1.5 to 1.9 that users set for skid-steer robots",
     };
 

@@ -25,10 +25,11 @@ impl Effect for TurnSlipRate {
             "share of the rotation that is lost per rad/s",
         )],
         equation: "Δθ ← (1 - k |ω|) Δθ",
-        physics: "The faster a robot turns, the more sideways force its tyres pass on, and the more they creep.",
-        signature: "As E_b at any one rate of turn. The ramps of a turn lose less than its middle, which a dense track shows.",
+        physics: "The faster a robot turns, the larger the side force on its tyres, and the more they creep.",
+        signature: "At a single rate of turn it looks like E_b. A turn loses less while it starts and stops than in its middle, which a \
+                    dense track shows.",
         confused_with: &["wheelbase", "scale", "turn_slip", "speed_slip"],
-        separated_by: "spins at two rates of turn",
+        separated_by: "turns on the spot at two rates",
         source: "linear creep of a rolling tyre; 0.8 % per rad/s is assumed",
     };
 

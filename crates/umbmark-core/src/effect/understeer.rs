@@ -26,8 +26,9 @@ impl Effect for Understeer {
             "steering lost per lateral acceleration; less than 0 oversteers",
         )],
         equation: "Δθ = forward · tan(δ - K v² κ)/W,  κ = believed Δθ/forward,  tan δ = W κ",
-        physics: "The tyres of the steered wheel slip sideways more than those of the axle: in proportion to the side force.",
-        signature: "Corners are too blunt, by the square of the speed; at one speed and one radius as the gain of the steering.",
+        physics: "The tyres of the steered wheel slip sideways more than those of the axle, in proportion to the side force.",
+        signature: "Corners are too blunt, by an amount that grows with the square of the speed. At a single speed and radius it looks \
+                    like an error of the steering gain.",
         confused_with: &["steering_gain"],
         separated_by: "the same circle at two speeds",
         source: "linear single-track model of vehicle dynamics; the size is assumed",

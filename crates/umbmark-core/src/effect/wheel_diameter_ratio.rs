@@ -24,10 +24,10 @@ impl Effect for WheelDiameterRatio {
             "E_d = D_R/D_L, the ratio of the true wheel diameters beyond their nominal ratio",
         )],
         equation: "s_R ← s_R · 2 E_d/(1 + E_d),  s_L ← s_L · 2/(1 + E_d)",
-        physics: "Tyres are never made to the same diameter, and a load off the centre line compresses one more than the \
-                  other. The wheel that is larger rolls farther for the same count.",
-        signature: "A straight leg becomes an arc of curvature (E_d - 1)/b; turns on the spot are unharmed. The return \
-                    heading error per side is L (E_d - 1)/b in both directions of driving.",
+        physics: "No two tyres have exactly the same diameter, and a load off the centre line compresses one tyre more than the other. \
+                  The larger wheel rolls further for the same count.",
+        signature: "A straight leg becomes an arc of curvature (E_d - 1)/b. Turns on the spot do not change. The return heading error \
+                    is L (E_d - 1)/b per side in both driving directions.",
         confused_with: &[
             "direction_dependent_wheelbase",
             "leg_kick",
@@ -35,7 +35,7 @@ impl Effect for WheelDiameterRatio {
             "speed_slip_right",
             "missed_counts",
         ],
-        separated_by: "a long straight (the heading grows with distance), and spins, which it leaves alone",
+        separated_by: "a long straight leg, on which the heading error grows with distance; turns on the spot, which it does not change",
         source: "Borenstein & Feng (1995), section 2; split: Borenstein & Feng (1996), IEEE Trans. Robotics and \
                  Automation 12(6)",
     };

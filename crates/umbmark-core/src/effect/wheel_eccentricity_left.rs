@@ -30,11 +30,12 @@ impl Effect for WheelEccentricityLeft {
         ],
         equation: "s_L ← s_L + c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀),  φ the wheel's angle since START",
         physics: RUN_OUT,
-        signature: "A wave in heading of amplitude e/b that repeats with each wheel revolution, and half of it in the way \
-                    gone. Where the wave begins at its crest its mean turns the whole path, as crab does; return poses hardly show \
-                    either.",
+        signature: "The heading has a wave of amplitude e/b that repeats with each wheel revolution, and the distance travelled has a \
+                    wave of amplitude e/2. If the wave begins at its crest, its mean rotates the whole path, as a crab angle does. \
+                    Return poses hardly show either.",
         confused_with: &["wheel_eccentricity_right"],
-        separated_by: "the track against the wheel's angle: in turns the wheels roll opposite ways and their waves part",
+        separated_by: "plotting the track over the wheel's angle: in turns the wheels roll in opposite directions, so their waves \
+                       differ",
         source: "geometry of an off-centre wheel; 0.3 mm is assumed",
     };
 
@@ -54,10 +55,10 @@ impl WheelLaw for WheelEccentricityLeft {
     }
 }
 
-pub(super) const RUN_OUT: &str = "A wheel bored or mounted e off its centre has an effective radius that swings by e within each \
-     revolution: it rolls ahead of its count on one half and falls behind on the other.";
+pub(super) const RUN_OUT: &str = "The wheel turns about a point that is e off its centre, so its effective radius varies by e within \
+     each revolution: on one half it rolls further than it counts, on the other half less.";
 
-/// What run-out of a wheel means for the robot.
+/// Meaning of the run-out of a wheel for the robot.
 pub(super) fn run_out(p: &[f64], robot: &Robot, wheel: &str) -> String {
     let eccentricity = libm::hypot(p[0], p[1]);
     format!(

@@ -30,10 +30,11 @@ impl Effect for WheelEccentricityRight {
         ],
         equation: "s_R ← s_R + c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀),  φ the wheel's angle since START",
         physics: RUN_OUT,
-        signature: "As run-out of the left wheel, with the wave in heading turned over: amplitude e/b, wavelength one \
-                    circumference, next to nothing in return poses.",
+        signature: "The same as run-out of the left wheel, with the opposite sign in heading: a wave of amplitude e/b that repeats with \
+                    each wheel revolution. Return poses show almost nothing.",
         confused_with: &["wheel_eccentricity_left"],
-        separated_by: "the track against the wheel's angle: in turns the wheels roll opposite ways and their waves part",
+        separated_by: "plotting the track over the wheel's angle: in turns the wheels roll in opposite directions, so their waves \
+                       differ",
         source: "geometry of an off-centre wheel; 0.3 mm is assumed",
     };
 

@@ -24,12 +24,12 @@ impl Effect for WheelNoise {
             "square root of the variance of a wheel's travel per metre",
         )],
         equation: "var s_w = k² |s_w|, independent along the way and between the wheels",
-        physics: "Small slips, grains and unevenness add up like a random walk. 4.0e-4 and 5.8e-4 m^0.5 were measured on \
-                  parquet; 1e-3 gives the paper's scatter.",
-        signature: "Scatter only: heading variance grows as 2 k²/b² per metre, position scatter as the distance to the power \
-                    3/2. The means stay.",
+        physics: "Small slips, grains of dirt and unevenness add up like a random walk. On parquet, 4.0e-4 and 5.8e-4 m^0.5 were \
+                  measured; 1e-3 gives the paper's scatter.",
+        signature: "Only the scatter changes: the variance of the heading grows by 2 k²/b² per metre, and the scatter of the position \
+                    with the distance to the power 3/2. Means do not change.",
         confused_with: &["bumps", "encoder_resolution"],
-        separated_by: "the shape of the heading increments; a smoother floor",
+        separated_by: "the distribution of the heading increments of a track; a smoother floor",
         source: "Chong & Kleeman (1997), ICRA, accurate odometry and error modelling",
     };
 

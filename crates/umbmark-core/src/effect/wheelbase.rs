@@ -18,12 +18,12 @@ impl Effect for Wheelbase {
         acts_on: ActsOn::Body,
         parameters: &[Parameter::ratio("e_b", "eb", 8e-3, (0.2, 5.0), "E_b = effective wheelbase / nominal wheelbase")],
         equation: "Δθ ← Δθ / E_b",
-        physics: "A tyre touches the floor in an area, not in a point; where in that area it turns is uncertain by up to 1 % \
-                  of the wheelbase. Scrub in turns on the spot acts the same way and is part of what is measured.",
-        signature: "Every turn is too small (E_b > 1) or too large. The return heading error per side is -(E_b - 1) π/2 in \
+        physics: "A tyre touches the floor in an area, not in a point, and the point about which it turns is uncertain by up to 1 % of \
+                  the wheelbase. Scrub in turns on the spot acts the same way and is part of the measured value.",
+        signature: "Every turn is too small (E_b > 1) or too large (E_b < 1). The return heading error per side is -(E_b - 1) π/2 in \
                     ccw runs and the opposite in cw runs.",
         confused_with: &["scale", "turn_slip", "turn_slip_rate", "speed_slip", "caster_kick", "centripetal_load"],
-        separated_by: "spins together with one measured straight leg",
+        separated_by: "turns on the spot, together with one straight leg measured by tape",
         source: "Borenstein & Feng (1995), section 2",
     };
 

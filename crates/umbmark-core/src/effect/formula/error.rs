@@ -1,14 +1,14 @@
-//! What makes a formula impossible.
+//! Why a formula is invalid.
 
 use super::program::LONGEST;
 use super::variable::VARIABLES;
 use crate::effect::MAX_PARAMETERS;
 
-/// What makes a formula impossible. Columns count characters, from 1.
+/// Why a formula is invalid. Columns count characters, from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FormulaError {
-    /// A character that stands for nothing.
+    /// An unknown character.
     #[error("column {column}: '{found}' means nothing here; a formula has + - * / ^ ( ) , numbers and names")]
     Character {
         /// Where.
@@ -16,24 +16,24 @@ pub enum FormulaError {
         /// What.
         found: char,
     },
-    /// Something else than what must come.
+    /// An unexpected token.
     #[error("column {column}: expected {expected}, got {found}")]
     Expected {
         /// Where.
         column: usize,
-        /// What must come.
+        /// The expected token.
         expected: &'static str,
-        /// What came.
+        /// The token that was found.
         found: String,
     },
-    /// A name that nothing has.
+    /// An unknown name.
     #[error("column {column}: there is no \"{name}\"{}", nearest.as_ref().map_or_else(|| format!("; {}", offered()), |n| format!("; did you mean \"{n}\"?")))]
     Name {
         /// Where.
         column: usize,
-        /// What was asked for.
+        /// The name that was given.
         name: String,
-        /// What may have been meant.
+        /// The most similar known name.
         nearest: Option<String>,
     },
     /// A function without, or a number with, its parentheses.
@@ -68,7 +68,7 @@ pub enum FormulaError {
         /// Its unit.
         right_unit: String,
     },
-    /// A function of something that has a unit.
+    /// A function of an argument with a unit.
     #[error(
         "column {column}: {function} takes a plain number or an angle, and \"{argument}\" is in {unit}; divide it by a parameter of that unit"
     )]
@@ -82,7 +82,7 @@ pub enum FormulaError {
         /// The unit of that.
         unit: String,
     },
-    /// A result that is not what the formula acts on.
+    /// A result whose unit does not fit what the formula acts on.
     #[error(
         "the formula is in {unit}, and {acts_on} in {wanted}; multiply it by a parameter, which then has the unit that is missing"
     )]
@@ -107,7 +107,7 @@ pub enum FormulaError {
         name: String,
         /// An effect, or a parameter.
         what: &'static str,
-        /// What speaks against it.
+        /// The reason.
         why: &'static str,
     },
     /// A parameter that does not occur.
@@ -118,7 +118,7 @@ pub enum FormulaError {
     },
 }
 
-/// What formulas are made of.
+/// The elements of formulas, for messages.
 fn offered() -> String {
     let variables: Vec<&str> = VARIABLES.iter().map(|variable| variable.name).collect();
     let functions = "sin, cos, tan, exp, log, sqrt, abs, sign, min, max, tanh";

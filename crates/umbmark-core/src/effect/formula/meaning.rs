@@ -1,4 +1,4 @@
-//! What a formula means for the robot, where it is a wave of the time or of the way.
+//! Meaning of a formula for the robot, for waves over time or distance.
 
 use super::{Formula, Target};
 use std::f64::consts::TAU;

@@ -18,7 +18,7 @@ const SUM: u8 = 1;
 const PRODUCT: u8 = 2;
 const MINUS: u8 = 3;
 const POWER: u8 = 4;
-/// How deep parentheses, minus signs and functions may stand in each other.
+/// Maximum nesting of parentheses, minus signs and functions.
 const NESTED: usize = 16;
 /// The largest exponent.
 const MAX_EXPONENT: f64 = 16.0;
@@ -39,7 +39,7 @@ pub(super) fn parse(text: &str, parameters: &[&str]) -> Result<Program, FormulaE
     }
 }
 
-/// Whether a name stands for something in every formula.
+/// Whether a name has a meaning in every formula.
 pub(super) fn is_taken(name: &str) -> bool {
     builtin_names().any(|taken| taken == name)
 }
@@ -64,7 +64,7 @@ impl<'a> Parser<'a> {
         self.tokens.get(self.next).map_or(Token::End, |(token, _)| *token)
     }
 
-    /// Where the next word stands.
+    /// The place of the next word.
     fn here(&self) -> Range<usize> {
         self.tokens.get(self.next).map_or(self.text.len()..self.text.len(), |(_, span)| span.clone())
     }
@@ -94,7 +94,7 @@ impl<'a> Parser<'a> {
         Err(FormulaError::TooLong { column: column(self.text, span.start) })
     }
 
-    /// An expression of operators that bind at least so strongly; its place in the text.
+    /// An expression of operators with at least this precedence; returns its place in the text.
     fn expression(&mut self, least: u8) -> Result<Range<usize>, FormulaError> {
         self.nested += 1;
         if self.nested > NESTED {
@@ -170,7 +170,7 @@ impl<'a> Parser<'a> {
             Some(op) => self.push(op, span),
             None => {
                 let known = self.parameters.iter().copied().chain(builtin_names().map(|known| -> &str { known }));
-                // Every name of a letter or two is near to some other.
+                // Names of one or two letters are always similar to another one.
                 let nearest = nearest(name, known).filter(|_| name.len() > 2).map(str::to_owned);
                 Err(FormulaError::Name { column, name: name.to_owned(), nearest })
             }

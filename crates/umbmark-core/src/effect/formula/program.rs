@@ -6,9 +6,9 @@ use crate::geometry::{Displacement2, Real};
 use crate::parameter::Role;
 use std::ops::Range;
 
-/// The most values that wait on the stack at once.
+/// Maximum depth of the stack.
 pub(super) const DEPTH: usize = 16;
-/// The most operations of a formula.
+/// Maximum number of operations of a formula.
 pub(super) const LONGEST: usize = 256;
 
 /// One operation. It takes its arguments from the stack and leaves its result there.
@@ -90,7 +90,7 @@ impl Function {
     }
 }
 
-/// -1, 0 or 1; not a number where `v` is none.
+/// -1, 0 or 1; NaN for NaN.
 fn sign(v: f64) -> f64 {
     if v == 0.0 { 0.0 } else { v.signum() }
 }
@@ -109,7 +109,7 @@ fn power<T: Real>(x: T, n: i32) -> T {
     if n < 0 { T::from(1.0) / product } else { product }
 }
 
-/// Operations in the order in which they are done, each with the part of the text that it makes the value of.
+/// Operations in order, each with the part of the text whose value it computes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Program {
     ops: Vec<Op>,
@@ -130,7 +130,7 @@ impl Program {
         &self.ops
     }
 
-    /// The part of the text whose value operation `i` makes.
+    /// The part of the text whose value operation `i` computes.
     pub fn span(&self, i: usize) -> Range<usize> {
         self.spans[i].clone()
     }
@@ -141,7 +141,7 @@ impl Program {
         self.watched(parameters, at, motion, |_, _| ())
     }
 
-    /// [`Program::evaluate`], telling `watch` each operation's number and result.
+    /// [`Program::evaluate`], calling `watch` with each operation's number and result.
     #[inline]
     pub fn watched<T: Real>(
         &self,
@@ -194,8 +194,8 @@ impl Program {
         top
     }
 
-    /// Another meaning of the operations: `result` makes the result of each from the numbers of its arguments and all
-    /// results so far.
+    /// Another interpretation of the operations: `result` computes the result of each from the indices of its arguments and all earlier
+    /// results.
     pub fn interpret<D, E>(&self, mut result: impl FnMut(usize, &[usize], &[D]) -> Result<D, E>) -> Result<Vec<D>, E> {
         let (mut stack, mut results): (Vec<usize>, Vec<D>) = Default::default();
         for (i, op) in self.ops.iter().enumerate() {
@@ -206,8 +206,8 @@ impl Program {
         Ok(results)
     }
 
-    /// The roles of its parameters: those that it is linear in are sizes, all of them where it is linear in none. The others
-    /// shape what the sizes do, and change nothing where those are 0.
+    /// The roles of its parameters: those in which it is linear are sizes (all of them if it is linear in none). The others are shapes,
+    /// which have no influence while the sizes are 0.
     pub fn roles(&self, parameters: usize) -> Vec<Role> {
         let linear = |p: usize| if self.degree(p) == 1 { Role::Size } else { Role::Shape };
         let roles: Vec<Role> = (0..parameters).map(linear).collect();

@@ -1,8 +1,8 @@
 //! Whether the units of a formula agree, and which units its parameters have.
 //!
-//! Units are products of powers of metre and second; an angle is a plain number. Parameters, and numbers that are written in
-//! the formula, have whatever unit makes it agree: sums and comparisons, arguments and the result are equations for their
-//! exponents, solved one after the other. So `speed + distance` is refused, and `speed + 0.1` adds 0.1 m/s.
+//! Units are products of powers of metre and second; an angle is a plain number. Parameters, and numbers in the formula, get the unit that
+//! makes the formula consistent: sums and comparisons, arguments and the result are equations for their exponents, solved one after the
+//! other. So `speed + distance` is refused, and `speed + 0.1` adds 0.1 m/s.
 
 use super::error::FormulaError;
 use super::program::{Function, Op, Program};
@@ -89,7 +89,7 @@ impl Units<'_> {
         exponents
     }
 
-    /// The unit, where nothing unknown is left in it.
+    /// The unit, if it contains no unknown.
     fn unit(&self, exponents: &Exponents) -> Option<Unit> {
         let reduced = self.reduced(exponents.clone());
         let known = reduced[2..].iter().all(|e| e.abs() < ROUNDING);
@@ -111,7 +111,7 @@ impl Units<'_> {
             return rest.iter().all(|e| e.abs() < ROUNDING);
         };
         let share = std::mem::take(&mut rest[pivot]);
-        // What is solved later is not in what was solved before: one pass of `reduced` is enough.
+        // Unknowns that are solved later do not occur in earlier solutions, so one pass of `reduced` is enough.
         for (_, instead) in &mut self.solved {
             let share_there = std::mem::take(&mut instead[pivot]);
             *instead = sum(instead, &rest, -share_there / share);

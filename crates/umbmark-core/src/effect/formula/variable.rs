@@ -1,4 +1,4 @@
-//! What a formula may depend on.
+//! Variables of formulas.
 
 use super::units::Unit;
 use crate::effect::Context;
@@ -103,7 +103,7 @@ pub(super) static VARIABLES: [FormulaVariable; 15] = [
 pub(super) struct Middle<'a, T> {
     motion: &'a Displacement2<T>,
     heading: T,
-    /// Worked out when it is asked for: it takes a sine and a cosine, and most formulas do not.
+    /// Computed on demand: it needs a sine and a cosine, and most formulas do not use it.
     place: Option<[T; 2]>,
 }
 
