@@ -29,6 +29,7 @@ results! {
     comparison: Comparison;
     diagnosis: Diagnosis;
     effect;
+    findings;
     fitted: Fitted;
     gears: GearCalibration;
     inspection: Inspection;

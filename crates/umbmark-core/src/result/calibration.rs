@@ -23,14 +23,14 @@ impl From<calibrate::Replayed> for Replayed {
     }
 }
 
-/// The corrections that one method gives; null for what the data does not show.
+/// The corrections by one method; null for what the data does not determine.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Correction {
     /// Ratio of the wheel diameters, right to left.
     pub e_d: Option<f64>,
-    /// Wheelbase by its nominal value.
+    /// Ratio of the wheelbase to its nominal value.
     pub e_b: Option<f64>,
-    /// Mean wheel diameter by its nominal value.
+    /// Ratio of the mean wheel diameter to its nominal value.
     pub e_s: Option<f64>,
     /// Corrected wheelbase, in m.
     pub wheelbase_m: Option<f64>,
@@ -40,7 +40,7 @@ pub struct Correction {
     pub wheel_diameter_right_m: Option<f64>,
     /// Covariance of the ratios named in `covariance_of`.
     pub covariance: Option<Vec<Vec<f64>>>,
-    /// The ratios that the data shows.
+    /// The ratios that the data determines.
     pub covariance_of: Vec<&'static str>,
     /// Degrees of freedom of the covariance.
     pub degrees_of_freedom: Option<f64>,
@@ -52,7 +52,7 @@ pub struct Correction {
     pub e_s_interval: Option<[f64; 2]>,
     /// E_max,sys as driven, in m.
     pub e_max_sys_before_m: Option<f64>,
-    /// E_max,sys that is left with the correction, in m.
+    /// E_max,sys that remains with the correction, in m.
     pub e_max_sys_after_m: Option<f64>,
     /// Return errors of the recorded ticks with the nominal lengths.
     pub replayed_before: Option<Replayed>,
@@ -105,18 +105,17 @@ pub struct Calibration {
     pub sentence: Option<String>,
     /// "end_poses" or "tracks".
     pub observed: &'static str,
-    /// Metres that a radian of heading counted as, where whole tracks were fitted; else null.
+    /// Weight of a heading error in m per rad if whole tracks were fitted; otherwise null.
     pub heading_arm_m: Option<f64>,
     /// Probability with which the intervals hold.
     pub level: f64,
-    /// What was found of the data before anything was fitted: faults, clock and mounting of the reference, jumps, wrong poses, runs far from
-    /// the others.
+    /// Findings about the data before any fit: faults, clock and mounting of the reference, jumps, wrong poses, outlying runs.
     pub setup: Setup,
-    /// Effects of the reference whose values were taken from the motion.
+    /// Effects of the reference whose values were estimated from the motion.
     pub taken: Vec<Taken>,
-    /// What puts the corrected lengths in doubt, a sentence each; they are not exported then.
+    /// Reasons to doubt the corrected lengths, a sentence each; if there are any, nothing is exported.
     pub doubts: Vec<String>,
-    /// What to know of the data first; then what could not be determined, and why.
+    /// Warnings: first about the data, then what could not be determined, and why.
     pub warnings: Vec<String>,
     /// Version of umbmark.
     pub version: &'static str,

@@ -6,24 +6,24 @@ use serde::Serialize;
 use super::{Measured, ends};
 use crate::{dataset, stats};
 
-/// How the clock and the body of a run's track lie against those of the ticks.
+/// Offset of a track's clock and tracked body from those of the ticks, in one run.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Clock {
-    /// How much later the clock of the track is, in s.
+    /// Delay of the track's clock, in s.
     pub offset_s: Measured,
-    /// How much faster it goes, in s/s.
+    /// Rate by which it is fast, in s/s.
     pub rate: Measured,
-    /// How far ahead of the centre of the axle the tracked point lies, in m; null where the motion does not show it.
+    /// Distance of the tracked point ahead of the axle's centre, in m; null if the motion does not determine it.
     pub lever_ahead_m: Option<Measured>,
-    /// How far to the left of it the tracked point lies, in m; null where the motion does not show it.
+    /// Distance of the tracked point to the left of the axle's centre, in m; null if the motion does not determine it.
     pub lever_left_m: Option<Measured>,
-    /// Heading of the tracked body minus heading of the robot, in rad; null where the motion does not show it.
+    /// Heading of the tracked body minus heading of the robot, in rad; null if the motion does not determine it.
     pub yaw_rad: Option<Measured>,
-    /// Root mean square of what is left, in m.
+    /// Root mean square of the residuals, in m.
     pub misfit_m: f64,
     /// Number of windows that were compared.
     pub windows: usize,
-    /// Number of these that were left out.
+    /// Number of windows that were excluded.
     pub left_out: usize,
     /// Name of the run.
     pub run: String,

@@ -1,4 +1,4 @@
-//! What the closure of a square says.
+//! The closure of a square: contrasts, and end points on a circle.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -15,9 +15,9 @@ pub struct Contrast {
     pub unit: &'static str,
     /// Its value.
     pub value: f64,
-    /// Its 95 % interval; null where the runs do not give it.
+    /// Its 95 % interval; null if the runs do not determine it.
     pub interval: Option<[f64; 2]>,
-    /// What it means where it is not zero.
+    /// Its meaning if it is not zero.
     pub meaning: &'static str,
 }
 
@@ -27,24 +27,24 @@ impl From<&diagnose::Contrast> for Contrast {
     }
 }
 
-/// End points of a direction beside the circle through START.
+/// End points of a direction relative to the circle through START.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct OnCircle {
     /// "cw" or "ccw".
     pub direction: &'static str,
-    /// How far each end point lies off the circle, in m.
+    /// Distance of each end point outside the circle, in m.
     pub off_m: Vec<f64>,
     /// Mean of these, in m.
     pub mean_off_m: f64,
-    /// Its 95 % interval, in m; null where the runs do not give it.
+    /// Its 95 % interval, in m; null if the runs do not determine it.
     pub mean_off_interval_m: Option<[f64; 2]>,
     /// Mean distance of the end points from START, in m.
     pub distance_m: f64,
     /// The distance that the headings imply, in m; null where none were measured.
     pub distance_by_heading_m: Option<f64>,
-    /// Angle on the circle less the return heading, in rad; null where no headings were measured.
+    /// Angle on the circle minus the return heading, in rad; null where no headings were measured.
     pub angle_less_heading_rad: Option<f64>,
-    /// Its 95 % interval, in rad; null where the runs do not give it.
+    /// Its 95 % interval, in rad; null if the runs do not determine it.
     pub angle_less_heading_interval_rad: Option<[f64; 2]>,
     /// Whether the circle explains the end points.
     pub explained: bool,
@@ -66,12 +66,12 @@ impl From<&diagnose::OnCircle> for OnCircle {
     }
 }
 
-/// What the closure of a square says, as keys of a result.
+/// The closure of a square, as keys of a result.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Closure {
     /// Closure contrasts of a square driven both ways; empty for other paths.
     pub contrasts: Vec<Contrast>,
-    /// End points beside the circle through START; empty for other paths.
+    /// End points relative to the circle through START; empty for other paths.
     pub circle: Vec<OnCircle>,
 }
 

@@ -15,11 +15,11 @@ pub struct Statistic {
     pub measured: f64,
     /// As the model predicts it.
     pub predicted: f64,
-    /// Probability of so large a difference where the model is right.
+    /// Probability of a difference this large if the model is right.
     pub p: f64,
 }
 
-/// How one model does.
+/// Result of one model.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Judged {
     /// Its name.
@@ -28,7 +28,7 @@ pub struct Judged {
     pub explains: bool,
     /// p of all statistics together.
     pub p: f64,
-    /// "model" where the noise is the model's, "pooled" where it is that of the runs.
+    /// "model" if the noise is the model's, "pooled" if it is the scatter of the runs.
     pub noise: &'static str,
     /// Root mean square error of positions, in m.
     pub rmse_m: f64,
@@ -38,7 +38,7 @@ pub struct Judged {
     pub statistics: Keyed<Keyed<Statistic>>,
     /// Where it fails, a sentence each.
     pub sentences: Vec<String>,
-    /// What the model leaves.
+    /// The remaining error of the model.
     #[serde(flatten)]
     pub leaves: Leaves,
 }
@@ -73,7 +73,7 @@ impl Judged {
     }
 }
 
-/// Models beside measurements: which explain them, and where the others fail.
+/// Models compared with measurements: which explain them, and where the others fail.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Comparison {
     /// "end_poses".
@@ -84,12 +84,11 @@ pub struct Comparison {
     pub n_ccw: usize,
     /// The models, in the order in which they were given.
     pub models: Vec<Judged>,
-    /// What was found of the data before anything was fitted: faults, clock and mounting of the reference, jumps, wrong poses, runs far from
-    /// the others.
+    /// Findings about the data before any fit: faults, clock and mounting of the reference, jumps, wrong poses, outlying runs.
     pub setup: Setup,
-    /// What else should be said.
+    /// Further remarks, a sentence each.
     pub remarks: Vec<String>,
-    /// False-alarm rate: probability with which a right model is accused.
+    /// False-alarm rate: probability that a correct model is rejected.
     pub size: f64,
     /// Simulated tests for the p-values.
     pub draws: usize,
@@ -97,10 +96,10 @@ pub struct Comparison {
     pub seed: u64,
     /// Version of umbmark.
     pub version: &'static str,
-    /// What the closure of a square says.
+    /// The closure of a square: contrasts, and end points on a circle.
     #[serde(flatten)]
     pub closure: Closure,
-    /// What the model leaves which leaves least.
+    /// The remaining error of the best model.
     #[serde(flatten)]
     pub leaves: Leaves,
 }

@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::fitted::{Estimate, Outlier, estimates, meaning};
-use super::law::{Nearest, Repeated};
-use super::{Closure, Keyed, Leaves, Model, Setup, Taken, finite, reasons, taken};
+use super::fitted::{Estimate, estimates};
+use super::law::Nearest;
+use super::{Closure, Findings, Keyed, Leaves, Model, finite};
 use crate::diagnose::{self, Options, Why};
 use crate::drive::Robot;
 use crate::effect::effects_text;
@@ -20,7 +20,7 @@ pub struct GoodnessOfFit {
     pub statistic: f64,
     /// Degrees of freedom; null where its p is from simulated tests.
     pub degrees_of_freedom: Option<[f64; 2]>,
-    /// Probability of so large a statistic where nothing is missing.
+    /// Probability of a statistic this large if nothing is missing.
     pub p: f64,
 }
 
@@ -30,7 +30,7 @@ impl From<&diagnose::GoodnessOfFit> for GoodnessOfFit {
     }
 }
 
-/// A class of effects that may be missing, which this data cannot tell apart.
+/// A class of effects that may be missing and that this data cannot separate.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Suspect {
     /// Names of its effects.
@@ -41,19 +41,19 @@ pub struct Suspect {
     pub f: f64,
     /// Degrees of freedom of F.
     pub degrees_of_freedom: [f64; 2],
-    /// Probability of so large an F where it is absent.
+    /// Probability of an F this large if the effect is absent.
     pub p: f64,
-    /// The same, corrected for all classes that were asked.
+    /// The same, corrected for all classes that were tested.
     pub p_adjusted: f64,
-    /// The same by flips of the signs of runs; null where these were not asked.
+    /// The same by sign flips of runs; null if these were not tested.
     pub p_flips: Option<f64>,
     /// Values of the parameters of the best.
     pub estimate: Keyed<Option<f64>>,
     /// Their standard errors.
     pub standard_error: Keyed<Option<f64>>,
-    /// By how much adding it is expected to lower the sum of squares.
+    /// Expected decrease of the sum of squares if it is added.
     pub expected_drop: f64,
-    /// What the values mean for the robot; null where there is nothing to say.
+    /// Meaning of the values for the robot; null if it has none.
     pub meaning: Option<String>,
 }
 
@@ -78,27 +78,27 @@ impl Suspect {
     }
 }
 
-/// The least size of an effect that this data would show in four cases of five.
+/// Minimum detectable size of an effect: detected with a probability of 80 %.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct DetectableSize {
     /// The effect.
     pub effect: &'static str,
     /// The parameter that has the size.
     pub parameter: &'static str,
-    /// The size, in the unit of the parameter; null where no size would be seen.
+    /// The size, in the unit of the parameter; null if no size would be detected.
     pub size: Option<f64>,
 }
 
-/// A further experiment that tells two effects apart.
+/// A further experiment that separates two effects.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Experiment {
     /// The two effects.
     pub separates: (&'static str, &'static str),
     /// What to drive.
     pub experiment: String,
-    /// How long it takes, in min.
+    /// Its duration, in min.
     pub minutes: f64,
-    /// By how many standard deviations it puts them apart.
+    /// Separation of the two, in standard deviations.
     pub sd: f64,
 }
 
@@ -112,32 +112,32 @@ pub(super) fn experiments(experiments: &[diagnose::Experiment]) -> Vec<Experimen
     experiments.iter().map(one).collect()
 }
 
-/// How far a unit of a parameter moves an end pose.
+/// Change of an end pose per unit of a parameter.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Share {
     /// The effect.
     pub effect: &'static str,
     /// Its parameter.
     pub parameter: &'static str,
-    /// How far the position moves for a unit of the parameter, in m.
+    /// Shift of the position per unit of the parameter, in m.
     pub position_m_per_unit: f64,
-    /// How far the heading turns for a unit of the parameter, in rad.
+    /// Change of the heading per unit of the parameter, in rad.
     pub heading_rad_per_unit: f64,
 }
 
-/// A combination of parameters that the experiment does not show.
+/// A combination of parameters that the experiment does not determine.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Hidden {
     /// The weight of each parameter.
     pub weights: Keyed<f64>,
-    /// How much less it is seen than the combination that is seen best; null where it is not seen at all.
+    /// Units of the second parameter that have the effect of one unit of the first, for two parameters; otherwise null.
     pub ratio: Option<f64>,
 }
 
-/// What of the model this experiment determines.
+/// What this experiment determines of the model.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Identifiability {
-    /// Each free parameter, with what it does to end poses.
+    /// Each free parameter, with its influence on end poses.
     pub parameters: Vec<Share>,
     /// Number of combinations that are determined.
     pub rank: usize,
@@ -163,12 +163,12 @@ impl From<&diagnose::Identifiability> for Identifiability {
     }
 }
 
-/// What is added at a place, with its 95 % band.
+/// A point of a curve, with its 95 % band.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct CurvePoint {
-    /// The place, in the curve's `at_unit`.
+    /// Value of the covariate, in the curve's `at_unit`.
     pub at: f64,
-    /// What is added, in the curve's `unit`.
+    /// Value of the curve, in its `unit`.
     pub value: f64,
     /// Lower end of its band.
     pub low: f64,
@@ -176,18 +176,18 @@ pub struct CurvePoint {
     pub high: f64,
 }
 
-/// What is added to the motion, by what it depends on.
+/// The missing motion as a function of what it depends on.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Curve {
-    /// Unit of what it depends on.
+    /// Unit of the covariate.
     pub at_unit: &'static str,
-    /// Unit of what is added.
+    /// Unit of the missing motion.
     pub unit: String,
     /// Its points, in order.
     pub points: Vec<CurvePoint>,
 }
 
-/// A formula to try, and the share that it explains.
+/// A formula to try, and the share of the curve that it explains.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Suggestion {
     /// The formula as an effect of a model.
@@ -199,20 +199,20 @@ pub struct Suggestion {
     pub toml: String,
 }
 
-/// What is missing and not in the catalogue.
+/// A missing effect that is not in the catalogue.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Unlisted {
     /// What it acts on.
     pub acts_on: &'static str,
     /// What it depends on.
     pub depends_on: &'static str,
-    /// Probability of so strong a dependence where there is none, corrected for all that were asked.
+    /// Probability of a dependence this strong by chance, corrected for all tests.
     pub p_adjusted: f64,
     /// How it depends on it.
     pub curve: Curve,
-    /// The effect of the catalogue that explains the largest share of it; null where none explains any.
+    /// The effect of the catalogue that explains the largest share of it; null if no effect explains any.
     pub nearest: Option<Nearest>,
-    /// A formula to try; null where none is near.
+    /// A formula to try; null if none fits.
     pub suggestion: Option<Suggestion>,
 }
 
@@ -244,11 +244,11 @@ impl From<&diagnose::Dependence> for Unlisted {
     }
 }
 
-/// What a model is missing, how sure that is, and what this data cannot see.
+/// What a model is missing, how certain that is, and what this data cannot show.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Diagnosis {
-    /// "explained"; "missing_effect" or "several_missing"; "unlisted_effect", which is not in the catalogue; "not_explained", where the model
-    /// is not enough though no single effect is certified (`reasons` say why); or "not_enough_data".
+    /// "explained"; "missing_effect" or "several_missing"; "unlisted_effect", which is not in the catalogue; "not_explained" if the model
+    /// does not suffice although no single effect is certified (`reasons` say why); or "not_enough_data".
     pub verdict: &'static str,
     /// "end_poses" or "tracks".
     pub observed: &'static str,
@@ -256,42 +256,32 @@ pub struct Diagnosis {
     pub fitted: Vec<Estimate>,
     /// Tests of the whole model.
     pub goodness_of_fit: Vec<GoodnessOfFit>,
-    /// Classes of effects that were asked, the first `certified` of them missing.
+    /// Classes of effects that were tested; the first `certified` of them are missing.
     pub ranking: Vec<Suspect>,
-    /// How many of the ranking are missing.
+    /// Number of missing classes at the head of the ranking.
     pub certified: usize,
-    /// Effects that this data says nothing of; `absorbed` says by what.
+    /// Effects that this data cannot show; `absorbed` names the effects that mask them.
     pub invisible: Vec<&'static str>,
-    /// Effects that others of the model make up for, with these.
+    /// Effects that other effects of the model absorb, with the names of these.
     pub absorbed: Keyed<Vec<&'static str>>,
-    /// The least size of each effect that would have been seen.
+    /// Minimum detectable size of each effect.
     pub minimum_detectable: Keyed<Option<f64>>,
     /// The same for each parameter.
     pub minimum_detectable_sizes: Vec<DetectableSize>,
-    /// What to measure next, the most telling per minute first.
+    /// What to measure next, the most informative per minute first.
     pub next_experiments: Vec<Experiment>,
-    /// What of the model this experiment determines.
+    /// What this experiment determines of the model.
     pub identifiability: Identifiability,
-    /// What is missing and not in the catalogue; null where nothing is.
+    /// A missing effect that is not in the catalogue; null if there is none.
     pub unlisted: Option<Unlisted>,
-    /// The model, its free parameters fitted.
+    /// The model with its fitted parameters.
     pub model: Model,
-    /// What each fitted effect means for the robot, a sentence each.
-    pub meaning: Keyed<String>,
-    /// Jumps of tracks that are beyond noise.
-    pub outliers: Vec<Outlier>,
-    /// What was found of the data before anything was fitted: faults, clock and mounting of the reference, jumps, wrong poses, runs far from
-    /// the others.
-    pub setup: Setup,
-    /// Effects of the reference whose values were taken from the motion.
-    pub taken: Vec<Taken>,
-    /// Why the model is not called explained, a sentence each.
-    pub reasons: Vec<String>,
-    /// What repeats most beside the model, whether it counts or not; null without tracks.
-    pub repeats: Option<Repeated>,
-    /// What else should be said.
+    /// Findings about the model and the data.
+    #[serde(flatten)]
+    pub findings: Findings,
+    /// Further remarks, a sentence each.
     pub remarks: Vec<String>,
-    /// False-alarm rate: probability with which a complete model is accused.
+    /// False-alarm rate: probability that a complete model is rejected.
     pub size: f64,
     /// Simulated tests for p-values that have no closed form.
     pub draws: usize,
@@ -299,10 +289,10 @@ pub struct Diagnosis {
     pub seed: u64,
     /// Version of umbmark.
     pub version: &'static str,
-    /// What the closure of a square says.
+    /// The closure of a square: contrasts, and end points on a circle.
     #[serde(flatten)]
     pub closure: Closure,
-    /// What the model leaves.
+    /// The remaining error of the model.
     #[serde(flatten)]
     pub leaves: Leaves,
 }
@@ -330,12 +320,7 @@ impl Diagnosis {
             identifiability: (&diagnosis.identifiability).into(),
             unlisted: diagnosis.dependence.as_ref().map(Unlisted::from),
             model: (&diagnosis.model).into(),
-            meaning: meaning(&diagnosis.fitted, &diagnosis.model),
-            outliers: diagnosis.outliers.iter().map(Outlier::from).collect(),
-            setup: diagnosis.setup.as_ref().into(),
-            taken: taken(&diagnosis.taken),
-            reasons: reasons(&diagnosis.reasons),
-            repeats: diagnosis.repeats.as_ref().map(Repeated::from),
+            findings: diagnosis.into(),
             remarks: diagnosis.remarks.clone(),
             size: options.size,
             draws: options.draws,

@@ -17,13 +17,13 @@ pub struct Parameter {
     pub flag: String,
     /// Its unit.
     pub unit: &'static str,
-    /// What it is where nothing is said; a word where it takes words, or is of the robot.
+    /// Its default; a word if it takes words or comes from the robot.
     pub default: NumberOrWord,
     /// Its usual size.
     pub typical: f64,
-    /// The least and the greatest that it may be; an end null where it is open.
+    /// Its allowed range; an open end is null.
     pub bounds: [Option<f64>; 2],
-    /// The words that it takes; empty where it takes numbers.
+    /// The allowed words; empty if it takes numbers.
     pub choices: Vec<&'static str>,
     /// What it means.
     pub meaning: &'static str,
@@ -51,7 +51,7 @@ impl From<&parameter::Parameter> for Parameter {
     }
 }
 
-/// An effect of the catalogue: law, cause, signature, and what looks like it.
+/// An effect of the catalogue: equation, cause, signature, and effects that look like it.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Effect {
     /// Its name.
@@ -70,9 +70,9 @@ pub struct Effect {
     pub signature: &'static str,
     /// Effects that look like it.
     pub confused_with: Vec<&'static str>,
-    /// What tells it from these.
+    /// How to separate it from these.
     pub separated_by: &'static str,
-    /// Where it is from.
+    /// Its source.
     pub source: &'static str,
     /// Its parameters.
     pub parameters: Vec<Parameter>,

@@ -15,9 +15,9 @@ pub struct Estimate {
     pub parameter: &'static str,
     /// Its value, in the unit that the catalogue states.
     pub value: f64,
-    /// Its standard error; null where the data does not give it.
+    /// Its standard error; null if the data does not determine it.
     pub standard_error: Option<f64>,
-    /// Its interval; null where the data does not give it.
+    /// Its interval; null if the data does not determine it.
     pub interval: Option<[f64; 2]>,
 }
 
@@ -33,18 +33,18 @@ pub(super) fn estimates(estimates: &[evidence::Estimate], level: f64) -> Vec<Est
     estimates.iter().map(one).collect()
 }
 
-/// A jump of a track that is beyond noise.
+/// A jump of a track that exceeds the noise.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Outlier {
     /// Name of the run.
     pub run: String,
     /// Time since START, in s.
     pub time_s: f64,
-    /// How far it jumps, in m.
+    /// Length of the jump, in m.
     pub moved_m: f64,
-    /// How far it turns, in rad; null without headings.
+    /// Rotation in the jump, in rad; null without headings.
     pub turned_rad: Option<f64>,
-    /// Size of the jump, in standard deviations of the noise; null where that is not known.
+    /// Size of the jump, in standard deviations of the noise; null if that is not known.
     pub standard_deviations: Option<f64>,
 }
 
@@ -65,19 +65,18 @@ impl From<&likelihood::Outlier> for Outlier {
 pub struct Fitted {
     /// The free parameters.
     pub fitted: Vec<Estimate>,
-    /// Free effects that this data does not show apart from the rest; they keep their values.
+    /// Free effects that this data cannot separate from the rest; they keep their values.
     pub not_shown: Vec<&'static str>,
-    /// What each fitted effect means for the robot, a sentence each.
+    /// Meaning of each fitted effect for the robot, a sentence each.
     pub meaning: Keyed<String>,
-    /// Jumps of tracks that are beyond noise.
+    /// Jumps of tracks that exceed the noise.
     pub outliers: Vec<Outlier>,
-    /// Whether the values are those under noise of the usual sizes: from tracks, where these predict runs left out nearer than the likeliest
-    /// ones by a tenth.
+    /// Whether the values were fitted with noise of the usual sizes: only from tracks, if these values predict held-out runs better by a
+    /// tenth than those of maximum likelihood.
     pub usual_noise: bool,
-    /// What was found of the data before anything was fitted: faults, clock and mounting of the reference, jumps, wrong poses, runs far from
-    /// the others.
+    /// Findings about the data before any fit: faults, clock and mounting of the reference, jumps, wrong poses, outlying runs.
     pub setup: Setup,
-    /// Effects of the reference whose values were taken from the motion.
+    /// Effects of the reference whose values were estimated from the motion.
     pub taken: Vec<Taken>,
     /// The model with the fitted values.
     pub model: Model,
@@ -105,7 +104,7 @@ impl Fitted {
     }
 }
 
-/// Each fitted effect with what it means for the robot.
+/// Each fitted effect with its meaning for the robot.
 pub fn meaning(estimates: &[evidence::Estimate], model: &effect::Model) -> Keyed<String> {
     let mut said: Vec<(&str, String)> = Vec::new();
     for e in estimates {
@@ -116,7 +115,7 @@ pub fn meaning(estimates: &[evidence::Estimate], model: &effect::Model) -> Keyed
     said.into_iter().collect()
 }
 
-/// The free effects that were not fitted, because this data does not show them apart from the rest of the model.
+/// The free effects that were not fitted, because this data cannot separate them from the rest of the model.
 pub fn not_shown(model: &effect::Model, fitted: &[evidence::Estimate]) -> Vec<&'static str> {
     let free = model.parts().iter().filter(|part| part.free).map(|part| part.effect.name());
     free.filter(|name| fitted.iter().all(|e| e.effect != *name)).collect()

@@ -8,7 +8,7 @@ use super::fitted::{Estimate, estimates};
 use crate::drive::Robot;
 use crate::{diagnose, learn};
 
-/// What return poses of the path determine: so many combinations of so many sizes.
+/// How many combinations of the sizes the return poses of the path determine.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ReturnPosesDetermine {
     /// Number of combinations that are determined.
@@ -33,19 +33,19 @@ pub struct GearCalibration {
     pub drive: &'static str,
     /// The sizes of its first effects.
     pub fitted: Vec<Estimate>,
-    /// Effects that this data does not show apart from the rest; they keep their values.
+    /// Effects that this data cannot separate from the rest; they keep their values.
     pub not_shown: Vec<&'static str>,
     /// The keys of robot.toml that change, with their new values.
     pub corrected: Keyed<f64>,
-    /// What return poses can tell; null where the path is not known.
+    /// What return poses can determine; null if the path is not known.
     pub return_poses_determine: Option<ReturnPosesDetermine>,
     /// E_max,sys as driven, in m; null without runs of both directions.
     pub e_max_sys_before_m: Option<f64>,
-    /// What is left of it with the correction, in m.
+    /// The part of it that remains with the correction, in m.
     pub e_max_sys_after_m: Option<f64>,
     /// Probability with which the intervals hold.
     pub level: f64,
-    /// What to know of the data.
+    /// Warnings about the data.
     pub warnings: Vec<String>,
     /// Version of umbmark.
     pub version: &'static str,

@@ -8,7 +8,7 @@ use crate::dataset::{Dataset, RunTopics};
 use crate::inspect::{self, Wheels};
 use crate::path::Direction;
 
-/// Numbers of runs of one test and direction, and of what they have.
+/// Numbers of runs of one test and direction, and what these contain.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Group {
     /// "systematic" or "bumps".
@@ -38,25 +38,25 @@ impl From<&inspect::Group> for Group {
     }
 }
 
-/// What was mended in a log while it was read, counted.
+/// Number of defects of a log that were corrected while it was read.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Mended {
     /// Counters that rolled over.
     pub roll_overs: usize,
-    /// Counters that began anew.
+    /// Counters that restarted.
     pub resets: usize,
     /// Rows that were out of order.
     pub rows_out_of_order: usize,
-    /// Rows that stood there twice.
+    /// Duplicate rows.
     pub rows_repeated: usize,
-    /// Poses that were those of the row before.
+    /// Poses repeated from the previous row.
     pub stale_poses: usize,
 }
 
-/// Whether the wheels are what they are called, by the motion of the poses.
+/// Whether the motion of the poses confirms the names of the wheels.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct WheelFacts {
-    /// Whether they are.
+    /// Whether it does.
     pub as_named: bool,
     /// Whether left and right are exchanged.
     pub exchanged: bool,
@@ -81,7 +81,7 @@ impl From<Wheels> for WheelFacts {
 /// What was driven, by the ticks.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Moves {
-    /// Shape of the path; null where it is none that has a name.
+    /// Shape of the path; null if it has no name.
     pub shape: Option<&'static str>,
     /// The path in words.
     pub described: String,
@@ -115,15 +115,15 @@ pub struct ReferenceFacts {
     pub poses: usize,
     /// How many of them have a heading.
     pub headings: usize,
-    /// Poses in a second.
+    /// Poses per second.
     pub rate_hz: f64,
-    /// Where on the way they lie, in words.
+    /// Where along the path they lie, in words.
     pub coverage: String,
     /// The longest time without one, in s.
     pub longest_gap_s: f64,
-    /// Noise of a coordinate, in m; null where the poses do not show it.
+    /// Noise of a coordinate, in m; null if the poses do not determine it.
     pub noise_m: Option<f64>,
-    /// Noise of a heading, in rad; null where the poses do not show it.
+    /// Noise of a heading, in rad; null if the poses do not determine it.
     pub heading_noise_rad: Option<f64>,
 }
 
@@ -141,7 +141,7 @@ impl From<&inspect::ReferenceFacts> for ReferenceFacts {
     }
 }
 
-/// A log: its rows, and what its ticks and poses say.
+/// A log: its rows, and what its ticks and poses show.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct LogFacts {
     /// Name of its run.
@@ -150,29 +150,29 @@ pub struct LogFacts {
     pub direction: Option<&'static str>,
     /// Number of rows.
     pub rows: usize,
-    /// From the first row to the last, in s.
+    /// Time from the first row to the last, in s.
     pub duration_s: f64,
-    /// Rows in a second.
+    /// Rows per second.
     pub rate_hz: f64,
-    /// Scatter of the time from row to row, as a share of it.
+    /// Relative scatter of the time between rows.
     pub jitter: f64,
     /// The longest time without a row, in s.
     pub longest_gap_s: f64,
     /// Number of gaps.
     pub gaps: usize,
-    /// What was mended while it was read.
+    /// Defects that were corrected while it was read.
     pub mended: Mended,
     /// Length of the way by the ticks, in m; null without a nominal robot.
     pub length_m: Option<f64>,
     /// Heading at the end by the ticks, in rad; null without a nominal robot.
     pub heading_rad: Option<f64>,
-    /// How far that is off what the path asks for, in rad; null where the path is not known.
+    /// Its difference from the commanded heading, in rad; null if the path is not known.
     pub heading_off_rad: Option<f64>,
-    /// Whether the wheels are what they are called; null where the poses do not show it.
+    /// Whether the names of the wheels are right; null if the poses do not show it.
     pub wheels: Option<WheelFacts>,
     /// What was driven; null without a nominal robot.
     pub moves: Option<Moves>,
-    /// How much older than its stamp a pose is in the middle of the run, in s; null where the motion does not show it.
+    /// Age of a pose at its time stamp in the middle of the run, in s; null if the motion does not determine it.
     pub delay_s: Option<Measured>,
     /// Its absolute poses; null where it has none.
     pub reference: Option<ReferenceFacts>,
@@ -214,18 +214,18 @@ pub struct Topics {
     pub run: String,
     /// Topic of the wheels.
     pub wheels: String,
-    /// Topic of the reference; null where there is none.
+    /// Topic of the reference; null without one.
     pub reference: Option<String>,
 }
 
-/// A figure, and what good looks like.
+/// A check: what was found, and what is good.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Check {
-    /// What is looked at.
+    /// What is checked.
     pub name: String,
-    /// The figure that was found.
+    /// What was found.
     pub found: String,
-    /// What good looks like.
+    /// What would be good.
     pub good: String,
     /// Whether it is good.
     pub ok: bool,
@@ -234,16 +234,16 @@ pub struct Check {
 /// Whether the data determines a quantity, and why.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Determined {
-    /// What is asked for.
+    /// The quantity.
     pub quantity: String,
     /// Whether the data determines it.
     pub yes: bool,
-    /// Standard error that this data promises with noise of the usual size, as a share of one; null where the data does not show the
-    /// quantity, or it is no value of the robot.
+    /// Expected relative standard error with noise of the usual size; null if the data does not determine the quantity or it is not a value
+    /// of the robot.
     pub std_error: Option<f64>,
-    /// Usual size of the error in robots, as a share of one; null where it is no value of the robot.
+    /// Usual relative size of the error in robots; null if it is not a value of the robot.
     pub usual_size: Option<f64>,
-    /// Why, or what would help.
+    /// The reason, or what would help.
     pub because: String,
 }
 
@@ -264,15 +264,15 @@ pub struct Inspection {
     pub clocks: Vec<Clock>,
     /// Topics that were read.
     pub topics: Vec<Topics>,
-    /// Figures with what good looks like: is it any good?
+    /// Checks of the quality of the data.
     pub checks: Vec<Check>,
-    /// What it can say of the robot.
+    /// What it can determine of the robot.
     pub determined: Vec<Determined>,
     /// Number of combinations of E_d, E_b and E_s that it determines.
     pub rank: usize,
-    /// What was found of the runs from their motion and return errors; null without a robot.
+    /// Findings about the runs from their motion and return errors; null without a robot.
     pub setup: Option<Setup>,
-    /// What looks wrong.
+    /// Warnings, a sentence each.
     pub warnings: Vec<String>,
     /// Version of umbmark.
     pub version: &'static str,

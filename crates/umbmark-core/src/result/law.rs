@@ -1,4 +1,4 @@
-//! What repeats beside a model, and the laws that it may follow.
+//! The repeating part of the residuals of a model, and the laws that it may follow.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -7,12 +7,12 @@ use super::{Keyed, finite};
 use crate::diagnose;
 use crate::effect::{Formula, effects_text};
 
-/// The effect of the catalogue that comes nearest to what is missing.
+/// The effect of the catalogue that is most similar to the missing one.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Nearest {
     /// Its name.
     pub effect: &'static str,
-    /// The share that it explains.
+    /// The share of the missing effect that it explains.
     pub share: f64,
 }
 
@@ -27,8 +27,8 @@ impl Nearest {
 pub struct UnlistedLaw {
     /// Its number in the table of laws, as `--law` of `umbmark learn` takes it.
     pub number: usize,
-    /// The law as an effect of a model file, with start values or, once it was added, the fitted ones; null where formulas lack what it
-    /// depends on.
+    /// The law as an effect of a model file, with start values or, once it was added, the fitted ones; null if formulas do not have a
+    /// variable that it depends on.
     pub toml: Option<String>,
     /// Its formula; null where it cannot be written as one.
     pub formula: Option<String>,
@@ -44,21 +44,23 @@ pub struct UnlistedLaw {
     pub meaning: String,
     /// What it follows, in words.
     pub by: String,
-    /// What its length is of the robot or of its path, such as the circumference of a wheel; null where it has none or it is unknown.
+    /// What its length corresponds to on the robot or its path, such as the circumference of a wheel; null if it has no length or the
+    /// length is unknown.
     pub means: Option<String>,
-    /// The effect of the catalogue that comes nearest to it once it was added, and the share of its response that this makes, as a cosine.
+    /// The effect of the catalogue that is most similar to it after the fit, and the share of its response that this effect reproduces, as
+    /// a cosine.
     pub nearest: Option<Nearest>,
-    /// Whether it turns over with the sense of the run.
+    /// Whether it changes sign with the sense of the run.
     pub with_sense: bool,
-    /// How long the formula is: operations, variables and numbers.
+    /// Length of the formula: operations, variables and numbers.
     pub length: Option<usize>,
-    /// Error of runs left out, in m.
+    /// Error of held-out runs, in m.
     pub heldout_rmse_m: f64,
     /// The same with the law, in m.
     pub heldout_rmse_with_law_m: f64,
-    /// By what share errors of runs left out fall: of positions, of headings, or from pose to pose, whichever falls most.
+    /// Relative decrease of the errors of held-out runs: the largest of those of positions, of headings and from pose to pose.
     pub gain: f64,
-    /// Share of its response that the law which is taken makes as well, as a cosine.
+    /// Share of its response that the chosen law reproduces, as a cosine.
     pub likeness: f64,
 }
 
@@ -92,21 +94,21 @@ impl From<&diagnose::UnlistedLaw> for UnlistedLaw {
     }
 }
 
-/// What is left of the error and repeats: the law that it is taken for, and its p.
+/// The repeating part of the remaining error: the law that was chosen for it, and its p.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Repeated {
     /// The law.
     #[serde(flatten)]
     pub law: UnlistedLaw,
-    /// Of all laws together, by flips of the signs of runs.
+    /// p of all laws together, by sign flips of runs.
     pub p: f64,
-    /// Size of the greatest score of a law, in standard deviations of the noise model.
+    /// Largest score of any law, in standard deviations of the noise model.
     pub standard_deviations: f64,
-    /// How many laws there are that the data could show.
+    /// Number of laws that the data could show.
     pub laws: usize,
-    /// Formulas of those that these runs cannot tell from it.
+    /// Formulas of the laws that these runs cannot separate from it.
     pub class: Vec<String>,
-    /// Others that stand out, the one that predicts runs left out best first.
+    /// Other significant laws, the one that predicts held-out runs best first.
     pub others: Vec<UnlistedLaw>,
 }
 

@@ -4,30 +4,30 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::diagnosis::{Experiment, Unlisted, experiments};
-use super::fitted::{Estimate, Outlier, estimates, meaning};
+use super::fitted::{Estimate, estimates};
 use super::law::Repeated;
 use super::solution::{Changes, changes};
-use super::{Keyed, Leaves, Model, Setup, Taken, finite, reasons, taken};
+use super::{Findings, Leaves, Model, finite};
 use crate::diagnose::Options;
 use crate::learn;
 use crate::solve::Solution;
 
-/// One line of the story of a learnt model.
+/// One step of learning.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Step {
     /// The effect that was added; null for the nominal robot.
     pub added: Option<&'static str>,
-    /// Effects that this data cannot tell from it, itself among them.
+    /// Effects that this data cannot separate from it, including itself.
     pub class: Vec<&'static str>,
-    /// p of it, corrected for all classes that were asked; null where nothing was asked.
+    /// Its p, corrected for all classes that were tested; null if nothing was tested.
     pub p_adjusted: Option<f64>,
-    /// The law of a step which no effect of the catalogue makes: how it was found, what else it may be, and its formula as it was fitted.
+    /// For a law outside the catalogue: how it was found, its alternatives, and its fitted formula.
     pub law: Option<Repeated>,
     /// Error of positions in the runs that the model was fitted to, in m.
     pub rmse_m: Option<f64>,
     /// The same of headings, in rad; null where none were measured.
     pub heading_rmse_rad: Option<f64>,
-    /// Error of positions in runs left out, in m.
+    /// Error of positions in held-out runs, in m.
     pub heldout_rmse_m: Option<f64>,
     /// The same of headings, in rad; null where none were measured.
     pub heldout_heading_rmse_rad: Option<f64>,
@@ -59,38 +59,28 @@ impl From<&learn::Step> for Step {
 pub struct Learnt {
     /// The nominal robot, and each effect that was added.
     pub steps: Vec<Step>,
-    /// What the last diagnosis says, in the words of `Diagnosis`.
+    /// Verdict of the last diagnosis; see `Diagnosis`.
     pub verdict: &'static str,
-    /// What is missing and not in the catalogue; null where nothing is.
+    /// A missing effect that is not in the catalogue; null if there is none.
     pub unlisted: Option<Unlisted>,
-    /// What to measure next, the most telling per minute first.
+    /// What to measure next, the most informative per minute first.
     pub next_experiments: Vec<Experiment>,
     /// The model that was learnt.
     pub model: Model,
     /// Its free parameters.
     pub fitted: Vec<Estimate>,
-    /// What each fitted effect means for the robot, a sentence each.
-    pub meaning: Keyed<String>,
-    /// Jumps of tracks that are beyond noise.
-    pub outliers: Vec<Outlier>,
-    /// What was found of the data before anything was fitted: faults, clock and mounting of the reference, jumps, wrong poses, runs far from
-    /// the others.
-    pub setup: Setup,
-    /// Effects of the reference whose values were taken from the motion.
-    pub taken: Vec<Taken>,
-    /// Why the model is not called explained, a sentence each.
-    pub reasons: Vec<String>,
-    /// What repeats most beside the model, whether it counts or not; null without tracks.
-    pub repeats: Option<Repeated>,
+    /// Findings about the model and the data.
+    #[serde(flatten)]
+    pub findings: Findings,
     /// The new numbers of the robot by their keys in robot.toml, as of `solve`; empty where these runs show none.
     pub correction: Changes,
     /// The answer in words, as of `solve`.
     pub sentence: String,
-    /// What else should be said.
+    /// Further remarks, a sentence each.
     pub remarks: Vec<String>,
     /// Whether it was stopped while an effect was still missing.
     pub partial: bool,
-    /// Probability with which an effect is added to a complete model.
+    /// False-alarm rate: probability that an effect is added to a complete model.
     pub size: f64,
     /// Simulated tests for p-values that have no closed form.
     pub draws: usize,
@@ -98,7 +88,7 @@ pub struct Learnt {
     pub seed: u64,
     /// Version of umbmark.
     pub version: &'static str,
-    /// What the model leaves.
+    /// The remaining error of the model.
     #[serde(flatten)]
     pub leaves: Leaves,
 }
@@ -115,12 +105,7 @@ impl Learnt {
             next_experiments: experiments(&diagnosis.next_experiments),
             model: Model::with_noise(&learnt.model, learnt.noise.as_ref()),
             fitted: estimates(&diagnosis.fitted, 1.0 - options.size),
-            meaning: meaning(&diagnosis.fitted, &learnt.model),
-            outliers: diagnosis.outliers.iter().map(Outlier::from).collect(),
-            setup: diagnosis.setup.as_ref().into(),
-            taken: taken(&diagnosis.taken),
-            reasons: reasons(&diagnosis.reasons),
-            repeats: diagnosis.repeats.as_ref().map(Repeated::from),
+            findings: diagnosis.into(),
             correction: changes(&solution.changes),
             sentence: solution.sentence(),
             remarks: learnt.remarks.clone(),

@@ -17,7 +17,7 @@ pub struct RobotFacts {
     pub wheel_diameter_left_m: f64,
     /// Diameter of its right wheel, in m.
     pub wheel_diameter_right_m: f64,
-    /// Ticks of an encoder in a revolution of its wheel.
+    /// Ticks of an encoder per revolution of its wheel.
     pub ticks_per_revolution: f64,
     /// How often the encoders are read, in Hz; null where that is not known.
     pub encoder_rate_hz: Option<f64>,

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::paper::{BothWays, BumpPlace, Cluster, Masking, TableOne, TableTwo};
 
-/// The paper's experiments; those that were not asked for are left out.
+/// The paper's experiments; those that were not requested are left out.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Paper {
     /// E_max,sys and sigma of every robot, simulated.

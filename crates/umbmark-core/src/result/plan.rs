@@ -8,7 +8,7 @@ use super::{Keyed, Runs};
 use crate::diagnose::{self, Options};
 use crate::plan::{self, Findings, Request, Setting, Shown};
 
-/// A size that is to be seen, and how many runs a direction show it.
+/// A size to be detected, and the runs per direction that detect it.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Sought {
     /// The effect.
@@ -19,15 +19,15 @@ pub struct Sought {
     pub value: f64,
     /// "calibrate", "diagnose", "not_asked" or "never".
     pub seen_by: &'static str,
-    /// The effects of the model that make up for it; null where it is not "never" seen.
+    /// The effects of the model that absorb it; null unless it is "never" detected.
     pub absorbed_by: Option<Vec<&'static str>>,
-    /// Runs a direction that show it; null where 1000 do not.
+    /// Runs per direction that detect it; null if 1000 are not enough.
     pub runs: Option<usize>,
-    /// The same at both ends of the interval of the scatter; null where that is not from data.
+    /// The same at both ends of the interval of the scatter; null if that is not from data.
     pub runs_at_sigma_interval: Option<[Option<usize>; 2]>,
-    /// Probability with which the planned runs show it.
+    /// Probability that the planned runs detect it.
     pub power: f64,
-    /// Experiments that would show it where return poses do not.
+    /// Experiments that would detect it if return poses do not.
     pub experiments: Vec<Experiment>,
 }
 
@@ -53,14 +53,14 @@ impl From<&plan::Answer> for Sought {
     }
 }
 
-/// The least size of an effect that is seen with the wanted power.
+/// Minimum size of an effect that is detected with the wanted power.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct LeastSize {
     /// The effect.
     pub effect: &'static str,
     /// Its parameter.
     pub parameter: &'static str,
-    /// The size, in the unit of the parameter; null where none is seen.
+    /// The size, in the unit of the parameter; null if none is detected.
     pub size: Option<f64>,
 }
 
@@ -73,7 +73,7 @@ fn least(sizes: &[plan::Sought], values: &[Option<f64>]) -> Vec<LeastSize> {
     sizes.iter().zip(values).map(one).collect()
 }
 
-/// E_max,sys as tests would read it, and how well.
+/// E_max,sys as tests would measure it, and how precisely.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ExpectedEMaxSys {
     /// Mean over tests, in m.
@@ -82,7 +82,7 @@ pub struct ExpectedEMaxSys {
     pub std_dev: f64,
     /// Half the width of its interval, in m.
     pub interval_half_width_m: f64,
-    /// The share of tests whose interval holds the true value.
+    /// Share of tests whose interval contains the true value.
     pub coverage: f64,
     /// Number of simulated tests.
     pub tests: u32,
@@ -90,16 +90,16 @@ pub struct ExpectedEMaxSys {
     pub noise_band_m: f64,
 }
 
-/// What a number of runs a direction shows.
+/// What a number of runs per direction can detect.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct OfRuns {
     /// Runs in each direction.
     pub runs: usize,
-    /// How long they take, in min.
+    /// Their duration, in min.
     pub minutes: f64,
-    /// E_max,sys as they would read it.
+    /// E_max,sys as they would measure it.
     pub e_max_sys_m: ExpectedEMaxSys,
-    /// The least sizes that they show.
+    /// The minimum sizes that they detect.
     pub minimum_detectable: Vec<LeastSize>,
 }
 
@@ -129,13 +129,13 @@ pub struct Alternative {
     pub what: String,
     /// Numbers of runs.
     pub runs: Runs,
-    /// How long it takes, in min.
+    /// Its duration, in min.
     pub minutes: f64,
     /// Scatter of the return positions, one coordinate, in m.
     pub sigma_m: f64,
-    /// Half the width of the interval of E_max,sys, in m; null where the test does not give one.
+    /// Half the width of the interval of E_max,sys, in m; null if the test does not give one.
     pub e_max_sys_interval_half_width_m: Option<f64>,
-    /// The least sizes that it shows.
+    /// The minimum sizes that it detects.
     pub minimum_detectable: Vec<LeastSize>,
 }
 
@@ -160,7 +160,7 @@ pub struct ExtendedTest {
     pub bumps: f64,
     /// Runs in each direction.
     pub runs: usize,
-    /// How long they take, in min.
+    /// Their duration, in min.
     pub minutes: f64,
     /// Average absolute orientation error (Eq. 5), in rad.
     pub nonsys_orientation_rad: f64,
@@ -168,18 +168,18 @@ pub struct ExtendedTest {
     pub interval_half_width_rad: f64,
 }
 
-/// A change over the session, and the error that it makes in an order of the runs.
+/// A change over the session, and the error that it causes for an order of the runs.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Drift {
     /// The effect that changes.
     pub effect: &'static str,
     /// Its parameter.
     pub parameter: &'static str,
-    /// By how much it changes, in the unit of the parameter.
+    /// Its change, in the unit of the parameter.
     pub change: f64,
     /// "mirrored", "alternating" or "blocks".
     pub order: &'static str,
-    /// The error that it makes, of each quantity.
+    /// The error that it causes in each quantity.
     pub error: Keyed<f64>,
     /// The same in standard deviations.
     pub error_sd: Keyed<f64>,
@@ -205,39 +205,39 @@ pub struct Plan {
     pub robot: String,
     /// Runs in each direction that are planned.
     pub runs: usize,
-    /// How long a run takes, in min.
+    /// Duration of a run, in min.
     pub minutes_a_run: f64,
     /// Scatter of the return positions, one coordinate, in m.
     pub sigma_m: f64,
-    /// Its interval, in m; null where it is not from data.
+    /// Its interval, in m; null if it is not from data.
     pub sigma_interval_m: Option<[f64; 2]>,
     /// E_max,sys of the robot on its path, in m.
     pub e_max_sys_m: f64,
     /// Whether return headings are measured.
     pub with_heading: bool,
-    /// Probability with which a size is to be seen.
+    /// Power: probability with which a size should be detected.
     pub power: f64,
-    /// False-alarm rate: probability with which a robot without it is accused.
+    /// False-alarm rate: probability of detecting an effect that the robot does not have.
     pub size: f64,
-    /// Simulated tests behind every figure that has no closed form.
+    /// Simulated tests for every figure without a closed form.
     pub draws: usize,
     /// Seed of those.
     pub seed: u64,
-    /// The sizes that are to be seen, with the runs that they take.
+    /// The sizes to be detected, with the runs that they need.
     pub see: Vec<Sought>,
-    /// What each number of runs a direction shows.
+    /// What each number of runs per direction can detect.
     pub by_runs: Vec<OfRuns>,
-    /// Effects that no number of runs shows.
+    /// Effects that no number of runs can detect.
     pub invisible: Vec<&'static str>,
     /// Another size, another speed, one direction only.
     pub alternatives: Vec<Alternative>,
     /// The extended test; null without bumps.
     pub extended: Option<ExtendedTest>,
-    /// What a drift of the session does in each order of the runs.
+    /// Error from a drift over the session, for each order of the runs.
     pub order: Vec<Drift>,
     /// What was assumed, a phrase each.
     pub assumed: Vec<String>,
-    /// Whether it was stopped before all was looked at.
+    /// Whether it was stopped early.
     pub partial: bool,
     /// Version of umbmark.
     pub version: &'static str,
@@ -279,14 +279,14 @@ impl Plan {
     }
 }
 
-/// Experiments that tell two effects apart, the most telling per minute first.
+/// Experiments that separate two effects, the most informative per minute first.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Separation {
     /// The two effects.
     pub separates: (String, String),
-    /// What the experiments come on top of.
+    /// The data to which the experiments are added.
     pub beside: String,
-    /// How many standard deviations apart each puts them, and how long it takes.
+    /// The experiments, each with its separation in standard deviations and its duration.
     pub next_experiments: Vec<Experiment>,
     /// Seed of the simulated tests.
     pub seed: u64,

@@ -1,4 +1,4 @@
-//! What a model leaves.
+//! The remaining error of a model.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -7,19 +7,19 @@ use super::finite;
 use crate::stats::Interval;
 use crate::{diagnose, likelihood};
 
-/// How much of an error is the same in every run of a path, at least.
+/// Lower bound of the part of an error that is the same in every run of a path.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Repeats {
     /// Root mean square, in m or rad.
     pub value: f64,
-    /// Lower end of its 95 % interval; null below three runs.
+    /// Lower end of its 95 % interval; null for fewer than three runs.
     pub low: Option<f64>,
-    /// Upper end of its 95 % interval; null below three runs.
+    /// Upper end of its 95 % interval; null for fewer than three runs.
     pub high: Option<f64>,
 }
 
 impl Repeats {
-    /// That of what is left; nothing where no two runs drive one path.
+    /// That of a remaining error; nothing if no two runs drive one path.
     pub(super) fn of(left: &diagnose::Left) -> Option<Repeats> {
         let repeats = left.repeats?;
         let [low, high] = [|i: Interval| i.low, |i: Interval| i.high].map(|end| repeats.interval.map(end));
@@ -27,7 +27,7 @@ impl Repeats {
     }
 }
 
-/// A source of chance, and the error that it alone would leave.
+/// A source of noise, and the error that it alone would cause.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Chance {
     /// Its name.
@@ -47,35 +47,35 @@ pub struct Disturbance {
     pub t_s: f64,
     /// How far the wheels have rolled by then, in m.
     pub rolled_m: f64,
-    /// Whether the robot was moved and stayed so, as by a bump; else the reference was off for a moment.
+    /// Whether the robot was displaced for good, as by a bump; otherwise the reference was wrong for a moment.
     pub lasts: bool,
-    /// By how much ahead, as the robot sees it, in m.
+    /// Displacement ahead in the robot's frame, in m.
     pub forward_m: f64,
-    /// By how much to the left, as the robot sees it, in m.
+    /// Displacement to the left in the robot's frame, in m.
     pub left_m: f64,
-    /// By how much it turned to the left, in rad; 0 where headings were not measured.
+    /// Rotation to the left, in rad; 0 if headings were not measured.
     pub heading_rad: f64,
     /// The same in standard deviations of the noise.
     pub standard_deviations: f64,
 }
 
-/// What a model leaves.
+/// The remaining error of a model.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Remains {
     /// Root mean square error of positions, in m.
     pub left_m: Option<f64>,
-    /// How much of it is the same in every run: the root of the mean product of what is left in two runs at the same share of one path;
-    /// null where no two runs drive one path.
+    /// The part that is the same in every run: the root of the mean product of the residuals of two runs at the same share of the path;
+    /// null if no two runs drive one path.
     pub repeats_m: Option<Repeats>,
     /// Root mean square error of headings, in rad; null where none were measured.
     pub left_rad: Option<f64>,
-    /// How much of that is the same in every run; null where no two runs drive one path or no headings were measured.
+    /// The part of it that is the same in every run; null if no two runs drive one path or no headings were measured.
     pub repeats_rad: Option<Repeats>,
-    /// How many pairs of runs that rests on.
+    /// Number of pairs of runs for these.
     pub pairs_of_one_path: usize,
-    /// What each source of noise would leave; empty for return poses.
+    /// Error that each source of noise alone would cause; empty for return poses.
     pub chance: Vec<Chance>,
-    /// Bumps and slips met by chance, and poses of the reference that are off.
+    /// Accidental bumps and slips, and wrong poses of the reference.
     pub disturbances: Vec<Disturbance>,
 }
 
@@ -109,14 +109,14 @@ impl From<&diagnose::Remains> for Remains {
     }
 }
 
-/// What a model leaves, as the last keys of a result.
+/// The remaining error of a model, as the last keys of a result.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Leaves {
-    /// Error that is left, in m.
+    /// Remaining error, in m.
     pub left_m: Option<f64>,
-    /// How much of it is the same in every run of one path, in m; null where no two runs drive one path.
+    /// The part of it that is the same in every run of one path, in m; null if no two runs drive one path.
     pub repeats_m: Option<Repeats>,
-    /// The same in detail, with what chance there is; null where columns are not what they are called.
+    /// The same in detail, with the sources of noise; null if columns contradict their names.
     pub remains: Option<Remains>,
 }
 
@@ -130,7 +130,7 @@ impl From<Option<&diagnose::Remains>> for Leaves {
     }
 }
 
-/// Of several models that which leaves least.
+/// That of the model with the smallest remaining error.
 pub(super) fn least_left<'a>(of: impl Iterator<Item = &'a diagnose::Remains>) -> Option<&'a diagnose::Remains> {
     of.min_by(|a, b| a.position.rms.total_cmp(&b.position.rms))
 }

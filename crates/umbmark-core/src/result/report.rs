@@ -3,23 +3,23 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// What a study comes to.
+/// The result of a study.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Said {
     /// Its name.
     pub name: String,
-    /// What to know of its data first, a sentence each.
+    /// Warnings about its data, a sentence each.
     pub notices: Vec<String>,
-    /// What it comes to, in one sentence.
+    /// Its result, in one sentence.
     pub verdict: String,
 }
 
-/// A page of everything.
+/// A page with all results.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Report {
     /// Its length.
     pub bytes: usize,
-    /// The verdict of each study on it, and what to know of its data first.
+    /// The verdict of each study on it, and the warnings about its data.
     pub studies: Vec<Said>,
     /// Seed of all random numbers.
     pub seed: u64,

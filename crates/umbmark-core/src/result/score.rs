@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::{Setup, ends, pair};
 use crate::score::{self, CentroidInterval, Cluster, Convention};
 
-/// The ellipse that holds a centre of gravity.
+/// The confidence ellipse of a centre of gravity.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Ellipse {
     /// Major semi-axis, in m.
@@ -27,15 +27,15 @@ impl Ellipse {
 
 /// The scores of a UMBmark test, with intervals that hold with probability `level`.
 ///
-/// Lengths are in m, angles in rad, counter-clockwise positive; points are (x, y), intervals (low, high). A score is null where the runs do
-/// not give it, and `warnings` says why.
+/// Lengths are in m, angles in rad, counter-clockwise positive; points are (x, y), intervals (low, high). A score is null if the runs do
+/// not determine it, and `warnings` says why.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Score {
     /// E_max,sys: the larger distance of the two centroids from START (Eq. 4).
     pub e_max_sys_m: Option<f64>,
     /// Its interval; null with fewer than three runs in a direction.
     pub e_max_sys_interval_m: Option<[f64; 2]>,
-    /// E_max,sys that a robot without systematic error stays below, by the scatter of its runs.
+    /// The value of E_max,sys that chance alone would reach, from the scatter of the runs.
     pub noise_band_m: Option<f64>,
     /// Standard deviation of one coordinate about its direction's centroid, n - 1, pooled over both coordinates and directions.
     pub sigma_m: Option<f64>,
@@ -49,7 +49,7 @@ pub struct Score {
     pub centroid_cw_m: Option<[f64; 2]>,
     /// The intervals of its coordinates.
     pub centroid_cw_interval_m: Option<[Option<[f64; 2]>; 2]>,
-    /// The ellipse that holds it.
+    /// Its confidence ellipse.
     pub centroid_cw_ellipse: Option<Ellipse>,
     /// Mean return heading of the clockwise runs whose heading was measured (Eq. 6).
     pub return_heading_cw_rad: Option<f64>,
@@ -61,7 +61,7 @@ pub struct Score {
     pub centroid_ccw_m: Option<[f64; 2]>,
     /// The intervals of its coordinates.
     pub centroid_ccw_interval_m: Option<[Option<[f64; 2]>; 2]>,
-    /// The ellipse that holds it.
+    /// Its confidence ellipse.
     pub centroid_ccw_ellipse: Option<Ellipse>,
     /// Mean return heading of the counter-clockwise runs whose heading was measured (Eq. 6).
     pub return_heading_ccw_rad: Option<f64>,
@@ -71,7 +71,7 @@ pub struct Score {
     pub nonsys_orientation_rad: Option<f64>,
     /// Its interval.
     pub nonsys_orientation_interval_rad: Option<[f64; 2]>,
-    /// "mean" for half of Eq. 5, which Table II has, or "sum" for Eq. 5 as printed.
+    /// "mean" for half of Eq. 5, as used in Table II, or "sum" for Eq. 5 as printed.
     pub nonsys_convention: Option<&'static str>,
     /// Number of clockwise runs with bumps.
     pub n_bumps_cw: usize,
@@ -79,10 +79,10 @@ pub struct Score {
     pub n_bumps_ccw: usize,
     /// Probability with which each interval holds.
     pub level: f64,
-    /// What was found of the runs before they were scored: faults, jumps and wrong poses of tracks, runs whose return is far from the
-    /// others. Empty where return errors were given in arrays.
+    /// Findings about the runs before they were scored: faults, jumps and wrong poses of tracks, outlying returns. Empty if return errors
+    /// were given in arrays.
     pub setup: Setup,
-    /// What to know of the data first; then what could not be computed and why, and what looks wrong.
+    /// Warnings: first about the data, then what could not be computed and why, and what looks wrong.
     pub warnings: Vec<String>,
     /// Version of umbmark.
     pub version: &'static str,

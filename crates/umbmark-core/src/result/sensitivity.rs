@@ -20,7 +20,7 @@ pub enum Found {
 }
 
 impl Found {
-    /// Whether less was done than was asked for.
+    /// Whether it was stopped before all of it was done.
     pub fn is_partial(&self) -> bool {
         match self {
             Found::Sobol(indices) => indices.partial,
@@ -50,9 +50,9 @@ pub struct Asked<'a> {
 /// A number with its interval.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct WithInterval {
-    /// The number; null where it cannot be estimated.
+    /// The number; null if it cannot be estimated.
     pub value: Option<f64>,
-    /// Its 95 % interval, an end null where it cannot be estimated.
+    /// Its 95 % interval; an end is null if it cannot be estimated.
     pub interval: [Option<f64>; 2],
 }
 
@@ -66,9 +66,9 @@ impl From<&sensitivity::Estimate> for WithInterval {
 /// The share of two parameters together.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct OfPair {
-    /// The share; null where it cannot be estimated.
+    /// The share; null if it cannot be estimated.
     pub value: Option<f64>,
-    /// Its 95 % interval, an end null where it cannot be estimated.
+    /// Its 95 % interval; an end is null if it cannot be estimated.
     pub interval: [Option<f64>; 2],
     /// The two parameters.
     pub of: (String, String),
@@ -83,10 +83,10 @@ pub struct OfMetric {
     /// Its standard deviation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub std_dev: Option<WithInterval>,
-    /// Sobol indices: the share of the variance that a parameter makes alone.
+    /// Sobol indices: the share of the variance that a parameter causes alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub first: Option<Keyed<WithInterval>>,
-    /// Sobol indices: the share that it makes alone and with others.
+    /// Sobol indices: the share that it causes alone and together with others.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub total: Option<Keyed<WithInterval>>,
     /// Sobol indices of pairs.
@@ -194,7 +194,7 @@ pub struct Sensitivity {
     pub evaluations: Option<u64>,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Whether less was done than was asked for.
+    /// Whether it was stopped before all of it was done.
     pub partial: bool,
     /// "simulated" or "absent".
     pub noise: &'static str,

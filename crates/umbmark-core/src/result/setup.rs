@@ -12,9 +12,9 @@ use crate::{likelihood, setup, stats};
 pub struct Measured {
     /// The estimate.
     pub value: f64,
-    /// Its standard error; null where the data does not give it.
+    /// Its standard error; null if the data does not determine it.
     pub std_error: Option<f64>,
-    /// Its 95 % interval; null where the data does not give it.
+    /// Its 95 % interval; null if the data does not determine it.
     pub interval: Option<[f64; 2]>,
 }
 
@@ -24,7 +24,7 @@ impl From<&stats::Measured> for Measured {
     }
 }
 
-/// A column, a unit or a frame that is not what it is called, and how to correct it.
+/// A column, unit or frame that contradicts its name, and how to correct it.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Fault {
     /// The fault, in a sentence.
@@ -33,18 +33,18 @@ pub struct Fault {
     pub remedy: String,
 }
 
-/// How the poses of the reference lie against the wheels, over all runs.
+/// How the poses of the reference relate to the wheels, over all runs.
 ///
-/// A quantity is null where the motion does not show it.
+/// A quantity is null if the motion does not determine it.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Mounting {
-    /// How much older than its stamp a pose is in the middle of a run, in s.
+    /// Age of a pose at its time stamp, in the middle of a run, in s.
     pub delay_s: Measured,
-    /// How much the delay grows in a second, in s/s.
+    /// Growth of the delay, in s/s.
     pub clock_rate: Option<Measured>,
-    /// How far ahead of the centre of the axle the tracked point lies, in m.
+    /// Distance of the tracked point ahead of the axle's centre, in m.
     pub ahead_m: Option<Measured>,
-    /// How far to the left of it the tracked point lies, in m.
+    /// Distance of the tracked point to the left of the axle's centre, in m.
     pub left_m: Option<Measured>,
     /// Heading of the tracked body minus heading of the robot, in rad.
     pub yaw_rad: Option<Measured>,
@@ -72,7 +72,7 @@ impl From<&setup::Mounting> for Mounting {
     }
 }
 
-/// How much older than its stamp a pose of a run is.
+/// The delay of the reference in a run.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Delay {
     /// Name of the run.
@@ -81,7 +81,7 @@ pub struct Delay {
     pub delay_s: Option<Measured>,
 }
 
-/// A place where a track jumps, or a few seconds in which robot and wheels part.
+/// A place where a track jumps, or a few seconds in which robot and wheels disagree.
 ///
 /// A wheel slipped, the robot was pushed or carried, or the reference lost it.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -92,9 +92,9 @@ pub struct Jump {
     pub since_s: f64,
     /// Time of the first pose behind it, in s.
     pub time_s: f64,
-    /// How far the tracked point moved without the wheels, in m.
+    /// Motion of the tracked point that the wheels did not make, in m.
     pub moved_m: f64,
-    /// How far it turned without the wheels, in rad; null without headings.
+    /// Rotation that the wheels did not make, in rad; null without headings.
     pub turned_rad: Option<f64>,
     /// Size of the jump, in standard deviations of the motion from pose to pose; null where that is not known.
     pub standard_deviations: Option<f64>,
@@ -113,20 +113,20 @@ impl Jump {
     }
 }
 
-/// A pose that is wrong: the poses around it contradict it.
+/// A wrong pose: its neighbours contradict it.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct WrongPose {
     /// Name of the run.
     pub run: String,
     /// Time since the log began, in s.
     pub time_s: f64,
-    /// Distance from where the poses around it place it, in m.
+    /// Distance from the place that its neighbours imply, in m.
     pub moved_m: f64,
     /// The same for the heading, in rad; null without headings.
     pub turned_rad: Option<f64>,
 }
 
-/// A coordinate of a return error that lies far from those of the other runs.
+/// A coordinate of a return error that is far from those of the other runs.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Deviant {
     /// "x", "y" or "heading".
@@ -135,7 +135,7 @@ pub struct Deviant {
     pub value: f64,
     /// Mean of the other runs, in the same unit.
     pub mean_of_others: f64,
-    /// Distance from that mean, in standard deviations of a run about it; null where the others do not scatter.
+    /// Distance from that mean, in standard deviations of a run about it; null if the others do not scatter.
     pub standard_deviations: Option<f64>,
 }
 
@@ -165,9 +165,9 @@ pub struct OutlyingReturn {
     pub moved_m: f64,
     /// Its heading minus their mean, in rad; null without headings.
     pub turned_rad: Option<f64>,
-    /// Distance of the farthest coordinate, in standard deviations; null where the others do not scatter.
+    /// Distance of the farthest coordinate, in standard deviations; null if the others do not scatter.
     pub standard_deviations: Option<f64>,
-    /// The coordinates that are off, the farthest first.
+    /// The outlying coordinates, the farthest first.
     pub deviants: Vec<Deviant>,
     /// The finding in words.
     pub said: String,
@@ -194,11 +194,10 @@ impl From<&setup::OutlyingReturn> for OutlyingReturn {
 
 /// What was found of an experiment before any model was fitted.
 ///
-/// All of it follows from the motion and the return errors alone. With only return errors in arrays, or without a nominal robot, there is
-/// nothing in it.
+/// All of it follows from the motion and the return errors alone. It is empty for return errors in arrays and without a nominal robot.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Setup {
-    /// Columns, units and frames that are not what they are called. Correct these first: until then no number says anything of the robot.
+    /// Columns, units and frames that contradict their names. Correct these first: until then no number describes the robot.
     pub faults: Vec<Fault>,
     /// Clock and mounting of the reference; null without enough absolute poses.
     pub reference: Option<Mounting>,
@@ -241,11 +240,11 @@ pub struct Taken {
     pub effect: &'static str,
     /// Its values, in the units of its parameters.
     pub parameters: Keyed<Measured>,
-    /// Probability of values so large where the effect is absent.
+    /// Probability of values this large if the effect is absent.
     pub p: f64,
 }
 
-/// What of the reference was taken from the motion.
+/// The effects of the reference that were estimated from the motion.
 pub(super) fn taken(taken: &[likelihood::Taken]) -> Vec<Taken> {
     let one = |own: &likelihood::Taken| Taken {
         effect: own.effect,
@@ -255,7 +254,7 @@ pub(super) fn taken(taken: &[likelihood::Taken]) -> Vec<Taken> {
     taken.iter().map(one).collect()
 }
 
-/// Why a model is not called explained, a sentence each.
+/// Why the verdict is not "explained", a sentence each.
 pub(super) fn reasons(reasons: &[Reason]) -> Vec<String> {
     reasons.iter().map(Reason::sentence).collect()
 }

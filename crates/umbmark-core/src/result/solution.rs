@@ -91,16 +91,15 @@ pub struct Solution {
     pub next: Vec<String>,
     /// What these runs do not show of the robot: effects that become numbers of it.
     pub not_shown: Vec<&'static str>,
-    /// Why the model is not called explained, a sentence each.
+    /// Why the verdict is not "explained", a sentence each.
     pub reasons: Vec<String>,
     /// The model that was learnt.
     pub model: Model,
     /// Its free parameters.
     pub fitted: Vec<Estimate>,
-    /// What each fitted effect means for the robot, a sentence each.
+    /// Meaning of each fitted effect for the robot, a sentence each.
     pub meaning: Keyed<String>,
-    /// What was found of the data before anything was fitted: faults, clock and mounting of the reference, jumps, wrong poses, runs far from
-    /// the others.
+    /// Findings about the data before any fit: faults, clock and mounting of the reference, jumps, wrong poses, outlying runs.
     pub setup: Setup,
     /// Whether learning was stopped while an effect was still missing.
     pub partial: bool,
@@ -112,7 +111,7 @@ pub struct Solution {
     pub seed: u64,
     /// Version of umbmark.
     pub version: &'static str,
-    /// What the model leaves.
+    /// The remaining error of the model.
     #[serde(flatten)]
     pub leaves: Leaves,
 }

@@ -10,10 +10,10 @@ use crate::path::{Direction, SQUARE};
 use crate::score::summarise;
 use crate::{dataset, preset};
 
-/// The quantiles that a result tells.
+/// The quantiles of a result.
 const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
-/// A number, or a word where there are words to choose from.
+/// A number, or one of several words.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[schemars(inline)]
@@ -129,11 +129,11 @@ pub struct Study {
     pub path: PathSizes,
     /// The effects, in the order in which they act: each with its name and its values, or the distributions that these are drawn from.
     pub effects: Vec<Keyed<Setting>>,
-    /// Where values are from, a phrase each.
+    /// Sources of the values, a phrase each.
     pub sources: Vec<String>,
     /// What was assumed, a phrase each.
     pub assumed: Vec<String>,
-    /// What was published of this test; null where nothing was.
+    /// What was published about this test; null if nothing.
     pub published: Option<Published>,
     /// Version of umbmark.
     pub version: String,
@@ -142,7 +142,7 @@ pub struct Study {
 /// What is to be said of a study beside its numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Told<'a> {
-    /// Where values are from, a phrase each.
+    /// Sources of the values, a phrase each.
     pub sources: &'a [String],
     /// What was assumed, a phrase each.
     pub assumed: &'a [String],
@@ -195,15 +195,15 @@ fn effects(study: &monte_carlo::Study) -> Vec<Keyed<Setting>> {
 /// Statistics of a metric over the trials, in its unit.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct MetricStatistics {
-    /// Mean; null where no trial has the metric.
+    /// Mean; null if no trial has the metric.
     pub mean: Option<f64>,
-    /// Standard deviation; null below two trials.
+    /// Standard deviation; null for fewer than two trials.
     pub std_dev: Option<f64>,
-    /// Standard error of the mean; null below two trials.
+    /// Standard error of the mean; null for fewer than two trials.
     pub std_error: Option<f64>,
-    /// Least value; null where no trial has the metric.
+    /// Smallest value; null if no trial has the metric.
     pub min: Option<f64>,
-    /// Greatest value; null where no trial has the metric.
+    /// Largest value; null if no trial has the metric.
     pub max: Option<f64>,
     /// Quantiles, by the share that lies below.
     pub quantiles: Keyed<Option<f64>>,
@@ -222,18 +222,18 @@ impl From<&Statistics> for MetricStatistics {
     }
 }
 
-/// What a study found.
+/// The result of a study.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct MonteCarlo {
     /// Trials done.
     pub n: u64,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Whether trials that were asked for are not done.
+    /// Whether it was stopped before all trials were done.
     pub partial: bool,
     /// The metrics that the test has: "e_max_sys_m", "sigma_m", "centroid_cw_x_m", ...
     pub metrics: Keyed<MetricStatistics>,
-    /// Trials in a second; null where that was not measured.
+    /// Trials per second; null if that was not measured.
     pub trials_per_s: Option<f64>,
     /// What the study is.
     #[serde(flatten)]
@@ -267,7 +267,7 @@ pub struct SimulatedRun {
     pub ex_m: f64,
     /// Return error to the left of it, in m.
     pub ey_m: f64,
-    /// Return error of the heading, in rad; null where it was not measured.
+    /// Return error of the heading, in rad; null if it was not measured.
     pub etheta_rad: Option<f64>,
 }
 

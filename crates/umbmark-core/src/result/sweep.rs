@@ -36,11 +36,11 @@ impl From<&monte_carlo::Axis> for Axis {
 /// Statistics of a metric over the trials of a point, in its unit.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Summary {
-    /// Mean; null where no trial has the metric.
+    /// Mean; null if no trial has the metric.
     pub mean: Option<f64>,
-    /// Standard deviation; null below two trials.
+    /// Standard deviation; null for fewer than two trials.
     pub std_dev: Option<f64>,
-    /// Standard error of the mean; null below two trials.
+    /// Standard error of the mean; null for fewer than two trials.
     pub std_error: Option<f64>,
     /// Quantiles, by the share that lies below.
     pub quantiles: Keyed<Option<f64>>,
@@ -82,7 +82,7 @@ pub struct Sweep {
     pub n: u64,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Whether points that were asked for are not done.
+    /// Whether it was stopped before all points were done.
     pub partial: bool,
     /// The points, in order.
     pub points: Vec<Point>,

@@ -18,7 +18,7 @@ pub struct Wanted<'a> {
     pub metric: Metric,
     /// The goal.
     pub target: &'a tolerance::Target,
-    /// Whether the robots themselves are judged, or what a whole test shows of them.
+    /// Whether the robots themselves are judged, or the results of a whole test with each.
     pub noise: Noise,
     /// Seed of the robots.
     pub seed: u64,
@@ -26,7 +26,7 @@ pub struct Wanted<'a> {
     pub assumed: &'a [String],
 }
 
-/// The share of robots whose metric is to stay within a size.
+/// The required share of robots whose metric stays within a size.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Target {
     /// The size of a metric that is a length, in m.
@@ -46,20 +46,20 @@ pub struct Grade {
     pub grade: usize,
     /// Its distribution, as in `model.toml`.
     pub distribution: Keyed<NumberOrWord>,
-    /// What it costs.
+    /// Its cost.
     pub cost: f64,
 }
 
-/// Grades of all parameters, what they cost, and how good the robots are that they make.
+/// Grades of all parameters, their cost, and the quality of the resulting robots.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Choice {
     /// The grade of each parameter.
     pub grades: Keyed<Grade>,
-    /// What they cost together.
+    /// Their total cost.
     pub cost: f64,
-    /// The share of robots that keeps the target.
+    /// The share of robots that meet the target.
     pub share_within: WithInterval,
-    /// The size that the wanted share keeps.
+    /// The quantile of the metric at the required share.
     pub quantile: WithInterval,
 }
 
@@ -79,7 +79,7 @@ impl Choice {
     }
 }
 
-/// How many robots keep a target, and the cheapest tolerances with which enough do.
+/// How many robots meet a target, and the cheapest tolerances with which enough do.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Tolerance {
     /// The metric of the target.
@@ -92,7 +92,7 @@ pub struct Tolerance {
     pub robots: usize,
     /// Seed of the robots.
     pub seed: u64,
-    /// Whether not all choices were looked at.
+    /// Whether it was stopped before all choices were tested.
     pub partial: bool,
     /// The first grade of every parameter.
     pub now: Choice,
@@ -100,9 +100,9 @@ pub struct Tolerance {
     pub alone: Vec<Choice>,
     /// The last grade of every parameter.
     pub last: Choice,
-    /// The cheapest choice that keeps the target surely, judged by robots drawn anew; null where none does.
+    /// The cheapest choice that certainly meets the target, tested on newly drawn robots; null if none does.
     pub cheapest: Option<Choice>,
-    /// Number of choices that were looked at.
+    /// Number of choices that were tested.
     pub choices_looked_at: u64,
     /// What was assumed, a phrase each.
     pub assumed: Vec<String>,

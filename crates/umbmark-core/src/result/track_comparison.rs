@@ -30,7 +30,7 @@ impl From<&tracks::Rms> for RootMeanSquare {
 pub struct Mean {
     /// The mean; null without runs.
     pub mean: Option<f64>,
-    /// Its interval, an end null where it is open; null with a single run.
+    /// Its interval, with null for an open end; null for a single run.
     pub interval: Option<[Option<f64>; 2]>,
     /// Number of runs.
     pub runs: usize,
@@ -38,18 +38,18 @@ pub struct Mean {
     pub sd: Option<f64>,
 }
 
-/// Share of a part of the way in the squared error.
+/// Share of a part of the path in the squared error.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct PartShare {
-    /// Of positions along the way.
+    /// Of positions along the path.
     pub position: Option<f64>,
-    /// Of headings along the way.
+    /// Of headings along the path.
     pub heading: Option<f64>,
     /// Of positions at its end.
     pub end: Option<f64>,
 }
 
-/// Error that a part of the way adds.
+/// Error that a part of the path adds.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Part {
     /// Ahead, in m.
@@ -96,16 +96,16 @@ impl From<&tracks::Part> for Part {
     }
 }
 
-/// Mean rate of an error over all of the way.
+/// Mean rate of an error over the whole path.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Overall {
     /// The mean; null without runs.
     pub mean: Option<f64>,
-    /// Its interval, an end null where it is open; null with a single run.
+    /// Its interval, with null for an open end; null for a single run.
     pub interval: Option<[Option<f64>; 2]>,
     /// Number of runs.
     pub runs: usize,
-    /// p of none at all; null where it was not asked.
+    /// p of a rate of zero; null if it was not tested.
     pub p: Option<f64>,
 }
 
@@ -116,22 +116,22 @@ impl From<&tracks::Overall> for Overall {
     }
 }
 
-/// Mean rate of an error where a quantity lies between two values, in a sense or in both.
+/// Mean rate of an error while a quantity is between two values, for one sense or both.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Bin {
     /// The mean; null without runs.
     pub mean: Option<f64>,
-    /// Its interval, an end null where it is open; null with fewer than two runs.
+    /// Its interval, with null for an open end; null for fewer than two runs.
     pub interval: Option<[Option<f64>; 2]>,
     /// Number of runs.
     pub runs: usize,
     /// Least value of the quantity.
     pub low: f64,
-    /// Greatest value of the quantity; null where it is open.
+    /// Largest value of the quantity; null if it is open.
     pub high: Option<f64>,
     /// 1 counter-clockwise, -1 clockwise, 0 both.
     pub sense: f64,
-    /// How much of the way this is, in the unit of the rate.
+    /// Amount of driving in this bin, in the unit of the rate.
     pub amount: f64,
 }
 
@@ -150,7 +150,7 @@ impl From<&tracks::Bin> for Bin {
     }
 }
 
-/// Rate of an error against a quantity of the way.
+/// Rate of an error as a function of a quantity.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Against {
     /// The rate.
@@ -159,7 +159,7 @@ pub struct Against {
     pub covariate: &'static str,
     /// Unit of the quantity.
     pub unit: &'static str,
-    /// p of no dependence; null where it was not asked.
+    /// p of no dependence; null if it was not tested.
     pub p: Option<f64>,
     /// The rate in each span of the quantity.
     pub bins: Vec<Bin>,
@@ -177,34 +177,34 @@ impl From<&tracks::Against> for Against {
     }
 }
 
-/// How one model does along the way, and at its end.
+/// Result of one model along the path, and at its end.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct JudgedAlong {
     /// Its name.
     pub name: String,
-    /// Whether it explains the tracks; null where nothing was asked.
+    /// Whether it explains the tracks; null if nothing was tested.
     pub explains: Option<bool>,
-    /// p of all tests together; null where nothing was asked.
+    /// p of all tests together; null if nothing was tested.
     pub p: Option<f64>,
-    /// How many tests these are.
+    /// Number of these tests.
     pub tests: usize,
-    /// Errors along the way.
+    /// Errors along the path.
     pub along: RootMeanSquare,
     /// Errors at its end.
     pub end: RootMeanSquare,
-    /// Error that each part of the way adds, by what the parts are told apart.
+    /// Error that each part of the path adds, for each way of grouping parts.
     pub parts: Keyed<Vec<Part>>,
     /// Mean rates of the error.
     pub overall: Keyed<Overall>,
-    /// Rates of the error against quantities of the way.
+    /// Rates of the error as functions of driving quantities.
     pub against: Vec<Against>,
-    /// What stands out, a sentence each.
+    /// Findings, a sentence each.
     pub sentences: Vec<String>,
-    /// Effects of the reference whose values were taken from the motion.
+    /// Effects of the reference whose values were estimated from the motion.
     pub taken: Vec<Taken>,
     /// Why the model does not explain the tracks, a sentence each.
     pub reasons: Vec<String>,
-    /// What the model leaves.
+    /// The remaining error of the model.
     #[serde(flatten)]
     pub leaves: Leaves,
 }
@@ -230,7 +230,7 @@ impl JudgedAlong {
     }
 }
 
-/// Models beside tracks: where on the way their error is made, and what it depends on.
+/// Models compared with tracks: where along the path the error arises, and what it depends on.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct TrackComparison {
     /// "tracks".
@@ -245,16 +245,15 @@ pub struct TrackComparison {
     pub poses: usize,
     /// The models, in the order in which they were given.
     pub models: Vec<JudgedAlong>,
-    /// What else should be said.
+    /// Further remarks, a sentence each.
     pub remarks: Vec<String>,
-    /// What was found of the data before anything was fitted: faults, clock and mounting of the reference, jumps, wrong poses, runs far from
-    /// the others.
+    /// Findings about the data before any fit: faults, clock and mounting of the reference, jumps, wrong poses, outlying runs.
     pub setup: Setup,
-    /// False-alarm rate: probability with which a right model is accused.
+    /// False-alarm rate: probability that a correct model is rejected.
     pub size: f64,
     /// Version of umbmark.
     pub version: &'static str,
-    /// What the model leaves which leaves least.
+    /// The remaining error of the best model.
     #[serde(flatten)]
     pub leaves: Leaves,
 }

@@ -20,28 +20,36 @@ class Calibration(Result, frozen=True):
     Attributes
     ----------
     methods : dict[str, Correction or None]
-        The corrections by "closed_form_x", "closed_form_y", "closed_form_mean", "heading" and
-        "exact"; None where the data does not allow it.
+        The corrections by "closed_form_x", "closed_form_y", "closed_form_mean", "heading", "exact"
+        and "model"; None where the data does not allow it.
+    exported : str or None
+        The method whose correction is to be written into the robot; None where none gives both E_d
+        and E_b.
+    sentence : str or None
+        The answer in words, as of ``solve``; None where no model could be learnt.
     observed : str
         "end_poses" or "tracks".
     heading_arm_m : float or None
-        Metres that a radian of heading counted as, where whole tracks were fitted; else None.
+        Weight of a heading error in m per rad if whole tracks were fitted; otherwise None.
     level : float
         Probability with which the intervals hold.
     setup : Setup
-        What was found of the data before anything was fitted: faults, clock and mounting of the
-        reference, jumps, wrong poses, runs far from the others.
+        Findings about the data before any fit: faults, clock and mounting of the reference, jumps,
+        wrong poses, outlying runs.
     taken : tuple[Taken, ...]
-        Effects of the reference whose values were taken from the motion.
+        Effects of the reference whose values were estimated from the motion.
     doubts : tuple[str, ...]
-        What puts the corrected lengths in doubt, a sentence each; they are not exported then.
+        Reasons to doubt the corrected lengths, a sentence each; if there are any, nothing is
+        exported.
     warnings : tuple[str, ...]
-        What to know of the data first; then what could not be determined, and why.
+        Warnings: first about the data, then what could not be determined, and why.
     version : str
         Version of umbmark.
     """
 
     methods: dict[str, Correction | None]
+    exported: str | None
+    sentence: str | None
     observed: str
     heading_arm_m: float | None
     level: float
@@ -53,16 +61,16 @@ class Calibration(Result, frozen=True):
 
 
 class Correction(Record, frozen=True):
-    """The corrections that one method gives; None for what the data does not show.
+    """The corrections by one method; None for what the data does not determine.
 
     Attributes
     ----------
     e_d : float or None
         Ratio of the wheel diameters, right to left.
     e_b : float or None
-        Wheelbase by its nominal value.
+        Ratio of the wheelbase to its nominal value.
     e_s : float or None
-        Mean wheel diameter by its nominal value.
+        Ratio of the mean wheel diameter to its nominal value.
     wheelbase_m : float or None
         Corrected wheelbase, in m.
     wheel_diameter_left_m : float or None
@@ -72,7 +80,7 @@ class Correction(Record, frozen=True):
     covariance : tuple[tuple[float, ...], ...] or None
         Covariance of the ratios named in ``covariance_of``.
     covariance_of : tuple[str, ...]
-        The ratios that the data shows.
+        The ratios that the data determines.
     degrees_of_freedom : float or None
         Degrees of freedom of the covariance.
     e_d_interval : Interval or None
@@ -84,7 +92,7 @@ class Correction(Record, frozen=True):
     e_max_sys_before_m : float or None
         E_max,sys as driven, in m.
     e_max_sys_after_m : float or None
-        E_max,sys that is left with the correction, in m.
+        E_max,sys that remains with the correction, in m.
     replayed_before : Replayed or None
         Return errors of the recorded ticks with the nominal lengths.
     replayed_after : Replayed or None
@@ -130,14 +138,14 @@ class Replayed(Record, frozen=True):
 class Setup(Record, frozen=True):
     """What was found of an experiment before any model was fitted.
 
-    All of it follows from the motion and the return errors alone. With only return errors in
-    arrays, or without a nominal robot, there is nothing in it.
+    All of it follows from the motion and the return errors alone. It is empty for return errors
+    in arrays and without a nominal robot.
 
     Attributes
     ----------
     faults : tuple[Fault, ...]
-        Columns, units and frames that are not what they are called. Correct these first: until then
-        no number says anything of the robot.
+        Columns, units and frames that contradict their names. Correct these first: until then no
+        number describes the robot.
     reference : Mounting or None
         Clock and mounting of the reference; None without enough absolute poses.
     delays : tuple[Delay, ...]
@@ -159,7 +167,7 @@ class Setup(Record, frozen=True):
 
 
 class Fault(Record, frozen=True):
-    """A column, a unit or a frame that is not what it is called, and how to correct it.
+    """A column, unit or frame that contradicts its name, and how to correct it.
 
     Attributes
     ----------
@@ -174,20 +182,20 @@ class Fault(Record, frozen=True):
 
 
 class Mounting(Record, frozen=True):
-    """How the poses of the reference lie against the wheels, over all runs.
+    """How the poses of the reference relate to the wheels, over all runs.
 
-    A quantity is None where the motion does not show it.
+    A quantity is None if the motion does not determine it.
 
     Attributes
     ----------
     delay_s : Measured
-        How much older than its stamp a pose is in the middle of a run, in s.
+        Age of a pose at its time stamp, in the middle of a run, in s.
     clock_rate : Measured or None
-        How much the delay grows in a second, in s/s.
+        Growth of the delay, in s/s.
     ahead_m : Measured or None
-        How far ahead of the centre of the axle the tracked point lies, in m.
+        Distance of the tracked point ahead of the axle's centre, in m.
     left_m : Measured or None
-        How far to the left of it the tracked point lies, in m.
+        Distance of the tracked point to the left of the axle's centre, in m.
     yaw_rad : Measured or None
         Heading of the tracked body minus heading of the robot, in rad.
     scale : Measured or None
@@ -216,9 +224,9 @@ class Measured(Record, frozen=True):
     value : float
         The estimate.
     std_error : float or None
-        Its standard error; None where the data does not give it.
+        Its standard error; None if the data does not determine it.
     interval : Interval or None
-        Its 95 % interval; None where the data does not give it.
+        Its 95 % interval; None if the data does not determine it.
     """
 
     value: float
@@ -227,7 +235,7 @@ class Measured(Record, frozen=True):
 
 
 class Delay(Record, frozen=True):
-    """How much older than its stamp a pose of a run is.
+    """The delay of the reference in a run.
 
     Attributes
     ----------
@@ -242,7 +250,7 @@ class Delay(Record, frozen=True):
 
 
 class Jump(Record, frozen=True):
-    """A place where a track jumps, or a few seconds in which robot and wheels part.
+    """A place where a track jumps, or a few seconds in which robot and wheels disagree.
 
     A wheel slipped, the robot was pushed or carried, or the reference lost it.
 
@@ -255,9 +263,9 @@ class Jump(Record, frozen=True):
     time_s : float
         Time of the first pose behind it, in s.
     moved_m : float
-        How far the tracked point moved without the wheels, in m.
+        Motion of the tracked point that the wheels did not make, in m.
     turned_rad : float or None
-        How far it turned without the wheels, in rad; None without headings.
+        Rotation that the wheels did not make, in rad; None without headings.
     standard_deviations : float or None
         Size of the jump, in standard deviations of the motion from pose to pose; None where that is
         not known.
@@ -272,7 +280,7 @@ class Jump(Record, frozen=True):
 
 
 class WrongPose(Record, frozen=True):
-    """A pose that is wrong: the poses around it contradict it.
+    """A wrong pose: its neighbours contradict it.
 
     Attributes
     ----------
@@ -281,7 +289,7 @@ class WrongPose(Record, frozen=True):
     time_s : float
         Time since the log began, in s.
     moved_m : float
-        Distance from where the poses around it place it, in m.
+        Distance from the place that its neighbours imply, in m.
     turned_rad : float or None
         The same for the heading, in rad; None without headings.
     """
@@ -310,10 +318,10 @@ class OutlyingReturn(Record, frozen=True):
     turned_rad : float or None
         Its heading minus their mean, in rad; None without headings.
     standard_deviations : float or None
-        Distance of the farthest coordinate, in standard deviations; None where the others do not
+        Distance of the farthest coordinate, in standard deviations; None if the others do not
         scatter.
     deviants : tuple[Deviant, ...]
-        The coordinates that are off, the farthest first.
+        The outlying coordinates, the farthest first.
     said : str
         The finding in words.
     remedy : str
@@ -333,7 +341,7 @@ class OutlyingReturn(Record, frozen=True):
 
 
 class Deviant(Record, frozen=True):
-    """A coordinate of a return error that lies far from those of the other runs.
+    """A coordinate of a return error that is far from those of the other runs.
 
     Attributes
     ----------
@@ -344,8 +352,8 @@ class Deviant(Record, frozen=True):
     mean_of_others : float
         Mean of the other runs, in the same unit.
     standard_deviations : float or None
-        Distance from that mean, in standard deviations of a run about it; None where the others do
-        not scatter.
+        Distance from that mean, in standard deviations of a run about it; None if the others do not
+        scatter.
     """
 
     coordinate: str
@@ -364,7 +372,7 @@ class Taken(Record, frozen=True):
     parameters : dict[str, Measured]
         Its values, in the units of its parameters.
     p : float
-        Probability of values so large where the effect is absent.
+        Probability of values this large if the effect is absent.
     """
 
     effect: str
@@ -373,7 +381,7 @@ class Taken(Record, frozen=True):
 
 
 class Comparison(Result, frozen=True):
-    """Models beside measurements: which explain them, and where the others fail.
+    """Models compared with measurements: which explain them, and where the others fail.
 
     Attributes
     ----------
@@ -386,12 +394,12 @@ class Comparison(Result, frozen=True):
     models : tuple[Judged, ...]
         The models, in the order in which they were given.
     setup : Setup
-        What was found of the data before anything was fitted: faults, clock and mounting of the
-        reference, jumps, wrong poses, runs far from the others.
+        Findings about the data before any fit: faults, clock and mounting of the reference, jumps,
+        wrong poses, outlying runs.
     remarks : tuple[str, ...]
-        What else should be said.
+        Further remarks, a sentence each.
     size : float
-        False-alarm rate: probability with which a right model is accused.
+        False-alarm rate: probability that a correct model is rejected.
     draws : int
         Simulated tests for the p-values.
     seed : int
@@ -401,15 +409,14 @@ class Comparison(Result, frozen=True):
     contrasts : tuple[Contrast, ...]
         Closure contrasts of a square driven both ways; empty for other paths.
     circle : tuple[OnCircle, ...]
-        End points beside the circle through START; empty for other paths.
+        End points relative to the circle through START; empty for other paths.
     left_m : float or None
-        Error that is left, in m.
+        Remaining error, in m.
     repeats_m : Repeats or None
-        How much of it is the same in every run of one path, in m; None where no two runs drive one
-        path.
+        The part of it that is the same in every run of one path, in m; None if no two runs drive
+        one path.
     remains : Remains or None
-        The same in detail, with what chance there is; None where columns are not what they are
-        called.
+        The same in detail, with the sources of noise; None if columns contradict their names.
     """
 
     observed: str
@@ -430,7 +437,7 @@ class Comparison(Result, frozen=True):
 
 
 class Judged(Record, frozen=True):
-    """How one model does.
+    """Result of one model.
 
     Attributes
     ----------
@@ -441,7 +448,7 @@ class Judged(Record, frozen=True):
     p : float
         p of all statistics together.
     noise : str
-        "model" where the noise is the model's, "pooled" where it is that of the runs.
+        "model" if the noise is the model's, "pooled" if it is the scatter of the runs.
     rmse_m : float
         Root mean square error of positions, in m.
     heading_rmse_rad : float or None
@@ -451,13 +458,12 @@ class Judged(Record, frozen=True):
     sentences : tuple[str, ...]
         Where it fails, a sentence each.
     left_m : float or None
-        Error that is left, in m.
+        Remaining error, in m.
     repeats_m : Repeats or None
-        How much of it is the same in every run of one path, in m; None where no two runs drive one
-        path.
+        The part of it that is the same in every run of one path, in m; None if no two runs drive
+        one path.
     remains : Remains or None
-        The same in detail, with what chance there is; None where columns are not what they are
-        called.
+        The same in detail, with the sources of noise; None if columns contradict their names.
     """
 
     name: str
@@ -483,7 +489,7 @@ class Statistic(Record, frozen=True):
     predicted : float
         As the model predicts it.
     p : float
-        Probability of so large a difference where the model is right.
+        Probability of a difference this large if the model is right.
     """
 
     measured: float
@@ -492,16 +498,16 @@ class Statistic(Record, frozen=True):
 
 
 class Repeats(Record, frozen=True):
-    """How much of an error is the same in every run of a path, at least.
+    """Lower bound of the part of an error that is the same in every run of a path.
 
     Attributes
     ----------
     value : float
         Root mean square, in m or rad.
     low : float or None
-        Lower end of its 95 % interval; None below three runs.
+        Lower end of its 95 % interval; None for fewer than three runs.
     high : float or None
-        Upper end of its 95 % interval; None below three runs.
+        Upper end of its 95 % interval; None for fewer than three runs.
     """
 
     value: float
@@ -510,26 +516,26 @@ class Repeats(Record, frozen=True):
 
 
 class Remains(Record, frozen=True):
-    """What a model leaves.
+    """The remaining error of a model.
 
     Attributes
     ----------
     left_m : float or None
         Root mean square error of positions, in m.
     repeats_m : Repeats or None
-        How much of it is the same in every run: the root of the mean product of what is left in two
-        runs at the same share of one path; None where no two runs drive one path.
+        The part that is the same in every run: the root of the mean product of the residuals of two
+        runs at the same share of the path; None if no two runs drive one path.
     left_rad : float or None
         Root mean square error of headings, in rad; None where none were measured.
     repeats_rad : Repeats or None
-        How much of that is the same in every run; None where no two runs drive one path or no
+        The part of it that is the same in every run; None if no two runs drive one path or no
         headings were measured.
     pairs_of_one_path : int
-        How many pairs of runs that rests on.
+        Number of pairs of runs for these.
     chance : tuple[Chance, ...]
-        What each source of noise would leave; empty for return poses.
+        Error that each source of noise alone would cause; empty for return poses.
     disturbances : tuple[Disturbance, ...]
-        Bumps and slips met by chance, and poses of the reference that are off.
+        Accidental bumps and slips, and wrong poses of the reference.
     """
 
     left_m: float | None
@@ -542,7 +548,7 @@ class Remains(Record, frozen=True):
 
 
 class Chance(Record, frozen=True):
-    """A source of chance, and the error that it alone would leave.
+    """A source of noise, and the error that it alone would cause.
 
     Attributes
     ----------
@@ -571,14 +577,14 @@ class Disturbance(Record, frozen=True):
     rolled_m : float
         How far the wheels have rolled by then, in m.
     lasts : bool
-        Whether the robot was moved and stayed so, as by a bump; else the reference was off for a
-        moment.
+        Whether the robot was displaced for good, as by a bump; otherwise the reference was wrong
+        for a moment.
     forward_m : float
-        By how much ahead, as the robot sees it, in m.
+        Displacement ahead in the robot's frame, in m.
     left_m : float
-        By how much to the left, as the robot sees it, in m.
+        Displacement to the left in the robot's frame, in m.
     heading_rad : float
-        By how much it turned to the left, in rad; 0 where headings were not measured.
+        Rotation to the left, in rad; 0 if headings were not measured.
     standard_deviations : float
         The same in standard deviations of the noise.
     """
@@ -605,9 +611,9 @@ class Contrast(Record, frozen=True):
     value : float
         Its value.
     interval : Interval or None
-        Its 95 % interval; None where the runs do not give it.
+        Its 95 % interval; None if the runs do not determine it.
     meaning : str
-        What it means where it is not zero.
+        Its meaning if it is not zero.
     """
 
     name: str
@@ -618,26 +624,26 @@ class Contrast(Record, frozen=True):
 
 
 class OnCircle(Record, frozen=True):
-    """End points of a direction beside the circle through START.
+    """End points of a direction relative to the circle through START.
 
     Attributes
     ----------
     direction : str
         "cw" or "ccw".
     off_m : tuple[float, ...]
-        How far each end point lies off the circle, in m.
+        Distance of each end point outside the circle, in m.
     mean_off_m : float
         Mean of these, in m.
     mean_off_interval_m : Interval or None
-        Its 95 % interval, in m; None where the runs do not give it.
+        Its 95 % interval, in m; None if the runs do not determine it.
     distance_m : float
         Mean distance of the end points from START, in m.
     distance_by_heading_m : float or None
         The distance that the headings imply, in m; None where none were measured.
     angle_less_heading_rad : float or None
-        Angle on the circle less the return heading, in rad; None where no headings were measured.
+        Angle on the circle minus the return heading, in rad; None where no headings were measured.
     angle_less_heading_interval_rad : Interval or None
-        Its 95 % interval, in rad; None where the runs do not give it.
+        Its 95 % interval, in rad; None if the runs do not determine it.
     explained : bool
         Whether the circle explains the end points.
     """
@@ -654,13 +660,13 @@ class OnCircle(Record, frozen=True):
 
 
 class Diagnosis(Result, frozen=True):
-    """What a model is missing, how sure that is, and what this data cannot see.
+    """What a model is missing, how certain that is, and what this data cannot show.
 
     Attributes
     ----------
     verdict : str
         "explained"; "missing_effect" or "several_missing"; "unlisted_effect", which is not in the
-        catalogue; "not_explained", where the model is not enough though no single effect is
+        catalogue; "not_explained" if the model does not suffice although no single effect is
         certified (``reasons`` say why); or "not_enough_data".
     observed : str
         "end_poses" or "tracks".
@@ -669,42 +675,43 @@ class Diagnosis(Result, frozen=True):
     goodness_of_fit : tuple[GoodnessOfFit, ...]
         Tests of the whole model.
     ranking : tuple[Suspect, ...]
-        Classes of effects that were asked, the first ``certified`` of them missing.
+        Classes of effects that were tested; the first ``certified`` of them are missing.
     certified : int
-        How many of the ranking are missing.
+        Number of missing classes at the head of the ranking.
     invisible : tuple[str, ...]
-        Effects that this data says nothing of; ``absorbed`` says by what.
+        Effects that this data cannot show; ``absorbed`` names the effects that mask them.
     absorbed : dict[str, tuple[str, ...]]
-        Effects that others of the model make up for, with these.
+        Effects that other effects of the model absorb, with the names of these.
     minimum_detectable : dict[str, float or None]
-        The least size of each effect that would have been seen.
+        Minimum detectable size of each effect.
     minimum_detectable_sizes : tuple[DetectableSize, ...]
         The same for each parameter.
     next_experiments : tuple[Experiment, ...]
-        What to measure next, the most telling per minute first.
+        What to measure next, the most informative per minute first.
     identifiability : Identifiability
-        What of the model this experiment determines.
+        What this experiment determines of the model.
     unlisted : Unlisted or None
-        What is missing and not in the catalogue; None where nothing is.
+        A missing effect that is not in the catalogue; None if there is none.
     model : Model
-        The model, its free parameters fitted.
+        The model with its fitted parameters.
     meaning : dict[str, str]
-        What each fitted effect means for the robot, a sentence each.
+        Meaning of each fitted effect for the robot, a sentence each.
     outliers : tuple[Outlier, ...]
-        Jumps of tracks that are beyond noise.
+        Jumps of tracks that exceed the noise.
     setup : Setup
-        What was found of the data before anything was fitted: faults, clock and mounting of the
-        reference, jumps, wrong poses, runs far from the others.
+        Findings about the data before any fit: faults, clock and mounting of the reference, jumps,
+        wrong poses, outlying runs.
     taken : tuple[Taken, ...]
-        Effects of the reference whose values were taken from the motion.
+        Effects of the reference whose values were estimated from the motion.
     reasons : tuple[str, ...]
-        Why the model is not called explained, a sentence each.
+        Why the verdict is not "explained", a sentence each.
     repeats : Repeated or None
-        What repeats most beside the model, whether it counts or not; None without tracks.
+        The strongest pattern that repeats in the residuals, significant or not; None without
+        tracks.
     remarks : tuple[str, ...]
-        What else should be said.
+        Further remarks, a sentence each.
     size : float
-        False-alarm rate: probability with which a complete model is accused.
+        False-alarm rate: probability that a complete model is rejected.
     draws : int
         Simulated tests for p-values that have no closed form.
     seed : int
@@ -714,15 +721,14 @@ class Diagnosis(Result, frozen=True):
     contrasts : tuple[Contrast, ...]
         Closure contrasts of a square driven both ways; empty for other paths.
     circle : tuple[OnCircle, ...]
-        End points beside the circle through START; empty for other paths.
+        End points relative to the circle through START; empty for other paths.
     left_m : float or None
-        Error that is left, in m.
+        Remaining error, in m.
     repeats_m : Repeats or None
-        How much of it is the same in every run of one path, in m; None where no two runs drive one
-        path.
+        The part of it that is the same in every run of one path, in m; None if no two runs drive
+        one path.
     remains : Remains or None
-        The same in detail, with what chance there is; None where columns are not what they are
-        called.
+        The same in detail, with the sources of noise; None if columns contradict their names.
     """
 
     verdict: str
@@ -769,9 +775,9 @@ class Estimate(Record, frozen=True):
     value : float
         Its value, in the unit that the catalogue states.
     standard_error : float or None
-        Its standard error; None where the data does not give it.
+        Its standard error; None if the data does not determine it.
     interval : Interval or None
-        Its interval; None where the data does not give it.
+        Its interval; None if the data does not determine it.
     """
 
     effect: str
@@ -793,7 +799,7 @@ class GoodnessOfFit(Record, frozen=True):
     degrees_of_freedom : Interval or None
         Degrees of freedom; None where its p is from simulated tests.
     p : float
-        Probability of so large a statistic where nothing is missing.
+        Probability of a statistic this large if nothing is missing.
     """
 
     name: str
@@ -803,7 +809,7 @@ class GoodnessOfFit(Record, frozen=True):
 
 
 class Suspect(Record, frozen=True):
-    """A class of effects that may be missing, which this data cannot tell apart.
+    """A class of effects that may be missing and that this data cannot separate.
 
     Attributes
     ----------
@@ -816,19 +822,19 @@ class Suspect(Record, frozen=True):
     degrees_of_freedom : Interval
         Degrees of freedom of F.
     p : float
-        Probability of so large an F where it is absent.
+        Probability of an F this large if the effect is absent.
     p_adjusted : float
-        The same, corrected for all classes that were asked.
+        The same, corrected for all classes that were tested.
     p_flips : float or None
-        The same by flips of the signs of runs; None where these were not asked.
+        The same by sign flips of runs; None if these were not tested.
     estimate : dict[str, float or None]
         Values of the parameters of the best.
     standard_error : dict[str, float or None]
         Their standard errors.
     expected_drop : float
-        By how much adding it is expected to lower the sum of squares.
+        Expected decrease of the sum of squares if it is added.
     meaning : str or None
-        What the values mean for the robot; None where there is nothing to say.
+        Meaning of the values for the robot; None if it has none.
     """
 
     class_: tuple[str, ...] = msgspec.field(name="class")
@@ -845,7 +851,7 @@ class Suspect(Record, frozen=True):
 
 
 class DetectableSize(Record, frozen=True):
-    """The least size of an effect that this data would show in four cases of five.
+    """Minimum detectable size of an effect: detected with a probability of 80 %.
 
     Attributes
     ----------
@@ -854,7 +860,7 @@ class DetectableSize(Record, frozen=True):
     parameter : str
         The parameter that has the size.
     size : float or None
-        The size, in the unit of the parameter; None where no size would be seen.
+        The size, in the unit of the parameter; None if no size would be detected.
     """
 
     effect: str
@@ -863,7 +869,7 @@ class DetectableSize(Record, frozen=True):
 
 
 class Experiment(Record, frozen=True):
-    """A further experiment that tells two effects apart.
+    """A further experiment that separates two effects.
 
     Attributes
     ----------
@@ -872,9 +878,9 @@ class Experiment(Record, frozen=True):
     experiment : str
         What to drive.
     minutes : float
-        How long it takes, in min.
+        Its duration, in min.
     sd : float
-        By how many standard deviations it puts them apart.
+        Separation of the two, in standard deviations.
     """
 
     separates: tuple[str, str]
@@ -884,12 +890,12 @@ class Experiment(Record, frozen=True):
 
 
 class Identifiability(Record, frozen=True):
-    """What of the model this experiment determines.
+    """What this experiment determines of the model.
 
     Attributes
     ----------
     parameters : tuple[Share, ...]
-        Each free parameter, with what it does to end poses.
+        Each free parameter, with its influence on end poses.
     rank : int
         Number of combinations that are determined.
     hidden : tuple[Hidden, ...]
@@ -902,7 +908,7 @@ class Identifiability(Record, frozen=True):
 
 
 class Share(Record, frozen=True):
-    """How far a unit of a parameter moves an end pose.
+    """Change of an end pose per unit of a parameter.
 
     Attributes
     ----------
@@ -911,9 +917,9 @@ class Share(Record, frozen=True):
     parameter : str
         Its parameter.
     position_m_per_unit : float
-        How far the position moves for a unit of the parameter, in m.
+        Shift of the position per unit of the parameter, in m.
     heading_rad_per_unit : float
-        How far the heading turns for a unit of the parameter, in rad.
+        Change of the heading per unit of the parameter, in rad.
     """
 
     effect: str
@@ -923,15 +929,15 @@ class Share(Record, frozen=True):
 
 
 class Hidden(Record, frozen=True):
-    """A combination of parameters that the experiment does not show.
+    """A combination of parameters that the experiment does not determine.
 
     Attributes
     ----------
     weights : dict[str, float]
         The weight of each parameter.
     ratio : float or None
-        How much less it is seen than the combination that is seen best; None where it is not seen
-        at all.
+        Units of the second parameter that have the effect of one unit of the first, for two
+        parameters; otherwise None.
     """
 
     weights: dict[str, float]
@@ -939,7 +945,7 @@ class Hidden(Record, frozen=True):
 
 
 class Unlisted(Record, frozen=True):
-    """What is missing and not in the catalogue.
+    """A missing effect that is not in the catalogue.
 
     Attributes
     ----------
@@ -948,15 +954,14 @@ class Unlisted(Record, frozen=True):
     depends_on : str
         What it depends on.
     p_adjusted : float
-        Probability of so strong a dependence where there is none, corrected for all that were
-        asked.
+        Probability of a dependence this strong by chance, corrected for all tests.
     curve : Curve
         How it depends on it.
     nearest : Nearest or None
-        The effect of the catalogue that explains the largest share of it; None where none explains
-        any.
+        The effect of the catalogue that explains the largest share of it; None if no effect
+        explains any.
     suggestion : Suggestion or None
-        A formula to try; None where none is near.
+        A formula to try; None if none fits.
     """
 
     acts_on: str
@@ -968,14 +973,14 @@ class Unlisted(Record, frozen=True):
 
 
 class Curve(Record, frozen=True):
-    """What is added to the motion, by what it depends on.
+    """The missing motion as a function of what it depends on.
 
     Attributes
     ----------
     at_unit : str
-        Unit of what it depends on.
+        Unit of the covariate.
     unit : str
-        Unit of what is added.
+        Unit of the missing motion.
     points : tuple[CurvePoint, ...]
         Its points, in order.
     """
@@ -986,14 +991,14 @@ class Curve(Record, frozen=True):
 
 
 class CurvePoint(Record, frozen=True):
-    """What is added at a place, with its 95 % band.
+    """A point of a curve, with its 95 % band.
 
     Attributes
     ----------
     at : float
-        The place, in the curve's ``at_unit``.
+        Value of the covariate, in the curve's ``at_unit``.
     value : float
-        What is added, in the curve's ``unit``.
+        Value of the curve, in its ``unit``.
     low : float
         Lower end of its band.
     high : float
@@ -1007,14 +1012,14 @@ class CurvePoint(Record, frozen=True):
 
 
 class Nearest(Record, frozen=True):
-    """The effect of the catalogue that comes nearest to what is missing.
+    """The effect of the catalogue that is most similar to the missing one.
 
     Attributes
     ----------
     effect : str
         Its name.
     share : float
-        The share that it explains.
+        The share of the missing effect that it explains.
     """
 
     effect: str
@@ -1022,7 +1027,7 @@ class Nearest(Record, frozen=True):
 
 
 class Suggestion(Record, frozen=True):
-    """A formula to try, and the share that it explains.
+    """A formula to try, and the share of the curve that it explains.
 
     Attributes
     ----------
@@ -1041,7 +1046,7 @@ class Suggestion(Record, frozen=True):
 
 
 class Outlier(Record, frozen=True):
-    """A jump of a track that is beyond noise.
+    """A jump of a track that exceeds the noise.
 
     Attributes
     ----------
@@ -1050,11 +1055,11 @@ class Outlier(Record, frozen=True):
     time_s : float
         Time since START, in s.
     moved_m : float
-        How far it jumps, in m.
+        Length of the jump, in m.
     turned_rad : float or None
-        How far it turns, in rad; None without headings.
+        Rotation in the jump, in rad; None without headings.
     standard_deviations : float or None
-        Size of the jump, in standard deviations of the noise; None where that is not known.
+        Size of the jump, in standard deviations of the noise; None if that is not known.
     """
 
     run: str
@@ -1065,7 +1070,7 @@ class Outlier(Record, frozen=True):
 
 
 class Repeated(Record, frozen=True):
-    """What is left of the error and repeats: the law that it is taken for, and its p.
+    """The repeating part of the remaining error: the law that was chosen for it, and its p.
 
     Attributes
     ----------
@@ -1073,7 +1078,7 @@ class Repeated(Record, frozen=True):
         Its number in the table of laws, as ``--law`` of ``umbmark learn`` takes it.
     toml : str or None
         The law as an effect of a model file, with start values or, once it was added, the fitted
-        ones; None where formulas lack what it depends on.
+        ones; None if formulas do not have a variable that it depends on.
     formula : str or None
         Its formula; None where it cannot be written as one.
     parameters : dict[str, float or None] or None
@@ -1089,34 +1094,34 @@ class Repeated(Record, frozen=True):
     by : str
         What it follows, in words.
     means : str or None
-        What its length is of the robot or of its path, such as the circumference of a wheel; None
-        where it has none or it is unknown.
+        What its length corresponds to on the robot or its path, such as the circumference of a
+        wheel; None if it has no length or the length is unknown.
     nearest : Nearest or None
-        The effect of the catalogue that comes nearest to it once it was added, and the share of its
-        response that this makes, as a cosine.
+        The effect of the catalogue that is most similar to it after the fit, and the share of its
+        response that this effect reproduces, as a cosine.
     with_sense : bool
-        Whether it turns over with the sense of the run.
+        Whether it changes sign with the sense of the run.
     length : int or None
-        How long the formula is: operations, variables and numbers.
+        Length of the formula: operations, variables and numbers.
     heldout_rmse_m : float
-        Error of runs left out, in m.
+        Error of held-out runs, in m.
     heldout_rmse_with_law_m : float
         The same with the law, in m.
     gain : float
-        By what share errors of runs left out fall: of positions, of headings, or from pose to pose,
-        whichever falls most.
+        Relative decrease of the errors of held-out runs: the largest of those of positions, of
+        headings and from pose to pose.
     likeness : float
-        Share of its response that the law which is taken makes as well, as a cosine.
+        Share of its response that the chosen law reproduces, as a cosine.
     p : float
-        Of all laws together, by flips of the signs of runs.
+        p of all laws together, by sign flips of runs.
     standard_deviations : float
-        Size of the greatest score of a law, in standard deviations of the noise model.
+        Largest score of any law, in standard deviations of the noise model.
     laws : int
-        How many laws there are that the data could show.
+        Number of laws that the data could show.
     class_ : tuple[str, ...]
-        Formulas of those that these runs cannot tell from it.
+        Formulas of the laws that these runs cannot separate from it.
     others : tuple[UnlistedLaw, ...]
-        Others that stand out, the one that predicts runs left out best first.
+        Other significant laws, the one that predicts held-out runs best first.
     """
 
     number: int
@@ -1152,7 +1157,7 @@ class UnlistedLaw(Record, frozen=True):
         Its number in the table of laws, as ``--law`` of ``umbmark learn`` takes it.
     toml : str or None
         The law as an effect of a model file, with start values or, once it was added, the fitted
-        ones; None where formulas lack what it depends on.
+        ones; None if formulas do not have a variable that it depends on.
     formula : str or None
         Its formula; None where it cannot be written as one.
     parameters : dict[str, float or None] or None
@@ -1168,24 +1173,24 @@ class UnlistedLaw(Record, frozen=True):
     by : str
         What it follows, in words.
     means : str or None
-        What its length is of the robot or of its path, such as the circumference of a wheel; None
-        where it has none or it is unknown.
+        What its length corresponds to on the robot or its path, such as the circumference of a
+        wheel; None if it has no length or the length is unknown.
     nearest : Nearest or None
-        The effect of the catalogue that comes nearest to it once it was added, and the share of its
-        response that this makes, as a cosine.
+        The effect of the catalogue that is most similar to it after the fit, and the share of its
+        response that this effect reproduces, as a cosine.
     with_sense : bool
-        Whether it turns over with the sense of the run.
+        Whether it changes sign with the sense of the run.
     length : int or None
-        How long the formula is: operations, variables and numbers.
+        Length of the formula: operations, variables and numbers.
     heldout_rmse_m : float
-        Error of runs left out, in m.
+        Error of held-out runs, in m.
     heldout_rmse_with_law_m : float
         The same with the law, in m.
     gain : float
-        By what share errors of runs left out fall: of positions, of headings, or from pose to pose,
-        whichever falls most.
+        Relative decrease of the errors of held-out runs: the largest of those of positions, of
+        headings and from pose to pose.
     likeness : float
-        Share of its response that the law which is taken makes as well, as a cosine.
+        Share of its response that the chosen law reproduces, as a cosine.
     """
 
     number: int
@@ -1215,19 +1220,19 @@ class Fitted(Result, frozen=True):
     fitted : tuple[Estimate, ...]
         The free parameters.
     not_shown : tuple[str, ...]
-        Free effects that this data does not show apart from the rest; they keep their values.
+        Free effects that this data cannot separate from the rest; they keep their values.
     meaning : dict[str, str]
-        What each fitted effect means for the robot, a sentence each.
+        Meaning of each fitted effect for the robot, a sentence each.
     outliers : tuple[Outlier, ...]
-        Jumps of tracks that are beyond noise.
+        Jumps of tracks that exceed the noise.
     usual_noise : bool
-        Whether the values are those under noise of the usual sizes: from tracks, where these
-        predict runs left out nearer than the likeliest ones by a tenth.
+        Whether the values were fitted with noise of the usual sizes: only from tracks, if these
+        values predict held-out runs better by a tenth than those of maximum likelihood.
     setup : Setup
-        What was found of the data before anything was fitted: faults, clock and mounting of the
-        reference, jumps, wrong poses, runs far from the others.
+        Findings about the data before any fit: faults, clock and mounting of the reference, jumps,
+        wrong poses, outlying runs.
     taken : tuple[Taken, ...]
-        Effects of the reference whose values were taken from the motion.
+        Effects of the reference whose values were estimated from the motion.
     model : Model
         The model with the fitted values.
     level : float
@@ -1258,19 +1263,19 @@ class GearCalibration(Result, frozen=True):
     fitted : tuple[Estimate, ...]
         The sizes of its first effects.
     not_shown : tuple[str, ...]
-        Effects that this data does not show apart from the rest; they keep their values.
+        Effects that this data cannot separate from the rest; they keep their values.
     corrected : dict[str, float]
         The keys of robot.toml that change, with their new values.
     return_poses_determine : ReturnPosesDetermine or None
-        What return poses can tell; None where the path is not known.
+        What return poses can determine; None if the path is not known.
     e_max_sys_before_m : float or None
         E_max,sys as driven, in m; None without runs of both directions.
     e_max_sys_after_m : float or None
-        What is left of it with the correction, in m.
+        The part of it that remains with the correction, in m.
     level : float
         Probability with which the intervals hold.
     warnings : tuple[str, ...]
-        What to know of the data.
+        Warnings about the data.
     version : str
         Version of umbmark.
     """
@@ -1288,7 +1293,7 @@ class GearCalibration(Result, frozen=True):
 
 
 class ReturnPosesDetermine(Record, frozen=True):
-    """What return poses of the path determine: so many combinations of so many sizes.
+    """How many combinations of the sizes the return poses of the path determine.
 
     Attributes
     ----------
@@ -1325,15 +1330,15 @@ class Inspection(Result, frozen=True):
     topics : tuple[Topics, ...]
         Topics that were read.
     checks : tuple[Check, ...]
-        Figures with what good looks like: is it any good?
+        Checks of the quality of the data.
     determined : tuple[Determined, ...]
-        What it can say of the robot.
+        What it can determine of the robot.
     rank : int
         Number of combinations of E_d, E_b and E_s that it determines.
     setup : Setup or None
-        What was found of the runs from their motion and return errors; None without a robot.
+        Findings about the runs from their motion and return errors; None without a robot.
     warnings : tuple[str, ...]
-        What looks wrong.
+        Warnings, a sentence each.
     version : str
         Version of umbmark.
     """
@@ -1367,7 +1372,7 @@ class RobotFacts(Record, frozen=True):
     wheel_diameter_right_m : float
         Diameter of its right wheel, in m.
     ticks_per_revolution : float
-        Ticks of an encoder in a revolution of its wheel.
+        Ticks of an encoder per revolution of its wheel.
     encoder_rate_hz : float or None
         How often the encoders are read, in Hz; None where that is not known.
     counter_bits : int or None
@@ -1402,7 +1407,7 @@ class PathFacts(Record, frozen=True):
 
 
 class Group(Record, frozen=True):
-    """Numbers of runs of one test and direction, and of what they have.
+    """Numbers of runs of one test and direction, and what these contain.
 
     Attributes
     ----------
@@ -1429,7 +1434,7 @@ class Group(Record, frozen=True):
 
 
 class LogFacts(Record, frozen=True):
-    """A log: its rows, and what its ticks and poses say.
+    """A log: its rows, and what its ticks and poses show.
 
     Attributes
     ----------
@@ -1440,30 +1445,30 @@ class LogFacts(Record, frozen=True):
     rows : int
         Number of rows.
     duration_s : float
-        From the first row to the last, in s.
+        Time from the first row to the last, in s.
     rate_hz : float
-        Rows in a second.
+        Rows per second.
     jitter : float
-        Scatter of the time from row to row, as a share of it.
+        Relative scatter of the time between rows.
     longest_gap_s : float
         The longest time without a row, in s.
     gaps : int
         Number of gaps.
     mended : Mended
-        What was mended while it was read.
+        Defects that were corrected while it was read.
     length_m : float or None
         Length of the way by the ticks, in m; None without a nominal robot.
     heading_rad : float or None
         Heading at the end by the ticks, in rad; None without a nominal robot.
     heading_off_rad : float or None
-        How far that is off what the path asks for, in rad; None where the path is not known.
+        Its difference from the commanded heading, in rad; None if the path is not known.
     wheels : WheelFacts or None
-        Whether the wheels are what they are called; None where the poses do not show it.
+        Whether the names of the wheels are right; None if the poses do not show it.
     moves : Moves or None
         What was driven; None without a nominal robot.
     delay_s : Measured or None
-        How much older than its stamp a pose is in the middle of the run, in s; None where the
-        motion does not show it.
+        Age of a pose at its time stamp in the middle of the run, in s; None if the motion does not
+        determine it.
     reference : ReferenceFacts or None
         Its absolute poses; None where it has none.
     """
@@ -1487,20 +1492,20 @@ class LogFacts(Record, frozen=True):
 
 
 class Mended(Record, frozen=True):
-    """What was mended in a log while it was read, counted.
+    """Number of defects of a log that were corrected while it was read.
 
     Attributes
     ----------
     roll_overs : int
         Counters that rolled over.
     resets : int
-        Counters that began anew.
+        Counters that restarted.
     rows_out_of_order : int
         Rows that were out of order.
     rows_repeated : int
-        Rows that stood there twice.
+        Duplicate rows.
     stale_poses : int
-        Poses that were those of the row before.
+        Poses repeated from the previous row.
     """
 
     roll_overs: int
@@ -1511,12 +1516,12 @@ class Mended(Record, frozen=True):
 
 
 class WheelFacts(Record, frozen=True):
-    """Whether the wheels are what they are called, by the motion of the poses.
+    """Whether the motion of the poses confirms the names of the wheels.
 
     Attributes
     ----------
     as_named : bool
-        Whether they are.
+        Whether it does.
     exchanged : bool
         Whether left and right are exchanged.
     left_backward : bool
@@ -1537,7 +1542,7 @@ class Moves(Record, frozen=True):
     Attributes
     ----------
     shape : str or None
-        Shape of the path; None where it is none that has a name.
+        Shape of the path; None if it has no name.
     described : str
         The path in words.
     legs : int
@@ -1568,15 +1573,15 @@ class ReferenceFacts(Record, frozen=True):
     headings : int
         How many of them have a heading.
     rate_hz : float
-        Poses in a second.
+        Poses per second.
     coverage : str
-        Where on the way they lie, in words.
+        Where along the path they lie, in words.
     longest_gap_s : float
         The longest time without one, in s.
     noise_m : float or None
-        Noise of a coordinate, in m; None where the poses do not show it.
+        Noise of a coordinate, in m; None if the poses do not determine it.
     heading_noise_rad : float or None
-        Noise of a heading, in rad; None where the poses do not show it.
+        Noise of a heading, in rad; None if the poses do not determine it.
     """
 
     poses: int
@@ -1589,29 +1594,29 @@ class ReferenceFacts(Record, frozen=True):
 
 
 class Clock(Record, frozen=True):
-    """How the clock and the body of a run's track lie against those of the ticks.
+    """Offset of a track's clock and tracked body from those of the ticks, in one run.
 
     Attributes
     ----------
     offset_s : Measured
-        How much later the clock of the track is, in s.
+        Delay of the track's clock, in s.
     rate : Measured
-        How much faster it goes, in s/s.
+        Rate by which it is fast, in s/s.
     lever_ahead_m : Measured or None
-        How far ahead of the centre of the axle the tracked point lies, in m; None where the motion
-        does not show it.
+        Distance of the tracked point ahead of the axle's centre, in m; None if the motion does not
+        determine it.
     lever_left_m : Measured or None
-        How far to the left of it the tracked point lies, in m; None where the motion does not show
-        it.
+        Distance of the tracked point to the left of the axle's centre, in m; None if the motion
+        does not determine it.
     yaw_rad : Measured or None
-        Heading of the tracked body minus heading of the robot, in rad; None where the motion does
-        not show it.
+        Heading of the tracked body minus heading of the robot, in rad; None if the motion does not
+        determine it.
     misfit_m : float
-        Root mean square of what is left, in m.
+        Root mean square of the residuals, in m.
     windows : int
         Number of windows that were compared.
     left_out : int
-        Number of these that were left out.
+        Number of windows that were excluded.
     run : str
         Name of the run.
     track : str
@@ -1640,7 +1645,7 @@ class Topics(Record, frozen=True):
     wheels : str
         Topic of the wheels.
     reference : str or None
-        Topic of the reference; None where there is none.
+        Topic of the reference; None without one.
     """
 
     run: str
@@ -1649,16 +1654,16 @@ class Topics(Record, frozen=True):
 
 
 class Check(Record, frozen=True):
-    """A figure, and what good looks like.
+    """A check: what was found, and what is good.
 
     Attributes
     ----------
     name : str
-        What is looked at.
+        What is checked.
     found : str
-        The figure that was found.
+        What was found.
     good : str
-        What good looks like.
+        What would be good.
     ok : bool
         Whether it is good.
     """
@@ -1675,17 +1680,16 @@ class Determined(Record, frozen=True):
     Attributes
     ----------
     quantity : str
-        What is asked for.
+        The quantity.
     yes : bool
         Whether the data determines it.
     std_error : float or None
-        Standard error that this data promises with noise of the usual size, as a share of one; None
-        where the data does not show the quantity, or it is no value of the robot.
+        Expected relative standard error with noise of the usual size; None if the data does not
+        determine the quantity or it is not a value of the robot.
     usual_size : float or None
-        Usual size of the error in robots, as a share of one; None where it is no value of the
-        robot.
+        Usual relative size of the error in robots; None if it is not a value of the robot.
     because : str
-        Why, or what would help.
+        The reason, or what would help.
     """
 
     quantity: str
@@ -1703,34 +1707,40 @@ class Learnt(Result, frozen=True):
     steps : tuple[Step, ...]
         The nominal robot, and each effect that was added.
     verdict : str
-        What the last diagnosis says, in the words of ``Diagnosis``.
+        Verdict of the last diagnosis; see ``Diagnosis``.
     unlisted : Unlisted or None
-        What is missing and not in the catalogue; None where nothing is.
+        A missing effect that is not in the catalogue; None if there is none.
     next_experiments : tuple[Experiment, ...]
-        What to measure next, the most telling per minute first.
+        What to measure next, the most informative per minute first.
     model : Model
         The model that was learnt.
     fitted : tuple[Estimate, ...]
         Its free parameters.
     meaning : dict[str, str]
-        What each fitted effect means for the robot, a sentence each.
+        Meaning of each fitted effect for the robot, a sentence each.
     outliers : tuple[Outlier, ...]
-        Jumps of tracks that are beyond noise.
+        Jumps of tracks that exceed the noise.
     setup : Setup
-        What was found of the data before anything was fitted: faults, clock and mounting of the
-        reference, jumps, wrong poses, runs far from the others.
+        Findings about the data before any fit: faults, clock and mounting of the reference, jumps,
+        wrong poses, outlying runs.
     taken : tuple[Taken, ...]
-        Effects of the reference whose values were taken from the motion.
+        Effects of the reference whose values were estimated from the motion.
     reasons : tuple[str, ...]
-        Why the model is not called explained, a sentence each.
+        Why the verdict is not "explained", a sentence each.
     repeats : Repeated or None
-        What repeats most beside the model, whether it counts or not; None without tracks.
+        The strongest pattern that repeats in the residuals, significant or not; None without
+        tracks.
+    correction : dict[str, Change]
+        The new numbers of the robot by their keys in robot.toml, as of ``solve``; empty where these
+        runs show none.
+    sentence : str
+        The answer in words, as of ``solve``.
     remarks : tuple[str, ...]
-        What else should be said.
+        Further remarks, a sentence each.
     partial : bool
         Whether it was stopped while an effect was still missing.
     size : float
-        Probability with which an effect is added to a complete model.
+        False-alarm rate: probability that an effect is added to a complete model.
     draws : int
         Simulated tests for p-values that have no closed form.
     seed : int
@@ -1738,13 +1748,12 @@ class Learnt(Result, frozen=True):
     version : str
         Version of umbmark.
     left_m : float or None
-        Error that is left, in m.
+        Remaining error, in m.
     repeats_m : Repeats or None
-        How much of it is the same in every run of one path, in m; None where no two runs drive one
-        path.
+        The part of it that is the same in every run of one path, in m; None if no two runs drive
+        one path.
     remains : Remains or None
-        The same in detail, with what chance there is; None where columns are not what they are
-        called.
+        The same in detail, with the sources of noise; None if columns contradict their names.
     """
 
     steps: tuple[Step, ...]
@@ -1759,6 +1768,8 @@ class Learnt(Result, frozen=True):
     taken: tuple[Taken, ...]
     reasons: tuple[str, ...]
     repeats: Repeated | None
+    correction: dict[str, Change]
+    sentence: str
     remarks: tuple[str, ...]
     partial: bool
     size: float
@@ -1771,25 +1782,24 @@ class Learnt(Result, frozen=True):
 
 
 class Step(Record, frozen=True):
-    """One line of the story of a learnt model.
+    """One step of learning.
 
     Attributes
     ----------
     added : str or None
         The effect that was added; None for the nominal robot.
     class_ : tuple[str, ...]
-        Effects that this data cannot tell from it, itself among them.
+        Effects that this data cannot separate from it, including itself.
     p_adjusted : float or None
-        p of it, corrected for all classes that were asked; None where nothing was asked.
+        Its p, corrected for all classes that were tested; None if nothing was tested.
     law : Repeated or None
-        The law of a step which no effect of the catalogue makes: how it was found, what else it may
-        be, and its formula as it was fitted.
+        For a law outside the catalogue: how it was found, its alternatives, and its fitted formula.
     rmse_m : float or None
         Error of positions in the runs that the model was fitted to, in m.
     heading_rmse_rad : float or None
         The same of headings, in rad; None where none were measured.
     heldout_rmse_m : float or None
-        Error of positions in runs left out, in m.
+        Error of positions in held-out runs, in m.
     heldout_heading_rmse_rad : float or None
         The same of headings, in rad; None where none were measured.
     aicc : float or None
@@ -1810,8 +1820,33 @@ class Step(Record, frozen=True):
     bic: float | None
 
 
+class Change(Record, frozen=True):
+    """A number of the robot, old and new.
+
+    Attributes
+    ----------
+    old : float
+        As the robot has it now.
+    new : float
+        As it should be.
+    low : float or None
+        Lower end of the interval of the new value; None where the runs are too few.
+    high : float or None
+        Upper end of it; None where the runs are too few.
+    worth_m : float or None
+        By how much writing it lowers the error in the recorded runs, in m: these add up to the fall
+        by all new numbers; None where the error is not known.
+    """
+
+    old: float
+    new: float
+    low: float | None
+    high: float | None
+    worth_m: float | None
+
+
 class Paper(Result, frozen=True, kw_only=True):
-    """The paper's experiments; those that were not asked for are left out.
+    """The paper's experiments; those that were not requested are left out.
 
     Attributes
     ----------
@@ -2078,39 +2113,39 @@ class Plan(Result, frozen=True):
     runs : int
         Runs in each direction that are planned.
     minutes_a_run : float
-        How long a run takes, in min.
+        Duration of a run, in min.
     sigma_m : float
         Scatter of the return positions, one coordinate, in m.
     sigma_interval_m : Interval or None
-        Its interval, in m; None where it is not from data.
+        Its interval, in m; None if it is not from data.
     e_max_sys_m : float
         E_max,sys of the robot on its path, in m.
     with_heading : bool
         Whether return headings are measured.
     power : float
-        Probability with which a size is to be seen.
+        Power: probability with which a size should be detected.
     size : float
-        False-alarm rate: probability with which a robot without it is accused.
+        False-alarm rate: probability of detecting an effect that the robot does not have.
     draws : int
-        Simulated tests behind every figure that has no closed form.
+        Simulated tests for every figure without a closed form.
     seed : int
         Seed of those.
     see : tuple[Sought, ...]
-        The sizes that are to be seen, with the runs that they take.
+        The sizes to be detected, with the runs that they need.
     by_runs : tuple[OfRuns, ...]
-        What each number of runs a direction shows.
+        What each number of runs per direction can detect.
     invisible : tuple[str, ...]
-        Effects that no number of runs shows.
+        Effects that no number of runs can detect.
     alternatives : tuple[Alternative, ...]
         Another size, another speed, one direction only.
     extended : ExtendedTest or None
         The extended test; None without bumps.
     order : tuple[Drift, ...]
-        What a drift of the session does in each order of the runs.
+        Error from a drift over the session, for each order of the runs.
     assumed : tuple[str, ...]
         What was assumed, a phrase each.
     partial : bool
-        Whether it was stopped before all was looked at.
+        Whether it was stopped early.
     version : str
         Version of umbmark.
     """
@@ -2138,7 +2173,7 @@ class Plan(Result, frozen=True):
 
 
 class Sought(Record, frozen=True):
-    """A size that is to be seen, and how many runs a direction show it.
+    """A size to be detected, and the runs per direction that detect it.
 
     Attributes
     ----------
@@ -2151,15 +2186,15 @@ class Sought(Record, frozen=True):
     seen_by : str
         "calibrate", "diagnose", "not_asked" or "never".
     absorbed_by : tuple[str, ...] or None
-        The effects of the model that make up for it; None where it is not "never" seen.
+        The effects of the model that absorb it; None unless it is "never" detected.
     runs : int or None
-        Runs a direction that show it; None where 1000 do not.
+        Runs per direction that detect it; None if 1000 are not enough.
     runs_at_sigma_interval : tuple[int or None, int or None] or None
-        The same at both ends of the interval of the scatter; None where that is not from data.
+        The same at both ends of the interval of the scatter; None if that is not from data.
     power : float
-        Probability with which the planned runs show it.
+        Probability that the planned runs detect it.
     experiments : tuple[Experiment, ...]
-        Experiments that would show it where return poses do not.
+        Experiments that would detect it if return poses do not.
     """
 
     effect: str
@@ -2174,18 +2209,18 @@ class Sought(Record, frozen=True):
 
 
 class OfRuns(Record, frozen=True):
-    """What a number of runs a direction shows.
+    """What a number of runs per direction can detect.
 
     Attributes
     ----------
     runs : int
         Runs in each direction.
     minutes : float
-        How long they take, in min.
+        Their duration, in min.
     e_max_sys_m : ExpectedEMaxSys
-        E_max,sys as they would read it.
+        E_max,sys as they would measure it.
     minimum_detectable : tuple[LeastSize, ...]
-        The least sizes that they show.
+        The minimum sizes that they detect.
     """
 
     runs: int
@@ -2195,7 +2230,7 @@ class OfRuns(Record, frozen=True):
 
 
 class ExpectedEMaxSys(Record, frozen=True):
-    """E_max,sys as tests would read it, and how well.
+    """E_max,sys as tests would measure it, and how precisely.
 
     Attributes
     ----------
@@ -2206,7 +2241,7 @@ class ExpectedEMaxSys(Record, frozen=True):
     interval_half_width_m : float
         Half the width of its interval, in m.
     coverage : float
-        The share of tests whose interval holds the true value.
+        Share of tests whose interval contains the true value.
     tests : int
         Number of simulated tests.
     noise_band_m : float
@@ -2222,7 +2257,7 @@ class ExpectedEMaxSys(Record, frozen=True):
 
 
 class LeastSize(Record, frozen=True):
-    """The least size of an effect that is seen with the wanted power.
+    """Minimum size of an effect that is detected with the wanted power.
 
     Attributes
     ----------
@@ -2231,7 +2266,7 @@ class LeastSize(Record, frozen=True):
     parameter : str
         Its parameter.
     size : float or None
-        The size, in the unit of the parameter; None where none is seen.
+        The size, in the unit of the parameter; None if none is detected.
     """
 
     effect: str
@@ -2249,13 +2284,13 @@ class Alternative(Record, frozen=True):
     runs : Runs
         Numbers of runs.
     minutes : float
-        How long it takes, in min.
+        Its duration, in min.
     sigma_m : float
         Scatter of the return positions, one coordinate, in m.
     e_max_sys_interval_half_width_m : float or None
-        Half the width of the interval of E_max,sys, in m; None where the test does not give one.
+        Half the width of the interval of E_max,sys, in m; None if the test does not give one.
     minimum_detectable : tuple[LeastSize, ...]
-        The least sizes that it shows.
+        The minimum sizes that it detects.
     """
 
     what: str
@@ -2291,7 +2326,7 @@ class ExtendedTest(Record, frozen=True):
     runs : int
         Runs in each direction.
     minutes : float
-        How long they take, in min.
+        Their duration, in min.
     nonsys_orientation_rad : float
         Average absolute orientation error (Eq. 5), in rad.
     interval_half_width_rad : float
@@ -2306,7 +2341,7 @@ class ExtendedTest(Record, frozen=True):
 
 
 class Drift(Record, frozen=True):
-    """A change over the session, and the error that it makes in an order of the runs.
+    """A change over the session, and the error that it causes for an order of the runs.
 
     Attributes
     ----------
@@ -2315,11 +2350,11 @@ class Drift(Record, frozen=True):
     parameter : str
         Its parameter.
     change : float
-        By how much it changes, in the unit of the parameter.
+        Its change, in the unit of the parameter.
     order : str
         "mirrored", "alternating" or "blocks".
     error : dict[str, float]
-        The error that it makes, of each quantity.
+        The error that it causes in each quantity.
     error_sd : dict[str, float]
         The same in standard deviations.
     """
@@ -2333,16 +2368,16 @@ class Drift(Record, frozen=True):
 
 
 class Separation(Result, frozen=True):
-    """Experiments that tell two effects apart, the most telling per minute first.
+    """Experiments that separate two effects, the most informative per minute first.
 
     Attributes
     ----------
     separates : tuple[str, str]
         The two effects.
     beside : str
-        What the experiments come on top of.
+        The data to which the experiments are added.
     next_experiments : tuple[Experiment, ...]
-        How many standard deviations apart each puts them, and how long it takes.
+        The experiments, each with its separation in standard deviations and its duration.
     seed : int
         Seed of the simulated tests.
     version : str
@@ -2357,14 +2392,14 @@ class Separation(Result, frozen=True):
 
 
 class Report(Result, frozen=True):
-    """A page of everything.
+    """A page with all results.
 
     Attributes
     ----------
     bytes : int
         Its length.
     studies : tuple[Said, ...]
-        The verdict of each study on it, and what to know of its data first.
+        The verdict of each study on it, and the warnings about its data.
     seed : int
         Seed of all random numbers.
     version : str
@@ -2378,16 +2413,16 @@ class Report(Result, frozen=True):
 
 
 class Said(Record, frozen=True):
-    """What a study comes to.
+    """The result of a study.
 
     Attributes
     ----------
     name : str
         Its name.
     notices : tuple[str, ...]
-        What to know of its data first, a sentence each.
+        Warnings about its data, a sentence each.
     verdict : str
-        What it comes to, in one sentence.
+        Its result, in one sentence.
     """
 
     name: str
@@ -2399,7 +2434,7 @@ class Score(Result, frozen=True):
     """The scores of a UMBmark test, with intervals that hold with probability ``level``.
 
     Lengths are in m, angles in rad, counter-clockwise positive; points are (x, y), intervals
-    (low, high). A score is None where the runs do not give it, and ``warnings`` says why.
+    (low, high). A score is None if the runs do not determine it, and ``warnings`` says why.
 
     Attributes
     ----------
@@ -2408,7 +2443,7 @@ class Score(Result, frozen=True):
     e_max_sys_interval_m : Interval or None
         Its interval; None with fewer than three runs in a direction.
     noise_band_m : float or None
-        E_max,sys that a robot without systematic error stays below, by the scatter of its runs.
+        The value of E_max,sys that chance alone would reach, from the scatter of the runs.
     sigma_m : float or None
         Standard deviation of one coordinate about its direction's centroid, n - 1, pooled over both
         coordinates and directions.
@@ -2423,7 +2458,7 @@ class Score(Result, frozen=True):
     centroid_cw_interval_m : tuple[Interval or None, Interval or None] or None
         The intervals of its coordinates.
     centroid_cw_ellipse : Ellipse or None
-        The ellipse that holds it.
+        Its confidence ellipse.
     return_heading_cw_rad : float or None
         Mean return heading of the clockwise runs whose heading was measured (Eq. 6).
     return_heading_cw_interval_rad : Interval or None
@@ -2435,7 +2470,7 @@ class Score(Result, frozen=True):
     centroid_ccw_interval_m : tuple[Interval or None, Interval or None] or None
         The intervals of its coordinates.
     centroid_ccw_ellipse : Ellipse or None
-        The ellipse that holds it.
+        Its confidence ellipse.
     return_heading_ccw_rad : float or None
         Mean return heading of the counter-clockwise runs whose heading was measured (Eq. 6).
     return_heading_ccw_interval_rad : Interval or None
@@ -2445,7 +2480,7 @@ class Score(Result, frozen=True):
     nonsys_orientation_interval_rad : Interval or None
         Its interval.
     nonsys_convention : str or None
-        "mean" for half of Eq. 5, which Table II has, or "sum" for Eq. 5 as printed.
+        "mean" for half of Eq. 5, as used in Table II, or "sum" for Eq. 5 as printed.
     n_bumps_cw : int
         Number of clockwise runs with bumps.
     n_bumps_ccw : int
@@ -2453,10 +2488,10 @@ class Score(Result, frozen=True):
     level : float
         Probability with which each interval holds.
     setup : Setup
-        What was found of the runs before they were scored: faults, jumps and wrong poses of tracks,
-        runs whose return is far from the others. Empty where return errors were given in arrays.
+        Findings about the runs before they were scored: faults, jumps and wrong poses of tracks,
+        outlying returns. Empty if return errors were given in arrays.
     warnings : tuple[str, ...]
-        What to know of the data first; then what could not be computed and why, and what looks
+        Warnings: first about the data, then what could not be computed and why, and what looks
         wrong.
     version : str
         Version of umbmark.
@@ -2492,7 +2527,7 @@ class Score(Result, frozen=True):
 
 
 class Ellipse(Record, frozen=True):
-    """The ellipse that holds a centre of gravity.
+    """The confidence ellipse of a centre of gravity.
 
     Attributes
     ----------
@@ -2527,7 +2562,7 @@ class Sensitivity(Result, frozen=True, kw_only=True):
     seed : int
         Seed of all random numbers.
     partial : bool
-        Whether less was done than was asked for.
+        Whether it was stopped before all of it was done.
     noise : str
         "simulated" or "absent".
     parameters : tuple[Varied, ...]
@@ -2600,9 +2635,9 @@ class OfMetric(Record, frozen=True, kw_only=True):
     std_dev : WithInterval or UnsetType
         Its standard deviation.
     first : dict[str, WithInterval] or UnsetType
-        Sobol indices: the share of the variance that a parameter makes alone.
+        Sobol indices: the share of the variance that a parameter causes alone.
     total : dict[str, WithInterval] or UnsetType
-        Sobol indices: the share that it makes alone and with others.
+        Sobol indices: the share that it causes alone and together with others.
     second : tuple[OfPair, ...] or UnsetType
         Sobol indices of pairs.
     mu : dict[str, WithInterval] or UnsetType
@@ -2635,9 +2670,9 @@ class WithInterval(Record, frozen=True):
     Attributes
     ----------
     value : float or None
-        The number; None where it cannot be estimated.
+        The number; None if it cannot be estimated.
     interval : tuple[float or None, float or None]
-        Its 95 % interval, an end None where it cannot be estimated.
+        Its 95 % interval; an end is None if it cannot be estimated.
     """
 
     value: float | None
@@ -2650,9 +2685,9 @@ class OfPair(Record, frozen=True):
     Attributes
     ----------
     value : float or None
-        The share; None where it cannot be estimated.
+        The share; None if it cannot be estimated.
     interval : tuple[float or None, float or None]
-        Its 95 % interval, an end None where it cannot be estimated.
+        Its 95 % interval; an end is None if it cannot be estimated.
     of : tuple[str, str]
         The two parameters.
     """
@@ -2662,8 +2697,119 @@ class OfPair(Record, frozen=True):
     of: tuple[str, str]
 
 
+class Solution(Result, frozen=True):
+    """The one answer about a measured robot: what is wrong, what to write into it, what remains,
+    and what to do next.
+
+    Attributes
+    ----------
+    verdict : str
+        What the last diagnosis of the model says, in the words of ``Diagnosis``.
+    sentence : str
+        The answer in words.
+    correction : dict[str, Change]
+        The new numbers of the robot by their keys in robot.toml; empty where these runs show none.
+    needed : bool
+        Whether the new numbers differ from the old ones by more than chance.
+    trusted : bool
+        Whether the new numbers may be written: the model explains the runs, and the data are in
+        order.
+    remains_m : float or None
+        Error that remains with the new numbers in the robot, in m; None where it is not known.
+    off : Off or None
+        How far off the robot is, and what of it is what; None where it is not known.
+    next : tuple[str, ...]
+        What to do next, a sentence each.
+    not_shown : tuple[str, ...]
+        What these runs do not show of the robot: effects that become numbers of it.
+    reasons : tuple[str, ...]
+        Why the verdict is not "explained", a sentence each.
+    model : Model
+        The model that was learnt.
+    fitted : tuple[Estimate, ...]
+        Its free parameters.
+    meaning : dict[str, str]
+        Meaning of each fitted effect for the robot, a sentence each.
+    setup : Setup
+        Findings about the data before any fit: faults, clock and mounting of the reference, jumps,
+        wrong poses, outlying runs.
+    partial : bool
+        Whether learning was stopped while an effect was still missing.
+    size : float
+        Probability with which an effect is added to a complete model; intervals hold with the rest.
+    draws : int
+        Simulated tests for p-values that have no closed form.
+    seed : int
+        Seed of those.
+    version : str
+        Version of umbmark.
+    left_m : float or None
+        Remaining error, in m.
+    repeats_m : Repeats or None
+        The part of it that is the same in every run of one path, in m; None if no two runs drive
+        one path.
+    remains : Remains or None
+        The same in detail, with the sources of noise; None if columns contradict their names.
+    """
+
+    verdict: str
+    sentence: str
+    correction: dict[str, Change]
+    needed: bool
+    trusted: bool
+    remains_m: float | None
+    off: Off | None
+    next: tuple[str, ...]
+    not_shown: tuple[str, ...]
+    reasons: tuple[str, ...]
+    model: Model
+    fitted: tuple[Estimate, ...]
+    meaning: dict[str, str]
+    setup: Setup
+    partial: bool
+    size: float
+    draws: int
+    seed: int
+    version: str
+    left_m: float | None
+    repeats_m: Repeats | None
+    remains: Remains | None
+
+
+class Off(Record, frozen=True):
+    """How far off a robot is, and what of it is what. Each list of parts adds up to the fall
+    between the errors before and after it.
+
+    Attributes
+    ----------
+    measure : str
+        What is measured: "e_max_sys" (mean returns of both directions), "end_rmse" (ends of runs)
+        or "rmse_along" (all measured poses).
+    driven_m : float or None
+        Error as driven, in m.
+    reference_m : dict[str, float or None]
+        Parts of it that are the reference's and not the robot's, by effect, in m.
+    written_m : dict[str, float or None]
+        Parts of it that new numbers take away, by effect, in m.
+    known_m : dict[str, float or None]
+        Parts of it that are known and that no number of the robot holds, by effect, in m.
+    rest_m : float or None
+        What all of the model leaves of it, in m.
+    chance_m : float or None
+        What chance alone stays below in 95 % of tests, in m; None where that is not known.
+    """
+
+    measure: str
+    driven_m: float | None
+    reference_m: dict[str, float | None]
+    written_m: dict[str, float | None]
+    known_m: dict[str, float | None]
+    rest_m: float | None
+    chance_m: float | None
+
+
 class MonteCarlo(Result, frozen=True):
-    """What a study found.
+    """The result of a study.
 
     Attributes
     ----------
@@ -2672,11 +2818,11 @@ class MonteCarlo(Result, frozen=True):
     seed : int
         Seed of all random numbers.
     partial : bool
-        Whether trials that were asked for are not done.
+        Whether it was stopped before all trials were done.
     metrics : dict[str, MetricStatistics]
         The metrics that the test has: "e_max_sys_m", "sigma_m", "centroid_cw_x_m", ...
     trials_per_s : float or None
-        Trials in a second; None where that was not measured.
+        Trials per second; None if that was not measured.
     noise_free : NoiseFree
         The same test without noise.
     runs : Runs
@@ -2689,11 +2835,11 @@ class MonteCarlo(Result, frozen=True):
         The effects, in the order in which they act: each with its name and its values, or the
         distributions that these are drawn from.
     sources : tuple[str, ...]
-        Where values are from, a phrase each.
+        Sources of the values, a phrase each.
     assumed : tuple[str, ...]
         What was assumed, a phrase each.
     published : Published or None
-        What was published of this test; None where nothing was.
+        What was published about this test; None if nothing.
     version : str
         Version of umbmark.
     """
@@ -2720,15 +2866,15 @@ class MetricStatistics(Record, frozen=True):
     Attributes
     ----------
     mean : float or None
-        Mean; None where no trial has the metric.
+        Mean; None if no trial has the metric.
     std_dev : float or None
-        Standard deviation; None below two trials.
+        Standard deviation; None for fewer than two trials.
     std_error : float or None
-        Standard error of the mean; None below two trials.
+        Standard error of the mean; None for fewer than two trials.
     min : float or None
-        Least value; None where no trial has the metric.
+        Smallest value; None if no trial has the metric.
     max : float or None
-        Greatest value; None where no trial has the metric.
+        Largest value; None if no trial has the metric.
     quantiles : dict[str, float or None]
         Quantiles, by the share that lies below.
     """
@@ -2802,7 +2948,7 @@ class Sweep(Result, frozen=True):
     seed : int
         Seed of all random numbers.
     partial : bool
-        Whether points that were asked for are not done.
+        Whether it was stopped before all points were done.
     points : tuple[Point, ...]
         The points, in order.
     assumed : tuple[str, ...]
@@ -2865,11 +3011,11 @@ class Summary(Record, frozen=True):
     Attributes
     ----------
     mean : float or None
-        Mean; None where no trial has the metric.
+        Mean; None if no trial has the metric.
     std_dev : float or None
-        Standard deviation; None below two trials.
+        Standard deviation; None for fewer than two trials.
     std_error : float or None
-        Standard error of the mean; None below two trials.
+        Standard error of the mean; None for fewer than two trials.
     quantiles : dict[str, float or None]
         Quantiles, by the share that lies below.
     """
@@ -2881,7 +3027,7 @@ class Summary(Record, frozen=True):
 
 
 class Tolerance(Result, frozen=True):
-    """How many robots keep a target, and the cheapest tolerances with which enough do.
+    """How many robots meet a target, and the cheapest tolerances with which enough do.
 
     Attributes
     ----------
@@ -2896,7 +3042,7 @@ class Tolerance(Result, frozen=True):
     seed : int
         Seed of the robots.
     partial : bool
-        Whether not all choices were looked at.
+        Whether it was stopped before all choices were tested.
     now : Choice
         The first grade of every parameter.
     alone : tuple[Choice, ...]
@@ -2904,10 +3050,10 @@ class Tolerance(Result, frozen=True):
     last : Choice
         The last grade of every parameter.
     cheapest : Choice or None
-        The cheapest choice that keeps the target surely, judged by robots drawn anew; None where
+        The cheapest choice that certainly meets the target, tested on newly drawn robots; None if
         none does.
     choices_looked_at : int
-        Number of choices that were looked at.
+        Number of choices that were tested.
     assumed : tuple[str, ...]
         What was assumed, a phrase each.
     version : str
@@ -2930,7 +3076,7 @@ class Tolerance(Result, frozen=True):
 
 
 class Target(Record, frozen=True, kw_only=True):
-    """The share of robots whose metric is to stay within a size.
+    """The required share of robots whose metric stays within a size.
 
     Attributes
     ----------
@@ -2948,18 +3094,18 @@ class Target(Record, frozen=True, kw_only=True):
 
 
 class Choice(Record, frozen=True):
-    """Grades of all parameters, what they cost, and how good the robots are that they make.
+    """Grades of all parameters, their cost, and the quality of the resulting robots.
 
     Attributes
     ----------
     grades : dict[str, Grade]
         The grade of each parameter.
     cost : float
-        What they cost together.
+        Their total cost.
     share_within : WithInterval
-        The share of robots that keeps the target.
+        The share of robots that meet the target.
     quantile : WithInterval
-        The size that the wanted share keeps.
+        The quantile of the metric at the required share.
     """
 
     grades: dict[str, Grade]
@@ -2978,7 +3124,7 @@ class Grade(Record, frozen=True):
     distribution : dict[str, float or str]
         Its distribution, as in ``model.toml``.
     cost : float
-        What it costs.
+        Its cost.
     """
 
     grade: int
@@ -2987,7 +3133,7 @@ class Grade(Record, frozen=True):
 
 
 class TrackComparison(Result, frozen=True):
-    """Models beside tracks: where on the way their error is made, and what it depends on.
+    """Models compared with tracks: where along the path the error arises, and what it depends on.
 
     Attributes
     ----------
@@ -3004,22 +3150,21 @@ class TrackComparison(Result, frozen=True):
     models : tuple[JudgedAlong, ...]
         The models, in the order in which they were given.
     remarks : tuple[str, ...]
-        What else should be said.
+        Further remarks, a sentence each.
     setup : Setup
-        What was found of the data before anything was fitted: faults, clock and mounting of the
-        reference, jumps, wrong poses, runs far from the others.
+        Findings about the data before any fit: faults, clock and mounting of the reference, jumps,
+        wrong poses, outlying runs.
     size : float
-        False-alarm rate: probability with which a right model is accused.
+        False-alarm rate: probability that a correct model is rejected.
     version : str
         Version of umbmark.
     left_m : float or None
-        Error that is left, in m.
+        Remaining error, in m.
     repeats_m : Repeats or None
-        How much of it is the same in every run of one path, in m; None where no two runs drive one
-        path.
+        The part of it that is the same in every run of one path, in m; None if no two runs drive
+        one path.
     remains : Remains or None
-        The same in detail, with what chance there is; None where columns are not what they are
-        called.
+        The same in detail, with the sources of noise; None if columns contradict their names.
     """
 
     observed: str
@@ -3038,42 +3183,41 @@ class TrackComparison(Result, frozen=True):
 
 
 class JudgedAlong(Record, frozen=True):
-    """How one model does along the way, and at its end.
+    """Result of one model along the path, and at its end.
 
     Attributes
     ----------
     name : str
         Its name.
     explains : bool or None
-        Whether it explains the tracks; None where nothing was asked.
+        Whether it explains the tracks; None if nothing was tested.
     p : float or None
-        p of all tests together; None where nothing was asked.
+        p of all tests together; None if nothing was tested.
     tests : int
-        How many tests these are.
+        Number of these tests.
     along : RootMeanSquare
-        Errors along the way.
+        Errors along the path.
     end : RootMeanSquare
         Errors at its end.
     parts : dict[str, tuple[Part, ...]]
-        Error that each part of the way adds, by what the parts are told apart.
+        Error that each part of the path adds, for each way of grouping parts.
     overall : dict[str, Overall]
         Mean rates of the error.
     against : tuple[Against, ...]
-        Rates of the error against quantities of the way.
+        Rates of the error as functions of driving quantities.
     sentences : tuple[str, ...]
-        What stands out, a sentence each.
+        Findings, a sentence each.
     taken : tuple[Taken, ...]
-        Effects of the reference whose values were taken from the motion.
+        Effects of the reference whose values were estimated from the motion.
     reasons : tuple[str, ...]
         Why the model does not explain the tracks, a sentence each.
     left_m : float or None
-        Error that is left, in m.
+        Remaining error, in m.
     repeats_m : Repeats or None
-        How much of it is the same in every run of one path, in m; None where no two runs drive one
-        path.
+        The part of it that is the same in every run of one path, in m; None if no two runs drive
+        one path.
     remains : Remains or None
-        The same in detail, with what chance there is; None where columns are not what they are
-        called.
+        The same in detail, with the sources of noise; None if columns contradict their names.
     """
 
     name: str
@@ -3109,7 +3253,7 @@ class RootMeanSquare(Record, frozen=True):
 
 
 class Part(Record, frozen=True):
-    """Error that a part of the way adds.
+    """Error that a part of the path adds.
 
     Attributes
     ----------
@@ -3146,7 +3290,7 @@ class Mean(Record, frozen=True):
     mean : float or None
         The mean; None without runs.
     interval : tuple[float or None, float or None] or None
-        Its interval, an end None where it is open; None with a single run.
+        Its interval, with None for an open end; None for a single run.
     runs : int
         Number of runs.
     sd : float or None
@@ -3160,14 +3304,14 @@ class Mean(Record, frozen=True):
 
 
 class PartShare(Record, frozen=True):
-    """Share of a part of the way in the squared error.
+    """Share of a part of the path in the squared error.
 
     Attributes
     ----------
     position : float or None
-        Of positions along the way.
+        Of positions along the path.
     heading : float or None
-        Of headings along the way.
+        Of headings along the path.
     end : float or None
         Of positions at its end.
     """
@@ -3178,18 +3322,18 @@ class PartShare(Record, frozen=True):
 
 
 class Overall(Record, frozen=True):
-    """Mean rate of an error over all of the way.
+    """Mean rate of an error over the whole path.
 
     Attributes
     ----------
     mean : float or None
         The mean; None without runs.
     interval : tuple[float or None, float or None] or None
-        Its interval, an end None where it is open; None with a single run.
+        Its interval, with None for an open end; None for a single run.
     runs : int
         Number of runs.
     p : float or None
-        p of none at all; None where it was not asked.
+        p of a rate of zero; None if it was not tested.
     """
 
     mean: float | None
@@ -3199,7 +3343,7 @@ class Overall(Record, frozen=True):
 
 
 class Against(Record, frozen=True):
-    """Rate of an error against a quantity of the way.
+    """Rate of an error as a function of a quantity.
 
     Attributes
     ----------
@@ -3210,7 +3354,7 @@ class Against(Record, frozen=True):
     unit : str
         Unit of the quantity.
     p : float or None
-        p of no dependence; None where it was not asked.
+        p of no dependence; None if it was not tested.
     bins : tuple[Bin, ...]
         The rate in each span of the quantity.
     """
@@ -3223,24 +3367,24 @@ class Against(Record, frozen=True):
 
 
 class Bin(Record, frozen=True):
-    """Mean rate of an error where a quantity lies between two values, in a sense or in both.
+    """Mean rate of an error while a quantity is between two values, for one sense or both.
 
     Attributes
     ----------
     mean : float or None
         The mean; None without runs.
     interval : tuple[float or None, float or None] or None
-        Its interval, an end None where it is open; None with fewer than two runs.
+        Its interval, with None for an open end; None for fewer than two runs.
     runs : int
         Number of runs.
     low : float
         Least value of the quantity.
     high : float or None
-        Greatest value of the quantity; None where it is open.
+        Largest value of the quantity; None if it is open.
     sense : float
         1 counter-clockwise, -1 clockwise, 0 both.
     amount : float
-        How much of the way this is, in the unit of the rate.
+        Amount of driving in this bin, in the unit of the rate.
     """
 
     mean: float | None
@@ -3253,7 +3397,7 @@ class Bin(Record, frozen=True):
 
 
 class Effect(Record, frozen=True):
-    """An effect of the catalogue: law, cause, signature, and what looks like it.
+    """An effect of the catalogue: equation, cause, signature, and effects that look like it.
 
     Attributes
     ----------
@@ -3274,9 +3418,9 @@ class Effect(Record, frozen=True):
     confused_with : tuple[str, ...]
         Effects that look like it.
     separated_by : str
-        What tells it from these.
+        How to separate it from these.
     source : str
-        Where it is from.
+        Its source.
     parameters : tuple[Parameter, ...]
         Its parameters.
     """
@@ -3306,13 +3450,13 @@ class Parameter(Record, frozen=True):
     unit : str
         Its unit.
     default : float or str
-        What it is where nothing is said; a word where it takes words, or is of the robot.
+        Its default; a word if it takes words or comes from the robot.
     typical : float
         Its usual size.
     bounds : tuple[float or None, float or None]
-        The least and the greatest that it may be; an end None where it is open.
+        Its allowed range; an open end is None.
     choices : tuple[str, ...]
-        The words that it takes; empty where it takes numbers.
+        The allowed words; empty if it takes numbers.
     meaning : str
         What it means.
     """
