@@ -70,7 +70,7 @@ impl Figure {
         &self.0.told.shows
     }
 
-    /// What good looks like.
+    /// What would be good.
     #[getter]
     fn good(&self) -> &str {
         &self.0.told.good

@@ -5,86 +5,58 @@
 //! classes. Every call has three steps: arguments are read under the interpreter lock, the work runs without it (`work`),
 //! and its result is handed over.
 
-mod arrays;
-mod calibrate;
-mod checkpoint;
-mod dataset;
-mod diagnose;
-mod effect;
-mod figure;
-mod keys;
-mod model;
-mod monte_carlo;
-mod paper;
-mod parameters;
-mod path;
-mod plan;
-mod preset;
-mod report;
-mod robot;
-mod run;
-mod score;
-mod sensitivity;
-mod simulate;
-mod sweep;
-mod tolerance;
-mod work;
-
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::IntoPyDict;
 use umbmark_io::whole_file::FileError;
 use umbmark_io::{DatasetError, Existing, Words};
 
-/// The odometry error of wheeled robots: UMBmark.
-#[pymodule]
-mod _umbmark {
-    use pyo3::prelude::*;
+/// Each file of the module, with the functions and classes of it that Python has.
+macro_rules! module {
+    ($($file:ident $(: $($item:ident),+)?;)*) => {
+        $(mod $file;)*
 
-    #[pymodule_export]
-    use super::calibrate::{calibrate, calibrate_gears, export};
-    #[pymodule_export]
-    use super::checkpoint::merge;
-    #[pymodule_export]
-    use super::dataset::{Dataset, init, inspect, load_dataset};
-    #[pymodule_export]
-    use super::diagnose::{compare, diagnose, fit, learn, solve};
-    #[pymodule_export]
-    use super::effect::{effects, formula_variables};
-    #[pymodule_export]
-    use super::figure::{Figure, figure, kinds};
-    #[pymodule_export]
-    use super::model::Model;
-    #[pymodule_export]
-    use super::monte_carlo::{Ensemble, Study};
-    #[pymodule_export]
-    use super::paper::paper;
-    #[pymodule_export]
-    use super::path::Path;
-    #[pymodule_export]
-    use super::plan::{plan, separate};
-    #[pymodule_export]
-    use super::preset::presets;
-    #[pymodule_export]
-    use super::report::{report, write};
-    #[pymodule_export]
-    use super::robot::Robot;
-    #[pymodule_export]
-    use super::run::Run;
-    #[pymodule_export]
-    use super::score::{score_arrays, score_dataset};
-    #[pymodule_export]
-    use super::sensitivity::{Sobol, sensitivity};
-    #[pymodule_export]
-    use super::simulate::simulate;
-    #[pymodule_export]
-    use super::sweep::sweep;
-    #[pymodule_export]
-    use super::tolerance::tolerance;
+        /// The odometry error of wheeled robots: UMBmark.
+        #[pymodule]
+        mod _umbmark {
+            use pyo3::prelude::*;
 
-    #[pymodule_init]
-    fn add_version(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        module.add("__version__", umbmark_core::VERSION)
-    }
+            $($(#[pymodule_export]
+            use super::$file::{$($item),+};)?)*
+
+            #[pymodule_init]
+            fn add_version(module: &Bound<'_, PyModule>) -> PyResult<()> {
+                module.add("__version__", umbmark_core::VERSION)
+            }
+        }
+    };
+}
+
+module! {
+    arrays;
+    calibrate: calibrate, calibrate_gears, export;
+    checkpoint: merge;
+    dataset: Dataset, init, inspect, load_dataset;
+    diagnose: compare, diagnose, fit, learn, solve;
+    effect: effects, formula_variables;
+    figure: Figure, figure, kinds;
+    keys;
+    model: Model;
+    monte_carlo: Ensemble, Study;
+    paper: paper;
+    parameters;
+    path: Path;
+    plan: plan, separate;
+    preset: presets;
+    report: report, write;
+    robot: Robot;
+    run: Run;
+    score: score_arrays, score_dataset;
+    sensitivity: Sobol, sensitivity;
+    simulate: simulate;
+    sweep: sweep;
+    tolerance: tolerance;
+    work;
 }
 
 /// What the core refuses, in its own words.
@@ -129,6 +101,13 @@ fn probability(name: &str, value: f64) -> PyResult<()> {
 /// A result as the document that the package decodes.
 fn json(result: &impl serde::Serialize) -> PyResult<String> {
     serde_json::to_string(result).map_err(refused)
+}
+
+/// A result as the package's class of this name.
+fn typed<'py>(py: Python<'py>, class: &str, result: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let class = py.import("umbmark._documents")?.getattr(class)?;
+    let keywords = [("type", class)].into_py_dict(py)?;
+    py.import("msgspec")?.getattr("json")?.call_method("decode", (json(result)?,), Some(&keywords))
 }
 
 /// A result as Python's own dicts, lists and numbers.

@@ -276,7 +276,7 @@ impl Study {
 }
 
 /// A number of runs for both directions, or one for each.
-fn runs_of(given: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
+pub fn runs_of(given: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
     match given.extract::<usize>() {
         Ok(runs) => Ok([runs, runs]),
         Err(_) => given.extract::<(usize, usize)>().map(|(cw, ccw)| [cw, ccw]),

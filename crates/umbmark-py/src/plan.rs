@@ -129,7 +129,7 @@ pub fn separate(
     whose.check()?;
     let options: Options = options_of(options, false)?;
     if pair.0 == pair.1 {
-        return Err(PyValueError::new_err(format!("two effects are told apart, got {} twice", pair.0)));
+        return Err(PyValueError::new_err(format!("two different effects are needed, got {} twice", pair.0)));
     }
     let work = move |_: &Watch| -> Result<_, PlanError> {
         let names = [pair.0.as_str(), pair.1.as_str()];

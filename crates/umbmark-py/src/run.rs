@@ -24,7 +24,7 @@ pub const TESTS: [(&str, TestKind); 2] = [("systematic", TestKind::Systematic), 
 /// number : int
 ///     Its number, unique within its direction and test.
 /// name : str, optional
-///     What it is called.
+///     Its name.
 /// test : str, default "systematic"
 ///     "systematic", or "bumps" for the extended test.
 /// returned : tuple of float, optional
@@ -86,7 +86,7 @@ impl Run {
         Ok(Run::alone(run))
     }
 
-    /// What it is called.
+    /// Its name.
     #[getter]
     fn name(&self) -> &str {
         &self.core().name

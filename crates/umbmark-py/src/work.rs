@@ -33,8 +33,8 @@ pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyR
 
 /// Runs long `work` on `threads` of its own (0: one for each processor), so that a forked process may call too.
 ///
-/// Ctrl-C raises `KeyboardInterrupt` at once; work that looks at [`Watch::stop`] ends within milliseconds, other work comes to
-/// its end unheard. `progress` is called with the steps done.
+/// Ctrl-C raises `KeyboardInterrupt` at once; work that looks at [`Watch::stop`] ends within milliseconds, other work runs to its end, and
+/// its result is discarded. `progress` is called with the steps done.
 pub fn watched<T: Send + 'static>(
     py: Python<'_>,
     threads: usize,

@@ -130,7 +130,7 @@ def test_verdicts_on_complete_robots_are_those_of_one_process(client: Client) ->
     assert sum(many.counts.values()) == 4
     said = [
         umbmark.diagnose(
-            umbmark._umbmark.simulate(MODEL, keys["path"], (3, 3), 0.0, 1, trial),
+            umbmark.simulate(MODEL, keys["path"], runs=3, reference_rate_hz=0, trial=trial),
             draws=99,
             seed=trial,
         ).verdict

@@ -10,9 +10,27 @@ from typing import Any
 import numpy as np
 import pytest
 import umbmark
-from umbmark._result import Result
+from umbmark._result import Record, Result
 
 SIDE = 1.0
+
+
+class Part(Record, frozen=True):
+    name: str
+    sizes_m: tuple[float, ...]
+
+
+class Whole(Result, frozen=True):
+    seed: int
+    parts: tuple[Part, ...]
+
+
+def test_a_result_without_a_table_of_its_own_has_that_of_its_first_list_or_of_its_numbers() -> None:
+    part = {"name": "left", "sizes_m": [0.1]}
+    assert Whole._of(json.dumps({"seed": 1, "parts": [part]})).table() == [{"name": "left"}]
+    empty = Whole._of('{"seed": 1, "parts": []}')
+    assert empty.table() == [{"seed": 1}]
+    assert "<td>1</td>" in empty._repr_html_()
 
 
 @pytest.fixture(scope="module")
@@ -363,7 +381,10 @@ def test_a_model_that_was_learnt_explains_the_data(folder: Path) -> None:
         (lambda _: umbmark.plan(power=0.04), r"power must be greater than size, 0\.05"),
         (lambda _: umbmark.plan(sigma_m=-1), "sigma_m must be positive and finite"),
         (lambda _: umbmark.plan(order="random"), "order must be one of mirrored, alternating"),
-        (lambda _: umbmark.separate("crab", "crab"), "two effects are told apart, got crab twice"),
+        (
+            lambda _: umbmark.separate("crab", "crab"),
+            "two different effects are needed, got crab twice",
+        ),
         (lambda _: umbmark.tolerance([{"name": "e_dd", "mean": 1, "sd": 1}]), "e_dd"),
         (lambda _: umbmark.tolerance(GRADES, target=-1), "target must be positive and finite"),
         (lambda _: umbmark.tolerance(GRADES, metric="e_max"), 'there is no metric "e_max"'),

@@ -30,7 +30,6 @@ from umbmark._calibration import Calibration, GearCalibration, calibrate, calibr
 from umbmark._comparison import Comparison, TrackComparison, compare
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
 from umbmark._documents import Correction, Effect, Setup
-from umbmark._effects import effects
 from umbmark._formula import formula_of
 from umbmark._inspection import Inspection, inspect
 from umbmark._monte_carlo import MonteCarlo, merge, monte_carlo
@@ -39,7 +38,6 @@ from umbmark._plan import Plan, Separation, plan, separate
 from umbmark._report import Report, figures, plot, report
 from umbmark._scores import Score, score
 from umbmark._sensitivity import Sensitivity, sensitivity
-from umbmark._simulation import simulate
 from umbmark._solution import Solution, solve
 from umbmark._sweep import Sweep, sweep
 from umbmark._tolerance import Tolerance, tolerance
@@ -53,9 +51,11 @@ from umbmark._umbmark import (
     Run,
     Study,
     __version__,
+    effects,
     init,
     load_dataset,
     presets,
+    simulate,
 )
 
 __all__ = [

@@ -147,7 +147,7 @@ def diagnosis(result: Diagnosis, ax: Axes | None) -> Axes:
 
 def fitted(result: Fitted | GearCalibration, ax: Axes | None) -> Axes:
     """Draw how far each value lies from what does nothing, in standard errors."""
-    from umbmark._effects import effects
+    from umbmark._umbmark import effects
 
     ax = _axes(ax)
     catalogue = effects()

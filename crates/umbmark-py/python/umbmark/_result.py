@@ -54,8 +54,10 @@ class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return decoded
 
     def table(self) -> list[Row]:
-        """Give its main numbers, one dict a row."""
-        raise NotImplementedError
+        """Give its main numbers, one dict a row: its first list of parts, or its own numbers."""
+        values = [value for _, value in _fields(self) if isinstance(value, tuple)]
+        lists = [value for value in values if value and isinstance(value[0], Record)]
+        return [_plain(row) for row in (lists[0] if lists else (self,))]
 
     def to_arrow(self) -> pa.Table:
         """Give its ``table`` as an Arrow table."""
@@ -98,7 +100,16 @@ class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return f"<table><caption>{name}</caption><tr>{head}</tr>{body}</table>"
 
 
-def _fields(result: Result) -> list[tuple[str, Any]]:
+def _plain(part: Result | Record) -> Row:
+    """Numbers and words, without what has parts of its own."""
+    return {
+        key: value
+        for key, value in _fields(part)
+        if value is None or isinstance(value, str | int | float)
+    }
+
+
+def _fields(result: Result | Record) -> list[tuple[str, Any]]:
     return [(key, getattr(result, key)) for key in result.__struct_fields__]
 
 

@@ -7,6 +7,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
+from umbmark._documents import Effect
+
 __all__ = [
     "Dataset",
     "Ensemble",
@@ -306,7 +308,7 @@ def load_dataset(
     place: Place, *, ticks: str | None = None, reference: str | None = None
 ) -> Dataset: ...
 def inspect(data: Dataset, place: str) -> str: ...
-def effects() -> str: ...
+def effects() -> dict[str, Effect]: ...
 def formula_variables() -> list[str]: ...
 def presets() -> dict[str, tuple[Model, Path]]: ...
 def score_arrays(
@@ -424,9 +426,10 @@ def solve(
 ) -> tuple[str, Model]: ...
 def simulate(
     model: Model,
-    path: Path | None,
-    runs: tuple[int, int],
-    reference_rate_hz: float,
-    seed: int,
-    trial: int,
+    path: Path | None = None,
+    *,
+    runs: int | tuple[int, int] | None = None,
+    reference_rate_hz: float = 20.0,
+    seed: int = 1,
+    trial: int = 0,
 ) -> Dataset: ...

@@ -288,7 +288,9 @@ def _asked(
     counts: Counter[str] = Counter()
     named: Counter[str] = Counter()
     for trial in range(index * chunk, min(n, (index + 1) * chunk)):
-        data = _simulate(truth, path, runs, reference_rate_hz, seed, trial)
+        data = _simulate(
+            truth, path, runs=runs, reference_rate_hz=reference_rate_hz, seed=seed, trial=trial
+        )
         if ask == "diagnose":
             told = diagnose(data, size=size, draws=draws, seed=trial, threads=1)
             first = [" or ".join(suspect.class_) for suspect in told.ranking[: told.certified]]
