@@ -209,7 +209,7 @@ fn laws_of_x_and_y_lead_where_their_differential_equation_does_from_any_start() 
             let track = Track::in_pieces(path, direction, &Robot::labmate());
             let end = track.clone().beginning_at(start).end(&model.chain());
             assert!(gap(&end, &expected) < 1e-3, "{start:?} {direction:?}: {end:?} {expected:?}");
-            // It is told apart from a robot that is elsewhere.
+            // It differs from a robot that is elsewhere.
             assert!(gap(&track.end(&model.chain()), &expected) > 1e-2 || start == Pose2::IDENTITY);
             let mut placed = model.clone();
             for (name, value) in [("x_m", start.x), ("y_m", start.y), ("heading_rad", start.heading)] {

@@ -300,7 +300,7 @@ WORLDS = {
         ),
         World(
             "spins",
-            "turns on the spot alone: E_b and E_s cannot be told apart",
+            "turns on the spot alone: E_b and E_s cannot be separated",
             always(kind="spins", controller="open"),
         ),
         World("mm_as_m", "x and y in millimetres under a header of metres", always(mm_as_m=True)),

@@ -30,7 +30,7 @@ pub struct Report<'a> {
     pub summary: &'a str,
     /// The robot on its path.
     pub setting: &'a Setting,
-    /// Where it is from.
+    /// Its source.
     pub known: &'a Known,
     /// What was asked.
     pub request: &'a Request<'a>,
@@ -247,7 +247,7 @@ impl Separation {
         let [a, b] = &self.pair;
         let mut text = format!("Experiments that separate {a} from {b}, together with {}\n\n", self.after);
         if self.experiments.iter().all(|e| e.sd < 1.0) {
-            text += &hanging("", 2, "No experiment on offer separates them by one standard deviation.");
+            text += &hanging("", 2, "No available experiment separates them by one standard deviation.");
             return text;
         }
         text += "    sd  min  sd^2/min\n";

@@ -15,7 +15,7 @@ pub struct TestArguments {
     #[arg(long, default_value_t = 999, value_name = "N", value_parser = crate::numbers::whole_in::<u32>(99..=99_999))]
     draws: u32,
 
-    /// False-alarm rate: probability with which a complete model is accused
+    /// False-alarm rate: probability that a complete model is rejected
     #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = crate::numbers::probability)]
     size: f64,
 }

@@ -70,7 +70,7 @@ fn what_a_drive_does_not_have_is_refused_with_a_reason() {
         ),
         (
             &["mc", "--robot", "k2a", "--wheelbase", "0.4"],
-            "error: --wheelbase: a robot with drive = \"synchro\" has no wheelbase_m; say its own numbers in a robot.toml\n",
+            "error: --wheelbase: a robot with drive = \"synchro\" has no wheelbase_m; give its own numbers in a robot.toml\n",
         ),
         (
             &["mc", "--robot", "clapper", "--shape", "circle"],

@@ -61,7 +61,7 @@ pub struct Calibration {
     pub heading_arm: Option<f64>,
     /// What could not be determined, and why. What was found of the data stands first.
     pub warnings: Vec<String>,
-    /// Reasons not to write the lengths to a robot, a sentence each; empty where there are none.
+    /// Reasons not to write the lengths to a robot, a sentence each; empty if there are none.
     pub doubts: Vec<String>,
     /// What was found of the experiment before the fit.
     pub setup: Arc<Setup>,

@@ -1,7 +1,7 @@
-//! Models compared with measured runs: what each explains and what not, direction by direction.
+//! Models compared with measured runs: what each explains and what it does not, direction by direction.
 //!
-//! Every statistic of a test (mean end pose, spread, correlation; for each direction) is compared with many simulated tests of the
-//! same size. Each has its own p, and there is one p for all together: that of the smallest.
+//! Every statistic of a test (mean end pose, spread, correlation; for each direction) is compared with many simulated tests of the same
+//! size. Each has its own p; the p of the whole comparison is that of the smallest.
 
 mod replicas;
 mod returns;
@@ -18,8 +18,8 @@ pub use returns::{Comparison, Judged, compare_returns};
 pub use statistics::{Quantity, Statistic};
 pub use tracks::{TrackComparison, compare_tracks};
 
-/// The models that are compared with data where none is given: the nominal robot, and that with its first effects fitted, where
-/// nothing is wrong with the data. Each has a name.
+/// The models that are compared with data where none is given: the nominal robot, and that with its first effects fitted, if the data has
+/// no faults. Each has a name.
 pub fn usual_models(data: &Dataset, options: &Options) -> Result<Vec<(String, Model)>, FitError> {
     let (robot, level) = (robot_of(data)?, options.level(data));
     let mut models = vec![("nominal robot".to_owned(), Model::new(robot))];
@@ -29,7 +29,7 @@ pub fn usual_models(data: &Dataset, options: &Options) -> Result<Vec<(String, Mo
     };
     match AnyEvidence::of(data, level)?.fit(&first) {
         Ok(fitted) => models.push((name.to_owned(), fitted.model)),
-        // The report tells the faults beside the nominal robot.
+        // The report lists the faults together with the nominal robot.
         Err(FitError::Faulty { .. }) => {}
         Err(error) => return Err(error),
     }

@@ -1,8 +1,8 @@
 //! Which class of effects a model is missing, how sure that is, and what this data cannot see.
 //!
-//! Two kinds of evidence, one answer: return poses alone (`ends`), where a square driven both ways shows six numbers and
-//! exact small-sample tests exist; and tick logs with absolute poses on the way (`tracks`), where almost every effect leaves
-//! a trace of its own. Effects that the data cannot tell apart are named together, as a class.
+//! Two kinds of evidence, one answer: return poses alone (`ends`), where a square driven both ways shows six numbers and exact small-sample
+//! tests exist; and tick logs with absolute poses on the way (`tracks`), where almost every effect leaves a trace of its own. Effects that
+//! the data cannot separate are named together, as a class.
 
 mod candidates;
 pub mod classes;
@@ -106,7 +106,7 @@ pub fn diagnose(data: &Dataset, model: &Model, options: &Options) -> Result<Diag
     Ok(diagnosis)
 }
 
-/// Every experiment on offer for telling two effects apart, together with this data; the most telling per minute first.
+/// Every available experiment that separates two effects, together with this data; the most informative per minute first.
 ///
 /// What the model has is fitted to the data: to whole tracks, where the runs were observed on the way, and further drives are then
 /// watched as these were. Each effect is taken at its usual size, the hardest of its sizes. None where the runs have no

@@ -61,7 +61,7 @@ pub enum DriveError {
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     /// A number that a drive does not have.
-    #[error("a robot with drive = \"{drive}\" has no {quantity}; say its own numbers in a robot.toml")]
+    #[error("a robot with drive = \"{drive}\" has no {quantity}; give its own numbers in a robot.toml")]
     NotOf {
         /// What was meant.
         quantity: &'static str,

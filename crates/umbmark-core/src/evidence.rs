@@ -37,7 +37,7 @@ pub enum Level {
 }
 
 impl Level {
-    /// What a dataset shows: tracks, where every run of the regular test has a log with absolute poses at three places or more.
+    /// Tracks if every run of the regular test has a log with absolute poses at three or more places; return poses otherwise.
     pub fn of(data: &Dataset) -> Level {
         let mut runs = data.runs.iter().filter(|run| run.test == TestKind::Systematic).peekable();
         let observed = runs.peek().is_some() && runs.all(|run| places(run) >= 3);
@@ -53,7 +53,7 @@ impl Level {
     }
 }
 
-/// At how many samples of its log a run was observed.
+/// Number of log samples at which the pose of a run was measured.
 fn places(run: &Run) -> usize {
     let mut samples: Vec<usize> = run.log.iter().flat_map(|log| log.reference.iter().map(|r| r.sample)).collect();
     samples.dedup();
@@ -71,21 +71,21 @@ pub(crate) trait Evidence {
     /// What was found of the experiment before any fit.
     fn setup(&self) -> &Arc<Setup>;
 
-    /// Columns, units and frames that are not what they are called. Where there are any, nothing is said of the robot.
+    /// Columns, units and frames that contradict their names. If there are any, the robot is not judged.
     fn faults(&self) -> Vec<Fault>;
 
-    /// Refuses a model whose formulas are not finite somewhere on the way.
+    /// Refuses a model with a formula that is not finite at some point of the path.
     fn check(&self, model: &Model) -> Result<(), ModelError>;
 
     /// Fits the free parameters of a model.
     fn fit(&self, model: &Model) -> Result<Fit, FitError>;
 
-    /// Whether all columns are what they are called.
+    /// Whether no column contradicts its name.
     fn is_sound(&self) -> bool {
         self.faults().is_empty()
     }
 
-    /// Refuses columns that are not what they are called.
+    /// Refuses data whose columns contradict their names.
     fn check_columns(&self) -> Result<(), FitError> {
         let faults = self.faults();
         if faults.is_empty() { Ok(()) } else { Err(FitError::Faulty { faults }) }
@@ -101,7 +101,7 @@ pub(crate) enum AnyEvidence {
 }
 
 impl AnyEvidence {
-    /// The regular runs of a dataset, of which a given level is used.
+    /// The regular runs of a dataset, as evidence of the given level.
     pub fn of(data: &Dataset, level: Level) -> Result<AnyEvidence, FitError> {
         Ok(match level {
             Level::Ends => AnyEvidence::Ends(Ends::examined(data)?),

@@ -1,9 +1,8 @@
 //! Weighted non-linear least squares: minimise Σ r_i(p)², with residuals r = (observed - predicted)/standard deviation.
 //!
-//! Levenberg (1944) and Marquardt (1963): Gauss-Newton steps damped in units of the Jacobian's column lengths, each solved
-//! by an orthogonal factorisation of \[J; √λ D\], never by normal equations. A parameter, or a combination of parameters, that
-//! the data does not show stays where it started and is named by [`null_directions`]. A fit that stops early is a [`Fit`] that
-//! says so, not an error.
+//! Levenberg (1944) and Marquardt (1963): Gauss-Newton steps damped in units of the Jacobian's column lengths, each solved by an orthogonal
+//! factorisation of \[J; √λ D\], never by normal equations. A parameter, or a combination of parameters, that the data does not determine
+//! keeps its start value and is named by [`null_directions`]. A fit that stops early is a [`Fit`] that says so, not an error.
 
 mod covariance;
 mod descent;

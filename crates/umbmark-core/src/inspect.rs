@@ -60,14 +60,14 @@ pub struct Group {
     pub logs: usize,
 }
 
-/// A figure, and what good looks like.
+/// A check: what was found, and what is good.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What was looked at.
     pub name: &'static str,
     /// What was found, with its unit.
     pub found: String,
-    /// What good looks like.
+    /// What would be good.
     pub good: &'static str,
     /// Whether it is good.
     pub ok: bool,

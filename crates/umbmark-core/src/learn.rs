@@ -1,9 +1,9 @@
 //! The whole loop: fit, diagnose, add the effect that is certified as missing, and fit again, until none is missing.
 //!
 //! An effect is added when both hold: its class is certified among all that were tested
-//! ([`Diagnosis::certified`](crate::diagnose::Diagnosis::certified)), and the cross-validated error falls. The cross-validation is
-//! nested: without each run in turn, the effect is chosen again and the model fitted again. AICc and BIC are reported but decide
-//! nothing: with many effects on offer they accept a false one in half of all tests.
+//! ([`Diagnosis::certified`](crate::diagnose::Diagnosis::certified)), and the cross-validated error falls. The cross-validation is nested:
+//! without each run in turn, the effect is chosen again and the model fitted again. AICc and BIC are reported but decide nothing: among
+//! many effects they accept a wrong one in half of all tests.
 
 mod ends;
 mod gears;

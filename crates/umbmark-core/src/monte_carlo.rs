@@ -80,7 +80,7 @@ pub enum StudyError {
     Count {
         /// What is counted.
         what: &'static str,
-        /// What was asked for.
+        /// The name that was given.
         value: u64,
         /// What is possible.
         range: Range<u64>,

@@ -71,15 +71,15 @@ pub enum PlanError {
     /// Too few runs to plan.
     #[error("runs a direction must be between {} and {}, got {value}", crate::score::FEWEST_RUNS, power::MOST_RUNS)]
     Runs {
-        /// What was asked for.
+        /// The name that was given.
         value: usize,
     },
     /// A size that no effect has.
     #[error("no effect has a size \"{name}\"{}; `umbmark effects` lists them", nearest.map(|n| format!("; did you mean \"{n}\"?")).unwrap_or_default())]
     UnknownSize {
-        /// What was asked for.
+        /// The name that was given.
         name: String,
-        /// What may have been meant.
+        /// The most similar known name.
         nearest: Option<&'static str>,
     },
     /// A size at which its effect does nothing.
@@ -87,7 +87,7 @@ pub enum PlanError {
     NoSize {
         /// The parameter's flag.
         name: &'static str,
-        /// What was asked for.
+        /// The name that was given.
         value: f64,
     },
 }

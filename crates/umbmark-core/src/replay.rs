@@ -1,4 +1,4 @@
-//! Wheel travel back to poses: what a model predicts that an absolute reference will see.
+//! From wheel travel to poses: the measurements that a model predicts for an absolute reference.
 //!
 //! ```text
 //! recorded ticks --+

@@ -54,20 +54,20 @@ pub struct TickLog {
     pub right: Vec<f64>,
     /// Absolute poses in the order of their samples: many, few, or none.
     pub reference: Vec<ReferencePose>,
-    /// What was mended while it was read.
+    /// Defects that were corrected while it was read.
     pub mended: Mended,
     /// Where START was found.
     #[serde(default)]
     pub start: Start,
-    /// Where on the floor a wheel met a bump, seen from START \[m\]; known of simulated runs alone.
+    /// Places where a wheel met a bump, relative to START \[m\]; known only for simulated runs.
     #[serde(default)]
     pub bumps: Vec<[f64; 2]>,
 }
 
-/// Where the START of a log lies in the frame that its poses were measured in, and how that is known.
+/// The START of a log in the frame of its measured poses, and how it is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Start {
-    /// START, seen from the origin of the poses as they stand in the file: x, y \[m\] and heading \[rad\].
+    /// START in the frame of the poses in the file: x, y \[m\] and heading \[rad\].
     pub x: f64,
     /// \[m\]
     pub y: f64,
@@ -96,14 +96,14 @@ impl Start {
     }
 }
 
-/// What was mended in a log while it was read, counted.
+/// Number of defects of a log that were corrected while it was read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Mended {
     /// Roll-overs of either counter that were undone.
     pub roll_overs: usize,
     /// Rows before which a counter was set back to zero.
     pub resets: usize,
-    /// Rows out of order that were put where their time stamps say.
+    /// Rows out of order that were sorted by time stamp.
     pub late: usize,
     /// Rows that repeat a time stamp and were left out.
     pub repeated: usize,
@@ -114,7 +114,7 @@ pub struct Mended {
 /// One drive round the path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// What it is called: file stem or row.
+    /// Its name: file stem or row.
     pub name: String,
     /// Its number, unique within its direction and test.
     pub number: u32,
@@ -122,8 +122,8 @@ pub struct Run {
     pub direction: Option<Direction>,
     /// Which test it belongs to.
     pub test: TestKind,
-    /// Its ticks, where they were recorded.
+    /// Its ticks, if they were recorded.
     pub log: Option<TickLog>,
-    /// Its return error, where one was measured or follows from the log.
+    /// Its return error, if one was measured or follows from the log.
     pub returned: Option<ReturnError>,
 }

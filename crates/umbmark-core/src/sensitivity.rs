@@ -81,7 +81,7 @@ pub enum SensitivityError {
         "{what} is defined for independent parameters only; leave the correlations out, or ask for Sobol indices without it"
     )]
     NeedsIndependence {
-        /// What was asked for.
+        /// The name that was given.
         what: &'static str,
     },
     /// A count out of range.

@@ -1,15 +1,15 @@
-//! What has to be known of an experiment before its errors say anything of the robot.
+//! What must be known of an experiment before its errors can be attributed to the robot.
 //!
-//! Which column is which wheel and how it counts; how the headings of the reference are counted; by how much its stamps are late
-//! and its clock is fast; where on the robot the tracked body sits; which poses are wrong and where the track jumps. All of it
-//! follows from the motion alone, robustly and in all runs at once, before any model is fitted:
+//! Which column is which wheel and how it counts; how the headings of the reference are counted; the delay of its time stamps and the rate
+//! of its clock; where on the robot the tracked body sits; which poses are wrong and where the track jumps. All of it follows from the
+//! motion alone, robustly and in all runs at once, before any model is fitted:
 //!
-//! 1. the delay at which the sizes of both motions go together best (`clock`);
-//! 2. the reading of columns and headings under which both motions agree (`agreement`), each window of them weighed robustly;
-//! 3. delay and rate of the clock run by run, and with these all else once more;
+//! 1. the delay at which the sizes of both motions correlate best (`clock`);
+//! 2. the reading of columns and headings under which both motions agree (`agreement`), with robust weights for the windows;
+//! 3. delay and rate of the clock run by run, and everything else again with these;
 //! 4. wrong poses and jumps, found together (`disturbances`), and jumps that last (`stretches`).
 //!
-//! Return errors are looked at by themselves (`returns`): runs far from the others, and columns in another unit.
+//! Return errors are examined separately (`returns`): runs far from the others, and columns in another unit.
 
 mod agreement;
 mod by_positions;
@@ -41,31 +41,31 @@ pub use faults::Fault;
 pub use returns::{Coordinate, Deviant, OutlyingReturn, Returned};
 pub use suspicion::Suspicion;
 
-/// Rounds in which the clocks are found by the agreement of all runs, and the agreement by the clocks.
+/// Number of rounds; each fits the clocks to the agreement of all runs, and then the agreement with these clocks.
 const ROUNDS: usize = 3;
-/// Fewer windows in all say nothing.
+/// Minimum number of windows in all runs together.
 const FEWEST: usize = 20;
-/// Number of parts of the data whose values give the standard errors.
+/// Number of parts of the data whose scatter gives the standard errors.
 const PARTS: usize = 8;
 
-/// How the measured poses lie against the wheels, over all runs.
+/// How the measured poses relate to the wheels, over all runs.
 ///
 /// ```text
 /// taken = stamp - (delay + rate (t - middle)),   t the time of the stamp since the run began
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mounting {
-    /// By how much older than its stamp a pose is, in the middle of a run \[s\].
+    /// Age of a pose at its time stamp, in the middle of a run \[s\].
     pub delay: Measured,
     /// Time from the beginning of a run to its middle, on average \[s\].
     pub middle: f64,
-    /// What is added to that for each second \[s/s\]; `None` where the runs are too short.
+    /// Change of the delay per second \[s/s\]; `None` where the runs are too short.
     pub rate: Option<Measured>,
-    /// Where the tracked point lies ahead of the centre of the axle \[m\]; `None` where turning or headings do not show it.
+    /// Where the tracked point lies ahead of the centre of the axle \[m\]; `None` if rotations or headings do not determine it.
     pub ahead: Option<Measured>,
     /// Where it lies to the left \[m\].
     pub left: Option<Measured>,
-    /// Heading of the tracked body less that of the robot \[rad\]; `None` where driving or headings do not show it.
+    /// Heading of the tracked body less that of the robot \[rad\]; `None` if driving or headings do not determine it.
     pub yaw: Option<Measured>,
     /// Way by the reference over way by the wheels; `None` where nothing is driven.
     pub scale: Option<Measured>,
@@ -82,14 +82,14 @@ pub struct WrongPose {
     pub pose: usize,
     /// Time since the log began \[s\].
     pub time: f64,
-    /// How far it lies from where the poses around it say \[m\].
+    /// Distance from the place that its neighbours imply \[m\].
     pub moved: f64,
     /// The same \[rad\]; `None` without headings.
     pub turned: Option<f64>,
 }
 
-/// A place where a track jumps, or a few seconds in which robot and wheels part: a wheel slipped, the robot was pushed or carried, or the
-/// reference lost it.
+/// A place where a track jumps, or a few seconds in which robot and wheels disagree: a wheel slipped, the robot was pushed or carried, or
+/// the reference lost it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jump {
     /// The last pose before it, by its place among the poses of its log; what lies between is left out.
@@ -100,9 +100,9 @@ pub struct Jump {
     pub since: f64,
     /// Time of the latter \[s\].
     pub time: f64,
-    /// How far the tracked point went and the wheels did not \[m\].
+    /// Motion of the tracked point that the wheels did not make \[m\].
     pub moved: f64,
-    /// How far it turned and the wheels did not \[rad\]; `None` without headings.
+    /// Rotation that the wheels did not make \[rad\]; `None` without headings.
     pub turned: Option<f64>,
     /// In standard deviations of the motion from pose to pose.
     pub deviations: f64,
@@ -115,7 +115,7 @@ pub struct RunSetup {
     pub run: String,
     /// Number of its poses.
     pub poses: usize,
-    /// By how much older than its stamp a pose is, in the middle of this run \[s\]; `None` where the motion does not tell.
+    /// Age of a pose at its time stamp, in the middle of this run \[s\]; `None` if the motion does not determine it.
     pub delay: Option<Measured>,
     /// Those that are wrong.
     pub wrong: Vec<WrongPose>,
@@ -126,16 +126,16 @@ pub struct RunSetup {
 /// What was found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Setup {
-    /// What is not as it is called: nothing is said of the robot until it is mended.
+    /// Columns that contradict their names: the robot is not judged until these are corrected.
     pub faults: Vec<Fault>,
-    /// How the poses lie against the wheels; `None` where they are too few or too far apart.
+    /// How the poses relate to the wheels; `None` if they are too few or too far apart.
     pub mounting: Option<Mounting>,
     /// The runs of the regular test that have poses, in the order of the dataset.
     pub runs: Vec<RunSetup>,
-    /// Noise of a single pose, each coordinate \[m\] and the heading \[rad\], by how poses that follow each other differ; usual sizes
-    /// where that is not known.
+    /// Noise of a single pose, each coordinate \[m\] and the heading \[rad\], from the differences of successive poses; usual sizes if
+    /// these do not show it.
     pub noise: PoseNoise,
-    /// What the return errors of all runs, with bumps too, say by themselves.
+    /// What the return errors of all runs, also those with bumps, show by themselves.
     pub returned: Returned,
 }
 
@@ -165,11 +165,11 @@ struct Seen<'a> {
 }
 
 impl Setup {
-    /// Looks at all runs of the regular test that have ticks and poses, and at the return errors of all runs. `path`: what they were to
-    /// drive, where it is known.
+    /// Examines all runs of the regular test that have ticks and poses, and the return errors of all runs. `path`: the commanded path, if
+    /// it is known.
     pub fn of(runs: &[Run], robot: &Robot, path: Option<&Path>) -> Setup {
         let setup = Setup::of_tracks(runs, robot);
-        // Return errors follow from the tracks, and are as wrong as these.
+        // Return errors follow from the tracks and have the same faults.
         let returned = if setup.is_sound() { Returned::of(runs, robot, path) } else { Returned::default() };
         Setup { returned, ..setup }
     }
@@ -226,7 +226,7 @@ impl Setup {
         Setup { faults, mounting: Some(mounting), runs, noise, returned: Returned::default() }
     }
 
-    /// Whether nothing stands in the way of asking what the robot does on its tracks.
+    /// Whether the tracks are free of faults, so that the robot can be judged.
     pub fn is_sound(&self) -> bool {
         self.faults.is_empty()
     }
@@ -241,7 +241,7 @@ impl Setup {
         self.returned.outlying.iter().filter(|run| run.test == TestKind::Systematic)
     }
 
-    /// Reasons against the return errors of the regular runs: outlying ones, and jumps of the tracks that end in them.
+    /// Reasons to doubt the return errors of the regular runs: outlying ones, and jumps of the tracks that end in them.
     pub(crate) fn suspicions(&self, runs: &[Run]) -> Vec<Suspicion> {
         let returned = |name: &str| runs.iter().any(|run| run.name == name && run.returned.is_some());
         let jumps = self.runs.iter().filter(|run| returned(&run.run));
@@ -252,7 +252,7 @@ impl Setup {
         self.outlying().cloned().map(Suspicion::OutlyingReturn).chain(jumped).collect()
     }
 
-    /// That more of all poses jump or are wrong than by accident.
+    /// The suspicion that too many poses jump or are wrong for an accident.
     pub(crate) fn many_jumps(&self) -> Option<Suspicion> {
         let poses: usize = self.runs.iter().map(|run| run.poses).sum();
         let lost = |run: &RunSetup| run.jumps.len() + (0..run.poses).filter(|pose| run.is_lost(*pose)).count();
@@ -260,15 +260,16 @@ impl Setup {
         (count as f64 > ACCIDENTS * poses as f64).then_some(Suspicion::ManyJumps { count, poses })
     }
 
-    /// That the tracked body faces backward, or the wheels are exchanged and both count backward: the motion is the same.
+    /// The suspicion that the tracked body faces backward, or that the wheels are exchanged and both count backward: both cause the same
+    /// motion.
     pub(crate) fn tail_first(&self, robot: &Robot) -> Option<Suspicion> {
         let yaw = self.mounting?.yaw?.value;
         let half = robot.drive.kind().has_axle_wheels() && wrap(yaw - std::f64::consts::PI).abs() < HALF_TURN;
         half.then_some(Suspicion::TailFirst { yaw })
     }
 
-    /// What has to be known before the return errors are believed, a sentence each without a full stop: faults, jumps and wrong poses
-    /// of tracks, runs whose return is far from the others. Of many of a kind, the first [`TOLD`] are listed and the rest counted.
+    /// What must be known before the return errors are trusted, a sentence each without a full stop: faults, jumps and wrong poses of
+    /// tracks, runs whose return is far from the others. Of many of a kind, the first [`TOLD`] are listed and the rest counted.
     pub fn notices(&self) -> Vec<String> {
         let told = |fault: &Fault| format!("{}; to correct it, {}", fault.sentence(), fault.remedy());
         let mut notices: Vec<String> = self.all_faults().map(told).collect();
@@ -295,7 +296,7 @@ impl Setup {
 
 /// A heading within this of half a turn is that of a body that faces backward \[rad\].
 const HALF_TURN: f64 = 0.05;
-/// More of all poses than this share are no accidents.
+/// If more than this share of all poses jump or are wrong, these are no accidents.
 const ACCIDENTS: f64 = 0.1;
 /// Maximum number of notices of a kind that are listed.
 pub const TOLD: usize = 5;
@@ -369,7 +370,7 @@ fn told(mut run: RunSetup, seen: &Seen, found: Found) -> RunSetup {
     run
 }
 
-/// Every pose of a run beside the one that the wheels give, scaled and mounted as all runs agree.
+/// Every pose of a run with the corresponding pose by the wheels, scaled and mounted as all runs agree.
 fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting> {
     let wheelbase = robot.drive.wheelbase();
     let (scale, [gain, drift]) = (agreement.scale(), agreement.turn);
@@ -391,7 +392,7 @@ fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting>
     let of = |reference: &crate::run::ReferencePose| {
         let stamp = seen.log.time[reference.sample];
         let taken = seen.late.taken(stamp);
-        // Sample by sample, so that each piece is an arc; poses are in the order of time but for what rounding does.
+        // Sample by sample, so that each piece is an arc; poses are ordered by time, up to rounding.
         while let Some(sample) = samples.next_if(|sample| *sample < taken) {
             drive_to(sample);
         }
@@ -408,7 +409,7 @@ fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting>
     seen.log.reference.iter().map(of).collect()
 }
 
-/// What all runs agree in, each value with how much its parts differ.
+/// The values on which all runs agree, each with the scatter between parts of the data.
 fn mounting(seen: &[Seen], agreement: &Agreement, reading: Reading, wheelbase: f64) -> Mounting {
     let with_heading = seen.iter().all(|seen| seen.log.reference.iter().all(|pose| pose.heading.is_some()));
     let parts = parts(seen, reading, wheelbase);
@@ -440,13 +441,13 @@ fn mounting(seen: &[Seen], agreement: &Agreement, reading: Reading, wheelbase: f
     }
 }
 
-/// A value of the clocks of all runs: their mean by how sure each is, which scatters as the runs do.
+/// A value of the clocks of all runs: their weighted mean, with a standard error from the scatter of the runs.
 fn of_runs(seen: &[Seen], of: impl Fn(&Late) -> (f64, f64)) -> Option<Measured> {
     let values: Vec<(f64, f64)> =
         seen.iter().map(|seen| of(&seen.late)).filter(|(_, variance)| *variance > 0.0).collect();
     let n = values.len() as f64;
     let middle = robust::median(values.iter().map(|(value, _)| *value));
-    // Half of the windows share their motion with the next.
+    // Neighbouring windows overlap by half.
     let own = 2.0 * robust::median(values.iter().map(|(_, variance)| *variance));
     let between = (robust::DEVIATION * robust::median(values.iter().map(|(value, _)| (value - middle).abs()))).powi(2);
     let weight = |variance: f64| 1.0 / (2.0 * variance + between);
@@ -457,7 +458,7 @@ fn of_runs(seen: &[Seen], of: impl Fn(&Late) -> (f64, f64)) -> Option<Measured> 
     (weights > 0.0).then(|| Measured::of_parts(sum / weights, (own.max(between) / n).sqrt(), values.len().max(PARTS)))
 }
 
-/// The agreement of parts of the data: of whole runs where there are enough, else of stretches of them.
+/// The agreement in parts of the data: whole runs if there are enough of them, otherwise sections of runs.
 fn parts(seen: &[Seen], reading: Reading, wheelbase: f64) -> Vec<Agreement> {
     let cut = PARTS.div_ceil(seen.len().max(1));
     let of = |seen: &Seen| {

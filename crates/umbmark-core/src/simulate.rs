@@ -1,7 +1,7 @@
-//! One run, as the robot drives it and as it really goes.
+//! One run: the commands of the robot and its true motion.
 //!
-//! The robot drives by its own odometry, as in the paper: it stops when its counters say so. What it believes is then the
-//! path itself, up to quantisation, and what it does is what the effects of the model make of it.
+//! The robot drives by its own odometry, as in the paper: it stops when its counters say so. So its believed motion is the path itself, up
+//! to quantisation, and the effects of the model turn it into the true motion.
 
 mod counters;
 mod course;
@@ -38,7 +38,7 @@ use trucks::Convoys;
 /// Purpose of the stream that encoder phases are drawn from.
 const ENCODER_PHASE: u64 = 1;
 
-/// What cannot be simulated.
+/// Why something cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulateError {
@@ -87,12 +87,12 @@ pub enum SimulateError {
     },
 }
 
-/// Where within a tick the wheels stand at START and come to rest at every stop.
+/// Position of the wheels within a tick at START and at every stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// Anywhere, uniformly, independent from stop to stop.
+    /// Uniformly distributed, independent from stop to stop.
     Random,
-    /// Always on the edge of a tick: no quantisation error but that of whole ticks.
+    /// Always on the edge of a tick: the only quantisation error is that of whole ticks.
     Edge,
 }
 
@@ -128,7 +128,7 @@ impl Odometry {
 enum Computer {
     Ticks(Box<Integrator>),
     Sampled(Box<SampledMoves>),
-    /// A move at once, by what the counters of a drive without wheels of its own gain.
+    /// A whole move at once, from the change of the counters, for drives whose counters are not those of the axle's wheels.
     Counters,
     Continuous,
 }
@@ -154,7 +154,7 @@ pub struct Simulator {
     per_tick: PerTick,
     courses: [Course; 2],
     computer: Computer,
-    /// The plan of a drive of two trucks, which nothing of the rest applies to.
+    /// The plan of a drive of two trucks, which replaces everything else.
     convoys: Option<Convoys>,
     phase: Phase,
     phases: Stream,
@@ -283,8 +283,7 @@ impl Simulator {
         }
     }
 
-    /// Where the segment of a move stands among those of all runs: moves that are alike side by side, since that is how
-    /// the engine does them fastest.
+    /// Index of a move's segment among those of all runs: similar moves are neighbours, which the engine computes fastest.
     #[inline]
     fn place(&self, runs: [usize; 2], direction: Direction, run: usize, index: usize) -> usize {
         let course = self.course(direction);
@@ -292,7 +291,7 @@ impl Simulator {
         before + course.rank(index) * runs[direction as usize] + run
     }
 
-    /// Notes the wheel motion of all runs: from rest to rest, wherever within a tick.
+    /// Notes the wheel motion of all runs, from rest to rest, with any position within a tick.
     fn command(&mut self, runs: [usize; 2]) {
         let moves = [0, 1].map(|d| runs[d] * self.courses[d].legs.len());
         self.segments.resize(moves[0] + moves[1], Segment::default());

@@ -268,7 +268,7 @@ fn number(text: &str, unit: Option<Unit>) -> Option<f64> {
 
 /// The largest number believed, as it is written.
 fn largest(unit: Option<Unit>) -> f64 {
-    /// Not far above this, counts are not told apart any more.
+    /// Not far above this, counts are no longer distinct in `f64`.
     const COUNT: f64 = 9e15;
     unit.map_or(COUNT, |unit| unit.largest)
 }

@@ -22,7 +22,7 @@ impl CsvText {
         let _ = self.writer.write_field(&self.cell);
     }
 
-    /// Adds a number in such a form, with a decimal point; an empty cell where there is none.
+    /// Adds a number in such a form, with a decimal point; an empty cell without a value.
     pub fn decimal(&mut self, value: impl Into<Option<f64>>) {
         match value.into() {
             Some(value) => self.cell(format_args!("{value:?}")),

@@ -135,7 +135,7 @@ pub enum DatasetError {
         at: At,
         /// The column, quoted.
         column: String,
-        /// What may have been meant.
+        /// The most similar known name.
         nearest: String,
     },
     /// A column without a unit, or with one that nobody knows.

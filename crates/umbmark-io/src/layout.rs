@@ -28,7 +28,7 @@ layouts! { csv, mcap, optiodom, tum, returns, motive }
 /// How some files are recognised, read and written. A layout does what its file says that it does.
 #[derive(Clone, Copy, Debug)]
 pub struct Layout {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
     /// What it is.
     pub about: &'static str,

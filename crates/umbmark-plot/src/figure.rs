@@ -43,7 +43,7 @@ fn kind_of<'de, D: Deserializer<'de>>(from: D) -> Result<Name, D::Error> {
 pub struct Told {
     /// What it shows.
     pub shows: String,
-    /// What good looks like.
+    /// What would be good.
     pub good: String,
     /// What this one says.
     pub says: String,

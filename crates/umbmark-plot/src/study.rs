@@ -52,7 +52,7 @@ impl Default for Options {
 /// A dataset and a model of its robot: one that was given, or the one that the dataset teaches.
 #[derive(Debug)]
 pub struct Study {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The runs.
     pub data: Arc<Dataset>,
@@ -194,7 +194,7 @@ impl Study {
         }
     }
 
-    /// The model, its free parameters fitted.
+    /// The model with its fitted parameters.
     pub fn model(&self) -> Result<&Model, Absent> {
         self.diagnosis().map(|diagnosis| &diagnosis.model)
     }

@@ -1,4 +1,4 @@
-//! Colours by meaning, on white and on black, told apart by people with colour-blindness too (after Okabe and Ito).
+//! Colours by meaning, on white and on black, distinct also for people with colour-blindness (after Okabe and Ito).
 
 use serde::{Deserialize, Serialize};
 

@@ -6,7 +6,7 @@ use std::path::Path;
 const SIZE: [f64; 2] = [620.0, 360.0];
 /// Left, right, top and bottom of the frame.
 const FRAME: [f64; 4] = [64.0, 600.0, 30.0, 312.0];
-/// Colours that people with any colour vision tell apart (Okabe & Ito).
+/// Colours that are distinct for any colour vision (Okabe & Ito).
 pub const COLOURS: [&str; 5] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#555555"];
 
 /// A figure under way.

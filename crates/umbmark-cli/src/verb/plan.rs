@@ -66,7 +66,7 @@ pub struct Arguments {
     #[arg(long, default_value_t = 0.9, value_name = "P", value_parser = crate::numbers::probability)]
     power: f64,
 
-    /// False-alarm rate: probability with which a robot without the effect is accused
+    /// False-alarm rate: probability of detecting an effect that the robot does not have
     #[arg(long, default_value_t = 0.05, value_name = "P", value_parser = crate::numbers::probability)]
     size: f64,
 

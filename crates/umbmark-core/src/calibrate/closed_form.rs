@@ -1,8 +1,8 @@
 //! The published closed forms: two angles from the centres of gravity, two ratios from the angles.
 //!
-//! On a square of side L, driven both ways, errors that repeat on every side act through the heading error of one side
-//! alone: φ_ccw = β - α and φ_cw = β + α. α is what a wrong wheelbase makes of each quarter turn, β what unequal wheels make of
-//! each leg. To first order in them
+//! On a square of side L, driven both ways, errors that repeat on every side act through the heading error of one side alone: φ_ccw = β - α
+//! and φ_cw = β + α. α is the error of each quarter turn by a wrong wheelbase, β the rotation of each leg by unequal wheels. To first order
+//! in them
 //!
 //! ```text
 //! return error, ccw  (2L, -2L, 4) φ_ccw        cw  (-2L, -2L, 4) φ_cw
@@ -15,10 +15,10 @@
 //! R = (L/2)/sin(β/2)           E_d = (R + b/2)/(R - b/2)
 //! ```
 //!
-//! with x, y, θ the mean return errors. Sources: Borenstein & Feng, "Correction of systematic odometry errors in mobile
-//! robots", IROS 1995, and IEEE Trans. Robotics and Automation 12(6), 1996; heading: Jung & Chung, Int. J. Advanced
-//! Robotic Systems 8(5), 2011. Which wheelbase b is meant in E_d is a choice: see [`RadiusWheelbase`]. Jung & Chung's term
-//! that couples β into E_b is left out: it belongs to unequal wheels split one-sidedly, and here the mean diameter is kept.
+//! with x, y, θ the mean return errors. Sources: Borenstein & Feng, "Correction of systematic odometry errors in mobile robots", IROS 1995,
+//! and IEEE Trans. Robotics and Automation 12(6), 1996; heading: Jung & Chung, Int. J. Advanced Robotic Systems 8(5), 2011. Which wheelbase
+//! b is meant in E_d is a choice: see [`RadiusWheelbase`]. Jung & Chung's term that couples β into E_b is omitted: it applies if the error
+//! is attributed to one wheel, and here the mean diameter is kept.
 
 use super::correction::Correction;
 use crate::dataset::ReturnError;
@@ -82,8 +82,8 @@ impl ClosedForm {
 
 /// The wheelbase b in E_d = (R + b/2)/(R - b/2).
 ///
-/// They differ in E_d - 1 by the share by which the wheelbases differ. One round on a noise-free LabMate of the paper's Table I
-/// (306 and 417 mm) leaves, in mm:
+/// E_d - 1 differs by the relative difference of the wheelbases. One round on a noise-free LabMate of the paper's Table I (306 and 417 mm)
+/// leaves, in mm:
 ///
 /// | | x | y | mean | heading |
 /// |---|---|---|---|---|
@@ -94,9 +94,8 @@ pub enum RadiusWheelbase {
     /// b_nominal, as the paper's companion writes it: the only b that is known beforehand.
     #[default]
     Nominal,
-    /// E_b b_nominal: the distance that the wheels really are apart when they roll along R. With it the errors left by the
-    /// corrections published for real robots (OptiOdom, 2022) come out to the last printed digit; the corrections themselves
-    /// do with either.
+    /// E_b b_nominal: the true distance of the wheels when they roll along R. With it, the published remaining errors of real robots
+    /// (OptiOdom, 2022) are reproduced to the last printed digit; the published corrections are reproduced with either.
     Corrected,
 }
 
@@ -120,9 +119,9 @@ impl RadiusWheelbase {
 /// The two angles per side of the square.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Angles {
-    /// α \[rad\]: what each quarter turn falls short.
+    /// α \[rad\]: shortfall of each quarter turn.
     pub alpha: f64,
-    /// β \[rad\]: what each leg turns to the left.
+    /// β \[rad\]: rotation to the left on each leg.
     pub beta: f64,
 }
 
@@ -137,8 +136,8 @@ impl Angles {
         }
     }
 
-    /// E_d and E_b; `None` for angles that no robot has: a quarter turn or more lost in each turn, or a leg curved
-    /// about a point between the wheels.
+    /// E_d and E_b; `None` for impossible angles: a quarter turn or more lost in each turn, or a leg curved about a point between the
+    /// wheels.
     ///
     /// ```
     /// use umbmark_core::{calibrate::{Angles, Correction, RadiusWheelbase}, drive::Robot};

@@ -1,4 +1,4 @@
-//! The three ratios that a calibration finds, and what they make of a robot.
+//! The three ratios of a calibration, and the corrected robot.
 
 use crate::drive::{DriveError, Robot};
 use crate::effect::{Model, ModelError, find};
@@ -38,8 +38,8 @@ impl Ratio {
 /// true right wheel   D_R E_s 2 E_d/(1 + E_d)
 /// ```
 ///
-/// Lengths in metres follow only as far as E_s is known: return poses of a closed path show E_b/E_s, and E_s = 1 is then
-/// assumed, which is the paper's own precondition (section 2: E_s is measured by tape and corrected first).
+/// Lengths in metres are known only if E_s is: return poses of a closed path show E_b/E_s, and E_s = 1 is then assumed, which is the
+/// paper's own precondition (section 2: E_s is measured by tape and corrected first).
 ///
 /// Of a robot with another drive, the three are the values of its own [first effects](crate::drive::Drive::first_effects).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! What leaves nothing to calibrate.
+//! Why a robot cannot be calibrated.
 
 use crate::evidence::FitError;
 

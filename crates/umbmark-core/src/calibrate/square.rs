@@ -30,7 +30,7 @@ impl<'a> Square<'a> {
                 format!("they are made for a square, and the path is a {}", path.shape().name.replace('_', " "))
             }
             Some(_) if cw.is_empty() || ccw.is_empty() => {
-                "they need runs in both directions: in one alone, E_d and E_b cannot be told apart".to_owned()
+                "they need runs in both directions: in one alone, E_d and E_b cannot be separated".to_owned()
             }
             Some(path) => {
                 let summary = summarise(cw, ccw);

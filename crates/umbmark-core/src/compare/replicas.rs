@@ -1,4 +1,4 @@
-//! Simulated tests of the same size, and where measured statistics lie among them.
+//! Simulated tests of the same size, and how the measured statistics rank among them.
 
 use super::statistics::{Quantity, Statistic};
 use crate::dataset::ReturnError;
@@ -12,12 +12,12 @@ use nalgebra::{Matrix3, Vector3};
 
 const REPLICAS: u64 = 12;
 
-/// Where the scatter of simulated tests is from.
+/// Source of the scatter of simulated tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoiseSource {
     /// The model's own random effects.
     Model,
-    /// The measured runs' scatter about the mean of their direction, both directions pooled; the model has none of its own.
+    /// The measured runs' scatter about the mean of their direction, both directions pooled, for a model without noise.
     Pooled,
 }
 
@@ -42,7 +42,7 @@ impl Replicas {
         }
     }
 
-    /// Every statistic with its p, and p of the smallest among all.
+    /// Every statistic with its p, and the p of the smallest of them.
     pub fn judge(&self, ends: &Ends, model: &Model) -> (Vec<Statistic>, f64) {
         let measured = by_direction(ends, &ends.errors());
         let predicted = predicted(ends, model);
@@ -83,8 +83,7 @@ impl Replicas {
         };
         let mut seen = quantity.of(&measured[group]) - centre;
         draws.iter_mut().for_each(|draw| *draw -= centre);
-        // The pooled scatter is itself an estimate: a mean is then judged in units of the scatter of its own test, as
-        // Student's t is.
+        // The pooled scatter is itself an estimate, so a mean is scaled by the scatter of its own test, as in Student's t.
         if let (Some(coordinate), NoiseSource::Pooled) = (quantity.mean_of(), self.source) {
             seen /= pooled_deviation(measured, coordinate);
             for (draw, test) in draws.iter_mut().zip(&self.tests) {
@@ -134,7 +133,7 @@ fn predicted(ends: &Ends, model: &Model) -> Errors {
     by_direction(ends, &errors)
 }
 
-/// Tests that the model itself simulates; `None` where it has no noise, or its path is not known.
+/// Tests simulated by the model; `None` if it has no noise or the path is unknown.
 fn of_model(model: &Model, ends: &Ends, options: &Options) -> Option<Vec<Errors>> {
     let path = ends.path.as_ref()?;
     let mut simulator = Simulator::new(model.robot(), path, Odometry::Continuous, Phase::Edge).ok()?;

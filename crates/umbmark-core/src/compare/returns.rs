@@ -12,26 +12,26 @@ use crate::path::Direction;
 use crate::setup::Setup;
 use std::sync::Arc;
 
-/// How one model does.
+/// Result of one model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judged {
-    /// What it was called.
+    /// Its name.
     pub name: String,
-    /// Where the scatter of the simulated tests is from.
+    /// Source of the scatter of the simulated tests.
     pub noise: NoiseSource,
     /// Of both directions.
     pub statistics: Vec<Statistic>,
-    /// p of the smallest of them among all.
+    /// p of the smallest of them.
     pub p: f64,
     /// Root mean square distance of observed from predicted ends \[m\].
     pub rmse: f64,
     /// The same of headings \[rad\].
     pub heading_rmse: Option<f64>,
-    /// What it leaves, and how much of that is the same in every run of a direction.
+    /// The remaining error, and how much of it is the same in every run of a direction.
     pub remains: Remains,
     /// What is explained and what not, a sentence each.
     pub sentences: Vec<String>,
-    /// Whether the return errors themselves are in doubt, by faults, outlying runs or jumps: then no model explains them.
+    /// Whether faults, outlying runs or jumps put the return errors in doubt: then no model explains them.
     pub in_doubt: bool,
 }
 
@@ -112,7 +112,7 @@ fn judge(name: &str, model: &Model, ends: &Ends, fitted: &Fitted, options: &Opti
     }
 }
 
-/// For each direction, what is explained and what not. A statistic alone counts at the size shared out among all (Bonferroni).
+/// For each direction, what is explained and what is not. Single statistics are Bonferroni-corrected.
 fn sentences(statistics: &[Statistic], size: f64, in_doubt: bool) -> Vec<String> {
     let least = size / statistics.len().max(1) as f64;
     let of = |direction: Direction| {

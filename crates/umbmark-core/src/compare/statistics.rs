@@ -3,7 +3,7 @@
 use crate::path::Direction;
 use nalgebra::Vector3;
 
-/// A statistic of the measured test beside what a model predicts for it.
+/// A statistic of the measured test and its prediction by a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statistic {
     /// Of the runs.
@@ -14,7 +14,7 @@ pub struct Statistic {
     pub measured: f64,
     /// As predicted: for spreads and correlations, the middle of the simulated tests.
     pub predicted: f64,
-    /// How often simulated tests are as far from the prediction.
+    /// Share of simulated tests that are at least as far from the prediction.
     pub p: f64,
 }
 

@@ -1,9 +1,9 @@
 //! Models compared with tracks: where along the way the error is made, and what it depends on.
 //!
-//! The error of each step between two measurements is taken as the robot sees it: the measured motion as seen from where the
-//! predicted one ends. So an error that was made earlier does not count again. Steps are summed by move, direction, speed and
-//! run, and in bins of everything that an error may depend on. All intervals and tests rest on the scatter from run to run, and on
-//! the resolution of the encoders; they need no noise model.
+//! The error of each step between two measurements is expressed in the robot's frame: the measured motion as seen from the end of the
+//! predicted one. So earlier errors do not count again. Steps are summed by move, direction, speed and run, and in bins of everything that
+//! an error may depend on. All intervals and tests rest on the scatter from run to run, and on the resolution of the encoders; they need no
+//! noise model.
 
 mod covariate;
 mod followed;
@@ -48,26 +48,26 @@ pub struct TrackResiduals {
     pub run: String,
     /// Its sense.
     pub direction: Option<Direction>,
-    /// How far the wheels have rolled on average, whatever way, at each measurement \[m\].
+    /// Mean unsigned travel of the wheels until each measurement \[m\].
     pub rolled: Vec<f64>,
     /// Predicted poses, in the frame of START.
     pub predicted: Vec<Pose2>,
     /// Measured poses, moved so that the first agrees with the prediction where it was taken at START.
     pub measured: Vec<Pose2>,
-    /// Where the robot is, seen from where it is predicted: forward, to the left \[m\], turned to the left \[rad\].
+    /// True pose relative to the predicted one: forward, to the left \[m\], rotation to the left \[rad\].
     pub errors: Vec<[f64; 3]>,
 }
 
-/// How one model does on tracks.
+/// Result of one model on tracks.
 #[derive(Clone, Debug)]
 pub struct TracksJudged {
-    /// What it was called.
+    /// Its name.
     pub name: String,
     /// Errors along the way: measurements within 3 cm and 3 degrees count as one.
     pub along: Rms,
     /// Errors at the ends of the runs.
     pub end: Rms,
-    /// How large errors are in proportion to what was driven.
+    /// Errors in proportion to the distance or rotation driven.
     pub overall: Vec<Overall>,
     /// What they depend on.
     pub against: Vec<Against>,
@@ -83,7 +83,7 @@ pub struct TracksJudged {
     pub taken: Vec<Taken>,
     /// Reasons why the model does not explain the runs, regardless of the tests.
     pub reasons: Vec<Reason>,
-    /// What it leaves: how much of that is the same in every run, and what chance there is.
+    /// The remaining error: how much of it is the same in every run, and how much is noise.
     pub remains: Option<Remains>,
     /// What is explained and what not, a sentence each.
     pub sentences: Vec<String>,
@@ -156,9 +156,9 @@ pub(super) fn compare(
     })
 }
 
-/// A model with what the motion says of the reference, where the model says nothing of it, less what makes the steps between
-/// measurements worse: what looks like a lever arm may be a sideways motion that the model has already. All is put on before anything is
-/// taken off, because a clock's offset and its rate are one line: neither helps alone.
+/// The model with clock and mounting of the reference as estimated from the motion, if the model does not set them. Values that make the
+/// steps between measurements worse are removed again: an apparent lever arm may be a sideways motion that the model already has. All
+/// values are added before any is removed, because offset and rate of a clock help only together.
 fn with_reference(observed: &Observed, model: &Model) -> Result<(Model, Vec<Taken>), FitError> {
     let with = |taken: &[Taken]| {
         let mut with = model.clone();
@@ -228,7 +228,7 @@ fn parts(data: &Dataset, observed: &Observed, runs: &[Followed], confidence: f64
         .iter()
         .enumerate()
         .filter_map(|(index, run)| {
-            // The moves of a whole log are not those of a piece of it.
+            // The moves of a whole log do not apply to a piece of it.
             let (_, log) = logs.find(|(name, _)| **name == run.observed.name)?;
             Some(parts::made(index, run, &moves_of(log, &observed.robot), &log.time))
         })

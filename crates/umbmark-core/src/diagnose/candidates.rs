@@ -1,4 +1,4 @@
-//! The effects that a model may be missing, and what each would do to the poses that it predicts.
+//! The effects that a model may be missing, and the derivatives of its predicted poses by each of them.
 
 use crate::effect::{Chain, Changes, Entry, Model, ModelError, Number, of_drive};
 use crate::geometry::{Dual, LANES, Pose2, seeded};
@@ -6,7 +6,7 @@ use crate::parameter::Parameter;
 use crate::replay::Track;
 use rayon::prelude::*;
 
-/// A parameter in which an effect is linear near where it does nothing, and what a unit of it does.
+/// A parameter in which an effect is linear near zero, and the response to a unit of it.
 #[derive(Clone, Debug)]
 pub struct Size {
     /// The parameter.
@@ -15,12 +15,12 @@ pub struct Size {
     pub columns: Vec<Vec<Pose2>>,
 }
 
-/// An effect that is not in a model, as the model would feel it.
+/// An effect that is not in a model, with its response there.
 #[derive(Clone, Debug)]
 pub struct Candidate {
     /// The effect.
     pub effect: &'static Entry,
-    /// Its sizes; lengths, thresholds and the like, which change nothing while the effect is at zero, are not among them.
+    /// Its sizes. Lengths, thresholds and the like are not among them: they have no influence while the size is zero.
     pub sizes: Vec<Size>,
 }
 
@@ -76,7 +76,7 @@ pub fn columns(model: &Model, values: &[usize], tracks: &[&Track]) -> Vec<Vec<Ve
     values.chunks(LANES).flat_map(of_some).collect()
 }
 
-/// What the first `count` lanes of a chain carry: lane by lane, run by run.
+/// The derivatives in the first `count` lanes of a chain: lane by lane, run by run.
 fn slopes(chain: &Chain<Dual>, count: usize, tracks: &[&Track]) -> Vec<Vec<Vec<Pose2>>> {
     let poses: Vec<Vec<Pose2<Dual>>> = tracks.iter().map(|track| track.poses(chain)).collect();
     let of_lane = |lane: usize| poses.iter().map(|run| run.iter().map(|pose| pose.slope(lane)).collect()).collect();

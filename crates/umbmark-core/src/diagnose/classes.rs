@@ -1,4 +1,4 @@
-//! Effects that an experiment cannot tell apart: classes of columns of nearly the same direction.
+//! Classes of effects that an experiment cannot separate: columns of nearly the same direction.
 
 use nalgebra::DVector;
 
@@ -13,9 +13,8 @@ pub fn likeness(a: &DVector<f64>, b: &DVector<f64>) -> f64 {
 
 /// Groups whitened columns so that within a group every two have |cos| above `alike`: complete linkage.
 ///
-/// Of the pairs of groups that may be joined, the one whose least likeness is greatest is joined first. (Single linkage
-/// would chain: A like B, B like C, yet A unlike C.) Each group holds indices in increasing order, and groups stand in the order of
-/// their first.
+/// Of all pairs of groups that may be joined, the pair with the largest minimum |cos| is joined first. (Single linkage would chain: A like
+/// B, B like C, yet A unlike C.) Each group holds indices in increasing order, and groups stand in the order of their first.
 ///
 /// ```
 /// use nalgebra::dvector;

@@ -47,7 +47,7 @@ impl Verdict {
     }
 }
 
-/// A test of the whole model against what it leaves unexplained.
+/// A test of the whole model against its residuals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoodnessOfFit {
     /// Which test.
@@ -56,7 +56,7 @@ pub struct GoodnessOfFit {
     pub statistic: f64,
     /// Degrees of freedom, where it is an F; none where p comes from simulation.
     pub degrees_of_freedom: Option<[f64; 2]>,
-    /// Probability of so large a statistic where the model is complete.
+    /// Probability of a statistic this large if the model is complete.
     pub p: f64,
 }
 
@@ -91,28 +91,28 @@ pub struct Diagnosis {
     pub contrasts: Vec<Contrast>,
     /// End points beside the circle through START, direction by direction; for squares.
     pub circle: Vec<OnCircle>,
-    /// What of the model this experiment determines.
+    /// What this experiment determines of the model.
     pub identifiability: Identifiability,
     /// What an effect outside the catalogue acts on and depends on; from tracks only.
     pub dependence: Option<Dependence>,
-    /// Where runs were disturbed, and what happened there left out; from tracks only.
+    /// Where runs were disturbed; the fit leaves these places out. From tracks only.
     pub outliers: Vec<Outlier>,
     /// What was found of the experiment before anything was fitted.
     pub setup: Arc<Setup>,
-    /// What of that was taken into the model.
+    /// The part of it that was added to the model.
     pub taken: Vec<Taken>,
     /// Reasons against the verdict "explained".
     pub reasons: Vec<Reason>,
     /// The strongest repeating pattern that the model leaves, significant or not; from tracks only.
     pub repeats: Option<Repeated>,
-    /// What the model leaves; `None` where columns are not what their names say.
+    /// The remaining error; `None` if columns contradict their names.
     pub remains: Option<Remains>,
     /// Further remarks, a sentence each.
     pub remarks: Vec<String>,
 }
 
 impl Diagnosis {
-    /// What is said of an experiment whose columns are not what they are called: nothing of the robot.
+    /// The diagnosis of an experiment whose columns contradict their names: the robot is not judged.
     pub(crate) fn of_faults(evidence: &dyn Evidence, model: &Model) -> Diagnosis {
         Diagnosis {
             level: evidence.level(),
@@ -146,7 +146,7 @@ impl Diagnosis {
         &self.ranking[..self.certified]
     }
 
-    /// What this data would have seen, effect by effect: of each parameter the least size, whatever shapes were tried.
+    /// Minimum detectable sizes, effect by effect: of each parameter the smallest of all shapes that were tried.
     pub fn least_sizes(&self) -> Vec<Vec<&Detectable>> {
         let mut effects: Vec<Vec<&Detectable>> = Vec::new();
         for size in &self.minimum_detectable {
@@ -163,7 +163,7 @@ impl Diagnosis {
         effects
     }
 
-    /// The effects that this data cannot see because parts of the model do the same, by these parts.
+    /// The effects that this data cannot show because parts of the model absorb them, grouped by these parts.
     pub fn absorbed(&self) -> Vec<(&[&'static str], Vec<&'static str>)> {
         let mut parts: Vec<(&[&str], Vec<&str>)> = Vec::new();
         for unseen in &self.invisible {
@@ -176,7 +176,7 @@ impl Diagnosis {
         parts
     }
 
-    /// The effects that at their usual size move nothing by as much as the noise.
+    /// The effects that at their usual size stay below the noise.
     pub fn below_noise(&self) -> Vec<&'static str> {
         self.invisible.iter().filter(|unseen| unseen.why == Why::BelowNoise).map(|unseen| unseen.effect).collect()
     }

@@ -1,7 +1,7 @@
-//! What to measure next: the experiment that would tell apart what the last one could not.
+//! What to measure next: the experiment that would separate the effects that the last one could not.
 //!
-//! For rivals j and k and a design d, the distance of "the truth is j, at its usual size" from everything that the model with k
-//! can predict, old and new data together: Δ_jk(d) = min over p, s of ‖W (a_j t_j - A p - a_k s)‖, in standard deviations. The worth
+//! For rivals j and k and a design d, this is the distance between the prediction of j at its usual size and the closest prediction of the
+//! model with k, for old and new data together: Δ_jk(d) = min over p, s of ‖W (a_j t_j - A p - a_k s)‖, in standard deviations. The worth
 //! of a design is Δ² a minute: T-optimality (Atkinson & Fedorov 1975).
 
 pub(super) mod design;
@@ -31,17 +31,17 @@ pub struct Experiment {
     pub sd: f64,
 }
 
-/// Less than a standard deviation is no experiment.
+/// Minimum separation in standard deviations.
 const LEAST: f64 = 1.0;
 
-/// Two effects that the data does not tell apart.
+/// Two effects that the data does not separate.
 struct Rivals {
     names: [&'static str; 2],
-    /// The sizes of each, as indices into the columns of a design; none where the model has the effect already.
+    /// The sizes of each, as indices into the columns of a design; empty if the model already has the effect.
     sizes: [Vec<usize>; 2],
 }
 
-/// Experiments for every class of more than one effect, and for every absorbed one; the most telling per minute first.
+/// Experiments for every class of more than one effect, and for every absorbed one; the most informative per minute first.
 pub(super) fn next_experiments(
     ends: &Ends,
     fitted: &Fitted,
@@ -58,10 +58,10 @@ pub(super) fn next_experiments(
     Ok(experiments)
 }
 
-/// Every experiment on offer for telling two effects apart, the most telling per minute first; none where the runs have no
-/// scatter to judge by.
+/// Every available experiment that separates two effects, the most informative per minute first; none if the runs have no scatter.
 ///
-/// Each effect is taken at its usual size, the hardest of those of its sizes that show at all; what the model has is fitted.
+/// Each effect has its usual size; of its sizes that show at all, the one that is hardest to separate counts. The effects of the model are
+/// fitted.
 pub(crate) fn separating(
     ends: &Ends,
     model: &Model,
@@ -79,7 +79,7 @@ pub(crate) fn separating(
             .collect::<Vec<usize>>()
     });
     let Some(offer) = Offer::new(ends, &fitted, sizes)? else { return Ok(Vec::new()) };
-    // Thresholds and scatters move nothing, and some sizes show nowhere: the effect is known by its others.
+    // Thresholds and scatters change no mean, and some sizes show nowhere: the effect is recognised by its other sizes.
     let shows = |size: &usize| {
         let alone = |columns: &Columns| columns.beside(*size, &[]) * offer.sizes[*size].1.typical;
         offer.columns.iter().any(|columns| alone(columns) >= LEAST)
@@ -97,7 +97,7 @@ fn has(model: &Model, entry: &Entry) -> bool {
     model.parts().iter().any(|part| part.effect.name() == entry.about.name)
 }
 
-/// The model with one of two effects at most: of two that are fitted, the first stays.
+/// The model with at most one of two effects: if both are fitted, the first is kept.
 pub(super) fn with_one_of(model: &Model, [first, second]: [&Entry; 2]) -> Result<Model, FitError> {
     if has(model, first) && has(model, second) { without(model, second) } else { Ok(model.clone()) }
 }
@@ -111,7 +111,7 @@ fn without(model: &Model, entry: &Entry) -> Result<Model, FitError> {
     Ok(rest)
 }
 
-/// What every design on offer would show, together with the data.
+/// The response of every available design, together with the data.
 struct Offer {
     designs: Vec<Design>,
     columns: Vec<Columns>,
@@ -140,7 +140,7 @@ impl Offer {
     }
 }
 
-/// k \[m^0.5\] of the wheel noise that scatters as the runs do.
+/// k \[m^0.5\] of the wheel noise that gives the scatter of the runs.
 pub(crate) fn wheel_noise(ends: &Ends, fitted: &Fitted) -> Option<f64> {
     Noise::of(ends, fitted).map(|noise| noise.variance.sqrt())
 }
@@ -149,7 +149,7 @@ pub(super) fn worth(experiment: &Experiment) -> f64 {
     experiment.sd * experiment.sd / experiment.minutes
 }
 
-/// Of the experiments with 90 % power at 5 %, the one worth most per minute; else the one with the largest separation, if any.
+/// Of the experiments with 90 % power at 5 %, the most informative per minute; otherwise the one with the largest separation, if any.
 pub(super) fn best(told: Vec<Experiment>) -> Option<Experiment> {
     let surely = normal_quantile(0.975) + normal_quantile(0.9);
     let sure = told.iter().filter(|e| e.sd >= surely).max_by(|a, b| worth(a).total_cmp(&worth(b))).cloned();
@@ -189,7 +189,7 @@ fn rivals(asked: &Asked, ranking: &[Suspect]) -> (Vec<SizeOf>, Vec<Rivals>) {
     (sizes, pairs)
 }
 
-/// What an experiment would show of the model's free parameters and of some sizes, in standard deviations.
+/// Responses of an experiment to the model's free parameters and to some sizes, in standard deviations.
 struct Columns {
     base: Vec<DVector<f64>>,
     sizes: Vec<DVector<f64>>,
@@ -223,7 +223,7 @@ impl Columns {
         Columns { base: joined(&self.base, &other.base), sizes: joined(&self.sizes, &other.sizes) }
     }
 
-    /// Standard deviations between two rivals: the least of both ways.
+    /// Separation of two rivals in standard deviations: the smaller of both directions.
     fn distance(&self, pair: &Rivals, sizes: &[SizeOf]) -> f64 {
         let apart = |truth: usize, rivals: &[usize]| self.beside(truth, rivals) * sizes[truth].1.typical;
         let [a, b] = &pair.sizes;
@@ -231,14 +231,14 @@ impl Columns {
         ways.reduce(f64::min).unwrap_or(0.0)
     }
 
-    /// What a unit of a size leaves beside the model and these sizes.
+    /// Residual response to a unit of a size, with the model and these sizes fitted.
     fn beside(&self, size: usize, rivals: &[usize]) -> f64 {
         let others: Vec<&DVector<f64>> = self.base.iter().chain(rivals.iter().map(|k| &self.sizes[*k])).collect();
         residual(&self.sizes[size], &others)
     }
 }
 
-/// Length of what is left of a column beside the span of others (Gram-Schmidt, twice).
+/// Norm of a column after projection on the complement of others (Gram-Schmidt, twice).
 fn residual(column: &DVector<f64>, others: &[&DVector<f64>]) -> f64 {
     const DEPENDENT: f64 = 1e-9;
     if others.is_empty() {
@@ -270,7 +270,7 @@ mod tests {
     fn of_experiments_that_tell_surely_the_one_worth_most_a_minute_is_best_else_the_one_that_tells_most() {
         let told = |sd: f64, minutes: f64| Experiment { separates: ["a", "b"], experiment: String::new(), minutes, sd };
         let best = |told: &[Experiment]| best(told.to_vec()).map(|e| (e.sd, e.minutes));
-        // With 3.24 standard deviations nine of ten tests of 5 % tell.
+        // With 3.24 standard deviations, nine of ten tests at 5 % detect the difference.
         assert_eq!(best(&[told(4.0, 10.0), told(3.3, 5.0), told(3.2, 1.0), told(8.0, 60.0)]), Some((3.3, 5.0)));
         assert_eq!(best(&[told(3.1, 60.0), told(3.0, 1.0)]), Some((3.1, 60.0)));
         assert_eq!(best(&[told(0.99 * LEAST, 1.0)]), None);

@@ -1,4 +1,4 @@
-//! Which parameters of a model an experiment determines at all, whatever its noise.
+//! Which parameters of a model an experiment can determine, for any noise.
 
 use super::candidates;
 use crate::effect::Model;
@@ -10,7 +10,7 @@ use crate::path::{Direction, Path};
 use crate::replay::Track;
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// What a unit of a parameter does to the end pose, at the nominal robot.
+/// Change of the end pose per unit of a parameter, at the nominal robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Share {
     /// The effect.
@@ -23,7 +23,7 @@ pub struct Share {
     pub heading: f64,
 }
 
-/// A combination of parameters that the experiment does not show, and what follows.
+/// A combination of parameters that the experiment does not determine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hidden {
     /// Parameters with their weights, the largest ±1: changed together in these proportions, they change no end pose.
@@ -49,7 +49,7 @@ pub struct Identifiability {
 /// use umbmark_core::diagnose::{base_model, identifiability};
 /// use umbmark_core::{drive::Robot, path::{Direction, Path}};
 /// let model = base_model(&Robot::labmate())?;
-/// // One direction of the square: E_d and E_b cannot be told apart.
+/// // One direction of the square: E_d and E_b cannot be separated.
 /// let one_way = identifiability(&model, &Path::umbmark(), &[Direction::Ccw], true)?;
 /// assert_eq!(one_way.rank, 1);
 /// assert!((one_way.hidden[0].ratio.unwrap() + 7.49).abs() < 0.01);

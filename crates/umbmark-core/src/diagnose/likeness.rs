@@ -2,8 +2,8 @@
 
 use nalgebra::DMatrix;
 
-/// How far effects can be taken for one another: |cos| of the angle between what each does to the observations, in units of
-/// their noise and less what the model's free parameters absorb. At 1 they are indistinguishable.
+/// How similar effects look: |cos| of the angle between their responses, in units of the noise and with the model's free parameters
+/// projected out. At 1 they are indistinguishable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Likeness {
     /// The effects that can be seen, each by the size that shows most.
@@ -13,7 +13,7 @@ pub struct Likeness {
 }
 
 impl Likeness {
-    /// From products of the responses to usual sizes, one column a size: of each effect, the strongest counts.
+    /// From products of the responses to usual sizes, one column per size; for each effect, the strongest response counts.
     pub(super) fn new(names: &[&'static str], products: &DMatrix<f64>) -> Likeness {
         let strength = |column: usize| products[(column, column)];
         let mut strongest: Vec<usize> = Vec::new();

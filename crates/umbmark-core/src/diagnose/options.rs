@@ -14,8 +14,8 @@ pub struct Options {
     pub seed: u64,
     /// Whether to use return poses alone, even where the runs were observed on the way.
     pub ends_only: bool,
-    /// Which of the laws that stand out is added first where no effect of the catalogue explains what repeats: 1 for the one that would be
-    /// taken, 2 for the first of its [`Repeated::others`](super::Repeated::others), and so on.
+    /// Which of the significant laws is added first if no effect of the catalogue explains the repeating pattern: 1 for the one that would
+    /// be taken, 2 for the first of its [`Repeated::others`](super::Repeated::others), and so on.
     pub law: usize,
 }
 

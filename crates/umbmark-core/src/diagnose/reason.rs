@@ -1,4 +1,4 @@
-//! Why a model is not called explained though nothing further is certified.
+//! Why the verdict is not "explained" although no further effect is certified.
 
 use super::remains::{Remains, Repeating};
 use super::tracks::repeats::Repeated;
@@ -7,13 +7,13 @@ use crate::setup::{Fault, Suspicion};
 /// One reason.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reason {
-    /// A column, a unit or a frame is not what it is called.
+    /// A column, a unit or a frame contradicts its name.
     Fault(Fault),
-    /// A noise size reached the limit of its search: what the model leaves is not noise.
+    /// A noise size reached the limit of its search: the residuals are not noise.
     NoiseAtLimit {
         /// Which size, in words.
         what: &'static str,
-        /// In units of people.
+        /// In the unit of the report.
         value: f64,
         /// That unit.
         unit: &'static str,
@@ -22,9 +22,9 @@ pub enum Reason {
     NoiseTooLarge {
         /// Which size, in words.
         what: &'static str,
-        /// In units of people.
+        /// In the unit of the report.
         value: f64,
-        /// The most that robots like this have.
+        /// The largest usual value for such robots.
         most: f64,
         /// Unit of both.
         unit: &'static str,
@@ -33,9 +33,9 @@ pub enum Reason {
     LargerThanNoise {
         /// "along the way" or "at the ends".
         place: &'static str,
-        /// Root mean square error \[m\] and, where that is what is too large, \[rad\].
+        /// Root mean square error \[m\], or \[rad\] if the heading is what is too large.
         left: f64,
-        /// What the noise would leave of the same, in nineteen of twenty cases no more.
+        /// Its 95 % quantile if there were only noise.
         expected: f64,
         /// Whether both are headings.
         heading: bool,
@@ -54,9 +54,9 @@ pub enum Reason {
         /// Of the runs that were fitted \[m\].
         inside: f64,
     },
-    /// What is left repeats from run to run.
+    /// The residuals repeat from run to run.
     Repeats(Box<Repeated>),
-    /// Some of what is left is the same in every run of one path, as pairs of runs show it.
+    /// Part of the residuals is the same in every run of one path, by comparison of pairs of runs.
     SameInEveryRun {
         /// How much \[m\] or \[rad\].
         repeats: Repeating,
@@ -70,7 +70,7 @@ pub enum Reason {
 }
 
 impl Reason {
-    /// The reason that what a model leaves is, where some of it is the same in every run.
+    /// The reason for doubt if part of the residuals is the same in every run.
     pub(crate) fn of_remains(remains: &Remains) -> Option<Reason> {
         let parts = [(Some(remains.position), false), (remains.heading, true)];
         let mut shown = parts.into_iter().filter_map(|(left, heading)| {
@@ -81,7 +81,7 @@ impl Reason {
         shown.next()
     }
 
-    /// Whether it is of the data, and not of the model: nothing that is fitted to such data is written.
+    /// Whether it concerns the data and not the model: a model that is fitted to such data is not written.
     pub fn is_of_data(&self) -> bool {
         match self {
             Reason::Fault(_) => true,

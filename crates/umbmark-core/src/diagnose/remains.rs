@@ -1,12 +1,12 @@
-//! What a model leaves: how much of it is the same in every run, and where the rest comes from.
+//! The error that a model leaves: how much of it is the same in every run, and the sources of the rest.
 //!
-//! Two runs of one path see the same law and different chance. So the mean, over pairs of runs, of the product of what is left in both at
-//! the same share of the way estimates the square of what repeats, without a noise model:
+//! Two runs of one path have the same systematic error and independent noise. So multiply the residuals of two runs at the same share of
+//! the path; the mean of this product over pairs of runs estimates the square of the repeating error, without a noise model:
 //!
 //! repeats² = Σ dᵢ(s)·dⱼ(s) / n,  i ≠ j of one path and sense,
 //!
-//! with an interval by the jackknife over the runs of each path. It is a lower bound: what runs do differently (one speed each, say) is not in it, nor what
-//! the model's own values were fitted to.
+//! with an interval by the jackknife over the runs of each path. It is a lower bound: it contains neither errors that differ between runs
+//! (each at its own speed, say) nor errors that the fitted values already absorb.
 //!
 //! Source: U-statistics and their jackknife, Arvesen (1969).
 
@@ -21,35 +21,35 @@ const SAME_LENGTH: f64 = 0.05;
 const SAME_PLACE: (f64, f64) = (0.1, 0.05);
 /// A run is compared with at most this many runs before it.
 const MOST_PARTNERS: usize = 50;
-/// Fewer runs have no interval.
+/// Minimum number of runs for an interval.
 const FEWEST: usize = 3;
 
-/// What is left of an error, in one unit: metres of the position, or radians of the heading.
+/// The remaining error, in one unit: metres of position, or radians of heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Left {
     /// Root mean square over all measurements.
     pub rms: f64,
-    /// How much of it is the same in every run, at least; `None` where no two runs drive one path.
+    /// Lower bound of the part that is the same in every run; `None` if no two runs drive one path.
     pub repeats: Option<Repeating>,
 }
 
 /// How much is the same in every run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Repeating {
-    /// Root mean square; 0 where the mean of products is negative, as half of all are where nothing repeats.
+    /// Root mean square; 0 if the mean of products is negative, which happens in half of all cases if nothing repeats.
     pub value: f64,
     /// Its 95 % interval; `None` below three runs.
     pub interval: Option<Interval>,
 }
 
 impl Repeating {
-    /// Whether it is no chance.
+    /// Whether it is significant.
     pub fn is_shown(&self) -> bool {
         self.interval.is_some_and(|interval| interval.low > 0.0)
     }
 }
 
-/// What chance there is, and how much of the error it makes.
+/// A source of noise, and the error that it causes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chance {
     /// Its name.
@@ -60,9 +60,9 @@ pub struct Chance {
     pub heading: f64,
 }
 
-/// A source of chance is reported where it contributes this share.
+/// A source of noise is reported if it contributes this share.
 const TOLD: f64 = 0.1;
-/// Where chance exceeds this multiple of what is left, the two do not add up.
+/// If the noise exceeds this multiple of the remaining error, the two contradict each other.
 const UNDONE: f64 = 1.5;
 /// Maximum number of disturbances in the report.
 const NAMED: usize = 3;
@@ -93,7 +93,7 @@ impl Unit {
     }
 }
 
-/// What a model leaves.
+/// The remaining error of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remains {
     /// Of positions \[m\].
@@ -102,20 +102,20 @@ pub struct Remains {
     pub heading: Option<Left>,
     /// How many pairs of runs drive one path.
     pub pairs: usize,
-    /// What chance would leave, by where it comes from; empty for return poses.
+    /// Error that noise alone would leave, by source; empty for return poses.
     pub chance: Vec<Chance>,
-    /// Places where a run is disturbed by more than that: bumps met by chance, and poses that are off.
+    /// Places where a run is disturbed by more than that: accidental bumps, and wrong poses.
     pub disturbances: Vec<Disturbance>,
 }
 
-/// What is left of one run along its way.
+/// Residuals of one run along its path.
 #[derive(Clone, Debug)]
 pub(crate) struct Trail {
     /// Runs of another sense follow another path: +1 counter-clockwise, -1 clockwise, 0 neither.
     pub sense: f64,
     /// How far the wheels have rolled at each measurement \[m\].
     pub rolled: Vec<f64>,
-    /// Where the model has the robot, in the frame of START \[m\].
+    /// Predicted positions in the frame of START \[m\].
     pub places: Vec<[f64; 2]>,
     /// Measured minus predicted, in the frame of START: x, y \[m\], heading \[rad\].
     pub left: Vec<[f64; 3]>,
@@ -128,7 +128,7 @@ impl Trail {
         self.rolled.last().copied().unwrap_or(0.0)
     }
 
-    /// Values at the same share of the way as the measurement of another run, between neighbours in proportion.
+    /// Values at the same share of the path as a measurement of another run, interpolated linearly.
     fn at<const N: usize>(&self, values: &[[f64; N]], share: f64) -> [f64; N] {
         let way = share * self.length();
         let after = self.rolled.partition_point(|rolled| *rolled < way).min(values.len() - 1);
@@ -189,7 +189,7 @@ impl Pair {
 }
 
 impl Remains {
-    /// What is left along some runs, the interval with this confidence.
+    /// The remaining error of some runs, with an interval of this confidence.
     pub(crate) fn of(trails: &[Trail], confidence: f64) -> Remains {
         let trails: Vec<Trail> = trails.iter().filter(|trail| !trail.left.is_empty()).cloned().collect();
         let partners = |j: usize| (j.saturating_sub(MOST_PARTNERS)..j).map(move |i| [i, j]);
@@ -215,7 +215,7 @@ impl Remains {
         }
     }
 
-    /// In sentences: how much is left and is the same in every run, what chance there is, and where runs are disturbed.
+    /// In sentences: the remaining error, the part that is the same in every run, the noise, and where runs are disturbed.
     pub fn sentences(&self) -> Vec<String> {
         let told = [Some(self.of_runs()), self.of_chance(), self.of_disturbances()];
         told.into_iter().flatten().map(|sentence| format!("{sentence}.")).collect()
@@ -368,8 +368,8 @@ fn runs_of(pairs: &[Pair]) -> Vec<usize> {
     runs
 }
 
-/// Pairs of runs path by path: of one path are runs that a chain of pairs joins. Where some paths have three runs or more, those of two are
-/// left out, since their uncertainty is unknown.
+/// Pairs of runs, grouped by path: runs that are connected by a chain of pairs drive the same path. Where some paths have three runs or
+/// more, those of two are left out, since their uncertainty is unknown.
 fn by_path(pairs: Vec<Pair>, runs: usize) -> Vec<Vec<Pair>> {
     let mut path_of: Vec<usize> = (0..runs).collect();
     let find = |path_of: &[usize], mut run: usize| {

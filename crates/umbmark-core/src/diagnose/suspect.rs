@@ -7,7 +7,7 @@ use crate::evidence::Estimate;
 /// A class of effects that may be missing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Suspect {
-    /// All effects that this data cannot tell apart from the best, the best included.
+    /// All effects that this data cannot separate from the best, including the best.
     pub class: Vec<&'static str>,
     /// The effect of the class that fits best.
     pub best: &'static str,
@@ -19,7 +19,7 @@ pub struct Suspect {
     pub p: f64,
     /// p corrected for all classes that were tested (the greatest of them).
     pub p_adjusted: f64,
-    /// p of the greatest under sign flips of the runs' scores, where there are enough runs: it needs no noise model.
+    /// p of the largest statistic under sign flips of the runs' scores, if there are enough runs; it needs no noise model.
     pub p_flips: Option<f64>,
     /// Sizes of the best effect after one step from zero.
     pub estimate: Vec<Estimate>,

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::io::Write;
 
-/// A robot like the paper's, E_d and E_b of the size of the paper's, wheel noise of its scatter, and one more cause.
+/// A robot like the paper's, with E_d, E_b and scatter of the paper's size, and one more cause.
 pub(crate) fn robot_with(effects: &[(&str, &str, f64)]) -> Model {
     let mut model = Model::new(&Robot::labmate());
     let usual =
@@ -80,8 +80,8 @@ pub(crate) fn margin(p: f64, trials: u64) -> f64 {
     3.5 * (p * (1.0 - p) / trials as f64).sqrt()
 }
 
-/// Seed 3; LabMate-like errors, larger ones of the other sign, and none. The asymptotic test, with the estimated covariance taken for
-/// the true one, is there to show that the harness can tell.
+/// Seed 3; LabMate-like errors, larger ones of the other sign, and none. The asymptotic test, which uses the estimated covariance as if it
+/// were true, shows that this study can detect a wrong size.
 #[test]
 fn the_test_of_the_whole_model_has_its_size_and_plug_in_chi_square_has_not() {
     let trials = trials(1000);
@@ -245,7 +245,7 @@ fn of_two_causes_both_are_certified_the_second_by_what_the_first_leaves() {
     assert_eq!((alone.verdict, alone.certified().len()), (Verdict::MissingEffect, 1));
 }
 
-/// The signs of 4 + 4 runs fall out all alike in one of 128 cases, which of a family is no 1 %.
+/// The signs of 4 + 4 runs are all equal in one of 128 cases, so a family of tests cannot reach 1 %.
 #[test]
 fn where_signs_cannot_confirm_what_is_certified_it_is_said_that_it_rests_on_normal_scatter() {
     let mut truth = robot_with(&[("floor_slope", "drift_x", 2e-2)]);
@@ -279,7 +279,7 @@ fn what_no_candidate_explains_though_the_whole_is_rejected_is_unlisted() {
         match (best, whole) {
             (true, _) => assert!(matches!(verdict, Verdict::MissingEffect | Verdict::SeveralMissing)),
             (false, false) => assert_eq!(verdict, Verdict::Explained),
-            // The whole is asked among the others, at a smaller size.
+            // The whole-model test is one of the family, at a smaller size.
             (false, true) => assert!(matches!(verdict, Verdict::Explained | Verdict::UnlistedEffect)),
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! | step | in | what it does |
 //! |---|---|---|
-//! | data | [`evidence::tracks`](crate::evidence::tracks) | fits the model to the tracks, and the noise that it leaves |
+//! | data | [`evidence::tracks`](crate::evidence::tracks) | fits the model to the tracks, and the noise of its residuals |
 //! | columns | `responses`, `smooth` | replays the tracks once for each size of each effect: a linear model around the fit |
 //! | whiten | `examination` | makes the residuals and columns independent; all tests follow from their products |
 //! | test | `significance`, `flips` | F of every effect and smooth, Bonferroni-corrected; sign flips of whole runs |
@@ -73,7 +73,7 @@ pub(crate) fn diagnose(observed: &Observed, model: &Model, options: &Options) ->
     let certified: Vec<Suspect> = added.into_iter().map(|added| added.suspect).collect();
     let asked = left.asked.into_iter().filter(|other| certified.iter().all(|known| known.best != other.best));
     let ranking = certified.iter().cloned().chain(asked).collect();
-    // What is said of visibility, tests and remains is of the model that was given, before anything was added.
+    // Visibility, tests and remaining error refer to the given model, before anything was added.
     let remains = if exams.len() > 1 { left::remains_of(&exams[0], options) } else { remains };
     let diagnosis = of_model(exams.swap_remove(0), dependence, options)?;
     let mut next_experiments = [experiments, diagnosis.next_experiments].concat();
@@ -92,7 +92,7 @@ pub(crate) fn diagnose(observed: &Observed, model: &Model, options: &Options) ->
     })
 }
 
-/// Every drive on offer for telling two effects apart, together with these tracks.
+/// Every available drive that separates two effects, together with these tracks.
 pub(crate) fn separating(
     observed: &Observed,
     model: &Model,

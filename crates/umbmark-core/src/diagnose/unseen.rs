@@ -1,4 +1,4 @@
-//! What the data cannot see, and the least that it would see.
+//! What the data cannot show, and the minimum detectable sizes.
 
 /// An effect that this data cannot show.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,16 +1,16 @@
 //! A CLAPPER under way: two trucks that steer by their odometry, and the link that corrects it.
 //!
-//! On legs the trucks drive one behind the other; in a corner both turn across the link, drive it round about its middle, and
-//! turn back. The rule of the correction (our reconstruction of Borenstein's internal position error correction): a bump turns a truck
-//! at once, while its position goes wrong only slowly, as it drives on. So the direction from truck to truck, by both
-//! odometries, is good for the next moment, and each truck's heading is that direction less the angle at which its rotary
-//! encoder sees the link. What is left of a heading error δ is the sideways step δ · (way of a period)/2, seen over the link.
+//! On legs the trucks drive one behind the other; in a corner both turn across the link, drive it round about its middle, and turn back.
+//! The rule of the correction (our reconstruction of Borenstein's internal position error correction): a bump turns a truck at once, while
+//! its position goes wrong only slowly, as it drives on. So for a short time the direction from truck to truck, by both odometries, is
+//! reliable, and each truck's heading is that direction minus the angle of its rotary encoder to the link. Of a heading error δ, only the
+//! sideways step δ · (distance per period)/2 over the link length remains.
 //!
-//! The link's length, by its linear encoder, sets both odometries as far apart as the trucks are. Without it a believed length
-//! that is wrong by a share a (a bump makes it so) would turn the believed direction by a · φ in a corner of φ: 2πa a round.
+//! The linear encoder of the link corrects the distance between both odometries. Without it, a relative length error a, which a bump can
+//! cause, would rotate the believed direction by a · φ in a corner of φ: 2πa per round.
 //!
-//! The same loop simulates (values, noise, bumps, whole counts) and predicts (values or derivatives, nothing by chance): what
-//! differs is the [`Floor`] that the trucks meet.
+//! The same loop simulates (values, noise, bumps, whole counts) and predicts (values or derivatives, without noise): only the [`Floor`]
+//! differs.
 
 use crate::drive::{ClapperDrive, LinkReading, Robot, WheelTravel};
 use crate::effect::{Chain, Context, Evaluate, Progress, RunContext};
@@ -18,14 +18,14 @@ use crate::geometry::{Displacement2, Pose2, Real, direction, wrap};
 use crate::path::{Direction, Move, Path, SpeedProfile, Trapezoid};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// How often odometry and link are read where the robot does not say \[Hz\].
+/// Default rate at which odometry and link are read \[Hz\].
 const RATE: f64 = 25.0;
 /// Share of a heading error that is steered away in a period.
 const HEADING_GAIN: f64 = 0.2;
-/// A truck beside its way heads for it as if it were so far ahead \[m\].
+/// Look-ahead distance of a truck that is beside its path \[m\].
 const LOOK_AHEAD: f64 = 0.5;
 
-/// What both trucks, the front one first, are to do in a period.
+/// The commands of both trucks for a period, the front one first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConvoyStep {
     /// Number of the move of the path.
@@ -34,18 +34,18 @@ pub struct ConvoyStep {
     pub shares: [f64; 2],
     /// Time since START at its end \[s\].
     pub time: f64,
-    /// Where and how each truck is meant to drive.
+    /// Context of the commanded motion of each truck.
     pub contexts: [Context; 2],
-    /// What each truck is meant to roll.
+    /// Commanded wheel travel of each truck.
     pub travel: [WheelTravel; 2],
     /// Speeds of each truck's wheels at its end \[m/s\].
     pub speeds: [[f64; 2]; 2],
     motion: [Displacement2; 2],
-    /// Where they are to be at its end.
+    /// Their planned poses at its end.
     target: [Pose2; 2],
 }
 
-/// Where both trucks are believed to be, and where they are.
+/// Believed and true poses of both trucks.
 #[derive(Clone, Copy, Debug)]
 pub struct Trucks<T = f64> {
     /// By their own odometry.
@@ -54,17 +54,17 @@ pub struct Trucks<T = f64> {
     pub real: [Pose2<T>; 2],
 }
 
-/// What makes true motion of believed travel, and readings of the link.
+/// Turns believed travel into true motion, and the link into readings.
 pub trait Floor<T: Real> {
-    /// True motion of a truck that believes to roll so and is truly there.
+    /// True motion of a truck with this believed travel and true pose.
     fn moved(&mut self, step: &ConvoyStep, truck: usize, believed: WheelTravel<T>, real: &Pose2<T>)
     -> Displacement2<T>;
 
-    /// What the link's encoders show of it.
+    /// The reading of the link's encoders.
     fn shown(&mut self, link: LinkReading<T>) -> LinkReading<T>;
 }
 
-/// The floor by prediction: what a model, nothing of it by chance, makes of the travel of trucks and of their link.
+/// The predicted floor: a model without noise, applied to the travel of the trucks and to their link.
 #[derive(Debug)]
 pub struct Predicted<'a, T: Evaluate> {
     chain: &'a Chain<T>,
@@ -101,7 +101,7 @@ impl<T: Evaluate> Floor<T> for Predicted<'_, T> {
 pub struct Convoy {
     drive: ClapperDrive,
     steps: Vec<ConvoyStep>,
-    /// How many steps are made when each move of the path is done.
+    /// Number of steps completed at the end of each move of the path.
     stops: Vec<usize>,
 }
 
@@ -134,12 +134,12 @@ impl Convoy {
         &self.steps
     }
 
-    /// How many steps are made when each move of the path is done.
+    /// Number of steps completed at the end of each move of the path.
     pub fn stops(&self) -> &[usize] {
         &self.stops
     }
 
-    /// Where both trucks are to be after so many steps.
+    /// Planned poses of both trucks after `made` steps.
     pub fn meant(&self, made: usize) -> [Pose2; 2] {
         made.checked_sub(1).map_or_else(|| at_start(self.drive.link()), |last| self.steps[last].target)
     }
@@ -149,8 +149,8 @@ impl Convoy {
         self.drive.corrects()
     }
 
-    /// Both trucks at START, of which the front one truly stands where `start` says, the rear one as far behind as the link is
-    /// truly long: a length of which the linear encoder shows the nominal one.
+    /// Both trucks at START: the true pose of the front one is `start`, and the rear one is behind it by the true length of the link, for
+    /// which the linear encoder shows the nominal length.
     pub fn at_start<T: Real>(&self, start: Pose2<T>, floor: &mut impl Floor<T>) -> Trucks<T> {
         let link = T::from(self.drive.link());
         let shown = floor.shown(LinkReading { length: link, angles: [T::from(0.0); 2] }).length;
@@ -179,7 +179,7 @@ impl Convoy {
         }
     }
 
-    /// The motion that a truck gives itself, what is planned and back towards the plan, and the wheel travel that makes it.
+    /// The commanded motion of a truck, the planned one plus a correction towards the plan, and its wheel travel.
     #[inline]
     fn steered<T: Real>(
         &self,
@@ -200,8 +200,8 @@ impl Convoy {
         (motion, WheelTravel { left: forward - half, right: forward + half })
     }
 
-    /// Sets the trucks as far apart as the link is seen to be long, half of the difference each, and gives each the heading at
-    /// which it would see the other there.
+    /// Sets the distance of the trucks to the measured length of the link, half of the difference each, and gives each the heading that
+    /// follows from its angle to the link.
     #[inline]
     pub(crate) fn correct<T: Real>(&self, trucks: &mut Trucks<T>, floor: &mut impl Floor<T>) {
         let (along, across) = from_rear(&trucks.real);
@@ -368,7 +368,7 @@ pub(crate) mod tests {
         assert!(Convoy::new(&Robot::labmate(), &path(), Direction::Ccw).is_none() && path().suits(&clapper(true)));
     }
 
-    /// A floor on which everything is as believed.
+    /// A floor on which true motion and odometry agree.
     struct Even;
 
     impl Floor<f64> for Even {

@@ -4,9 +4,9 @@ use super::WheelLine;
 
 /// The ticks of a line with both wheels mirrored forward, counted as right ticks between left ones.
 ///
-/// With travels Q (left) and P (right) and start phases a, b, the right ticks at or before the k-th left tick number
-/// y(k) = floor((P k + ρ) / Q), ρ = floor((b Q - a P) / 2^32). The residual (P k + ρ) mod Q at the first left tick and at
-/// the last one, together with the number of ticks between them, say everything about the word in between.
+/// With travels Q (left) and P (right) and start phases a, b, the right ticks at or before the k-th left tick number y(k) = floor((P k + ρ)
+/// / Q), ρ = floor((b Q - a P) / 2^32). The residual (P k + ρ) mod Q at the first left tick and at the last one, together with the number
+/// of ticks between them, determine the word in between.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DigitalLine {
     /// Ticks of the left wheel.

@@ -1,4 +1,4 @@
-//! One entrance to all kinds of odometry.
+//! A common interface to all kinds of odometry.
 
 use super::{Instructions, Motion, SampledOdometry, TickGeometry, TickOdometry, Update, WheelLine, oracle};
 

@@ -7,7 +7,7 @@ pub(super) mod avx2;
 #[cfg(target_arch = "x86_64")]
 pub(super) mod avx512;
 
-/// A pack of `f64`s on which the same operations are done side by side; `f64` itself is the pack of one.
+/// A pack of `f64`s on which the same operations are performed side by side; `f64` itself is a pack of one.
 ///
 /// Every operation is that of IEEE 754 on each number by itself, so a number's result does not depend on the width of its
 /// pack or on its neighbours. There is deliberately no fused multiply-add. A value can only be made from another value:

@@ -36,7 +36,7 @@ pub(super) struct MidHeading<T> {
 pub(super) struct Root<T> {
     half: T,
     inverse_sinc: T,
-    /// Half turns folded away; `None` where there are none, in any lane.
+    /// Half turns folded away; `None` if no lane has any.
     half_turns: Option<T>,
 }
 
@@ -52,8 +52,8 @@ impl<T: Lane> MidHeading<T> {
         }
     }
 
-    /// \[x, y, cosine, sine\]: the end in the start frame and the direction of its heading. No zero has a minus sign, so
-    /// that a factor left out and one that is the identity cannot be told apart.
+    /// \[x, y, cosine, sine\]: the end in the start frame and the direction of its heading. No zero has a minus sign, so that a factor left
+    /// out and an identity factor give the same bits.
     #[inline(always)]
     pub fn end(&self) -> [T; 4] {
         let zero = self.half.splat(0.0);

@@ -1,6 +1,6 @@
-//! Things with an ordered product.
+//! Elements with an ordered product.
 
-/// What the word of a segment can be multiplied in: anything with an associative product and powers.
+/// A set in which the word of a segment can be multiplied: anything with an associative product and powers.
 ///
 /// Rigid motions make it odometry; strings make it the word itself, which is how the combinatorics are tested.
 ///

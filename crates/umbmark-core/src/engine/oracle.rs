@@ -1,7 +1,7 @@
 //! The reference: one tick after the other.
 //!
-//! Slow and obvious, sharing no code with the fast paths but the geometry's sine and cosine. It is public so that a user
-//! can hold any result against it.
+//! Slow and obvious, sharing no code with the fast paths but the geometry's sine and cosine. It is public so that users can compare any
+//! result with it.
 
 use super::{Letter, Motion, TickGeometry, UNITS_PER_TICK, WheelLine};
 use crate::geometry::Real;

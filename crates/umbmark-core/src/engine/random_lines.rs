@@ -73,7 +73,7 @@ impl Source {
     }
 }
 
-/// How many cases a test should run: `UMBMARK_TEST_CASES` if set, else `default`.
+/// Number of cases of a test: `UMBMARK_TEST_CASES` if set, otherwise `default`.
 pub(super) fn cases(default: usize) -> usize {
     std::env::var("UMBMARK_TEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(default)
 }

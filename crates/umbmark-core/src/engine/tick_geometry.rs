@@ -3,7 +3,7 @@
 use super::EngineError;
 use crate::drive::Wheel;
 
-/// What odometry believes of the robot: the distance a wheel rolls per tick, and how far the wheels are apart.
+/// The geometry that odometry assumes: the distance that a wheel rolls per tick, and the distance of the wheels.
 ///
 /// Nominal or calibrated: the two tick lengths may differ. The same three numbers that a calibration corrects
 /// (Borenstein & Feng 1996, equations 1 and 2, with the encoder resolution and gear ratio folded in).

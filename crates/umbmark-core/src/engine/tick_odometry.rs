@@ -22,7 +22,7 @@ pub struct TickOdometry {
     geometry: TickGeometry,
     left: MidHeading<f64>,
     right: MidHeading<f64>,
-    /// What rounding took from the angles of a left and a right tick \[rad\].
+    /// Rounding errors of the angles of a left and a right tick \[rad\].
     rounded_off: [f64; 2],
     instructions: Instructions,
 }
@@ -80,7 +80,8 @@ impl TickOdometry {
         if lanes::fits(line) { motion } else { self.less_rounding(line.counts(), motion) }
     }
 
-    /// The motion of a long line without what the rounded angles of its ticks add up to, as a miscalibration by 1e-16 does.
+    /// The motion of a long line, corrected for the sum of the rounding errors of its tick angles, which act like a miscalibration of
+    /// 1e-16.
     ///
     /// The heading errs by a share of the way that is done. To first order that moves the end of an arc of length l and
     /// rotation 2h, as seen from halfway, by (l/2) (sinc' h, sinc h) for each radian at its end.

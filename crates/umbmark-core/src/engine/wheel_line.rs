@@ -14,9 +14,9 @@ const MAX_TRAVEL: i64 = MAX_TICKS * UNITS_PER_TICK;
 /// A motion with a constant ratio of wheel speeds: the straight line `start + λ travel`, 0 <= λ <= 1, in the plane of the
 /// (left, right) wheel angles, both in units of 2^-32 tick ([`UNITS_PER_TICK`]).
 ///
-/// A wheel's counter reads floor(angle), so a tick is the crossing of a grid line of that plane. `start` is the phase of
-/// each encoder, 0 <= start < 2^32: where the wheel stands within its current tick. Positive travel is forward. How the
-/// speed varies along the line does not matter to the order of the ticks.
+/// A wheel's counter reads floor(angle), so a tick is the crossing of a grid line of that plane. `start` is the phase of each encoder, 0 <=
+/// start < 2^32: the position of the wheel within its current tick. Positive travel is forward. How the speed varies along the line does
+/// not matter to the order of the ticks.
 ///
 /// Angles are integers, so the phases of a chain of segments follow each other without rounding:
 ///

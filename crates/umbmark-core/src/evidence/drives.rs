@@ -100,7 +100,7 @@ fn ended(
 fn end_weight(drive: &Drive, robot: &Robot) -> Matrix3<f64> {
     let mut shape = noise_shape::end_covariance(&drive.track, &robot.drive);
     if drive.seen.iter().any(|s| s.heading.is_none()) {
-        // An unmeasured heading is one of its own, unrelated to the position.
+        // A heading that was not measured gets unit weight, uncorrelated with the position.
         shape.fixed_view_mut::<2, 1>(0, 2).fill(0.0);
         shape.fixed_view_mut::<1, 2>(2, 0).fill(0.0);
     }
@@ -114,7 +114,7 @@ mod tests {
     use crate::path::{CIRCLE, Path, SQUARE, SpeedProfile};
     use crate::preset::Preset;
 
-    /// Two runs each way that return a little off.
+    /// Two runs in each direction with small return errors.
     fn returned(robot: &Robot, path: Path, heading: Option<f64>) -> Dataset {
         let run = |number: u32| Run {
             name: format!("run {number}"),

@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 pub(crate) use fitted::{Fitted, names};
 
-/// The least number of runs a direction for any test.
+/// Minimum number of runs in each direction for any test.
 pub(crate) const FEWEST_RUNS: usize = 3;
 
 /// Return poses, ready to be predicted.
@@ -31,7 +31,7 @@ pub(crate) struct Ends {
     pub with_heading: bool,
     /// What was found of the data, where it was [examined](Ends::examined).
     pub setup: Arc<Setup>,
-    /// Why these return errors are not to be believed.
+    /// Why these return errors are doubtful.
     pub doubts: Vec<Suspicion>,
 }
 
@@ -40,7 +40,7 @@ pub(crate) struct Ends {
 pub(crate) struct End {
     /// The path's sense; runs of paths without one count as counter-clockwise.
     pub direction: Direction,
-    /// Index of what the robot believed to drive.
+    /// Index of the track that the odometry reports.
     track: usize,
     /// Absolute pose at the end.
     seen: Pose2,
@@ -48,11 +48,11 @@ pub(crate) struct End {
     pub weight: Matrix3<f64>,
 }
 
-/// What the robot believed to drive, cut as coarsely as effects allow.
+/// The track that the odometry reports, cut into the largest pieces that the effects allow.
 #[derive(Debug)]
 struct Believed {
     whole: Track,
-    /// `None` where the track was recorded, and is in small pieces anyway.
+    /// `None` for a recorded track, which is already in small pieces.
     pieces: Option<Track>,
 }
 
@@ -104,7 +104,7 @@ impl Ends {
         self.runs.push(End { direction, track, seen, weight: drive.weight });
     }
 
-    /// The same runs as if their ticks were those of the path, where it is known.
+    /// The same runs, with the ticks of the commanded path if it is known.
     fn as_meant(&self) -> Ends {
         let Some(path) = &self.path else { return self.clone() };
         let meant = |direction: Direction| Believed {
@@ -137,7 +137,7 @@ impl Ends {
         self.tracks.iter().map(|t| t.track(varies)).collect()
     }
 
-    /// A value for every run from one for every track.
+    /// Turns one value per track into one value per run.
     pub fn of_runs<'a, T>(&'a self, of_tracks: &'a [T]) -> impl Iterator<Item = (Direction, &'a T)> + 'a {
         self.runs.iter().map(|run| (run.direction, &of_tracks[run.track]))
     }

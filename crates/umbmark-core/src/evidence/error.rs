@@ -1,4 +1,4 @@
-//! What leaves nothing to fit.
+//! Why a model cannot be fitted.
 
 use crate::effect::ModelError;
 use crate::replay::ReplayError;
@@ -44,7 +44,7 @@ pub enum FitError {
     /// A model that the catalogue or its bounds refuse.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// Columns, units or frames that are not what they are called.
+    /// Columns, units or frames that contradict their names.
     #[error("{}", Fault::refusal(.faults))]
     Faulty {
         /// Which.

@@ -40,13 +40,13 @@ pub struct Fit {
     pub estimates: Vec<Estimate>,
     /// The sizes of the noise under which the runs are likeliest; from tracks only.
     pub noise: Option<Noise>,
-    /// Where runs were disturbed, and what happened there left out; from tracks only.
+    /// Where runs were disturbed; the fit leaves these places out. From tracks only.
     pub outliers: Vec<Outlier>,
-    /// Whether the values are those under noise of the usual sizes, as [`USUAL_NOISE`](crate::likelihood::USUAL_NOISE) says.
+    /// Whether the values were fitted with noise of the usual sizes; see [`USUAL_NOISE`](crate::likelihood::USUAL_NOISE).
     pub usual_noise: bool,
     /// What was found of the experiment before the fit.
     pub setup: Arc<Setup>,
-    /// What of that was taken into the model.
+    /// The part of it that was added to the model.
     pub taken: Vec<Taken>,
 }
 

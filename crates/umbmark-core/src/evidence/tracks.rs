@@ -56,7 +56,7 @@ pub(crate) fn fit(observed: &Observed, model: &Model) -> Result<Fitted, FitError
     observed.check(model)?;
     let (model, taken) = observed.begin(model)?;
     let fitted = Fitted { taken, ..observed.fit(&model, &Noise::default(), &[])? };
-    // Where the size of a formula began at 0, its shape shows only now.
+    // A formula whose size started at 0 did not depend on its shape; now it does.
     if model.has_formulas() && observed.free_values(&fitted.model).len() > fitted.free.len() {
         return Ok(Fitted { taken: fitted.taken, ..observed.fit(&fitted.model, &fitted.noise, &[])? });
     }

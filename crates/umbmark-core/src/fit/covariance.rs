@@ -1,4 +1,4 @@
-//! What a Jacobian says of the parameters: which the data shows, and how well.
+//! Which parameters a Jacobian determines, and how well.
 
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
@@ -6,8 +6,8 @@ use std::ops::Range;
 /// Singular values of the Jacobian with columns of unit length below this share of the largest count as zero.
 pub const RANK_TOLERANCE: f64 = 1e-3;
 
-/// Combinations of parameters that the data does not show: directions in parameter space along which no residual
-/// changes, to first order.
+/// Combinations of parameters that the data does not determine: directions in parameter space along which no residual changes, to first
+/// order.
 ///
 /// Singular vectors of the Jacobian with its columns scaled to unit length, with singular values below `tolerance` times the
 /// largest; each is given in the parameters' own units with largest component ±1. Empty where every parameter is shown.
@@ -48,7 +48,7 @@ pub(super) fn inverse_information(jacobian: &DMatrix<f64>) -> Option<DMatrix<f64
     Some(DMatrix::from_fn(lengths.len(), lengths.len(), |i, j| scaled[(i, j)] / (lengths[i] * lengths[j])))
 }
 
-/// The square triangle of J with columns of unit length (columns of rounding made zero), and the lengths.
+/// The triangular factor of J, its columns scaled to unit length, and these lengths. Columns that are only rounding error are set to zero.
 fn scaled_triangle(jacobian: &DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
     let lengths = column_lengths(jacobian);
     let mut scaled = jacobian.clone();
@@ -60,7 +60,7 @@ fn scaled_triangle(jacobian: &DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
     (scaled.resize_vertically(rows, 0.0).qr().r(), lengths)
 }
 
-/// Length of each column, 0 for one that is rounding beside the longest.
+/// Length of each column; 0 for one that is only rounding error beside the longest.
 pub(super) fn column_lengths(jacobian: &DMatrix<f64>) -> Vec<f64> {
     const ROUNDING: f64 = 1e-12;
     let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
@@ -68,14 +68,14 @@ pub(super) fn column_lengths(jacobian: &DMatrix<f64>) -> Vec<f64> {
     lengths.into_iter().map(|length| if length > ROUNDING * longest { length } else { 0.0 }).collect()
 }
 
-/// Covariance of fitted parameters from leaving out one group of residuals after the other.
+/// Covariance of fitted parameters, estimated by leaving out one group of residuals at a time.
 ///
-/// C = (G - 1)/G Σ_g Δ_g Δ_gᵀ, with Δ_g = -(JᵀJ - J_gᵀJ_g)⁻¹ J_gᵀ r_g the change of the (linearised) estimate when the residuals of
-/// group g are left out. Residuals may be correlated within a group in any way, and their variances may differ; only the groups
-/// must be independent. With few groups it errs on the large side. This is the cluster jackknife, CR3 of the econometric
-/// literature (Bell & McCaffrey 2002, Survey Methodology 28).
+/// C = (G - 1)/G Σ_g Δ_g Δ_gᵀ, with Δ_g = -(JᵀJ - J_gᵀJ_g)⁻¹ J_gᵀ r_g the change of the (linearised) estimate when the residuals of group g
+/// are left out. Residuals may be correlated within a group in any way, and their variances may differ; only the groups must be
+/// independent. With few groups it is too large rather than too small. This is the cluster jackknife, CR3 of the econometric literature
+/// (Bell & McCaffrey 2002, Survey Methodology 28).
 ///
-/// `None` with fewer than two groups, or where the parameters are not all shown without one of them.
+/// `None` for fewer than two groups, or if some parameter is undetermined once one of them is left out.
 pub fn jackknife_covariance(
     jacobian: &DMatrix<f64>,
     residuals: &DVector<f64>,

@@ -56,7 +56,7 @@ struct Descent<'a> {
     /// The greatest length that each column of the Jacobian has had.
     lengths: Vec<f64>,
     damping: f64,
-    /// Points and steps before this one, where points are dear.
+    /// Earlier points and steps; kept only if points are expensive to compute.
     memory: Option<Memory>,
     /// Whether the last step led to a worse point, and was not taken.
     refused: bool,
@@ -78,7 +78,7 @@ impl Descent<'_> {
         let plain = damped_step(&self.at.jacobian, &self.at.residuals, &self.lengths, self.damping);
         let is_undamped = self.damping <= LEAST_DAMPING;
         if self.memory.is_some() && !self.refused && self.at.expected_decrease(&plain) <= self.tolerance() {
-            // A damped step may lower the sum too little to matter and yet be far from the end.
+            // A damped step can gain very little although the minimum is still far away.
             self.damping = LEAST_DAMPING;
             return is_undamped.then_some(Termination::SmallDecrease);
         }
@@ -87,7 +87,8 @@ impl Descent<'_> {
         let next = Point::new(problem, self.at.values.iter().zip(step.iter()).map(|(p, d)| p + d).collect());
         let is_small = self.is_small(step);
         let decrease = self.at.cost - next.cost;
-        // Sums that agree to the last digits cannot tell which point is better; the step can, so it is taken.
+        // Both sums agree to rounding, so they cannot decide which point is better. The step comes from the gradient and is more exact:
+        // take it.
         let is_negligible = decrease.abs() <= self.tolerance();
         let is_better = decrease > 0.0 || is_negligible;
         self.refused = !is_better;
@@ -101,7 +102,7 @@ impl Descent<'_> {
             return Some(Termination::SmallDecrease);
         }
         if self.refused && learnt.is_some() {
-            // What was learnt led astray: the plain step from here is tried next.
+            // The accelerated step was worse: forget the earlier points and try the plain step next.
             self.memory = Some(Memory::default());
         } else {
             self.damping = match (is_negligible, is_better) {
@@ -114,12 +115,12 @@ impl Descent<'_> {
         None
     }
 
-    /// A decrease of the sum of squares that does not matter.
+    /// A decrease of the sum of squares below this is negligible.
     fn tolerance(&self) -> f64 {
         self.options.decrease_tolerance * self.at.cost
     }
 
-    /// Whether a step changes every parameter by too little to matter.
+    /// Whether a step changes every parameter negligibly.
     fn is_small(&self, step: &DVector<f64>) -> bool {
         let tolerance = self.options.step_tolerance;
         step.iter().zip(&self.at.values).all(|(d, p)| d.abs() <= tolerance * p.abs().max(1e-300))

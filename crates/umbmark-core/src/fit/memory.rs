@@ -1,12 +1,12 @@
-//! Steps that learn from those before them: Anderson acceleration (1965) of Gauss-Newton steps.
+//! Anderson acceleration (1965) of Gauss-Newton steps: each step uses the earlier ones.
 
 use super::covariance::RANK_TOLERANCE;
 use nalgebra::{DMatrix, DVector};
 
-/// Maximum number of earlier changes that a step learns from.
+/// Maximum number of earlier changes that a step uses.
 const REMEMBERED: usize = 4;
 
-/// Points of a fit, and the steps that Gauss and Newton take from there, the last one last.
+/// The points of a fit and the Gauss-Newton step from each of them, in order.
 #[derive(Default)]
 pub struct Memory {
     values: Vec<DVector<f64>>,

@@ -6,9 +6,9 @@ use nalgebra::{DMatrix, DVector};
 /// Why a fit stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Termination {
-    /// The last step was too small to matter.
+    /// The last step was negligibly small.
     SmallStep,
-    /// The last step lowered the sum of squares too little to matter, or no shorter step lowers it at all.
+    /// The last step lowered the sum of squares negligibly, or no shorter step lowers it at all.
     SmallDecrease,
     /// The limit of steps was reached: the values are the best so far.
     IterationLimit,
@@ -54,7 +54,7 @@ impl Fit {
         self.residuals.norm_squared()
     }
 
-    /// Combinations of parameters that the data does not show; see [`null_directions`].
+    /// Combinations of parameters that the data does not determine; see [`null_directions`].
     pub fn null_directions(&self) -> Vec<DVector<f64>> {
         null_directions(&self.jacobian, RANK_TOLERANCE)
     }

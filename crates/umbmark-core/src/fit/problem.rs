@@ -10,7 +10,7 @@ pub trait Problem {
     /// ∂r_i/∂p_j, one row a residual.
     fn jacobian(&self, parameters: &[f64]) -> DMatrix<f64>;
 
-    /// Both, where one calculation gives them for less than two would.
+    /// Residuals and Jacobian together, for problems that compute both at once more cheaply.
     fn both(&self, parameters: &[f64]) -> (DVector<f64>, DMatrix<f64>) {
         (self.residuals(parameters), self.jacobian(parameters))
     }
@@ -33,7 +33,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// 100 steps, 1e-14, 1e-15: to the last digits, and from afar.
+    /// 100 steps, 1e-14, 1e-15: converges to full precision, also from distant start values.
     fn default() -> Self {
         Options { iterations: 100, step_tolerance: 1e-14, decrease_tolerance: 1e-15, cautious: true, frugal: false }
     }

@@ -4,11 +4,11 @@ use super::descent::least_squares;
 use super::outcome::Fit;
 use super::problem::{Options, Problem};
 
-/// Another minimum is about as good where its cost is at most this multiple of the least.
+/// Another minimum counts as a rival if its cost is at most this multiple of the least.
 const RIVAL: f64 = 2.0;
-/// A minimum replaces that of the first start where it costs less than this share of it.
+/// A minimum replaces that of the first start if its cost is less than this share of the latter's.
 const BETTER: f64 = 0.99;
-/// Minima whose parameters differ by less are one.
+/// Minima whose parameters differ by less than this are the same minimum.
 const SAME: f64 = 0.02;
 
 /// The best of several minima.
@@ -20,7 +20,7 @@ pub(crate) struct Searched {
     pub rival: Option<Vec<f64>>,
 }
 
-/// Looks for a better minimum than that of a `first` fit from further starts. `possible` says which parameters can be.
+/// Looks for a better minimum than that of a `first` fit from further starts. `possible` says which parameters are allowed.
 pub(crate) fn search(
     problem: &impl Problem,
     first: Fit,

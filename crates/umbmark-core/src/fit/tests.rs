@@ -59,7 +59,7 @@ fn a_weighted_line_has_the_estimates_and_covariance_of_the_textbook() {
     assert!((fit.residual_variance().unwrap() - fit.cost() / 2.0).abs() < 1e-15);
 }
 
-/// A circle through points that are nowhere near one: much is left of the residuals at the best, and they are curved.
+/// A circle fitted to points far from any circle: the residuals at the minimum are large and strongly curved.
 struct Circle {
     evaluated: Cell<usize>,
 }
@@ -67,7 +67,7 @@ struct Circle {
 impl Circle {
     const POINTS: [[f64; 2]; 6] = [[0.0, 0.0], [3.0, 0.5], [1.0, 2.0], [-1.0, 1.5], [0.4, -1.5], [2.0, -0.6]];
 
-    /// What points of a fit by these options were worked out, and where it ended.
+    /// How many points a fit with these options evaluates, and where it ends.
     fn fitted(options: &Options) -> (usize, Fit) {
         let circle = Circle { evaluated: Cell::new(0) };
         let fit = least_squares(&circle, &[1.0, 0.2, 1.5], options);

@@ -19,7 +19,7 @@ pub fn wrap(angle: f64) -> f64 {
     if folded <= -PI { folded + TAU } else { folded }
 }
 
-/// The mean of `angles` \[rad\] that lie within half a turn of each other; `None` where there are none.
+/// The mean of `angles` \[rad\] that lie within half a turn of each other; `None` for an empty set.
 ///
 /// The arithmetic mean as seen from the first of them, so that the cut at ±π does no harm, and with its full turns.
 ///

@@ -20,7 +20,7 @@ use nalgebra::{Matrix3, SMatrix, SVector};
 /// A quantity, and whether the data can determine it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Determined {
-    /// What is asked for.
+    /// The quantity.
     pub quantity: &'static str,
     /// Whether it can be had.
     pub yes: bool,

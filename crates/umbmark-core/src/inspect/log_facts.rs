@@ -30,7 +30,7 @@ pub struct LogFacts {
     pub longest_gap: f64,
     /// Times between samples that are more than five usual ones.
     pub gaps: usize,
-    /// What was mended while it was read.
+    /// Defects that were corrected while it was read.
     pub mended: Mended,
     /// Length of the path of the axle's centre by the ticks \[m\], where the robot is known.
     pub length: Option<f64>,

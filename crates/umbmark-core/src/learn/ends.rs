@@ -95,7 +95,8 @@ impl<'a> Story<'a> {
         Ok(())
     }
 
-    /// The story with a certified effect more, and what is then missing, where runs left out are predicted better with it.
+    /// The story with one more certified effect, and the diagnosis of the new model; nothing if held-out runs are not predicted better with
+    /// it.
     fn grown_by(&self, suspect: &Suspect, options: &Options) -> Result<Option<(Story<'a>, Diagnosis)>, FitError> {
         let candidate = self.with_likeliest(suspect.best, suspect.class.clone(), suspect.p_adjusted)?;
         if candidate.last().held_out.weighted >= self.last().held_out.weighted {
@@ -105,12 +106,12 @@ impl<'a> Story<'a> {
         Ok(Some((candidate, diagnosis)))
     }
 
-    /// The story in which all runs add `effect`, and each fold what it finds likeliest on its own.
+    /// The story in which the fit to all runs adds `effect`, and each fold adds the effect that is likeliest in that fold.
     fn with_likeliest(&self, effect: &'static str, class: Vec<&'static str>, p: f64) -> Result<Story<'a>, FitError> {
         let folds = self.folds.par_iter().zip(&self.fold_models);
         let choose = |(fold, model): (&Ends, &Model)| match ends::likeliest(fold, model)? {
             Some(own) => match grown(fold, model, &free_part(&fold.robot, own)?) {
-                // Without this run, that effect cannot be fitted.
+                // Once this run is left out, the effect cannot be fitted.
                 Err(FitError::NotConverged { .. } | FitError::OutOfBounds { .. }) => Ok(model.clone()),
                 fitted => fitted,
             },
@@ -145,7 +146,7 @@ impl<'a> Story<'a> {
     }
 }
 
-/// An effect of the catalogue, free, at the values where it does nothing.
+/// A free effect of the catalogue, at the values where it has no influence.
 pub(super) fn free_part(robot: &Robot, effect: &str) -> Result<Part, FitError> {
     let mut model = Model::new(robot);
     let part = model.add(effect).map_err(FitError::Model)?;
@@ -153,7 +154,7 @@ pub(super) fn free_part(robot: &Robot, effect: &str) -> Result<Part, FitError> {
     Ok(part.clone())
 }
 
-/// A model with an effect more, fitted.
+/// A model with one more effect, fitted.
 fn grown(ends: &Ends, model: &Model, part: &Part) -> Result<Model, FitError> {
     let mut grown = model.clone();
     grown.adopt(part);
@@ -215,7 +216,8 @@ fn squares(ends: &Ends, model: &Model, run: usize) -> Squares {
     }
 }
 
-/// AICc and BIC, where there are runs enough. From the normal likelihood of N runs with one unknown covariance: N ln |Σ̂| and 2k or k ln N for k parameters.
+/// AICc and BIC, if there are enough runs. From the normal likelihood of N runs with one unknown covariance: N ln |Σ̂| and 2k or k ln N for
+/// k parameters.
 fn criteria(ends: &Ends, model: &Model) -> Option<[f64; 2]> {
     let d = ends.coordinates();
     let fitted = Fitted::new(ends, model).ok()?;

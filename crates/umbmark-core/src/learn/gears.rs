@@ -10,22 +10,22 @@ use crate::path::{Direction, Path};
 use crate::replay::Track;
 use crate::score::summarise;
 
-/// A robot calibrated by its [first effects](crate::drive::Drive::first_effects), whatever its drive.
+/// A robot of any drive, calibrated by its [first effects](crate::drive::Drive::first_effects).
 #[derive(Clone, Debug)]
 pub struct GearCalibration {
     /// What was fitted.
     pub estimates: Vec<Estimate>,
-    /// Effects that the data does not show, each by itself or apart from the others; they were left as they are.
+    /// Effects that the data does not determine, alone or separately from the others; they keep their values.
     pub not_shown: Vec<&'static str>,
     /// The nominal robot with the effects, fitted.
     pub model: Model,
     /// The robot with its odometry corrected.
     pub corrected: Robot,
-    /// What return poses of the path determine; `None` where the path is not known.
+    /// What return poses of the path determine; `None` if the path is unknown.
     pub identifiability: Option<Identifiability>,
     /// E_max,sys of the test as driven \[m\].
     pub e_max_sys_before: Option<f64>,
-    /// What is left of it once the fitted motion is taken away \[m\]: E_max,sys expected with the correction.
+    /// E_max,sys expected after the correction \[m\]: that of the measured returns minus the fitted ones.
     pub e_max_sys_after: Option<f64>,
 }
 
@@ -38,14 +38,14 @@ impl GearCalibration {
     }
 }
 
-/// What leaves nothing to calibrate.
+/// Why a robot cannot be calibrated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GearError {
     /// The fit.
     #[error(transparent)]
     Fit(#[from] FitError),
-    /// A correction that leaves no possible robot.
+    /// The corrected robot would be impossible.
     #[error("the fitted values belong to no robot ({0}); are signs, units and directions right?")]
     Drive(#[from] DriveError),
 }
@@ -84,7 +84,7 @@ fn explained(model: &Model, path: &Path, direction: Direction) -> Option<ReturnE
     Some(ReturnError { x: end.x - told.x, y: end.y - told.y, heading: None })
 }
 
-/// E_max,sys of the measured returns less what is explained of them.
+/// E_max,sys of the measured returns minus the explained part of them.
 fn e_max_sys(data: &Dataset, explained: impl Fn(Direction) -> Option<ReturnError>) -> Option<f64> {
     let left = |direction: Direction| -> Option<Vec<ReturnError>> {
         let known = explained(direction)?;

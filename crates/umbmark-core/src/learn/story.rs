@@ -5,7 +5,7 @@ use crate::effect::Model;
 use crate::evidence::Evidence;
 use crate::likelihood::Noise;
 
-/// No model is given more effects than this.
+/// Maximum number of effects of a learnt model.
 pub(super) const MOST_EFFECTS: usize = 6;
 
 /// Root mean square errors of predicted poses.
@@ -15,7 +15,7 @@ pub struct Error {
     pub position: f64,
     /// Observed minus predicted headings \[rad\], where they were measured.
     pub heading: Option<f64>,
-    /// Both together, weighted by the shape of the noise: it must fall for an effect to stay.
+    /// Both together, weighted by the shape of the noise; an effect is kept only if this falls.
     pub weighted: f64,
 }
 
@@ -32,7 +32,7 @@ pub struct Step {
     pub law: Option<Box<Repeated>>,
     /// In the runs that the model was fitted to.
     pub error: Error,
-    /// In runs that were left out.
+    /// In held-out runs.
     pub held_out: Error,
     /// Akaike's criterion with its small-sample correction; `None` for too few runs.
     pub aicc: Option<f64>,
@@ -47,7 +47,7 @@ pub struct Learnt {
     pub steps: Vec<Step>,
     /// The verdict of the last diagnosis.
     pub verdict: Verdict,
-    /// The model, its free parameters fitted.
+    /// The model with its fitted parameters.
     pub model: Model,
     /// The sizes of the noise under which the runs are likeliest; from tracks only.
     pub noise: Option<Noise>,
@@ -65,7 +65,7 @@ impl Learnt {
         self.verdict == Verdict::NotExplained || self.diagnosis.reasons.iter().any(Reason::is_of_data)
     }
 
-    /// Columns that are not what they are called teach nothing of the robot.
+    /// If columns contradict their names, nothing is learnt about the robot.
     pub(super) fn of_faults(evidence: &dyn Evidence, steps: Vec<Step>) -> Learnt {
         let model = Model::new(evidence.robot());
         let diagnosis = Diagnosis::of_faults(evidence, &model);

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::io::Write;
 use std::sync::atomic::AtomicBool;
 
-/// Seed 29; the whole catalogue is on offer.
+/// Seed 29; the whole catalogue is available.
 #[test]
 fn nothing_is_added_to_a_complete_model_but_for_one_in_twenty() {
     let trials = trials(100);

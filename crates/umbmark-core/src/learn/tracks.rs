@@ -9,14 +9,14 @@ use crate::evidence::{Estimate, Evidence, FitError};
 use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE};
 use crate::watch::Watch;
 
-/// The runs do not show a first effect whose standard error exceeds this multiple of its usual size ...
+/// The runs do not determine a first effect if its standard error exceeds this multiple of its usual size ...
 const OPEN: f64 = 10.0;
-/// ... and whose value is less than this many standard errors from zero effect.
+/// ... and its value is less than this many standard errors from zero effect.
 const SURE: f64 = 4.0;
 /// A fitted ratio is credible within this factor of the ratio that the motion alone gives.
 const FAR: f64 = 1.5;
-/// Held-out runs are predicted worse than by the nominal robot where their error exceeds this multiple of its error: three numbers
-/// that are fitted to few runs cost something where the nominal robot is right.
+/// Held-out runs count as predicted worse than by the nominal robot if their error exceeds this multiple of its error: three numbers that
+/// are fitted to few runs add some error if the nominal robot is right.
 const WORSE: f64 = 1.5;
 const ENOUGH_RUNS: usize = 5;
 
@@ -31,7 +31,7 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
         *model = fitted.model.clone();
         steps.push(step(fitted, Some((effect, vec![effect], p))));
     };
-    // What the motion alone says of the reference comes first: without it, no physics can be distinguished from the reference.
+    // The values of the reference from the motion come first: without them, physical effects cannot be separated from the reference.
     let (begun, taken) = observed.begin(&model)?;
     for own in &taken {
         let part = begun.parts().iter().find(|part| part.effect.name() == own.effect);
@@ -40,7 +40,7 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
         add(&mut model, own.effect, Some(own.p), fitted);
     }
     let first = shown(observed, &model)?;
-    // Each row starts again from what the motion says: a ratio alone absorbs the effect of the next one.
+    // Each row starts again from the values of the motion, because a ratio alone absorbs the effect of the next one.
     let mut fresh = model.clone();
     for effect in &first {
         fresh.add(effect)?.free = true;
@@ -75,7 +75,7 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
         remarks.extend(uncertified(effect, step, &before, options));
     }
     let partial = watch.is_stopped() && search.left.effect.is_some();
-    // What was fitted at the beginning is written as it is where nothing was added.
+    // The fit of the beginning is reported unchanged if nothing was added.
     if let Some(own) = steps.last_mut() {
         let Step { added, class, p_adjusted, law, .. } = own.clone();
         *own = Step { added, class, p_adjusted, law, ..step_of(&search.written[0], None) };
@@ -102,8 +102,8 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
     Ok(Learnt { partial, remarks: [remarks, learnt.remarks.clone()].concat(), ..learnt })
 }
 
-/// What is to be said of an effect of the model given where it has not the certificate that one has to have which is added: it may be
-/// nothing, or runs left out are predicted no better with it.
+/// Remark on an effect of the given model that would not be certified: its size may be zero, or held-out runs are predicted no better with
+/// it.
 fn uncertified(effect: &str, step: &Step, before: &Error, options: &Options) -> Option<String> {
     let p = step.p_adjusted?;
     let fall = |now: f64, then: f64| 1.0 - now / then;
@@ -118,7 +118,7 @@ fn uncertified(effect: &str, step: &Step, before: &Error, options: &Options) -> 
     })
 }
 
-/// The first effects of the robot's drive that the runs show, beside what is in a model.
+/// The first effects of the robot's drive that the runs determine, in addition to those of a model.
 fn shown(observed: &Observed, model: &Model) -> Result<Vec<&'static str>, FitError> {
     let mut first = observed.robot.drive.first_effects().to_vec();
     loop {
@@ -132,23 +132,23 @@ fn shown(observed: &Observed, model: &Model) -> Result<Vec<&'static str>, FitErr
     }
 }
 
-/// Whether the runs show one of the first effects: that it is not zero, or that it is less than [`OPEN`] times its usual size.
+/// Whether the runs determine one of the first effects: it differs from zero, or it is below [`OPEN`] times its usual size.
 fn is_shown(fitted: &Fitted, effect: &str) -> bool {
     let own = estimates(fitted).into_iter().find(|e| e.effect == effect);
     let parameter = find(effect).ok().and_then(|entry| entry.about.parameters.first());
     let Some((own, parameter)) = own.zip(parameter) else { return false };
     let nothing = parameter.default.resolve(fitted.model.robot());
     let off = (own.value - nothing).abs();
-    // Ratios far from those of the motion itself stand for something else.
+    // Ratios far from those of the motion represent another error.
     let expected = fitted.observed.ratio_by_motion(effect).unwrap_or(nothing);
     let possible = nothing != 1.0 || (own.value / expected < FAR && expected / own.value < FAR);
     possible && (own.standard_error < OPEN * parameter.typical || off > SURE * own.standard_error)
 }
 
-/// Held-out runs disagree with those fitted where their error exceeds this multiple.
+/// Held-out runs disagree with the fitted runs if their error exceeds this multiple.
 const FAR_WORSE: f64 = 5.0;
 
-/// The story's end: the diagnosis of the model that was learnt.
+/// The final diagnosis, of the learnt model.
 fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Learnt, FitError> {
     let told = Conclusion::new(&mut search, options)?;
     let Conclusion { verdict, mut reasons, repeats, remains, dependence, mut experiments, mut hints } = told;
@@ -216,7 +216,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     Ok(Learnt { steps, verdict, model, noise: Some(written.noise), remarks, diagnosis, partial: false })
 }
 
-/// What is to be said of lengths, times and thresholds that the runs do not show: they keep the values with which they began.
+/// Remark on lengths, times and thresholds that the runs do not determine: they keep their start values.
 fn kept<'a>(model: &'a Model, fitted: &'a [Estimate]) -> impl Iterator<Item = String> + 'a {
     let shapes = model.shapes();
     let of_part = move |part: &'a Part| {
@@ -243,7 +243,7 @@ fn kept<'a>(model: &'a Model, fitted: &'a [Estimate]) -> impl Iterator<Item = St
 /// A model fitted under noise of the usual size: enough for its errors.
 fn plainly(observed: &Observed, model: &Model) -> Result<Fitted, FitError> {
     let mut fitted = observed.unfitted(model, &Noise::default());
-    // The second time the noise grows along the poses of the first.
+    // In the second fit, the noise grows along the poses of the first.
     fitted.refit()?;
     fitted.refit()?;
     Ok(fitted)

@@ -1,4 +1,5 @@
-//! Where a fit begins: with what the motion alone says of the reference, and of the robot's sizes where they are far off.
+//! Start values of a fit: the motion alone determines clock and mounting of the reference, and the robot's sizes if these are far from
+//! nominal.
 
 use super::observed::Observed;
 use crate::effect::{Model, ModelError, Part};
@@ -6,19 +7,19 @@ use crate::replay::Track;
 use crate::setup::Mounting;
 use crate::stats::{Measured, t_two_sided};
 
-/// The clock and the place of the reference are taken from the motion where they differ from zero by this many standard errors ...
+/// Clock and mounting of the reference are taken from the motion if they differ from zero by this many standard errors ...
 const SURE: f64 = 5.0;
-/// ... and exceed this: smaller ones are fitted along, and tested as every effect is.
+/// ... and exceed this: smaller ones are fitted with the model, and tested like any effect.
 const LATE: f64 = 0.010;
 const AWAY: f64 = 0.010;
 const TURNED: f64 = 0.020;
-/// Sizes of the robot that are off by this share are far off: a fit from the nominal ones may end elsewhere.
+/// Sizes of the robot that differ from nominal by this share: a fit from the nominal ones may end in another minimum.
 pub(crate) const FAR: f64 = 0.04;
-/// A ratio is a start value where it is this multiple of its standard error.
+/// A ratio is used as a start value if it is this multiple of its standard error.
 const KNOWN: f64 = 5.0;
-/// A track that the nominal robot turns out of its way by more \[rad\] is far off too.
+/// A track counts as far off, too, if its final heading by the nominal robot is wrong by more than this \[rad\].
 const AWAY_BY: f64 = 0.2;
-/// Parts of the data that the values of the motion rest on.
+/// Number of parts into which the data is split to estimate values from the motion.
 const PARTS: f64 = 8.0;
 
 /// Effects that look like a delay of the reference to the motion.
@@ -29,7 +30,7 @@ const CLOCKS: [&str; 3] = ["reference_delay", "reference_clock_rate", "encoder_s
 pub struct Taken {
     /// Its name.
     pub effect: &'static str,
-    /// Its numbers, as the motion has them.
+    /// Its parameters, as estimated from the motion.
     pub values: [Option<(&'static str, Measured)>; 2],
     /// Probability of so large a value by chance.
     pub p: f64,
@@ -47,7 +48,7 @@ impl Taken {
 }
 
 impl Observed {
-    /// Where the fit of a model begins: with clock and mounting of the reference as the motion has them, and with start values near the
+    /// Prepares the fit of a model: sets clock and mounting of the reference as estimated from the motion, and start values near the
     /// robot's sizes.
     pub fn begin(&self, model: &Model) -> Result<(Model, Vec<Taken>), ModelError> {
         let (mut model, taken) = self.with_reference(model)?;
@@ -57,7 +58,7 @@ impl Observed {
         Ok((model, taken))
     }
 
-    /// A model with what the motion says of clock and mounting of the reference, where the model says nothing and it is large.
+    /// The model with clock and mounting of the reference as estimated from the motion, if they are large and the model does not set them.
     fn with_reference(&self, model: &Model) -> Result<(Model, Vec<Taken>), ModelError> {
         let found = self.reference_beside(model);
         let mut begun = model.clone();
@@ -66,7 +67,7 @@ impl Observed {
         Ok((begun, found.into_iter().filter(is_new).collect()))
     }
 
-    /// What the motion says of clock and mounting of the reference where it is large and the model says nothing.
+    /// Clock and mounting of the reference as estimated from the motion, if they are large and the model does not set them.
     pub fn reference_beside(&self, model: &Model) -> Vec<Taken> {
         let Some(mounting) = self.setup.mounting else { return Vec::new() };
         let sights = self.runs.iter().filter_map(|run| run.track.sights().last());
@@ -74,21 +75,21 @@ impl Observed {
         let at_work = |part: &Part| part.values.iter().any(|value| *value != 0.0);
         let clock_at_work = model.parts().iter().any(|part| at_work(part) && CLOCKS.contains(&part.effect.name()));
         let is_said = |found: &Taken| {
-            // What the model says of the reference stands, but for a start value that says nothing.
+            // Values of the reference that the model sets are kept, except start values without influence.
             let says = |part: &Part| part.effect.name() == found.effect && (!part.free || at_work(part));
-            // A delay that the motion shows is what one of these does already.
+            // One of these effects already explains the delay that the motion shows.
             clock_at_work && CLOCKS.contains(&found.effect) || model.parts().iter().any(says)
         };
         of_reference(&mounting, duration).into_iter().filter(|found| !is_said(found)).collect()
     }
 
-    /// The ratio that a first effect of a differential drive has by the motion alone; `None` where that does not show it.
+    /// The ratio of a first effect of a differential drive, estimated from the motion alone; `None` if the motion does not determine it.
     pub fn ratio_by_motion(&self, effect: &str) -> Option<f64> {
         let mounting = self.setup.mounting.as_ref().filter(|_| self.robot.drive.kind().has_axle_wheels())?;
         ratios(mounting, self.robot.drive.wheelbase()).into_iter().find(|(name, ..)| *name == effect)?.2
     }
 
-    /// Whether the heading at the end of a track is far from the nominal robot's by what the motion says.
+    /// Whether, by the motion, the heading at the end of a track differs much from that of the nominal robot.
     fn turns_away(&self, track: &Track, mounting: &Mounting) -> bool {
         let turned = track.contexts().iter().map(|at| (at.turn_rate * at.duration).abs()).sum::<f64>();
         let known = |m: &Option<Measured>| m.filter(|m| m.is_beyond(2.0)).map(|m| m.value);
@@ -96,7 +97,7 @@ impl Observed {
         drift.max(known(&mounting.gain).map_or(0.0, |gain| ((gain - 1.0) * turned).abs())) > AWAY_BY
     }
 
-    /// Sets the free first effects of a differential drive to what the motion says, where that is far from their start values.
+    /// Sets the free first effects of a differential drive to the values from the motion, if these are far from their start values.
     fn start_near(&self, model: &mut Model, mounting: &Mounting) -> Result<(), ModelError> {
         if !self.robot.drive.kind().has_axle_wheels() {
             return Ok(());
@@ -115,7 +116,7 @@ impl Observed {
     }
 }
 
-/// The effects of the reference that are large beyond doubt, in runs of at most this duration \[s\].
+/// The effects of the reference that are significantly large, in runs of at most this duration \[s\].
 pub(crate) fn of_reference(mounting: &Mounting, duration: f64) -> Vec<Taken> {
     let rate = mounting.rate.filter(|rate| rate.is_beyond(SURE) && rate.value.abs() * duration > LATE);
     // A delay is that at the beginning of a run.
@@ -144,7 +145,7 @@ pub(crate) fn of_reference(mounting: &Mounting, duration: f64) -> Vec<Taken> {
     found.into_iter().map(of).collect()
 }
 
-/// The first effects of a differential drive, with the values that the motion has.
+/// The first effects of a differential drive, with their values from the motion.
 pub(crate) fn ratios(mounting: &Mounting, wheelbase: f64) -> [(&'static str, &'static str, Option<f64>); 3] {
     let known = |m: &Measured| m.value > 0.0 && m.is_beyond(KNOWN);
     let value = |measured: &Option<Measured>| measured.filter(known).map(|m| m.value);

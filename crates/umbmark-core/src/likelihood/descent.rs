@@ -1,25 +1,25 @@
-//! The least value of a smooth function that is cheap at eight points at once.
+//! Minimises a smooth function that is evaluated at eight points at once.
 
 use crate::geometry::EIGHT;
 use nalgebra::{SMatrix, SVector};
 
 type Point = SVector<f64, EIGHT>;
 
-/// Slopes are differences over so much.
+/// Step of the finite differences for slopes.
 const NEAR: f64 = 1e-3;
-/// Lengths of a step that are tried, in units of the step that the curvature asks for.
+/// Step lengths that are tried, in units of the quasi-Newton step.
 const LENGTHS: [f64; EIGHT] = [2.0, 1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 0.001];
-/// Stops where a step gains less.
+/// Stops when a step gains less than this.
 const ENOUGH: f64 = 0.01;
-/// Steps at most.
+/// Maximum number of steps.
 const STEPS: usize = 40;
-/// No curvature is taken for less.
+/// Lower limit of every curvature.
 const FLATTEST: f64 = 0.04;
 
 /// A search for the least value by the method of Broyden, Fletcher, Goldfarb and Shanno (1970).
 pub(super) struct Descent {
     at: Point,
-    /// The inverse of the curvatures as they were met; `None` before the first step.
+    /// Estimate of the inverse Hessian; `None` before the first step.
     inverse: Option<SMatrix<f64, EIGHT, EIGHT>>,
 }
 
@@ -34,8 +34,7 @@ impl Descent {
         self.at.into()
     }
 
-    /// Goes on to the least value of `cost`, of a point for each of its lanes. What is known of the curvatures stays for another cost that
-    /// is much like this one.
+    /// Descends to the minimum of `cost`, which takes one point per lane. The estimated curvatures are kept for the next, similar cost.
     pub fn descend(&mut self, cost: impl Fn(&[[f64; EIGHT]; EIGHT]) -> [f64; EIGHT]) {
         let around = |at: &Point, by: f64| {
             let points = std::array::from_fn(|i| {
@@ -52,7 +51,7 @@ impl Descent {
             let below = around(&self.at, -NEAR);
             slope = (above - below) / (2.0 * NEAR);
             let curvature = (above + below - Point::repeat(2.0 * least)) / (NEAR * NEAR);
-            // Far from the least value the slope says more of how far it is than the curvature does.
+            // Far from the minimum, the slope indicates its distance better than the curvature.
             SMatrix::from_diagonal(&curvature.zip_map(&slope, |c, s| 1.0 / c.max(s.abs()).max(FLATTEST)))
         });
         for _ in 0..STEPS {

@@ -25,23 +25,23 @@ pub struct Outlier {
 /// A model fitted to tracks, and the noise that it leaves.
 #[derive(Clone, Debug)]
 pub struct Fitted {
-    /// The runs, laid along the model.
+    /// The runs, linearised about the model.
     pub observed: Observed,
-    /// The model with its free parameters at their best.
+    /// The model with its fitted parameters.
     pub model: Model,
     /// The noise.
     pub noise: Noise,
     /// Which of [`Model::values`] were fitted.
     pub free: Vec<usize>,
-    /// What the effects of the reference that the model lacks would do, run by run: fitted along and left out of the model.
+    /// Derivatives, run by run, of the effects of the reference that the model lacks: they are fitted too but not added to the model.
     pub reference: Vec<Vec<Column>>,
     /// The covariance of the free values; `None` where the data leaves a combination of them open.
     pub covariance: Option<DMatrix<f64>>,
-    /// Whether the values are those under noise of the usual sizes, because these predict runs left out better.
+    /// Whether the values were fitted with noise of the usual sizes because these predict held-out runs better.
     pub usual_noise: bool,
-    /// What was taken from the motion before the fit, and is in the model now.
+    /// What was taken from the motion before the fit and added to the model.
     pub taken: Vec<Taken>,
-    /// Where runs were disturbed; what happened there is left out.
+    /// Where runs were disturbed; these places are left out of the fit.
     pub outliers: Vec<Outlier>,
     pub(crate) slopes: Slopes,
 }

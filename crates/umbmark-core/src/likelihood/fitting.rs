@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// Effects of the reference that every track has; they are fitted out before anything is said of the robot.
+/// Effects of the reference that every track may have; they are projected out before the robot is judged.
 pub const NUISANCE: [&str; 3] = ["reference_delay", "marker_offset", "marker_yaw"];
 
 /// Rounds in which outliers are looked for.
@@ -19,9 +19,9 @@ const ROUNDS: usize = 3;
 /// Stops where a step changes no parameter by more than a millionth.
 const STOP: Options =
     Options { iterations: 12, step_tolerance: 1e-7, decrease_tolerance: 1e-8, cautious: true, frugal: true };
-/// Enough for an estimate of the noise, from which what the free values can still do is fitted out.
+/// Precise enough for an estimate of the noise, which projects out the free values anyway.
 const NEARLY: Options = Options { decrease_tolerance: 1e-5, ..STOP };
-/// From values that were fitted already.
+/// For a start from values that were already fitted.
 const AGAIN: Options = Options { cautious: false, ..STOP };
 const NEARLY_AGAIN: Options = Options { cautious: false, ..NEARLY };
 
@@ -34,7 +34,7 @@ impl Observed {
         fitted.observed.runs.iter_mut().for_each(|run| run.linear = true);
         fitted.observed = fitted.observed.along(&fitted.model);
         fitted.settle_once(&NEARLY_AGAIN)?;
-        // An outlier may hide a smaller one, so it is looked for again.
+        // A large outlier can hide a smaller one, so the search is repeated.
         for _ in 0..ROUNDS {
             let found = fitted.beyond_noise();
             if found.is_empty() {
@@ -67,7 +67,7 @@ impl Observed {
         }
     }
 
-    /// Values of the free parts of a model that move some observed pose.
+    /// Free values of a model that change at least one observed pose.
     pub fn free_values(&self, model: &Model) -> Vec<usize> {
         self.moving(model).free
     }
@@ -107,8 +107,8 @@ impl Observed {
         self.runs.par_iter().map(of_run).unzip()
     }
 
-    /// Derivatives of the predicted poses by numbers that the model that the runs are laid along has or may have: run by run, one column
-    /// a number.
+    /// Derivatives of the predicted poses by numbers that the model has or may have, at the model about which the runs are linearised: run
+    /// by run, one column per number.
     pub fn columns_of(&self, model: &Model, numbers: &[Number]) -> Result<Vec<Vec<Column>>, ModelError> {
         let derived = model.derived(numbers)?;
         Ok(self.runs.par_iter().map(|run| run.columns_of(&derived, numbers.len())).collect())
@@ -116,7 +116,7 @@ impl Observed {
 }
 
 impl ObservedRun {
-    /// One column for each of `count` numbers, beside the model that the run is laid along.
+    /// One column for each of `count` numbers, at the model about which the run is linearised.
     pub(crate) fn columns_of(&self, derived: &[Derived], count: usize) -> Vec<Column> {
         let mut columns = vec![Column::new(); count];
         for Derived { chain, numbers, seen_only } in derived {
@@ -136,7 +136,7 @@ impl Slopes {
 }
 
 impl Fitted {
-    /// Fits values and noise in turn, the values first by `options`.
+    /// Fits values and noise alternately; the first fit of the values uses `options`.
     fn settle(&mut self, options: &Options) -> Result<(), ModelError> {
         self.settle_once(options)?;
         self.settle_once(&NEARLY_AGAIN)
@@ -166,8 +166,8 @@ impl Fitted {
 
     /// Fits the free values under the noise as it is, and the effects of the reference with them.
     ///
-    /// A yaw of 6 mrad of the markers that is not fitted along moves E_d by 1 %: the reference's course over a leg says where the
-    /// robot went, its heading where it looked.
+    /// If a marker yaw of 6 mrad is not fitted too, E_d changes by 1 %: the direction of a leg shows where the robot went, the measured
+    /// heading where the marker pointed.
     pub fn refit(&mut self) -> Result<(), ModelError> {
         self.refit_by(&STOP)
     }
@@ -190,7 +190,7 @@ impl Fitted {
         Ok(())
     }
 
-    /// The columns of the effects of the reference that the model lacks and that its free values leave visible.
+    /// The columns of those effects of the reference that the model lacks and that its free values cannot absorb.
     fn reference_columns(&self) -> Result<Vec<Vec<Column>>, ModelError> {
         let (mut with, mut own) = (self.model.clone(), Vec::new());
         let known = |name: &&str| self.model.parts().iter().any(|part| part.effect.name() == *name);
@@ -239,7 +239,7 @@ impl Fitted {
     }
 }
 
-/// What is to be said of values under noise of the usual sizes.
+/// Remark on values that were fitted with noise of the usual sizes.
 pub const USUAL_NOISE: &str = "The cross-validated error is lower with noise of the usual sizes than with the fitted noise: the fitted noise \
      has absorbed something that the model lacks. The values are those under noise of the usual sizes; their intervals come from \
      leaving out one run after the other.";

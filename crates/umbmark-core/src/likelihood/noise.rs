@@ -25,7 +25,7 @@ pub struct Noise<T = f64> {
     pub reference_position: T,
     /// The same of the heading \[rad\].
     pub reference_heading: T,
-    /// Scatter of the moments at which the reference was taken \[s\]: it shows while the robot moves and not where it rests.
+    /// Jitter of the reference's time stamps \[s\]; it shows only while the robot moves.
     pub reference_time: T,
     /// Scatter of the delay of the reference from run to run \[s\].
     pub reference_delay: T,
@@ -59,9 +59,9 @@ impl Default for Noise {
     }
 }
 
-/// No size falls below this share of its usual value, or rises above this multiple of it.
+/// Range of each size, as multiples of its usual value.
 const RANGE: (f64, f64) = (1e-2, 1e3);
-/// Number of rounds with the columns fitted out beforehand; afterwards they are fitted with every noise that is tried.
+/// Number of rounds with the columns projected out once per round; after these they are projected out for every noise that is tried.
 const ROUNDS: usize = 2;
 
 impl Noise {
@@ -145,12 +145,13 @@ impl Noise {
         ];
         let cost = |points: &[[f64; Noise::SIZES]; EIGHT], columns: &[Vec<Column>]| {
             let deviances = Noise::deviances(&points.map(|x| sizes(&x)), &observed.runs, columns);
-            // A faint preference for usual sizes keeps what the data does not show where it is.
+            // A weak prior for the usual sizes: sizes that the data does not determine stay there.
             let pull = |x: &[f64; Noise::SIZES]| x.iter().map(|v| 0.02 * v * v).sum::<f64>();
             std::array::from_fn(|lane| deviances[lane] + pull(&points[lane]))
         };
         let mut descent = Descent::from(first);
-        // Most of the way with the columns fitted out beforehand: their values change little, and little changes with them.
+        // Most of the descent uses columns that were projected out beforehand: their values hardly change during a round, and the cost
+        // hardly depends on them.
         for _ in 0..ROUNDS {
             let left = sizes(&descent.here()).less_fitted(&observed.runs, columns);
             descent.descend(|points| cost(points, &left));

@@ -21,14 +21,14 @@ use blocks::blocks;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// STARTs that lie nearer to each other than this \[m, rad\] are one place, marked on the floor.
+/// START poses closer to each other than this \[m, rad\] are the same mark on the floor.
 const ONE_PLACE: (f64, f64) = (0.10, 0.10);
-/// A pose was measured at START where the robot had gone no farther \[m\].
+/// A pose counts as measured at START if the robot had moved less than this \[m\].
 const AT_START: f64 = 0.03;
 /// Minimum number of blocks of a run.
 const FEWEST: usize = 3;
 
-/// One (x, y, heading) a block.
+/// One (x, y, heading) per block.
 pub type Column = Vec<[f64; 3]>;
 
 /// How the random walk of the pose error grows from one block to the next, for unit noise.
@@ -56,11 +56,11 @@ pub struct Block {
     pub count: usize,
     /// How many of them have a heading.
     pub headings: usize,
-    /// Where the model has it, on average.
+    /// Mean predicted pose.
     pub place: Pose2,
-    /// How its pose changes there, on average \[m/s, m/s, rad/s\].
+    /// Mean rate of change of the predicted pose \[m/s, m/s, rad/s\].
     pub velocity: [f64; 3],
-    /// How the error grows from the block before to this one.
+    /// How the error grows from the previous block to this one.
     pub growth: Growth,
     /// Which quarter of the way it lies in, from 0.
     pub unit: usize,
@@ -74,7 +74,7 @@ pub struct Block {
 /// A run, ready to be predicted.
 #[derive(Clone, Debug)]
 pub struct ObservedRun {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The name of the run whose log it is, or is a piece of.
     pub log: String,
@@ -82,19 +82,19 @@ pub struct ObservedRun {
     pub direction: Option<Direction>,
     /// Its believed travel.
     pub track: Arc<Track>,
-    /// Measured poses, but for those that are wrong: x, y \[m\] and, where it was measured, heading \[rad\].
+    /// Measured poses without the wrong ones: x, y \[m\] and, where it was measured, heading \[rad\].
     pub measured: Arc<[(f64, f64, Option<f64>)]>,
-    /// The same, laid on the prediction where the run starts and restarts.
+    /// The same, aligned with the prediction where the run starts and restarts.
     pub seen: Arc<[(f64, f64, Option<f64>)]>,
-    /// The moments that the observations show, by the model that the run is laid along.
+    /// The moments of the observations, by the model about which the run is linearised.
     pub moments: Arc<[Moment]>,
     /// True poses at these moments, by the same model.
     pub places: Arc<[Pose2]>,
     /// The poses in blocks.
     pub blocks: Vec<Block>,
-    /// Whether what is left is freed of what is not linear in headings that are off: near its optimum a model is fitted so.
+    /// Whether terms of second order in heading errors are removed from the residuals, as in a fit near its optimum.
     pub linear: bool,
-    /// Whether the pose at START was measured, or START follows from the poses, so that the frame is not taken on trust.
+    /// Whether the pose at START was measured or follows from the poses; otherwise the frame is trusted.
     pub start_seen: bool,
 }
 
@@ -112,8 +112,8 @@ pub struct Observed {
 }
 
 impl Observed {
-    /// Gathers the runs of a dataset that have ticks and absolute poses in at least three places. Poses that are wrong are left
-    /// out, where a track jumps the run restarts, and long runs are cut into pieces.
+    /// Gathers the runs of a dataset that have ticks and absolute poses in at least three places. Wrong poses are left out, runs restart
+    /// where their track jumps, and long runs are cut into pieces.
     pub fn new(data: &Dataset, robot: &Robot) -> Result<Observed, ReplayError> {
         let setup = Setup::of(&data.runs, robot, data.path.as_ref());
         let mut runs = Vec::new();
@@ -148,8 +148,8 @@ impl Observed {
 
     /// The same runs, with the noise growing along the poses that `model` predicts.
     ///
-    /// A rotation error moves the robot across its true path; taken across a path that is a degree off, it would seem to
-    /// move it along.
+    /// A rotation error moves the robot perpendicular to its true path; computed for a path that is a degree off, it would seem to move it
+    /// along the path.
     pub fn along(&self, model: &Model) -> Observed {
         let chain = model.chain();
         let mut observed = self.clone();
@@ -158,7 +158,8 @@ impl Observed {
     }
 }
 
-/// Where a START lies, seen from the first one of the session. Marks on a floor are one place, and hands are not exact.
+/// A START pose in the frame of the first one of the session. Poses near the same mark count as the same place, because robots are placed
+/// by hand.
 fn in_one_room(first: &Pose2, start: &Pose2) -> Pose2 {
     let seen = first.between(start);
     let seen = Pose2::new(seen.x, seen.y, wrap(seen.heading));
@@ -203,7 +204,7 @@ impl ObservedRun {
         ObservedRun::laid("", Some(direction), track, measured, &[], true, model)
     }
 
-    /// A run in blocks, none of which holds the observation before and the one after a jump, laid along a model.
+    /// A run in blocks, linearised about a model. No block contains observations from both sides of a jump.
     fn laid(
         name: &str,
         direction: Option<Direction>,
@@ -240,7 +241,7 @@ impl ObservedRun {
         self.lay_measured(chain);
     }
 
-    /// How far each block is along the run \[m\]: way driven, and way of the wheels in turns.
+    /// Position of each block along the run \[m\]: distance driven, plus travel of the wheels in turns.
     pub fn rolled(&self, wheelbase: f64) -> Vec<f64> {
         let along = |way: &mut f64, block: &Block| {
             *way += block.growth.way + 0.5 * wheelbase * block.growth.heading_per_radian[5];

@@ -1,9 +1,9 @@
 //! Collisions and glitches: places in a run whose innovation cannot be noise.
 //!
-//! The innovation of a block, by the noise of all runs and the usual size in its own run, is a few standard deviations at most.
-//! Where it is ten, and far beyond what the tails of this data reach, the robot was pushed or the reference jumped. The run
-//! restarts at such a block, as if the robot had been put down there: neither the fit nor any test sees the jump. What happens at
-//! the same place in other runs too is an effect, not an accident, and stays in the data. So do jumps where there are very many.
+//! The innovation of a block, scaled by the noise of all runs and the usual size in its own run, is a few standard deviations at most. If
+//! it is ten, and far beyond the tails of this data, the robot was pushed or the reference jumped. The run restarts at such a block, as if
+//! the robot had been placed there: neither the fit nor any test sees the jump. Jumps at the same place in several runs are an effect, not
+//! an accident, and stay in the data. So do jumps if there are very many.
 
 use super::fitted::{Fitted, Outlier};
 use super::observed::{Observed, ObservedRun};
@@ -48,7 +48,7 @@ impl Observed {
 }
 
 impl Fitted {
-    /// Blocks beyond noise at which the run does not restart yet.
+    /// Blocks with outlying innovations at which the run does not yet restart.
     pub(super) fn beyond_noise(&self) -> BTreeSet<(BlockIndex, u64)> {
         let wheelbase = self.observed.robot.drive.wheelbase();
         let runs: Vec<Vec<f64>> = self.observed.runs.par_iter().map(|run| self.deviations(run)).collect();

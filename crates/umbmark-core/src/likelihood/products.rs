@@ -3,14 +3,14 @@
 use crate::geometry::{Instructions, by_width};
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
-/// A column with less than this share of its square left is absorbed by the base: a collinearity index above 20, the rule of
-/// Brun, Reichert & Künsch (2001, Water Resources Research 37).
+/// A column is absorbed by the base if less than this share of its square remains: a collinearity index above 20, the rule of Brun,
+/// Reichert & Künsch (2001, Water Resources Research 37).
 pub(crate) const ABSORBED: f64 = 1.0 / 400.0;
 
-/// Rows that are taken at once: the sums are read and written once for all of them.
+/// Number of rows that are processed at once; the sums are read and written once for all of them.
 const TOGETHER: usize = 8;
 
-/// XᵀX of a matrix stored row by row: the same bits whatever the machine can do at once.
+/// XᵀX of a matrix stored row by row, with the same bits on all instruction sets.
 pub(crate) fn gram(values: &[f64], columns: usize) -> DMatrix<f64> {
     by_width!(Instructions::best(), |values: &[f64], columns: usize| -> DMatrix<f64> { gram_of(values, columns) })
 }
@@ -24,7 +24,7 @@ fn gram_of(values: &[f64], columns: usize) -> DMatrix<f64> {
     for rows in whole {
         let rows: [&[f64]; TOGETHER] = std::array::from_fn(|k| &rows[k * columns..(k + 1) * columns]);
         for (j, mut own) in sum.column_iter_mut().enumerate() {
-            // Whole registers: what is below the diagonal is overwritten at the end.
+            // Computes whole registers; entries below the diagonal are overwritten at the end.
             let end = (j + TOGETHER - j % TOGETHER).min(columns);
             let own = &mut own.as_mut_slice()[..end];
             let weights = rows.map(|row| row[j]);
@@ -49,7 +49,7 @@ fn gram_of(values: &[f64], columns: usize) -> DMatrix<f64> {
     sum
 }
 
-/// Square of what is left of one column beside others, as a share of its own.
+/// Share of the square of a column that remains after it is projected on others.
 pub(crate) fn share_left(products: &DMatrix<f64>, base: &[usize], column: usize) -> f64 {
     let cross = DMatrix::from_fn(base.len(), 1, |i, _| products[(base[i], column)]);
     let whole = products[(column, column)];
@@ -57,7 +57,7 @@ pub(crate) fn share_left(products: &DMatrix<f64>, base: &[usize], column: usize)
     if whole > 0.0 { 1.0 - explained / whole } else { 0.0 }
 }
 
-/// What solves for the values of some columns.
+/// Factorisation that solves for the values of some columns.
 pub(crate) fn solver(products: &DMatrix<f64>, columns: &[usize]) -> Option<ScaledCholesky> {
     let of = |i: usize, j: usize| products[(columns[i], columns[j])];
     scaled_cholesky(&DMatrix::from_fn(columns.len(), columns.len(), of)).filter(|_| !columns.is_empty())

@@ -9,7 +9,7 @@ use super::observed::{Block, ObservedRun};
 use crate::geometry::{Eight, Scalar};
 use crate::geometry::{Instructions, by_width};
 
-/// Standard deviation of a START that is not taken on trust \[m, rad\]: beyond all misplacement, so that it costs one pose.
+/// Standard deviation of a START that is not trusted \[m, rad\]: larger than any misplacement, so it uses up one pose.
 const FREE_START: f64 = 1.0;
 
 /// Standard deviation of a heading that was not measured \[rad\].
@@ -34,8 +34,8 @@ impl Whitened {
         self.values.chunks_exact(self.columns.max(1))
     }
 
-    /// Takes the last column z for the response to a number that the whole run shares, of standard deviation `sd`, and makes the
-    /// others independent of it: x ← (1 + sd² z zᵀ)^(-1/2) x.
+    /// Treats the last column z as the response to a random number of standard deviation `sd` that the whole run shares, and whitens the
+    /// others for it: x ← (1 + sd² z zᵀ)^(-1/2) x.
     #[inline(always)]
     fn less_a_common(&mut self, sd: f64) {
         let width = self.columns;
@@ -96,7 +96,7 @@ impl Noise {
 }
 
 impl Noise<Eight> {
-    /// Products of the whitened columns, one row of the matrix after the other, and the logarithm of what was divided by.
+    /// Products of the whitened columns, row by row, and the logarithm of the scales.
     pub(super) fn products(&self, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> (Vec<Eight>, Eight) {
         let noise = self;
         by_width!(Instructions::best(), |noise: &Noise<Eight>,
@@ -122,7 +122,7 @@ impl Noise<Eight> {
                 *sum += if rows == 3 { plane + third[*i] * third[*j] } else { plane };
             }
         }
-        // What the delay of the whole run takes: its column is the last.
+        // Whitening for the delay that the whole run shares; its column is the last.
         let sum = |i: usize, j: usize| sums[i.max(j) * (i.max(j) + 1) / 2 + i.min(j)];
         let variance = self.reference_delay * self.reference_delay;
         let grown = Eight::from(1.0) + variance * sum(width - 1, width - 1);
@@ -133,7 +133,7 @@ impl Noise<Eight> {
     }
 }
 
-/// The filter on its way along a run.
+/// State of the filter along a run.
 struct Filter<'a, T> {
     noise: &'a Noise<T>,
     run: &'a ObservedRun,
@@ -154,7 +154,7 @@ impl<'a, T: Scalar> Filter<'a, T> {
         Filter { noise, run, columns, states, p, scale: T::from(1.0), log_scale: T::from(0.0) }
     }
 
-    /// Takes the next block in; gives how many rows are new.
+    /// Processes the next block; returns the number of new rows.
     #[inline(always)]
     fn take_in(&mut self, index: usize) -> usize {
         let (block, noise) = (&self.run.blocks[index], self.noise);
@@ -305,7 +305,7 @@ impl<T: Scalar> States<T> {
         States { states: zeros(), new: zeros() }
     }
 
-    /// What is new in a block of every column; the states take it in.
+    /// Innovation of a block in every column; updates the states.
     #[inline(always)]
     fn take_in<'b>(&mut self, stage: &Stage<T>, block: impl Iterator<Item = &'b [f64; 3]>) {
         let [v0, v1, v2] = self.new.each_mut().map(Vec::as_mut_slice);
@@ -335,7 +335,7 @@ mod tests {
     use crate::replay::Track;
     use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-    /// A run of a few blocks here and there; one of them without headings.
+    /// A run of a few scattered blocks, one of them without headings.
     pub(super) fn run(start_seen: bool) -> ObservedRun {
         let track = Track::from_path(&Path::umbmark(), Direction::Ccw, &Robot::labmate());
         let places = [(0.0, 0.0), (1.0, 0.1), (2.0, -0.3), (2.5, 1.0), (2.4, 2.0)];

@@ -110,7 +110,7 @@ impl Ensemble {
         self.done = joined;
     }
 
-    /// Takes all trials of `other`, which must be of the same study and have none of its own.
+    /// Takes all trials of `other`, which must be of the same study and have no trials in common.
     pub fn merge(&mut self, other: &Ensemble) -> Result<(), MergeError> {
         let names = |e: &Ensemble| e.metrics.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
         if self.study != other.study || self.all != other.all || names(self) != names(other) {

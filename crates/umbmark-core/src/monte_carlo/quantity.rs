@@ -42,9 +42,9 @@ pub enum QuantityError {
     /// No quantity of this name.
     #[error("there is no parameter \"{name}\"{}", nearest.as_ref().map_or("; `umbmark effects` lists them with their flags".into(), |n| format!("; did you mean \"{n}\"?")))]
     Unknown {
-        /// What was asked for.
+        /// The name that was given.
         name: String,
-        /// What may have been meant.
+        /// The most similar known name.
         nearest: Option<String>,
     },
     /// A choice among words.

@@ -110,7 +110,7 @@ impl Statistics {
         self.count
     }
 
-    /// Their mean; NaN where there are none.
+    /// Their mean; NaN for an empty set.
     pub fn mean(&self) -> f64 {
         self.sum as f64 / self.count as f64 * Self::RESOLUTION
     }
@@ -133,7 +133,7 @@ impl Statistics {
         self.std_dev() / (self.count() as f64).sqrt()
     }
 
-    /// The value below which a share `q` of the numbers lies, q in [0, 1]; NaN where there are none.
+    /// The value below which a share `q` of the numbers lies, q in [0, 1]; NaN for an empty set.
     pub fn quantile(&self, q: f64) -> f64 {
         let value = self.sketch.quantile(q.clamp(0.0, 1.0)).ok().flatten().unwrap_or(f64::NAN);
         value.max(self.min()).min(self.max())

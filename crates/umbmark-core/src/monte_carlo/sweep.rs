@@ -49,7 +49,7 @@ pub enum SweepError {
     Points {
         /// The most points.
         most: u64,
-        /// What was asked for.
+        /// The name that was given.
         got: u128,
     },
 }

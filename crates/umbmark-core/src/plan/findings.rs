@@ -75,7 +75,7 @@ pub struct Findings {
     pub extended: Option<ExtendedTest>,
     /// What drifts do in each order of the runs.
     pub drifts: Vec<Drift>,
-    /// Whether it was stopped before all was looked at.
+    /// Whether it was stopped early.
     pub partial: bool,
 }
 

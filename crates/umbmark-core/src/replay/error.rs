@@ -1,4 +1,4 @@
-//! What makes a log impossible to replay.
+//! Why a log cannot be replayed.
 
 use crate::dataset::TickLog;
 

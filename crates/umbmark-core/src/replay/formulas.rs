@@ -1,4 +1,4 @@
-//! Whether the formulas of a model are finite all along the way.
+//! Whether the formulas of a model are finite along the whole path.
 
 use super::track::Track;
 use crate::drive::{LinkReading, WheelTravel};
@@ -8,10 +8,9 @@ use crate::geometry::{Displacement2, Pose2};
 use crate::path::{Direction, Path};
 
 impl Track {
-    /// Refuses a model whose formulas are not finite somewhere on the way.
+    /// Refuses a model with a formula that is not finite at some point of the path.
     ///
-    /// Where they depend on the place in the room, the way is the one that the model predicts; otherwise it is that of the
-    /// believed travel.
+    /// If they depend on the place in the room, the path is the predicted one; otherwise it is that of the believed travel.
     pub fn check(&self, model: &Model) -> Result<(), ModelError> {
         if !model.has_formulas() || !model.reads_place() {
             return model.check_along(&self.contexts);
@@ -41,7 +40,7 @@ pub fn check_on_path(model: &Model, path: &Path) -> Result<(), ModelError> {
         .try_for_each(|track| track.check(model))
 }
 
-/// A floor by prediction on which the formulas of a model are watched.
+/// A predicted floor on which the formulas of a model are checked.
 struct Checked<'a> {
     floor: Predicted<'a, f64>,
     model: &'a Model,

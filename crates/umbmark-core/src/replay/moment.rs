@@ -1,4 +1,4 @@
-//! The moment that a measurement shows: its stamp less what the reference is late.
+//! The moment that a measurement shows: its time stamp minus the delay of the reference.
 
 use super::track::Track;
 use crate::effect::{Chain, Context, Evaluate, Sight};
@@ -9,9 +9,9 @@ const ROUNDING: f64 = 1e-9;
 /// Where in a track a measurement was really taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moment {
-    /// How many pieces are made by then.
+    /// Number of pieces completed by then.
     pub made: usize,
-    /// Share of the next piece that is made as well; beyond the ends of a log less than 0 or, of its last piece, more than 1.
+    /// Completed share of the next piece; below 0 before the beginning of a log, above 1 of the last piece after its end.
     pub share: f64,
     /// The measurement, with the speed and the turn rate at that moment.
     pub sight: Sight,
@@ -28,7 +28,7 @@ impl<'a> Moments<'a> {
         Moments { track, made: 0 }
     }
 
-    /// The moment that a measurement shows which is `late`; no moment may come before the one asked for last.
+    /// The moment of a measurement with the delay `late`; moments must be requested in order.
     pub fn next(&mut self, sight: &Sight, late: f64) -> Moment {
         let contexts = &self.track.contexts;
         let time = sight.time - late;
@@ -65,8 +65,8 @@ fn faster(at: &Context) -> usize {
     usize::from(at.wheel_speed[1].abs() > at.wheel_speed[0].abs())
 }
 
-/// Share of a piece that is made after a share of its time, and the speed there over its mean: the cubic that has the speeds of
-/// both ends, which are `ratio` times as long as the way is. Beyond the ends of the log the robot goes on as it does there.
+/// Share of a piece that is made after a share of its time, and the speed there over its mean: the cubic that has the speeds of both ends,
+/// which are `ratio` times as long as the way is. Beyond the ends of the log the robot keeps its speed.
 fn course(at: &Context, ratio: f64, gone: f64) -> (f64, f64) {
     let (mean, half) = (at.wheel_speed[faster(at)], 0.5 * at.speed_change[faster(at)]);
     if !(0.0..=1.0).contains(&gone) || half.abs() > mean.abs() || mean == 0.0 {
@@ -79,8 +79,8 @@ fn course(at: &Context, ratio: f64, gone: f64) -> (f64, f64) {
 }
 
 impl Track {
-    /// The way that the speeds at both ends of a piece would make in its time over its own. Those of a recorded piece are smoothed, so
-    /// nothing follows from them: 1.
+    /// The way that the speeds at both ends of a piece would make in its time over its own. The speeds of a recorded piece are smoothed, so
+    /// the ratio is 1.
     fn ratio(&self, made: usize) -> f64 {
         let (at, travel) = (&self.contexts[made], &self.travel[made]);
         let own = [travel.left, travel.right][faster(at)];

@@ -1,4 +1,4 @@
-//! How fast the wheels of a recorded run turn.
+//! Wheel speeds of a recorded run.
 
 use crate::dataset::TickLog;
 use crate::drive::WheelTravel;
@@ -6,8 +6,8 @@ use crate::drive::WheelTravel;
 /// Half the width of the window that a speed is taken over \[s\].
 const HALF_WINDOW: f64 = 0.05;
 
-/// Speeds of the left and the right wheel at each sample \[m/s\]: (s(t + h) - s(t - h))/2h with h = 0.05 s, counts between
-/// samples interpolated; at the ends of the log over what there is of that window.
+/// Speeds of the left and the right wheel at each sample \[m/s\]: (s(t + h) - s(t - h))/2h with h = 0.05 s, counts between samples
+/// interpolated; at the ends of the log over the available part of that window.
 ///
 /// At h = 0.05 s a tick of 0.2 mm is 2 mm/s, and a ramp of half a second is followed.
 pub(super) fn wheel_speeds(log: &TickLog, per_tick: &WheelTravel) -> Vec<[f64; 2]> {
@@ -22,7 +22,7 @@ pub(super) fn wheel_speeds(log: &TickLog, per_tick: &WheelTravel) -> Vec<[f64; 2
     log.time.iter().map(speed).collect()
 }
 
-/// A place in a log that moves on as time does.
+/// A cursor in a log that advances with time.
 #[derive(Default)]
 struct Cursor(usize);
 

@@ -53,7 +53,7 @@ impl Track {
         let (mut pose, mut made, mut moments) = (from, 0, Moments::new(self));
         for (observation, sight) in self.sights.iter().enumerate() {
             let moment = moments.next(sight, chain.late(sight.time).value());
-            // Beyond the end of a log its last piece goes on.
+            // Beyond the end of a log, its last piece continues.
             let whole = moment.made.max(made);
             pose = self.drive(chain, pose, made..whole);
             made = whole;

@@ -1,4 +1,4 @@
-//! A run as the robot believes to have driven it, in small pieces.
+//! A run as its odometry reports it, in small pieces.
 
 use crate::drive::WheelTravel;
 use crate::effect::{Chain, Context, Evaluate, Sight};
@@ -8,8 +8,7 @@ use std::sync::Arc;
 
 /// The believed wheel travel of one run in small pieces, each with its [`Context`], and the moments of observation.
 ///
-/// Pieces in which nothing moves are dropped. The robot starts where the effects let it
-/// stand at START.
+/// Pieces in which nothing moves are dropped. The robot starts at START with the misplacement of the effects.
 ///
 /// ```
 /// use umbmark_core::{drive::Robot, effect::Model, path::{Direction, Path}, replay::Track};
@@ -26,14 +25,14 @@ use std::sync::Arc;
 pub struct Track {
     pub(super) travel: Vec<WheelTravel>,
     pub(super) contexts: Vec<Context>,
-    /// How many pieces are made when each observation is taken, never decreasing.
+    /// Number of pieces completed at each observation, never decreasing.
     pub(super) seen_after: Vec<usize>,
     pub(super) sights: Vec<Sight>,
     /// From the first sample of a log to the last \[s\].
     pub(super) duration: f64,
-    /// Where START lies in the room.
+    /// The pose of START in the room.
     pub(super) origin: Pose2,
-    /// Whether it begins at START, rather than somewhere on the way.
+    /// Whether it begins at START and not somewhere on the path.
     pub(super) begins: bool,
     /// Of two trucks with a link, whose pieces are the periods of their odometry.
     pub(super) convoy: Option<Arc<Convoy>>,
@@ -109,7 +108,7 @@ impl Track {
         &self.contexts
     }
 
-    /// How many elements of [`Track::travel`] are made when each observation is taken, never decreasing.
+    /// Number of completed elements of [`Track::travel`] at each observation, never decreasing.
     pub fn seen_after(&self) -> &[usize] {
         &self.seen_after
     }
@@ -119,12 +118,12 @@ impl Track {
         &self.sights
     }
 
-    /// Length that the axle's centre is believed to travel \[m\], forward or backward.
+    /// Unsigned length of the path of the axle's centre by odometry \[m\].
     pub fn length(&self) -> f64 {
         self.travel.iter().map(|t| 0.5 * (t.left + t.right).abs()).sum()
     }
 
-    /// Length that the axle's centre is believed to have travelled after `made` pieces \[m\].
+    /// Unsigned length of the path of the axle's centre by odometry after `made` pieces \[m\].
     pub fn way_before(&self, made: usize) -> f64 {
         self.contexts.get(made).map_or_else(|| self.length(), |at| at.distance)
     }

@@ -4,13 +4,13 @@ use super::{ReferencePose, ReturnError, TickLog};
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::{Pose2, mean_angle, wrap};
 
-/// Which measurement says where the robot stands at the end.
+/// Which measurement gives the end pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EndPose {
     /// The last one.
     Last,
-    /// The mean of those taken while both counters rest at the end, but for the first half of them, in which the robot
-    /// or a delayed measurement may still be moving.
+    /// The mean of the second half of those taken while both counters rest at the end; during the first half, the robot or a delayed
+    /// measurement may still be moving.
     Standing,
 }
 
@@ -80,11 +80,11 @@ pub fn standing_at_end(log: &TickLog) -> &[ReferencePose] {
     &log.reference[start..]
 }
 
-/// A pose of a robot at rest counts if it lies within so many median distances of the others, and this far at least \[m, rad\].
+/// A pose of a robot at rest counts if it lies within this many median distances of the others, or within this distance \[m, rad\].
 const NEAR: f64 = 8.0;
 const AT_LEAST: (f64, f64) = (0.02, 0.02);
 
-/// The mean of poses that differ little, but for some that are wrong; its heading counts full turns as the first one does.
+/// The robust mean of nearly equal poses, some of which may be wrong; its heading has the full turns of the first one.
 pub fn mean_pose(poses: &[ReferencePose]) -> Option<ReferencePose> {
     let middle = |of: &dyn Fn(&ReferencePose) -> f64| {
         let mut values: Vec<f64> = poses.iter().map(of).collect();

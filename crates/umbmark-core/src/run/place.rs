@@ -1,4 +1,4 @@
-//! Poses that have times of their own, put into a log.
+//! Inserts poses with their own times into a log.
 
 use super::{ReferencePose, TickLog};
 use crate::geometry::wrap;
@@ -6,15 +6,15 @@ use crate::geometry::wrap;
 /// x, y \[m\], and the heading \[rad\] where it was measured.
 pub type PoseRow = (f64, f64, Option<f64>);
 
-/// Counts are not interpolated over more than so many usual steps, or `SHORT` where that is more.
+/// Counts are not interpolated over more than this many usual steps, or `SHORT` if that is longer.
 const GAP: f64 = 5.0;
-/// In so short a time a robot that speeds up by 1 m/s² leaves the straight line between two readings by 1.3 mm \[s\].
+/// Within this time, a robot that accelerates by 1 m/s² deviates from linear interpolation by 1.3 mm \[s\].
 const SHORT: f64 = 0.1;
 
-/// Puts every pose into a log, whose own poses it replaces: at the time of a pose \[s\], by the clock of the ticks and
-/// increasing, a sample is put in, its counts interpolated between its neighbours. A pose that falls into a gap of the ticks
-/// in which the wheels turned, or outside of them, belongs nowhere and is left out; says how many were. The first sample is
-/// START: where no pose belongs to it, it has one between the poses before and after it.
+/// Inserts every pose into a log and replaces the log's own poses. At the time of a pose \[s\], by the clock of the ticks and increasing, a
+/// sample is inserted whose counts are interpolated between its neighbours. A pose outside the ticks, or in a gap in which the wheels
+/// turned, is skipped; returns the number of skipped poses. The first sample is START: if it has no pose, one is interpolated between the
+/// poses before and after it.
 pub fn place(log: &mut TickLog, times: &[f64], poses: &[PoseRow]) -> usize {
     let longest = (GAP * usual_step(&log.time)).max(SHORT);
     let old = std::mem::take(log);
@@ -53,7 +53,7 @@ fn push(log: &mut TickLog, time: f64, (left, right): (f64, f64)) {
     log.right.push(right);
 }
 
-/// Counts at a time between sample `after` and the one before, where they can be known.
+/// Counts at a time between sample `after` and the previous one, if they can be interpolated.
 fn between(log: &TickLog, after: usize, time: f64, longest: f64) -> Option<(f64, f64)> {
     let before = after.checked_sub(1)?;
     let seconds = log.time.get(after)? - log.time[before];

@@ -88,9 +88,9 @@ fn mean_heading<E: Copy + Into<ReturnError>>(errors: &[E]) -> Option<f64> {
 /// One UMBmark test in short: both clusters, E_max,sys and the spread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
-    /// Clockwise runs; `None` where there are none.
+    /// Clockwise runs; `None` for an empty set.
     pub cw: Option<Cluster>,
-    /// Counter-clockwise runs; `None` where there are none.
+    /// Counter-clockwise runs; `None` for an empty set.
     pub ccw: Option<Cluster>,
 }
 

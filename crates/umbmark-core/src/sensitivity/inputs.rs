@@ -9,7 +9,7 @@ use crate::stats::{normal_quantile, standard_normal_share};
 /// One input: its name, its distribution and the bounds that cut it off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// How its values are distributed.
     pub distribution: Distribution,

@@ -1,4 +1,4 @@
-//! How the motion that the reference saw agrees with the motion that the wheels rolled, window by window.
+//! How well the motion measured by the reference agrees with the motion of the wheels, window by window.
 //!
 //! In a window the tracked body moves by u, seen from where it was at the beginning, and turns by α; the wheels roll by l and r. With
 //! D = (l + r)/2 and β = (r - l)/b,
@@ -14,11 +14,11 @@ use super::robust::{self, Line};
 use super::windows::Window;
 use crate::geometry::Real;
 
-/// Turning \[rad\] and driving \[m\] of all windows together below which they show nothing.
+/// Minimum total rotation \[rad\] and distance \[m\] of all windows: less determines nothing.
 const LEAST_TURN: f64 = 0.5;
 const LEAST_WAY: f64 = 0.1;
 
-/// Less must be left of the way, and of the turns.
+/// The misfit of distance and of rotation must be below this.
 const CREDIBLE: f64 = 0.7;
 
 /// How columns and headings are read.
@@ -30,10 +30,10 @@ pub(super) struct Reading {
     pub clockwise: bool,
 }
 
-/// A window beside what the wheels rolled in it \[m\].
+/// A window and the travel of both wheels in it \[m\].
 pub(super) type Beside = (Window, [f64; 2]);
 
-/// What agrees best.
+/// The best agreement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Agreement {
     /// c e^(-iδ): its real and its imaginary part.
@@ -42,12 +42,12 @@ pub(super) struct Agreement {
     pub lever: [f64; 2],
     /// g, and k \[rad/m\].
     pub turn: [f64; 2],
-    /// Standard deviation of what is left of a coordinate \[m\] and of a rotation \[rad\].
+    /// Standard deviation of the residuals of a coordinate \[m\] and of a rotation \[rad\].
     pub left: [f64; 2],
-    /// Share of the way, of the turns and of both that is left: 0 where all agrees, about 1 where nothing does.
+    /// Misfit of distance, of rotation and of both, as a share: 0 for perfect agreement, about 1 for none.
     pub misfits: [f64; 2],
     pub misfit: f64,
-    /// Whether the windows show the way, and turns.
+    /// Whether the windows determine distance, and rotation.
     pub shown: [bool; 2],
 }
 
@@ -74,12 +74,12 @@ fn chord(turned: f64) -> [f64; 2] {
 }
 
 impl Agreement {
-    /// Fits all windows, read so.
+    /// Fits all windows under a reading.
     pub fn of(windows: &[Beside], reading: Reading, wheelbase: f64) -> Agreement {
         Agreement::fitted(windows, reading, wheelbase, true)
     }
 
-    /// The same of wheels of one diameter: without drift, which can stand for a counter that is read wrongly.
+    /// The same for wheels of equal diameter: without the drift, which could mimic a counter that is read wrongly.
     pub fn without_drift(windows: &[Beside], reading: Reading, wheelbase: f64) -> Agreement {
         Agreement::fitted(windows, reading, wheelbase, false)
     }
@@ -103,7 +103,7 @@ impl Agreement {
         };
         let ways: Vec<([f64; 4], f64)> = read.iter().flat_map(rows).collect();
         let (turn, way): (Line<2>, Line<4>) = (robust::fit(&turns), robust::fit(&ways));
-        // No window counts for more than the wheels ever roll in one.
+        // Limits the weight of a window to the largest wheel travel in any window.
         let most = read.iter().map(|(_, _, [way, turn])| way.abs() + arm * turn.abs()).fold(0.0, f64::max);
         let left = |row: &[f64], values: &[f64], y: f64| y - row.iter().zip(values).map(|(x, v)| x * v).sum::<f64>();
         let stretch = libm::hypot(way.values[0], way.values[1]).max(1.0);
@@ -130,7 +130,7 @@ impl Agreement {
         }
     }
 
-    /// Whether it says how the wheels' motion looks to the reference: something moves, and most of it agrees.
+    /// Whether the agreement is reliable: something moves, and most of the motion agrees.
     pub fn is_credible(&self) -> bool {
         self.shown.contains(&true) && (0..2).all(|k| !self.shown[k] || self.misfits[k] < CREDIBLE)
     }
@@ -152,7 +152,7 @@ impl Agreement {
         [cosine * x - sine * y, sine * x + cosine * y]
     }
 
-    /// Share of the way, and of the turns, of some windows that is left; 0 where they show none.
+    /// Misfit of distance and of rotation in some windows, as a share; 0 if they determine none.
     pub fn misfits_of(&self, windows: &[Beside], reading: Reading, wheelbase: f64) -> [f64; 2] {
         let (mut off, mut whole, mut shown) = ([0.0; 2], [0.0; 2], [0.0; 2]);
         for beside in windows {
@@ -162,7 +162,7 @@ impl Agreement {
             let most = way.abs() + 0.5 * wheelbase * turn.abs();
             whole[0] += libm::hypot(moved[0], moved[1]);
             whole[1] += turned.abs();
-            // One wild pose is no other wiring.
+            // A single wrong pose must not look like another wiring.
             off[0] += libm::hypot(x, y).min(2.0 * most);
             off[1] += left.abs().min(2.0 * most / (0.5 * wheelbase));
             shown = [shown[0] + way.abs(), shown[1] + turn.abs()];
@@ -171,7 +171,7 @@ impl Agreement {
         [0, 1].map(|k| if shown[k] > least[k] && whole[k] > 0.0 { off[k] / whole[k] } else { 0.0 })
     }
 
-    /// What is left of a window: of both coordinates \[m\] and of the rotation \[rad\].
+    /// Residuals of a window: both coordinates \[m\] and the rotation \[rad\].
     pub fn residual(&self, reading: Reading, (window, rolled): &Beside, wheelbase: f64) -> [f64; 3] {
         let (moved, turned) = reading.seen(window);
         let [way, turn] = reading.motion(*rolled, wheelbase);

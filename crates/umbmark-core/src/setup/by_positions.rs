@@ -1,4 +1,4 @@
-//! Return headings that go with return positions.
+//! Return headings that follow from the return positions.
 
 use super::returns::median;
 use crate::drive::Robot;
@@ -10,8 +10,8 @@ use crate::replay::Track;
 use crate::run::ReturnError;
 use nalgebra::{DMatrix, DVector};
 
-/// Return headings \[rad\], clockwise and counter-clockwise, of a robot whose E_d and E_b explain the median return positions; `None`
-/// where these do not show both.
+/// Return headings \[rad\], clockwise and counter-clockwise, of a robot whose E_d and E_b explain the median return positions; `None` if
+/// these do not determine both.
 pub(super) fn headings_by_positions(returns: &[Vec<ReturnError>; 2], robot: &Robot, path: &Path) -> Option<[f64; 2]> {
     if !robot.drive.kind().has_axle_wheels() {
         return None;
@@ -44,7 +44,7 @@ pub(super) fn headings_by_positions(returns: &[Vec<ReturnError>; 2], robot: &Rob
 struct Drive {
     track: Track,
     told: Pose2,
-    /// Measured end less the one that was told \[m\].
+    /// Measured minus commanded end \[m\].
     returned: [f64; 2],
 }
 

@@ -2,11 +2,11 @@
 
 use super::edges::{Edge, JUMP, Sighting, Spread};
 
-/// What a jump costs, in half squares of standard deviations; what the first pose costs that is passed over, and each after it.
+/// Costs, in half squares of standard deviations: of a jump, of the first skipped pose, and of each further one.
 const COSTS: [f64; 3] = [0.5 * JUMP * JUMP, 32.0, 10.0];
 /// Maximum number of consecutive wrong poses.
 pub(super) const LONGEST: usize = 12;
-/// Where no edge nearby exceeds this many standard deviations, no pose is passed over.
+/// No pose is skipped unless an edge nearby exceeds this many standard deviations.
 const QUIET: f64 = 5.0;
 
 /// The poses of a run that are kept, in order.
@@ -26,7 +26,7 @@ impl Way {
                 cost[to] = passed(to);
             }
             let first = to.saturating_sub(LONGEST + 1);
-            // Without a leap near, the pose before is the one to come from.
+            // Without a large edge nearby, the path comes from the previous pose.
             let near = (first..=(to + 1).min(run.len() - 1)).any(|k| loud[k]);
             let from = if near { first } else { to.saturating_sub(1) };
             for from in from..to {

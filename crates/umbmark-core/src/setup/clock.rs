@@ -1,37 +1,36 @@
-//! By how much the stamps of the reference are late, run by run.
+//! Delay of the reference's time stamps, run by run.
 
 use super::agreement::{Agreement, Beside, Reading};
 use super::robust::{biweight, median};
 use super::windows::{Rolled, Window};
 use crate::stats::Measured;
 
-/// Delays that are looked at \[s\]: both ways up to the farthest, in these steps.
+/// Range and step of the delays that are tried \[s\], of both signs.
 const FARTHEST: f64 = 1.0;
 const STEP: f64 = 0.05;
 /// A delay other than zero must reduce the disagreement by this share.
 const CLEARLY: f64 = 0.05;
-/// A piece of a run in which a clock that is fast shows as one delay \[s\], and the fewest windows in it.
+/// Length of a piece of a run in which the rate of a clock is negligible \[s\], and the minimum number of windows in it.
 const PIECE: f64 = 60.0;
 const FEWEST: usize = 20;
-/// Steps of the fit, by absolute deviations first: a robot that drives steadily shows its delay in few windows, and from afar these look
-/// wrong. And a change of the delay that ends it \[s\].
+/// Maximum number of steps of the fit, first by absolute deviations: at steady speed only few windows show the delay, and far from the
+/// solution these look like outliers. Then the change of the delay that ends the fit \[s\].
 const STEPS: [usize; 2] = [5, 9];
 const ENOUGH: f64 = 1e-6;
-/// A distance of this multiple of the wheels' distance is in another unit.
+/// If the reference moves this many times as far as the wheels, its unit is another one.
 const OTHER_UNIT: f64 = 5.0;
 /// Half of the step of a derivative by time \[s\].
 const HALF: f64 = 0.01;
 /// The residual of a window has three coordinates; the median of its length, in standard deviations of one coordinate.
 const MEDIAN_SIZE: f64 = 1.538;
-/// Windows are weighed by no smaller standard deviation \[m\]: those in which the motion changes are the ones that show a delay, and are
-/// not one arc.
+/// Minimum standard deviation for weights \[m\]: the windows in which the motion changes show the delay, and they are not exact arcs.
 const LEAST_SCALE: f64 = 1e-3;
-/// What a clock leaves may be more than before by this share: it is weighed otherwise.
+/// A clock may increase the residuals by this share, because they are weighted differently.
 const SLACK: f64 = 1e-2;
 /// Beyond this many standard deviations a window has no weight.
 const BEYOND: f64 = 6.0;
 
-/// What the stamps of a run are late: delay at the middle of the run and what is added for each second after that.
+/// Clock of a run: delay at its middle, and the change of the delay per second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Late {
     /// \[s\]
@@ -47,31 +46,31 @@ pub(super) struct Late {
 }
 
 impl Late {
-    /// By how much a stamp is late \[s\].
+    /// Delay of a time stamp \[s\].
     pub fn at(&self, time: f64) -> f64 {
         self.delay + self.rate * (time - self.middle)
     }
 
-    /// The delay with its standard error; `None` where the motion does not show it.
+    /// The delay with its standard error; `None` if the motion does not determine it.
     pub fn measured(&self) -> Option<Measured> {
-        // Half of the windows share their motion with the next.
+        // Neighbouring windows overlap by half.
         let (variance, parts) = (2.0 * self.covariance[0], (0.5 * self.told_by) as usize);
         (variance > 0.0).then(|| Measured::of_parts(self.delay, variance.sqrt(), parts))
     }
 
-    /// When a pose was taken that is stamped so \[s\].
+    /// The true time of a pose with this time stamp \[s\].
     pub fn taken(&self, time: f64) -> f64 {
         time - self.at(time)
     }
 }
 
-/// What the wheels rolled while each window was really seen.
+/// Wheel travel during the true time of each window.
 pub(super) fn beside(windows: &[Window], rolled: &Rolled, late: &Late) -> Vec<Beside> {
     windows.iter().map(|w| (*w, rolled.between(late.taken(w.from), late.taken(w.to)))).collect()
 }
 
-/// The delay at which the sizes of both motions go together best, whatever the columns are called: a first guess. Where the
-/// motion is too even to tell, none.
+/// First guess of the delay: the one at which the sizes of both motions correlate best, whatever the columns are called. Nothing if the
+/// motion is too uniform.
 pub(super) fn guess(windows: &[Window], rolled: &Rolled, wheelbase: f64) -> Late {
     let (Some(first), Some(last)) = (windows.first(), windows.last()) else { return Late::default() };
     let middle = 0.5 * (first.from + last.to);
@@ -88,26 +87,26 @@ pub(super) fn guess(windows: &[Window], rolled: &Rolled, wheelbase: f64) -> Late
     }
     let slopes =
         found.iter().enumerate().flat_map(|(k, a)| found[k + 1..].iter().map(move |b| (b.1 - a.1) / (b.0 - a.0)));
-    // Two pieces have one slope, and a grid step between them does not count.
+    // Two pieces give only one slope, which may be a step of the grid.
     let rate = if found.len() > 2 { median(slopes) } else { 0.0 };
     let delay = median(found.iter().map(|(at, delay)| delay - rate * (at - middle)));
     Late { delay, rate, middle, ..Late::default() }
 }
 
-/// The delay of a piece; `None` where it does not tell.
+/// The delay of a piece; `None` if its motion does not determine it.
 fn delay_of(windows: &[&Window], rolled: &Rolled, wheelbase: f64) -> Option<f64> {
     if windows.len() < FEWEST {
         return None;
     }
     let way: Vec<f64> = windows.iter().map(|w| libm::hypot(w.moved[0], w.moved[1])).collect();
     let still: Vec<f64> = windows.iter().map(|w| faster(rolled.between(w.from, w.to))).collect();
-    // Positions in another unit than metres must not drown the turns.
+    // Positions in another unit than metres must not outweigh the rotations.
     let unit = Some(ratio(&way, &still)).filter(|ratio| *ratio > OTHER_UNIT).unwrap_or(1.0);
     let seen: Vec<f64> =
         windows.iter().zip(&way).map(|(w, way)| way / unit + 0.5 * wheelbase * w.turned.abs()).collect();
     let reach = (FARTHEST / STEP).round() as i32;
     let off = |late: f64| {
-        // The way of the faster wheel is the body's way and the arm's, whatever the signs of the counts are.
+        // The travel of the faster wheel is that of the body plus that of the lever arm, for all signs of the counts.
         let own: Vec<f64> = windows.iter().map(|w| faster(rolled.between(w.from - late, w.to - late))).collect();
         let ratio = ratio(&seen, &own);
         let most = 2.0 * ratio * own.iter().fold(0.0_f64, |most, v| most.max(*v));
@@ -123,7 +122,7 @@ fn faster([left, right]: [f64; 2]) -> f64 {
     left.abs().max(right.abs())
 }
 
-/// How many times as much the reference moved as the wheels: of windows in which they moved much.
+/// Ratio of the motion of the reference to that of the wheels, from windows with much motion.
 fn ratio(seen: &[f64], own: &[f64]) -> f64 {
     let usual = median(own.iter().copied());
     let much = own.iter().zip(seen).filter(|(own, _)| **own >= usual && **own > 0.0);
@@ -131,7 +130,7 @@ fn ratio(seen: &[f64], own: &[f64]) -> f64 {
     if ratio > 0.0 { ratio } else { 1.0 }
 }
 
-/// The delay and the rate that leave least of a run, where all else is as it agrees in all runs.
+/// The delay and the rate that fit a run best, with everything else as it agrees in all runs.
 pub(super) fn refined(
     windows: &[Window],
     rolled: &Rolled,
@@ -155,7 +154,7 @@ pub(super) fn refined(
     let mut widest = LEAST_SCALE;
     for step in 0..STEPS[0] + STEPS[1] {
         let (now, before, after) = (residuals(&late, 0.0), residuals(&late, -HALF), residuals(&late, HALF));
-        // Some coordinates may be without any noise.
+        // Some coordinates may have no noise at all.
         let scale = median(now.iter().map(size)) / MEDIAN_SIZE;
         widest = widest.max(scale);
         let (mut products, mut score) = ([0.0; 3], [0.0; 2]);
@@ -166,7 +165,7 @@ pub(super) fn refined(
             let at = if with_rate { 0.5 * (w.from + w.to) - late.middle } else { 0.0 };
             let (mut pull, mut share) = (0.0, 0.0);
             for k in 0..3 {
-                // Residuals by a later moment, which is less delay.
+                // Derivative of the residuals by time, which is minus that by the delay.
                 let slope = -(after[k] - before[k]) / (2.0 * HALF);
                 let x = [slope, slope * at];
                 products = [
@@ -189,7 +188,8 @@ pub(super) fn refined(
         };
         late.delay += change[0].clamp(-0.2, 0.2);
         late.rate = (late.rate + change[1]).clamp(-0.2, 0.2);
-        // The windows that show the delay are those in which the motion changes, and may leave more than the others (White 1980).
+        // The windows that determine the delay are those in which the motion changes; their residuals may be larger than others (White
+        // 1980).
         let variance = (scale * scale).max(squares / a);
         late.told_by = a * a / shares;
         late.covariance = if plain { [variance / a, 0.0, 0.0] } else { [c, -b, a].map(|v| variance * v / determinant) };
@@ -197,7 +197,7 @@ pub(super) fn refined(
             break;
         }
     }
-    // Where few windows show the clock, steps can lead astray.
+    // If few windows determine the clock, the steps can diverge.
     let left = |late: &Late| residuals(late, 0.0).iter().map(|r| size(r).min(BEYOND * widest)).sum::<f64>();
     if left(&late) <= left(from) * (1.0 + SLACK) { late } else { Late { covariance: [0.0; 3], ..*from } }
 }

@@ -1,17 +1,17 @@
 //! Poses that are wrong, and places where a track jumps: found together, in all runs at once.
 //!
-//! Between two poses the reference moves and the wheels roll. Their difference, in standard deviations, is the cost of the edge that
-//! joins the poses (`edges`). Skipping a pose has a cost, and so has a jump. The cheapest way from the first pose of a run to its last
-//! (`cheapest`) shows which poses are wrong and where the track jumps, all at once, so that no jump hides another. Slower
-//! disturbances are looked for afterwards (`stretches`). The standard deviations come from medians over all runs, which wild poses
-//! do not change.
+//! Between two poses the reference moves and the wheels roll. Their difference, in standard deviations, is the cost of the edge that joins
+//! the poses (`edges`). Skipping a pose has a cost, and so has a jump. The cheapest way from the first pose of a run to its last
+//! (`cheapest`) shows which poses are wrong and where the track jumps, all at once, so that no jump hides another. Slower disturbances are
+//! searched afterwards (`stretches`). The standard deviations come from medians over all runs, which wild poses do not change.
 
 use super::cheapest::{LONGEST, Way};
 use super::edges::{Edge, JUMP, LARGE, Sighting, Spread, difference};
 use super::shared::Shared;
 use super::{PoseNoise, stretches};
 
-/// What stands apart for no longer than this share of a run's poses, and this time \[s\], and then goes on as before, is wrong.
+/// Poses that deviate for no longer than this share of a run's poses and this time \[s\], after which the track continues as before, are
+/// wrong.
 const APART: (f64, f64) = (0.05, 3.0);
 
 /// What was found in a run.
@@ -23,7 +23,7 @@ pub(super) struct Found {
     pub jumps: Vec<Leap>,
 }
 
-/// A pose that is wrong, and how far it lies from where the poses around it say \[m, rad\].
+/// A wrong pose, and its distance from the place that its neighbours imply \[m, rad\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wrong {
     pub pose: usize,
@@ -38,14 +38,14 @@ pub(super) struct Leap {
     pub from: usize,
     /// The first behind it.
     pub pose: usize,
-    /// How far the tracked point went that the wheels did not \[m\], and how far it turned \[rad\].
+    /// Motion of the tracked point that the wheels did not make \[m\], and its rotation \[rad\].
     pub moved: f64,
     pub turned: Option<f64>,
     /// In standard deviations.
     pub deviations: f64,
 }
 
-/// Looks through all runs; gives what was found in each, and the noise of a single pose.
+/// Searches all runs; returns the findings of each, and the noise of a single pose.
 pub(super) fn search(runs: &[Vec<Sighting>]) -> (Vec<Found>, PoseNoise) {
     let (spread, noise) = Spread::of(runs);
     let ways: Vec<Way> = runs.iter().map(|run| Way::cheapest(run, &spread)).collect();
@@ -65,7 +65,7 @@ pub(super) fn search(runs: &[Vec<Sighting>]) -> (Vec<Found>, PoseNoise) {
     (found.collect(), noise)
 }
 
-/// Jumps that are taken back soon are wrong poses: the poses that are kept then, and the jumps that are left.
+/// Turns jumps that soon reverse into wrong poses: returns the poses that are then kept, and the remaining jumps.
 fn sorted_out(run: &[Sighting], kept: &[usize], jumps: Vec<Edge>, spread: &Spread) -> (Vec<usize>, Vec<Edge>) {
     let mut jumps = jumps;
     let mut kept = kept.to_vec();
@@ -87,7 +87,7 @@ fn sorted_out(run: &[Sighting], kept: &[usize], jumps: Vec<Edge>, spread: &Sprea
 }
 
 impl Found {
-    /// Poses that are not kept are wrong, but for those within a jump that lasts.
+    /// Poses that are not kept are wrong, except those within a lasting jump.
     fn of(run: &[Sighting], kept: &[usize], jumps: Vec<Edge>) -> Found {
         let mut wrong = Vec::new();
         let mut next = 0;
@@ -150,7 +150,7 @@ mod tests {
             .collect()
     }
 
-    /// Everything from a pose on moved and turned about that pose.
+    /// Moves everything from a pose on and rotates it about that pose.
     fn jump(run: &mut [Sighting], at: usize, moved: f64, turned: f64) {
         let (pivot_x, pivot_y, _) = run[at].measured;
         let (sine, cosine) = libm::sincos(turned);

@@ -6,31 +6,31 @@ use crate::geometry::{Pose2, wrap};
 
 /// A difference of more standard deviations than this is a jump.
 pub(super) const JUMP: f64 = 10.0;
-/// Other runs have it where a difference exceeds this many standard deviations.
+/// Another run has the same disturbance if its difference exceeds this many standard deviations.
 pub(super) const LARGE: f64 = 4.0;
-/// Edges that determine the noise: over these numbers of poses.
+/// The noise is estimated from edges over these numbers of poses.
 const OVER: [usize; 4] = [1, 2, 4, 8];
 /// The noise is estimated by the size of the motion, in this many parts of all edges.
 const PARTS: usize = 10;
-/// Minimum standard deviation \[m, rad\], and minimum in terms of the motion in this time \[s\]: smaller differences are noise, and are
-/// judged where the sizes of the noise are known.
+/// Minimum standard deviation \[m, rad\], and minimum in terms of the motion in this time \[s\]: smaller differences are treated as noise
+/// here; the fit, which knows the sizes of the noise, judges them.
 const LEAST: [f64; 2] = [1.5e-3, 3e-3];
 const JITTER: f64 = 0.01;
-/// Sizes of the robot by the motion alone are wrong by up to this share of way and turns.
+/// The robot's sizes from the motion alone can be wrong by this share of distance and rotation.
 const SIZES: f64 = 0.005;
 
-/// A pose of a run: as the wheels have it, and as it was measured.
+/// A pose of a run: by the wheels, and as measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sighting {
     /// Its stamp \[s\].
     pub time: f64,
-    /// Way of the wheels until then \[m\], and how much they turned \[rad\], whatever way.
+    /// Distance by the wheels until then \[m\], and total rotation \[rad\], both unsigned.
     pub way: f64,
     pub turned: f64,
-    /// Both together, turning at the arm of a wheel \[m\].
+    /// Both together, the rotation as an arc at half the wheelbase \[m\].
     pub rolled: f64,
     pub expected: Pose2,
-    /// Without a heading where none was measured.
+    /// The heading is `None` if it was not measured.
     pub measured: (f64, f64, Option<f64>),
 }
 
@@ -40,7 +40,7 @@ pub(super) fn difference(from: &Sighting, to: &Sighting) -> ([f64; 2], Option<f6
     let expected = from.expected.between(&to.expected);
     let (x, y) = (to.measured.0 - from.measured.0, to.measured.1 - from.measured.1);
     let (Some(before), Some(after)) = (from.measured.2, to.measured.2) else {
-        // The course is all there is to lay one along the other.
+        // Without headings, only the direction of motion can align the two.
         return ([libm::hypot(x, y) - libm::hypot(expected.x, expected.y), 0.0], None);
     };
     let (sine, cosine) = libm::sincos(before);
@@ -56,7 +56,7 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    /// Of all runs, and the noise of a single pose: half of what two differ by that are one place.
+    /// From all runs, with the noise of a single pose: half the variance between two poses at the same place.
     pub fn of(runs: &[Vec<Sighting>]) -> (Spread, PoseNoise) {
         let mut edges: Vec<(f64, f64, Option<f64>)> = Vec::new();
         for run in runs {
@@ -100,7 +100,7 @@ impl Spread {
 /// a + b x through medians, neither of them negative.
 fn rising(points: &[(f64, f64)]) -> [f64; 2] {
     let n = points.len().max(1) as f64;
-    // Variances are as uncertain as they are large.
+    // The uncertainty of a variance is proportional to the variance.
     let weight = |y: f64| 1.0 / (y * y).max(1e-30);
     let sum = |of: &dyn Fn(f64, f64) -> f64| points.iter().map(|(x, y)| weight(*y) * of(*x, *y)).sum::<f64>();
     let (w, x, y, xx, xy) = (sum(&|_, _| 1.0), sum(&|x, _| x), sum(&|_, y| y), sum(&|x, _| x * x), sum(&|x, y| x * y));

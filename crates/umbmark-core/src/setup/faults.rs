@@ -1,26 +1,27 @@
-//! Columns that are not what they are called.
+//! Columns that contradict their names.
 
 use super::agreement::{Agreement, Beside, Reading};
 use crate::drive::{DriveKind, Robot};
 use std::f64::consts::FRAC_PI_2;
 
-/// Where so much of the motion disagrees, another reading is tried; it is believed where it leaves so much less.
+/// If the misfit exceeds this, other readings are tried; one is accepted if its misfit is smaller by the second factor.
 const DOUBTFUL: f64 = 0.3;
 const CLEARLY: f64 = 0.6;
-/// Where so much of the motion disagrees in every reading, both are not of one drive.
+/// If the misfit of every reading exceeds this, wheels and reference do not belong to the same drive.
 const NOTHING: f64 = 0.75;
-/// Turns by less than this share of what they should be have no sign. Way and turns by more than the inverse are another reading's.
+/// If the rotation is less than this share of the expected one, its sign is undetermined. Distances and rotations beyond the inverse belong
+/// to another reading.
 const LEAST_GAIN: f64 = 0.2;
-/// Where so much of the way, or of the turns, disagrees, its scale says nothing.
+/// If the misfit of distance or rotation exceeds this, its scale is meaningless.
 const VAGUE: f64 = 0.5;
 /// Units in which lengths are written by mistake: how many of them a metre has.
 const UNITS: [(f64, &str); 4] = [(1000.0, "mm"), (100.0, "cm"), (39.37, "inches"), (3.2808, "feet")];
-/// A run with fewer windows is not looked at by itself.
+/// Minimum number of windows for a run to be examined by itself.
 const FEWEST: usize = 20;
-/// A unit, or a factor of the counts, is known by its size to this share.
+/// Tolerance, as a share, to recognise a unit or a factor of the counts by its size.
 const NEAR: f64 = 0.08;
 
-/// Something that is not what it is called.
+/// Data that contradicts its name.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
     /// Left and right wheel are exchanged, or the frame of the reference is left-handed.
@@ -54,7 +55,7 @@ pub enum Fault {
     },
     /// Some runs were recorded with other columns or headings than the rest.
     InRuns {
-        /// What is not as it is called in these.
+        /// What is wrong in these runs.
         fault: Box<Fault>,
         /// Their names.
         runs: Vec<String>,
@@ -78,7 +79,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Why nothing is fitted where there are some: each with what to do.
+    /// The message that refuses a fit: each fault with its remedy.
     pub(crate) fn refusal(faults: &[Fault]) -> String {
         let told: Vec<String> = faults.iter().map(|f| format!("{}; {}", f.sentence(), f.remedy())).collect();
         format!("the robot cannot be judged yet: {}", told.join("; and "))
@@ -202,7 +203,7 @@ fn named(runs: &[String]) -> String {
 
 /// The faults of runs that were recorded with other columns or headings than the rest; `None` where all were recorded alike.
 ///
-/// A run is looked at by itself only where it does not move as all runs together say.
+/// A run is examined by itself only if it disagrees with the agreement of all runs.
 pub(super) fn differing(
     runs: &[(&str, Vec<Beside>)],
     (together, reading): (&[Fault], Reading),
@@ -218,7 +219,7 @@ pub(super) fn differing(
     if !runs.iter().any(|(_, own)| own.len() >= FEWEST && doubtful(own)) {
         return None;
     }
-    // By itself, each run whose motion then agrees and shows both way and turns.
+    // Each run by itself, if its motion then agrees and determines distance and rotation.
     let mut kinds: Vec<(Vec<Fault>, Vec<String>)> = Vec::new();
     for (name, own) in runs.iter().filter(|(_, own)| own.len() >= FEWEST) {
         let (faults, reading) = look(own, robot);
@@ -239,11 +240,11 @@ pub(super) fn differing(
     (kinds.len() > 1).then(|| kinds.into_iter().flat_map(each).collect())
 }
 
-/// The faults of columns and headings, and the reading under which the rest was found.
+/// The faults of columns and headings, and the reading on which everything else is based.
 pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
     let wheelbase = robot.drive.wheelbase();
     let of = |windows: &[Beside], reading: Reading| Agreement::without_drift(windows, reading, wheelbase);
-    // Wheels that differ a little can stand for way or turns where one of them is read wrongly: many times over.
+    // If a counter is read wrongly, a small difference of the wheels can mimic distance or rotation, multiplied many times.
     let doubt = |found: &Agreement| {
         let possible =
             |k: usize, ratio: f64| found.misfits[k] > VAGUE || (LEAST_GAIN..=1.0 / LEAST_GAIN).contains(&ratio);
@@ -262,7 +263,7 @@ pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
         {
             let tried = Reading { opposed, clockwise };
             let found = of(if degree { &in_degrees } else { windows }, tried);
-            // Where all agrees as it is read, only what agrees as well and has possible sizes is more likely.
+            // If the given reading agrees, another one is more likely only if it agrees as well and its sizes are possible.
             let clearly = if given.misfit > DOUBTFUL { CLEARLY * doubt(&given) } else { DOUBTFUL };
             if doubt(&found) < clearly && doubt(&found) < doubt(&best) {
                 (best, reading, degrees) = (found, tried, degree);
@@ -280,17 +281,17 @@ pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
     (faults, reading)
 }
 
-/// What signs and exchanges make of an agreement.
+/// The agreement after signs are changed and columns exchanged.
 fn turned(found: &Agreement, Reading { opposed, clockwise }: Reading, kind: DriveKind) -> Vec<Fault> {
     let [way, turns] = found.shown;
     let backward = way && found.yaw().abs() > FRAC_PI_2;
     let other_way = turns && found.turn[0] < -LEAST_GAIN;
     if clockwise && other_way && !opposed && !backward {
-        // A clockwise heading beside wheels that turn the other way is, simpler, a mirrored track.
+        // Clockwise headings together with wheels that turn the other way have a simpler explanation: a mirrored track.
         return vec![Fault::PositionsMirrored];
     }
     let of = |counters, exchanged| Some(Fault::Backward { names: kind.counters(), counters, exchanged });
-    // A tracked body may face backward; wheels that turn the other way as well have another cause.
+    // The tracked body may face backward. If the wheels also turn the other way, the cause is another one.
     let wheels = match (kind.has_axle_wheels(), opposed, other_way, backward) {
         (_, false, false, _) => None,
         (true, false, true, false) => Some(Fault::Exchanged),
@@ -301,13 +302,13 @@ fn turned(found: &Agreement, Reading { opposed, clockwise }: Reading, kind: Driv
         (_, true, false, true) => of([false, true], true),
         // Driven backward, a steered wheel turns the robot the other way.
         (_, false, true, true) if kind.steers() => of([true, false], false),
-        // The second counter of the others is that of the steering.
+        // For the other drives, the second counter is that of the steering.
         (_, false, true, _) => of([false, true], false),
     };
     clockwise.then_some(Fault::HeadingClockwise).into_iter().chain(wheels).collect()
 }
 
-/// Units that are not those of their columns.
+/// Values whose unit differs from that of their column.
 pub(super) fn sizes(found: &Agreement) -> Vec<Fault> {
     let ratio = found.scale();
     if !found.shown[0] || found.misfits[0] > VAGUE || (LEAST_GAIN..=1.0 / LEAST_GAIN).contains(&ratio) {

@@ -1,8 +1,8 @@
-//! Return errors that are not what the robot did: typing errors in single runs, and columns in another unit.
+//! Return errors that the robot did not make: typing errors in single runs, and columns in another unit.
 //!
-//! A run is compared with the other runs of its direction and test, coordinate by coordinate. Several typing errors hide each other
-//! when the runs are looked at one after the other, so they are found together: of all ways to leave out i runs, the one that leaves
-//! the least scatter is tested by
+//! A run is compared with the other runs of its direction and test, coordinate by coordinate. Several typing errors can hide each other if
+//! the runs are tested one at a time, so all are searched together: of all ways to leave out i runs, the one that leaves the least scatter
+//! is tested by
 //!
 //! ```text
 //! F(i, ν) = ((S_0 - S_i)/i) / (S_i/ν),   ν = N - groups - i
@@ -22,31 +22,31 @@ use crate::stats::{f_upper_tail, t_two_sided};
 
 /// Share of data sets with normal scatter in which a run is named.
 const FALSE_ALARMS: f64 = 1e-3;
-/// A group of fewer runs does not show which of them is wrong.
+/// In a smaller group it is undetermined which run is wrong.
 const FEWEST: usize = 3;
-/// At most this share of all runs is wrong, beyond the first two.
+/// At most this share of all runs is taken as wrong, beyond the first two.
 const MAX_WRONG_SHARE: f64 = 0.25;
 /// Scatter is never smaller than the reading of a tape \[m\] and of a protractor \[rad\].
 const READING: [f64; 3] = [5e-4, 5e-4, 9e-4];
 /// Values closer than this are equal: they differ by rounding only.
 const EQUAL: f64 = 1e-9;
-/// Runs whose ways differ from the median by a larger share are not the same drive.
+/// Runs whose distance differs from the median by a larger share are a different drive.
 const SAME_WAY: f64 = 0.2;
-/// In centimetres, a return error of more than this share of the way is not believed either.
+/// A return error above this share of the distance is implausible in centimetres, too.
 const BELIEVED: f64 = 0.2;
-/// Headings that differ by less \[rad\] from those which follow from the positions are in radians.
+/// Headings are in radians if they differ by less than this \[rad\] from those that follow from the positions.
 const NEAR: f64 = 0.1;
-/// A unit is wrong where the mean headings differ from it by this many standard errors.
+/// A unit is rejected if the mean headings differ from the expected ones by this many standard errors.
 const BEYOND: f64 = 6.0;
-/// Read in the right unit, headings are so much nearer to those which follow from the positions.
+/// In the right unit, the distance of the headings from those that follow from the positions shrinks to this share.
 const NEARER: f64 = 0.25;
 
-/// Median deviation of headings from their middle \[rad\] that no protractor has.
+/// Median deviation of headings \[rad\] that is implausible for a protractor.
 const WILD: f64 = 0.1;
-/// The same that no instrument has.
+/// The same, implausible for any instrument.
 const HOPELESS: f64 = 0.3;
-/// Positions that deviate by less than this share of what such headings would make of them, over an eighth of the way, were not made by
-/// such headings.
+/// Headings are implausible if the positions deviate by less than this share of the deviation that such headings would cause over an eighth
+/// of the distance.
 const ALONE: f64 = 0.06;
 
 /// A coordinate of a return error.
@@ -81,7 +81,7 @@ impl Coordinate {
     }
 }
 
-/// A coordinate that lies away from those of the other runs.
+/// A coordinate that is far from those of the other runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviant {
     /// Which one.
@@ -159,12 +159,12 @@ pub struct Returned {
 }
 
 impl Returned {
-    /// Looks at the return errors of all runs.
+    /// Examines the return errors of all runs.
     pub fn of(runs: &[Run], robot: &Robot, path: Option<&Path>) -> Returned {
         let ways: Vec<Option<f64>> = runs.iter().map(|run| run.log.as_ref().and_then(|log| way(log, robot))).collect();
         let faults: Vec<Fault> =
             too_far(runs, &ways, path).or_else(|| in_degrees(runs, robot, path)).into_iter().collect();
-        // Where a unit is wrong, values that are far off in it say nothing.
+        // If a unit is wrong, outlying values in it mean nothing.
         let outlying = if faults.is_empty() { outlying(runs, &ways) } else { Vec::new() };
         Returned { faults, outlying }
     }
@@ -189,7 +189,7 @@ pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
     (n > 0).then(|| 0.5 * (values[(n - 1) / 2] + values[n / 2]))
 }
 
-/// Return errors larger than the way driven.
+/// Return errors larger than the distance driven.
 fn too_far(runs: &[Run], ways: &[Option<f64>], path: Option<&Path>) -> Option<Fault> {
     let distances = runs.iter().filter_map(|run| run.returned).map(|e| libm::hypot(e.x, e.y));
     let distance = median(distances.filter(|d| d.is_finite()).collect())?;
@@ -199,7 +199,7 @@ fn too_far(runs: &[Run], ways: &[Option<f64>], path: Option<&Path>) -> Option<Fa
     (distance > way).then_some(Fault::ReturnsIn { unit, distance, way })
 }
 
-/// Headings that agree with the positions once they are read as degrees, and do not as they are.
+/// Headings that agree with the positions as degrees but not as radians.
 fn in_degrees(runs: &[Run], robot: &Robot, path: Option<&Path>) -> Option<Fault> {
     let path = path?;
     let regular = |direction: Direction| {
@@ -224,7 +224,7 @@ fn in_degrees(runs: &[Run], robot: &Robot, path: Option<&Path>) -> Option<Fault>
         }
     }
     for (headings, expected) in headings.iter().zip(expected) {
-        // Degrees that were read as radians may go round; the median does not mind single typing errors.
+        // Degrees that were read as radians can wrap around; single typing errors do not change the median.
         let off = |from: f64| headings.iter().map(|heading| wrap(heading - from)).collect::<Vec<f64>>();
         let (given, turned) = (median(off(expected))?, median(off(degrees * expected))?);
         let spread = median(off(degrees * expected).into_iter().map(|own| (own - turned).abs()).collect())?;
@@ -234,7 +234,7 @@ fn in_degrees(runs: &[Run], robot: &Robot, path: Option<&Path>) -> Option<Fault>
         as_degrees += turned * turned;
         certain |= given.abs() > NEAR.max(BEYOND * error);
     }
-    // A robot that turns by chance also moves aside: headings do not scatter by themselves.
+    // A random rotation also moves the robot sideways, so headings cannot scatter alone.
     let (turns, places) = (median(turns)?, median(places)?);
     let alone = turns > WILD && places < ALONE * turns * path.length() / 8.0;
     let agree = certain && as_degrees < NEARER * NEARER * as_given;
@@ -293,7 +293,7 @@ fn outlying(runs: &[Run], ways: &[Option<f64>]) -> Vec<OutlyingReturn> {
     named
 }
 
-/// A heading as it is nearest to another; positions as they are.
+/// For a heading: the equivalent angle nearest to another one; positions are unchanged.
 fn near(value: f64, to: f64, coordinate: Coordinate) -> f64 {
     if coordinate == Coordinate::Heading { to + wrap(value - to) } else { value }
 }
@@ -308,7 +308,7 @@ fn coordinate_of(run: &Run, coordinate: Coordinate) -> Option<f64> {
     value.filter(|value| value.is_finite())
 }
 
-/// The directions of a test that have runs enough, all of one way.
+/// The directions of a test that have enough runs, all of the same distance.
 fn groups(runs: &[Run], ways: &[Option<f64>], test: TestKind) -> Vec<Group> {
     let of = |direction: Option<Direction>| {
         let own = |place: &usize| {
@@ -324,7 +324,7 @@ fn groups(runs: &[Run], ways: &[Option<f64>], test: TestKind) -> Vec<Group> {
     [Some(Direction::Cw), Some(Direction::Ccw), None].into_iter().filter_map(of).collect()
 }
 
-/// Runs whose value of a coordinate is no scatter, each with the number of the others in its group.
+/// Runs with an outlying value of a coordinate, each with the number of the other runs in its group.
 fn odd_ones(runs: &[Run], groups: &[Group], coordinate: Coordinate, level: f64) -> Vec<(usize, Deviant, usize)> {
     let mut of_groups: Vec<Vec<(usize, f64)>> = Vec::new();
     for group in groups {
@@ -333,7 +333,7 @@ fn odd_ones(runs: &[Run], groups: &[Group], coordinate: Coordinate, level: f64) 
         if own.len() < FEWEST {
             continue;
         }
-        // Headings are counted from the one that lies nearest to all.
+        // Headings are unwrapped about the one that is nearest to all.
         let spread = |from: f64| own.iter().map(|(_, value)| wrap(value - from).abs()).sum::<f64>();
         let middle = own.iter().map(|own| own.1).min_by(|a, b| spread(*a).total_cmp(&spread(*b))).unwrap_or(0.0);
         let mut own: Vec<(usize, f64)> =
@@ -359,7 +359,7 @@ fn odd_ones(runs: &[Run], groups: &[Group], coordinate: Coordinate, level: f64) 
     odd
 }
 
-/// The smallest difference between values that are not equal: what they were rounded to, at most.
+/// The smallest difference between unequal values: an upper limit of their rounding step.
 fn finest(groups: &[Vec<(usize, f64)>]) -> f64 {
     let differences = groups.iter().flat_map(|own| own.windows(2).map(|pair| pair[1].1 - pair[0].1));
     let least = differences.filter(|difference| *difference > EQUAL).fold(f64::INFINITY, f64::min);
@@ -370,8 +370,8 @@ fn mean(own: &[(usize, f64)]) -> f64 {
     own.iter().map(|(_, value)| value).sum::<f64>() / own.len().max(1) as f64
 }
 
-/// Values of each group, sorted, that are kept, with their pooled standard deviation and its degrees of freedom; `None` where nothing
-/// is certain to be wrong.
+/// Sorted values of each group that are kept, with their pooled standard deviation and its degrees of freedom; `None` if no value is
+/// certainly wrong.
 fn subset(groups: &[Vec<(usize, f64)>], least: f64, level: f64) -> Option<(Vec<std::ops::Range<usize>>, f64, f64)> {
     let all: usize = groups.iter().map(Vec::len).sum();
     let possible: usize = groups.iter().map(|own| (own.len() - 1) / 2).sum();
@@ -410,7 +410,7 @@ fn subset(groups: &[Vec<(usize, f64)>], least: f64, level: f64) -> Option<(Vec<s
     found
 }
 
-/// The neighbouring values, so many of them, that scatter least: their sum of squares about their mean, and where they stand.
+/// The `count` neighbouring values that scatter least: their sum of squares about their mean, and their range.
 fn narrowest(own: &[(usize, f64)], count: usize) -> (f64, std::ops::Range<usize>) {
     let squares = |range: &std::ops::Range<usize>| {
         let middle = mean(&own[range.clone()]);

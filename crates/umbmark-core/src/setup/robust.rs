@@ -1,7 +1,7 @@
-//! Straight-line fits that a few wild values do not move.
+//! Linear fits that a few outliers do not change.
 //!
-//! Least absolute deviations first, which bears up to half of all values being wrong, then Tukey's biweight from there, which is
-//! nearly as sharp as least squares where none is (Huber & Ronchetti 2009, Robust Statistics).
+//! First least absolute deviations, which tolerates up to half of all values being wrong; then Tukey's biweight, which is nearly as precise
+//! as least squares on clean data (Huber & Ronchetti 2009, Robust Statistics).
 
 use nalgebra::{DMatrix, SMatrix, SVector};
 
@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, SMatrix, SVector};
 const STEPS: [usize; 2] = [12, 8];
 /// The biweight gives no weight beyond this many standard deviations: 95 % efficiency for normal values.
 const BEYOND: f64 = 4.685;
-/// Directions with less than this share of the strongest one's information are left where they are.
+/// Directions with less than this share of the strongest one's information are not estimated.
 const SHOWN: f64 = 1e-9;
 /// A median absolute deviation times this is the standard deviation of normal values.
 pub(super) const DEVIATION: f64 = 1.482_602_218_505_602;
@@ -18,11 +18,11 @@ pub(super) const DEVIATION: f64 = 1.482_602_218_505_602;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Line<const K: usize> {
     pub values: [f64; K],
-    /// Standard deviation of what is left, by its median size.
+    /// Standard deviation of the residuals, from their median size.
     pub scale: f64,
 }
 
-/// The values that fit rows of K columns and a height each.
+/// Fits rows of K columns to one observation each.
 pub(super) fn fit<const K: usize>(rows: &[([f64; K], f64)]) -> Line<K> {
     let mut values = SVector::<f64, K>::zeros();
     let size = median(rows.iter().map(|(_, y)| y.abs())).max(f64::MIN_POSITIVE);
@@ -44,7 +44,7 @@ pub(super) fn biweight(off: f64) -> f64 {
     if off.abs() < 1.0 { (1.0 - off * off).powi(2) } else { 0.0 }
 }
 
-/// Weighted least squares; what the rows do not show stays zero.
+/// Weighted least squares; undetermined directions stay zero.
 fn weighted<const K: usize>(rows: &[([f64; K], f64)], weight: impl Fn(&([f64; K], f64)) -> f64) -> SVector<f64, K> {
     let (mut products, mut score) = (SMatrix::<f64, K, K>::zeros(), SVector::<f64, K>::zeros());
     for row in rows {
@@ -52,7 +52,7 @@ fn weighted<const K: usize>(rows: &[([f64; K], f64)], weight: impl Fn(&([f64; K]
         products += x * x.transpose() * w;
         score += x * (w * row.1);
     }
-    // Columns of unit length, so that what is shown does not depend on units.
+    // Columns are scaled to unit length, so that the rank does not depend on units.
     let lengths = products.diagonal().map(f64::sqrt);
     let unit = SVector::<f64, K>::from_fn(|k, _| if lengths[k] > 0.0 { 1.0 / lengths[k] } else { 0.0 });
     let eigen = DMatrix::from_fn(K, K, |i, j| products[(i, j)] * unit[i] * unit[j]).symmetric_eigen();
@@ -66,12 +66,12 @@ fn weighted<const K: usize>(rows: &[([f64; K], f64)], weight: impl Fn(&([f64; K]
     solved
 }
 
-/// The median; 0 of nothing.
+/// The median; 0 for no values.
 pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The value that this share of all lie below; 0 of nothing.
+/// The quantile of this share; 0 for no values.
 pub(super) fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     let mut values: Vec<f64> = values.collect();
     if values.is_empty() {
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
     use crate::random::Stream;
 
-    /// 400 values of seed 3, a third of them wild.
+    /// 400 values of seed 3, a third of them outliers.
     #[test]
     fn a_third_of_wild_values_moves_a_fit_by_no_more_than_its_own_scatter() {
         let mut stream = Stream::new(3, 0, 0);

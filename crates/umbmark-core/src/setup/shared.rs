@@ -1,27 +1,27 @@
-//! Whether other runs have large differences at the same place.
+//! Whether other runs have large differences at the same place, too.
 
 use super::edges::Sighting;
 
-/// A jump that other runs have at the same place is not an accident: within this distance \[m\], and more often than by chance at this level.
+/// A jump is no accident if other runs have one at the same place, within this distance \[m\], more often than chance at this level.
 const SAME_PLACE: (f64, f64) = (0.15, 1e-4);
 
 /// Where each run has large differences.
 pub(super) struct Shared {
-    /// Way of the wheels there, run by run.
+    /// Distance by the wheels at these places, run by run.
     large: Vec<Vec<f64>>,
-    /// Chance that a run has one within a place.
+    /// Probability that a run has one at a given place by chance.
     chance: f64,
 }
 
 impl Shared {
-    /// `large`: what is large in each run, whatever it is.
+    /// `large`: the large differences of each run, of any kind.
     pub fn new(runs: &[Vec<Sighting>], large: Vec<Vec<f64>>) -> Shared {
         let way: f64 = runs.iter().filter_map(|run| run.last()).map(|last| last.rolled).sum();
         let all: usize = large.iter().map(Vec::len).sum();
         Shared { large, chance: (all as f64 * 2.0 * SAME_PLACE.0 / way.max(SAME_PLACE.0)).min(1.0) }
     }
 
-    /// Whether more of the other runs have one at this place than chance would have it.
+    /// Whether more of the other runs have one at this place than expected by chance.
     pub fn stands_elsewhere(&self, run: usize, rolled: f64) -> bool {
         let others = self.large.iter().enumerate().filter(|(other, _)| *other != run);
         let there = others.filter(|(_, own)| own.iter().any(|at| (at - rolled).abs() <= SAME_PLACE.0)).count();

@@ -1,29 +1,30 @@
 //! Stretches of a few seconds in which robot and wheels disagree: a wheel spins, or the robot is pushed aside or carried.
 //!
-//! From pose to pose the difference may be within what noise makes; over the whole stretch it is not. Windows of 2, 4, 8, ... poses are
-//! looked at as edges are, and one that is far beyond the others of its length is an accident. What a law of the robot does,
-//! it does in more of them, or at the same place of other runs.
+//! From pose to pose the difference can be as small as noise; over the whole stretch it is not. Windows of 2, 4, 8, ... poses are tested as
+//! edges are, and one that is far beyond the others of its length is an accident. A physical effect of the robot shows in more windows, or
+//! at the same place of other runs.
 
 use super::edges::{Edge, JUMP, LARGE, Sighting, Spread};
 use super::robust::quantile;
 use super::shared::Shared;
 
-/// A stretch lasts no longer \[s\].
+/// Maximum duration of a stretch \[s\].
 const LONGEST: f64 = 3.0;
-/// Windows on both sides make it look longer by at most this factor.
+/// A stretch looks longer by up to this factor, because windows overlap it on both sides.
 const SEEMING: f64 = 2.0;
-/// Jumps with less time between them are one stretch \[s\].
+/// Jumps with less time than this between them belong to one stretch \[s\].
 const TOGETHER: f64 = 0.5;
 /// A stretch exceeds this multiple of this quantile of all windows of its length.
 const BEYOND: (f64, f64) = (4.0, 0.9);
-/// It also exceeds this many standard deviations: there are many windows, and their sums are less well known than single edges.
+/// It must also exceed this many standard deviations: there are many windows, and the noise of their sums is less certain than that of
+/// single edges.
 const LEAST: f64 = 1.5 * JUMP;
-/// It begins and ends where windows are below this share of that.
+/// It begins and ends where windows fall below this share of its maximum.
 const ENDS: f64 = 0.4;
-/// What fills more than this share of all poses is not an accident.
+/// Disturbances that fill more than this share of all poses are no accidents.
 const ACCIDENTS: f64 = 0.1;
 
-/// Jumps of each run with those that belong together as one, and the stretches. `kept`: the poses of each run that are not wrong.
+/// Jumps of each run, merged where they belong together, and the stretches. `kept`: the poses of each run that are not wrong.
 pub(super) fn search(
     runs: &[Vec<Sighting>],
     kept: &[Vec<usize>],
@@ -74,7 +75,7 @@ pub(super) fn search(
     join(found)
 }
 
-/// Those that overlap or follow each other in less than so much time \[s\] as one each.
+/// Merges steps that overlap or follow each other within this time \[s\].
 fn joined(run: &[Sighting], steps: impl IntoIterator<Item = Edge>, seconds: f64, spread: &Spread) -> Vec<Edge> {
     let mut joined: Vec<Edge> = Vec::new();
     for step in steps {
@@ -88,7 +89,7 @@ fn joined(run: &[Sighting], steps: impl IntoIterator<Item = Edge>, seconds: f64,
     joined
 }
 
-/// All windows over so many poses of a run that no accident falls into and that last no longer than a stretch.
+/// All windows over a number of poses of a run that contain no accident and last no longer than a stretch.
 fn windows(run: &[Sighting], kept: &[usize], found: &[Edge], length: usize, spread: &Spread) -> Vec<Edge> {
     let is_clear = |from: usize, to: usize| {
         let next = found.partition_point(|stretch| stretch.to <= from);

@@ -1,11 +1,11 @@
-//! What makes the data suspect though nothing about them is certainly wrong.
+//! What makes the data suspicious although no fault is certain.
 
 use super::{Jump, OutlyingReturn};
 
 /// One suspicion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Suspicion {
-    /// The headings of the reference are half a turn from the way the wheels drive: two robots do that.
+    /// The headings of the reference are half a turn from the direction of driving, which has two possible causes.
     TailFirst {
         /// Heading of the tracked body less that of the robot, as the columns are read \[rad\].
         yaw: f64,
@@ -29,7 +29,7 @@ pub enum Suspicion {
 }
 
 impl Suspicion {
-    /// Whether nothing that is fitted to such data should be written.
+    /// Whether a model that was fitted to such data must not be written.
     pub fn forbids_writing(&self) -> bool {
         !matches!(self, Suspicion::ManyJumps { .. })
     }

@@ -6,13 +6,13 @@ use crate::run::TickLog;
 
 /// Length of a window \[s\], where both are sampled faster.
 const LENGTH: f64 = 0.4;
-/// A window takes in no longer time than this \[s\]: in it, the motion is one arc.
+/// Maximum length of a window \[s\]: the motion in it is treated as one arc.
 const LONGEST: f64 = 2.5;
 /// Windows overlap by half; maximum number per run.
 const OVERLAP: f64 = 2.0;
 const MAX_WINDOWS: usize = 600;
 
-/// What the reference saw between two of its poses.
+/// The motion that the reference measured between two of its poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Window {
     /// Time stamps of the two \[s\].
@@ -20,10 +20,10 @@ pub(super) struct Window {
     pub to: f64,
     /// How far the tracked point moved in the room \[m\].
     pub moved: [f64; 2],
-    /// Heading at the beginning, and by how much it turned \[rad\]: as measured or, where no heading was, of the course.
+    /// Heading at the beginning and rotation \[rad\]: as measured or, without headings, of the direction of motion.
     pub heading: f64,
     pub turned: f64,
-    /// The same with full turns, as the numbers stand.
+    /// The rotation including full turns, as recorded.
     pub raw_turn: f64,
 }
 
@@ -34,7 +34,7 @@ impl Window {
     }
 }
 
-/// The windows of a run; empty where its poses are too few or too far apart.
+/// The windows of a run; empty if its poses are too few or too far apart.
 pub(super) fn windows(log: &TickLog) -> Vec<Window> {
     let time: Vec<f64> = log.reference.iter().map(|pose| log.time[pose.sample]).collect();
     if time.len() < 4 {
@@ -53,7 +53,7 @@ pub(super) fn windows(log: &TickLog) -> Vec<Window> {
         let j = time.partition_point(|t| *t < from + length - 1e-9);
         let Some(to) = time.get(j).filter(|to| **to <= from + LONGEST.min(2.0 * length)) else { continue };
         let (a, b) = (&log.reference[i], &log.reference[j]);
-        // In the frame of the file: what is wrong with headings there is not the same in that of each START.
+        // In the frame of the file, because a fault of the headings there looks different in the frame of each START.
         let (x, y) = (b.x - a.x, b.y - a.y);
         let moved = [cosine * x - sine * y, sine * x + cosine * y];
         let (heading, raw_turn) = match (a.heading, b.heading) {
@@ -65,8 +65,8 @@ pub(super) fn windows(log: &TickLog) -> Vec<Window> {
     if with_heading { windows } else { by_course(windows) }
 }
 
-/// Windows with the course in place of a heading: that halfway between the window before and the one after. Without a way there is
-/// none.
+/// Windows with the direction of motion in place of a heading: that halfway between the previous and the next window. A window without
+/// motion has none.
 fn by_course(windows: Vec<Window>) -> Vec<Window> {
     let course = |w: &Window| libm::atan2(w.moved[1], w.moved[0]);
     let way = |w: &Window| libm::hypot(w.moved[0], w.moved[1]);
@@ -75,7 +75,7 @@ fn by_course(windows: Vec<Window>) -> Vec<Window> {
         let [before, own, after] = three else { return None };
         let turned = wrap(course(after) - course(before));
         let near = after.from - before.from < 2.0 * LONGEST;
-        // From the middle of the window before to that of the one after: as long as so many windows.
+        // Time from the middle of the previous window to that of the next one, in window lengths.
         let share = (own.to - own.from) / (after.from - before.from).max(f64::MIN_POSITIVE);
         let turned = turned * share;
         let driven = three.iter().all(|w| way(w) > 0.3 * usual) && turned.abs() < 1.0;
@@ -104,7 +104,7 @@ impl<'a> Rolled<'a> {
         Rolled { log, per_tick: robot.metres_per_tick(), rate }
     }
 
-    /// How many samples are not after a time: sought from where even sampling would have it.
+    /// Number of samples up to a time; the search starts where uniform sampling would place it.
     fn after(&self, time: f64) -> usize {
         let times = &self.log.time;
         let guess = ((time - times[0]) * self.rate) as usize + 1;
@@ -118,7 +118,7 @@ impl<'a> Rolled<'a> {
         at
     }
 
-    /// Travel of the left and the right wheel by a time \[m\]: linear between samples, and beyond the ends as there.
+    /// Travel of the left and the right wheel by a time \[m\]: linear between samples, constant beyond the ends.
     pub fn at(&self, time: f64) -> [f64; 2] {
         let times = &self.log.time;
         let after = self.after(time).clamp(1, times.len().max(2) - 1);

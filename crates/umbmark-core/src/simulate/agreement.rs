@@ -1,4 +1,4 @@
-//! Simulation against replay, effect by effect: both give a law the same pieces, so both make the same motion of it.
+//! Simulation against replay, effect by effect: both pass the same pieces to a law, so both get the same motion.
 
 use super::*;
 use crate::drive::DriveKind;
@@ -8,7 +8,7 @@ use crate::path::{CIRCLE, FIGURE_EIGHT, SQUARE, SpeedProfile};
 use crate::preset::Preset;
 use crate::replay::Track;
 
-/// Numbers whose effect is drawn by chance.
+/// Numbers with a random effect.
 fn by_chance(entry: &Entry, p: &Parameter) -> bool {
     !entry.changes.include(Changes::MEAN) || matches!(p.role, Role::Scatter | Role::Count)
 }
@@ -20,7 +20,7 @@ fn put(model: &mut Model, entry: &Entry, chance: bool) {
     }
 }
 
-/// Each effect alone, and the one that all of them make together.
+/// Each effect alone, and all of them together.
 fn models() -> Vec<(&'static str, Model)> {
     let nothing = Model::new(&Robot::labmate());
     let mut together = nothing.clone();

@@ -1,4 +1,4 @@
-//! Travel by what the counters of a drive show, whatever they count.
+//! Wheel travel from the counters of a drive, whatever they count.
 
 use super::{Course, Leg};
 use crate::drive::WheelTravel;
@@ -23,8 +23,8 @@ impl Leg {
 impl Course {
     /// Travel of the axle's wheels in move `index` by whole counts \[m\].
     ///
-    /// Where only one counter moves, as on every move of the paper's paths, this is what the odometry makes of its ticks whenever it
-    /// looks at them. Where two do, it leaves out in which order they come within a tick: half a tick of way at most.
+    /// If only one counter moves, as on every move of the paper's paths, the odometry gets this result at any sampling rate. If both move,
+    /// the order of ticks is neglected, which is at most half a tick of distance.
     pub(super) fn counted(&self, index: usize) -> WheelTravel {
         let before = index.checked_sub(1).map_or([0; 2], |before| self.legs[before].stop);
         let leg = &self.legs[index];

@@ -1,4 +1,4 @@
-//! The commands of one direction of driving, as the robot's own counters will see them.
+//! The commands of one direction of driving, in terms of the robot's own counters.
 
 use crate::drive::{Counting, Robot, WheelTravel};
 use crate::engine::{MAX_TICKS, WheelLine};
@@ -23,8 +23,8 @@ pub struct Leg {
 
 /// All moves of a path in one direction.
 ///
-/// Each wheel is position-controlled, as the LabMate's: it stops when its own counter reaches the count nearest to its
-/// ideal cumulative travel. So quantisation never adds up over the moves.
+/// Each wheel is position-controlled, as the LabMate's: it stops when its own counter reaches the count nearest to its ideal cumulative
+/// travel. So quantisation errors do not accumulate over the moves.
 #[derive(Clone, Debug)]
 pub struct Course {
     /// Sense of driving.
@@ -47,7 +47,7 @@ impl Course {
             };
             for (counter, gain) in robot.drive.kind().counters().into_iter().zip(counting.gain) {
                 let ticks = gain.abs();
-                // A tick of margin for the rounding of the stops and for where within a tick the wheels come to rest.
+                // A margin of one tick, for the rounding of the stops and the rest position within a tick.
                 if !(ticks < MAX_TICKS as f64 - 2.0) {
                     return Err(SimulateError::TooManyTicks { counter, index: index + 1, ticks });
                 }
@@ -57,7 +57,7 @@ impl Course {
             legs.push(Leg { travel, stop: ideal.map(|count| count.round() as i64), counting, begins: clock, profile });
             clock += profile.duration() + path.speed.pause();
         }
-        // The turn of a move tells legs from turns, and both from arcs.
+        // The rotation of a move distinguishes legs, turns and arcs.
         let turn = |index: &usize| (legs[*index].travel.right - legs[*index].travel.left).abs();
         let mut alike: Vec<usize> = (0..legs.len()).collect();
         alike.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
@@ -78,7 +78,7 @@ impl Course {
     }
 }
 
-/// Where a wheel stands at rest: its count, and the place within the tick in 2^-32 ticks.
+/// Position of a wheel at rest: its count, and the position within the tick in 2^-32 ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rest {
     pub count: [i64; 2],

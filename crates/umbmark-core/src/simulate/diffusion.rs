@@ -10,10 +10,10 @@ use crate::random::Stream;
 ///
 /// g(t) = (e^(iωt)/2 ± (i/b) ∫_t^1 v e^(iωu) du, ±1/b)   (+ right wheel, - left wheel),
 ///
-/// so that the end pose has covariance Σ_w var_w ∫ g gᵀ dt: exact to first order in the noise. To second order its mean
-/// moves by -½ v s² ∫ t e^(iωt) dt + (i/2) c ∫ e^(iωt) dt, with heading variance s² = Σ_w var_w/b² and the covariance
-/// c = (var_R - var_L)/(2b) of heading and forward noise (midpoint convention, the limit of ever finer arcs). What is left
-/// out is the scatter of the second-order term, 5 % of the paper's leg's forward scatter in standard deviation.
+/// so that the end pose has covariance Σ_w var_w ∫ g gᵀ dt: exact to first order in the noise. To second order its mean moves by -½ v s² ∫
+/// t e^(iωt) dt + (i/2) c ∫ e^(iωt) dt, with heading variance s² = Σ_w var_w/b² and the covariance c = (var_R - var_L)/(2b) of heading and
+/// forward noise (midpoint convention, the limit of ever finer arcs). The scatter of the second-order term is neglected; for the paper's
+/// leg it is 5 % of the standard deviation of the forward scatter.
 ///
 /// All in the frame of the stretch's start. Source: covariances of Chong & Kleeman (1997) and Kelly (2004), in one form
 /// for every arc.
@@ -39,10 +39,10 @@ struct Integrals {
     swing: f64,
 }
 
-/// Rotations up to which the integrals are taken from their series: beyond it the closed forms lose less than two digits.
+/// Rotations up to which the integrals use their series; beyond this the closed forms lose less than two digits.
 const SERIES_REACH: f64 = 2.0;
 
-/// Terms of the series: the first one left out is below 1e-17 of the sum for every rotation within reach.
+/// Terms of the series: the first omitted one is below 1e-17 of the sum for every rotation in range.
 const TERMS: usize = 12;
 
 /// Coefficients of ω^2k in the three integrals, k from 0.

@@ -1,9 +1,8 @@
-//! Pieces of true motion: first listed, then worked out side by side, then chained run by run.
+//! Pieces of true motion: first listed, then computed side by side, then chained run by run.
 //!
-//! Whatever makes a stretch of driving into true motion does so as a list of pieces with constant twist: one where nothing
-//! interrupts the stretch, more where bumps, or a law that changes along the way, cut it. Where a piece ends as seen from
-//! where it began does not depend on the others. So the pieces of all runs of a test are worked out in one loop without a
-//! branch, and only the products along each run wait for each other.
+//! The true motion of a stretch is a list of pieces with constant twist: a single piece if nothing interrupts the stretch, more if bumps or
+//! a law that varies along the path cut it. The relative motion of a piece does not depend on the others. So the pieces of all runs of a
+//! test are computed in one loop without a branch; only the products along each run are sequential.
 
 use super::diffusion::Diffusion;
 use crate::effect::WheelVariance;
@@ -15,7 +14,7 @@ use crate::geometry::{Displacement2, Pose2, by_width, sinc_cos_near_zero};
 pub(super) struct Piece {
     /// Twist times time.
     pub motion: Displacement2,
-    /// What moves its end.
+    /// The noise at its end.
     pub noise: Noise,
 }
 
@@ -24,16 +23,16 @@ pub(super) struct Piece {
 pub(super) enum Noise {
     /// Not at all.
     None,
-    /// By so much.
+    /// By a known displacement.
     Moves([f64; 3]),
-    /// As wheels do that roll with this variance, by these draws from the standard normal distribution.
+    /// By wheel noise of this variance, with these draws from the standard normal distribution.
     Draws { variance: WheelVariance, normals: [f64; 3] },
 }
 
 /// Pieces side by side.
 const WIDTH: usize = 8;
 
-/// Some pieces, number by number, so that one instruction does several of them.
+/// Some pieces as a structure of arrays, so that one instruction processes several of them.
 #[derive(Clone, Debug, Default)]
 #[repr(align(64))]
 struct Block {
@@ -41,7 +40,7 @@ struct Block {
     sideways: [f64; WIDTH],
     rotation: [f64; WIDTH],
     scatter: [[f64; WIDTH]; 3],
-    /// Of the left and the right wheel, where scatter is yet to be worked out.
+    /// Variances of the left and the right wheel, for pieces whose scatter is not yet computed.
     variance: [[f64; WIDTH]; 2],
     normals: [[f64; WIDTH]; 3],
     /// Whether any scatter is.
@@ -85,7 +84,7 @@ impl Block {
         WheelVariance { left: self.variance[0][place], right: self.variance[1][place] }
     }
 
-    /// Works out the scatter of the pieces that have draws.
+    /// Computes the scatter of the pieces that have draws.
     #[inline(always)]
     fn spread(&mut self, rotation_per_metre: f64) {
         let mut any_large = false;
@@ -129,7 +128,7 @@ impl Block {
         !(self.rotation[place].abs() <= std::f64::consts::PI && self.turned(place).abs() <= std::f64::consts::PI)
     }
 
-    /// Where the pieces end as seen from where they begin, scatter included.
+    /// Relative end poses of the pieces, including scatter.
     #[inline(always)]
     fn ends(&self, ends: &mut [Motion; WIDTH]) {
         let mut x = [0.0; WIDTH];
@@ -189,13 +188,13 @@ fn work_out(instructions: Instructions, blocks: &mut [Block], ends: &mut [[Motio
 /// A run under way.
 #[derive(Clone, Copy, Debug)]
 struct Run {
-    /// Where it has come, as far as its pieces are worked out.
+    /// Its pose after the pieces computed so far.
     reached: Motion,
-    /// The first of its pieces that are not.
+    /// Its first piece that is not yet computed.
     first: usize,
 }
 
-/// The runs under way and the pieces that they have yet to drive.
+/// The present runs and their pending pieces.
 #[derive(Clone, Debug)]
 pub(super) struct Pieces {
     instructions: Instructions,
@@ -206,7 +205,7 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    /// No runs, and registers no wider than these to work them out with: the same bits on all.
+    /// No runs yet; uses registers no wider than these, with the same bits on all.
     pub(super) fn new(instructions: Instructions) -> Pieces {
         Pieces {
             instructions: instructions.min(Instructions::best()),
@@ -256,7 +255,7 @@ impl Pieces {
         self.count = 0;
     }
 
-    /// Where the runs have come, in the order in which they were begun.
+    /// The poses of the runs, in the order in which they were begun.
     pub(super) fn reached(&self) -> impl Iterator<Item = Pose2> + '_ {
         self.runs.iter().map(|run| run.reached.pose)
     }

@@ -1,4 +1,4 @@
-//! A run written down: what the encoders showed, and where the robot really was.
+//! A recorded run: the readings of the encoders, and the true poses.
 
 use super::{Rest, SimulateError, Simulator, Truth, return_error};
 use crate::dataset::{ReferencePose, ReturnError, TickLog};
@@ -8,7 +8,7 @@ use crate::engine::{SampledOdometry, TickGeometry, UNITS_PER_TICK, Update};
 use crate::geometry::Pose2;
 use crate::path::Direction;
 
-/// A simulated run with everything that can be known of it.
+/// A simulated run with all its data.
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// Ticks and measured poses.
@@ -36,16 +36,16 @@ impl Recording {
     }
 }
 
-/// The robot stands still for so long before the first and after the last move \[s\].
+/// Time that the robot rests before the first and after the last move \[s\].
 const STANDING: f64 = 1.0;
 
 impl Simulator {
     /// Drives once round the path, reading the counters `rate` times a second and measuring the absolute pose
     /// `reference_rate` times a second, both while standing before and after too.
     ///
-    /// The wheel angles are those that [`Simulator::run`] with the same streams would make; the true motion is drawn from
-    /// the same distribution, sample by sample. Effects see a [recorded](crate::effect::Context::recorded) run: what only the
-    /// steps of the robot's own odometry make is not in its ticks.
+    /// The wheel angles are those that [`Simulator::run`] with the same streams would make; the true motion is drawn from the same
+    /// distribution, sample by sample. Effects get a [recorded](crate::effect::Context::recorded) run: errors that only the steps of the
+    /// robot's own odometry cause are not in its ticks.
     pub fn record(
         &mut self,
         truth: &mut Truth,
@@ -85,7 +85,7 @@ impl Simulator {
         for sample in 0..=samples {
             let time = sample as f64 / rate;
             let driving = time - STANDING;
-            // Every move that ended since the last sample is driven to its end, the present one as far as it has come.
+            // Every move that ended since the last sample is driven to its end, and the present one up to this sample.
             while begun > 0 && begun < legs.len() && driving >= legs[begun].begins || begun == 0 && driving >= 0.0 {
                 self.advance(truth, 1.0, &mut recording.log.bumps);
                 let line = rests[begun].line_to(&rests[begun + 1]);

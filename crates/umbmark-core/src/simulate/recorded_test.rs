@@ -7,7 +7,7 @@ use crate::effect::{Model, TestKind};
 use crate::engine::Update;
 use crate::path::{Direction, Path};
 
-/// How often the counters are written down where the robot does not say \[Hz\].
+/// Default sampling rate of the counters, if the robot has none \[Hz\].
 const LOG_RATE: f64 = 100.0;
 
 /// Whether bumps are placed, so that there is an extended test to drive.

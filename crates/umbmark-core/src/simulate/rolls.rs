@@ -1,21 +1,20 @@
-//! Believed travel that waits to become true motion.
+//! Believed travel that is not yet turned into true motion.
 //!
-//! Where effects do not vary along the way, a piece of travel becomes motion by what it is alone. So the pieces of a run wait for
-//! each other's company: one effect after the other then changes all of them, and no piece waits until the one before
-//! it has been through all effects.
+//! If effects do not vary along the path, the motion of a piece depends only on its own travel. So the pieces of a run are collected, and
+//! each effect is applied to all of them at once.
 
 use crate::drive::WheelTravel;
 use crate::effect::{Chain, Context};
 use crate::geometry::Displacement2;
 
-/// What a piece of travel is.
+/// The kind of a piece of travel.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Roll {
     /// A whole stretch, whose noise is known by this number.
     Whole(usize),
     /// Some of a stretch.
     Part,
-    /// A bump, at which the wheels lose what is counted: travel that no effect on the wheels changes.
+    /// A bump, at which the wheels lose counted travel; effects on the wheels do not change it.
     Bump(WheelTravel),
 }
 
@@ -39,12 +38,12 @@ impl Rolls {
         self.kind.push(kind);
     }
 
-    /// How many that wait are no bumps.
+    /// Number of pending pieces that are not bumps.
     pub(super) fn stretches(&self) -> usize {
         self.kind.iter().filter(|kind| !matches!(kind, Roll::Bump(_))).count()
     }
 
-    /// Makes true travel and motion of all that wait.
+    /// Computes true travel and motion of all pending pieces.
     pub(super) fn work_out(&mut self, chain: &Chain<f64>, at: &Context) {
         chain.change_wheels(at, &mut self.travel);
         for (travel, kind) in self.travel.iter_mut().zip(&self.kind) {
@@ -55,7 +54,7 @@ impl Rolls {
         chain.bodies(at, &self.travel, &mut self.motion);
     }
 
-    /// What was worked out: each piece with its true travel and motion.
+    /// The computed pieces, each with its true travel and motion.
     pub(super) fn all(&self) -> impl Iterator<Item = (Roll, &WheelTravel, Displacement2)> {
         self.kind.iter().zip(&self.travel).zip(&self.motion).map(|((kind, travel), motion)| (*kind, travel, *motion))
     }

@@ -1,4 +1,4 @@
-//! Two trucks on their way: what the effects of a model, noise and bumps make of a [`Convoy`]'s commands.
+//! Two trucks under the commands of a [`Convoy`], with the effects of a model, noise and bumps.
 
 use super::{Leg, Truth, return_error};
 use crate::dataset::ReturnError;
@@ -67,7 +67,7 @@ impl Floor<f64> for Met<'_> {
     }
 }
 
-/// What bumps between two shares of a leg cost the wheels.
+/// Wheel travel lost at bumps between two shares of a leg.
 fn lost_between(bumps: &[Bump], [from, to]: [f64; 2]) -> WheelTravel {
     let met = bumps.iter().filter(|bump| from <= bump.at && bump.at < to);
     met.fold(WheelTravel::default(), |sum, bump| match bump.wheel {

@@ -12,14 +12,14 @@ use crate::geometry::{Displacement2, Pose2, Real};
 use crate::path::Direction;
 use crate::random::Stream;
 
-/// Purpose of the stream that wheel noise is drawn from; no hash of a name gives so small a number.
+/// Purpose of the stream that wheel noise is drawn from; no hash of a name is this small.
 const WHEEL_NOISE: u64 = 2;
 
 /// The effects of a model at work in one trial: deterministic chain, random parts with their streams, true poses.
 ///
-/// Where an effect [varies](Model::varies), stretches are driven in pieces of a centimetre, each with its own [`Context`];
-/// otherwise a stretch is one piece from bump to bump. Wheel noise is the same either way, one draw from bump to bump: what
-/// it turns the robot by is in the heading that later stretches see.
+/// Where an effect [varies](Model::varies), stretches are driven in pieces of a centimetre, each with its own [`Context`]; otherwise a
+/// stretch is one piece from bump to bump. Wheel noise is the same in both cases, one draw from bump to bump; its rotation is part of the
+/// heading of later stretches.
 #[derive(Debug)]
 pub struct Truth {
     drive: Drive,
@@ -31,9 +31,9 @@ pub struct Truth {
     varies: bool,
     way: Way,
     noise: Stream,
-    /// Three normal draws for each piece of travel that waits.
+    /// Three normal draws for each pending piece of travel.
     draws: Vec<[f64; 3]>,
-    /// Where effects are asked that do not vary along the way.
+    /// The context for effects that do not vary along the path.
     anywhere: Context,
     rolls: Rolls,
     pieces: Pieces,
@@ -41,7 +41,7 @@ pub struct Truth {
     believed: WheelTravel,
     /// Travel that it was commanded to have, the same in every trial.
     commanded: WheelTravel,
-    /// Bumps of the stretch that lie ahead, the nearest last.
+    /// Upcoming bumps of the stretch, the nearest last.
     ahead: Vec<Bump>,
     done: f64,
     /// Number of runs, and way, that two trucks have driven in this session.
@@ -60,7 +60,7 @@ struct RandomPart {
     stream: Stream,
 }
 
-/// Variance that the wheels of a robot with these parts gather over a true travel.
+/// Variance that the wheels of a robot with these parts accumulate over a true travel.
 fn variance(parts: &[RandomPart], travel: &WheelTravel) -> WheelVariance {
     let diffusing = parts.iter().filter(|part| part.changes.include(Changes::DIFFUSION));
     diffusing.fold(WheelVariance::default(), |sum, part| {
@@ -153,7 +153,7 @@ impl Truth {
         }
     }
 
-    /// Puts the robot at START, as far as the effects let it stand there, for a run whose ticks are recorded.
+    /// Places the robot at START, with the misplacement of the effects, for a run whose ticks are recorded.
     pub fn start(&mut self, direction: Direction) {
         self.forget();
         self.start_another(direction, true);
@@ -165,7 +165,7 @@ impl Truth {
         self.pieces.clear();
     }
 
-    /// Where the robot stands at START in one more run.
+    /// The true pose at START of one more run.
     pub(super) fn draw_start(&mut self) -> Pose2 {
         changing(&mut self.random, Changes::START_SCATTER).fold(self.chain.start(), |pose, part| {
             pose.compose(&(part.scatter.start_scatter)(&part.values, &mut part.stream))
@@ -207,7 +207,7 @@ impl Truth {
         self.chain.body(at, &travel)
     }
 
-    /// What the encoders of a link show of it.
+    /// The reading of a link's encoders.
     #[inline]
     pub(super) fn link(&self, reading: LinkReading) -> LinkReading {
         self.chain.link(reading)
@@ -224,7 +224,7 @@ impl Truth {
         measured(&self.chain, &mut self.random, at, pose)
     }
 
-    /// Begins one more run at START; where those before it end can still be asked for.
+    /// Begins one more run at START; the ends of earlier runs remain available.
     pub(super) fn start_another(&mut self, direction: Direction, recorded: bool) {
         let start = self.draw_start();
         if self.varies {
@@ -242,7 +242,7 @@ impl Truth {
         self.way.rest(duration);
     }
 
-    /// Begins a stretch, as a move of the course commands it; what it meets on the way is drawn now.
+    /// Begins a stretch, commanded by a move of the course; its bumps are drawn now.
     pub fn begin(&mut self, stretch: Stretch, leg: &Leg) {
         if self.varies {
             self.way.begin(leg, &stretch.travel);
@@ -257,13 +257,13 @@ impl Truth {
         self.done = 0.0;
     }
 
-    /// Puts one more bump ahead of the robot in the present stretch.
+    /// Adds an upcoming bump to the present stretch.
     pub fn place(&mut self, bump: Bump) {
         let behind = self.ahead.partition_point(|other| other.at >= bump.at);
         self.ahead.insert(behind, bump);
     }
 
-    /// Bumps of the stretch that lie ahead, the nearest last.
+    /// Upcoming bumps of the stretch, the nearest last.
     pub(super) fn ahead(&self) -> &[Bump] {
         &self.ahead
     }
@@ -291,7 +291,7 @@ impl Truth {
         self.rolls.push(self.believed.scaled(piece), kind);
     }
 
-    /// Makes pieces of motion of all travel that waits.
+    /// Turns all pending travel into pieces of motion.
     fn make_pieces(&mut self) {
         self.rolls.work_out(&self.chain, &self.anywhere);
         self.draws.resize(if self.noisy { self.rolls.stretches() } else { 0 }, [0.0; 3]);
@@ -311,7 +311,7 @@ impl Truth {
         self.rolls.clear();
     }
 
-    /// Moves all runs to where they have come.
+    /// Moves all runs to the end of their computed pieces.
     fn settle(&mut self) {
         self.make_pieces();
         self.pieces.settle(self.rotation_per_metre);
@@ -333,7 +333,7 @@ impl Truth {
             };
         }
         if self.noisy {
-            // Drawn as seen from where all this began, and added as seen from where it ends.
+            // It is drawn in the frame of the beginning of the stretch, and applied in the frame of its end.
             let [x, y, turned] = self.diffusion(&rolled, &moved).scatter(normals(&mut self.noise));
             let (sine, cosine) = moved.rotation.sine_cosine();
             let moves = [cosine * x + sine * y, cosine * y - sine * x, turned];
@@ -346,8 +346,8 @@ impl Truth {
         Diffusion::new(motion, &variance(&self.random, travel), self.rotation_per_metre)
     }
 
-    /// The noise of a whole stretch, taken for its commanded travel: the driven one differs by less than a tick or two,
-    /// and all stretches of one kind share it.
+    /// The noise of a whole stretch, computed for its commanded travel, which all stretches of a kind share; the driven travel differs by
+    /// less than a tick or two.
     fn find_whole_diffusion(&mut self) -> usize {
         let commanded = self.commanded;
         self.whole.iter().position(|(travel, _)| *travel == commanded).unwrap_or_else(|| {
@@ -373,7 +373,7 @@ impl Truth {
         self.pieces.reached().last().unwrap_or_default()
     }
 
-    /// What an absolute measurement shows of the true poses, each given by the time since the run began \[s\].
+    /// Absolute measurements of the true poses, each given by the time since the run began \[s\].
     pub fn measure(&mut self, at: &Sight, shown: impl Fn(f64) -> Pose2) -> Pose2 {
         let late = self.chain.late(at.time);
         measured(&self.chain, &mut self.random, &Sight { late, ..*at }, &shown(at.time - late))

@@ -1,4 +1,4 @@
-//! A run under way in small pieces, each with what effects may depend on.
+//! A run in small pieces, each with the variables of effects.
 
 use super::Leg;
 use crate::drive::{Robot, WheelTravel};
@@ -6,7 +6,7 @@ use crate::effect::{Context, Progress, RunContext};
 use crate::geometry::{Displacement2, Pose2};
 use crate::path::{Direction, Pieces, SpeedProfile};
 
-/// How far a run has come, in the robot's own terms but for its true pose.
+/// The state of a run in terms of the robot's own odometry, plus its true pose.
 #[derive(Clone, Debug)]
 pub(super) struct Way {
     robot: Robot,
@@ -14,7 +14,7 @@ pub(super) struct Way {
     pieces: Pieces,
     /// The last piece.
     at: Context,
-    /// True pose; of its place nothing but where the run began, unless that `follows`.
+    /// True pose; its place stays at the beginning of the run unless `follows` is set.
     pose: Pose2,
     follows: bool,
     /// Number of the run that comes next in its session.
@@ -24,7 +24,7 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// No session yet: [`Way::open`] comes first. The true place, beside the heading, is followed where `follows`.
+    /// No session yet: [`Way::open`] comes first. The true place is tracked, in addition to the heading, if `follows` is set.
     pub(super) fn new(robot: &Robot, follows: bool) -> Way {
         Way {
             robot: robot.clone(),
@@ -82,7 +82,7 @@ impl Way {
         Context { length: 0.0, duration: 0.0, wheel_rotation: [0.0; 2], ..self.at.at_pose(&self.pose) }
     }
 
-    /// The robot has truly moved so.
+    /// Applies a true motion of the robot.
     #[inline]
     pub(super) fn advance(&mut self, motion: &Displacement2) {
         if self.follows {
@@ -92,7 +92,7 @@ impl Way {
         }
     }
 
-    /// Noise has put the robot there, as seen from where it was.
+    /// Applies a displacement by noise, in the robot's frame.
     pub(super) fn put(&mut self, [x, y, turned]: [f64; 3]) {
         if self.follows {
             self.pose = self.pose.compose(&Pose2::new(x, y, turned));

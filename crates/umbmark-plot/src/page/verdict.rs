@@ -6,7 +6,7 @@ use umbmark_core::result::Said;
 
 use crate::study::Study;
 
-/// What a study comes to.
+/// The result of a study.
 pub fn said(study: &Study) -> Said {
     Said { name: study.name.clone(), notices: notices(study), verdict: verdict(study) }
 }

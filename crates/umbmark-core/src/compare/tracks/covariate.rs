@@ -1,4 +1,4 @@
-//! What errors may depend on, and how it is cut into bins.
+//! Variables that errors may depend on, and how their ranges are cut into bins.
 
 use super::followed::{Conditions, ErrorIncrement};
 use crate::drive::Robot;
@@ -7,13 +7,13 @@ use std::f64::consts::TAU;
 /// An error, in proportion to what was driven.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rate {
-    /// Farther than predicted, per way driven straight or in arcs \[m/m\].
+    /// Forward error per distance driven straight or in arcs \[m/m\].
     Forward,
-    /// To the left, per way driven straight or in arcs \[m/m\].
+    /// Error to the left per distance driven straight or in arcs \[m/m\].
     Sideways,
-    /// Rotation to the left, per way driven straight or in arcs \[rad/m\].
+    /// Rotation error to the left per distance driven straight or in arcs \[rad/m\].
     Yaw,
-    /// Rotation beyond the predicted, per rotation in turns on the spot \[rad/rad\].
+    /// Rotation error per rotation in turns on the spot \[rad/rad\].
     Turn,
     /// Forward displacement of the axle's centre, per rotation in turns on the spot \[m/rad\].
     TurnForward,
@@ -26,7 +26,7 @@ impl Rate {
     pub const ALL: [Rate; 6] =
         [Rate::Forward, Rate::Sideways, Rate::Yaw, Rate::Turn, Rate::TurnForward, Rate::TurnSideways];
 
-    /// Those that are asked what they depend on.
+    /// Rates that are tested for dependence on covariates.
     pub const DEPENDING: [Rate; 4] = [Rate::Forward, Rate::Sideways, Rate::Yaw, Rate::Turn];
 
     /// In words.
@@ -68,8 +68,8 @@ impl Rate {
         matches!(self, Rate::Turn | Rate::TurnForward | Rate::TurnSideways)
     }
 
-    /// Standard deviation of what counters of whole ticks leave open at one end of a move \[m, rad\]: the reading of each wheel is
-    /// uniform within a tick q, which makes q/√24 of way and q/√6 over the wheelbase of rotation.
+    /// Standard deviation by which whole ticks leave one end of a move undetermined \[m, rad\]: the reading of each wheel is uniform within
+    /// a tick q, which makes q/√24 of way and q/√6 over the wheelbase of rotation.
     pub(super) fn resolution(self, robot: &Robot) -> f64 {
         let tick = robot.metres_per_tick();
         let q = tick.left.abs().max(tick.right.abs());
@@ -79,7 +79,7 @@ impl Rate {
         }
     }
 
-    /// Error and amount of driving of a step, where it counts.
+    /// Error and amount of driving of a step, if it counts for this rate.
     pub(super) fn of(self, step: &ErrorIncrement) -> Option<[f64; 2]> {
         let ([forward, sideways, yaw], [way, rotation]) = (step.own, step.motion);
         let amount = if self.of_turns() { rotation } else { way };
@@ -111,10 +111,10 @@ enum Cut {
 
 pub(super) type Value = fn(&Conditions) -> f64;
 
-/// Something that an error may depend on.
+/// A variable that an error may depend on.
 #[derive(Clone, Copy, Debug)]
 pub struct Covariate {
-    /// Its name, as formulas of the user's own have it where they know it.
+    /// Its name; the same as in formulas, if these have it.
     pub name: &'static str,
     /// In words.
     pub title: &'static str,
@@ -125,7 +125,7 @@ pub struct Covariate {
     /// For turns on the spot.
     turning: Option<Value>,
     cut: Cut,
-    /// A sense by which the bins are kept apart: those of sense -1 first.
+    /// Separates the bins by sense: those of sense -1 first.
     split: Option<Value>,
     /// Whether runs may differ in it.
     pub between_runs: bool,
@@ -269,7 +269,7 @@ pub(super) struct Bins {
 }
 
 impl Covariate {
-    /// Whether its values come back after a full turn.
+    /// Whether its values repeat after a full turn.
     pub fn cyclic(&self) -> bool {
         matches!(self.cut, Cut::Cyclic(_))
     }
@@ -279,7 +279,7 @@ impl Covariate {
         if rate.of_turns() { self.turning } else { self.going }
     }
 
-    /// Cuts the range that it has in some steps.
+    /// Cuts its range in some steps into bins.
     pub(super) fn bins<'a>(&self, rate: Rate, steps: impl Iterator<Item = &'a ErrorIncrement>) -> Option<Bins> {
         let value = self.value(rate)?;
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -322,7 +322,7 @@ impl Bins {
         senses.iter().flat_map(of).collect()
     }
 
-    /// Which of them a step lies in; `None` where it has no sense to be put in one by.
+    /// The bin of a step; `None` if the step has no sense.
     pub fn index(&self, step: &ErrorIncrement) -> Option<usize> {
         let mut value = (self.value)(&step.at);
         if self.cyclic {

@@ -1,4 +1,4 @@
-//! A run beside what a model predicts of it: where both are, and the error that each step between two measurements adds.
+//! A run compared with its prediction by a model: both poses, and the error that each step between two measurements adds.
 
 use crate::effect::{Chain, Context};
 use crate::geometry::Pose2;
@@ -8,10 +8,10 @@ use crate::replay::Track;
 use crate::setup::PoseNoise;
 use std::ops::Range;
 
-/// Steps longer than this \[m\], or that turn by more \[rad\], say nothing of how the robot drove within them.
+/// Steps longer than this \[m, rad\] do not show how the robot drove within them.
 const LONGEST: (f64, f64) = (0.2, 0.35);
 
-/// A way whose wheels differ by less than this share is straight: less is what single ticks of the counters make of it.
+/// A step is straight if the wheels differ by less than this share; single ticks cause smaller differences.
 const STRAIGHT: f64 = 0.05;
 
 /// A run followed from measurement to measurement.
@@ -20,27 +20,27 @@ pub(super) struct Followed<'a> {
     pub direction: Option<Direction>,
     /// Poses predicted and measured, first those at START: both in the frame in which the robot stands there.
     pub places: Vec<MeasuredBlock>,
-    /// From each place to the next that is near enough.
+    /// From each place to the next, if that is near enough.
     pub steps: Vec<ErrorIncrement>,
     pub with_heading: bool,
 }
 
-/// A block of measurements, where the model has it and where it was measured.
+/// A block of measurements: predicted and measured pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MeasuredBlock {
     pub predicted: Pose2,
     pub measured: Pose2,
-    /// How many pieces of the track are made, and how far the wheels have rolled on average by then \[m\].
+    /// Number of pieces of the track until then, and mean travel of the wheels \[m\].
     pub made: usize,
     pub rolled: f64,
     /// Whether START was fitted here, so that its error is zero.
     pub starts: bool,
 }
 
-/// What lies between two neighbouring places.
+/// The step between two neighbouring places.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ErrorIncrement {
-    /// Error that it adds, seen by the robot: forward, to the left \[m\], rotation \[rad\].
+    /// Error that it adds, in the robot's frame: forward, to the left \[m\], rotation \[rad\].
     pub own: [f64; 3],
     /// Predicted motion: forward \[m\], rotation \[rad\].
     pub motion: [f64; 2],
@@ -49,13 +49,13 @@ pub(super) struct ErrorIncrement {
     pub at: Conditions,
 }
 
-/// How the robot drives in a step: rates as means over its time, the rest as in its middle.
+/// How the robot drives in a step: rates are means over its time, other values are those at its middle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Conditions {
     /// \[m/s, rad/s\]
     pub speed: f64,
     pub turn_rate: f64,
-    /// How fast the speed, and the turn rate, rise in size \[m/s², rad/s²\].
+    /// Rate of change of the size of the speed, and of the turn rate \[m/s², rad/s²\].
     pub acceleration: f64,
     pub turn_acceleration: f64,
     /// \[rad\]
@@ -83,7 +83,7 @@ impl<'a> Followed<'a> {
 }
 
 /// Measured poses are moved so that they agree with the model at START, which is fitted to the first of them where it was measured, and
-/// anew where the track jumps; else START is trusted. A heading that was not measured errs as the last one did.
+/// anew where the track jumps; else START is trusted. A heading that was not measured gets the error of the last measured one.
 fn places(run: &ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Vec<MeasuredBlock> {
     let rolled = rolled(&run.track);
     let residuals = run.residuals(chain);
@@ -110,7 +110,7 @@ fn places(run: &ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Vec<Measur
     places
 }
 
-/// How far the wheels have rolled on average after each piece, whatever way \[m\].
+/// Mean unsigned travel of the wheels after each piece \[m\].
 pub(super) fn rolled(track: &Track) -> Vec<f64> {
     let mut sum = 0.0;
     let after = track.travel().iter().map(|travel| {
@@ -133,7 +133,7 @@ fn step(track: &Track, pair: &[MeasuredBlock]) -> Option<ErrorIncrement> {
     Some(ErrorIncrement { own: [own.x, own.y, own.heading], motion: [forward, predicted.heading], turning, at })
 }
 
-/// Conditions of some pieces, and whether most of their rolling is turning; `None` where nothing moves.
+/// Driving conditions of some pieces, and whether most of their wheel travel is turning; `None` if nothing moves.
 fn conditions(track: &Track, pieces: Range<usize>, heading: f64) -> Option<(Conditions, bool)> {
     let own = &track.contexts()[pieces.clone()];
     let middle = own.get(own.len() / 2)?;

@@ -1,4 +1,4 @@
-//! Means with intervals that rest on the scatter from run to run, and their tests.
+//! Means with intervals from the scatter between runs, and tests of these means.
 
 use crate::stats::{Interval, student_t_quantile, t_two_sided};
 
@@ -7,7 +7,7 @@ use crate::stats::{Interval, student_t_quantile, t_two_sided};
 pub struct Mean {
     /// Its value.
     pub value: f64,
-    /// Its interval by Student's t, each run one value; `None` below two runs.
+    /// Its interval by Student's t with one value per run; `None` for fewer than two runs.
     pub interval: Option<Interval>,
     /// How many runs it rests on.
     pub runs: usize,
@@ -16,18 +16,18 @@ pub struct Mean {
 /// A rate in one run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Sum {
-    /// Sum of the errors, and how much was driven.
+    /// Sum of the errors, and amount of driving.
     pub error: f64,
     pub amount: f64,
-    /// How many ends of it are ends of a move, where the robot stands or changes from driving to turning.
+    /// Number of ends of moves in it, where the robot stops or changes from driving to turning.
     pub ends: usize,
 }
 
 impl Mean {
     /// Σ error / Σ amount over runs.
     ///
-    /// Interval: ± t · √(sd²(error - value · amount)/n + r² · ends) / mean amount, with r the `resolution` of the counters at one end.
-    /// Robots that stop at the same counts make the same error of less than a tick in every run; their scatter does not show it.
+    /// Interval: ± t · √(sd²(error - value · amount)/n + r² · ends) / mean amount, with r the `resolution` of the counters at one end. A
+    /// robot that stops at the same counts makes the same error of less than a tick in every run, which the scatter does not show.
     pub(super) fn rate(runs: &[Sum], resolution: f64, confidence: f64) -> Option<Mean> {
         let n = runs.len();
         let (error, amount) = runs.iter().fold((0.0, 0.0), |(e, a), run| (e + run.error, a + run.amount));

@@ -1,4 +1,4 @@
-//! Where errors are made: in which leg, turn, direction, at which speed, in which run.
+//! Where errors arise: in which leg, turn, direction, at which speed, in which run.
 
 use super::followed::{Followed, rolled};
 use super::mean::Mean;
@@ -6,12 +6,12 @@ use crate::geometry::Pose2;
 use crate::inspect::{Done, MoveDone};
 use crate::path::Direction;
 
-/// The end of a move is seen where a measurement lies within this way of the wheels \[m\], or this share of the move.
+/// The end of a move counts as measured if a measurement lies within this wheel travel \[m\], or this share of the move.
 const NEAR: (f64, f64) = (0.05, 0.1);
-/// Speeds are apart where they differ by more than this share.
+/// Speeds are different if they differ by more than this share.
 const APART: f64 = 0.15;
 
-/// By what parts of the way are gathered.
+/// How parts of the path are grouped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum By {
     /// One move of the path, in the runs of one direction.
@@ -20,7 +20,7 @@ pub enum By {
     Kind,
     /// Turns to the left and to the right.
     Sense,
-    /// Moves of a kind at about one speed; only where there are several.
+    /// Moves of a kind at about one speed; only if there are several speeds.
     Speed,
     /// Whole runs of one direction.
     Direction,
@@ -45,12 +45,12 @@ impl By {
     }
 }
 
-/// A part of the way, and the error that is made there.
+/// A part of the path, and the error that arises there.
 ///
 /// The error of one move, or of one run, is the error that it adds alone, in the frame of the predicted end: P⁻¹ M with P the predicted and M the measured motion from its beginning to its end, a stop that follows included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// By what it is gathered.
+    /// How it is grouped.
     pub by: By,
     /// What it is called: "leg 1", "turns to the left", or a run's name.
     pub name: String,
@@ -58,16 +58,16 @@ pub struct Part {
     pub direction: Option<Direction>,
     /// How many moves (or runs) it has.
     pub count: usize,
-    /// Mean error: forward, sideways \[m\], rotation \[rad\], with an interval that rests on the scatter from run to run. A rotation
-    /// that was not measured is 0.
+    /// Mean error: forward, sideways \[m\], rotation \[rad\], with an interval from the scatter between runs. A rotation that was not
+    /// measured is 0.
     pub mean: [Mean; 3],
     /// Standard deviation of single errors \[m, m, rad\], n - 1; `None` for one.
     pub spread: Option<[f64; 3]>,
     /// Its share in the mean squared error of all measured positions and, where they were measured, headings.
     ///
-    /// An error that is made stays: it moves and turns all that follows. With c the part of an error r that was made here,
-    /// the share is Σ c·r / Σ r·r over all measurements of all runs. Shares of all moves, of all kinds, of both directions, or of all
-    /// runs add up to 1. One below 0 made up for errors of others.
+    /// An error persists: it moves and rotates the rest of the path. With c the part of an error r that arises here, the share is Σ c·r / Σ
+    /// r·r over all measurements of all runs. Shares of all moves, of all kinds, of both directions, or of all runs add up to 1. A negative
+    /// share compensates errors of other parts.
     pub share: Share,
 }
 
@@ -98,7 +98,7 @@ enum MoveKind {
     Leg,
     Turn,
     Arc,
-    /// Several, between which nothing was measured.
+    /// Several moves without a measurement between them.
     Several,
 }
 
@@ -127,7 +127,7 @@ pub(super) struct Made {
     share: Share,
 }
 
-/// The moves of a run, each up to where the next begins. Those between which nothing was measured are one.
+/// The moves of a run, each up to where the next begins. Moves without a measurement between them are merged.
 pub(super) fn made(index: usize, run: &Followed, moves: &[MoveDone], time: &[f64]) -> Vec<Made> {
     let rolled = rolled(&run.observed.track);
     let made_at = |sample: usize| {
@@ -173,7 +173,7 @@ fn kind(done: &Done) -> MoveKind {
     }
 }
 
-/// Kind, name, sense and mean speed of what was driven between two places.
+/// Kind, name, sense and mean speed of the moves between two places.
 fn told(moves: &[Numbered], time: &[f64]) -> (MoveKind, String, f64, f64) {
     let [(_, m, name)] = moves else {
         let (first, last) = (moves.first().map_or(0, |m| m.0), moves.last().map_or(0, |m| m.0));
@@ -198,8 +198,8 @@ fn seen_from(run: &Followed, from: usize, to: usize) -> [f64; 3] {
 
 /// Σ c·r of each part, over all places of a run.
 ///
-/// Had the robot been as measured up to place i and as predicted from there on, it would be at M_i P_i⁻¹ P_k: the error that
-/// a part from i to j made at a later place k is what that changes from i to j.
+/// A robot that moved as measured up to place i and as predicted after it would be at M_i P_i⁻¹ P_k at a later place k. The error at k that
+/// arises between i and j is the change of this pose from i to j.
 fn shares(run: &Followed, parts: &[[usize; 2]]) -> Vec<Share> {
     let as_measured_until = |i: usize, k: usize| -> Pose2 {
         let until = &run.places[i];
@@ -276,7 +276,7 @@ fn key(by: By, m: &Made) -> Option<(String, Option<Direction>)> {
     }
 }
 
-/// Names by kind and speed, where a kind is driven at several.
+/// Names by kind and speed, for kinds that are driven at several speeds.
 fn speeds(made: &[Made]) -> Vec<Option<(String, Option<Direction>)>> {
     let groups = |kind: MoveKind| {
         let mut speeds: Vec<f64> = made.iter().filter(|m| m.kind == kind).map(|m| m.speed).collect();
@@ -295,7 +295,7 @@ fn speeds(made: &[Made]) -> Vec<Option<(String, Option<Direction>)>> {
     made.iter().map(name).collect()
 }
 
-/// A part from its moves: run, error, and share before it is divided by the whole.
+/// A part from its moves: run, error, and share before normalisation.
 fn part(
     by: By,
     name: String,

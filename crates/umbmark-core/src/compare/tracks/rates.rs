@@ -1,25 +1,25 @@
-//! Errors in proportion to what was driven: whether there are any, and what they depend on.
+//! Errors in proportion to the distance or rotation driven: whether they differ from zero, and what they depend on.
 
 use super::covariate::{COVARIATES, Covariate, Rate, Span, Value};
 use super::followed::{ErrorIncrement, Followed};
 use super::mean::{Mean, Sum, p_of_slope, p_of_zero, shared};
 use crate::drive::Robot;
 
-/// Runs differ in a covariate where their means scatter by more than this share of its range.
+/// Runs differ in a covariate if their means scatter by more than this share of its range.
 const DIFFER: f64 = 0.02;
 
-/// A rate over everything that was driven.
+/// A rate over all driving.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overall {
     /// Which.
     pub rate: Rate,
     /// Mean over the runs.
     pub mean: Mean,
-    /// p of no error at all: that of the runs' rates by Student's t; `None` below three runs.
+    /// p of a rate of zero, by Student's t over runs; `None` for fewer than three runs.
     pub p: Option<f64>,
 }
 
-/// A rate against something that it may depend on.
+/// A rate as a function of a covariate.
 #[derive(Clone, Debug)]
 pub struct Against {
     /// Which rate.
@@ -28,7 +28,7 @@ pub struct Against {
     pub covariate: &'static Covariate,
     /// The rate in each bin.
     pub bins: Vec<Bin>,
-    /// p of a rate that does not depend on it; `None` where the runs are too few, or it has no range in them.
+    /// p of a rate that does not depend on it; `None` if the runs are too few, or the covariate does not vary in them.
     pub p: Option<f64>,
 }
 
@@ -37,13 +37,13 @@ pub struct Against {
 pub struct Bin {
     /// Where.
     pub span: Span,
-    /// How much was driven there, in all runs \[m or rad\].
+    /// Amount of driving there, in all runs \[m or rad\].
     pub amount: f64,
-    /// Mean over the runs that were there; `None` where none was.
+    /// Mean over the runs with driving there; `None` if there is none.
     pub mean: Option<Mean>,
 }
 
-/// Every rate that the steps show.
+/// Every rate that the steps determine.
 pub(super) fn overall(runs: &[Followed], robot: &Robot, confidence: f64) -> Vec<Overall> {
     let of = |rate: Rate| {
         let total = |run: &Followed| sums(&run.steps, rate, 1, |_| Some(0)).remove(0);
@@ -86,7 +86,7 @@ fn shared_rate(sums: &[Sum], resolution: f64) -> f64 {
     shared(sums.iter(), resolution) / (amount * amount).max(f64::MIN_POSITIVE)
 }
 
-/// Every rate that is shown, against everything that it may depend on.
+/// Every determined rate against every covariate.
 pub(super) fn against(runs: &[Followed], overall: &[Overall], robot: &Robot, confidence: f64) -> Vec<Against> {
     let shown = Rate::DEPENDING.into_iter().filter(|rate| overall.iter().any(|o| o.rate == *rate));
     let pairs = shown.flat_map(|rate| COVARIATES.iter().map(move |covariate| (rate, covariate)));
@@ -123,7 +123,7 @@ fn ask(
 
 /// p of the bin whose rate differs most from that of the whole run, run by run: Student's t, Bonferroni over the bins.
 ///
-/// Each run is compared with itself, so neither the level nor what differs from run to run matters.
+/// Each run is compared with itself, so neither its level nor differences between runs matter.
 fn within(by_run: &[Vec<Sum>], resolution: f64) -> Option<f64> {
     let rest = |run: &Vec<Sum>, bin: usize| {
         let (error, amount) = run.iter().fold((0.0, 0.0), |(e, a), sum| (e + sum.error, a + sum.amount));
@@ -138,7 +138,7 @@ fn within(by_run: &[Vec<Sum>], resolution: f64) -> Option<f64> {
     p.iter().copied().reduce(f64::min).map(|least| (least * p.len() as f64).min(1.0))
 }
 
-/// p of the slope of the runs' rates against their mean of the covariate, where runs differ in it.
+/// p of the slope of the runs' rates against their mean of the covariate, if runs differ in it.
 fn between(runs: &[Followed], rate: Rate, value: Value, bins: &[Bin], resolution: f64) -> Option<f64> {
     let of_run = |run: &Followed| {
         let sum = sums(&run.steps, rate, 1, |_| Some(0)).remove(0);

@@ -1,8 +1,8 @@
-//! What a model explains of tracks and what not, in plain sentences.
+//! What a model explains of tracks and what it does not, in plain sentences.
 
 use super::{Against, By, Mean, Part, TracksJudged};
 
-/// A part is named where it has this share of the error.
+/// A part is named if it has this share of the error.
 const MUCH: f64 = 0.2;
 /// Maximum number of parts, and of dependences of one rate, that are named.
 const NAMED: usize = 3;
@@ -53,7 +53,7 @@ fn dependences(judged: &TracksJudged, least: f64) -> Vec<String> {
     sentences
 }
 
-/// How small an error on the whole would have shown.
+/// The smallest overall error that would have been detected.
 fn seen_to(judged: &TracksJudged) -> Option<String> {
     let half = |o: &super::Overall| {
         let (scale, unit) = o.rate.display();

@@ -11,7 +11,7 @@ use crate::path::{CIRCLE, Path, SQUARE, SpeedProfile};
 use rayon::prelude::*;
 use std::io::Write;
 
-/// A robot with usual errors of its wheels and of the reference, and further effects.
+/// A robot with usual errors of wheels and reference, plus further effects.
 fn robot_with(effects: &[(&str, &str, f64)]) -> Model {
     let mut model = Model::new(&Robot::labmate());
     let usual = [
@@ -41,7 +41,7 @@ fn p_adjusted(judged: &TracksJudged, rate: Rate, covariate: &str) -> f64 {
     asked(judged, rate, covariate).p.unwrap() * judged.tests as f64
 }
 
-/// Seed 5, 5 + 5 runs of a robot with one effect more than its model has.
+/// Seed 5, 5 + 5 runs of a robot with one effect that its model lacks.
 fn missing(effect: &str, parameter: &str, value: f64) -> TracksJudged {
     judged(&watched(&robot_with(&[(effect, parameter, value)]), 5, 5), &robot_with(&[]))
 }
@@ -60,7 +60,7 @@ fn a_kick_of_casters_shows_in_the_first_centimetres_after_turns_with_its_size_an
         assert_eq!(mean.runs, 5);
         assert!((mean.value * bin.span.sense / expected - 1.0).abs() < 0.25, "{bin:?} {expected}");
     }
-    // Leg 1 has none, legs 2 to 4 have it in the sense of the turns.
+    // Leg 1 has no kick; legs 2 to 4 have it, in the sense of the turns.
     let legs = judged.parts.iter().filter(|p| p.by == By::Move && p.name.starts_with("leg"));
     for leg in legs {
         let expected = if leg.name == "leg 1" { 0.0 } else { kick * leg.direction.unwrap().sign() };
@@ -86,7 +86,7 @@ fn a_floor_slope_shows_against_the_heading_where_it_points() {
 
 #[test]
 fn a_slip_that_grows_with_speed_shows_against_the_speed() {
-    // At two speeds: within a run only the ramps tell.
+    // Runs at two speeds: within a run, only the ramps show the effect.
     let truth = robot_with(&[("speed_slip", "s_per_m", 0.02)]);
     let path = |speed: f64| {
         let [_, acceleration, pause] = SpeedProfile::default().values();
@@ -158,7 +158,7 @@ fn whole_runs_end_with_the_error_of_their_last_place() {
     assert!((judged.end.position - (squares / 10.0).sqrt()).abs() < 1e-12);
 }
 
-/// Poses at stops alone: each move is seen from end to end, and no rate is.
+/// Poses only at stops: the error of each move is measured, but no rate.
 #[test]
 fn poses_at_stops_tell_of_moves_and_not_of_rates() {
     let mut data = watched(&robot_with(&[("leg_kick", "kick_rad", 0.02)]), 4, 5);
@@ -192,8 +192,8 @@ fn without_headings_the_way_is_still_told_and_yaw_is_not() {
     assert!(comparison.remarks.iter().any(|remark| remark.starts_with("Headings were not measured")));
 }
 
-/// A sideways motion in turns moves the poses as a marker ahead of the axle does: to a model that has it nothing is added, to one that
-/// has neither the marker's place is.
+/// A sideways motion in turns looks like a marker ahead of the axle: nothing is added to a model that has it; the marker offset is added to
+/// a model that has neither.
 #[test]
 fn the_place_of_the_marker_is_taken_from_the_motion_only_where_the_model_does_not_move_sideways_already() {
     let mut truth = robot_with(&[]);
@@ -206,7 +206,7 @@ fn the_place_of_the_marker_is_taken_from_the_motion_only_where_the_model_does_no
     assert!(right.along.position < 1.1 * without.along.position, "{} {}", right.along.position, without.along.position);
 }
 
-/// A clock that is off by 60 ms at START and right in the middle of a run: without its rate the offset makes the poses worse.
+/// A clock that is wrong by 60 ms at START and correct in the middle of a run: its offset without its rate makes the poses worse.
 #[test]
 fn offset_and_rate_of_the_clock_are_taken_together_though_neither_helps_alone() {
     let model = robot_with(&[]);

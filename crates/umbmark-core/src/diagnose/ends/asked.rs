@@ -1,4 +1,4 @@
-//! What is tested with n + n return poses: the residuals of a fitted model, against every size of every effect that it lacks.
+//! The tests with n + n return poses: the residuals of a fitted model against every size of every effect that it lacks.
 
 use super::exact::{Pattern, wilks};
 use super::moments::{Moments, Whitened};
@@ -24,7 +24,7 @@ const SHARE: f64 = 0.1;
 /// A shift of the means, clockwise and counter-clockwise.
 pub(crate) type Columns = [DVector<f64>; 2];
 
-/// One size of an effect, as the means would show it.
+/// One size of an effect, and its response in the means.
 #[derive(Clone, Debug)]
 pub(crate) struct Unit {
     pub effect: &'static Entry,
@@ -33,7 +33,7 @@ pub(crate) struct Unit {
     pub columns: Columns,
     /// Where the exact test applies.
     pub pattern: Option<Pattern>,
-    /// The shift in standard deviations of the means, less what the model absorbs.
+    /// The shift in standard deviations of the means, without the part that the model absorbs.
     pub shift: DVector<f64>,
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct Asked {
     pub runs: Vec<(usize, DVector<f64>)>,
     /// Covariance of evenly noisy wheels in the same coordinates, scaled to the scatter.
     expected: Option<DMatrix<f64>>,
-    /// What the model explains besides; empty where the coordinates leave it out already.
+    /// Columns of the model that are projected out; empty if the coordinates already exclude them.
     pub base: Vec<Columns>,
     /// The sizes that can be seen.
     pub units: Vec<Unit>,
@@ -70,14 +70,14 @@ struct Frame {
 }
 
 impl Asked {
-    /// `None` where the runs have too little scatter for any test.
+    /// `None` if the runs have too little scatter for any test.
     pub fn new(ends: &Ends, fitted: &Fitted) -> Result<Option<Asked>, FitError> {
         let Some((mut asked, frame)) = Asked::residuals(ends, fitted) else { return Ok(None) };
         asked.ask(ends, fitted, &frame)?;
         Ok(Some(asked))
     }
 
-    /// The whole model alone, beside no effect.
+    /// Only the test of the whole model, without any effect.
     pub fn nothing(ends: &Ends, fitted: &Fitted) -> Option<Asked> {
         Asked::residuals(ends, fitted).map(|(asked, _)| asked)
     }
@@ -178,10 +178,10 @@ impl Asked {
         more
     }
 
-    /// By how much the misfit would fall with each unit.
+    /// Expected decrease of the misfit for each unit.
     ///
-    /// The covariance is the scatter of these few runs, eked out by that of evenly noisy wheels as if it had been seen in as
-    /// many runs again. That says better which of several effects is the likeliest; no p-value rests on it.
+    /// The covariance is a mean of the scatter of these few runs and that of evenly noisy wheels, as if the latter came from the same
+    /// number of runs. This ranks effects more reliably; no p-value uses it.
     pub fn drops(&self) -> Vec<f64> {
         let mut eked = self.moments.clone();
         if let Some(expected) = &self.expected {
@@ -203,19 +203,19 @@ impl Asked {
         Likeness::new(&names, &DMatrix::from_fn(names.len(), names.len(), |i, j| shift(i).dot(&shift(j))))
     }
 
-    /// Units that these means cannot tell apart, as indices.
+    /// Classes of units that these means cannot separate, as indices.
     pub fn classes(&self) -> Vec<Vec<usize>> {
         let shifts: Vec<DVector<f64>> = self.units.iter().map(|unit| unit.shift.clone()).collect();
         classes::complete_linkage(&shifts, classes::ALIKE)
     }
 }
 
-/// L⁻¹ with L Lᵀ the pooled covariance; `None` where it is singular but for rounding.
+/// L⁻¹ with L Lᵀ the pooled covariance; `None` if it is singular up to rounding.
 fn whitener(moments: &Moments) -> Option<DMatrix<f64>> {
     const ROUNDING: f64 = 1e-9;
     let covariance = &moments.scatter / moments.freedom();
     let scales = DVector::from_fn(covariance.nrows(), |i, _| covariance[(i, i)].sqrt());
-    // Scatter of the size of rounding does not count.
+    // Scatter of the size of rounding errors is treated as zero.
     if scales.iter().any(|s| !(*s > 1e-12)) {
         return None;
     }
@@ -242,7 +242,7 @@ fn stacked(pattern: &Columns, counts: [f64; 2]) -> DVector<f64> {
 }
 
 impl Frame {
-    /// What a unit of a size does to the means: whitened, and in the coordinates of the tests.
+    /// Response of the means to a unit of a size: whitened, and in the coordinates of the tests.
     fn columns(&self, ends: &Ends, size: &Size) -> (Columns, Columns) {
         let of_tracks: Vec<Pose2> = size.columns.iter().map(|c| c[0]).collect();
         let shifts = ends.of_runs(&of_tracks).map(|(direction, pose)| {
@@ -255,11 +255,11 @@ impl Frame {
     }
 }
 
-/// Coordinates for the tests in each group, and what of the model is left in them.
+/// Coordinates for the tests in each group, and the part of the model that remains in them.
 ///
-/// Where the nominal model explains any mean along k directions in both groups (2k parameters), those directions are left out
-/// and exact tests apply. Each group leaves out the direction that the fitted model has there, which differs by second-order
-/// terms, and keeps the others aligned. Otherwise all coordinates are kept, and the model is the base of least squares.
+/// Where the nominal model explains any mean along k directions in both groups (2k parameters), those directions are left out and exact
+/// tests apply. Each group leaves out the direction of the fitted model there, which differs from the nominal one by second-order terms,
+/// and the other directions stay aligned between groups. Otherwise all coordinates are kept, and the model is the base of least squares.
 fn reduced(of_model: &[Columns], nominal: &[Columns], d: usize) -> ([DMatrix<f64>; 2], Vec<Columns>) {
     let everything = || ([DMatrix::identity(d, d), DMatrix::identity(d, d)], of_model.to_vec());
     if of_model.is_empty() {
@@ -295,7 +295,7 @@ fn full_left(matrix: &DMatrix<f64>) -> Option<(DMatrix<f64>, Vec<f64>)> {
     (singular[0] > 0.0).then(|| (DMatrix::from_columns(&columns), singular))
 }
 
-/// The effects of the model whose parameters do what an effect does.
+/// The effects of the model that together absorb an effect.
 fn absorbers(full: &Columns, fitted: &Fitted, frame: &Frame) -> Vec<&'static str> {
     if frame.of_model.is_empty() {
         return Vec::new();

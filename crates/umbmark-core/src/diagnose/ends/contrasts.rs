@@ -1,7 +1,7 @@
 //! The headline pictures of a square: four closure contrasts, and the circle through START.
 //!
-//! Whatever repeats on every side turns the end point about the centre of the square by the return heading error. Four of the
-//! six mean values must then vanish, c1 to c4, and every end point lies on a circle through START.
+//! Any error that repeats on every side rotates the end point about the centre of the square, by the return heading error. Four of the six
+//! mean values must then vanish, c1 to c4, and every end point lies on a circle through START.
 
 use super::Moments;
 use crate::evidence::ends::{Ends, Fitted, mirrored};
@@ -23,7 +23,7 @@ pub struct Contrast {
     pub value: f64,
     /// With the probability that was asked for.
     pub interval: Interval,
-    /// What makes it differ from zero.
+    /// What a value other than zero means.
     pub meaning: &'static str,
 }
 
@@ -83,15 +83,15 @@ pub(crate) fn contrasts(ends: &Ends, fitted: &Fitted, level: f64) -> Vec<Contras
 pub struct OnCircle {
     /// Of the runs.
     pub direction: Direction,
-    /// How far each end point lies outside the circle \[m\], run by run.
+    /// Distance of each end point outside the circle \[m\], run by run.
     pub off: Vec<f64>,
-    /// How far they lie outside on average \[m\].
+    /// Mean of these distances \[m\].
     pub mean_off: f64,
     /// Its interval.
     pub off_interval: Interval,
     /// Distance of the mean end point from START \[m\].
     pub distance: f64,
-    /// The distance that the mean return heading would bring about if it alone had turned the end point \[m\]; `None` without headings.
+    /// The distance that follows if the mean return heading alone had rotated the end point \[m\]; `None` without headings.
     pub implied: Option<f64>,
     /// Mean angle by which the end points turned about the centre, less the mean return heading \[rad\].
     pub turned_less_heading: Option<f64>,
@@ -100,13 +100,13 @@ pub struct OnCircle {
 }
 
 impl OnCircle {
-    /// Whether E_d and E_b, or anything that repeats on every side, can bring about such end poses.
+    /// Whether E_d and E_b, or another error that repeats on every side, can cause these end poses.
     pub fn explained(&self) -> bool {
         self.off_interval.contains(0.0) && self.turned_interval.is_none_or(|i| i.contains(0.0))
     }
 }
 
-/// Where the end points of each direction lie; none for other paths or single runs.
+/// The end points of each direction relative to the circle; empty for other paths or single runs.
 pub(crate) fn circle(ends: &Ends, fitted: &Fitted, level: f64) -> Vec<OnCircle> {
     let Some(side) = side(ends) else { return Vec::new() };
     let errors: Vec<Vector3<f64>> =

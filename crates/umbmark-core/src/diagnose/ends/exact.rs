@@ -1,9 +1,9 @@
 //! Tests with exact small-sample distributions, for normal runs of equal, unknown covariance.
 //!
-//! They hold where the model explains any mean in one or more directions v of the pose, and nothing else, in each direction of driving
-//! on its own: the square with E_d and E_b, where both turn the end point about the centre. What the rest of the pose shows
-//! (K with K v = 0, two contrasts for a square) has then mean zero in both directions of driving.
-//! Source: the growth-curve model of Potthoff & Roy (1964), with Rao's (1965) covariance adjustment.
+//! They hold if, in each direction of driving, the model can explain any mean along one or more directions v of the pose and none along the
+//! others. An example is the square with E_d and E_b, where both rotate the end point about the centre. The remaining coordinates of the
+//! pose (K with K v = 0, two contrasts for a square) then have mean zero in both directions of driving. Source: the growth-curve model of
+//! Potthoff & Roy (1964), with Rao's (1965) covariance adjustment.
 
 use super::moments::Moments;
 use nalgebra::DVector;
@@ -37,8 +37,8 @@ pub(crate) struct Pattern {
     pub along: DVector<f64>,
 }
 
-/// Rao's t² for the size of a pattern, and the size: the component along u, adjusted for its covariance with all others,
-/// whose means are zero whatever the size. F(1, N - q), exact.
+/// Rao's t² for the size of a pattern, and the size: the component along u, adjusted for its covariance with all others, whose means are
+/// zero for any size. F(1, N - q), exact.
 pub(crate) struct Rao {
     pub size: f64,
     pub f: f64,

@@ -1,8 +1,7 @@
 //! All tests together: p of the most significant one, corrected for all of them.
 //!
-//! Each test has its own p, exact where there is an exact test, else from simulated null tests. The smallest of them is
-//! compared with the smallest of each of many simulated null tests (Westfall & Young 1993), so tests that are nearly
-//! the same cost nearly nothing.
+//! Each test has its own p, exact where there is an exact test, else from simulated null tests. The smallest of them is compared with the
+//! smallest of each of many simulated null tests (Westfall & Young 1993), so nearly equal tests hardly cost any power.
 
 use super::asked::{Asked, Unit};
 use super::exact::wilks;
@@ -12,8 +11,8 @@ use crate::random::Stream;
 use crate::stats::{f_upper_tail, student_t_quantile};
 use rayon::prelude::*;
 
-/// p of the whole-model test is multiplied by this: most causes are in the catalogue, and each shows better in its own test. The
-/// whole-model test is there for causes that are not in the catalogue.
+/// p of the whole-model test is multiplied by this. Most causes are in the catalogue, and their own tests are more powerful; the
+/// whole-model test is for causes that are not in the catalogue.
 const WHOLE: f64 = 4.0;
 
 /// Purpose of the stream of simulated null tests.
@@ -58,7 +57,7 @@ pub(crate) fn statistics(asked: &Asked, moments: &Moments) -> Option<Statistics>
 }
 
 impl Family {
-    /// `None` where the runs have no scatter, or no effect is left to test.
+    /// `None` if the runs have no scatter or no effect is left to test.
     pub fn new(asked: &Asked, options: &Options) -> Option<Family> {
         let observed = statistics(asked, &asked.moments)?;
         let (counts, size) = (asked.moments.counts, asked.moments.size());
@@ -104,7 +103,7 @@ impl Family {
 
     /// The F above which a unit is certified at a family-wise size; infinite where there are too few draws for that size.
     pub fn critical(&self, unit: usize, size: f64) -> f64 {
-        // (1 + as_small)/(1 + draws) < size has so many numbers `as_small`.
+        // Number of values `as_small` with (1 + as_small)/(1 + draws) < size.
         let allowed = (size * (1 + self.smallest.len()) as f64 - 1.0).ceil();
         if allowed < 1.0 {
             return f64::INFINITY;
@@ -127,11 +126,11 @@ fn smallest(draw: &Statistics, judges: &[Judge], whole: &Judge) -> f64 {
     largest.map_or(smallest, |(f, judge)| smallest.min(judge.p(f)))
 }
 
-/// Where the p of a statistic comes from.
+/// Source of the p of a statistic.
 #[derive(Clone, Debug)]
 enum Judge {
     Exact([f64; 2]),
-    /// Statistics of the null tests and of the observed one, rising: all are judged alike.
+    /// Statistics of the null tests and of the observed one, in increasing order: all are treated alike.
     Simulated(Vec<f64>),
     /// There is nothing to test.
     Silent,

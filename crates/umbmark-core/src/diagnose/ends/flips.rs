@@ -1,8 +1,8 @@
 //! Sign flips of the runs' scores: a test without a noise model.
 //!
-//! Where an effect is absent, a run's score for it is as likely to be positive as negative, whatever the covariance of its
-//! coordinates. So the observed |Σ s_i| / √(Σ s_i²) is compared with that of other signs. For effects that are tested together, the
-//! greatest is compared with the greatest. Source: the sign-flip score tests of Hemerik, Goeman & Finos (2020).
+//! If an effect is absent, a run's score for it is as likely to be positive as negative, for any covariance of its coordinates. So the
+//! observed |Σ s_i| / √(Σ s_i²) is compared with that of other signs. For effects that are tested together, the largest statistic is
+//! compared with the largest under each flip. Source: the sign-flip score tests of Hemerik, Goeman & Finos (2020).
 
 use super::asked::Asked;
 use crate::random::Stream;

@@ -1,4 +1,4 @@
-//! Means and scatter of residuals: all that the tests look at.
+//! Means and scatter of residuals: the tests use nothing else.
 
 use crate::random::Stream;
 use nalgebra::{DMatrix, DVector};
@@ -36,8 +36,8 @@ impl Moments {
 
     /// Moments of as many simulated runs without any effect, where the observed ones have scatter ν I.
     ///
-    /// Their covariance is itself drawn, as uncertain as the observed runs leave it: the inverse of a Wishart matrix. Exact tests
-    /// are the same for every covariance; others would accuse too often were the estimate taken for the truth.
+    /// Their covariance is drawn too, with the uncertainty that the observed runs leave: the inverse of a Wishart matrix. Exact tests do
+    /// not depend on the covariance; other tests would have too many false alarms if the estimate were used as the true covariance.
     pub fn draw(counts: [usize; 2], size: usize, stream: &mut Stream) -> Moments {
         let freedom = counts[0] + counts[1] - 2;
         let precision = wishart(freedom, size, stream) / freedom as f64;
@@ -88,7 +88,7 @@ fn wishart(freedom: usize, size: usize, stream: &mut Stream) -> DMatrix<f64> {
     })
 }
 
-/// Least squares in units of the pooled scatter S = E/ν: means as one vector of unit variances, less what a base explains.
+/// Least squares in units of the pooled scatter S = E/ν: means as one vector of unit variances, with a base projected out.
 pub(crate) struct Whitened {
     inverse_factor: DMatrix<f64>,
     root_counts: [f64; 2],
@@ -99,7 +99,7 @@ pub(crate) struct Whitened {
 }
 
 impl Whitened {
-    /// `None` where the scatter has no inverse.
+    /// `None` if the scatter has no inverse.
     pub fn new(moments: &Moments, base: &[[DVector<f64>; 2]]) -> Option<Whitened> {
         let factor = (&moments.scatter / moments.freedom()).cholesky()?.l();
         let size = moments.size();
@@ -124,7 +124,7 @@ impl Whitened {
         column
     }
 
-    /// A pattern of both directions, whitened, without what the base explains of it.
+    /// A pattern of both directions, whitened, with the base projected out.
     pub fn column(&self, pattern: &[DVector<f64>; 2]) -> DVector<f64> {
         let column = self.whole(pattern);
         match &self.base {

@@ -85,7 +85,7 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
     Ok(diagnosis)
 }
 
-/// What a model leaves of return poses, and what of that is the same in every run of a direction.
+/// The residuals of a model on return poses, and the part that is the same in every run of a direction.
 pub(crate) fn remains(ends: &Ends, residuals: &[Vector3<f64>], options: &Options) -> Remains {
     let trail = |(run, left): (&End, &Vector3<f64>)| Trail {
         sense: run.direction.sign(),
@@ -98,7 +98,7 @@ pub(crate) fn remains(ends: &Ends, residuals: &[Vector3<f64>], options: &Options
     Remains::of(&trails, 1.0 - options.size)
 }
 
-/// What the return poses alone say of a model, where the runs were observed on the way too.
+/// What the return poses alone show about a model, for runs that were also observed on the way.
 pub(crate) struct Beside {
     pub contrasts: Vec<Contrast>,
     pub circle: Vec<OnCircle>,
@@ -119,7 +119,7 @@ impl Beside {
     }
 }
 
-/// The effect that a diagnosis without any gate would add: the one by which the misfit falls most.
+/// The effect that lowers the misfit most, without any test of significance.
 pub(crate) fn likeliest(ends: &Ends, model: &Model) -> Result<Option<&'static str>, FitError> {
     let fitted = Fitted::new(ends, model)?;
     let Some(asked) = Asked::new(ends, &fitted)? else { return Ok(None) };
@@ -128,7 +128,7 @@ pub(crate) fn likeliest(ends: &Ends, model: &Model) -> Result<Option<&'static st
     Ok(best.map(|(unit, _)| unit.effect.about.name))
 }
 
-/// Whether the size that an effect would have is one that it can have: no bump gives travel back.
+/// Whether an effect can physically have its estimated size: a bump cannot return travel.
 fn possible(asked: &Asked, unit: &Unit) -> bool {
     unit.parameter.check(one_step(asked, unit).0.value).is_ok()
 }
@@ -141,8 +141,8 @@ fn goodness_of_fit(family: &Family) -> GoodnessOfFit {
     GoodnessOfFit { name, statistic: family.observed.whole, degrees_of_freedom, p: family.p_whole }
 }
 
-/// Classes that may be certified first, then all others; each by the fall of the misfit with their best, which is the member
-/// of possible size by which the misfit falls most.
+/// Classes that may be certified come first, then all others, each ordered by the decrease of the misfit with its best member: the member
+/// of possible size that lowers the misfit most.
 fn ranking(asked: &Asked, family: &Family, flips: &[f64], size: f64) -> Vec<Suspect> {
     let mut suspects: Vec<Suspect> = Vec::new();
     let drops = asked.drops();
@@ -237,7 +237,7 @@ fn judge(diagnosis: &mut Diagnosis, asked: &Asked, family: &Family, options: &Op
     match beside.into_iter().next().filter(|second| second.p_adjusted < options.size) {
         Some(second) => {
             (diagnosis.verdict, diagnosis.certified) = (Verdict::SeveralMissing, 2);
-            // It says what it cannot be told from beside the first, and these say no more for themselves.
+            // The whole class is added as one suspect; its members are not listed again.
             let first = diagnosis.ranking.remove(0);
             diagnosis.ranking.retain(|other| !second.class.contains(&other.best));
             diagnosis.ranking.splice(0..0, [first, second]);
@@ -253,8 +253,8 @@ fn remarks_on_data(ends: &Ends, fitted: &Fitted) -> Vec<String> {
     if cw == 0 || ccw == 0 {
         let driven = if cw == 0 { "counter-clockwise" } else { "clockwise" };
         remarks.push(format!(
-            "All runs are {driven}: E_d and E_b act alike there, so they are not told apart, and no effect is either. Drive \
-             the path the other way round as well."
+            "All runs are {driven}: E_d and E_b act alike there, so neither they nor other effects can be separated. \
+             Drive the path the other way round as well."
         ));
     } else if !ends.enough() {
         remarks.push(format!(
@@ -276,8 +276,8 @@ fn remarks_on_data(ends: &Ends, fitted: &Fitted) -> Vec<String> {
     remarks
 }
 
-/// What the circle says against every effect that is the same on each side. Only where a test rejects them altogether: each
-/// interval of the circle alone errs as often as it says.
+/// The evidence of the circle against all effects that are the same on each side. It is used only if a test rejects all of them, because
+/// each interval of the circle alone has its own false-alarm rate.
 pub(crate) fn contradiction(circle: &OnCircle) -> Option<String> {
     let implied = circle.implied.filter(|_| !circle.explained())?;
     let degrees = circle.turned_less_heading?.to_degrees();

@@ -1,4 +1,4 @@
-//! Experiments that people with a tape measure can do, and how their poses scatter.
+//! Experiments that can be done with a tape measure, and the scatter of their poses.
 
 use crate::drive::Robot;
 use crate::effect::{Chain, Derived, Evaluate};
@@ -9,11 +9,11 @@ use crate::path::{CIRCLE, Direction, Path, SPIN, SQUARE, STRAIGHT, Shape, SpeedP
 use crate::replay::Track;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, Vector3};
 
-/// Carrying the robot to START, lining it up and writing the end pose down \[min\].
+/// Time to carry the robot to START, align it and write down the end pose \[min\].
 pub(crate) const MINUTES_A_RUN: f64 = 1.0;
-/// Taping a pose on the way \[min\].
+/// Time to measure a pose on the way by tape \[min\].
 const MINUTES_A_STOP: f64 = 0.5;
-/// What a tape and a protractor scatter: 2 mm and 0.15 degrees.
+/// Standard deviations of a tape and a protractor: 2 mm and 0.15 degrees.
 const TAPE: [f64; 3] = [2e-3, 2e-3, 2.6e-3];
 
 /// How poses scatter: wheel noise along the way and the tape at its end.
@@ -25,7 +25,7 @@ pub(super) struct Noise {
 }
 
 impl Noise {
-    /// From the runs: the wheel noise that gives their scatter. `None` where they have no scatter.
+    /// Wheel noise that gives the scatter of the runs; `None` if they have no scatter.
     pub fn of(ends: &Ends, fitted: &Fitted) -> Option<Noise> {
         let d = ends.coordinates();
         let shape = ends.noise_shape()?.view((0, 0), (d, d)).into_owned().cholesky()?;
@@ -39,7 +39,7 @@ impl Noise {
 struct Leg {
     track: Track,
     runs: usize,
-    /// Heading at START in the room \[rad\], seen from where it was in the data.
+    /// Heading at START in the room \[rad\], relative to that of the data.
     turned: f64,
     /// How long one run takes \[min\].
     minutes: f64,
@@ -47,11 +47,11 @@ struct Leg {
 
 /// From one observation of a run to the next.
 pub(super) struct Stage {
-    /// How an error of the pose is carried on.
+    /// Propagation of a pose error.
     carried: Matrix3<f64>,
     /// Lower triangular root of the covariance of the innovations.
     factor: DMatrix<f64>,
-    /// Gain: how much of the innovations is known from then on.
+    /// Gain of the filter.
     gain: Matrix3xX<f64>,
 }
 
@@ -71,7 +71,7 @@ impl Design {
         self.legs.iter().map(|leg| leg.stages(robot, noise)).collect()
     }
 
-    /// What some numbers do to all observations, in standard deviations: the innovation of each, given those before.
+    /// Derivatives of all observations by some numbers, in standard deviations: the innovation of each, given the earlier ones.
     pub fn columns(&self, derived: &Derived, stages: &[Vec<Stage>]) -> Vec<DVector<f64>> {
         let poses: Vec<Vec<Pose2<Dual>>> = self.legs.iter().map(|leg| leg.poses(&derived.chain)).collect();
         (0..derived.numbers.len()).map(|lane| self.column(&poses, lane, stages)).collect()
@@ -96,12 +96,12 @@ impl Design {
 }
 
 impl Leg {
-    /// Observed poses in the frame of START, wherever that looks in the room.
+    /// Observed poses in the frame of START, for any heading of START in the room.
     fn poses<T: Evaluate>(&self, chain: &Chain<T>) -> Vec<Pose2<T>> {
         if self.turned == 0.0 { self.track.poses(chain) } else { self.track.poses_turned(chain, self.turned) }
     }
 
-    /// How noise grows and is seen along the run: a Kalman filter, whose gains depend on no observation.
+    /// How noise grows and is observed along the run: a Kalman filter, whose gains do not depend on the observations.
     fn stages(&self, robot: &Robot, noise: &Noise) -> Vec<Stage> {
         let d = noise.coordinates;
         let tape = Matrix3::from_diagonal(&Vector3::from(TAPE.map(|sd| sd * sd)));
@@ -124,8 +124,8 @@ impl Leg {
         stages
     }
 
-    /// Covariance that wheel noise of unit variance a metre gathers over some pieces, and the nominal pose after them. Of two trucks
-    /// what is new to the front one; what is carried on within the pair is left out.
+    /// Covariance that wheel noise of unit variance per metre accumulates over some pieces, and the nominal pose after them. For two trucks
+    /// it contains the new noise of the front one; errors that propagate between the trucks are neglected.
     fn gathered(&self, robot: &Robot, from: Pose2, pieces: std::ops::Range<usize>) -> (Matrix3<f64>, Pose2) {
         if let Some(convoy) = self.track.convoy() {
             let end = convoy.meant(pieces.end)[0];
@@ -163,7 +163,7 @@ pub(super) fn todays(ends: &Ends) -> Design {
     Design { what: "the data".into(), legs: tracks.iter().enumerate().map(leg).collect() }
 }
 
-/// Everything that is offered, for this robot on this floor.
+/// All available experiments for this robot and floor.
 pub(super) fn designs(ends: &Ends) -> Vec<Design> {
     let robot = &ends.robot;
     let speed = ends.path.as_ref().map_or_else(SpeedProfile::default, |path| path.speed);
@@ -196,7 +196,7 @@ pub(super) fn designs(ends: &Ends) -> Vec<Design> {
     offered.into_iter().flatten().collect()
 }
 
-/// A path driven as it is, one way or both.
+/// A path driven unchanged, in one direction or both.
 fn plain(what: &str, path: Option<Path>, robot: &Robot, runs: usize, both: bool) -> Option<Design> {
     let path = path.filter(|path| path.suits(robot))?;
     let directions: &[Direction] = if both { &Direction::BOTH } else { &[Direction::Ccw] };

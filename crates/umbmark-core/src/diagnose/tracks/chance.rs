@@ -1,4 +1,4 @@
-//! What is left of tracks: what of it repeats, what each source of chance would leave, and where runs are disturbed.
+//! The residuals of tracks: which part repeats, which error each source of noise would leave, and where runs are disturbed.
 
 use crate::diagnose::options::Options;
 use crate::diagnose::remains::{Chance, Remains, Trail};
@@ -9,7 +9,7 @@ use crate::setup::PoseNoise;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-/// Number of simulated sets for a source of chance; fewer where the data has more blocks than the second number.
+/// Number of simulated sets for a source of noise; fewer if the data has more blocks than the second number.
 const SETS: (usize, usize) = (40, 400_000);
 const FEWEST_SETS: usize = 4;
 /// A disturbance moves the robot by more than this many ticks, and by more than this many standard deviations of a single pose.
@@ -19,7 +19,8 @@ const POSES: f64 = 4.0;
 const DOUBTS: u64 = 0x646f_7562;
 const NOTHING: PoseNoise = PoseNoise { position: 0.0, heading: 0.0 };
 
-/// What is left of tracks: `misses` in all, and `left` of each run without what effects of the reference do that are not in the model.
+/// The remaining error of tracks: `misses` in total, and `left` run by run, from which effects of the reference that the model lacks are
+/// subtracted.
 pub(super) fn remains(
     observed: &Observed,
     noise: &Noise,
@@ -46,7 +47,7 @@ pub(super) fn remains(
     remains
 }
 
-/// What is left of a run, at the blocks whose errors are reported.
+/// Residuals of a run at the blocks whose errors are reported.
 fn trail(run: &ObservedRun, left: &Column, noise: PoseNoise, wheelbase: f64) -> Trail {
     let rolled = run.rolled(wheelbase);
     let mut trail = Trail {
@@ -71,7 +72,7 @@ fn trail(run: &ObservedRun, left: &Column, noise: PoseNoise, wheelbase: f64) -> 
     trail
 }
 
-/// What each source of a noise would leave by itself.
+/// The error that each source of noise alone would leave.
 fn chance(observed: &Observed, noise: &Noise, seed: u64) -> Vec<Chance> {
     let blocks: usize = observed.runs.iter().map(|run| run.blocks.len()).sum();
     let sets = SETS.0.min(SETS.1 / blocks.max(1)).max(FEWEST_SETS);
@@ -108,7 +109,7 @@ fn chance(observed: &Observed, noise: &Noise, seed: u64) -> Vec<Chance> {
     wheels.chain([("noise of the reference", reference, observed.setup.noise)]).map(of).collect()
 }
 
-/// Root mean square of positions \[m\] and headings \[rad\] in simulated sets in which there is a noise alone.
+/// Root mean square of positions \[m\] and headings \[rad\] in simulated sets with only this noise.
 pub(super) fn simulated(
     observed: &Observed,
     noise: &Noise,
@@ -144,7 +145,7 @@ pub(super) fn simulated(
         .collect()
 }
 
-/// Errors of a run as its noise alone would make them: (x, y, heading) a block.
+/// Random errors of a run by its noise alone: (x, y, heading) per block.
 fn random_walk(run: &ObservedRun, noise: &Noise, single: PoseNoise, stream: &mut Stream) -> Vec<[f64; 3]> {
     let mut state = Vector3::zeros();
     let late = noise.reference_delay * stream.normal();

@@ -1,4 +1,4 @@
-//! Which effects the tracks cannot tell from one that was found.
+//! Which effects the tracks cannot separate from one that was found.
 
 use super::examination::Examination;
 use super::finding::{Answer, Finding};
@@ -9,16 +9,16 @@ use crate::evidence::Estimate;
 use crate::evidence::tracks::Projected;
 use nalgebra::DVector;
 
-/// Response that others must be able to make to be of the same class, as a cosine.
+/// Share of the response that another effect must reproduce to be of the same class, as a cosine.
 pub const ALIKE: f64 = 0.95;
 
-/// The effects whose response could be taken for that of a finding, itself not among them: the best shape of each.
+/// The effects that can mimic the response of a finding, without itself: the best shape of each.
 pub fn rivals(exam: &Examination, finding: &Finding) -> Vec<Answer> {
     let own = exam.asked[finding.answer.asked].effect();
     alike(exam, own, (&finding.answer.columns, &finding.answer.step), &finding.projected)
 }
 
-/// The same of an effect that the model has already: its name, and theirs.
+/// The same for an effect that the model already has: its name and those of its rivals.
 pub fn class_of_own(exam: &Examination, effect: &'static str) -> Vec<&'static str> {
     let (own, others): (Vec<usize>, Vec<usize>) =
         exam.free.iter().copied().partition(|column| exam.name(*column) == Some(effect));
@@ -29,7 +29,7 @@ pub fn class_of_own(exam: &Examination, effect: &'static str) -> Vec<&'static st
     std::iter::once(effect).chain(names).collect()
 }
 
-/// The effect of the catalogue that comes nearest to what one of the model does, and the share of it that this makes, as a cosine.
+/// The effect of the catalogue that is most similar to one of the model, and the share of its response that it reproduces, as a cosine.
 pub fn nearest(exam: &Examination, effect: &str) -> Option<(&'static str, f64)> {
     let (own, others): (Vec<usize>, Vec<usize>) = exam
         .base(None)
@@ -45,7 +45,7 @@ pub fn nearest(exam: &Examination, effect: &str) -> Option<(&'static str, f64)> 
     effects.filter_map(share).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The effects that can make the response of some columns, `own` not among them: the best shape of each.
+/// The effects that can reproduce the response of some columns, without `own`: the best shape of each.
 fn alike(
     exam: &Examination,
     own: Option<&Entry>,

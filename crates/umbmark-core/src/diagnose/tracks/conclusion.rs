@@ -25,31 +25,31 @@ use crate::stats::{chi_squared_upper_tail, normal_quantile};
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
-/// p by F below which a suspect is spoken of though no flips certify it.
+/// p by F below which a suspect is reported although the sign flips do not certify it.
 const LOUD: f64 = 1e-20;
-/// An effect of the catalogue that explains less than this share of what is unlisted is not near.
+/// An effect of the catalogue is not named as near if it explains less than this share of the unlisted effect.
 const NEAR: f64 = 0.5;
 
-/// What is said of a search, whether its effects are named or added to the model.
+/// The conclusion of a search, for `diagnose`, which names effects, and `learn`, which adds them.
 pub(crate) struct Conclusion {
-    /// The answer in one word, the reasons for doubt left aside.
+    /// The verdict, without regard to the reasons for doubt.
     pub verdict: Verdict,
     /// Reasons against the last model.
     pub reasons: Vec<Reason>,
-    /// What repeats most beside the last model.
+    /// The strongest pattern that repeats in the residuals of the last model.
     pub repeats: Option<Repeated>,
     /// What the last model leaves.
     pub remains: Remains,
-    /// What is missing from the last model and not in the catalogue.
+    /// An effect outside the catalogue that the last model lacks.
     pub dependence: Option<Dependence>,
-    /// Drives that would tell apart the members of the classes that were found.
+    /// Drives that would separate the members of the classes that were found.
     pub experiments: Vec<Experiment>,
-    /// What to say of members that no drive tells apart.
+    /// Remarks on members that no drive separates.
     pub hints: Vec<String>,
 }
 
 impl Conclusion {
-    /// What is said of a search.
+    /// The conclusion of a search.
     pub fn new(search: &mut Search, options: &Options) -> Result<Conclusion, FitError> {
         let repeats = search.repeats(options).cloned();
         let (last, left) = (search.last(), &search.left);
@@ -68,7 +68,7 @@ impl Conclusion {
     }
 }
 
-/// The answer to a search in one word.
+/// The verdict of a search.
 fn verdict(search: &Search) -> Verdict {
     match (&search.left.smooth, search.added.len()) {
         _ if search.last().fitted.observed.runs.len() < FEWEST => Verdict::NotEnoughData,
@@ -79,7 +79,7 @@ fn verdict(search: &Search) -> Verdict {
     }
 }
 
-/// Drives that would tell apart the members of a certified class, and for those that none does, what their own pages say.
+/// Drives that would separate the members of a certified class; for members that no drive separates, the advice of their own pages.
 fn next_experiments(exam: &Examination, added: &Added) -> Result<(Vec<Experiment>, Vec<String>), FitError> {
     let Added { suspect, by } = added;
     let finding = match by {
@@ -99,7 +99,7 @@ fn next_experiments(exam: &Examination, added: &Added) -> Result<(Vec<Experiment
     Ok((told, hints))
 }
 
-/// What stands far out by F and is not certified by the flips: these runs are too few, or too unlike, to vouch for it.
+/// A remark on a suspect that is very significant by F but not by sign flips, because the runs are too few or too different.
 pub(crate) fn uncertified(asked: &[Suspect], options: &Options) -> Option<String> {
     let loud = asked.first().filter(|s| s.p < LOUD && s.p_adjusted > options.size)?;
     Some(format!(
@@ -110,7 +110,7 @@ pub(crate) fn uncertified(asked: &[Suspect], options: &Options) -> Option<String
     ))
 }
 
-/// The diagnosis of a model that nothing is added to: what it cannot see, and what else is to be said of it.
+/// The diagnosis of the final model: what the data cannot show, and further remarks.
 pub(crate) fn of_model(
     exam: Examination,
     dependence: Option<Dependence>,
@@ -144,14 +144,14 @@ pub(crate) fn of_model(
     })
 }
 
-/// What the data cannot see, and the least that it would see.
+/// What the data cannot show, and the minimum detectable sizes.
 fn visibility(exam: &Examination) -> (Vec<Unseen>, Vec<Detectable>) {
     let products = &exam.system.whole;
     let surely = normal_quantile(0.975) + normal_quantile(0.8);
     let (mut unseen, mut detectable) = (Vec::new(), Vec::new());
     for (index, asked) in exam.asked.iter().enumerate() {
         let Question::Effect(effect, parameters) = &asked.question else { continue };
-        // Where shapes were tried, the usual one comes first and stands for all.
+        // If several shapes were tried, the usual one comes first and represents them.
         if index > 0 && exam.asked[index - 1].effect() == Some(*effect) {
             continue;
         }
@@ -204,7 +204,7 @@ fn absorbing(exam: &Examination, products: &DMatrix<f64>, base: &[usize], column
     nearest.and_then(|column| exam.name(*column)).into_iter().collect()
 }
 
-/// Tests of the model as a whole: errors that repeat themselves along the way, and innovations that remember.
+/// Tests of the model as a whole: repeating errors along the path, and correlated innovations.
 fn whole_model(exam: &Examination, options: &Options) -> Vec<GoodnessOfFit> {
     let mut tests: Vec<GoodnessOfFit> = significance::smooths(exam, options)
         .iter()

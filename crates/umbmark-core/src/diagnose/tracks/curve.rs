@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Points of a curve.
 const POINTS: usize = 17;
-/// What happens so far after a turn is not drawn \[m\].
+/// Maximum distance after a turn that is drawn \[m\].
 const FAR_FROM_TURN: f64 = 0.6;
 
 /// A smooth dependence, in numbers.
@@ -56,7 +56,7 @@ pub fn curve(exam: &Examination, finding: &Finding, covariate: &Covariate, motio
     }
 }
 
-/// Where a curve is given: over the range of the covariate in the runs.
+/// Places at which a curve is given: over the range of the covariate in the runs.
 fn places(exam: &Examination, covariate: &Covariate, scales: &Scales) -> Vec<f64> {
     let (low, high) = match covariate.exposure {
         Exposure::WheelWay(_) => (0.0, TAU),

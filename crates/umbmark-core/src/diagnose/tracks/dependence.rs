@@ -7,7 +7,7 @@ use super::responses::Question;
 use super::suggestion::{Suggestion, suggestion};
 use crate::diagnose::suspect::Suspect;
 
-/// What is missing and not in the catalogue.
+/// A missing effect that is not in the catalogue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dependence {
     /// The motion that it adds to: "forward", "sideways" or "yaw".
@@ -20,9 +20,9 @@ pub struct Dependence {
     pub p_adjusted: f64,
     /// By how much the misfit would fall, in units of the noise variance.
     pub drop: f64,
-    /// What it adds, over all that the runs show of what it depends on.
+    /// What it adds, over the range of the covariate in the runs.
     pub curve: Curve,
-    /// A formula that does the same, where one of a small family does.
+    /// A formula with the same effect, if one of a small family fits.
     pub suggestion: Option<Suggestion>,
     /// The effect of the catalogue that comes nearest, and the share of the drop that it explains.
     pub nearest: Option<(&'static str, f64)>,

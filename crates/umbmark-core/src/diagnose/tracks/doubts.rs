@@ -29,11 +29,11 @@ const AT_LIMIT: f64 = 0.9;
 const LEAST: (f64, f64) = (1.0, 1.0);
 /// Number of simulated sets that errors along the way are compared with; fewer where the data has more blocks than the second number.
 const SETS: (usize, usize) = (100, 2_000_000);
-/// Errors may be larger than the largest of nineteen in twenty simulated sets by this factor: noise that remembers over metres makes
-/// drifts 2.6 times as wide as the noise model believes.
+/// Errors may exceed the 95 % quantile of simulated sets by this factor: noise that is correlated over metres makes drifts 2.6 times as
+/// large as the noise model predicts.
 const REMEMBERS: f64 = 2.5;
 
-/// The reasons by noise, jumps and the size of what is left.
+/// Reasons from the noise, the jumps and the size of the residuals.
 pub(super) fn of_model(observed: &Observed, model: &Model, noise: &Noise, left: &Misses, seed: u64) -> Vec<Reason> {
     let mut reasons: Vec<Reason> = observed.setup.faults.iter().cloned().map(Reason::Fault).collect();
     reasons.extend(observed.setup.tail_first(&observed.robot).map(Reason::Data));
@@ -51,8 +51,8 @@ fn of_noise(observed: &Observed, noise: &Noise, wheelbase: f64) -> Vec<Reason> {
         blocks.map(|block| of(&block.growth)).sum::<f64>() / observed.runs.len().max(1) as f64
     };
     let (drives, turns) = (of_run(|g| g.way) > LEAST.0, of_run(|g| g.heading_per_radian[5]) > LEAST.1);
-    /// What it is called, where it stands, whether the runs show it, by how much more of it is usual, and its unit with how many of it
-    /// make one of SI.
+    /// Name, accessor, whether the runs determine it, factor by which a larger value is still usual, unit of the report, and that unit per
+    /// SI unit.
     type Size = (&'static str, fn(&Noise) -> f64, bool, f64, f64, &'static str);
     let sizes: [Size; 8] = [
         ("heading noise of the wheels", |n| n.heading_per_metre, drives, slim, 1e3, "mrad per root metre"),
@@ -75,7 +75,7 @@ fn of_noise(observed: &Observed, noise: &Noise, wheelbase: f64) -> Vec<Reason> {
     told.collect()
 }
 
-/// Whether positions and headings along the way are off by more than the noise would have them.
+/// Whether errors of positions and headings along the path exceed those of the noise.
 fn of_size(observed: &Observed, noise: &Noise, left: &Misses, seed: u64) -> Vec<Reason> {
     let blocks: usize = observed.runs.iter().map(|run| run.blocks.len()).sum();
     let sets = SETS.0.min(SETS.1 / blocks.max(1)).max(20);

@@ -1,4 +1,4 @@
-//! A fitted model on tracks beside everything that it may be missing.
+//! A fitted model on tracks, with the columns of everything that it may be missing.
 
 use super::finding::{Answer, Finding, worth};
 use super::responses::{self, Asked, Question, Responses};
@@ -12,7 +12,7 @@ use std::sync::{Arc, OnceLock};
 
 /// At its usual size, a candidate must move the observations by this many standard deviations to be tested.
 const VISIBLE: f64 = 0.3;
-/// Groups that are fitted out for a clean estimate of the noise, and the drop that each must bring a column.
+/// Maximum number of groups that are projected out to estimate the noise, and the decrease per column that each must bring.
 const CLEANED: usize = 6;
 const WORTH_CLEANING: f64 = 15.0;
 
@@ -29,25 +29,25 @@ pub struct Examination {
     pub free: Vec<usize>,
     /// Errors in metres and radians, by the columns of the model and of the catalogue's effects.
     pub errors: Errors,
-    /// What the columns of the model and of the catalogue's effects are derivatives by.
+    /// The numbers by which the columns of the model and of the catalogue's effects are derivatives.
     numbers: Vec<Number>,
     columns: Vec<Vec<Column>>,
     /// The true poses along which the tested columns were computed, run by run.
     pub along: Vec<Arc<[Pose2]>>,
-    /// What was found of the smooths, once they were looked at.
+    /// Findings about the smooths, once these have been tested.
     pub smooths: OnceLock<Vec<Finding>>,
 }
 
 impl Examination {
-    /// Asks a fitted model about every effect of the catalogue that it lacks, and every smooth.
+    /// Prepares the test of every effect of the catalogue that a fitted model lacks, and of every smooth.
     pub fn new(fitted: Fitted) -> Result<Examination, ModelError> {
         let responses = Responses::new(&fitted)?;
         Ok(Examination::by(fitted, responses))
     }
 
-    /// The same of a model that has grown from that of this one.
+    /// The same for a model that has grown from this one's.
     pub fn of_grown(&self, fitted: Fitted) -> Result<Examination, ModelError> {
-        // A delay shows another moment of every start and stop: from pose to pose, responses change much.
+        // A delay shifts the moments of all starts and stops, so the responses change much from pose to pose.
         let known = |effect: &Law| self.fitted.model.parts().iter().any(|part| part.effect == *effect);
         let mut effects = fitted.model.parts().iter().map(|part| &part.effect);
         let sees_alike =
@@ -57,7 +57,7 @@ impl Examination {
         Ok(Examination::by(fitted, responses))
     }
 
-    /// What a grown model still lacks of what was tested.
+    /// The tested effects that a grown model still lacks.
     fn lacked_by(&self, model: &Model) -> Responses {
         let known = |effect: &Entry| model.parts().iter().any(|part| part.effect == *effect);
         let (mut asked, mut kept) = (Vec::new(), Vec::new());
@@ -95,7 +95,7 @@ impl Examination {
         examination
     }
 
-    /// Estimates the noise again with the most evident missing effects fitted out, so that it is noise alone.
+    /// Estimates the noise again with the most significant missing effects projected out, so that they do not inflate it.
     fn clean(&mut self) {
         let mut out = self.base(None);
         let mut added = 0;
@@ -131,7 +131,7 @@ impl Examination {
         Errors::new(&self.fitted.observed, &self.system, &self.columns, which)
     }
 
-    /// Columns that are fitted out when a group is tested: the model's own and those of the reference, except the group's.
+    /// Columns that are projected out when a group is tested: those of the model and of the reference, except the group's.
     pub fn base(&self, asked: Option<usize>) -> Vec<usize> {
         let others = self.asked.iter().enumerate().filter(|(i, other)| other.nuisance && Some(*i) != asked);
         let mut base = self.free.clone();
@@ -194,14 +194,14 @@ impl Examination {
         })
     }
 
-    /// Errors of runs left out without some of the model's own columns, which are at nothing, and the columns `beside` fitted to the
-    /// others.
+    /// Errors of held-out runs without some of the model's own columns, which are set to zero effect, and with the columns `beside` fitted
+    /// to the other runs.
     pub fn left_out_without(&self, own: &[usize], beside: &[usize]) -> Misses {
         let nothing: Vec<f64> = own.iter().map(|column| self.departure(*column)).collect();
         self.errors.misses(|run| {
             let mut products = self.system.without(run);
             let residual = products.ncols() - 1;
-            // What the effect does is left to the others.
+            // The other columns take over what the effect explains.
             for (column, value) in own.iter().zip(&nothing) {
                 let added = products.column(*column) * *value;
                 products.set_column(residual, &(products.column(residual) + added));
@@ -212,7 +212,7 @@ impl Examination {
         })
     }
 
-    /// How far one of the model's free values is from that which does nothing.
+    /// Distance of one of the model's free values from the value without effect.
     pub fn departure(&self, column: usize) -> f64 {
         let place = self.fitted.free[column];
         let model = &self.fitted.model;
@@ -254,13 +254,13 @@ impl Examination {
         (q, freedom as f64)
     }
 
-    /// The answer of every group that `wanted` picks and the data shows, beside a base.
+    /// The answer of every group that `wanted` selects and the data determines, with a base projected out.
     pub fn answers(&self, projected: &Projected, wanted: impl Fn(&Asked) -> bool) -> Vec<Answer> {
         let asked = self.asked.iter().enumerate().filter(|(_, asked)| wanted(asked));
         asked.filter_map(|(index, _)| self.answer(projected, &self.system.whole, index)).collect()
     }
 
-    /// The answer of one group, where the data shows it.
+    /// The answer of one group, if the data determines it.
     pub fn answer(&self, projected: &Projected, products: &DMatrix<f64>, index: usize) -> Option<Answer> {
         let asked = &self.asked[index];
         let shown = asked.columns.iter().enumerate().filter(|(k, column)| {

@@ -1,8 +1,8 @@
-//! What to drive next: the run that would tell apart what these tracks could not, or show what they hide.
+//! What to drive next: the run that would separate effects that these tracks cannot, or show effects that they hide.
 //!
-//! The worth of a drive is judged as for return poses ([`next_experiments`](super::super::experiments)): how many standard
-//! deviations "the truth is j" would lie from all that the model with k in its place can predict, by old and new data together. Tracks
-//! that are yet to be driven are whitened with the noise of this robot as fitted, so their products simply add to today's.
+//! The worth of a drive is judged as for return poses ([`next_experiments`](super::super::experiments)): the distance, in standard
+//! deviations, between the prediction of j and the closest prediction of the model with k in its place, for old and new data together.
+//! Planned tracks are whitened with this robot's fitted noise, so their products are simply added to the present ones.
 
 use super::class::rivals;
 use super::examination::Examination;
@@ -28,14 +28,14 @@ use std::sync::Arc;
 const RUNS: usize = 3;
 /// Names of laws that are indistinguishable from the one taken, as in their table.
 const LAWS: [&str; 8] = ["law_1", "law_2", "law_3", "law_4", "law_5", "law_6", "law_7", "law_8"];
-/// What a size below the noise is separated from.
+/// Name of the alternative for a size below the noise.
 const NOISE: &str = "noise";
 
-/// A drive on offer.
+/// An available drive.
 struct Drive {
     what: String,
     path: Path,
-    /// Heading at START in the room \[rad\], seen from where it was in the data.
+    /// Heading at START in the room \[rad\], relative to that of the data.
     turned: f64,
     directions: &'static [Direction],
 }
@@ -50,8 +50,8 @@ struct Doubt {
     against: Vec<usize>,
 }
 
-/// Drives that would tell apart the members of certified classes, and drives that would show what is hidden; the most telling per
-/// minute first.
+/// Drives that would separate the members of certified classes, and drives that would show hidden effects; the most informative per minute
+/// first.
 pub fn next(exam: &Examination, certified: &[&Finding], unseen: &[Unseen]) -> Result<Vec<Experiment>, FitError> {
     let mut doubts: Vec<Doubt> = certified.iter().flat_map(|finding| of_class(exam, finding)).collect();
     doubts.extend(unseen.iter().flat_map(|unseen| of_unseen(exam, unseen)));
@@ -60,8 +60,8 @@ pub fn next(exam: &Examination, certified: &[&Finding], unseen: &[Unseen]) -> Re
     Ok(experiments)
 }
 
-/// Every drive on offer for telling two effects apart, together with these tracks, at the hardest of their usual sizes; the most
-/// telling per minute first.
+/// Every available drive that separates two effects, together with these tracks, at the usual size that is hardest to separate; the most
+/// informative per minute first.
 pub fn separating(exam: &Examination, pair: [&'static str; 2]) -> Result<Vec<Experiment>, FitError> {
     let asked = pair.map(|name| exam.asked.iter().position(|a| a.effect().is_some_and(|e| e.about.name == name)));
     let of = |truth: Option<usize>, rival: Option<usize>| {
@@ -85,13 +85,13 @@ pub fn separating(exam: &Examination, pair: [&'static str; 2]) -> Result<Vec<Exp
     Ok(experiments)
 }
 
-/// Drives that would tell a law from others that these tracks cannot tell from it, the most telling per minute for each: `exam` is of the
-/// model that had none of them yet.
+/// Drives that would separate a law from its rivals in these tracks, the most informative per minute for each: `exam` is of the model that
+/// had none of them yet.
 pub fn of_laws(exam: &Examination, repeated: &Repeated) -> Result<Vec<Experiment>, FitError> {
     let mut model = exam.fitted.model.clone();
     let own_numbers: Vec<Number> = exam.base(None).iter().filter_map(|column| exam.number(*column)).collect();
     let mut numbers = own_numbers.clone();
-    // The places of the numbers of a law, those that change nothing but its shape left out, and their values.
+    // Indices and values of the numbers of a law, without those that only change its shape.
     let mut adopt = |law: &UnlistedLaw, name: Option<&'static str>| -> Option<(Vec<usize>, Vec<f64>, &'static str)> {
         let part = law.model.as_ref()?.parts().first()?.clone();
         let Law::Formula(formula) = &part.effect else { return None };
@@ -132,7 +132,7 @@ pub fn of_laws(exam: &Examination, repeated: &Repeated) -> Result<Vec<Experiment
     Ok(offers(exam, &basis, &doubts)?.into_iter().filter_map(best).collect())
 }
 
-/// What predicts the drives on offer.
+/// The linear system for predictions of the available drives.
 struct Basis<'a> {
     model: &'a Model,
     /// What its columns are derivatives by.
@@ -141,7 +141,7 @@ struct Basis<'a> {
     today: DMatrix<f64>,
 }
 
-/// Every drive on offer, for each pair in doubt by columns of an examination.
+/// Every available drive, for each pair of rivals given by columns of an examination.
 fn offers_of(exam: &Examination, doubts: &[Doubt]) -> Result<Vec<Vec<Experiment>>, FitError> {
     let mut columns: Vec<usize> = doubts.iter().flat_map(|d| d.truth.iter().chain(&d.against)).copied().collect();
     columns.sort_unstable();
@@ -154,7 +154,7 @@ fn offers_of(exam: &Examination, doubts: &[Doubt]) -> Result<Vec<Vec<Experiment>
     offers(exam, &basis, &doubts.iter().map(placed).collect::<Vec<_>>())
 }
 
-/// Every drive on offer, for each pair in doubt by columns of a basis.
+/// Every available drive, for each pair of rivals given by columns of a basis.
 fn offers(exam: &Examination, basis: &Basis, doubts: &[Doubt]) -> Result<Vec<Vec<Experiment>>, FitError> {
     let drives = drives(exam);
     let told: Vec<DMatrix<f64>> = drives
@@ -184,7 +184,7 @@ fn pairs(doubts: &[Doubt]) -> Vec<[&'static str; 2]> {
     pairs
 }
 
-/// A finding against each other member of its class, either being the truth.
+/// A finding against each other member of its class; either may be true.
 fn of_class(exam: &Examination, finding: &Finding) -> Vec<Doubt> {
     let name = |answer: &Answer| exam.asked[answer.asked].effect().map_or("", |effect| effect.about.name);
     let own = &finding.answer;
@@ -221,7 +221,7 @@ fn of_unseen(exam: &Examination, unseen: &Unseen) -> Vec<Doubt> {
 }
 
 impl Doubt {
-    /// How far the truth lies from all that the others can predict, in standard deviations.
+    /// Distance between the prediction of the truth and the closest prediction of the others, in standard deviations.
     fn distance(&self, products: &DMatrix<f64>) -> f64 {
         let against: Vec<usize> = self.against.iter().copied().filter(|c| products[(*c, *c)] > 0.0).collect();
         let left = Projected::new(products, &against).information(&self.truth);
@@ -261,7 +261,7 @@ impl Drive {
         Ok(gram(&white.values, white.columns))
     }
 
-    /// The model of a robot that stands as this drive has it.
+    /// The model of a robot with the START heading of this drive.
     fn at_start(&self, model: &Model) -> Result<Model, ModelError> {
         let mut model = model.clone();
         if self.turned != 0.0 {
@@ -272,7 +272,7 @@ impl Drive {
     }
 }
 
-/// All drives on offer to this robot.
+/// All drives that are available for this robot.
 fn drives(exam: &Examination) -> Vec<Drive> {
     let path = exam.fitted.observed.path.as_ref();
     let speed = path.map_or_else(SpeedProfile::default, |path| path.speed);
@@ -309,7 +309,7 @@ fn drives(exam: &Examination) -> Vec<Drive> {
     offered.into_iter().flatten().collect()
 }
 
-/// A straight is the same either way.
+/// A straight line is the same in both directions.
 fn one_way(drive: Drive) -> Drive {
     let what = drive.what.replace(&format!("{RUNS} runs each way"), &format!("{RUNS} runs"));
     Drive { what, directions: &[Direction::Ccw], ..drive }

@@ -1,11 +1,11 @@
-//! What a group of columns explains beside a fitted model, and how sure that is.
+//! What a group of columns explains beyond a fitted model, and how significant that is.
 
 use crate::diagnose::options::Options;
 use crate::evidence::tracks::Projected;
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
-/// Share by which errors in runs left out must fall for an unlisted effect to be spoken of.
+/// Share by which errors in held-out runs must fall for an unlisted effect to be reported.
 pub const TELLING: f64 = 0.1;
 
 /// A group after one step from zero.
@@ -13,9 +13,9 @@ pub const TELLING: f64 = 0.1;
 pub struct Answer {
     /// Which of [`Examination::asked`].
     pub asked: usize,
-    /// Its columns that the rest of the model leaves visible.
+    /// Its columns that the rest of the model does not absorb.
     pub columns: Vec<usize>,
-    /// What it takes off the sum of squares.
+    /// Decrease of the sum of squares.
     pub drop: f64,
     /// Values of the columns.
     pub step: DVector<f64>,
@@ -31,7 +31,7 @@ pub struct Finding {
     /// Family-wise p by F and Bonferroni, among effects (or among smooths): by the noise model, or by the scatter of the runs,
     /// whichever is larger.
     pub p_f: f64,
-    /// Family-wise p by sign flips; 1 where F does not accuse, which no flips can change.
+    /// Family-wise p by sign flips; 1 if F is not significant, which flips could not change.
     pub p_flips: f64,
     /// Degrees of freedom of F.
     pub degrees_of_freedom: [f64; 2],
@@ -43,7 +43,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// Whether both tests accuse it.
+    /// Whether both tests are significant.
     pub fn certified(&self, options: &Options) -> bool {
         self.p_f <= options.size && self.p_flips <= options.size
     }
@@ -59,7 +59,7 @@ impl Finding {
     }
 }
 
-/// How much better a group makes the fit than as many columns of nothing would.
+/// How much a group improves the fit beyond the same number of random columns.
 pub fn worth(answer: &Answer) -> f64 {
     worth_of(answer.drop, answer.columns.len())
 }

@@ -1,12 +1,12 @@
 //! Sign flips: a test without a noise model.
 //!
-//! Where nothing is missing, the score of a run for an effect is as likely the one sign as the other. Flipping the signs of all runs'
-//! scores at once therefore gives other outcomes of the same experiment, whatever the noise within a run looks like, and
-//! the greatest statistic among all effects is compared with the greatest after each flip.
+//! If nothing is missing, the score of a run for an effect is positive or negative with equal probability. Flipping the signs of the runs'
+//! scores therefore gives other outcomes of the same experiment, for any noise within runs. The largest statistic of all effects is
+//! compared with the largest under each flip.
 //!
-//! Scores are taken beside fitted columns, so a flipped sum scatters less than the sum as it is: the fit has already taken from
-//! it what looks like those columns, and flipping undoes that. Each sum is therefore measured against its own
-//! covariance under its own flips. Without this the flips accuse too often where there are about as many fitted columns as runs.
+//! Scores are computed after other columns are projected out, so a flipped sum and the observed sum have different covariances. Each sum is
+//! therefore standardised by its own covariance under its own flips. Without this, there are too many false alarms if there are about as
+//! many fitted columns as runs.
 //!
 //! Source: Hemerik, Goeman & Finos (2020), Robust testing in generalized linear models by sign flipping score contributions;
 //! standardised by the flip's own variance, De Santis, Goeman, Davenport, Hemerik & Finos (2022); the greatest statistic, Westfall & Young (1993).
@@ -29,26 +29,26 @@ const LEAST: f64 = 1e-3;
 /// The scores of a group of columns, unit by unit, and how they scatter.
 #[derive(Clone, Debug)]
 pub struct Scores {
-    /// One a unit.
+    /// One per unit.
     pub units: Vec<DVector<f64>>,
-    /// How much of the columns that were fitted out each unit's columns hold, those made orthonormal: one a unit.
+    /// Projections of each unit's columns on the orthonormalised columns that were projected out, one per unit.
     pub held: Vec<DMatrix<f64>>,
-    /// What each unit holds of the information.
+    /// Contribution of each unit to the information.
     pub parts: Vec<DMatrix<f64>>,
     /// Covariance of the sum of all scores.
     pub information: DMatrix<f64>,
 }
 
 impl Scores {
-    /// How many units carry the group: all of them where each shows it as much, one where one shows it alone.
+    /// Effective number of units that show the group: all if each shows it equally, one if a single unit shows it.
     pub fn carrying(&self) -> f64 {
         let weight = |part: &DMatrix<f64>| part.diagonal().component_div(&self.information.diagonal()).sum();
         let (sum, squares) = self.parts.iter().map(weight).fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
         if squares > 0.0 { sum * sum / squares } else { 0.0 }
     }
 
-    /// p of a step by how the units' scores differ from what they would be at it: Student's t along the step, squared, with one
-    /// value a unit. What noise that remembers does to whole runs is in it, where the noise model sees steps of centimetres.
+    /// p of a step by the scatter between units: the square of Student's t along the step, with one value per unit. Unlike the noise model,
+    /// which is estimated on steps of centimetres, it includes noise that is correlated over whole runs.
     pub fn p_by_units(&self, step: &DVector<f64>) -> f64 {
         let units = self.units.len() as f64;
         let off = |(score, part): (&DVector<f64>, &DMatrix<f64>)| (score - part * step).dot(step).powi(2);
@@ -58,8 +58,8 @@ impl Scores {
         if units < 2.0 || t_squared.is_nan() { 1.0 } else { f_upper_tail(t_squared, [1.0, units - 1.0]) }
     }
 
-    /// How far the flipped sum is from zero under each of eight flips, as a standard normal's quantile (Wilson & Hilferty 1931);
-    /// NaN where it has no covariance.
+    /// Distance of the flipped sum from zero under each of eight flips, as a standard normal quantile (Wilson & Hilferty 1931); NaN if it
+    /// has no covariance.
     fn distances(&self, signs: &[Eight]) -> [f64; EIGHT] {
         let scores = self;
         by_width!(Instructions::best(), |scores: &Scores, signs: &[Eight]| -> [f64; EIGHT] {
@@ -95,7 +95,7 @@ impl Scores {
     }
 }
 
-/// The sums over all units of each of their values, with the signs of the units.
+/// Sums of each value over all units, with the signs of the units.
 #[inline(always)]
 fn flipped_sums<'a>(units: impl Iterator<Item = &'a [f64]> + Clone, signs: &[Eight], values: usize) -> Vec<Eight> {
     let sum = |value: usize| {
@@ -112,9 +112,8 @@ fn product(a: &[Eight], b: &[Eight]) -> Eight {
 
 /// Groups of columns under every flip of the signs of their units.
 ///
-/// All flips of up to 12 units, else 4095 at random by `seed`; with the signs as they are, so that no p is 0. *Rejected*: flips of
-/// what is left when the observed group has been fitted too. They have more power, but beside seven fitted columns ten runs have
-/// too little left.
+/// All flips of up to 12 units, else 4095 at random by `seed`; including the observed signs, so that no p is 0. *Rejected*: flips of the
+/// residuals after the observed group was fitted too. They have more power, but after seven fitted columns too little remains of ten runs.
 pub struct Family {
     /// Largest distance of a group from zero, under every flip except the identity.
     farthest: Vec<f64>,
@@ -126,7 +125,7 @@ impl Family {
         let units = groups.first().map_or(0, |group| group.units.len());
         let patterns = patterns(units, seed);
         let farthest = |flips: &[Vec<bool>]| {
-            // Where there are fewer than eight, the first again.
+            // If there are fewer than eight, the first is repeated.
             let flipped = |lane: usize, unit: usize| flips.get(lane).unwrap_or(&flips[0])[unit];
             let sign = |lane, unit| if flipped(lane, unit) { -1.0 } else { 1.0 };
             let signs: Vec<Eight> =
@@ -143,7 +142,7 @@ impl Family {
         Family { farthest: patterns[1..].par_chunks(EIGHT).flat_map_iter(farthest).collect() }
     }
 
-    /// The share of flips under which some group is farther from zero than `observed`, one of them, is as it is.
+    /// Share of flips under which some group is at least as far from zero as `observed`, one of the groups, is without a flip.
     pub fn p(&self, observed: &Scores) -> f64 {
         let distance = observed.distances(&vec![Eight::from(1.0); observed.units.len()])[0] * (1.0 - 1e-12);
         // A sum without a covariance is no farther from zero than any.
@@ -152,7 +151,7 @@ impl Family {
     }
 }
 
-/// The signs as they are, and all other ways of flipping them; the last unit's sign stands, for flipping all changes nothing.
+/// The observed signs and all other patterns. The last unit keeps its sign, because flipping all signs changes nothing.
 fn patterns(units: usize, seed: u64) -> Vec<Vec<bool>> {
     let mut stream = Stream::new(seed, FLIPS, 0);
     let count = 1_usize << (ALL.min(units.max(1)) - 1).max(if units > ALL { 12 } else { 0 });

@@ -1,4 +1,4 @@
-//! A model grown by an effect that it was missing, fitted without approximation.
+//! A model extended by a missing effect and fitted without linear approximation.
 
 use super::examination::Examination;
 use super::repeats::SHAPE;
@@ -9,18 +9,18 @@ use crate::evidence::{Estimate, FitError};
 use crate::likelihood::{Fitted, Noise};
 use std::sync::Arc;
 
-/// A shape (a length, a threshold) is fitted where its size is this many standard errors from zero.
+/// A shape (a length, a threshold) is fitted if its size is this many standard errors from zero.
 const SHOWN: f64 = 8.0;
 /// Shapes keep their values unless the size is still this many standard errors from zero with them, or AICc falls by this.
 const SURE: f64 = 4.0;
 const LIKELIER: f64 = 10.0;
 
-/// The model of an examination with a suspect more, fitted: its sizes first, then its shapes too where its size stands out.
+/// The model of an examination with one more suspect, fitted: first its sizes, then also its shapes if its size is significant.
 pub(crate) fn grown(exam: &Examination, suspect: &Suspect) -> Result<Fitted, FitError> {
     fitted(exam, &with(exam.fitted.model.clone(), suspect)?, suspect.best)
 }
 
-/// The model of an examination with a law more that no catalogue lists, fitted in the same way, and the name that the law has there.
+/// The model of an examination with one more law outside the catalogue, fitted in the same way, and the name of the law there.
 pub(crate) fn grown_by_law(exam: &Examination, law: &Model) -> Result<(Fitted, &'static str), FitError> {
     let mut model = exam.fitted.model.clone();
     let mut name = "";
@@ -38,7 +38,7 @@ pub(crate) fn grown_by_law(exam: &Examination, law: &Model) -> Result<(Fitted, &
     Ok((fitted(exam, &model, name)?, name))
 }
 
-/// A model with an effect more fitted: its sizes first, then its shapes too where its size stands out.
+/// A model with one more effect, fitted: first its sizes, then also its shapes if its size is significant.
 fn fitted(exam: &Examination, model: &Model, effect: &str) -> Result<Fitted, FitError> {
     let observed = &exam.fitted.observed;
     let shapes = model.shapes();
@@ -54,20 +54,21 @@ fn fitted(exam: &Examination, model: &Model, effect: &str) -> Result<Fitted, Fit
     let both = Fitted { taken: taken(), ..observed.fit(&sized.model, &sized.noise, &[])? };
     let determined = estimates(&both).iter().all(|e| e.standard_error.is_finite());
     let allowed = observed.tracks().all(|track| track.check(&both.model).is_ok());
-    // Where a shape can take a size's place (how far off the way a bump lies), neither is known, and the shape makes nothing likelier.
+    // If a shape can compensate a size (the distance of a bump from the path, say), neither is determined, and fitting the shape does not
+    // raise the likelihood.
     let aicc = |fitted: &Fitted| Alone::new(fitted.clone()).criteria().0;
     let sure = estimates(&both).iter().any(|e| e.effect == effect && is_size(e) && departs(&both.model, e) > SURE)
         || aicc(&both) < aicc(&sized) - LIKELIER;
     Ok(if determined && allowed && sure && keeps_signs(model, &both.model, effect) { both } else { sized })
 }
 
-/// How many standard errors a size is from nothing.
+/// Distance of a size from zero effect, in standard errors.
 fn departs(model: &Model, e: &Estimate) -> f64 {
     let nothing = model.place_of(e.effect, e.parameter).and_then(|place| model.nothing(place));
     nothing.map_or(0.0, |nothing| ((e.value - nothing) / e.standard_error).abs())
 }
 
-/// Whether the lengths, times and thresholds of an effect have the signs with which a fit began: what dies away has not become what grows.
+/// Whether the lengths, times and thresholds of an effect kept the signs of their start values: a decay must not become a growth.
 fn keeps_signs(begun: &Model, fitted: &Model, effect: &str) -> bool {
     let scale = |model: &Model| model.get(effect, SHAPE);
     scale(begun).zip(scale(fitted)).is_none_or(|(then, now)| then * now > 0.0)

@@ -1,4 +1,4 @@
-//! What a model leaves of the tracks, and the reasons against the model that follow.
+//! The residuals of a model on tracks, and the reasons against the model that follow from them.
 
 use super::examination::Examination;
 use super::finding::TELLING;
@@ -27,7 +27,7 @@ pub(crate) fn doubts_of(exam: &Examination, options: &Options) -> Vec<Reason> {
     doubts::of_model(&fitted.observed, &fitted.model, &fitted.noise, &errors.in_sample(), options.seed)
 }
 
-/// The reason that what repeats beside a fitted model is, where it is a doubt.
+/// The reason for doubt from a repeating pattern in the residuals, if it is significant enough.
 pub(crate) fn reason_to_doubt(repeated: Option<&Repeated>) -> Option<Reason> {
     repeated
         .filter(|repeated| repeated.is_doubt(LEAST_GAIN))
@@ -35,7 +35,7 @@ pub(crate) fn reason_to_doubt(repeated: Option<&Repeated>) -> Option<Reason> {
         .map(|repeated| Reason::Repeats(Box::new(repeated)))
 }
 
-/// Reasons against a model with the values that it has, only START fitted, under the noise for which what it leaves is likeliest.
+/// Reasons against a model with its given values: only START is fitted, and the noise is the likeliest for its residuals.
 pub(crate) fn doubts_as_written(
     observed: &Observed,
     model: &Model,
@@ -61,7 +61,7 @@ pub(crate) fn doubts_as_written(
     (reasons, Some(remains))
 }
 
-/// The last of some columns less the others, each times its value.
+/// The last column minus the others, each times its value.
 fn less(columns: &[Column], values: &[f64]) -> Column {
     let Some((left, others)) = columns.split_last() else { return Column::new() };
     let mut left = left.clone();

@@ -1,4 +1,4 @@
-//! What a fitted model is missing: the certified effect that would be added, and a smooth that no effect explains.
+//! What a fitted model lacks: the certified effect that would be added, and a smooth that no effect explains.
 
 use super::examination::Examination;
 use super::finding::{Finding, TELLING};
@@ -8,11 +8,11 @@ use crate::diagnose::options::Options;
 use crate::diagnose::suspect::Suspect;
 use crate::evidence::tracks::{LEAST_GAIN, Projected};
 
-/// A smooth indicates an unlisted effect where the best effect of the catalogue explains less than this share of it.
+/// A smooth indicates an unlisted effect if the best effect of the catalogue explains less than this share of it.
 const EXPLAINED: f64 = 0.85;
 /// Maximum number of certified effects whose gain is tried.
 const TRIES: usize = 4;
-/// Fewer runs give no certificate.
+/// Minimum number of runs for a certificate.
 pub(super) const FEWEST: usize = 2;
 /// Where an effect widens the standard error of E_d, E_b or E_s by more than this factor, it needs a p of at most this share of the
 /// usual level. A law outside the catalogue is then not added: these runs hardly separate it from E_d, E_b and E_s.
@@ -23,7 +23,7 @@ const SURE: f64 = 0.2;
 pub(crate) struct Missing {
     /// The certified effect that would be added.
     pub effect: Option<(Finding, Suspect)>,
-    /// A certified smooth that this effect, or none, explains.
+    /// A certified smooth that this effect does not explain.
     pub smooth: Option<Finding>,
     /// All effects that were tested, the likeliest first.
     pub asked: Vec<Suspect>,
@@ -87,8 +87,9 @@ fn first_with_gain<'a>(
     None
 }
 
-/// Whether an effect is certain enough. One that doubles the standard error of E_d, E_b or E_s is separated from them by little, such as the
-/// ramps of turns that are all alike; a mistake there makes every other drive worse, so it needs a smaller p.
+/// Whether an effect is certain enough. An effect that doubles the standard error of E_d, E_b or E_s is separated from them only by
+/// details, such as ramps of turns that are all alike. A mistake there would make predictions of every other drive worse, so it needs a
+/// smaller p.
 fn is_sure(exam: &Examination, finding: &Finding, options: &Options) -> bool {
     finding.p_adjusted() <= SURE * options.size || exam.widening(&finding.answer.columns) <= WIDE
 }
@@ -107,8 +108,8 @@ fn smooth_gains(exam: &Examination, finding: &Finding) -> bool {
     of([&base[..], own].concat()).gain(&of(base.clone())) >= TELLING
 }
 
-/// Whether a smooth that an effect seemed not to explain is there after that effect was fitted. What one linear step
-/// leaves of a large effect is gone then; what is not in the catalogue is not.
+/// Whether a smooth that an effect did not seem to explain remains after the effect is fitted. The fit removes what one linear step leaves
+/// of a large effect, but not an effect outside the catalogue.
 pub fn speaks_on(exam: &Examination, smooth: &Finding, options: &Options) -> bool {
     let mut now = significance::smooths(exam, options).iter().filter(|finding| finding.certified(options));
     now.any(|finding| finding.answer.drop > (1.0 - EXPLAINED) * smooth.answer.drop)

@@ -34,7 +34,7 @@ pub fn silent(exam: &Examination, asked: impl Fn(&'static str) -> bool) -> Optio
     last_part(exam, asked, is_silent)
 }
 
-/// The last added of the fitted effects that are `asked` and fulfil a condition.
+/// Of the fitted effects that are `asked` and fulfil a condition, the one that was added last.
 fn last_part(
     exam: &Examination,
     asked: impl Fn(&'static str) -> bool,

@@ -1,9 +1,9 @@
-//! One test for whatever repeats: thousands of laws outside the catalogue, and one p-value for all of them.
+//! One test for all repeating patterns: thousands of laws outside the catalogue, and one p-value for all of them.
 //!
 //! The whitened residuals of a fitted model are correlated with the whitened columns of every law of [`Laws`], after the model's own
-//! columns are fitted out of each. The statistic is the greatest score in standard deviations. Where nothing repeats, the signs of whole
-//! runs may be flipped, and the same columns give its distribution: the greatest of all laws is compared with the greatest under each
-//! flip. Where few runs carry a column, quarters of runs are flipped.
+//! columns are projected out of each. The statistic is the largest score in standard deviations. If nothing repeats, the signs of whole
+//! runs can be flipped, which gives its distribution: the largest score of all laws is compared with the largest under each flip. If few
+//! runs determine a column, quarters of runs are flipped.
 //!
 //! Each of the most significant laws is then fitted together with the model and cross-validated. The law is the shortest of those that
 //! predict held-out runs as well as the best, within one standard error.
@@ -36,8 +36,9 @@ pub(super) use added::suspect;
 pub use law::{Repeated, UnlistedLaw};
 pub(super) use laws::SHAPE;
 
-/// Looks for what repeats beside a model under a noise: the most significant law, whether it counts or not; `None` where the runs can
-/// show no law. `own` holds, run by run, the columns that are fitted along, one (x, y, heading) \[m, m, rad\] a block each, and last the residual.
+/// Searches the residuals of a model for a repeating pattern: the most significant law, even if it does not count; `None` if the runs can
+/// show no law. `own` holds, run by run, the columns that are fitted too, each with one (x, y, heading) \[m, m, rad\] per block, and last
+/// the residual.
 pub fn what_repeats(
     observed: &Observed,
     model: &Model,
@@ -76,7 +77,7 @@ pub fn what_repeats(
     })
 }
 
-/// What repeats beside the model of an examination and the effects of the reference.
+/// The strongest repeating pattern beyond the model of an examination and the effects of the reference.
 pub(super) fn beside(exam: &Examination, seed: u64) -> Option<Repeated> {
     let own = exam.some_columns(&[&exam.base(None)[..], &[exam.system.residual()]].concat());
     what_repeats(&exam.fitted.observed, &exam.fitted.model, &exam.fitted.noise, &own, seed)
@@ -98,7 +99,7 @@ mod tests {
         assert!(!repeated.counts(0.02) && repeated.laws > 1000, "{repeated:?}");
     }
 
-    /// What counts by certainty, by loudness, and by a gain that is plain; each just misses by one number.
+    /// Patterns that count by p, by size, and by gain; each of the others just misses one threshold.
     #[test]
     fn a_law_counts_by_its_p_its_score_and_what_it_predicts() {
         let repeated = beside(complete(), 1).unwrap();

@@ -241,7 +241,7 @@ impl Search {
         !law_failed && repeated.is_some_and(|repeated| drop < OUTDONE * repeated.law.drop)
     }
 
-    /// What repeats most beside the last model.
+    /// The strongest pattern that repeats in the residuals of the last model.
     pub fn repeats(&mut self, options: &Options) -> Option<&Repeated> {
         if self.repeats.is_none() {
             self.repeats = Some(repeats::beside(self.last(), options.seed));

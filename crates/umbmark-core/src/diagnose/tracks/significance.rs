@@ -68,7 +68,7 @@ fn certify(exam: &Examination, findings: &mut [Finding], options: &Options) {
     let by_run = all(few);
     let by_quarter = if by_run.iter().all(|own| own.carrying() >= ENOUGH_CARRYING) { Vec::new() } else { all(true) };
     let asked = findings.len() as f64;
-    // Most data accuses nothing, and then no flips are taken.
+    // In most data nothing is significant, and then no flips are computed.
     let families: [OnceCell<Family>; 2] = Default::default();
     for (index, finding) in findings.iter_mut().enumerate() {
         let quarters = by_run[index].carrying() < ENOUGH_CARRYING;

@@ -13,7 +13,7 @@ impl Four {
     /// The machine must have AVX2.
     #[inline(always)]
     pub unsafe fn load(values: &[f64; 4]) -> Four {
-        // SAFETY: four readable numbers; the instructions are there by the caller's word.
+        // SAFETY: four readable numbers; the caller guarantees the instructions.
         Four(unsafe { _mm256_loadu_pd(values.as_ptr()) })
     }
 

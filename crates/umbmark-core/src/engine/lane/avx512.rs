@@ -13,7 +13,7 @@ impl Eight {
     /// The machine must have AVX-512F.
     #[inline(always)]
     pub unsafe fn load(values: &[f64; 8]) -> Eight {
-        // SAFETY: eight readable numbers; the instructions are there by the caller's word.
+        // SAFETY: eight readable numbers; the caller guarantees the instructions.
         Eight(unsafe { _mm512_loadu_pd(values.as_ptr()) })
     }
 

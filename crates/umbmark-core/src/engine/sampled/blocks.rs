@@ -85,7 +85,7 @@ const fn balanced(word: u8) -> bool {
     true
 }
 
-/// What a table of motions depends on, beside the geometry: whole ticks per reading and direction of each wheel.
+/// The key of a table of motions, for a given geometry: whole ticks per reading and direction of each wheel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Rates {
     whole: [i64; 2],
@@ -144,7 +144,7 @@ impl Motions {
     }
 }
 
-/// A way in words of eight readings, one pair of words after the other.
+/// A walk in words of eight readings, one pair of words after the other.
 struct Walk<'a> {
     left: &'a [Rank; 256],
     right: &'a [Rank; 256],
@@ -157,9 +157,9 @@ struct Walk<'a> {
     whole: i64,
 }
 
-/// Where a way has led.
+/// The end of a walk.
 struct Reached {
-    /// By the words in even and in odd places: two sums, so that one addition need not wait for the other.
+    /// By the words in even and in odd places: two sums, so that additions do not wait for each other.
     ends: [Products; 2],
     /// Place of the heading among the directions.
     heading: i64,
@@ -202,7 +202,7 @@ impl Walk<'_> {
     }
 }
 
-/// Scratch memory for segments at constant rates. What is in it changes the time a segment takes, never its result.
+/// Scratch memory for segments at constant rates. Its content changes the time for a segment, never its result.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Blocks {
     motions: Vec<Motions>,
@@ -215,7 +215,7 @@ impl Blocks {
         pieces.readings >= FEWEST_READINGS && Directions::suit(geometry, counts)
     }
 
-    /// Where the pieces lead: x, y \[m\]. `directions` reach to where they end.
+    /// End of the pieces: x, y \[m\]. `directions` must cover their headings.
     pub fn end(
         &mut self,
         geometry: &TickGeometry,

@@ -12,7 +12,7 @@ const TRAVEL_LIMIT: i64 = 1 << 52;
 /// Profiles with fewer readings are done one reading after the other.
 const FEWEST_READINGS: usize = 16;
 
-/// What readings do to the pose: from rest to full speed, a few tens of changes of the two counters come again and again.
+/// Pose changes of readings: between rest and full speed, the same few tens of changes of the two counters repeat.
 #[derive(Clone, Debug, Default)]
 struct Steps {
     known: Vec<PoseIncrement>,
@@ -41,8 +41,8 @@ impl Steps {
     }
 }
 
-/// Where the readings of a line are to be looked up. All of it is additions and multiplications without a carry or a branch
-/// from one reading to the next.
+/// Table indices for the readings of a line, computed by additions and multiplications without a dependence or branch from one reading to
+/// the next.
 #[derive(Clone, Debug, Default)]
 struct LookUps {
     /// The (left, right) counts: 0 at the start, then one for each reading.
@@ -100,7 +100,7 @@ fn fill_counts(start: i64, travel: i64, shares: &[f64], counts: &mut [i32]) {
     }
 }
 
-/// Scratch memory for readings along profiles. What is in it changes the time a segment takes, never its result.
+/// Scratch memory for readings along profiles. Its content changes the time for a segment, never its result.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ramps {
     steps: Steps,

@@ -1,8 +1,8 @@
 //! The word product of several lines side by side.
 //!
-//! The algorithm of [`word`](crate::engine::word) with its integers as exact whole numbers in `f64`: all stay below 2^53
-//! for lines of less than 2^20 ticks. A line that is done while others are not goes on with exponents of 0, and a power 0
-//! is the identity to the last bit; so each line sees the operations it would see alone, in the same order.
+//! The algorithm of [`word`](crate::engine::word) with its integers as exact whole numbers in `f64`: all stay below 2^53 for lines of less
+//! than 2^20 ticks. A line that is finished before the others continues with exponents of 0, and the power 0 is the identity to the last
+//! bit. So each line gets the same operations as alone, in the same order.
 
 use crate::engine::lane::Lane;
 use crate::engine::mid_heading::{MidHeading, Root};

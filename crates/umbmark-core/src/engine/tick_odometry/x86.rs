@@ -42,7 +42,7 @@ impl TickOdometry {
     /// The machine must have AVX-512F and AVX-512DQ.
     #[target_feature(enable = "avx512f,avx512dq")]
     unsafe fn eight(&self, block: &Block<8>) -> Results<8> {
-        // SAFETY: the caller's word.
+        // SAFETY: guaranteed by the caller.
         let [start, travel] = unsafe {
             [
                 [Eight::load(&block.start[0]), Eight::load(&block.start[1])],
@@ -61,7 +61,7 @@ impl TickOdometry {
     /// The machine must have AVX2.
     #[target_feature(enable = "avx2")]
     unsafe fn four(&self, block: &Block<4>) -> Results<4> {
-        // SAFETY: the caller's word.
+        // SAFETY: guaranteed by the caller.
         let [start, travel] = unsafe {
             [
                 [Four::load(&block.start[0]), Four::load(&block.start[1])],

@@ -24,7 +24,7 @@ pub(crate) struct Fitted {
     pub model: Model,
     /// Indices, among the model's values, of what was fitted.
     pub free: Vec<usize>,
-    /// Indices of what was to be fitted and does not show.
+    /// Indices of what should be fitted but is not determined by the data.
     pub open: Vec<usize>,
     /// Observed minus predicted, in the mirrored frame, run by run.
     pub residuals: Vec<Vector3<f64>>,
@@ -49,7 +49,7 @@ impl Fitted {
             return Err(FitError::NotConverged { how: fit.termination.name() });
         }
         let fitted = with_values(model, &problem.all(&fit.values))?;
-        // Where the size of a formula began at 0, its shape shows only now.
+        // A formula whose size started at 0 did not depend on its shape; now it does.
         if fitted.has_formulas() && what_shows(ends, &fitted).0.len() > free.len() {
             return Fitted::new(ends, &fitted);
         }
@@ -162,19 +162,19 @@ fn vector(pose: &Pose2) -> Vector3<f64> {
     Vector3::new(pose.x, pose.y, pose.heading)
 }
 
-/// Values that are to be fitted and show, and those that do not: E_d and E_b are asked first, then one after the other. All at the
-/// nominal robot: elsewhere, terms of second order seem to tell apart what no measurement could.
+/// Values that the data determines, and those that it does not. E_d and E_b are tested first, then the others one at a time. All tests use
+/// derivatives at the nominal robot: elsewhere, second-order terms seem to separate effects that no measurement could.
 fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
     let flags = model.parts().iter().flat_map(|part| part.values.iter().map(|_| part.free));
     let names = names(model);
     let nominal = model.at_rest();
     let start: Vec<f64> = nominal.values().collect();
     let free: Vec<usize> = flags.enumerate().filter(|(_, free)| *free).map(|(i, _)| i).collect();
-    // A length, threshold, scatter or choice moves nothing where its effect does nothing yet.
+    // The value of a length, threshold, scatter or choice moves no pose as long as the size of its effect is zero.
     let moves = |poses: &Vec<Vector3<f64>>| poses.iter().any(|pose| *pose != Vector3::zeros());
     let slopes = ends.slopes(&nominal, &start, &free);
     let mut asked: Vec<usize> = free.iter().zip(&slopes).filter(|(_, s)| moves(s)).map(|(i, _)| *i).collect();
-    // What others share with these counts as theirs.
+    // What other effects share with these is attributed to these.
     let first = &model.robot().drive.first_effects()[..2];
     asked.sort_by_key(|i| !first.contains(&names[*i].0));
     let problem = Returns { ends, model: &nominal, start: &start, free: &asked };
@@ -196,7 +196,7 @@ fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
         }
         kept.pop();
         if first.contains(&names[asked[k]].0) {
-            // Neither of two that act alike is known.
+            // Of two values that act alike, neither is determined.
             let involved = |at: usize| null.iter().any(|direction| direction[at].abs() > INVOLVED);
             kept = kept.iter().enumerate().filter(|(at, _)| !involved(*at)).map(|(_, k)| *k).collect();
         }
@@ -223,7 +223,7 @@ impl Returns<'_> {
         all
     }
 
-    /// The fit, or a better one: where E_d or E_b ended far from the nominal robot, or the fit nowhere, others are tried.
+    /// The fit, or a better one: further starts are tried if E_d or E_b ended far from the nominal robot or the fit did not converge.
     fn searched(&self, fit: fit::Fit, first: &[f64]) -> fit::Fit {
         let names = names(self.model);
         let ratio = |effect: &str| self.free.iter().position(|i| names[*i].0 == effect && self.start[*i] == 1.0);

@@ -9,13 +9,13 @@ use std::ops::Range;
 /// Believed and real poses of both trucks.
 const STATE: usize = 12;
 
-/// What changes of the state do to the front truck's error.
+/// Derivative of the front truck's error with respect to the state.
 type Influence = SMatrix<f64, 3, STATE>;
 
 /// Covariance of the front truck's return error after some steps for white noise of unit variance per metre on each of the eight
 /// wheels during them, to first order, along the plan.
 ///
-/// Backwards from the end: the influence of each step's state is that of the next one's times the derivative of the step.
+/// It works backwards from the end: the influence of a step's state is that of the next step's state times the derivative of the step.
 pub(crate) fn gathered(convoy: &Convoy, truck: &DifferentialDrive, steps: Range<usize>) -> Matrix3<f64> {
     let mut influence = Influence::zeros();
     for i in 0..3 {
@@ -42,7 +42,7 @@ pub(crate) fn gathered(convoy: &Convoy, truck: &DifferentialDrive, steps: Range<
     sum
 }
 
-/// The derivative of the state after something by the state before it, where both trucks are where they are meant to be.
+/// Derivative of the state after a change with respect to the state before it, with both trucks at their planned poses.
 fn derivative(meant: &[Pose2; 2], mut change: impl FnMut(&mut Trucks<Dual>)) -> SMatrix<f64, STATE, STATE> {
     let mut by_state = SMatrix::<f64, STATE, STATE>::zeros();
     for first in (0..STATE).step_by(LANES) {
@@ -69,7 +69,7 @@ fn derivative(meant: &[Pose2; 2], mut change: impl FnMut(&mut Trucks<Dual>)) -> 
     by_state
 }
 
-/// A floor on which everything is as believed.
+/// A floor on which true motion and odometry agree.
 struct Even<'a> {
     truck: &'a DifferentialDrive,
 }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 /// Share by which the errors in held-out runs must fall for an effect to count: less is not worth a parameter.
 pub(crate) const LEAST_GAIN: f64 = 0.02;
-/// An effect is not kept where positions or headings of runs left out are worse by this share, and neither is better.
+/// An effect is dropped if positions or headings of held-out runs become worse by this share and neither becomes better.
 const HARM: f64 = 0.1;
 
 /// Root mean square errors along the way.
@@ -30,13 +30,13 @@ impl Misses {
         fall(self.position, before.position).max(heading).max(fall(self.white, before.white))
     }
 
-    /// Whether positions or headings are worse than `before` by more than chance, and neither is better.
+    /// Whether positions or headings are worse than `before` by more than chance while neither is better.
     pub fn harms(&self, before: &Misses) -> bool {
         let [least, most] = self.falls(before);
         most < LEAST_GAIN && least < -HARM
     }
 
-    /// By what share positions or headings are smaller than `before`: of the two that which falls less, and that which falls more.
+    /// Relative decreases of the position and heading errors against `before`, the smaller decrease first.
     pub fn falls(&self, before: &Misses) -> [f64; 2] {
         let position = fall(self.position, before.position);
         let heading = self.heading.zip(before.heading).map_or(position, |(now, then)| fall(now, then));
@@ -53,7 +53,8 @@ fn fall(now: f64, then: f64) -> f64 {
     if then > 0.0 { 1.0 - now / then } else { 0.0 }
 }
 
-/// Products of residuals and columns in metres and radians, fold by fold (runs, or quarters of few), with START fitted to the first poses.
+/// Products of residuals and columns in metres and radians, fold by fold, with START fitted to the first poses. A fold is a run, or a
+/// quarter of one if there are few runs.
 #[derive(Clone, Debug, Default)]
 pub struct Errors {
     /// The columns of the system that are in it, the residual last.
@@ -95,7 +96,7 @@ impl Errors {
         Errors { folds: folds.collect(), white, which }
     }
 
-    /// Errors that are left when each fold is predicted with values of its own, `of_fold`: pairs of columns and values.
+    /// Errors that remain when each fold is predicted with its own values: `of_fold` gives pairs of columns and values.
     pub fn misses(&self, of_fold: impl Fn(usize) -> (Vec<usize>, DVector<f64>) + Send + Sync) -> Misses {
         self.misses_of(&self.squares(of_fold))
     }
@@ -119,7 +120,7 @@ impl Errors {
         folds.into_par_iter().map(of_fold).collect()
     }
 
-    /// What the residual and the columns are multiplied by where columns have these values.
+    /// Factors of the columns and the residual if the columns have these values.
     fn weights(&self, (columns, values): &(Vec<usize>, DVector<f64>)) -> DVector<f64> {
         let mut weights = DVector::zeros(self.which.len());
         weights[self.which.len() - 1] = 1.0;
@@ -209,7 +210,7 @@ mod tests {
     fn misses_are_root_mean_squares_of_what_values_of_columns_leave() {
         let (rows, errors) = errors();
         let values = |run: usize| DVector::from_column_slice(&[0.3, -0.2 * run as f64]);
-        // The columns that are not kept are passed over.
+        // Columns that are not kept are skipped.
         let misses =
             errors.misses(|run| (vec![3, 2, 1], DVector::from_column_slice(&[values(run)[0], 9.0, values(run)[1]])));
         let left = |of: usize| -> f64 {

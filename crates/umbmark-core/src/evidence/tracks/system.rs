@@ -1,5 +1,5 @@
-//! A model's residuals beside what its parameters, and the effects that it may be missing, would do to them: products of
-//! whitened columns, summed run by run, from which every test and every fold of a cross-validation follows.
+//! The linear system of a model: its residuals, and their derivatives by its parameters and by the effects that it may be missing. Only
+//! products of whitened columns are kept, summed run by run; every test and every fold of a cross-validation follows from them.
 
 use crate::likelihood::{
     ABSORBED, Column, Noise, Observed, ObservedRun, ScaledCholesky, gram, scaled_cholesky, solver,
@@ -8,12 +8,12 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::ops::AddAssign;
 
-/// A part of a run that is taken as independent of the others.
+/// A part of a run that is treated as independent of the others.
 #[derive(Clone, Debug)]
 pub struct Unit {
     /// The run.
     pub run: usize,
-    /// What is left out together with it: its run or, of few runs, it alone.
+    /// The fold that is left out with it: its run, or this part alone if there are few runs.
     pub fold: usize,
     /// Products of whitened columns.
     pub white: DMatrix<f64>,
@@ -34,7 +34,7 @@ pub struct System {
     pub rows: usize,
 }
 
-/// Fewer runs are left out by quarters: with one of two runs left out, the other alone determines too little.
+/// With fewer runs, quarters of runs are left out: of two runs, one alone determines too little.
 const FEW: usize = 4;
 
 /// How many parts of the data are left out in turn.
@@ -124,7 +124,7 @@ impl System {
 pub struct Projected {
     /// Products of the rests.
     pub products: DMatrix<f64>,
-    /// How much of each fitted column every column holds: coefficients, one row a fitted column.
+    /// Regression coefficients of every column on the fitted columns, one row per fitted column.
     pub coefficients: DMatrix<f64>,
     /// The columns that were fitted out.
     pub base: Vec<usize>,
@@ -142,12 +142,12 @@ impl Projected {
         Projected { products, coefficients, base: base.to_vec(), solver }
     }
 
-    /// Whether a column has something left beside what it was in `whole`.
+    /// Whether hardly anything of a column in `whole` remains after the projection.
     pub fn absorbed(&self, whole: &DMatrix<f64>, column: usize) -> bool {
         self.products[(column, column)] <= ABSORBED * whole[(column, column)]
     }
 
-    /// What fitting a group of columns, none of them absorbed, would take off the sum of squares, and their values.
+    /// Decrease of the sum of squares if a group of columns, none of them absorbed, is fitted, and their values.
     pub fn drop(&self, group: &[usize]) -> Option<(f64, DVector<f64>, DMatrix<f64>)> {
         let residual = self.products.ncols() - 1;
         let information = self.information(group);
@@ -166,7 +166,7 @@ impl Projected {
         values.map_or_else(|| DVector::zeros(columns.len()), |values| values.column(0).into_owned())
     }
 
-    /// Share of the response of `values` of the columns `from` that the columns `to` can make, as a cosine.
+    /// How well the columns `to` can reproduce the response of the columns `from` at `values`, as a cosine.
     pub fn likeness(&self, from: &[usize], values: &DVector<f64>, to: &[usize]) -> f64 {
         let response = |k: usize| from.iter().zip(values.iter()).map(|(j, v)| self.products[(k, *j)] * v).sum::<f64>();
         let whole: f64 = from.iter().zip(values.iter()).map(|(k, v)| response(*k) * v).sum();
@@ -178,7 +178,7 @@ impl Projected {
         }
     }
 
-    /// Score of a unit for a group, and how much of the orthonormalised base columns the group's columns hold in it.
+    /// Score of a unit for a group of columns, and the projection of the group's columns on the orthonormalised base columns in that unit.
     pub fn score(&self, unit: &DMatrix<f64>, group: &[usize]) -> (DVector<f64>, DMatrix<f64>) {
         let residual = self.products.ncols() - 1;
         let between =
@@ -191,7 +191,7 @@ impl Projected {
         (scores, half)
     }
 
-    /// What a unit holds of the products of a group's columns, the base fitted out.
+    /// Contribution of a unit to the products of a group's columns, with the base projected out.
     pub fn information_of(&self, unit: &DMatrix<f64>, group: &[usize]) -> DMatrix<f64> {
         let between =
             |from: &[usize], to: &[usize]| DMatrix::from_fn(from.len(), to.len(), |i, j| unit[(from[i], to[j])]);
@@ -201,7 +201,7 @@ impl Projected {
         between(group, group) - &shared - shared.transpose() + fitted
     }
 
-    /// Products of a group's columns, the base fitted out.
+    /// Products of a group's columns, with the base projected out.
     pub fn information(&self, group: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(group.len(), group.len(), |i, j| self.products[(group[i], group[j])])
     }
@@ -228,7 +228,7 @@ mod tests {
         (rows, System { rows: 40, units, width: 7, whole })
     }
 
-    /// Rows one below the other.
+    /// Rows stacked on top of each other.
     fn stacked<'a>(rows: impl IntoIterator<Item = &'a DMatrix<f64>>) -> DMatrix<f64> {
         let rows: Vec<_> = rows.into_iter().flat_map(|rows| rows.row_iter()).collect();
         DMatrix::from_rows(&rows)
@@ -280,7 +280,7 @@ mod tests {
             let (score, held) = projected.score(&unit.white, &GROUP);
             assert!(near(&DMatrix::from_column_slice(3, 1, score.as_slice()), &group.tr_mul(&y)));
             let shared = rows[index].select_columns(&BASE).tr_mul(&group);
-            // Whatever square root of the base's products is taken, the products of what is held are the same.
+            // Every square root of the base's products gives the same products of projections.
             assert!(near(&held.tr_mul(&held), &shared.tr_mul(&factor.solve(&shared))));
             assert!(near(&projected.information_of(&unit.white, &GROUP), &group.tr_mul(&group)));
             sum += score;

@@ -11,7 +11,7 @@ impl ObservedRun {
         self.less(|seen| self.track.replay(chain, seen))
     }
 
-    /// The same by the model that the run is laid along, whose chain is given: nothing is replayed.
+    /// The same for the model about which the run is linearised, whose chain is given: nothing is replayed.
     pub fn residuals_along(&self, chain: &Chain<f64>) -> Column {
         self.less(|seen| self.sighted(chain, seen))
     }
@@ -37,7 +37,7 @@ impl ObservedRun {
         ((0..count).map(|lane| slopes.of_lane(lane)).collect(), left.of_lane(0))
     }
 
-    /// The derivatives by numbers that change nothing but the measurement, beside the model that the run is laid along.
+    /// Derivatives by numbers that change only the measurement, at the model about which the run is linearised.
     pub fn columns_of_sight(&self, chain: &Chain<Dual>, count: usize) -> Vec<Column> {
         self.slopes(count, |seen| self.sighted(chain, seen))
     }
@@ -55,9 +55,9 @@ impl ObservedRun {
         }
     }
 
-    /// Mean squared difference of successive residuals within blocks, halved: variance of one reference pose (position
-    /// per coordinate \[m²\], heading \[rad²\]) and how many differences it was taken from. The chain is that of the model that the run
-    /// is laid along.
+    /// Mean squared difference of successive residuals within blocks, halved: variance of one reference pose (position per coordinate
+    /// \[m²\], heading \[rad²\]) and how many differences it was taken from. The chain is that of the model about which the run is
+    /// linearised.
     pub fn scatter_within_blocks(&self, chain: &Chain<f64>) -> [(f64, usize); 2] {
         let mut raw = Vec::with_capacity(self.seen.len());
         self.sighted(chain, &mut |i, pose| {

@@ -1,4 +1,4 @@
-//! A run laid along a model: where its blocks are, and its measured poses on the prediction where it starts and restarts.
+//! A run linearised about a model: places its blocks, and aligns its measured poses with the prediction where it starts and restarts.
 
 use super::walk::{Walk, velocity};
 use super::{Block, ObservedRun};
@@ -6,9 +6,9 @@ use crate::effect::Chain;
 use crate::geometry::{Pose2, mean_angle, wrap};
 use crate::likelihood::observed::Column;
 
-/// Without headings, poses are turned so that so much of the way behind a start lies on the prediction \[m\].
+/// Without headings, poses are rotated so that this distance after a start agrees with the prediction \[m\].
 const WAY: f64 = 1.0;
-/// A heading that is off by more is that of a model far from the runs \[rad\].
+/// A larger heading error means that the model is far from the runs \[rad\].
 const DRIFT: f64 = 0.5;
 
 impl ObservedRun {
@@ -31,8 +31,8 @@ impl ObservedRun {
         self.lay_measured(chain);
     }
 
-    /// Lays what was measured on what the model predicts where the run starts, unless START is trusted, and where it restarts:
-    /// turned by degrees, what follows would be off by more than a small rotation moves it.
+    /// Aligns the measured poses with the predicted ones where the run starts, unless START is trusted, and where it restarts: if they were
+    /// rotated by degrees, a linear model of the rotation would be wrong.
     pub(super) fn lay_measured(&mut self, chain: &Chain<f64>) {
         let mut predicted = Vec::with_capacity(self.places.len());
         self.sighted(chain, &mut |_, pose| predicted.push(*pose));
@@ -54,12 +54,12 @@ impl ObservedRun {
         }
     }
 
-    /// Takes from what is left what is not linear in headings that are off.
+    /// Removes from the residuals the terms of second order in heading errors.
     ///
     /// Where the heading is off by θ(s), the robot stands off by ∫ (R(θ) - 1) dp, dp its predicted way: to first order ∫ θ J dp, which the
-    /// filter and the columns know, and to second order -½ ∫ θ² dp, which would be taken for wheels that are too large. θ² is taken as the
-    /// product of two blocks, whose noise is independent. What is taken off is that of the laid model, so that residuals of models near it
-    /// have the derivatives of their predictions.
+    /// filter and the columns contain, and to second order -½ ∫ θ² dp, which would look like wheels that are too large. θ² is taken as the
+    /// product of two blocks, whose noise is independent. The term of this one model is subtracted, so the derivatives of the residuals of
+    /// nearby models remain those of their predictions.
     fn linearise(&mut self, chain: &Chain<f64>) {
         let left = self.residuals_along(chain);
         let off = self.headings_off(&left);
@@ -80,7 +80,7 @@ impl ObservedRun {
         self.seen = seen.into();
     }
 
-    /// How far the heading of each block is off: as measured, else as the course around it says, else as the block before.
+    /// Heading error of each block: as measured, else from the direction of motion around it, else that of the previous block.
     fn headings_off(&self, left: &Column) -> Vec<f64> {
         let mut last = 0.0;
         let of = |(index, block): (usize, &Block)| {
@@ -108,7 +108,7 @@ impl ObservedRun {
         turn_onto((first..=index).chain(behind).map(pair))
     }
 
-    /// What brings the measured poses of a block onto the predicted ones; `before` is what brought those before it there.
+    /// The motion that aligns the measured poses of a block with the predicted ones; `before` is that of the earlier poses.
     fn laid_at(&self, block: &Block, predicted: &[Pose2], before: Pose2) -> Pose2 {
         let own = block.first..block.first + block.count;
         let turned = self.measured[own.clone()].iter().zip(&predicted[own.clone()]);
@@ -122,7 +122,7 @@ impl ObservedRun {
         Pose2::new(to_x - there.x, to_y - there.y, turned)
     }
 
-    /// The turn that lays the way behind a block on the predicted one.
+    /// The rotation that aligns the path after a block with the predicted one.
     fn course_behind(&self, block: &Block, predicted: &[Pose2]) -> Option<f64> {
         let first = block.first;
         let from = predicted[first];
@@ -135,7 +135,7 @@ impl ObservedRun {
     }
 }
 
-/// The rotation that brings points nearest to others (Procrustes); `None` where they are one place.
+/// The rotation that aligns points best with others (Procrustes); `None` if all points coincide.
 pub(crate) fn turn_onto(pairs: impl Iterator<Item = ([f64; 2], [f64; 2])> + Clone) -> Option<f64> {
     let n = pairs.clone().count() as f64;
     let mut middle = [0.0; 4];

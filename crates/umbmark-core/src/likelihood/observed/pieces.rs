@@ -1,7 +1,7 @@
 //! Long runs cut into pieces that count as runs.
 //!
-//! What tells noise from a cause is that it differs from run to run. A drive of ten minutes holds as much of that as ten drives
-//! of a minute, once each piece has a START of its own: its pose there is measured, and what was gathered before is forgotten.
+//! Noise differs from run to run, a physical cause does not. A drive of ten minutes shows this as well as ten drives of a minute, if each
+//! piece has its own START: its pose there is measured, and the error accumulated before is discarded.
 
 use super::{FEWEST, ObservedRun};
 use crate::drive::Robot;
@@ -9,18 +9,18 @@ use crate::effect::Model;
 use crate::geometry::Pose2;
 use std::ops::Range;
 
-/// Fewer runs than this are cut where they are long, into this many pieces in all.
+/// If there are fewer runs than this, long ones are cut, into this many pieces in total.
 const FEW: usize = 6;
 const ENOUGH: usize = 10;
-/// A run as long as this is long \[s\]; one that stands alone is long from the second on.
+/// Duration from which a run counts as long \[s\]; the second value is for a single run.
 const LONG: [f64; 2] = [150.0, 60.0];
-/// No piece is shorter \[s\], or has fewer blocks.
+/// Minimum duration of a piece \[s\], and minimum number of its blocks.
 const SHORTEST: f64 = 20.0;
 const LEAST_BLOCKS: usize = 30;
-/// What is driven so long before and after a piece may be seen in it \[s\].
+/// Motion within this time before and after a piece may influence its observations \[s\].
 const MARGIN: f64 = 2.0;
 
-/// The runs, long ones of them in pieces where there are few.
+/// The runs; if there are few, long ones in pieces.
 pub(super) fn cut(runs: Vec<ObservedRun>, robot: &Robot) -> Vec<ObservedRun> {
     let long = LONG[usize::from(runs.len() == 1)];
     if runs.len() >= FEW || runs.iter().all(|run| duration(run) < long) {
@@ -55,14 +55,14 @@ fn in_pieces(run: &ObservedRun, count: usize, robot: &Robot) -> Vec<ObservedRun>
     edges.windows(2).filter_map(|pair| piece(run, pair[0]..pair[1], robot)).collect()
 }
 
-/// Some observations of a run as a run of its own, which begins where the robot was measured first.
+/// Some observations of a run as a separate run that begins at the first of them.
 fn piece(run: &ObservedRun, own: Range<usize>, robot: &Robot) -> Option<ObservedRun> {
     if own.is_empty() {
         return None;
     }
     let measured = &run.measured[own.clone()];
     let track = run.track.part(own.clone(), MARGIN);
-    // Where the counts have the robot, seen from where the piece begins to be driven.
+    // The pose by the counts, relative to where the piece begins.
     let model = Model::new(robot);
     let poses = track.clone().beginning_at(Pose2::IDENTITY).poses(&model.chain());
     let (x, y, heading) = measured[0];

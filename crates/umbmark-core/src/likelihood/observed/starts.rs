@@ -1,16 +1,16 @@
 //! Where a run starts and restarts, fitted to the poses measured there: the only fit before an error is reported.
 //!
-//! A single pose turns everything behind it by its own noise, ten metres on by some centimetres. So START is fitted to the
-//! first poses of a stretch, each weighed by its own noise and by what wheels usually gather until then.
+//! The heading noise of a single pose would rotate everything after it: ten metres further on, that is some centimetres. So START is fitted
+//! to the first poses of a section, each weighted by its own noise and by the usual noise of the wheels until then.
 
 use super::{Block, ObservedRun};
 use crate::likelihood::{Column, Noise};
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
 
-/// No pose is taken for better than this \[m, rad\].
+/// Minimum standard deviation of a pose \[m, rad\].
 const LEAST: f64 = 1e-4;
-/// The first block alone is START where its mean is as sure as this \[m, rad\].
+/// The first block alone determines START if the standard deviation of its mean is below this \[m, rad\].
 const ENOUGH: (f64, f64) = (1e-3, 5e-4);
 
 /// A stretch of a run in which nothing but START is fitted.
@@ -49,7 +49,7 @@ impl ObservedRun {
         let usual = Noise::default();
         let own = |sd: f64, count: usize| (sd * sd).max(LEAST * LEAST) / count.max(1) as f64;
         let first = &self.blocks[blocks.start];
-        // Of poses at rest there are mostly enough: then nothing that happens behind them is taken for START.
+        // There are usually enough poses at rest; then later errors cannot be attributed to START.
         let sure = own(position, first.count) <= ENOUGH.0 * ENOUGH.0
             && first.headings > 0
             && own(heading, first.headings) <= ENOUGH.1 * ENOUGH.1;
@@ -68,7 +68,7 @@ impl ObservedRun {
                     + usual.heading_per_radian.powi(2) * growth.heading_per_radian[5],
             );
             (turned, gone) = (turned + turning, gone + further(growth.way));
-            // What the heading has gathered since START moves the robot aside.
+            // The heading error accumulated since START moves the robot sideways.
             let aside = further((usual.forward_per_metre.powi(2) + turned * gone) * growth.way);
             positions.push((Some(own(position, block.count)), aside));
             headings.push(((block.headings > 0).then(|| own(heading, block.headings)), turning));
@@ -97,8 +97,8 @@ impl ObservedRun {
     }
 }
 
-/// Weights by which the first value of a random walk is best told from later ones: each has noise of its own, where it was measured,
-/// and the walk a step before it. Generalised least squares, by the information filter from the last value back.
+/// Weights that best estimate the first value of a random walk from all its measured values: each has measurement noise, and the walk has a
+/// step between any two. Generalised least squares, by the information filter from the last value back.
 fn of_first(values: &[(Option<f64>, f64)]) -> Vec<f64> {
     let mut weights = vec![0.0; values.len()];
     let (mut information, mut shares) = (0.0, vec![0.0; values.len()]);
@@ -116,7 +116,7 @@ fn of_first(values: &[(Option<f64>, f64)]) -> Vec<f64> {
 }
 
 impl Stretch {
-    /// What is left of a column within the stretch when START is fitted to it: (x, y, heading) a block.
+    /// Residual of a column in the stretch after START is fitted: (x, y, heading) per block.
     pub fn less_start(&self, run: &ObservedRun, column: &Column) -> Vec<[f64; 3]> {
         let own = &run.blocks[self.blocks.clone()];
         let values = &column[self.blocks.clone()];

@@ -1,11 +1,11 @@
-//! A run as a model has it: where the robot is after each piece, and how its error grows.
+//! A run as a model predicts it: the pose after each piece, and how its error grows.
 
 use super::Growth;
 use crate::effect::Chain;
 use crate::geometry::Pose2;
 use crate::replay::{Moment, Track};
 
-/// Mean rate of change of the pose over some observations: what a delay of a second takes off.
+/// Mean rate of change of the pose over some observations: the effect of a delay of one second.
 pub(super) fn velocity(places: &[Pose2], moments: &[Moment]) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for (place, Moment { sight, .. }) in places.iter().zip(moments) {
@@ -17,7 +17,7 @@ pub(super) fn velocity(places: &[Pose2], moments: &[Moment]) -> [f64; 3] {
     sum
 }
 
-/// Where a model has the robot after each piece, and how far it has gone and turned.
+/// Predicted pose after each piece, with distance driven and rotation until then.
 pub(super) struct Walk {
     pub places: Vec<Pose2>,
     pub way: Vec<f64>,

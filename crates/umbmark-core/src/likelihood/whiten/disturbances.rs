@@ -1,12 +1,12 @@
-//! Places where a run is disturbed by more than its noise: bumps met by chance, and poses of the reference that are off.
+//! Places where a run is disturbed by more than its noise: accidental bumps, and wrong poses of the reference.
 //!
-//! What a kick between two blocks, or a pose that is off, would add to all that is new behind it follows from the filter's own gains, and
-//! one pass back along the run gathers the score of each:
+//! The filter's gains determine how a kick between two blocks, or a wrong pose, would change all later innovations. One backward pass along
+//! the run computes the score of each:
 //!
 //! r ← Aᵀ v + Mᵀ r,  N ← Aᵀ A + Mᵀ N M,  A = L⁻¹ H,  M = I - Wᵀ A.
 //!
-//! A kick has the score rᵀ N⁻¹ r; a pose that is off has hᵀ (I + W N Wᵀ)⁻¹ h, h = v - W r with r and N of what lies behind it. Both are χ²
-//! where there is noise alone.
+//! A kick has the score rᵀ N⁻¹ r; a wrong pose has hᵀ (I + W N Wᵀ)⁻¹ h, h = v - W r with r and N of what lies behind it. Both are χ² if
+//! there is only noise.
 //!
 //! Source: auxiliary residuals, Harvey & Koopman (1992); de Jong & Penzer (1998).
 
@@ -17,11 +17,11 @@ use crate::stats::chi_squared_upper_tail;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-/// False-alarm rate per run that holds noise alone.
+/// False-alarm rate per run that contains only noise.
 const SIZE: f64 = 0.005;
-/// Probability with which the tails that what is left has reach as far as what is named, in one block of all.
+/// Probability that, by the tails of the residuals, any block at all reaches a named disturbance.
 const LEVEL: f64 = 0.05;
-/// Disturbances nearer to each other than this are one \[m\].
+/// Disturbances closer to each other than this are the same one \[m\].
 const NEAR: f64 = 0.15;
 /// Blocks that determine START.
 const SPENT: usize = 2;
@@ -35,7 +35,7 @@ pub struct Disturbance {
     pub time: f64,
     /// How far the wheels have rolled by then \[m\].
     pub rolled: f64,
-    /// Whether the robot was moved and stayed so; else the reference was off for a moment.
+    /// Whether the robot was displaced for good; otherwise the reference was wrong for a moment.
     pub lasts: bool,
     /// How far ahead \[m\], to the left \[m\], and how far to the left it turned \[rad\]; the last is 0 where headings were not measured.
     pub by: [f64; 3],
@@ -62,7 +62,7 @@ impl Noise {
         runs.iter().zip(scores).flat_map(of_run).collect()
     }
 
-    /// Of each block the greater of two scores: that of a kick before it, and that of its pose being off.
+    /// For each block the larger of two scores: that of a kick before it and that of a wrong pose.
     fn scores(&self, run: &ObservedRun, left: &Column) -> Vec<Standing> {
         let mut p = self.start(run.start_seen);
         let mut states = States::new(1);
@@ -109,7 +109,7 @@ impl Noise {
     }
 }
 
-/// Scores in units of what is usual in their run, where that is more than noise makes: the median of all is that of a χ² then.
+/// Scores scaled to the usual size in their run, if that exceeds the noise: their median is then that of a χ².
 fn less_usual(mut scores: Vec<Standing>) -> Vec<Standing> {
     let mut squares: Vec<f64> = scores.iter().map(|standing| standing.square).collect();
     squares.sort_by(f64::total_cmp);
@@ -118,7 +118,7 @@ fn less_usual(mut scores: Vec<Standing>) -> Vec<Standing> {
     scores
 }
 
-/// Disturbances of a run that exceed the noise and its `tails`; of neighbours, the most significant one.
+/// Disturbances of a run that exceed the noise and its `tails`; only the most significant one of neighbours.
 fn named(run: &ObservedRun, mut scores: Vec<Standing>, tails: f64, wheelbase: f64) -> Vec<Disturbance> {
     let rows: f64 = if run.blocks.iter().any(|block| block.headings > 0) { 3.0 } else { 2.0 };
     let blocks = run.blocks.len() as f64;
@@ -153,7 +153,7 @@ fn named(run: &ObservedRun, mut scores: Vec<Standing>, tails: f64, wheelbase: f6
     told.collect()
 }
 
-/// Median of the greater of two χ² of three degrees of freedom that are nearly one.
+/// Median of the larger of two strongly correlated χ² of three degrees of freedom.
 const MEDIAN: f64 = 2.37;
 
 /// The inverse of S N S, S what makes its diagonal ones; `None` where it has none.
@@ -185,7 +185,7 @@ mod tests {
     use crate::likelihood::{Fitted, Observed};
     use crate::random::Stream;
 
-    /// Oracle: the columns of a kick and of a pose that is off, whitened as any others.
+    /// Oracle: the columns of a kick and of a wrong pose, whitened like any others.
     #[test]
     fn scores_are_those_of_whitened_columns() {
         let (run, noise) = (run(true), Noise { reference_delay: 0.0, ..noise() });
@@ -221,7 +221,7 @@ mod tests {
             let off = square((0..seen).map(|k| glance(standing.block, unit(k))).collect());
             let (most, lasts) = if kicked > off { (kicked, true) } else { (off, false) };
             assert!((standing.square - most).abs() < 1e-6 * most, "{} {kicked} {off}", standing.square);
-            // Where one block is left a kick and a pose that is off are one.
+            // At the last block, a kick and a wrong pose are equivalent.
             assert!(standing.lasts == lasts || (kicked - off).abs() < 1e-6 * most);
         }
     }
@@ -245,7 +245,7 @@ mod tests {
         fitted
     }
 
-    /// What stands out of the runs of a fit, of which one block of the first run is off by this.
+    /// Disturbances found in the runs of a fit after one block of the first run is displaced by this.
     fn disturbances(fitted: &Fitted, off: [f64; 3]) -> Vec<Disturbance> {
         let chain = fitted.model.chain();
         let mut left: Vec<Column> = fitted.observed.runs.iter().map(|run| run.residuals_along(&chain)).collect();

@@ -117,7 +117,7 @@ fn bumps_have_groups_of_their_own() {
     assert_eq!(Returned::of(&runs, &Robot::labmate(), None).outlying[0].test, TestKind::Bumps);
 }
 
-/// Two of two cannot be told apart, and two runs of one direction are not judged by those of the other.
+/// Of two runs, none can be named as wrong, and two runs of one direction are not compared with those of the other.
 #[test]
 fn of_two_runs_nothing_is_said() {
     let mut runs = normal([5, 2], &mut Stream::new(16, 0, 0));

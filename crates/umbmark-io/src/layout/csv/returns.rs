@@ -159,7 +159,7 @@ impl EndPoses {
     }
 }
 
-/// `returns.csv` of the runs whose return error is known; nothing where there is none.
+/// `returns.csv` of the runs whose return error is known; nothing if there is none.
 pub(crate) fn returns_text(runs: &[Run]) -> Option<Vec<u8>> {
     let known: Vec<_> = runs.iter().filter_map(|run| Some((run, run.returned?))).collect();
     if known.is_empty() {

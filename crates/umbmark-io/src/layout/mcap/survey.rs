@@ -47,7 +47,7 @@ pub(in super::super) struct Survey {
 }
 
 impl Survey {
-    /// Opens a log: by its summary, or where there is none by looking through all of it.
+    /// Opens a log by its summary or, without one, by reading all of it.
     pub fn open(path: &Path) -> Result<Survey, DatasetError> {
         let file = path.display().to_string();
         let opened = File::open(path).and_then(Container::open).map_err(|error| unreadable(path, &error))?;

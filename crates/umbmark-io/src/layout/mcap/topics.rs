@@ -2,7 +2,7 @@
 //!
 //! They are found by type. Of the topics that tell how the wheels turned, the one nearest to the encoders is taken:
 //! integer counts, then joint positions, then odometry. Of those that tell where the robot was: poses, then single
-//! transforms, then odometry that is not the wheels, then /tf. Two of the same kind are for the user to tell apart.
+//! transforms, then odometry that is not the wheels, then /tf. Between two of the same kind the user must choose.
 
 use super::message_type::{Encoding, MessageType};
 use super::problem::{McapProblem, listed};

@@ -55,7 +55,7 @@ impl Track {
         Ok(())
     }
 
-    /// The rows of the frames that are the reference; nothing, and why, where there are none.
+    /// The rows of the frames that are the reference; nothing, and the reason, if there are none.
     pub fn choose(
         mut self,
         chosen: &Chosen,

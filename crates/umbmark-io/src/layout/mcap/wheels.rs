@@ -10,7 +10,7 @@ use crate::recording::Recording;
 use std::f64::consts::TAU;
 use umbmark_core::drive::Robot;
 
-/// Counts beyond it are not told apart any more.
+/// Counts beyond it are no longer distinct in `f64`.
 const LARGEST: f64 = 9e15;
 /// Joint positions that are nearer to whole ticks than this came from counts \[ticks\].
 const WHOLE: f64 = 1e-4;

@@ -30,7 +30,7 @@ fn shaped(text: &str, c: f64) -> Written {
     (text.to_owned(), vec![(SHAPE, c)])
 }
 
-/// What is above c counts, what is below does not, and about c it passes from the one to the other: a place where it jumps could not be fitted.
+/// A smooth step: values above c count, values below do not. A sharp step could not be fitted.
 fn above(quantity: &str) -> String {
     format!("(1 + tanh(20 * ({quantity} / c - 1))) / 2")
 }

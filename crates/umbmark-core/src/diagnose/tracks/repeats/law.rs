@@ -31,7 +31,7 @@ pub struct Repeated {
     pub laws: usize,
     /// Number of runs in which it was looked for.
     pub runs: usize,
-    /// The law that it is taken for.
+    /// The law that is chosen for it.
     pub law: UnlistedLaw,
     /// Other significant laws, the one that predicts held-out runs best first.
     pub others: Vec<UnlistedLaw>,
@@ -48,29 +48,30 @@ pub struct UnlistedLaw {
     pub acts_on: &'static str,
     /// What it is in proportion to: "second", "metre" or "radian turned".
     pub per: &'static str,
-    /// Whether it turns over with the sense of the run.
+    /// Whether it changes sign with the sense of the run.
     pub with_sense: bool,
     /// By what, in words, with {c} for the value of its parameter c.
     pub(in crate::diagnose::tracks) follows: String,
-    /// What the length that shapes it is of the robot or of its path: "the circumference of a wheel".
+    /// What its length corresponds to on the robot or its path: "the circumference of a wheel".
     pub means: Option<String>,
-    /// The effect of the catalogue that comes nearest to it once it is fitted, and the share of its response that this makes, as a cosine.
+    /// The effect of the catalogue that is most similar to it after its fit, and the share of its response that the effect reproduces, as a
+    /// cosine.
     pub nearest: Option<(&'static str, f64)>,
     /// How long its formula is: operations, variables and numbers.
     pub length: usize,
     /// Root mean square error of runs left out \[m\], and with the law.
     pub left_out: [f64; 2],
-    /// By what share errors of runs left out fall, of positions, of headings, or from pose to pose, whichever falls most; less what positions
-    /// rise by.
+    /// Relative decrease of the errors of held-out runs: the largest of those of positions, headings and innovations, minus any increase of
+    /// positions.
     pub gain: f64,
-    /// What it takes off the sum of squares, in units of the noise variance.
+    /// Decrease of the sum of squares, in units of the noise variance.
     pub drop: f64,
-    /// Share of its response that the law which is taken makes as well, as a cosine.
+    /// Share of its response that the chosen law reproduces, as a cosine.
     pub likeness: f64,
 }
 
 impl UnlistedLaw {
-    /// Whether these runs cannot tell it from the law that is taken.
+    /// Whether these runs cannot separate it from the chosen law.
     pub fn is_alike(&self) -> bool {
         self.likeness > ALIKE
     }
@@ -149,7 +150,7 @@ impl Repeated {
         )
     }
 
-    /// The same with another law taken: number 1 is the present one. Skips laws that are `refused`; `None` where none is left.
+    /// The same with another law chosen: number 1 is the present one. Skips laws that are `refused`; `None` where none is left.
     pub(in crate::diagnose::tracks) fn taking(
         &self,
         number: usize,

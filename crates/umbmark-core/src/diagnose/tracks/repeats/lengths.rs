@@ -1,15 +1,15 @@
-//! Lengths that a robot and its path have: a period that is one of them says where to look.
+//! Lengths of a robot and its path: if a period equals one of them, it shows where to look.
 
 use crate::evidence::Estimate;
 use crate::likelihood::Observed;
 use std::f64::consts::PI;
 
-/// What a nominal length may be off by, as a share.
+/// Tolerance of a nominal length, as a share.
 const NOMINAL: f64 = 0.01;
-/// A length whose standard error is a greater share of it could be any.
+/// A length with a larger relative standard error is not compared.
 const VAGUE: f64 = 0.03;
 
-/// What a fitted length is of the robot or of its path; `None` where it is nothing that is known.
+/// What a fitted length corresponds to on the robot or its path; `None` if to nothing known.
 pub fn meaning(observed: &Observed, length: &Estimate) -> Option<String> {
     let (value, error) = (length.value.abs(), length.standard_error);
     if !(error <= VAGUE * value) {

@@ -21,7 +21,7 @@ impl Eight {
     #[inline(always)]
     pub unsafe fn new(phase: u64, rest: u64) -> Eight {
         let [a, b, c, d, e, f, g, h] = first_eight(phase, rest);
-        // SAFETY: the caller's word.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             Eight {
                 phases: _mm512_setr_epi64(a, b, c, d, e, f, g, h),
@@ -60,7 +60,7 @@ impl TwiceFour {
         // There are only signed comparisons; flipping the top bit makes them unsigned, and addition does not mind.
         let flipped = |value: i64| value ^ i64::MIN;
         let [a, b, c, d, e, f, g, h] = first_eight(phase, rest).map(flipped);
-        // SAFETY: the caller's word.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             TwiceFour {
                 phases: [_mm256_setr_epi64x(a, b, c, d), _mm256_setr_epi64x(e, f, g, h)],
