@@ -80,7 +80,7 @@ def compare(
         What to hold against it; the nominal robot, and E_d and E_b (on tracks E_s too) fitted to
         this data, where nothing is given.
     size : float, default 0.05
-        False-alarm rate: probability with which a right model is accused.
+        False-alarm rate: probability that a correct model is rejected.
     draws : int, default 999
         Simulated tests for the p-values.
     seed : int, default 1

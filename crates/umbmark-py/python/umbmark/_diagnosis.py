@@ -86,7 +86,7 @@ def diagnose(
         The model to question, its free effects fitted; E_d and E_b, on tracks E_s too, where none
         is given.
     size : float, default 0.05
-        False-alarm rate: probability with which a complete model is accused.
+        False-alarm rate: probability that a complete model is rejected.
     draws : int, default 999
         Simulated tests for p-values that have no closed form.
     seed : int, default 1

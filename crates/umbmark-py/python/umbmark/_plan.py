@@ -132,7 +132,7 @@ def plan(
     power : float, default 0.9
         Probability with which it is to be seen.
     size : float, default 0.05
-        False-alarm rate: probability with which a robot without it is accused.
+        False-alarm rate: probability of detecting an effect that the robot lacks.
     with_heading : bool, default True
         Whether return headings are measured.
     numbers : sequence of int, default 3 to 30
