@@ -57,7 +57,10 @@ fn a_synchro_robot_is_simulated_calibrated_and_corrected() {
     umbmark(&["calibrate", &data, "--export-toml", &corrected]).success();
     let text = std::fs::read_to_string(corrected).unwrap();
     assert!(text.contains("drive = \"synchro\"") && text.contains("coupling_rad_per_m = 0.001"), "{text}");
-    umbmark(&["calibrate", &data, "--export-c", &place("x.h")]).code(1).stdout_eq(str![""]);
+    let header = place("x.h");
+    umbmark(&["calibrate", &data, "--export-c", &header]).success();
+    assert!(std::fs::read_to_string(header).unwrap().contains("#define UMBMARK_COUPLING_RAD_PER_M 0.001"));
+    umbmark(&["calibrate", &data, "--export-ros2", &place("x.yaml")]).code(1).stdout_eq(str![""]);
 }
 
 #[test]

@@ -4,23 +4,17 @@ use std::sync::Arc;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use umbmark_core::calibrate::{Correction, Options, RadiusWheelbase};
+use umbmark_core::calibrate::{Options, RadiusWheelbase};
 use umbmark_core::{diagnose, learn, result, solve};
-use umbmark_io::RobotFile;
-use umbmark_io::export::{Export, Target};
 
 use crate::dataset::Dataset;
 use crate::model::Model;
-use crate::path::Path;
 use crate::robot::Robot;
 use crate::work::{Watch, watched};
 use crate::{choice, json, probability, refused};
 
 const WHEELBASES: [(&str, RadiusWheelbase); 2] =
     [("nominal", RadiusWheelbase::Nominal), ("corrected", RadiusWheelbase::Corrected)];
-
-/// Formats by the targets that write them.
-const FORMATS: [(&str, &str); 3] = [("ros2_control", "ros2_control"), ("robot_toml", "toml"), ("c_header", "c")];
 
 /// A calibration by every method that the data allows.
 #[pyfunction]
@@ -69,26 +63,4 @@ pub fn calibrate_gears(py: Python<'_>, data: &Dataset, level: f64) -> PyResult<(
     }
     let document = json(&result::GearCalibration::new(robot, &found, level, &data.0.warnings))?;
     Ok((document, found.model.into(), Robot(found.corrected)))
-}
-
-/// Corrected lengths as a file of another program: "ros2_control", "robot_toml" or "c_header".
-#[pyfunction]
-pub fn export(
-    robot: &Robot,
-    path: Option<&Path>,
-    ratios: (f64, f64, Option<f64>),
-    format: &str,
-    controller: Option<&str>,
-) -> PyResult<String> {
-    let (e_d, e_b, e_s) = ratios;
-    let correction = Correction { e_d, e_b, e_s: e_s.unwrap_or(1.0) };
-    let target = choice("format", format, &FORMATS)?;
-    let model = correction.model(&robot.0).map_err(refused)?;
-    let export = Export {
-        controller: controller.map(str::to_owned),
-        beside: Some(RobotFile::new(robot.0.clone(), path.map(|path| path.0.clone()))),
-        ..Export::of(&model)
-    };
-    let target = Target::named(target).ok_or_else(|| PyValueError::new_err(format!("there is no target {target}")))?;
-    Ok(target.write(&export).map_err(refused)?.text)
 }

@@ -34,11 +34,12 @@ macro_rules! module {
 
 module! {
     arrays;
-    calibrate: calibrate, calibrate_gears, export;
+    calibrate: calibrate, calibrate_gears;
     checkpoint: merge;
     dataset: Dataset, init, inspect, load_dataset;
     diagnose: compare, diagnose, fit, learn, solve;
     effect: effects, formula_variables;
+    export: export;
     figure: Figure, figure, kinds;
     keys;
     model: Model;

@@ -13,8 +13,9 @@ use umbmark_core::diagnose;
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::Model;
 use umbmark_core::evidence::Level;
+use umbmark_core::likelihood::Noise;
 use umbmark_core::result;
-use umbmark_core::solve::calibrate_beside;
+use umbmark_core::solve::{Solution, calibrate_beside};
 use umbmark_io::RobotFile;
 use umbmark_io::export::{Export, Target};
 
@@ -126,7 +127,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let noticed = calibration.setup.notices().len();
     calibration.warnings.splice(noticed..noticed, data.warnings.iter().cloned());
     let withheld = !calibration.doubts.is_empty() && !arguments.force;
-    let written = if withheld { Vec::new() } else { export_files(&arguments, &data, robot, &calibration)? };
+    let written =
+        if withheld { Vec::new() } else { export_files(&arguments, &data, robot, &calibration, answer.as_ref())? };
     if session.json() {
         session.print_json(&result::Calibration::new(
             robot,
@@ -170,20 +172,30 @@ fn export_files(
     data: &Dataset,
     robot: &Robot,
     calibration: &Calibration,
+    answer: Option<&Solution>,
 ) -> anyhow::Result<Vec<String>> {
     let asked = [&arguments.export_ros2, &arguments.export_toml, &arguments.export_c];
     if asked.iter().all(|file| file.is_none()) {
         return Ok(Vec::new());
     }
-    let correction = &arguments.exported(calibration)?.correction;
-    write_targets(arguments, data, &correction.model(robot)?)
+    let estimate = arguments.exported(calibration)?;
+    match answer.map(|answer| &answer.learnt).filter(|_| estimate.method == Method::Model) {
+        Some(learnt) => write_targets(arguments, data, &learnt.model, learnt.noise),
+        None => write_targets(arguments, data, &estimate.correction.model(robot)?, None),
+    }
 }
 
 /// Writes a model to the files that were asked for; gives their names.
-fn write_targets(arguments: &Arguments, data: &Dataset, model: &Model) -> anyhow::Result<Vec<String>> {
+fn write_targets(
+    arguments: &Arguments,
+    data: &Dataset,
+    model: &Model,
+    noise: Option<Noise>,
+) -> anyhow::Result<Vec<String>> {
     let asked =
         [("ros2_control", &arguments.export_ros2), ("toml", &arguments.export_toml), ("c", &arguments.export_c)];
     let export = Export {
+        noise,
         controller: arguments.controller.clone(),
         beside: Some(RobotFile::beside(data, model.robot().clone())),
         ..Export::of(model)

@@ -97,7 +97,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     }
     let usual = Usual { speed: arguments.speed, turn_rate: arguments.turn_rate, rate: arguments.rate };
     let urdf = arguments.urdf.map(|file| UrdfFile::read(file, arguments.joints)).transpose()?;
-    let export = Export { controller: arguments.controller, urdf, usual, ..Export::of(&file.model) };
+    let (noise, controller) = (file.noise, arguments.controller);
+    let export = Export { noise, controller, urdf, usual, ..Export::of(&file.model) };
     let written = arguments.to.write(&export)?;
     Pending::write_whole(&arguments.output, arguments.force, &written.text)?;
     for note in &written.notes {

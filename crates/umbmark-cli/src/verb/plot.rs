@@ -35,7 +35,7 @@ fn kind(name: &str) -> Result<&'static FigureKind, String> {
 /// The kinds of figures, a line each.
 fn kinds() -> String {
     let lines = KINDS.iter().map(|kind| hanging(&format!("  {}", kind.name), 18, kind.about));
-    format!("DriveKinds:\n{}", lines.collect::<String>())
+    format!("Kinds:\n{}", lines.collect::<String>())
 }
 
 /// Arguments of `plot`.

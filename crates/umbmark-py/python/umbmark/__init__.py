@@ -14,6 +14,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``compare``, ``diagnose``          what models explain, and what they are missing
 ``solve``                          the one answer: what to write into the robot
 ``fit``, ``learn``                 fit a model; add what is missing until nothing is
+``export``                         a model for ROS 2, Nav2, URDF, C, Gazebo or MuJoCo
 ``report``, ``plot``               everything on one page; one figure of it
 ``simulate``, ``monte_carlo``      one test, recorded; thousands of tests
 ``merge``                          shards and checkpoints of studies put together
@@ -30,6 +31,7 @@ from umbmark._calibration import Calibration, GearCalibration, calibrate, calibr
 from umbmark._comparison import Comparison, TrackComparison, compare
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
 from umbmark._documents import Correction, Effect, Setup
+from umbmark._export import Exported, export
 from umbmark._formula import formula_of
 from umbmark._inspection import Inspection, inspect
 from umbmark._monte_carlo import MonteCarlo, merge, monte_carlo
@@ -66,6 +68,7 @@ __all__ = [
     "Diagnosis",
     "Effect",
     "Ensemble",
+    "Exported",
     "Figure",
     "Fitted",
     "GearCalibration",
@@ -94,6 +97,7 @@ __all__ = [
     "compare",
     "diagnose",
     "effects",
+    "export",
     "figures",
     "fit",
     "formula_of",

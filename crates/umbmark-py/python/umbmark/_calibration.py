@@ -8,9 +8,10 @@ import msgspec
 
 from umbmark import _documents
 from umbmark._documents import Correction
+from umbmark._export import export
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
-from umbmark._umbmark import Model, Path, Robot, export
+from umbmark._umbmark import Model, Path, Robot
 from umbmark._umbmark import calibrate as _calibrate
 from umbmark._umbmark import calibrate_gears as _calibrate_gears
 
@@ -74,7 +75,13 @@ class Calibration(_documents.Calibration, frozen=True):
         found = self._of_method(method)
         if found.e_d is None or found.e_b is None:
             raise ValueError(f"nothing to export: {method} does not give both E_d and E_b")
-        return export(self.robot, self.path, (found.e_d, found.e_b, found.e_s), format, controller)
+        targets = {"ros2_control": "ros2_control", "robot_toml": "toml", "c_header": "c"}
+        if format not in targets:
+            known = ", ".join(targets)
+            raise ValueError(f'format must be one of {known}, got "{format}"')
+        model = Model(self.robot).add("wheel_diameter_ratio", e_d=found.e_d)
+        model = model.add("wheelbase", e_b=found.e_b).add("scale", e_s=found.e_s or 1.0)
+        return export(model, to=targets[format], path=self.path, controller=controller).text
 
     def _of_method(self, method: str) -> Correction:
         found = self.methods.get(method)

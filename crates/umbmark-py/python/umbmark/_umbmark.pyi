@@ -386,12 +386,13 @@ def calibrate(
     data: Dataset, level: float, heading_arm_m: float | None, radius_wheelbase: str
 ) -> str: ...
 def export(
-    robot: Robot,
+    model: Model,
+    to: str,
     path: Path | None,
-    ratios: tuple[float, float, float | None],
-    format: str,
     controller: str | None,
-) -> str: ...
+    urdf: tuple[str, list[str] | None] | None,
+    usual: list[float],
+) -> tuple[str, list[str]]: ...
 def compare(
     data: Dataset,
     models: Sequence[tuple[str, Model]],

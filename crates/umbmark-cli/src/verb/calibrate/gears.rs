@@ -30,8 +30,9 @@ pub(super) fn run(arguments: &Arguments, data: &Dataset, session: &mut Session) 
     let answer =
         session.watched("% of the steps of learning at most", |watch| solve(data, &start, &testing, watch))??;
     let withheld = !answer.is_trusted() && !arguments.force;
-    let model = if answer.changes.is_empty() { &calibration.model } else { &answer.learnt.model };
-    let written = if withheld { Vec::new() } else { write_targets(arguments, data, model)? };
+    let learnt = (&answer.learnt.model, answer.learnt.noise);
+    let (model, noise) = if answer.changes.is_empty() { (&calibration.model, None) } else { learnt };
+    let written = if withheld { Vec::new() } else { write_targets(arguments, data, model, noise)? };
     if session.json() {
         session.print_json(&result::GearCalibration::new(
             robot,
