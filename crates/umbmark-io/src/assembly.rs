@@ -1,7 +1,7 @@
 //! Runs put together from return rows and logs.
 
 use super::RobotFile;
-use super::error::{At, DatasetError};
+use super::error::{At, DatasetError, LineProblem};
 use super::label::{self, Named};
 use super::layout::csv::ReturnRow;
 use super::recording::Recording;
@@ -149,11 +149,10 @@ impl Assembly {
     fn push(&mut self, run: Run, file: &str, line: usize) -> Result<(), DatasetError> {
         let key = (run.test, run.direction, run.number);
         if let Some(&first) = self.index.get(&key) {
-            return Err(DatasetError::DuplicateRun {
-                at: At::new(file, line),
+            return Err(At::new(file, line).refuse(LineProblem::DuplicateRun {
                 run: label::spoken(run.test, run.direction, run.number),
                 first: self.places[first].clone(),
-            });
+            }));
         }
         self.index.insert(key, self.runs.len());
         self.runs.push(run);
@@ -196,11 +195,10 @@ impl Assembly {
     fn attach(&mut self, row: usize, log: TickLog, stem: &str, file: &str) -> Result<(), DatasetError> {
         let run = &mut self.runs[row];
         if run.log.is_some() {
-            return Err(DatasetError::DuplicateRun {
-                at: At::new(file, 1),
+            return Err(At::new(file, 1).refuse(LineProblem::DuplicateRun {
                 run: label::spoken(run.test, run.direction, run.number),
                 first: self.places[row].clone(),
-            });
+            }));
         }
         run.log = Some(log);
         run.name = stem.to_owned();

@@ -1,6 +1,6 @@
 //! Columns by name and unit, and the numbers in their cells.
 
-use super::error::{At, DatasetError, did_you_mean, quoted};
+use super::error::{At, DatasetError, LineProblem, did_you_mean, quoted};
 use super::sheet::{Row, Sheet};
 use super::source::Source;
 use std::collections::BTreeSet;
@@ -85,11 +85,7 @@ impl<'s> Columns<'s> {
             let Some((name, unit)) = names.iter().find(|(name, _)| name == header) else { continue };
             if let Some(first) = found {
                 let (first, second) = (first.name, name.clone());
-                return Err(DatasetError::ColumnTwice {
-                    at: At::new(self.file(), self.sheet.header_line),
-                    first,
-                    second,
-                });
+                return Err(self.refuse(LineProblem::ColumnTwice { first, second }));
             }
             found = Some(Column { name: name.clone(), index, unit: *unit });
         }
@@ -117,7 +113,12 @@ impl<'s> Columns<'s> {
             Some(near) => format!("is it {}? {remedy}", quoted(near)),
             None => remedy.to_owned(),
         };
-        DatasetError::MissingColumn { at: At::new(self.file(), self.sheet.header_line), column, remedy }
+        self.refuse(LineProblem::MissingColumn { column, remedy })
+    }
+
+    /// The error of a header that cannot be.
+    fn refuse(&self, problem: LineProblem) -> DatasetError {
+        At::new(self.file(), self.sheet.header_line).refuse(problem)
     }
 
     /// Ends the search: columns that nobody asked for are refused where they resemble one that could have been meant,
@@ -131,11 +132,7 @@ impl<'s> Columns<'s> {
             }
             if let Some(nearest) = umbmark_core::parameter::nearest(header, free.iter().copied()) {
                 let (column, nearest) = (quoted(header), nearest.to_owned());
-                return Err(DatasetError::UnknownColumn {
-                    at: At::new(self.file(), self.sheet.header_line),
-                    column,
-                    nearest,
-                });
+                return Err(self.refuse(LineProblem::UnknownColumn { column, nearest }));
             }
             warnings.push(format!("{}: column {} is not used", self.sheet.file(), quoted(header)));
         }
@@ -149,12 +146,11 @@ impl<'s> Columns<'s> {
     fn take(&mut self, column: &Column, quantity: Quantity) -> Result<(), DatasetError> {
         self.used.insert(column.index);
         match self.leaders.iter().find(|(q, _)| *q == quantity) {
-            Some((_, leader)) if leader.unit != column.unit => Err(DatasetError::MixedUnits {
-                at: At::new(self.file(), self.sheet.header_line),
+            Some((_, leader)) if leader.unit != column.unit => Err(self.refuse(LineProblem::MixedUnits {
                 first: leader.name.clone(),
                 second: column.name.clone(),
                 quantity: quantity.name(),
-            }),
+            })),
             Some(_) => Ok(()),
             None => {
                 self.leaders.push((quantity, column.clone()));
@@ -179,8 +175,7 @@ impl<'s> Columns<'s> {
             };
             let allowed =
                 quantity.units().iter().map(|unit| format!("_{}", unit.name)).collect::<Vec<_>>().join(" or ");
-            let (column, line) = (quoted(header), self.sheet.header_line);
-            return Err(DatasetError::Unit { at: At::new(self.file(), line), column, found, allowed });
+            return Err(self.refuse(LineProblem::Unit { column: quoted(header), found, allowed }));
         }
         Ok(())
     }
@@ -249,13 +244,12 @@ impl<'r> Row<'r> {
     }
 
     fn wrong_cell(&self, name: &str, text: &str, allowed: &str, remedy: &str) -> DatasetError {
-        DatasetError::Cell {
-            at: At::new(self.file, self.line),
+        At::new(self.file, self.line).refuse(LineProblem::Cell {
             column: name.to_owned(),
             value: if text.is_empty() { "nothing".into() } else { quoted(text) },
             allowed: allowed.into(),
             remedy: remedy.into(),
-        }
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! TOML with positions: tables that know their file and line, and say what they expected.
 
-use super::error::{At, DatasetError, quoted};
+use super::error::{At, DatasetError, LineProblem, quoted};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use umbmark_core::parameter::{Parameter, nearest};
@@ -19,7 +19,7 @@ impl<'a> Source<'a> {
             let before = self.text.get(..at).unwrap_or(self.text);
             let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
             let reason = error.message().lines().collect::<Vec<_>>().join(", ");
-            DatasetError::Syntax { at: At::new(self.file, self.line(at)), column, reason }
+            At::new(self.file, self.line(at)).refuse(LineProblem::Syntax { column, reason })
         })
     }
 
@@ -66,12 +66,11 @@ impl<'a> Table<'a> {
             Some(name) => format!("did you mean \"{name}\"?"),
             None => format!("it takes {}", allowed.join(", ")),
         };
-        Err(DatasetError::UnknownKey {
-            at: At::new(self.source.file, self.source.line(key.span().start)),
+        Err(At::new(self.source.file, self.source.line(key.span().start)).refuse(LineProblem::UnknownKey {
             table: self.name.clone(),
             key: quoted(key.get_ref()),
             remedy,
-        })
+        }))
     }
 
     /// The entry of a key, if it is there.
@@ -100,12 +99,11 @@ impl<'a> Table<'a> {
 
     /// The error of a key that is not there.
     pub fn missing(&self, key: &str, example: &str) -> DatasetError {
-        DatasetError::MissingKey {
-            at: At::new(self.source.file, self.line),
+        At::new(self.source.file, self.line).refuse(LineProblem::MissingKey {
             table: self.name.clone(),
             key: key.to_owned(),
             example: example.to_owned(),
-        }
+        })
     }
 
     /// The one entry among keys that mean the same, if any is there.
@@ -133,12 +131,11 @@ impl<'a> Entry<'a> {
     /// The error of a second key that means the same.
     pub fn again(&self, second: &Entry) -> DatasetError {
         let (first, second) = if self.at <= second.at { (self, second) } else { (second, self) };
-        DatasetError::KeyTwice {
-            at: At::new(self.source.file, second.line()),
+        At::new(self.source.file, second.line()).refuse(LineProblem::KeyTwice {
             second: second.key.to_owned(),
             first: first.key.to_owned(),
             first_line: first.line(),
-        }
+        })
     }
 
     /// The value as a table, called `name` in messages.
@@ -212,13 +209,12 @@ impl<'a> Entry<'a> {
 
     /// The same for a value that goes by another name than its key.
     pub fn wrong_value(&self, key: String, allowed: &str, remedy: &str) -> DatasetError {
-        DatasetError::Value {
-            at: At::new(self.source.file, self.line()),
+        At::new(self.source.file, self.line()).refuse(LineProblem::Value {
             key,
             value: self.shown(),
             allowed: allowed.into(),
             remedy: remedy.into(),
-        }
+        })
     }
 
     /// The value as it stands in the file, shortened.

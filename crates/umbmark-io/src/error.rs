@@ -57,27 +57,6 @@ pub enum DatasetError {
         /// What is wrong with it.
         problem: Box<McapProblem>,
     },
-    /// Something that the format allows and this version does not do.
-    #[error("{at}: {key} {value} is not supported yet; {remedy}")]
-    NotYet {
-        /// Where.
-        at: At,
-        /// The key.
-        key: String,
-        /// What it was given, quoted.
-        value: String,
-        /// What can be done instead.
-        remedy: String,
-    },
-
-    /// Bytes that are not UTF-8.
-    #[error("{at}: {found}; save the file as UTF-8 text")]
-    NotUtf8 {
-        /// Where.
-        at: At,
-        /// What it looks like.
-        found: &'static str,
-    },
     /// No rows.
     #[error("{file}: {found}; {remedy}")]
     NoRows {
@@ -87,142 +66,6 @@ pub enum DatasetError {
         found: &'static str,
         /// What to do.
         remedy: String,
-    },
-    /// The first line is not a header.
-    #[error("{at}: the first row is data ({value}); put a header line with the column names above it, not behind a #")]
-    NoHeader {
-        /// Where.
-        at: At,
-        /// Its first cell, quoted.
-        value: String,
-    },
-    /// Cells that are not separated by commas.
-    #[error(
-        "{at}: the cells are separated by {found}; separate them by commas and write decimals with a point (0.123, not 0,123)"
-    )]
-    Separator {
-        /// Where.
-        at: At,
-        /// What separates them.
-        found: &'static str,
-    },
-    /// A row with more or fewer cells than the header.
-    #[error("{at}: {got} cells where the header has {expected}; {remedy}")]
-    Ragged {
-        /// Where.
-        at: At,
-        /// Cells in the row.
-        got: usize,
-        /// Columns of the header.
-        expected: usize,
-        /// What to do.
-        remedy: &'static str,
-    },
-    /// A column that is needed and not there.
-    #[error("{at}: there is no column {column}; {remedy}")]
-    MissingColumn {
-        /// Where.
-        at: At,
-        /// The column, with its unit.
-        column: String,
-        /// What to do.
-        remedy: String,
-    },
-    /// A column that nobody knows but that resembles one.
-    #[error("{at}: unknown column {column}; did you mean \"{nearest}\"?")]
-    UnknownColumn {
-        /// Where.
-        at: At,
-        /// The column, quoted.
-        column: String,
-        /// The most similar known name.
-        nearest: String,
-    },
-    /// A column without a unit, or with one that nobody knows.
-    #[error("{at}: column {column}: {found}; end its name in {allowed}")]
-    Unit {
-        /// Where.
-        at: At,
-        /// The column, quoted.
-        column: String,
-        /// What is there.
-        found: String,
-        /// What may stand there.
-        allowed: String,
-    },
-    /// Two units of the same quantity in one file.
-    #[error(
-        "{at}: column \"{first}\" and column \"{second}\" have different units; use one unit of {quantity} in the whole file"
-    )]
-    MixedUnits {
-        /// Where.
-        at: At,
-        /// A column.
-        first: String,
-        /// Another column.
-        second: String,
-        /// "length" or "angle".
-        quantity: &'static str,
-    },
-    /// Two columns for the same thing.
-    #[error("{at}: column \"{first}\" and column \"{second}\" say the same; keep one of them")]
-    ColumnTwice {
-        /// Where.
-        at: At,
-        /// A column.
-        first: String,
-        /// Another column.
-        second: String,
-    },
-    /// Two ways of saying the same return.
-    #[error(
-        "{at}: both end poses (\"{poses}\") and their errors (\"{errors}\") are given; keep the poses or the errors, not both"
-    )]
-    BothConventions {
-        /// Where.
-        at: At,
-        /// A column of a pose.
-        poses: String,
-        /// A column of an error.
-        errors: String,
-    },
-    /// A cell that cannot be what it is.
-    #[error("{at}: column \"{column}\" must be {allowed}, got {value}{}", after(remedy))]
-    Cell {
-        /// Where.
-        at: At,
-        /// The column.
-        column: String,
-        /// What it holds, quoted.
-        value: String,
-        /// What it may hold, with the unit.
-        allowed: Box<str>,
-        /// What to do; may be empty.
-        remedy: Box<str>,
-    },
-    /// The same run twice.
-    #[error("{at}: {run} stands twice, first in {first}; number the runs of each direction and test without repeating")]
-    DuplicateRun {
-        /// Where.
-        at: At,
-        /// The run, in words.
-        run: String,
-        /// Where it stands already.
-        first: String,
-    },
-    /// Time that does not go forward.
-    #[error("{at}: column \"{column}\" must increase, got {after} s after {before} s; {remedy}")]
-    Time {
-        /// Where.
-        at: At,
-        /// The column.
-        column: String,
-        /// Time of the row before \[s\].
-        before: f64,
-        /// Time of this row \[s\].
-        after: f64,
-        /// What to do.
-        remedy: Box<str>,
     },
     /// A track with a clock of its own that the motion does not set.
     #[error("{file}: {reason}")]
@@ -248,13 +91,163 @@ pub enum DatasetError {
         /// Why, and what to do.
         reason: String,
     },
-    /// A wheel that moved faster than a wheel can.
+    /// Poses in the frame of the room that cannot be turned into the frame of START.
     #[error(
-        "{at}: column \"{column}\" goes from {before} to {after} ticks in {seconds} s, {speed} m/s at the wheel where {limit} m/s is allowed; {remedy}"
+        "{file}: the track starts {distance} m from the origin and has no heading, so it cannot be turned into the frame of START; add theta_ref_rad, or write the poses as seen from START"
     )]
-    Jump {
+    NoStartHeading {
+        /// The file.
+        file: String,
+        /// How far from the origin \[m\], rounded.
+        distance: f64,
+    },
+    /// A line that cannot be what it is.
+    #[error("{at}: {problem}")]
+    Line {
         /// Where.
         at: At,
+        /// What is wrong with it.
+        problem: LineProblem,
+    },
+}
+
+/// What is wrong with a line of a file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LineProblem {
+    /// Something that the format allows and this version does not do.
+    #[error("{key} {value} is not supported yet; {remedy}")]
+    NotYet {
+        /// The key.
+        key: String,
+        /// What it was given, quoted.
+        value: String,
+        /// What can be done instead.
+        remedy: String,
+    },
+    /// Bytes that are not UTF-8.
+    #[error("{found}; save the file as UTF-8 text")]
+    NotUtf8 {
+        /// What it looks like.
+        found: &'static str,
+    },
+    /// The first line is not a header.
+    #[error("the first row is data ({value}); put a header line with the column names above it, not behind a #")]
+    NoHeader {
+        /// Its first cell, quoted.
+        value: String,
+    },
+    /// Cells that are not separated by commas.
+    #[error(
+        "the cells are separated by {found}; separate them by commas and write decimals with a point (0.123, not 0,123)"
+    )]
+    Separator {
+        /// What separates them.
+        found: &'static str,
+    },
+    /// A row with more or fewer cells than the header.
+    #[error("{got} cells where the header has {expected}; {remedy}")]
+    Ragged {
+        /// Cells in the row.
+        got: usize,
+        /// Columns of the header.
+        expected: usize,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A column that is needed and not there.
+    #[error("there is no column {column}; {remedy}")]
+    MissingColumn {
+        /// The column, with its unit.
+        column: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// A column that nobody knows but that resembles one.
+    #[error("unknown column {column}; did you mean \"{nearest}\"?")]
+    UnknownColumn {
+        /// The column, quoted.
+        column: String,
+        /// The most similar known name.
+        nearest: String,
+    },
+    /// A column without a unit, or with one that nobody knows.
+    #[error("column {column}: {found}; end its name in {allowed}")]
+    Unit {
+        /// The column, quoted.
+        column: String,
+        /// What is there.
+        found: String,
+        /// What may stand there.
+        allowed: String,
+    },
+    /// Two units of the same quantity in one file.
+    #[error(
+        "column \"{first}\" and column \"{second}\" have different units; use one unit of {quantity} in the whole file"
+    )]
+    MixedUnits {
+        /// A column.
+        first: String,
+        /// Another column.
+        second: String,
+        /// "length" or "angle".
+        quantity: &'static str,
+    },
+    /// Two columns for the same thing.
+    #[error("column \"{first}\" and column \"{second}\" say the same; keep one of them")]
+    ColumnTwice {
+        /// A column.
+        first: String,
+        /// Another column.
+        second: String,
+    },
+    /// Two ways of saying the same return.
+    #[error(
+        "both end poses (\"{poses}\") and their errors (\"{errors}\") are given; keep the poses or the errors, not both"
+    )]
+    BothConventions {
+        /// A column of a pose.
+        poses: String,
+        /// A column of an error.
+        errors: String,
+    },
+    /// A cell that cannot be what it is.
+    #[error("column \"{column}\" must be {allowed}, got {value}{}", after(remedy))]
+    Cell {
+        /// The column.
+        column: String,
+        /// What it holds, quoted.
+        value: String,
+        /// What it may hold, with the unit.
+        allowed: Box<str>,
+        /// What to do; may be empty.
+        remedy: Box<str>,
+    },
+    /// The same run twice.
+    #[error("{run} stands twice, first in {first}; number the runs of each direction and test without repeating")]
+    DuplicateRun {
+        /// The run, in words.
+        run: String,
+        /// Where it stands already.
+        first: String,
+    },
+    /// Time that does not go forward.
+    #[error("column \"{column}\" must increase, got {after} s after {before} s; {remedy}")]
+    Time {
+        /// The column.
+        column: String,
+        /// Time of the row before \[s\].
+        before: f64,
+        /// Time of this row \[s\].
+        after: f64,
+        /// What to do.
+        remedy: Box<str>,
+    },
+    /// A wheel that moved faster than a wheel can.
+    #[error(
+        "column \"{column}\" goes from {before} to {after} ticks in {seconds} s, {speed} m/s at the wheel where {limit} m/s is allowed; {remedy}"
+    )]
+    Jump {
         /// The column.
         column: String,
         /// Count of the row before.
@@ -272,11 +265,9 @@ pub enum DatasetError {
     },
     /// A count that jumps as a counter does that rolls over.
     #[error(
-        "{at}: column \"{column}\" goes from {before} to {after} ticks, as a counter of {bits} bits does when it rolls over; say counter_bits = {bits} in robot.toml"
+        "column \"{column}\" goes from {before} to {after} ticks, as a counter of {bits} bits does when it rolls over; say counter_bits = {bits} in robot.toml"
     )]
     RolledOver {
-        /// Where.
-        at: At,
         /// The column.
         column: String,
         /// Count of the row before.
@@ -286,32 +277,17 @@ pub enum DatasetError {
         /// The counter that it may be.
         bits: u32,
     },
-    /// Poses in the frame of the room that cannot be turned into the frame of START.
-    #[error(
-        "{file}: the track starts {distance} m from the origin and has no heading, so it cannot be turned into the frame of START; add theta_ref_rad, or write the poses as seen from START"
-    )]
-    NoStartHeading {
-        /// The file.
-        file: String,
-        /// How far from the origin \[m\], rounded.
-        distance: f64,
-    },
-
     /// Not TOML.
-    #[error("{at}: not valid TOML at character {column}: {reason}")]
+    #[error("not valid TOML at character {column}: {reason}")]
     Syntax {
-        /// Where.
-        at: At,
         /// The character in the line, from 1.
         column: usize,
         /// What the parser says.
         reason: String,
     },
     /// A key that nobody knows.
-    #[error("{at}: unknown key {key} in {table}; {remedy}")]
+    #[error("unknown key {key} in {table}; {remedy}")]
     UnknownKey {
-        /// Where.
-        at: At,
         /// The table, in brackets.
         table: String,
         /// The key, quoted.
@@ -320,10 +296,8 @@ pub enum DatasetError {
         remedy: String,
     },
     /// A key that is needed and not there.
-    #[error("{at}: {table} has no {key}; add {example}")]
+    #[error("{table} has no {key}; add {example}")]
     MissingKey {
-        /// Where.
-        at: At,
         /// The table, in brackets.
         table: String,
         /// The key.
@@ -332,10 +306,8 @@ pub enum DatasetError {
         example: String,
     },
     /// Two keys for the same thing.
-    #[error("{at}: {second} says what {first} in line {first_line} says already; keep one of them")]
+    #[error("{second} says what {first} in line {first_line} says already; keep one of them")]
     KeyTwice {
-        /// Where.
-        at: At,
         /// The second.
         second: String,
         /// The first.
@@ -344,10 +316,8 @@ pub enum DatasetError {
         first_line: usize,
     },
     /// A value that cannot be.
-    #[error("{at}: {key} must be {allowed}, got {value}{}", after(remedy))]
+    #[error("{key} must be {allowed}, got {value}{}", after(remedy))]
     Value {
-        /// Where.
-        at: At,
         /// The key.
         key: String,
         /// What it was given.
@@ -372,6 +342,10 @@ impl At {
     pub(super) fn new(file: impl Into<String>, line: usize) -> At {
         At { file: file.into(), line }
     }
+
+    pub(super) fn refuse(self, problem: LineProblem) -> DatasetError {
+        DatasetError::Line { at: self, problem }
+    }
 }
 
 impl fmt::Display for At {
@@ -384,27 +358,7 @@ impl DatasetError {
     /// The line that the message begins with, where it does.
     pub fn at(&self) -> Option<&At> {
         match self {
-            DatasetError::NotYet { at, .. }
-            | DatasetError::NotUtf8 { at, .. }
-            | DatasetError::NoHeader { at, .. }
-            | DatasetError::Separator { at, .. }
-            | DatasetError::Ragged { at, .. }
-            | DatasetError::MissingColumn { at, .. }
-            | DatasetError::UnknownColumn { at, .. }
-            | DatasetError::Unit { at, .. }
-            | DatasetError::MixedUnits { at, .. }
-            | DatasetError::ColumnTwice { at, .. }
-            | DatasetError::BothConventions { at, .. }
-            | DatasetError::Cell { at, .. }
-            | DatasetError::DuplicateRun { at, .. }
-            | DatasetError::Time { at, .. }
-            | DatasetError::Jump { at, .. }
-            | DatasetError::RolledOver { at, .. }
-            | DatasetError::Syntax { at, .. }
-            | DatasetError::UnknownKey { at, .. }
-            | DatasetError::MissingKey { at, .. }
-            | DatasetError::KeyTwice { at, .. }
-            | DatasetError::Value { at, .. } => Some(at),
+            DatasetError::Line { at, .. } => Some(at),
             _ => None,
         }
     }

@@ -45,7 +45,7 @@ mod track_rows;
 mod wheel_names;
 pub mod whole_file;
 
-pub use error::{At, DatasetError};
+pub use error::{At, DatasetError, LineProblem};
 pub use layout::Layout;
 pub use layout::csv::save;
 pub use layout::mcap::{McapProblem, Topics, save_mcap};

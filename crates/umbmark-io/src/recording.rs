@@ -2,7 +2,7 @@
 
 mod order;
 
-use super::error::{At, DatasetError};
+use super::error::{At, DatasetError, LineProblem};
 use super::lines::Lines;
 use umbmark_core::dataset::{Mended, ReferencePose, TickLog};
 use umbmark_core::drive::{Robot, roll_over};
@@ -155,31 +155,28 @@ impl Recording {
     }
 
     fn fractional(&self, wheel: usize, at: usize, reading: f64) -> DatasetError {
-        DatasetError::Cell {
-            at: At::new(self.file.clone(), self.lines.of(at)),
+        At::new(self.file.clone(), self.lines.of(at)).refuse(LineProblem::Cell {
             column: self.columns[wheel + 1].clone(),
             value: reading.to_string(),
             allowed: "a whole number of ticks where the robot has counter_bits".into(),
             remedy: "".into(),
-        }
+        })
     }
 
     fn rolled_over(&self, wheel: usize, at: usize, [before, after]: [f64; 2], bits: u32) -> DatasetError {
-        DatasetError::RolledOver {
-            at: At::new(self.file.clone(), self.lines.of(at)),
+        At::new(self.file.clone(), self.lines.of(at)).refuse(LineProblem::RolledOver {
             column: self.columns[wheel + 1].clone(),
             before,
             after,
             bits,
-        }
+        })
     }
 
     fn jump(&self, wheel: usize, at: usize, [before, after]: [f64; 2], speed: f64, bits: Option<u32>) -> DatasetError {
         let cause = bits.map_or("rolled over (say counter_bits in robot.toml)".to_owned(), |bits| {
             format!("has another width than {bits} bits")
         });
-        DatasetError::Jump {
-            at: At::new(self.file.clone(), self.lines.of(at)),
+        At::new(self.file.clone(), self.lines.of(at)).refuse(LineProblem::Jump {
             column: self.columns[wheel + 1].clone(),
             before,
             after,
@@ -187,7 +184,7 @@ impl Recording {
             speed: speed.round(),
             limit: FASTEST,
             remedy: format!("look whether the counter was set back or {cause}, or rows are missing").into(),
-        }
+        })
     }
 }
 
@@ -228,13 +225,12 @@ pub(super) fn time_error(
     at: usize,
     remedy: &str,
 ) -> DatasetError {
-    DatasetError::Time {
-        at: At::new(file, lines.of(at)),
+    At::new(file, lines.of(at)).refuse(LineProblem::Time {
         column: column.to_owned(),
         before: time[at.saturating_sub(1)],
         after: time[at],
         remedy: remedy.into(),
-    }
+    })
 }
 
 fn metres_per_tick(robot: &Robot, wheel: usize) -> f64 {

@@ -3,7 +3,7 @@
 //! Tolerated, because they do no harm: Windows and old Mac line ends, a byte order mark, blank lines, lines of nothing
 //! but commas, comment lines (#), spaces round cells, quotation marks round cells, empty cells after the last column.
 
-use super::error::{At, DatasetError, quoted};
+use super::error::{At, DatasetError, LineProblem, quoted};
 use super::source::{BLOCK, Source};
 use csv::{ErrorKind, ReaderBuilder, StringRecord, Terminator};
 
@@ -109,7 +109,7 @@ impl<'r> Row<'r> {
         } else {
             "leave a cell empty (,,) where nothing was measured"
         };
-        Err(DatasetError::Ragged { at: At::new(self.file, self.line), got, expected, remedy })
+        Err(At::new(self.file, self.line).refuse(LineProblem::Ragged { got, expected, remedy }))
     }
 
     fn check_separator(&self) -> Result<(), DatasetError> {
@@ -121,7 +121,7 @@ impl<'r> Row<'r> {
             _ if has(' ') => "spaces",
             _ => return Ok(()),
         };
-        Err(DatasetError::Separator { at: At::new(self.file, self.line), found })
+        Err(At::new(self.file, self.line).refuse(LineProblem::Separator { found }))
     }
 }
 
@@ -138,7 +138,7 @@ impl<'a> Sheet<'a> {
         row.check_separator()?;
         let first = row.cell(0);
         if first.parse::<f64>().is_ok() {
-            return Err(DatasetError::NoHeader { at: At::new(row.file, row.line), value: quoted(first) });
+            return Err(At::new(row.file, row.line).refuse(LineProblem::NoHeader { value: quoted(first) }));
         }
         let mut header: Vec<String> = row.cells().map(str::to_lowercase).collect();
         header.truncate(header.iter().rposition(|name| !name.is_empty()).map_or(0, |last| last + 1));

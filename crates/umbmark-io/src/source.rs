@@ -1,6 +1,6 @@
 //! The bytes of a file, packed or not, a block at a time.
 
-use super::error::{At, DatasetError};
+use super::error::{At, DatasetError, LineProblem};
 use flate2::read::MultiGzDecoder;
 use std::io::{self, Cursor, Read};
 use std::path::Path;
@@ -156,7 +156,7 @@ fn block_of(bytes: &mut impl Read) -> Result<Vec<u8>, (usize, io::Error)> {
 const NOT_UTF8: &str = "there are bytes that are not UTF-8";
 
 fn not_utf8(file: &str, line: usize, found: &'static str) -> DatasetError {
-    DatasetError::NotUtf8 { at: At::new(file, line), found }
+    At::new(file, line).refuse(LineProblem::NotUtf8 { found })
 }
 
 fn damaged(file: &str, read: usize, error: &io::Error) -> DatasetError {

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use umbmark_core::dataset::{Dataset, ReturnError, Run};
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::Direction;
-use umbmark_io::{At, DatasetError, Existing, RobotFile};
+use umbmark_io::{At, DatasetError, Existing, LineProblem, RobotFile};
 
 const ROBOT: &str = "[robot]\nwheelbase_m = 0.5\nwheel_diameter_m = 0.2\nticks_per_revolution = 1000\n";
 
@@ -309,7 +309,11 @@ fn a_gap_in_which_the_wheels_rolled_on_is_not_taken_for_a_roll_over() {
     assert_eq!(log("cw_01.csv", &text).runs[0].log.as_ref().unwrap().right[29], 936.0);
     let rolled = "t_s,ticks_left,ticks_right\n0,3,250\n0.1,6,254\n0.2,9,2\n";
     let files = [("robot.toml", ROBOT), ("runs/cw_01.csv", rolled)];
-    assert!(matches!(load(&files, "").unwrap_err(), DatasetError::RolledOver { bits: 8, at: At { line: 4, .. }, .. }));
+    let error = load(&files, "").unwrap_err();
+    assert!(matches!(
+        error,
+        DatasetError::Line { problem: LineProblem::RolledOver { bits: 8, .. }, at: At { line: 4, .. } }
+    ));
 }
 
 #[test]

@@ -16,7 +16,7 @@
 //! counter-clockwise as seen from above.
 
 use super::Layout;
-use crate::error::{At, DatasetError, quoted};
+use crate::error::{At, DatasetError, LineProblem, quoted};
 use crate::sheet::Rows;
 use crate::source::Source;
 use crate::track_rows::TrackRows;
@@ -168,12 +168,11 @@ fn per_metre_of(file: &str, line: usize, unit: &str) -> Result<f64, DatasetError
         "Meters" => Ok(1.0),
         "Centimeters" => Ok(100.0),
         "Millimeters" => Ok(1000.0),
-        _ => Err(DatasetError::Value {
-            at: At::new(file, line),
+        _ => Err(At::new(file, line).refuse(LineProblem::Value {
             key: "Length Units".into(),
             value: quoted(unit),
             allowed: "Meters, Centimeters or Millimeters".into(),
             remedy: "".into(),
-        }),
+        })),
     }
 }

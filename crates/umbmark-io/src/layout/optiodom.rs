@@ -18,7 +18,7 @@ use crate::RobotFile;
 use crate::assembly::Assembly;
 use crate::columns::headless;
 use crate::csv_text::CsvText;
-use crate::error::{At, DatasetError};
+use crate::error::{At, DatasetError, LineProblem};
 use crate::label::Named;
 use crate::probe::{Probe, name_of, stem};
 use crate::recording::Recording;
@@ -111,7 +111,7 @@ fn add_run(assembly: &mut Assembly, folder: &Path, run: &RunFiles) -> Result<(),
     if tricycle.is_some() {
         let (key, value) = ("type".into(), "\"tricyc\"".into());
         let remedy = "of tricycles, runs are read whose two clocks were brought together (*_run-NN.csv)".into();
-        return Err(DatasetError::NotYet { at: At::new(source.file, 1), key, value, remedy });
+        return Err(At::new(source.file, 1).refuse(LineProblem::NotYet { key, value, remedy }));
     }
     let recording = parse_odometry(source)?;
     let tracked = super::read_track(&folder.join(track), &mut assembly.warnings)?;
@@ -168,7 +168,7 @@ pub(crate) fn parse_metadata(set: &str, source: Source) -> Result<(Robot, Option
     if let Some((line, kind)) = kind.filter(|(_, kind)| *kind != "diff") {
         let value = crate::error::quoted(kind);
         let remedy = "only differential drives (\"diff\") and tricycles (\"tricyc\") are read so far".into();
-        return Err(DatasetError::NotYet { at: At::new(file, line), key: "type".into(), value, remedy });
+        return Err(At::new(file, line).refuse(LineProblem::NotYet { key: "type".into(), value, remedy }));
     }
     let ticks = metadata.positive("ngear", 0)? * metadata.positive("encRes", 0)?;
     let (wheelbase, right, left) =
@@ -226,34 +226,35 @@ impl Metadata {
         let (line, cells) = self.cells(key).ok_or_else(|| self.missing(key, "the row as OptiOdom writes it"))?;
         let cell = cells.get(place).map_or("", String::as_str);
         let value = cell.parse().ok().filter(|value: &f64| *value > 0.0 && *value < 1e9);
-        value.ok_or_else(|| DatasetError::Value {
-            at: At::new(self.file.clone(), line),
-            key: key.to_owned(),
-            value: crate::error::quoted(cell),
-            allowed: "a positive number".into(),
-            remedy: "".into(),
+        value.ok_or_else(|| {
+            At::new(self.file.clone(), line).refuse(LineProblem::Value {
+                key: key.to_owned(),
+                value: crate::error::quoted(cell),
+                allowed: "a positive number".into(),
+                remedy: "".into(),
+            })
         })
     }
 
     /// A number, where a cell has one.
     fn number_or(&self, key: &str, otherwise: f64) -> Result<f64, DatasetError> {
         let Some((line, cell)) = self.find(key).filter(|(_, cell)| !cell.is_empty()) else { return Ok(otherwise) };
-        cell.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| DatasetError::Value {
-            at: At::new(self.file.clone(), line),
-            key: key.to_owned(),
-            value: crate::error::quoted(cell),
-            allowed: "a number, or nothing".into(),
-            remedy: "".into(),
+        cell.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| {
+            At::new(self.file.clone(), line).refuse(LineProblem::Value {
+                key: key.to_owned(),
+                value: crate::error::quoted(cell),
+                allowed: "a number, or nothing".into(),
+                remedy: "".into(),
+            })
         })
     }
 
     fn missing(&self, key: &str, example: &str) -> DatasetError {
-        DatasetError::MissingKey {
-            at: At::new(self.file.clone(), 1),
+        At::new(self.file.clone(), 1).refuse(LineProblem::MissingKey {
             table: "the metadata".into(),
             key: key.to_owned(),
             example: example.to_owned(),
-        }
+        })
     }
 }
 

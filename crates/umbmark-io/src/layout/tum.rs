@@ -4,7 +4,7 @@
 //! orientation only the heading is used.
 
 use super::Layout;
-use crate::error::{At, DatasetError};
+use crate::error::{At, DatasetError, LineProblem};
 use crate::label::label;
 use crate::save::{Existing, put};
 use crate::sheet::Rows;
@@ -39,7 +39,7 @@ pub(crate) fn parse_tum(source: Source, _: &mut Vec<String>) -> Result<TrackRows
         let cells: Vec<&str> = row.cells().flat_map(str::split_whitespace).collect();
         if cells.len() != NAMES.len() {
             let remedy = "a TUM trajectory has t tx ty tz qx qy qz qw, separated by spaces";
-            return Err(DatasetError::Ragged { at: At::new(file, line), got: cells.len(), expected: 8, remedy });
+            return Err(At::new(file, line).refuse(LineProblem::Ragged { got: cells.len(), expected: 8, remedy }));
         }
         let mut numbers = [0.0; 8];
         for (i, cell) in cells.iter().enumerate() {
@@ -48,13 +48,12 @@ pub(crate) fn parse_tum(source: Source, _: &mut Vec<String>) -> Result<TrackRows
         let [time, x, y, _, qx, qy, qz, qw] = numbers;
         let length = (qx * qx + qy * qy + qz * qz + qw * qw).sqrt();
         if !UNIT.contains(&length) {
-            return Err(DatasetError::Cell {
-                at: At::new(file, line),
+            return Err(At::new(file, line).refuse(LineProblem::Cell {
                 column: "qx qy qz qw".into(),
                 value: format!("{length:.3}"),
                 allowed: "a quaternion of length 1".into(),
                 remedy: "".into(),
-            });
+            }));
         }
         rows.lines.push(line);
         rows.time.push(time);

@@ -2,7 +2,7 @@
 
 use crate::columns::{Column, Columns, Quantity};
 use crate::csv_text::CsvText;
-use crate::error::{At, DatasetError};
+use crate::error::{At, DatasetError, LineProblem};
 use crate::label::{DIRECTIONS, TESTS};
 use crate::sheet::{Row, Sheet};
 use crate::source::Source;
@@ -92,11 +92,8 @@ impl Convention {
         let stands =
             |base: &&str| sheet.header.iter().find(|h| h.strip_prefix(*base).is_some_and(|r| r.starts_with('_')));
         match (poses.iter().find_map(stands), errors.iter().find_map(stands)) {
-            (Some(poses), Some(errors)) => Err(DatasetError::BothConventions {
-                at: At::new(sheet.file(), sheet.header_line),
-                poses: poses.clone(),
-                errors: errors.clone(),
-            }),
+            (Some(poses), Some(errors)) => Err(At::new(sheet.file(), sheet.header_line)
+                .refuse(LineProblem::BothConventions { poses: poses.clone(), errors: errors.clone() })),
             (None, Some(_)) => {
                 let found = PoseColumns::find(columns, errors, "an error needs ex_m and ey_m (absolute - computed)")?;
                 Ok(Convention::Errors(found))

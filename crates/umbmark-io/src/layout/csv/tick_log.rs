@@ -2,7 +2,7 @@
 
 use crate::columns::{Column, Columns, Quantity};
 use crate::csv_text::CsvText;
-use crate::error::{At, DatasetError};
+use crate::error::{At, DatasetError, LineProblem};
 use crate::recording::Recording;
 use crate::sheet::{Row, Sheet};
 use crate::source::Source;
@@ -37,7 +37,7 @@ pub(crate) fn parse_tick_log(
     if !kind.has_tick_logs() {
         let (file, value) = (source.file, format!("\"{}\"", kind.name()));
         let remedy = "logs of its two trucks are not read; give its returns in returns.csv".into();
-        return Err(DatasetError::NotYet { at: At::new(file, 1), key: "drive".into(), value, remedy });
+        return Err(At::new(file, 1).refuse(LineProblem::NotYet { key: "drive".into(), value, remedy }));
     }
     let sheet = Sheet::open(source, HEADER)?;
     let columns = LogColumns::find(&sheet, kind, warnings)?;
