@@ -146,7 +146,7 @@ impl Entry {
     /// Lists its law of the wheels.
     pub const fn wheels<E: WheelLaw>(mut self) -> Entry {
         self.values.wheels = E::wheels::<f64>;
-        let [plain, four, eight] = by_width::wheels::<E>();
+        let [plain, four, eight] = wheels::<E>();
         self.duals[0].wheels = plain;
         self.duals[1].wheels = four;
         self.duals[2].wheels = eight;
@@ -157,7 +157,7 @@ impl Entry {
     /// Lists its law of the body.
     pub const fn body<E: BodyLaw>(mut self) -> Entry {
         self.values.body = E::body::<f64>;
-        let [plain, four, eight] = by_width::body::<E>();
+        let [plain, four, eight] = body::<E>();
         self.duals[0].body = plain;
         self.duals[1].body = four;
         self.duals[2].body = eight;
@@ -254,55 +254,31 @@ impl Evaluate for Dual {
     }
 }
 
-/// Laws of derivatives, compiled for registers of each width: for each of the [`Instructions`], in their order.
-mod by_width {
-    use super::{BodyLaw, Context, Displacement2, Dual, WheelLaw, WheelTravel};
-
-    type OfWheels = fn(&[Dual], &Context<Dual>, &mut WheelTravel<Dual>);
-    type OfBody = fn(&[Dual], &Context<Dual>, &mut Displacement2<Dual>);
-
-    #[cfg(not(target_arch = "x86_64"))]
-    pub const fn wheels<E: WheelLaw>() -> [OfWheels; 3] {
-        [E::wheels; 3]
-    }
-
-    #[cfg(not(target_arch = "x86_64"))]
-    pub const fn body<E: BodyLaw>() -> [OfBody; 3] {
-        [E::body; 3]
-    }
-
-    // SAFETY: `Evaluate::mean` hands these out to machines only that were found to have such registers.
-    #[cfg(target_arch = "x86_64")]
-    pub const fn wheels<E: WheelLaw>() -> [OfWheels; 3] {
-        #[target_feature(enable = "avx512f,avx512dq")]
-        fn eight<E: WheelLaw>(p: &[Dual], at: &Context<Dual>, travel: &mut WheelTravel<Dual>) {
-            E::wheels(p, at, travel);
+/// A law of derivatives compiled for registers of each width: for each of the [`Instructions`], in their order.
+macro_rules! for_each_width {
+    ($law:ident of $Law:ident on $Moved:ty) => {
+        const fn $law<E: $Law>() -> [fn(&[Dual], &Context<Dual>, &mut $Moved); 3] {
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx512f,avx512dq")]
+                fn eight<E: $Law>(p: &[Dual], at: &Context<Dual>, moved: &mut $Moved) {
+                    E::$law(p, at, moved);
+                }
+                #[target_feature(enable = "avx2")]
+                fn four<E: $Law>(p: &[Dual], at: &Context<Dual>, moved: &mut $Moved) {
+                    E::$law(p, at, moved);
+                }
+                // SAFETY: `Evaluate::mean` hands these out to machines only that were found to have such registers.
+                [
+                    E::$law,
+                    |p, at, moved| unsafe { four::<E>(p, at, moved) },
+                    |p, at, moved| unsafe { eight::<E>(p, at, moved) },
+                ]
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            [E::$law; 3]
         }
-        #[target_feature(enable = "avx2")]
-        fn four<E: WheelLaw>(p: &[Dual], at: &Context<Dual>, travel: &mut WheelTravel<Dual>) {
-            E::wheels(p, at, travel);
-        }
-        [
-            E::wheels,
-            |p, at, travel| unsafe { four::<E>(p, at, travel) },
-            |p, at, travel| unsafe { eight::<E>(p, at, travel) },
-        ]
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    pub const fn body<E: BodyLaw>() -> [OfBody; 3] {
-        #[target_feature(enable = "avx512f,avx512dq")]
-        fn eight<E: BodyLaw>(p: &[Dual], at: &Context<Dual>, motion: &mut Displacement2<Dual>) {
-            E::body(p, at, motion);
-        }
-        #[target_feature(enable = "avx2")]
-        fn four<E: BodyLaw>(p: &[Dual], at: &Context<Dual>, motion: &mut Displacement2<Dual>) {
-            E::body(p, at, motion);
-        }
-        [
-            E::body,
-            |p, at, motion| unsafe { four::<E>(p, at, motion) },
-            |p, at, motion| unsafe { eight::<E>(p, at, motion) },
-        ]
-    }
+    };
 }
+for_each_width!(wheels of WheelLaw on WheelTravel<Dual>);
+for_each_width!(body of BodyLaw on Displacement2<Dual>);

@@ -3,9 +3,7 @@
 use std::ops::{Add, Div, Mul, Sub};
 
 #[cfg(target_arch = "x86_64")]
-pub(super) mod avx2;
-#[cfg(target_arch = "x86_64")]
-pub(super) mod avx512;
+pub(super) mod x86;
 
 /// A pack of `f64`s on which the same operations are performed side by side; `f64` itself is a pack of one.
 ///

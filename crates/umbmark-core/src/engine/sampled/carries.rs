@@ -60,10 +60,10 @@ mod tests {
             // SAFETY: asked only of what the machine was found to have.
             unsafe {
                 if Instructions::best() >= Instructions::Avx2 {
-                    assert_eq!(words(&mut x86::TwiceFour::new(phase, rest)), portable, "{phase} {rest}");
+                    assert_eq!(words(&mut x86::Avx2Carries::new(phase, rest)), portable, "{phase} {rest}");
                 }
                 if Instructions::best() >= Instructions::Avx512 {
-                    assert_eq!(words(&mut x86::Eight::new(phase, rest)), portable, "{phase} {rest}");
+                    assert_eq!(words(&mut x86::Avx512Carries::new(phase, rest)), portable, "{phase} {rest}");
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use super::TickOdometry;
 use super::lanes::{Block, RESULTS, Results, fits, results};
-use crate::engine::lane::{avx2::Four, avx512::Eight};
+use crate::engine::lane::x86::{Avx2, Avx512, Register};
 use crate::engine::{Instructions, Motion, WheelLine};
 
 impl TickOdometry {
@@ -38,38 +38,27 @@ impl TickOdometry {
         }
     }
 
-    /// # Safety
-    /// The machine must have AVX-512F and AVX-512DQ.
     #[target_feature(enable = "avx512f,avx512dq")]
-    unsafe fn eight(&self, block: &Block<8>) -> Results<8> {
-        // SAFETY: guaranteed by the caller.
-        let [start, travel] = unsafe {
-            [
-                [Eight::load(&block.start[0]), Eight::load(&block.start[1])],
-                [Eight::load(&block.travel[0]), Eight::load(&block.travel[1])],
-            ]
-        };
-        let results = results(&self.geometry, [&self.left, &self.right], start, travel);
-        let mut values = Results([[0.0; 8]; RESULTS]);
-        for (result, values) in results.into_iter().zip(&mut values.0) {
-            result.store(values);
-        }
-        values
+    fn eight(&self, block: &Block<8>) -> Results<8> {
+        // SAFETY: this is compiled for these instructions only.
+        unsafe { self.in_registers::<Avx512, 8>(block) }
+    }
+
+    #[target_feature(enable = "avx2")]
+    fn four(&self, block: &Block<4>) -> Results<4> {
+        // SAFETY: as above.
+        unsafe { self.in_registers::<Avx2, 4>(block) }
     }
 
     /// # Safety
-    /// The machine must have AVX2.
-    #[target_feature(enable = "avx2")]
-    unsafe fn four(&self, block: &Block<4>) -> Results<4> {
+    /// The machine must have the register's instructions.
+    #[inline(always)]
+    unsafe fn in_registers<R: Register<N>, const N: usize>(&self, block: &Block<N>) -> Results<N> {
         // SAFETY: guaranteed by the caller.
-        let [start, travel] = unsafe {
-            [
-                [Four::load(&block.start[0]), Four::load(&block.start[1])],
-                [Four::load(&block.travel[0]), Four::load(&block.travel[1])],
-            ]
-        };
+        let [start, travel] =
+            [&block.start, &block.travel].map(|wheels| unsafe { [R::load(&wheels[0]), R::load(&wheels[1])] });
         let results = results(&self.geometry, [&self.left, &self.right], start, travel);
-        let mut values = Results([[0.0; 4]; RESULTS]);
+        let mut values = Results([[0.0; N]; RESULTS]);
         for (result, values) in results.into_iter().zip(&mut values.0) {
             result.store(values);
         }

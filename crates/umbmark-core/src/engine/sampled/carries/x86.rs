@@ -9,21 +9,21 @@ fn first_eight(phase: u64, rest: u64) -> [i64; 8] {
 }
 
 /// A word by one comparison; whoever holds one runs on a machine with AVX-512F.
-pub(in crate::engine::sampled) struct Eight {
+pub(in crate::engine::sampled) struct Avx512Carries {
     phases: __m512i,
     step: __m512i,
     rest: __m512i,
 }
 
-impl Eight {
+impl Avx512Carries {
     /// # Safety
     /// The machine must have AVX-512F.
     #[inline(always)]
-    pub unsafe fn new(phase: u64, rest: u64) -> Eight {
+    pub unsafe fn new(phase: u64, rest: u64) -> Avx512Carries {
         let [a, b, c, d, e, f, g, h] = first_eight(phase, rest);
         // SAFETY: guaranteed by the caller.
         unsafe {
-            Eight {
+            Avx512Carries {
                 phases: _mm512_setr_epi64(a, b, c, d, e, f, g, h),
                 step: _mm512_set1_epi64(rest.wrapping_mul(8) as i64),
                 rest: _mm512_set1_epi64(rest as i64),
@@ -32,7 +32,7 @@ impl Eight {
     }
 }
 
-impl Carries for Eight {
+impl Carries for Avx512Carries {
     #[inline(always)]
     fn word(&mut self) -> u8 {
         // SAFETY: `self` exists only where the instructions do.
@@ -46,23 +46,23 @@ impl Carries for Eight {
 }
 
 /// A word by two comparisons of four; whoever holds one runs on a machine with AVX2.
-pub(in crate::engine::sampled) struct TwiceFour {
+pub(in crate::engine::sampled) struct Avx2Carries {
     phases: [__m256i; 2],
     step: __m256i,
     rest: __m256i,
 }
 
-impl TwiceFour {
+impl Avx2Carries {
     /// # Safety
     /// The machine must have AVX2.
     #[inline(always)]
-    pub unsafe fn new(phase: u64, rest: u64) -> TwiceFour {
+    pub unsafe fn new(phase: u64, rest: u64) -> Avx2Carries {
         // There are only signed comparisons; flipping the top bit makes them unsigned, and addition does not mind.
         let flipped = |value: i64| value ^ i64::MIN;
         let [a, b, c, d, e, f, g, h] = first_eight(phase, rest).map(flipped);
         // SAFETY: guaranteed by the caller.
         unsafe {
-            TwiceFour {
+            Avx2Carries {
                 phases: [_mm256_setr_epi64x(a, b, c, d), _mm256_setr_epi64x(e, f, g, h)],
                 step: _mm256_set1_epi64x(rest.wrapping_mul(8) as i64),
                 rest: _mm256_set1_epi64x(flipped(rest as i64)),
@@ -71,7 +71,7 @@ impl TwiceFour {
     }
 }
 
-impl Carries for TwiceFour {
+impl Carries for Avx2Carries {
     #[inline(always)]
     fn word(&mut self) -> u8 {
         // SAFETY: `self` exists only where the instructions do.
