@@ -29,16 +29,19 @@ pub fn candidates(model: &Model, tracks: &[Track]) -> Result<Vec<Candidate>, Mod
     of_tracks(model, |_| tracks.iter().collect())
 }
 
+/// Every effect of the catalogue that changes the mean of what may be observed of a model's robot, and is not in the model.
+pub(crate) fn missing(model: &Model) -> impl Iterator<Item = &'static Entry> {
+    let has = |entry: &Entry| model.parts().iter().any(|part| part.effect == *entry);
+    of_drive(model.robot().drive.kind()).filter(move |entry| entry.changes.include(Changes::MEAN) && !has(entry))
+}
+
 /// [`candidates`] with tracks cut as finely as a model needs them: `tracks(true)` for one that varies along the way.
 pub(crate) fn of_tracks<'a>(
     model: &Model,
     tracks: impl Fn(bool) -> Vec<&'a Track>,
 ) -> Result<Vec<Candidate>, ModelError> {
-    let missing = of_drive(model.robot().drive.kind()).filter(|entry| {
-        entry.changes.include(Changes::MEAN) && model.parts().iter().all(|part| part.effect != **entry)
-    });
     let mut asked: [Vec<(&'static Entry, &'static Parameter)>; 2] = Default::default();
-    for effect in missing.clone() {
+    for effect in missing(model) {
         let mut with = model.clone();
         with.add(effect.about.name)?;
         asked[usize::from(with.may_vary())].extend(effect.about.parameters.iter().map(|parameter| (effect, parameter)));
@@ -67,7 +70,7 @@ pub(crate) fn of_tracks<'a>(
         };
         Candidate { effect, sizes: effect.about.parameters.iter().filter_map(own).collect() }
     };
-    Ok(missing.map(candidate).filter(|candidate| !candidate.sizes.is_empty()).collect())
+    Ok(missing(model).map(candidate).filter(|candidate| !candidate.sizes.is_empty()).collect())
 }
 
 /// Derivatives of all observed poses by some values of a model, in the order of [`Model::values`]: value by value, run by run.

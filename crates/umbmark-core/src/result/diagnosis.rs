@@ -339,14 +339,31 @@ fn absorbed(unseen: &diagnose::Unseen) -> Option<(&'static str, Vec<&'static str
     }
 }
 
-/// For each effect, the largest of its sizes' least.
+/// For each effect, the largest of its sizes' least; none where one of them cannot be seen at any size.
 fn largest(detectable: &[diagnose::Detectable]) -> Keyed<Option<f64>> {
-    let mut sizes: Vec<(&str, Option<f64>)> = Vec::new();
+    let mut sizes: Vec<(&str, f64)> = Vec::new();
     for d in detectable {
         match sizes.iter_mut().find(|(effect, _)| *effect == d.effect) {
-            Some((_, size)) => *size = finite(d.size.max(size.unwrap_or(0.0))),
-            None => sizes.push((d.effect, finite(d.size.max(0.0)))),
+            Some((_, size)) => *size = size.max(d.size),
+            None => sizes.push((d.effect, d.size)),
         }
     }
-    sizes.into_iter().collect()
+    sizes.into_iter().map(|(effect, size)| (effect, finite(size))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_effect_with_a_size_that_is_never_seen_has_no_least_size_in_whichever_order_they_stand() {
+        let sizes = [("x_m", f64::INFINITY), ("y_m", 0.01)];
+        let of = |order: [usize; 2]| {
+            let detectable =
+                order.map(|i| diagnose::Detectable { effect: "start_pose", parameter: sizes[i].0, size: sizes[i].1 });
+            serde_json::to_value(largest(&detectable)).unwrap()
+        };
+        let never = serde_json::json!({ "start_pose": null });
+        assert_eq!((of([0, 1]), of([1, 0])), (never.clone(), never));
+    }
 }

@@ -6,8 +6,7 @@ use crate::diagnose::candidates::Size;
 use crate::diagnose::likeness::Likeness;
 use crate::diagnose::unseen::{Unseen, Why};
 use crate::diagnose::{candidates, classes};
-use crate::drive::{LinkReading, WheelTravel};
-use crate::effect::{Context, Entry, Model, Sight, of_drive};
+use crate::effect::Entry;
 use crate::evidence::FitError;
 use crate::evidence::ends::{Ends, Fitted, mirrored, names};
 use crate::fit::RANK_TOLERANCE;
@@ -143,11 +142,7 @@ impl Asked {
             }
             self.units.append(&mut visible);
         }
-        let still = of_drive(ends.robot.drive.kind()).filter(|entry| {
-            moved.iter().all(|c| c.effect != *entry)
-                && fitted.model.parts().iter().all(|part| part.effect != *entry)
-                && moves_means(entry, &fitted.model)
-        });
+        let still = candidates::missing(&fitted.model).filter(|entry| moved.iter().all(|c| c.effect != *entry));
         self.unseen.extend(still.map(|entry| Unseen { effect: entry.about.name, why: Why::BelowNoise }));
         Ok(())
     }
@@ -313,50 +308,4 @@ fn absorbers(full: &Columns, fitted: &Fitted, frame: &Frame) -> Vec<&'static str
         }
     }
     by
-}
-
-/// Whether an effect at its usual sizes changes any motion, start or sight other than by chance.
-fn moves_means(entry: &'static Entry, model: &Model) -> bool {
-    let plain = Model::new(model.robot());
-    let mut with = plain.clone();
-    for parameter in entry.about.parameters.iter().filter(|p| p.choices().is_empty()) {
-        let usual = parameter.default.resolve(model.robot()) + parameter.typical;
-        if with.set(entry.about.name, parameter.name, usual).is_err() {
-            return false;
-        }
-    }
-    let at = Context {
-        heading: 0.7,
-        x: 1.5,
-        y: -0.8,
-        duration: 0.1,
-        speed: 0.3,
-        turn_rate: 0.4,
-        wheel_speed: [0.2, 0.4],
-        speed_change: [0.02, 0.03],
-        turn_rate_change: 0.02,
-        wheel_angle: [1.0, 2.0],
-        wheel_rotation: [0.3, 0.4],
-        reversed: [1.0, -1.0],
-        distance: 3.0,
-        time: 10.0,
-        session_distance: 20.0,
-        since_turn: 0.05,
-        length: 0.03,
-        last_turn: 1.0,
-        believed_heading: 0.6,
-        truck: 1.0,
-        axle_distance: model.robot().drive.axle_distance(),
-        run: 2.0,
-        direction: 1.0,
-        recorded: true,
-    };
-    let sight = Sight { time: 10.0, late: 0.0, speed: 0.3, turn_rate: 0.4 };
-    let all = |model: &Model| {
-        let chain = model.chain();
-        let travel = WheelTravel { left: 0.02, right: 0.04 };
-        let link = chain.link(LinkReading { length: 1.0, angles: [0.1, -0.2] });
-        (chain.start(), chain.displacement(&at, &travel), link, chain.seen(&sight, &Pose2::new(1.0, 2.0, 0.5)))
-    };
-    all(&plain) != all(&with)
 }

@@ -7,7 +7,7 @@
 use super::class::rivals;
 use super::examination::Examination;
 use super::finding::{Answer, Finding};
-use super::repeats::{Repeated, SHAPE, UnlistedLaw};
+use super::repeats::{Repeated, UnlistedLaw};
 use super::responses::{Asked, Question};
 use crate::diagnose::experiments::design::{MINUTES_A_RUN, minutes};
 use crate::diagnose::experiments::{Experiment, best, worth};
@@ -16,7 +16,7 @@ use crate::effect::{Law, Model, ModelError, Number, Part};
 use crate::evidence::FitError;
 use crate::evidence::tracks::Projected;
 use crate::likelihood::{Noise, ObservedRun, gram};
-use crate::parameter::Parameter;
+use crate::parameter::{Parameter, Role};
 use crate::path::{CIRCLE, Direction, FIGURE_EIGHT, Path, SPIN, SQUARE, STRAIGHT, Shape, SpeedProfile, WAYPOINTS};
 use crate::replay::Track;
 use nalgebra::{DMatrix, DVector};
@@ -98,7 +98,8 @@ pub fn of_laws(exam: &Examination, repeated: &Repeated) -> Result<Vec<Experiment
         let effect = name.map_or_else(|| Arc::clone(formula), |name| Arc::new(formula.named(name)));
         let part = Part { effect: Law::Formula(effect), ..part };
         model.adopt(&part);
-        let sizes = part.effect.parameters().iter().zip(&part.values).filter(|(parameter, _)| parameter.name != SHAPE);
+        let sizes =
+            part.effect.parameters().iter().zip(&part.values).filter(|(parameter, _)| parameter.role != Role::Shape);
         let (mut places, mut values) = (Vec::new(), Vec::new());
         for (parameter, value) in sizes {
             places.push(numbers.len());

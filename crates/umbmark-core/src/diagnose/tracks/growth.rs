@@ -1,12 +1,12 @@
 //! A model extended by a missing effect and fitted without linear approximation.
 
 use super::examination::Examination;
-use super::repeats::SHAPE;
 use crate::diagnose::suspect::Suspect;
 use crate::effect::{Law, Model, Part};
 use crate::evidence::tracks::{Alone, estimates};
 use crate::evidence::{Estimate, FitError};
 use crate::likelihood::{Fitted, Noise};
+use crate::parameter::Role;
 use std::sync::Arc;
 
 /// A shape (a length, a threshold) is fitted if its size is this many standard errors from zero.
@@ -70,8 +70,12 @@ fn departs(model: &Model, e: &Estimate) -> f64 {
 
 /// Whether the lengths, times and thresholds of an effect kept the signs of their start values: a decay must not become a growth.
 fn keeps_signs(begun: &Model, fitted: &Model, effect: &str) -> bool {
-    let scale = |model: &Model| model.get(effect, SHAPE);
-    scale(begun).zip(scale(fitted)).is_none_or(|(then, now)| then * now > 0.0)
+    let part = begun.parts().iter().find(|part| part.effect.name() == effect);
+    let parameters = part.into_iter().flat_map(|part| part.effect.parameters());
+    parameters.filter(|parameter| parameter.role == Role::Shape).all(|shape| {
+        let values = begun.get(effect, shape.name).zip(fitted.get(effect, shape.name));
+        values.is_none_or(|(then, now)| then * now >= 0.0)
+    })
 }
 
 /// The model with a suspect at its one-step size, free.

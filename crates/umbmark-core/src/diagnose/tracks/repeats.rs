@@ -34,7 +34,6 @@ use steps::{TrackStep, steps};
 
 pub(super) use added::suspect;
 pub use law::{Repeated, UnlistedLaw};
-pub(super) use laws::SHAPE;
 
 /// Searches the residuals of a model for a repeating pattern: the most significant law, even if it does not count; `None` if the runs can
 /// show no law. `own` holds, run by run, the columns that are fitted too, each with one (x, y, heading) \[m, m, rad\] per block, and last
