@@ -2,6 +2,7 @@
 
 mod alone;
 mod errors;
+mod silent;
 mod system;
 
 use super::{Estimate, Evidence, Fit, FitError, Level, robot_of};
@@ -14,6 +15,7 @@ use std::sync::Arc;
 
 pub(crate) use alone::{Alone, trusted};
 pub(crate) use errors::{Errors, LEAST_GAIN, Misses};
+pub(crate) use silent::{last_part, silent, without, without_silent_taken};
 pub(crate) use system::{Projected, System, Unit};
 
 /// The tracks of a dataset.
@@ -43,7 +45,8 @@ impl Evidence for Observed {
     }
 
     fn fit(&self, model: &Model) -> Result<Fit, FitError> {
-        let fitted = trusted(fit(self, model)?)?.into_fitted();
+        let (fitted, _) = without_silent_taken(fit(self, model)?)?;
+        let fitted = trusted(fitted)?.into_fitted();
         let estimates = estimates(&fitted);
         let Fitted { model, noise, outliers, usual_noise, taken, observed, .. } = fitted;
         Ok(Fit { model, estimates, noise: Some(noise), outliers, usual_noise, setup: observed.setup, taken })

@@ -2,46 +2,13 @@
 
 use super::examination::Examination;
 use crate::effect::Part;
-use crate::evidence::tracks::{LEAST_GAIN, Misses, estimates};
-use crate::evidence::{Estimate, FitError};
-use crate::likelihood::{Fitted, Noise};
-
-/// A fit without one of its effects.
-pub fn without(fitted: &Fitted, effect: &str) -> Result<Fitted, FitError> {
-    let taken = fitted.taken.iter().filter(|taken| taken.effect != effect).copied().collect();
-    let again = fitted.observed.fit(&fitted.model.without(effect), &Noise::default(), &[])?;
-    Ok(Fitted { taken, ..again })
-}
+use crate::evidence::tracks::{LEAST_GAIN, Misses, last_part, silent};
 
 /// An effect among those `asked` that does not help: the interval of each of its sizes holds zero, or held-out runs are predicted as
 /// well without it.
 pub fn idle(exam: &Examination, asked: impl Fn(&'static str) -> bool) -> Option<&'static str> {
-    silent(exam, &asked).or_else(|| last_part(exam, asked, |part| !helps(exam, part.effect.name())))
-}
-
-/// An effect among those `asked` whose sizes all have an interval that holds zero.
-pub fn silent(exam: &Examination, asked: impl Fn(&'static str) -> bool) -> Option<&'static str> {
-    let estimates = estimates(&exam.fitted);
-    let model = &exam.fitted.model;
-    let is_silent = |part: &Part| {
-        let own: Vec<&Estimate> = estimates.iter().filter(|e| e.effect == part.effect.name()).collect();
-        let shows = |e: &&&Estimate| {
-            let nothing = model.place_of(e.effect, e.parameter).and_then(|place| model.nothing(place));
-            nothing.is_some_and(|nothing| e.interval(0.95).is_none_or(|interval| !interval.contains(nothing)))
-        };
-        !own.is_empty() && own.iter().all(|e| !shows(&e))
-    };
-    last_part(exam, asked, is_silent)
-}
-
-/// Of the fitted effects that are `asked` and fulfil a condition, the one that was added last.
-fn last_part(
-    exam: &Examination,
-    asked: impl Fn(&'static str) -> bool,
-    is_such: impl Fn(&Part) -> bool,
-) -> Option<&'static str> {
-    let parts = exam.fitted.model.parts().iter().filter(|part| part.free && asked(part.effect.name()));
-    parts.rev().find(|part| is_such(part)).map(|part| part.effect.name())
+    let helps_not = |part: &Part| !helps(exam, part.effect.name());
+    silent(&exam.fitted, &asked).or_else(|| last_part(&exam.fitted, asked, helps_not))
 }
 
 /// Whether held-out runs are predicted better with an effect of the model than without it.

@@ -5,13 +5,13 @@ use super::examination::Examination;
 use super::finding::Finding;
 use super::growth;
 use super::missing::{Missing, WIDE, missing, speaks_on};
-use super::needless::{idle, silent, with_and_without, without};
+use super::needless::{idle, with_and_without};
 use super::repeats::{self, Repeated, UnlistedLaw};
 use crate::diagnose::options::Options;
 use crate::diagnose::suspect::Suspect;
 use crate::effect::{Law, Model};
 use crate::evidence::FitError;
-use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, trusted};
+use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, silent, trusted, without, without_silent_taken};
 use crate::likelihood::Fitted;
 use crate::watch::Watch;
 use std::borrow::Cow;
@@ -93,14 +93,9 @@ pub(crate) fn search(
     refused: Vec<&'static str>,
     watch: &Watch,
 ) -> Result<Search, FitError> {
-    let mut exam = Examination::new(fitted)?;
     // Effects that were taken from the motion must help, as every effect added here; those of the user's model stay.
-    let taken: Vec<&str> = exam.fitted.taken.iter().map(|taken| taken.effect).collect();
-    let mut removed = Vec::new();
-    while let Some(effect) = silent(&exam, |effect| taken.contains(&effect)) {
-        exam = Examination::new(without(&exam.fitted, effect)?)?;
-        removed.push(effect);
-    }
+    let (fitted, removed) = without_silent_taken(fitted)?;
+    let exam = Examination::new(fitted)?;
     let left = missing(&exam, options, &[&refused[..], &removed].concat());
     let written = vec![trusted(exam.fitted.clone())?];
     let mut search = Search {
@@ -181,7 +176,7 @@ impl Search {
         while let Some(effect) = idle(&exam, |effect| !stands(effect) && !kept.contains(&effect)) {
             let fewer = Examination::new(without(&exam.fitted, effect)?)?;
             // One linear step shows that it no longer helps; the full fit must confirm it.
-            let is_silent = silent(&exam, |asked| asked == effect).is_some();
+            let is_silent = silent(&exam.fitted, |asked| asked == effect).is_some();
             if !is_silent && exam.left_out(&[]).gain(&fewer.left_out(&[])) >= LEAST_GAIN {
                 kept.push(effect);
             } else {
@@ -278,7 +273,7 @@ impl Search {
 
     /// Whether an effect is in the last model, and the interval of each of its sizes holds zero.
     pub fn is_needless(&self, effect: &str) -> bool {
-        silent(self.last(), |asked| asked == effect).is_some()
+        silent(&self.last().fitted, |asked| asked == effect).is_some()
     }
 
     /// The numbers in the table of laws of those that were added.
