@@ -130,6 +130,33 @@ fn ratio(seen: &[f64], own: &[f64]) -> f64 {
     if ratio > 0.0 { ratio } else { 1.0 }
 }
 
+/// What one step of the fit of delay and rate needs of all windows.
+#[derive(Default)]
+struct Sums {
+    /// Weighted products of the slopes by delay and rate: delay with itself, with the rate, and the rate with itself.
+    products: [f64; 3],
+    /// Their weighted products with the residuals, against which the fit goes.
+    score: [f64; 2],
+    /// Sums of the squares of what each window pulls at the delay, and of its share of the first product.
+    squares: f64,
+    shares: f64,
+}
+
+impl Sums {
+    /// Adds a window: its weight, its time from the middle of all, its residuals, and their slopes by the delay.
+    fn add(&mut self, weight: f64, at: f64, residuals: &[f64; 3], slopes: [f64; 3]) {
+        let (mut pull, mut share) = (0.0, 0.0);
+        for (residual, slope) in residuals.iter().zip(slopes) {
+            let x = [slope, slope * at];
+            let products = [weight * x[0] * x[0], weight * x[0] * x[1], weight * x[1] * x[1]];
+            self.products.iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
+            self.score.iter_mut().zip(x).for_each(|(sum, x)| *sum -= weight * x * residual);
+            (pull, share) = (pull + weight * slope * residual, share + weight * slope * slope);
+        }
+        (self.squares, self.shares) = (self.squares + pull * pull, self.shares + share * share);
+    }
+}
+
 /// The delay and the rate that fit a run best, with everything else as it agrees in all runs.
 pub(super) fn refined(
     windows: &[Window],
@@ -157,28 +184,16 @@ pub(super) fn refined(
         // Some coordinates may have no noise at all.
         let scale = median(now.iter().map(size)) / MEDIAN_SIZE;
         widest = widest.max(scale);
-        let (mut products, mut score) = ([0.0; 3], [0.0; 2]);
-        let (mut squares, mut shares) = (0.0, 0.0);
+        let mut sums = Sums::default();
         for (w, ((now, before), after)) in windows.iter().zip(now.iter().zip(&before).zip(&after)) {
             let off = size(now) / scale.max(LEAST_SCALE);
             let weight = if step < STEPS[0] { 1.0 / off.max(1.0) } else { biweight(off / BEYOND) };
             let at = if with_rate { 0.5 * (w.from + w.to) - late.middle } else { 0.0 };
-            let (mut pull, mut share) = (0.0, 0.0);
-            for k in 0..3 {
-                // Derivative of the residuals by time, which is minus that by the delay.
-                let slope = -(after[k] - before[k]) / (2.0 * HALF);
-                let x = [slope, slope * at];
-                products = [
-                    products[0] + weight * x[0] * x[0],
-                    products[1] + weight * x[0] * x[1],
-                    products[2] + weight * x[1] * x[1],
-                ];
-                score = [score[0] - weight * x[0] * now[k], score[1] - weight * x[1] * now[k]];
-                (pull, share) = (pull + weight * slope * now[k], share + weight * slope * slope);
-            }
-            (squares, shares) = (squares + pull * pull, shares + share * share);
+            // Derivative of the residuals by time, which is minus that by the delay.
+            let slopes = [0, 1, 2].map(|k| -(after[k] - before[k]) / (2.0 * HALF));
+            sums.add(weight, at, now, slopes);
         }
-        let [a, b, c] = products;
+        let Sums { products: [a, b, c], score, squares, shares } = sums;
         let determinant = a * c - b * b;
         let plain = determinant <= 1e-9 * a * c || c <= 0.0;
         let change = match (a > 0.0, plain) {

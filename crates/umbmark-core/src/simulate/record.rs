@@ -1,10 +1,10 @@
 //! A recorded run: the readings of the encoders, and the true poses.
 
-use super::{Rest, SimulateError, Simulator, Truth, return_error};
+use super::{Leg, Rest, SimulateError, Simulator, Truth, return_error};
 use crate::dataset::{ReferencePose, ReturnError, TickLog};
 use crate::drive::{Robot, Wheel, WheelTravel};
 use crate::effect::{Sight, Stretch, TestKind};
-use crate::engine::{SampledOdometry, TickGeometry, UNITS_PER_TICK, Update};
+use crate::engine::{SampledOdometry, TickGeometry, UNITS_PER_TICK, Update, WheelLine};
 use crate::geometry::Pose2;
 use crate::path::Direction;
 
@@ -53,27 +53,13 @@ impl Simulator {
         test: TestKind,
         [rate, reference_rate]: [f64; 2],
     ) -> Result<Recording, SimulateError> {
-        for (what, value) in [("sampling rate", rate), ("reference rate", reference_rate)] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(SimulateError::Rate { what, value });
-            }
-        }
-        if self.convoys.is_some() {
-            return Err(SimulateError::Unsupported {
-                drive: self.robot().drive.kind().name(),
-                what: "tick logs: each of its trucks has counters of its own; its returns are simulated",
-            });
-        }
+        self.check_recordable([rate, reference_rate])?;
         truth.start(direction);
         truth.rest(STANDING);
         let per_tick = self.robot().metres_per_tick();
         let geometry = TickGeometry::new(per_tick.left, per_tick.right, self.robot().drive.wheelbase())?;
         let mut track = SampledOdometry::new(geometry, Update::Arc).track();
-        let legs = self.course(direction).legs.clone();
-        let rests: Vec<Rest> = std::iter::once([0; 2])
-            .chain(legs.iter().map(|leg| leg.stop))
-            .map(|count| Rest { count, phase: self.draw_phase() })
-            .collect();
+        let mut moves = Moves::new(self, direction, test);
         let samples = ((self.course(direction).duration() + 2.0 * STANDING) * rate).ceil() as usize;
         let mut recording = Recording {
             log: TickLog::default(),
@@ -81,37 +67,16 @@ impl Simulator {
             computed: Vec::with_capacity(samples + 1),
             returned: ReturnError::default(),
         };
-        let (mut begun, mut next_reference, mut sights) = (0, 0.0, Vec::new());
+        let (mut next_reference, mut sights) = (0.0, Vec::new());
         for sample in 0..=samples {
             let time = sample as f64 / rate;
-            let driving = time - STANDING;
-            // Every move that ended since the last sample is driven to its end, and the present one up to this sample.
-            while begun > 0 && begun < legs.len() && driving >= legs[begun].begins || begun == 0 && driving >= 0.0 {
-                self.advance(truth, 1.0, &mut recording.log.bumps);
-                let line = rests[begun].line_to(&rests[begun + 1]);
-                let stretch = Stretch { index: begun, direction, test, travel: self.believed(&legs[begun], &line) };
-                truth.begin(stretch, &legs[begun]);
-                begun += 1;
-            }
-            let (counts, at) = match begun.checked_sub(1) {
-                None => ([0; 2], 0),
-                Some(index) => {
-                    let share = legs[index].profile.fraction(driving - legs[index].begins);
-                    self.advance(truth, share, &mut recording.log.bumps);
-                    let line = rests[index].line_to(&rests[index + 1]);
-                    let counts: [i64; 2] = std::array::from_fn(|wheel| {
-                        let angle = line.start()[wheel] + (line.travel()[wheel] as f64 * share) as i64;
-                        rests[index].count[wheel] + angle.div_euclid(UNITS_PER_TICK)
-                    });
-                    // Once it stands, it steers for the next move.
-                    let stands = share >= 1.0 && recording.log.left.last() == Some(&(counts[0] as f64));
-                    (counts, if stands { (index + 1).min(legs.len() - 1) } else { index })
-                }
-            };
+            let log = &mut recording.log;
+            let (counts, at) = self.drive_until(time - STANDING, &mut moves, truth, &mut log.bumps);
             track.read(counts);
-            recording.log.time.push(time);
-            recording.log.left.push(counts[0] as f64);
-            recording.log.right.push((counts[1] + legs[at].counting.held) as f64);
+            let held = moves.held(at, log.left.last() == Some(&(counts[0] as f64)));
+            log.time.push(time);
+            log.left.push(counts[0] as f64);
+            log.right.push((counts[1] + held) as f64);
             recording.truth.push(truth.pose());
             recording.computed.push(track.pose());
             if time + 1e-9 >= next_reference || sample == samples {
@@ -134,6 +99,40 @@ impl Simulator {
         Ok(recording)
     }
 
+    /// Refuses rates that are none, and robots whose counters are not two.
+    fn check_recordable(&self, [rate, reference_rate]: [f64; 2]) -> Result<(), SimulateError> {
+        for (what, value) in [("sampling rate", rate), ("reference rate", reference_rate)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(SimulateError::Rate { what, value });
+            }
+        }
+        if self.convoys.is_some() {
+            return Err(SimulateError::Unsupported {
+                drive: self.robot().drive.kind().name(),
+                what: "tick logs: each of its trucks has counters of its own; its returns are simulated",
+            });
+        }
+        Ok(())
+    }
+
+    /// Drives until some time after START: the counts then, and the present move with the share of it that is done.
+    fn drive_until(
+        &self,
+        driving: f64,
+        moves: &mut Moves,
+        truth: &mut Truth,
+        bumps: &mut Vec<[f64; 2]>,
+    ) -> ([i64; 2], Option<(usize, f64)>) {
+        // Every move that ended since the last sample is driven to its end, and the present one up to this sample.
+        while let Some((stretch, leg)) = moves.next_due(self, driving) {
+            self.advance(truth, 1.0, bumps);
+            truth.begin(stretch, leg);
+        }
+        let Some((index, share)) = moves.at(driving) else { return ([0; 2], None) };
+        self.advance(truth, share, bumps);
+        (moves.counts(index, share), Some((index, share)))
+    }
+
     /// Drives on, and notes where the wheels of the axle meet bumps: to a sample's way.
     fn advance(&self, truth: &mut Truth, share: f64, bumps: &mut Vec<[f64; 2]>) {
         let ahead = truth.ahead().to_vec();
@@ -143,6 +142,63 @@ impl Simulator {
             let left = if bump.wheel == Wheel::Left { half } else { -half };
             bumps.push([pose.x - left * libm::sin(pose.heading), pose.y + left * libm::cos(pose.heading)]);
         }
+    }
+}
+
+/// The moves of a run, as far as they are begun.
+struct Moves {
+    direction: Direction,
+    test: TestKind,
+    legs: Vec<Leg>,
+    /// Before the first move, and after each.
+    rests: Vec<Rest>,
+    begun: usize,
+}
+
+impl Moves {
+    /// Those of a course, none begun; the phases at its rests are drawn.
+    fn new(simulator: &mut Simulator, direction: Direction, test: TestKind) -> Moves {
+        let legs = simulator.course(direction).legs.clone();
+        let counts = std::iter::once([0; 2]).chain(legs.iter().map(|leg| leg.stop));
+        let rests = counts.map(|count| Rest { count, phase: simulator.draw_phase() }).collect();
+        Moves { direction, test, legs, rests, begun: 0 }
+    }
+
+    /// Begins the next move, where its time has come.
+    fn next_due(&mut self, simulator: &Simulator, driving: f64) -> Option<(Stretch, &Leg)> {
+        let index = self.begun;
+        let leg = self.legs.get(index).filter(|leg| driving >= if index == 0 { 0.0 } else { leg.begins })?;
+        self.begun += 1;
+        let travel = simulator.believed(leg, &self.line(index));
+        Some((Stretch { index, direction: self.direction, test: self.test, travel }, leg))
+    }
+
+    /// The present move, and the share of it that is done.
+    fn at(&self, driving: f64) -> Option<(usize, f64)> {
+        let index = self.begun.checked_sub(1)?;
+        let leg = &self.legs[index];
+        Some((index, leg.profile.fraction(driving - leg.begins)))
+    }
+
+    /// What the wheels turn in a move.
+    fn line(&self, index: usize) -> WheelLine {
+        self.rests[index].line_to(&self.rests[index + 1])
+    }
+
+    /// The counts where a share of a move is done.
+    fn counts(&self, index: usize, share: f64) -> [i64; 2] {
+        let line = self.line(index);
+        std::array::from_fn(|wheel| {
+            let angle = line.start()[wheel] + (line.travel()[wheel] as f64 * share) as i64;
+            self.rests[index].count[wheel] + angle.div_euclid(UNITS_PER_TICK)
+        })
+    }
+
+    /// What the second counter holds beside its counts: once the robot stands after a move, it steers for the next one.
+    fn held(&self, at: Option<(usize, f64)>, counts_stand: bool) -> i64 {
+        let (index, share) = at.unwrap_or_default();
+        let next = usize::from(share >= 1.0 && counts_stand);
+        self.legs[(index + next).min(self.legs.len() - 1)].counting.held
     }
 }
 

@@ -13,6 +13,15 @@ const WORSE: f64 = 0.5;
 /// Two laws are equally good where their drops of the sum of squares differ by less than this.
 const AS_LIKELY: f64 = 40.0;
 
+/// A law that was fitted together with the model's own columns.
+struct Tried {
+    law: UnlistedLaw,
+    /// Squared errors of each fold when it is left out: of positions, headings, innovations.
+    squares: Vec<[f64; 3]>,
+    /// Its columns.
+    columns: Vec<usize>,
+}
+
 /// Laws fitted together with the model's own columns: first the shortest of those that predict held-out runs as well as the best, within one
 /// standard error, then the others from the best to the worst.
 pub fn front(
@@ -40,7 +49,7 @@ pub fn front(
     let before = errors.misses_of(&plain);
     let projected = Projected::new(&system.whole, &base);
     let mut next = base.len();
-    let mut tried: Vec<(UnlistedLaw, Vec<[f64; 3]>, Vec<usize>)> = Vec::new();
+    let mut tried = Vec::new();
     for pick in picks {
         let own: Vec<usize> = (next..next + laws.both(pick.term).count()).collect();
         next += own.len();
@@ -66,29 +75,34 @@ pub fn front(
             drop,
             likeness: 1.0,
         };
-        tried.push((law, squares, own));
+        tried.push(Tried { law, squares, columns: own });
     }
-    let gain = tried.iter().map(|(law, ..)| law.gain).fold(0.0, f64::max);
-    let (mut tried, worse): (Vec<_>, Vec<_>) = tried.into_iter().partition(|(law, ..)| law.gain >= WORSE * gain);
-    let total = |squares: &[[f64; 3]]| squares.iter().map(|fold| fold[2]).sum::<f64>();
-    tried.sort_by(|a, b| total(&a.1).total_cmp(&total(&b.1)));
-    let most = tried.iter().map(|(law, ..)| law.drop).fold(0.0, f64::max);
-    let as_good = |other: &&(UnlistedLaw, Vec<[f64; 3]>, Vec<usize>)| {
-        is_as_good(&other.1, &tried[0].1) && other.0.drop >= most - AS_LIKELY
+    chosen_first(tried, &projected)
+}
+
+/// The law that is chosen, and the others by their errors in held-out runs, each with its likeness to the chosen one.
+fn chosen_first(tried: Vec<Tried>, projected: &Projected) -> Vec<UnlistedLaw> {
+    let gain = tried.iter().map(|tried| tried.law.gain).fold(0.0, f64::max);
+    let (mut tried, worse): (Vec<_>, Vec<_>) = tried.into_iter().partition(|tried| tried.law.gain >= WORSE * gain);
+    let total = |tried: &Tried| tried.squares.iter().map(|fold| fold[2]).sum::<f64>();
+    tried.sort_by(|a, b| total(a).total_cmp(&total(b)));
+    let most = tried.iter().map(|tried| tried.law.drop).fold(0.0, f64::max);
+    let as_good = |(_, other): &(usize, &Tried)| {
+        is_as_good(&other.squares, &tried[0].squares) && other.law.drop >= most - AS_LIKELY
     };
-    let written = tried.iter().filter(as_good).min_by_key(|(law, ..)| law.length);
-    let Some(first) = written.or(tried.first()).and_then(|written| tried.iter().position(|other| other.2 == written.2))
-    else {
+    let shortest = tried.iter().enumerate().filter(as_good).min_by_key(|(_, tried)| tried.law.length);
+    let first = shortest.map_or(0, |(index, _)| index);
+    if tried.is_empty() {
         return Vec::new();
-    };
+    }
     let chosen = tried.remove(first);
     tried.extend(worse);
-    let values = projected.drop(&chosen.2).map(|(_, values, _)| values);
-    let others = tried.into_iter().map(|(law, _, own)| {
-        let likeness = values.as_ref().map_or(0.0, |values| projected.likeness(&chosen.2, values, &own));
+    let values = projected.drop(&chosen.columns).map(|(_, values, _)| values);
+    let others = tried.into_iter().map(|Tried { law, columns, .. }| {
+        let likeness = values.as_ref().map_or(0.0, |values| projected.likeness(&chosen.columns, values, &columns));
         UnlistedLaw { likeness, ..law }
     });
-    std::iter::once(chosen.0).chain(others).collect()
+    std::iter::once(chosen.law).chain(others).collect()
 }
 
 /// Whether the squared innovations, fold by fold, are no greater than the smallest ones, within one standard error of the sum of
