@@ -102,9 +102,9 @@ impl Axis {
 /// How the places of a layer are drawn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Mark {
-    /// Full circles.
+    /// Full circles; diamonds where a model says so.
     Dots,
-    /// Empty circles.
+    /// Empty circles or diamonds.
     Rings,
     /// Upright crosses.
     Crosses,

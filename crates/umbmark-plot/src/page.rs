@@ -178,7 +178,7 @@ fn drawn(figure: Figure, index: usize, figures: &mut serde_json::Map<String, ser
     figures.insert(id.clone(), plot);
     let legend = legend::entries(&figure);
     let legend =
-        legend.iter().map(|(name, tone, mark)| ((*name).to_owned(), tone.name(), legend::word(mark))).collect();
+        legend.iter().map(|(name, tone, mark)| ((*name).to_owned(), tone.name(), legend::word(mark, *tone))).collect();
     let print = svg::svg(&figure, &svg::Style { width_mm: 130.0, id: format!("print-{id}") });
     let least =
         figure.panels.iter().map(|panel| panel.x.names.len() + usize::from(!panel.x.names.is_empty()) * 14).max();

@@ -65,6 +65,11 @@ impl Tone {
         }
     }
 
+    /// Whether it is what a model says: its places are diamonds, all others are round.
+    pub fn is_modelled(self) -> bool {
+        self == Tone::Model
+    }
+
     /// As the number of a terminal's colour.
     pub fn ansi(self) -> u8 {
         match self {

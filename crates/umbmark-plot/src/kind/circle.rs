@@ -15,14 +15,14 @@ pub(super) static FIGURE: FigureKind =
     FigureKind { name: "circle", about: "end points beside the circle through START", build: figure };
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
-    let circle = &study.diagnosis()?.circle;
     let path = study.data.path.as_ref().filter(|path| std::ptr::eq(path.shape(), &SQUARE));
     let side = path.map(|path| path.values()[0]);
     let side = side.ok_or_else(|| {
         Absent("The circle through START exists for squares only, and this path is not a square.".into())
     })?;
+    let circle = &study.comparison()?.circle;
     if circle.is_empty() {
-        return Err(Absent("The circle needs at least two runs in one direction.".into()));
+        return Err(Absent("The circle needs at least two runs in one direction whose end was measured.".into()));
     }
     let clouds: Vec<Cloud> = Direction::BOTH.into_iter().filter_map(|d| Cloud::new(study, d, side)).collect();
     let (least, most) = clouds
@@ -112,17 +112,28 @@ impl Cloud {
 fn told(circle: &[OnCircle], level: f64) -> Told {
     let one = |c: &OnCircle| {
         let half = 0.5 * MM * (c.off_interval.high - c.off_interval.low);
-        let judged = if c.explained() { "on it" } else { "off it, or not where their heading puts them" };
-        let off = crate::scale::written(MM * c.mean_off, 0);
-        format!("{} runs end {off} ± {half:.0} mm outside the circle: {judged}", c.direction.name())
+        let side = if c.mean_off < 0.0 { "inside" } else { "outside" };
+        let judged = match (c.off_interval.contains(0.0), c.explained()) {
+            (_, true) => "on it",
+            (true, false) => "on it, but not where their heading puts them",
+            (false, _) => "off it",
+        };
+        let off = crate::scale::written(MM * c.mean_off.abs(), 0);
+        format!("{} runs end {off} ± {half:.0} mm {side} the circle: {judged}", c.direction.name())
     };
+    let explained = circle.iter().all(OnCircle::explained);
+    let means = if explained { "E_d and E_b can explain them" } else { "E_d and E_b alone cannot explain them" };
     Told {
         shows:
             "An error that is the same on every side of the square turns the end point about the square's centre, by as much \
                 as the heading turns: along the circle. Crosses show the place that follows from the measured mean headings."
                 .into(),
         good: "Dots lie on the circle, around the cross of their direction: E_d and E_b can explain them.".into(),
-        says: format!("{} ({:.0} % intervals).", circle.iter().map(one).collect::<Vec<_>>().join("; "), 100.0 * level),
+        says: format!(
+            "{} ({:.0} % intervals). {means}.",
+            circle.iter().map(one).collect::<Vec<_>>().join("; "),
+            100.0 * level
+        ),
     }
 }
 

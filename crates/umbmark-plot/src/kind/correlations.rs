@@ -10,7 +10,7 @@ pub(super) static FIGURE: FigureKind =
 
 fn figure(study: &Study) -> Result<Figure, Absent> {
     let diagnosis = study.diagnosis()?;
-    let names: Vec<String> = diagnosis.fitted.iter().map(|e| e.parameter.to_owned()).collect();
+    let names: Vec<String> = diagnosis.fitted.iter().map(|e| format!("{}: {}", e.effect, e.parameter)).collect();
     let values = &diagnosis.correlations;
     if values.len() < 2 {
         return Err(Absent("Correlations need two fitted numbers and their covariance.".into()));

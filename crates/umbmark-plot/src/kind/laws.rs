@@ -12,11 +12,10 @@ use crate::tone::Tone;
 const MM: f64 = 1e3;
 /// Laws by which the error rises beyond so many times that without are not drawn.
 const HIGHEST: f64 = 1.2;
-/// Numbers stand so far apart, in lengths and in shares of the height, and so far to the right of their marks.
+/// Laws no farther apart than this, in lengths and in shares of the height, share a label.
 const APART: (f64, f64) = (1.2, 0.05);
+/// Labels stand so far to the right of their marks, in lengths.
 const BESIDE: f64 = 0.3;
-/// A digit is so wide, in lengths.
-const WIDE: f64 = 0.35;
 
 pub(super) static FIGURE: FigureKind = FigureKind {
     name: "laws",
@@ -57,16 +56,8 @@ fn panel(name: &str, repeated: &Repeated) -> Panel {
     let place = |law: &UnlistedLaw| [law.length as f64, MM * law.left_out[1]];
     let longest = shown.iter().map(|(_, law)| law.length).max().unwrap_or(1) as f64 + 4.0;
     let said = shown.iter().map(|(number, law)| format!("{number}: {}, {:.1} mm", law.words(), MM * law.left_out[1]));
-    let mut labels: Vec<(String, [f64; 2])> = Vec::new();
-    for (number, law) in &shown {
-        let [x, y] = place(law);
-        let is_free = |[x, y]: [f64; 2]| {
-            labels.iter().all(|(_, [u, v])| (x - u).abs() > APART.0 || (y - v).abs() > APART.1 * MM * most)
-        };
-        let sides = [[x + BESIDE, y], [x - BESIDE - number.to_string().len() as f64 * WIDE, y]];
-        labels.extend(sides.into_iter().find(|side| is_free(*side)).map(|side| (number.to_string(), side)));
-    }
-    let (labels, beside): (Vec<String>, Vec<[f64; 2]>) = labels.into_iter().unzip();
+    let places = shown.iter().map(|(number, law)| (*number, place(law)));
+    let (labels, beside): (Vec<String>, Vec<[f64; 2]>) = labels(places, APART.1 * MM * most).into_iter().unzip();
     let layers = vec![
         Layer::new("without a law", Tone::Quiet, Mark::Dashes, [[0.0, MM * before], [longest, MM * before]]),
         Layer::new("best law up to this length", Tone::Model, Mark::Line, front(&shown, longest)),
@@ -81,6 +72,22 @@ fn panel(name: &str, repeated: &Repeated) -> Panel {
         equal: false,
         layers,
     }
+}
+
+/// A label for each law, and one for several that are closer than `high` and would lie on one another: it stands right of the last.
+fn labels(places: impl Iterator<Item = (usize, [f64; 2])>, high: f64) -> Vec<(String, [f64; 2])> {
+    let mut labels: Vec<(String, [f64; 2])> = Vec::new();
+    for (number, [x, y]) in places {
+        let x = x + BESIDE;
+        match labels.iter_mut().find(|(_, [u, v])| (x - *u).abs() < APART.0 && (y - *v).abs() < high) {
+            Some((text, [u, _])) => {
+                *text += &format!(", {number}");
+                *u = u.max(x);
+            }
+            None => labels.push((number.to_string(), [x, y])),
+        }
+    }
+    labels
 }
 
 /// The least error among laws that are no longer than each, as stairs.
@@ -132,4 +139,16 @@ fn table(laws: &[(&'static str, &Repeated)]) -> Table {
         })
     });
     Table::new(["added as", "law", "formula", "length", "left out [mm]"], rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_law_has_its_number_and_near_ones_share_a_label() {
+        let places = [(1, [21.0, 3.3]), (2, [21.0, 3.5]), (3, [21.0, 9.0]), (4, [17.0, 3.3])];
+        let labels: Vec<String> = labels(places.into_iter(), 0.7).into_iter().map(|(text, _)| text).collect();
+        assert_eq!(labels, ["1, 2", "3", "4"]);
+    }
 }

@@ -81,9 +81,18 @@ fn says(title: &str, pairs: &[(&Against, &Against)], tests: usize, size: f64) ->
 
 fn against_panel(nominal: &Against, model: &Against) -> Panel {
     let (scale, unit) = model.rate.display();
-    let labels: Vec<String> = model.bins.iter().map(|bin| label(model, bin)).collect();
-    let of = |against: &Against| -> Vec<Option<Mean>> { against.bins.iter().map(|bin| bin.mean).collect() };
     // The bins are the same, being cut by what was driven.
+    let driven = |against: &Against| {
+        model
+            .bins
+            .iter()
+            .zip(&against.bins)
+            .filter(|(own, _)| own.mean.is_some())
+            .map(|(_, bin)| bin.clone())
+            .collect::<Vec<Bin>>()
+    };
+    let labels: Vec<String> = driven(model).iter().map(|bin| label(model, bin)).collect();
+    let of = |against: &Against| -> Vec<Option<Mean>> { driven(against).iter().map(|bin| bin.mean).collect() };
     let layers = pair_of_layers(&labels, &of(nominal), &of(model), scale, unit);
     let side = match model.covariate.name {
         "wheel_angle_left" => ", left wheel",

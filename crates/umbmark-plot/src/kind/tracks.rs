@@ -82,7 +82,7 @@ fn magnification(paths: &Paths) -> f64 {
 }
 
 fn panel(paths: &Paths, direction: Option<Direction>, runs: &[&RunPath], scale: f64) -> Panel {
-    let computed = if paths.recorded { "computed" } else { "told" };
+    let computed = if paths.recorded { "computed" } else { "commanded" };
     let shown =
         |from: &[f64; 2], to: &[f64; 2]| [from[0] + scale * (to[0] - from[0]), from[1] + scale * (to[1] - from[1])];
     let mut layers = Vec::new();

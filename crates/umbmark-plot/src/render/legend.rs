@@ -18,8 +18,10 @@ pub fn entries(figure: &Figure) -> Vec<Entry<'_>> {
 }
 
 /// A mark in one word, for pages.
-pub fn word(mark: &Mark) -> &'static str {
+pub fn word(mark: &Mark, tone: Tone) -> &'static str {
     match mark {
+        Mark::Dots | Mark::Spans(..) if tone.is_modelled() => "dots diamond",
+        Mark::Rings if tone.is_modelled() => "rings diamond",
         Mark::Dots | Mark::Spans(..) => "dots",
         Mark::Rings => "rings",
         Mark::Crosses => "crosses",

@@ -12,6 +12,8 @@ use crate::tone::shade;
 
 /// Between panels \[px\].
 const BETWEEN: f64 = 62.0;
+/// Between an effect and its parameter, in names; a page begins a line after it.
+const NAME_OF: &str = ": ";
 /// Above the first panel and below the last \[px\].
 const MARGINS: (f64, f64) = (26.0, 52.0);
 
@@ -51,12 +53,13 @@ pub fn figure(figure: &Figure) -> Value {
 
 /// Height of a panel \[px\].
 fn height(panel: &Panel) -> f64 {
+    // Such names take two lines.
+    let is_high = panel.y.names.len() <= 6 || panel.y.names.iter().any(|name| name.contains(NAME_OF));
     match (panel.equal, panel.y.names.len()) {
         (true, 0) => 400.0,
-        (true, names) => (names as f64 * 20.0 + 60.0).max(220.0),
+        (true, names) => (names as f64 * if is_high { 30.0 } else { 20.0 } + 60.0).max(220.0),
         (false, 0) => 230.0,
-        (false, names) if names > 6 => names as f64 * 25.0,
-        (false, names) => (names as f64 * 38.0).max(90.0),
+        (false, names) => (names as f64 * if is_high { 38.0 } else { 25.0 }).max(90.0),
     }
 }
 
@@ -93,7 +96,7 @@ fn axis(axis: &Axis, [low, high]: [f64; 2]) -> Map<String, Value> {
         ("ticks".to_owned(), json!("")),
     ]);
     if !axis.names.is_empty() {
-        let names: Vec<String> = axis.names.iter().map(|name| escaped(name).replace(": ", ":<br>")).collect();
+        let names: Vec<String> = axis.names.iter().map(|name| escaped(name).replace(NAME_OF, ":<br>")).collect();
         told.insert("tickvals".into(), json!((0..names.len()).collect::<Vec<_>>()));
         told.insert("ticktext".into(), json!(names));
         told.insert("showgrid".into(), json!(false));
@@ -115,8 +118,11 @@ fn trace(layer: &Layer, number: &str) -> Value {
     let more = match &layer.mark {
         Mark::Line => json!({ "mode": "lines", "line": { "color": colour, "width": 2 } }),
         Mark::Dashes => json!({ "mode": "lines", "line": { "color": colour, "width": 1.5, "dash": "dash" } }),
-        Mark::Dots => json!({ "mode": "markers", "marker": { "color": colour, "size": 7 } }),
-        Mark::Rings => json!({ "mode": "markers", "marker": { "color": colour, "size": 9, "symbol": "circle-open" } }),
+        Mark::Dots => json!({ "mode": "markers", "marker": { "color": colour, "size": 7, "symbol": symbol(layer) } }),
+        Mark::Rings => {
+            let symbol = format!("{}-open", symbol(layer));
+            json!({ "mode": "markers", "marker": { "color": colour, "size": 9, "symbol": symbol } })
+        }
         Mark::Crosses => {
             let line = json!({ "width": 2, "color": colour });
             json!({ "mode": "markers", "marker": { "color": colour, "size": 13, "symbol": "cross-thin", "line": line } })
@@ -134,6 +140,11 @@ fn trace(layer: &Layer, number: &str) -> Value {
         trace.insert("customdata".into(), json!(layer.runs));
     }
     Value::Object(trace)
+}
+
+/// The shape of a place.
+fn symbol(layer: &Layer) -> &'static str {
+    if layer.tone.is_modelled() { "diamond" } else { "circle" }
 }
 
 fn hover(layer: &Layer) -> Map<String, Value> {
@@ -165,7 +176,7 @@ fn spans(layer: &Layer, low: &[f64], high: &[f64]) -> Value {
     let beside = |ends: &[f64]| numbers(&layer.x.iter().zip(ends).map(|(x, end)| (end - x).abs()).collect::<Vec<_>>());
     json!({
         "mode": "markers",
-        "marker": { "color": colour, "size": 9 },
+        "marker": { "color": colour, "size": 9, "symbol": symbol(layer) },
         "error_x": {
             "type": "data", "symmetric": false, "array": beside(high), "arrayminus": beside(low),
             "color": colour, "thickness": 2.5, "width": 5,

@@ -133,7 +133,7 @@ fn glyph(mark: &Mark, tone: Tone, unicode: bool) -> char {
         (Mark::Crosses, _) => ('+', '+'),
         (Mark::Rings, Tone::Cw) => ('◆', '#'),
         (Mark::Rings, Tone::Ccw) => ('◇', '%'),
-        (Mark::Rings, _) => ('◎', 'm'),
+        (Mark::Rings, _) => ('◊', 'm'),
         (_, Tone::Cw) => ('●', 'x'),
         (_, Tone::Ccw) => ('○', 'o'),
         _ => ('•', '*'),

@@ -118,13 +118,25 @@ fn line(places: &[[f64; 2]], tone: Tone, width: f64, dashed: bool) -> String {
     format!(r#"<path d="{path}" {}/>"#, stroke(tone, width, dashed))
 }
 
-fn dot([x, y]: &[f64; 2], tone: Tone) -> String {
+fn dot(at @ [x, y]: &[f64; 2], tone: Tone) -> String {
+    if tone.is_modelled() {
+        return diamond(at, RADIUS + 1.0, &format!(r#"fill="{}""#, tone.on_white()));
+    }
     let (x, y, colour) = (number(*x), number(*y), tone.on_white());
     format!(r#"<circle cx="{x}" cy="{y}" r="{RADIUS}" fill="{colour}" fill-opacity="0.85"/>"#)
 }
 
-fn ring([x, y]: &[f64; 2], tone: Tone) -> String {
+fn ring(at @ [x, y]: &[f64; 2], tone: Tone) -> String {
+    if tone.is_modelled() {
+        return diamond(at, 3.6, &stroke(tone, 1.1, false));
+    }
     format!(r#"<circle cx="{}" cy="{}" r="2.6" {}/>"#, number(*x), number(*y), stroke(tone, 1.1, false))
+}
+
+fn diamond([x, y]: &[f64; 2], arm: f64, style: &str) -> String {
+    let [left, right, above, below] = [x - arm, x + arm, y - arm, y + arm].map(number);
+    let (x, y) = (number(*x), number(*y));
+    format!(r#"<path d="M{left} {y}L{x} {above}L{right} {y}L{x} {below}Z" {style}/>"#)
 }
 
 fn cross([x, y]: &[f64; 2], tone: Tone) -> String {
