@@ -11,6 +11,7 @@
 //! The paper numbers only Eqs. 1, 5 and 6; 2 to 4 are the three displays between, in their order. All errors are absolute minus
 //! computed, in the frame of START.
 
+mod change;
 mod extended;
 mod interval;
 mod scatter;
@@ -22,6 +23,7 @@ use crate::path::Direction;
 use crate::setup::Setup;
 use std::sync::Arc;
 
+pub use change::{Change, ChangeError, Outcome};
 pub use extended::{Convention, Extended, nonsystematic_orientation};
 pub use interval::{CentroidInterval, Ellipse, FEWEST_RUNS, Intervals, e_max_sys_interval, noise_band, sigma_interval};
 pub use scatter::Scatter;

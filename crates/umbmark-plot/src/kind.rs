@@ -47,7 +47,7 @@ fn p_value(p: f64) -> String {
 }
 
 /// A p-value behind its letter: "p = 0.013", "p < 0.001".
-fn p_is(p: f64) -> String {
+pub(crate) fn p_is(p: f64) -> String {
     if p < 0.001 { "p < 0.001".into() } else { format!("p = {p:.3}") }
 }
 

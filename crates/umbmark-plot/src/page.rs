@@ -1,7 +1,9 @@
 //! One page of everything: a single file that needs no network.
 
 mod provenance;
+mod identifiers;
 mod quality;
+mod summary;
 mod unseen;
 mod verdict;
 
@@ -17,15 +19,51 @@ use crate::scale;
 use crate::study::Study;
 use crate::tone::Tone;
 
+use summary::Summary;
+
 pub use minijinja::Error as PageError;
 pub use provenance::{Origin, Provenance};
+pub use summary::change;
 pub use verdict::said;
 
 const TEMPLATE: &str = include_str!("page/report.html");
+const TILE: &str = include_str!("page/tile.html");
 const TABLE: &str = include_str!("page/table.html");
 const STYLE: &str = include_str!("page/report.css");
 const SCRIPT: &str = include_str!("page/report.js");
 const PLOTLY: &str = include_str!("../vendor/plotly-basic.min.js");
+
+/// What a part of the page is about, and the sections that stand in it first to last; all others stand in the last.
+const CHAPTERS: [(&str, &str, &[&str]); 3] = [
+    ("where", "Where it fails", &["return_errors", "tracks", "residuals_by_move"]),
+    ("evidence", "Evidence", &["learning", "laws", "parameters", "quality", "next"]),
+    ("all", "All other figures", &[]),
+];
+
+/// A part of the page.
+#[derive(Debug, Serialize)]
+struct Chapter {
+    id: &'static str,
+    title: &'static str,
+    sections: Vec<Section>,
+}
+
+impl Chapter {
+    /// All of them that have something to say.
+    fn of(mut sections: Vec<Section>) -> Vec<Chapter> {
+        let mut chapters = Vec::new();
+        for (id, title, first) in CHAPTERS {
+            let place = |section: &Section| first.iter().position(|own| *own == section.id);
+            let (mut own, rest): (Vec<Section>, Vec<Section>) =
+                sections.into_iter().partition(|section| first.is_empty() || place(section).is_some());
+            own.sort_by_key(|section| place(section));
+            sections = rest;
+            chapters.push(Chapter { id, title, sections: own });
+        }
+        chapters.retain(|chapter| !chapter.sections.is_empty());
+        chapters
+    }
+}
 
 /// A section: one kind of figure, or one kind of list, for each study.
 #[derive(Debug, Serialize)]
@@ -111,15 +149,19 @@ pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usi
         Tone::ALL.iter().map(|t| (t.name().to_owned(), json!([t.on_white(), t.on_black()]))).collect();
     let data = json!({ "figures": figures, "studies": studies.iter().map(runs).collect::<Vec<_>>(), "tones": tones });
     let mut environment = Environment::new();
+    environment.add_filter("ids", identifiers::marked);
     environment.add_template("report.html", TEMPLATE)?;
     environment.add_template("table.html", TABLE)?;
+    environment.add_template("tile.html", TILE)?;
     let filters: Vec<_> = studies.iter().map(filter).collect();
     environment.get_template("report.html")?.render(context! {
         title => title(studies),
-        verdicts => Value::from(Serde(studies.iter().map(said).collect::<Vec<_>>())),
+        robot => robot(studies),
+        summaries => Value::from(Serde(studies.iter().map(Summary::of).collect::<Vec<_>>())),
+        changed => Value::from(Serde(summary::changed(studies))),
         partial => studies.iter().any(Study::is_partial),
         many => studies.len() > 1,
-        sections => Value::from(Serde(&sections)),
+        chapters => Value::from(Serde(Chapter::of(sections))),
         absent => Value::from(Serde(&absent)),
         filters => Value::from(Serde(&filters)),
         tones => Tone::ALL.map(|t| (t.name(), t.on_white(), t.on_black())),
@@ -134,6 +176,13 @@ pub fn page(studies: &[Study], provenance: &Provenance, mut seen: impl FnMut(usi
 fn title(studies: &[Study]) -> String {
     let names: Vec<&str> = studies.iter().map(|study| study.name.as_str()).collect();
     names.join(" and ")
+}
+
+/// What the robot of all studies is called; nothing where they are several.
+fn robot(studies: &[Study]) -> Option<String> {
+    let mut names = studies.iter().map(|study| study.data.robot.as_ref().map(|robot| robot.name.clone()));
+    let first = names.next()??;
+    names.all(|name| name.as_ref() == Some(&first)).then_some(first).filter(|name| !name.is_empty())
 }
 
 /// The runs that can be chosen.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use pyo3::prelude::*;
 use umbmark_core::result::Report;
 use umbmark_io::whole_file::WholeFile;
-use umbmark_plot::page::{Origin, Provenance, page, said};
+use umbmark_plot::page::{Origin, Provenance, change, page, said};
 use umbmark_plot::study::Study;
 
 use crate::figure::{Asked, options, study};
@@ -39,6 +39,7 @@ pub fn report(
         let report = Report {
             bytes: html.len(),
             studies: studies.iter().map(said).collect(),
+            change: change(&studies),
             seed,
             version: umbmark_core::VERSION,
         };

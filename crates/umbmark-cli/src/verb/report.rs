@@ -8,7 +8,7 @@ use anyhow::Context;
 use serde_json::json;
 use umbmark_core::result::Said;
 use umbmark_plot::kind::KINDS;
-use umbmark_plot::page::{Origin, Provenance, page, said};
+use umbmark_plot::page::{Origin, Provenance, change, page, said};
 use umbmark_plot::study::Study;
 
 use crate::Session;
@@ -88,6 +88,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
             "output": output,
             "bytes": text.len(),
             "studies": verdicts,
+            "change": change(&studies),
             "partial": partial,
             "seed": session.seed(),
             "version": umbmark_core::VERSION,
@@ -100,6 +101,9 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
             write!(session.out(), "{}", hanging("LOOK", 6, &format!("{name}{notice}")))?;
         }
         write!(session.out(), "{}", hanging("", 0, &format!("{name}{}", said.verdict)))?;
+    }
+    if let Some(outcome) = change(&studies) {
+        writeln!(session.out(), "\nfrom {} to {}: {outcome}", studies[0].name, studies[1].name)?;
     }
     writeln!(session.out(), "\nwrote {output} ({:.1} MB)", text.len() as f64 / 1e6)?;
     Ok(ExitCode::SUCCESS)

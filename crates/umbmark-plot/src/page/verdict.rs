@@ -1,6 +1,6 @@
 //! The study in one sentence.
 
-use umbmark_core::diagnose::{Diagnosis, Verdict};
+use umbmark_core::diagnose::{Diagnosis, Reason, Verdict};
 use umbmark_core::evidence::Level;
 use umbmark_core::result::Said;
 
@@ -8,7 +8,65 @@ use crate::study::Study;
 
 /// The result of a study.
 pub fn said(study: &Study) -> Said {
-    Said { name: study.name.clone(), notices: notices(study), verdict: verdict(study) }
+    let outcome = Outcome::of(study).name();
+    Said { name: study.name.clone(), notices: notices(study), outcome, verdict: verdict(study) }
+}
+
+/// What a study comes to, in a word; it decides the colour of the page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Outcome {
+    /// The model accounts for the error.
+    Explained,
+    /// Effects were found, but something remains, or it is not certain which they are.
+    Partly,
+    /// No model accounts for the error.
+    NotExplained,
+    /// The data are not what they are called.
+    Fault,
+    /// The runs are too few.
+    NotEnoughData,
+}
+
+impl Outcome {
+    /// Of the diagnosis, which is the one verdict of all verbs.
+    pub(super) fn of(study: &Study) -> Outcome {
+        let Ok(diagnosis) = study.diagnosis() else { return Outcome::NotEnoughData };
+        if diagnosis.setup.all_faults().next().is_some() {
+            return Outcome::Fault;
+        }
+        let is_unsure = study.learnt().is_ok_and(|learnt| learnt.steps.iter().any(|step| step.class.len() > 1));
+        let has_law = diagnosis.model.parts().iter().any(|part| part.free && part.effect.formula().is_some());
+        match diagnosis.verdict {
+            _ if diagnosis.reasons.iter().any(Reason::is_of_data) => Outcome::NotExplained,
+            Verdict::Explained if is_unsure || has_law => Outcome::Partly,
+            Verdict::Explained => Outcome::Explained,
+            Verdict::MissingEffect | Verdict::SeveralMissing | Verdict::UnlistedEffect => Outcome::Partly,
+            Verdict::NotExplained => Outcome::NotExplained,
+            Verdict::NotEnoughData => Outcome::NotEnoughData,
+        }
+    }
+
+    /// As in files.
+    fn name(self) -> &'static str {
+        match self {
+            Outcome::Explained => "explained",
+            Outcome::Partly => "partly",
+            Outcome::NotExplained => "not_explained",
+            Outcome::Fault => "fault",
+            Outcome::NotEnoughData => "not_enough_data",
+        }
+    }
+
+    /// As people say it.
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Outcome::Explained => "Explained",
+            Outcome::Partly => "Explained in part",
+            Outcome::NotExplained => "Not explained",
+            Outcome::Fault => "The data have a fault",
+            Outcome::NotEnoughData => "Not enough data",
+        }
+    }
 }
 
 /// What has to be known before any figure is believed: faults of the columns, jumps of tracks, runs far from the others. A sentence each.
