@@ -86,8 +86,10 @@ fn a_report_tells_the_verdict_its_files_and_its_command() {
     assert_eq!(document["bytes"], page.len());
     assert!(page.len() < 5_000_000);
     let verdict = document["studies"][0]["verdict"].as_str().unwrap();
-    assert!(verdict.starts_with("TRC LabMate ends 267 mm from START (E_max,sys);"), "{verdict}");
-    assert!(page.contains("E_max,sys"));
+    assert!(verdict.starts_with("The robot comes back 267 mm off."), "{verdict}");
+    assert!(page.contains(verdict) && page.contains("E_max,sys"));
+    let outcome = document["studies"][0]["outcome"].as_str().unwrap();
+    assert!(page.contains(&format!("<p class=\"verdict {outcome}\">")), "{outcome}");
     // SHA-256 of the sheet, as any other tool gives it.
     let sheet = PathBuf::from(&labmate).join("returns.csv");
     let sum = Command::new("sha256sum").arg(sheet).output();
@@ -110,7 +112,7 @@ fn two_datasets_and_two_models_stand_side_by_side() {
         "both.html",
     );
     let page = String::from_utf8(page).unwrap();
-    assert!(page.contains("<h3>slope</h3>") && page.contains("<h3>labmate</h3>"));
+    assert!(page.contains("<h2><code>slope</code></h2>") && page.contains("<h2><code>labmate</code></h2>"));
     assert!(page.contains("id=\"return_errors-0\"") && page.contains("id=\"return_errors-1\""));
     std::fs::write(folder.path().join("nominal.toml"), "").unwrap();
     let effect = "[[effect]]\nname = \"wheelbase\"\ne_b = 1.0\nfree = true\n";
@@ -118,5 +120,68 @@ fn two_datasets_and_two_models_stand_side_by_side() {
     let models = ["--model", "nominal.toml", "--model", "wheelbase.toml"];
     let arguments = [&["report", &slope, "--draws", "99", "-n", "100", "-o", "models.html"][..], &models].concat();
     let page = String::from_utf8(written(folder.path(), &arguments, "models.html")).unwrap();
-    assert!(page.contains("<h3>nominal.toml</h3>") && page.contains("<h3>wheelbase.toml</h3>"));
+    assert!(page.contains("<h2><code>nominal.toml</code></h2>") && page.contains("<h2><code>wheelbase.toml</code></h2>"));
+}
+
+/// The document of a verb.
+fn document(folder: &Path, arguments: &[&str]) -> Value {
+    let output = umbmark(folder, &[arguments, &["--draws", "99", "--json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", said(&output).1);
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn headline_page_learn_and_compare_say_one_verdict() {
+    let folder = tempfile::tempdir().unwrap();
+    let example = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name).display().to_string();
+    let sets = [data("labmate"), data("slope"), data("tracked"), example("hidden"), example("tape"), example("unnamed")];
+    for (number, set) in sets.iter().enumerate() {
+        let (page, model) = (format!("{number}.html"), format!("{number}.toml"));
+        let report = document(folder.path(), &["report", set, "-n", "100", "-o", &page]);
+        let learnt = document(folder.path(), &["learn", set, "-o", &model, "--force"]);
+        let solved = document(folder.path(), &["solve", set]);
+        let study = &report["studies"][0];
+        assert_eq!((&study["verdict"], &learnt["verdict"]), (&solved["sentence"], &solved["verdict"]), "{set}");
+        let outcome = study["outcome"].as_str().unwrap();
+        let allowed: &[&str] = match learnt["verdict"].as_str().unwrap() {
+            "explained" => &["explained", "partly"],
+            "missing_effect" | "several_missing" | "unlisted_effect" => &["partly"],
+            "not_enough_data" => &["not_enough_data"],
+            _ => &["not_explained", "fault"],
+        };
+        assert!(allowed.contains(&outcome), "{set}: {outcome} where learn says {}", learnt["verdict"]);
+        let written = std::fs::read_to_string(folder.path().join(&page)).unwrap();
+        assert!(written.contains(&format!("<p class=\"verdict {outcome}\">")), "{set}");
+        if outcome == "explained" {
+            for other in ["does not explain the runs", "hardly explains", "does not account for"] {
+                assert!(!written.contains(other), "{set}: {other}");
+            }
+            let compared = document(folder.path(), &["compare", set, "--model", &model]);
+            assert_ne!(compared["models"][0]["explains"], false, "{set}");
+        }
+    }
+}
+
+#[test]
+fn a_page_of_two_datasets_says_whether_the_robot_returns_better() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = |name: &str, wheelbase: &str, seed: &str| {
+        let arguments = ["simulate", "--runs", "5", "--eb", wheelbase, "--wheel-noise", "0.0005", "--seed", seed, "-o", name];
+        assert_eq!(umbmark(folder.path(), &arguments).status.code(), Some(0));
+    };
+    made("before", "1.02", "1");
+    made("after", "1.0", "2");
+    made("again", "1.02", "3");
+    let change = |pair: [&str; 2]| {
+        let page = format!("{}.html", pair.join("_"));
+        let report =
+            document(folder.path(), &["report", pair[0], pair[1], "--return-poses", "-n", "100", "-o", &page]);
+        let page = std::fs::read_to_string(folder.path().join(page)).unwrap();
+        let said = report["change"].as_str().unwrap().to_owned();
+        assert!(page.contains(&format!("<p class=\"verdict {}\">", said.replace(' ', "_"))), "{said}");
+        said
+    };
+    assert_eq!(change(["before", "after"]), "better");
+    assert_eq!(change(["after", "before"]), "worse");
+    assert_eq!(change(["before", "again"]), "the same");
 }

@@ -1,5 +1,6 @@
 //! How simulated tests score, and the measured one among them.
 
+use umbmark_core::diagnose::Verdict;
 use umbmark_core::monte_carlo::{Metric, Statistics};
 
 use super::FigureKind;
@@ -47,8 +48,16 @@ fn figure(study: &Study) -> Result<Figure, Absent> {
 fn told(statistics: &Statistics, measured: Option<f64>, below: Option<f64>, noise: &str, study: &Study) -> Told {
     let says = match (measured, below) {
         (Some(e_max), Some(below)) => {
-            let outside = !(0.025..=0.975).contains(&below);
-            let judged = if outside { "the model hardly explains it" } else { "the model can explain it" };
+            let is_outside = !(0.025..=0.975).contains(&below);
+            let explained = study.diagnosis().is_ok_and(|diagnosis| diagnosis.verdict == Verdict::Explained);
+            let judged = match (is_outside, explained) {
+                (false, _) => "such a test is usual for the model",
+                (true, false) => "fewer than 5 % of tests of the model are so far out",
+                (true, true) => {
+                    "fewer than 5 % of tests of the model are so far out, though the diagnosis shows no further effect; the \
+                     path or the scatter of the simulated tests may differ from that of the runs"
+                }
+            };
             let of_tests = 100.0 * below;
             format!(
                 "The measured E_max,sys, {:.0} mm, is larger than in {of_tests:.0} % of the tests: {judged}.",

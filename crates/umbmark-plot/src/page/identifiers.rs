@@ -2,22 +2,38 @@
 
 use minijinja::Value;
 
-/// A text as HTML, in which each name with an underscore stands as code.
+/// A text as HTML, in which commands between backticks and names with an underscore stand as code.
 pub(super) fn marked(text: &str) -> Value {
     let mut html = String::with_capacity(text.len() + 16);
+    let parts: Vec<&str> = text.split('`').collect();
+    let has_pairs = parts.len() % 2 == 1;
+    for (place, part) in parts.into_iter().enumerate() {
+        match (has_pairs, place % 2) {
+            (true, 1) => {
+                html.push_str("<code>");
+                push_escaped(&mut html, part);
+                html.push_str("</code>");
+            }
+            (false, _) if place > 0 => push_names(&mut html, &format!("`{part}")),
+            _ => push_names(&mut html, part),
+        }
+    }
+    Value::from_safe_string(html)
+}
+
+fn push_names(html: &mut String, text: &str) {
     let mut rest = text;
     while let Some(start) = rest.find(is_of_name) {
         let (before, from) = rest.split_at(start);
         let (word, after) = from.split_at(from.find(|c| !is_of_name(c)).unwrap_or(from.len()));
-        push_escaped(&mut html, before);
+        push_escaped(html, before);
         match is_identifier(word) {
             true => html.push_str(&format!("<code>{}</code>", word.replace('_', "_<wbr>"))),
-            false => push_escaped(&mut html, word),
+            false => push_escaped(html, word),
         }
         rest = after;
     }
-    push_escaped(&mut html, rest);
-    Value::from_safe_string(html)
+    push_escaped(html, rest);
 }
 
 fn is_of_name(c: char) -> bool {
@@ -52,6 +68,12 @@ mod tests {
     fn names_are_code_and_symbols_are_not() {
         let html = marked("E_d of wheel_noise, cw_01 <b> & E_max,sys").to_string();
         assert_eq!(html, "E_d of <code>wheel_<wbr>noise</code>, <code>cw_<wbr>01</code> &lt;b&gt; &amp; E_max,sys");
+    }
+
+    #[test]
+    fn commands_are_code_and_a_single_backtick_is_itself() {
+        assert_eq!(marked("run `a_b -o <x>` now").to_string(), "run <code>a_b -o &lt;x&gt;</code> now");
+        assert_eq!(marked("one ` only").to_string(), "one ` only");
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Whether the data is any good, and how the models do on it.
 
 use umbmark_core::compare::Judged;
+use umbmark_core::compare::tracks::TracksJudged;
+use umbmark_core::evidence::Level;
 
 use super::{List, Rows};
 use crate::study::Study;
@@ -34,17 +36,26 @@ fn left(study: &Study) -> Option<List> {
     Some(List { title: "What the fitted model leaves".into(), sentences, table: None })
 }
 
-/// Models beside the return poses.
+/// The nominal robot and the model: of tracks their errors along the way, else of the returns. Which of them explains the runs is the verdict's
+/// to say.
 fn models(study: &Study) -> Option<List> {
+    if study.diagnosis().is_ok_and(|diagnosis| diagnosis.level == Level::Tracks) {
+        let along = study.along().ok()?;
+        let row = |model: &TracksJudged| vec![model.name.clone(), mm(model.along.position), mm(model.end.position)];
+        let header = ["model", "error along the way [mm]", "at the ends [mm]"];
+        return Some(table("Models compared with the tracks", &header, along.models.iter().map(row).collect()));
+    }
     let comparison = study.comparison().ok()?;
-    let size = study.options.diagnose.size;
     let row = |model: &Judged| {
-        let verdict = if model.explains(size) { "agrees with the runs" } else { "does not explain the runs" };
         let heading = model.heading_rmse.map_or("–".to_owned(), |h| format!("{:.2}", h.to_degrees()));
-        vec![model.name.clone(), format!("{:.1}", 1e3 * model.rmse), heading, format!("{:.3}", model.p), verdict.into()]
+        vec![model.name.clone(), mm(model.rmse), heading]
     };
-    let header = ["model", "error of ends [mm]", "[deg]", "p", ""];
+    let header = ["model", "error of the ends [mm]", "[deg]"];
     Some(table("Models compared with the return poses", &header, comparison.models.iter().map(row).collect()))
+}
+
+fn mm(metres: f64) -> String {
+    format!("{:.1}", 1e3 * metres)
 }
 
 fn table(title: &str, header: &[&str], rows: Vec<Vec<String>>) -> List {
