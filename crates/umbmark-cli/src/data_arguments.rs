@@ -1,6 +1,6 @@
 //! The arguments of every verb that reads measurements.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use umbmark_core::dataset::Dataset;
 use umbmark_io::{DatasetError, Topics};
@@ -12,6 +12,13 @@ pub struct DataArguments {
     #[arg(value_name = "DATA")]
     pub data: PathBuf,
 
+    #[command(flatten)]
+    topics: TopicArguments,
+}
+
+/// What is read of MCAP logs.
+#[derive(Debug, clap::Args)]
+pub struct TopicArguments {
     /// Topic of the wheels in MCAP logs, if it is not found by type; append :LEFT,RIGHT for the names of the joints, or
     /// :left,right or :right,left for the order in a list of counts
     #[arg(long, value_name = "TOPIC", help_heading = "MCAP logs")]
@@ -25,6 +32,13 @@ pub struct DataArguments {
 impl DataArguments {
     /// Reads them.
     pub fn load(&self) -> Result<Dataset, DatasetError> {
-        umbmark_io::load_with(&self.data, &Topics { ticks: self.ticks.clone(), reference: self.reference.clone() })
+        self.topics.load(&self.data)
+    }
+}
+
+impl TopicArguments {
+    /// Reads a dataset.
+    pub fn load(&self, place: &Path) -> Result<Dataset, DatasetError> {
+        umbmark_io::load_with(place, &Topics { ticks: self.ticks.clone(), reference: self.reference.clone() })
     }
 }

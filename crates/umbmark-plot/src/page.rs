@@ -1,7 +1,7 @@
 //! One page of everything: a single file that needs no network.
 
-mod provenance;
 mod identifiers;
+mod provenance;
 mod quality;
 mod summary;
 mod unseen;

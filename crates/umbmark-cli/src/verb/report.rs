@@ -12,6 +12,7 @@ use umbmark_plot::page::{Origin, Provenance, change, page, said};
 use umbmark_plot::study::Study;
 
 use crate::Session;
+use crate::data_arguments::TopicArguments;
 use crate::files::Pending;
 use crate::prose::hanging;
 use crate::study_arguments::StudyArguments;
@@ -41,6 +42,9 @@ pub struct Arguments {
     /// Replace a file that exists
     #[arg(long)]
     force: bool,
+
+    #[command(flatten)]
+    topics: TopicArguments,
 
     #[command(flatten)]
     study: StudyArguments,
@@ -113,7 +117,7 @@ impl Arguments {
     /// One study for each dataset or model.
     fn studies(&self, session: &Session) -> anyhow::Result<Vec<Study>> {
         let of = |place: &Path, model: Option<&Path>, name: &str| {
-            let data = umbmark_io::load(place)?;
+            let data = self.topics.load(place)?;
             for warning in data.warnings.iter().filter(|_| !session.json()) {
                 session.message("warning", warning);
             }

@@ -12,8 +12,10 @@ use crate::tone::Tone;
 const MM: f64 = 1e3;
 /// Laws by which the error rises beyond so many times that without are not drawn.
 const HIGHEST: f64 = 1.2;
-/// Laws no farther apart than this, in lengths and in shares of the height, share a label.
-const APART: (f64, f64) = (1.2, 0.05);
+/// Labels no farther apart than this share of the height, and that would lie on one another, are one.
+const APART: f64 = 0.05;
+/// A character is so wide, in lengths.
+const WIDE: f64 = 0.45;
 /// Labels stand so far to the right of their marks, in lengths.
 const BESIDE: f64 = 0.3;
 
@@ -57,7 +59,7 @@ fn panel(name: &str, repeated: &Repeated) -> Panel {
     let longest = shown.iter().map(|(_, law)| law.length).max().unwrap_or(1) as f64 + 4.0;
     let said = shown.iter().map(|(number, law)| format!("{number}: {}, {:.1} mm", law.words(), MM * law.left_out[1]));
     let places = shown.iter().map(|(number, law)| (*number, place(law)));
-    let (labels, beside): (Vec<String>, Vec<[f64; 2]>) = labels(places, APART.1 * MM * most).into_iter().unzip();
+    let (labels, beside): (Vec<String>, Vec<[f64; 2]>) = labels(places, APART * MM * most).into_iter().unzip();
     let layers = vec![
         Layer::new("without a law", Tone::Quiet, Mark::Dashes, [[0.0, MM * before], [longest, MM * before]]),
         Layer::new("best law up to this length", Tone::Model, Mark::Line, front(&shown, longest)),
@@ -79,7 +81,11 @@ fn labels(places: impl Iterator<Item = (usize, [f64; 2])>, high: f64) -> Vec<(St
     let mut labels: Vec<(String, [f64; 2])> = Vec::new();
     for (number, [x, y]) in places {
         let x = x + BESIDE;
-        match labels.iter_mut().find(|(_, [u, v])| (x - *u).abs() < APART.0 && (y - *v).abs() < high) {
+        let own = WIDE * (number.to_string().len() + 1) as f64;
+        let meets = |(text, [u, v]): &&mut (String, [f64; 2])| {
+            (y - *v).abs() < high && x < *u + WIDE * (text.len() + 1) as f64 && *u < x + own
+        };
+        match labels.iter_mut().find(meets) {
             Some((text, [u, _])) => {
                 *text += &format!(", {number}");
                 *u = u.max(x);
@@ -147,7 +153,7 @@ mod tests {
 
     #[test]
     fn every_law_has_its_number_and_near_ones_share_a_label() {
-        let places = [(1, [21.0, 3.3]), (2, [21.0, 3.5]), (3, [21.0, 9.0]), (4, [17.0, 3.3])];
+        let places = [(1, [21.0, 3.3]), (2, [21.0, 3.5]), (3, [21.0, 9.0]), (4, [15.0, 3.3])];
         let labels: Vec<String> = labels(places.into_iter(), 0.7).into_iter().map(|(text, _)| text).collect();
         assert_eq!(labels, ["1, 2", "3", "4"]);
     }

@@ -77,7 +77,8 @@ impl Summary {
         };
         let far = Tile { says: beside_far(study, solution.as_ref().ok().copied()), ..told(how_far, far_of_score) };
         let means = study.diagnosis().map(|diagnosis| meaning(&diagnosis.fitted, &diagnosis.model));
-        let means = means.iter().flat_map(|means| means.iter());
+        let is_chance = solution.as_ref().is_ok_and(|solution| is_chance(solution));
+        let means = means.iter().filter(|_| !is_chance).flat_map(|means| means.iter());
         Summary {
             name: said.name,
             notices: said.notices,
@@ -131,6 +132,10 @@ fn why(solution: &Solution) -> Tile {
     let Some(off) = &solution.off else {
         return Tile { answer: "unknown".into(), says: "See the verdict.".into(), rows: Vec::new() };
     };
+    if is_chance(solution) {
+        let says = "Wheels and wheelbase differ from the robot's numbers by no more than chance, and no other error source is found.";
+        return Tile { answer: "scatter".into(), says: says.into(), rows: Vec::new() };
+    }
     let mut parts: Vec<&Part> = off.reference.iter().chain(&off.written).chain(&off.known).collect();
     parts.sort_by(|a, b| b.worth.total_cmp(&a.worth));
     let mut rows: Vec<Row> = parts.iter().map(|part| of_part(part, solution)).collect();
@@ -141,7 +146,14 @@ fn why(solution: &Solution) -> Tile {
         1 => "1 error source".to_owned(),
         count => format!("{count} error sources"),
     };
-    Tile { answer, says: format!("What each takes off the {}.", of_measure(off)), rows }
+    let hid = if parts.iter().any(|part| part.worth < 0.0) { " One below zero hid a part of the others." } else { "" };
+    Tile { answer, says: format!("What each takes off the {}.{hid}", of_measure(off)), rows }
+}
+
+/// Whether nothing is found but what chance makes.
+fn is_chance(solution: &Solution) -> bool {
+    let others = solution.off.as_ref().is_some_and(|off| !(off.known.is_empty() && off.reference.is_empty()));
+    solution.is_trusted() && !solution.needed && !others && !solution.misses_something()
 }
 
 fn of_measure(off: &Off) -> String {

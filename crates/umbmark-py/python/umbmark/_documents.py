@@ -2400,6 +2400,8 @@ class Report(Result, frozen=True):
         Its length.
     studies : tuple[Said, ...]
         The verdict of each study on it, and the warnings about its data.
+    change : str or None
+        Of two studies: "better", "worse" or "the same"; None where they cannot be compared.
     seed : int
         Seed of all random numbers.
     version : str
@@ -2408,6 +2410,7 @@ class Report(Result, frozen=True):
 
     bytes: int
     studies: tuple[Said, ...]
+    change: str | None
     seed: int
     version: str
 
@@ -2421,12 +2424,16 @@ class Said(Record, frozen=True):
         Its name.
     notices : tuple[str, ...]
         Warnings about its data, a sentence each.
+    outcome : str
+        In a word: "explained", "partly" (effects were found, but something remains or is unsure),
+        "not_explained", "fault" or "not_enough_data".
     verdict : str
         Its result, in one sentence.
     """
 
     name: str
     notices: tuple[str, ...]
+    outcome: str
     verdict: str
 
 
