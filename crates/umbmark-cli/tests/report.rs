@@ -120,7 +120,9 @@ fn two_datasets_and_two_models_stand_side_by_side() {
     let models = ["--model", "nominal.toml", "--model", "wheelbase.toml"];
     let arguments = [&["report", &slope, "--draws", "99", "-n", "100", "-o", "models.html"][..], &models].concat();
     let page = String::from_utf8(written(folder.path(), &arguments, "models.html")).unwrap();
-    assert!(page.contains("<h2><code>nominal.toml</code></h2>") && page.contains("<h2><code>wheelbase.toml</code></h2>"));
+    assert!(
+        page.contains("<h2><code>nominal.toml</code></h2>") && page.contains("<h2><code>wheelbase.toml</code></h2>")
+    );
 }
 
 /// The document of a verb.
@@ -133,8 +135,10 @@ fn document(folder: &Path, arguments: &[&str]) -> Value {
 #[test]
 fn headline_page_learn_and_compare_say_one_verdict() {
     let folder = tempfile::tempdir().unwrap();
-    let example = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name).display().to_string();
-    let sets = [data("labmate"), data("slope"), data("tracked"), example("hidden"), example("tape"), example("unnamed")];
+    let example =
+        |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name).display().to_string();
+    let sets =
+        [data("labmate"), data("slope"), data("tracked"), example("hidden"), example("tape"), example("unnamed")];
     for (number, set) in sets.iter().enumerate() {
         let (page, model) = (format!("{number}.html"), format!("{number}.toml"));
         let report = document(folder.path(), &["report", set, "-n", "100", "-o", &page]);
@@ -166,7 +170,8 @@ fn headline_page_learn_and_compare_say_one_verdict() {
 fn a_page_of_two_datasets_says_whether_the_robot_returns_better() {
     let folder = tempfile::tempdir().unwrap();
     let made = |name: &str, wheelbase: &str, seed: &str| {
-        let arguments = ["simulate", "--runs", "5", "--eb", wheelbase, "--wheel-noise", "0.0005", "--seed", seed, "-o", name];
+        let arguments =
+            ["simulate", "--runs", "5", "--eb", wheelbase, "--wheel-noise", "0.0005", "--seed", seed, "-o", name];
         assert_eq!(umbmark(folder.path(), &arguments).status.code(), Some(0));
     };
     made("before", "1.02", "1");
@@ -174,8 +179,7 @@ fn a_page_of_two_datasets_says_whether_the_robot_returns_better() {
     made("again", "1.02", "3");
     let change = |pair: [&str; 2]| {
         let page = format!("{}.html", pair.join("_"));
-        let report =
-            document(folder.path(), &["report", pair[0], pair[1], "--return-poses", "-n", "100", "-o", &page]);
+        let report = document(folder.path(), &["report", pair[0], pair[1], "--return-poses", "-n", "100", "-o", &page]);
         let page = std::fs::read_to_string(folder.path().join(page)).unwrap();
         let said = report["change"].as_str().unwrap().to_owned();
         assert!(page.contains(&format!("<p class=\"verdict {}\">", said.replace(' ', "_"))), "{said}");
