@@ -21,7 +21,7 @@ pub(super) enum Outcome {
     Partly,
     /// No model accounts for the error.
     NotExplained,
-    /// The data are not what they are called.
+    /// The data contradict their names.
     Fault,
     /// The runs are too few.
     NotEnoughData,
