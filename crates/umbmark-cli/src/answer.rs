@@ -11,6 +11,9 @@ pub fn answer_text(solution: &Solution, level: f64) -> String {
     if !solution.changes.is_empty() {
         text += &format!("\n{}\n", numbers_table(solution, level));
     }
+    if solution.assumes_scale() {
+        text += &hanging("", 0, "These hold if the mean wheel diameter is right: the runs do not show it.");
+    }
     let next = solution.next();
     if !next.is_empty() {
         text += "\nnext\n";

@@ -131,6 +131,11 @@ impl Solution {
         !self.learnt.is_in_doubt()
     }
 
+    /// Whether the lengths, and their intervals, hold only if the wheels are right on the whole, which these runs do not show.
+    pub fn assumes_scale(&self) -> bool {
+        !self.changes.is_empty() && self.not_shown.iter().any(|effect| ["scale", "drive_scale"].contains(effect))
+    }
+
     /// Whether the robot has an error source that the model does not have: nothing is known to be complete then.
     pub fn misses_something(&self) -> bool {
         match self.learnt.verdict {

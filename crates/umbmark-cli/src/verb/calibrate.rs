@@ -246,16 +246,18 @@ fn text(robot: &Robot, calibration: &Calibration, level: f64) -> String {
     let header = ["", "b [mm]", "D_left [mm]", "D_right [mm]", "predicted", "replayed [mm]"];
     text += &table(&header, estimates.iter().map(|e| length_row(robot, e)));
     text += "\n\npredicted: E_max,sys of the same test with the correction\nreplayed: E_max,sys of the recorded ticks with the correction\n";
-    let why = |estimate: &Estimate| match estimate.method {
-        Method::Model => {
-            "the learnt model: it has all effects that the runs show, and the other rows have E_d, E_b and E_s only"
-        }
-        _ => "the exact fit: the runs are too few to learn a model",
-    };
     if let Some(estimate) = calibration.to_write() {
         text += &hanging("exported:", 10, why(estimate));
     }
     text
+}
+
+/// Why an estimate is the one that is exported.
+fn why(estimate: &Estimate) -> &'static str {
+    match estimate.method {
+        Method::Model => "the learnt model, which also has every other effect that the runs show",
+        _ => "the exact fit, because the runs are too few to learn a model",
+    }
 }
 
 fn ratio_row(estimate: &Estimate, level: f64) -> Vec<String> {

@@ -77,7 +77,8 @@ pub struct Solution {
     pub verdict: &'static str,
     /// The answer in words.
     pub sentence: String,
-    /// The new numbers of the robot by their keys in robot.toml; empty where these runs show none.
+    /// The new numbers of the robot by their keys in robot.toml; empty where these runs show none. Where `not_shown` has "scale", lengths and
+    /// their intervals hold if the mean wheel diameter is right.
     pub correction: Changes,
     /// Whether the new numbers differ from the old ones by more than chance.
     pub needed: bool,

@@ -47,28 +47,33 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
     if !solution.is_trusted() {
         return vec!["No model explains these runs, so do not write the new numbers below into the robot yet.".into()];
     }
-    let mut said = Vec::new();
     let known: f64 = off.known.iter().map(|part| part.worth).sum();
     let explained = verdict == Verdict::Explained;
     let is_chance = |error: f64| off.chance.map_or(explained, |chance| error <= chance);
+    let by_chance = |error: f64| if is_chance(error) { ", no more than chance makes" } else { "" };
+    let mut said = Vec::new();
     if !solution.needed {
-        let all = match known.abs() > TOLD * off.driven {
-            false if is_chance(off.driven) => "That is no more than chance makes, and its numbers are right",
-            _ => "Its numbers are right",
-        };
-        said.push(format!("{all}: nothing is to be written."));
+        said.push(match off.known.is_empty() && is_chance(off.driven) {
+            true => "That is no more than chance makes: its numbers are right, and nothing is to be written.".into(),
+            false => "Its numbers are right: nothing is to be written.".into(),
+        });
     } else {
         let (count, these) = match solution.changes.len() {
             1 => ("the new number".to_owned(), "it"),
             count => (format!("the {count} new numbers"), "them"),
         };
-        let left = mm(off.with_numbers);
-        let names = listed(&names(solution));
-        said.push(match off.with_numbers < off.driven {
-            true => format!("Write {count} ({names}): with {these}, {left} are left."),
+        let (left, names) = (mm(off.with_numbers), listed(&names(solution)));
+        let rest = if off.known.is_empty() { by_chance(off.with_numbers) } else { "" };
+        let fall = off.driven - off.with_numbers;
+        said.push(match fall > TOLD * off.driven {
+            true => format!("Write {count} ({names}): with {these}, {left} are left{rest}."),
+            false if -fall <= TOLD * off.driven => format!(
+                "Write {count} ({names}): they differ from the old ones by more than chance, though on this path the error of the \
+                 position hardly shows it."
+            ),
             false => format!(
-                "Write {count} ({names}). With {these} alone, {left} are left on this path: what they do not hold had hidden \
-                 a part of their error."
+                "Write {count} ({names}). With {these} alone, {left} are left on this path: what no number holds had hidden a \
+                 part of their error."
             ),
         });
     }
@@ -81,9 +86,8 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
     }
     if solution.misses_something() {
         said.push("The robot has a further error source, which the model lacks.".into());
-    } else if solution.needed || !off.known.is_empty() {
-        let chance = if is_chance(off.rest) { ", no more than chance makes" } else { "" };
-        said.push(format!("The rest is {}{chance}.", mm(off.rest)));
+    } else if !off.known.is_empty() {
+        said.push(format!("The rest is {}{}.", mm(off.rest), by_chance(off.rest)));
     }
     said
 }
@@ -133,7 +137,7 @@ pub(super) fn next(solution: &Solution) -> Vec<String> {
         next.push("Drive at least three runs in each direction, or log poses on the way, then solve again.".into());
     }
     let has = |words: &[&str]| solution.not_shown.iter().any(|effect| words.contains(effect));
-    if has(&["scale", "drive_scale"]) && !solution.changes.is_empty() {
+    if solution.assumes_scale() {
         next.push(
             "Measure one straight leg by tape, or a pose on the way: these runs do not show whether the wheels are too large \
              or too small on the whole."
@@ -164,7 +168,10 @@ fn unsure(solution: &Solution) -> Option<&Experiment> {
 fn titles(parts: &[Part]) -> String {
     let mut parts: Vec<&Part> = parts.iter().collect();
     parts.sort_by(|a, b| b.worth.abs().total_cmp(&a.worth.abs()));
-    let title = |part: &&Part| find(part.name).map_or(part.name, |entry| entry.about.title).to_owned();
+    let title = |part: &&Part| match find(part.name) {
+        Ok(entry) => entry.about.title.to_owned(),
+        Err(_) => format!("the law {}", part.name),
+    };
     listed(&parts.iter().map(title).collect::<Vec<_>>())
 }
 
