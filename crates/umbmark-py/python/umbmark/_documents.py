@@ -1034,6 +1034,8 @@ class Suggestion(Record, frozen=True):
     effect : tuple[dict[str, Any], ...]
         Its effects in the order in which they act: each with its name, its parameters and whether
         it is free.
+    noise : dict[str, float] or UnsetType
+        The sizes of the noise, where it was fitted to tracks.
     share : float
         The share of the curve that it explains.
     toml : str
@@ -1041,6 +1043,7 @@ class Suggestion(Record, frozen=True):
     """
 
     effect: tuple[dict[str, Any], ...]
+    noise: dict[str, float] | UnsetType = UNSET
     share: float
     toml: str
 
@@ -2716,6 +2719,8 @@ class Solution(Result, frozen=True):
         The answer in words.
     correction : dict[str, Change]
         The new numbers of the robot by their keys in robot.toml; empty where these runs show none.
+        Where ``not_shown`` has "scale", lengths and their intervals hold if the mean wheel diameter
+        is right.
     needed : bool
         Whether the new numbers differ from the old ones by more than chance.
     trusted : bool
