@@ -133,7 +133,7 @@ impl Solution {
             next: solution.next(),
             not_shown: solution.not_shown.clone(),
             reasons: reasons(&diagnosis.reasons),
-            model: (&learnt.model).into(),
+            model: Model::with_noise(&learnt.model, learnt.noise.as_ref()),
             fitted: estimates(&diagnosis.fitted, 1.0 - options.size),
             meaning: meaning(&diagnosis.fitted, &learnt.model),
             setup: diagnosis.setup.as_ref().into(),
