@@ -45,7 +45,7 @@ pub fn existing(force: bool) -> Existing {
 }
 
 /// What to do about a file that exists.
-fn with_remedy(error: FileError) -> anyhow::Error {
+pub fn with_remedy(error: FileError) -> anyhow::Error {
     match error {
         FileError::Exists(_) => anyhow::anyhow!("{error}; --force replaces it"),
         error => error.into(),

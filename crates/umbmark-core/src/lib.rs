@@ -11,6 +11,7 @@
 //!
 //! Nothing here reads or writes files, prints, parses flags or knows Python.
 
+pub mod apply;
 pub mod calibrate;
 pub mod compare;
 pub mod dataset;

@@ -23,6 +23,7 @@ macro_rules! results {
 }
 
 results! {
+    applied;
     calibration: Calibration;
     clock;
     closure;

@@ -14,6 +14,7 @@
 mod assembly;
 pub mod checkpoint;
 mod columns;
+mod corrected;
 mod csv_text;
 
 mod distribution_table;
@@ -45,6 +46,7 @@ mod track_rows;
 mod wheel_names;
 pub mod whole_file;
 
+pub use corrected::CorrectedFormat;
 pub use error::{At, DatasetError, LineProblem};
 pub use layout::Layout;
 pub use layout::csv::save;

@@ -33,6 +33,7 @@ macro_rules! module {
 }
 
 module! {
+    apply: apply;
     arrays;
     calibrate: calibrate, calibrate_gears;
     checkpoint: merge;

@@ -35,6 +35,7 @@ pub use problem::McapProblem;
 pub use save::save_mcap;
 pub(super) use survey::Survey;
 pub use topics::Topics;
+pub(crate) use write::corrected;
 
 use super::Layout;
 use super::csv::robot_beside;

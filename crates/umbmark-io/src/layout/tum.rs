@@ -13,6 +13,7 @@ use crate::track_rows::TrackRows;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use umbmark_core::apply::Corrected;
 use umbmark_core::dataset::{Dataset, ReferencePose};
 use umbmark_core::run::dead_reckoning::computed_poses;
 
@@ -79,6 +80,12 @@ fn tum_text(what: &str, poses: impl Iterator<Item = (f64, f64, f64, f64)>) -> St
         let _ = writeln!(text, "{time:?} {x:?} {y:?} 0 0 0 {qz:?} {qw:?}");
     }
     text
+}
+
+/// Corrected odometry as a trajectory.
+pub(crate) fn corrected(corrected: &Corrected) -> String {
+    let poses = corrected.time.iter().zip(&corrected.poses);
+    tum_text("poses corrected by a model", poses.map(|(t, p)| (*t, p.x, p.y, p.heading)))
 }
 
 /// Measured and computed poses of each run, for tools that compare trajectories.

@@ -13,6 +13,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``calibrate_gears``                the same for drives other than the differential one
 ``compare``, ``diagnose``          what models explain, and what they are missing
 ``solve``                          the one answer: what to write into the robot
+``apply``                          corrected odometry from counts and a model
 ``fit``, ``learn``                 fit a model; add what is missing until nothing is
 ``export``                         a model for ROS 2, Nav2, URDF, C, Gazebo or MuJoCo
 ``report``, ``plot``               everything on one page; one figure of it
@@ -27,6 +28,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 =================================  ===========================================================
 """
 
+from umbmark._apply import Corrected, apply
 from umbmark._calibration import Calibration, GearCalibration, calibrate, calibrate_gears
 from umbmark._comparison import Comparison, TrackComparison, compare
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
@@ -63,6 +65,7 @@ from umbmark._umbmark import (
 __all__ = [
     "Calibration",
     "Comparison",
+    "Corrected",
     "Correction",
     "Dataset",
     "Diagnosis",
@@ -92,6 +95,7 @@ __all__ = [
     "Tolerance",
     "TrackComparison",
     "__version__",
+    "apply",
     "calibrate",
     "calibrate_gears",
     "compare",

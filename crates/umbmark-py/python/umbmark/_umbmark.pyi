@@ -425,6 +425,9 @@ def solve(
     threads: int,
     progress: Callable[[int], object] | None,
 ) -> tuple[str, Model]: ...
+def apply(
+    data: Dataset, model: Model, start: tuple[float, float, float]
+) -> list[tuple[str, Floats, Floats, Floats | None]]: ...
 def simulate(
     model: Model,
     path: Path | None = None,

@@ -14,7 +14,8 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, McapResult, WriteOptions, Writer};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use std::io::{Seek, Write};
+use std::io::{Cursor, Seek, Write};
+use umbmark_core::apply::{Corrected, Spread};
 use umbmark_core::dataset::{ReferencePose, TickLog};
 use umbmark_core::geometry::Pose2;
 use umbmark_core::run::dead_reckoning::computed_poses;
@@ -24,15 +25,49 @@ const JOINTS: [&str; 2] = ["left_wheel_joint", "right_wheel_joint"];
 /// Not packed smaller by more: the level of zstd that it calls its default.
 const LEVEL: u32 = 3;
 
-/// Writes a log into a file, its stamps counted from `begin` \[s\].
-pub(super) fn write(file: impl Write + Seek, robot_file: &RobotFile, log: &TickLog, begin: f64) -> McapResult<()> {
-    let options = WriteOptions::new()
+fn options() -> WriteOptions {
+    WriteOptions::new()
         .profile("ros2")
         .library(format!("umbmark {}", umbmark_core::VERSION))
         .compression(Some(Compression::Zstd))
         .compression_level(LEVEL)
-        .compression_threads(0);
-    let mut writer = options.create(file)?;
+        .compression_threads(0)
+}
+
+/// Corrected odometry as `nav_msgs/Odometry` on `/odom`: the covariance of the pose is 0 where it is not known, and that of the twist is 0.
+pub(crate) fn corrected(corrected: &Corrected) -> McapResult<Vec<u8>> {
+    let mut file = Cursor::new(Vec::new());
+    let mut writer = options().create(&mut file)?;
+    let mut odometry = Topic::add(&mut writer, "/odom", &ODOMETRY)?;
+    let begin = corrected.time.first().copied().unwrap_or(0.0).min(0.0);
+    for (sample, pose) in corrected.poses.iter().enumerate() {
+        let before = sample.saturating_sub(1);
+        let time = nanoseconds(corrected.time[sample] - begin);
+        let twist = twist(&corrected.poses[before], pose, corrected.time[sample] - corrected.time[before]);
+        let covariance = corrected.spread.as_ref().map_or([0.0; 36], |spread| of_axes(&spread[sample]));
+        odometry.write(&mut writer, time, |cdr| odom(cdr, time, pose, &covariance, twist))?;
+    }
+    writer.finish()?;
+    drop(writer);
+    Ok(file.into_inner())
+}
+
+/// A covariance by rows of x, y, z and the rotations about them.
+fn of_axes(spread: &Spread) -> [f64; 36] {
+    let mut covariance = [0.0; 36];
+    let [xx, xy, yy, x_heading, y_heading, heading] = spread.numbers();
+    for (row, column, value) in
+        [(0, 0, xx), (0, 1, xy), (1, 1, yy), (0, 5, x_heading), (1, 5, y_heading), (5, 5, heading)]
+    {
+        covariance[6 * row + column] = value;
+        covariance[6 * column + row] = value;
+    }
+    covariance
+}
+
+/// Writes a log into a file, its stamps counted from `begin` \[s\].
+pub(super) fn write(file: impl Write + Seek, robot_file: &RobotFile, log: &TickLog, begin: f64) -> McapResult<()> {
+    let mut writer = options().create(file)?;
     let robot = &robot_file.robot;
     let robot_toml = BTreeMap::from([(ROBOT.to_owned(), robot_file.text())]);
     writer.write_metadata(&Metadata { name: METADATA.to_owned(), metadata: robot_toml })?;
@@ -54,7 +89,7 @@ pub(super) fn write(file: impl Write + Seek, robot_file: &RobotFile, log: &TickL
         joint_states.write(&mut writer, time, |cdr| joint_state(cdr, time, positions))?;
         let before = sample.saturating_sub(1);
         let twist = twist(&poses[before], pose, log.time[sample] - log.time[before]);
-        odometry.write(&mut writer, time, |cdr| odom(cdr, time, pose, twist))?;
+        odometry.write(&mut writer, time, |cdr| odom(cdr, time, pose, &[0.0; 36], twist))?;
         transforms.write(&mut writer, time, |cdr| transform(cdr, time, pose))?;
         while let (Some(topic), Some(pose)) = (&mut ground_truth, references.next_if(|pose| pose.sample == sample)) {
             topic.write(&mut writer, time, |cdr| pose_stamped(cdr, time, pose))?;
@@ -133,12 +168,12 @@ fn joint_state(cdr: &mut Cdr, time: u64, positions: [f64; 2]) {
     }
 }
 
-fn odom(cdr: &mut Cdr, time: u64, pose: &Pose2, [speed, turn_rate]: [f64; 2]) {
+fn odom(cdr: &mut Cdr, time: u64, pose: &Pose2, covariance: &[f64; 36], [speed, turn_rate]: [f64; 2]) {
     header(cdr, time, "odom");
     cdr.write_string("base_link");
     numbers(cdr, [pose.x, pose.y, 0.0]);
     numbers(cdr, orientation(pose.heading));
-    numbers(cdr, [0.0; 36]);
+    numbers(cdr, *covariance);
     numbers(cdr, [speed, 0.0, 0.0, 0.0, 0.0, turn_rate]);
     numbers(cdr, [0.0; 36]);
 }

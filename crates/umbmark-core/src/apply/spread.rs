@@ -1,0 +1,61 @@
+//! The covariance of a pose, and how it grows.
+
+use crate::geometry::{Displacement2, Pose2};
+use crate::likelihood::Noise;
+
+/// Covariance of a pose, in the frame in which the pose is told.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// \[m²\]
+    pub xx: f64,
+    /// \[m²\]
+    pub xy: f64,
+    /// \[m²\]
+    pub yy: f64,
+    /// \[m rad\]
+    pub x_heading: f64,
+    /// \[m rad\]
+    pub y_heading: f64,
+    /// \[rad²\]
+    pub heading: f64,
+}
+
+impl Spread {
+    /// The covariance at the end of a piece that is driven `from` one pose `to` the next.
+    ///
+    /// A heading that is off carries over by the chord (d_x, d_y): δx -= d_y δθ, δy += d_x δθ. The noise of the heading, q = σ²_m s + σ²_r |Δθ|,
+    /// arises evenly along the chord, so its share is q (d_y²/3, -d_x d_y/3, d_x²/3, -d_y/2, d_x/2, 1). Noise forward and sideways lies along
+    /// the chord and across it.
+    pub(super) fn after(&self, from: &Pose2, motion: &Displacement2, to: &Pose2, noise: &Noise) -> Spread {
+        let (dx, dy) = (to.x - from.x, to.y - from.y);
+        let way = motion.forward.abs();
+        let [per_metre, per_radian, forward, sideways] =
+            [noise.heading_per_metre, noise.heading_per_radian, noise.forward_per_metre, noise.sideways_per_metre]
+                .map(|sd| sd * sd);
+        let heading = per_metre * way + per_radian * motion.rotation.abs();
+        let chord = dx * dx + dy * dy;
+        let along = if chord > 0.0 { (forward - sideways) * way / chord } else { 0.0 };
+        let across = sideways * way;
+        Spread {
+            xx: self.xx - 2.0 * dy * self.x_heading
+                + dy * dy * (self.heading + heading / 3.0)
+                + along * dx * dx
+                + across,
+            xy: self.xy + dx * self.x_heading - dy * self.y_heading - dx * dy * (self.heading + heading / 3.0)
+                + along * dx * dy,
+            yy: self.yy
+                + 2.0 * dx * self.y_heading
+                + dx * dx * (self.heading + heading / 3.0)
+                + along * dy * dy
+                + across,
+            x_heading: self.x_heading - dy * (self.heading + 0.5 * heading),
+            y_heading: self.y_heading + dx * (self.heading + 0.5 * heading),
+            heading: self.heading + heading,
+        }
+    }
+
+    /// Its six numbers in the order x², xy, y², xθ, yθ, θ².
+    pub fn numbers(&self) -> [f64; 6] {
+        [self.xx, self.xy, self.yy, self.x_heading, self.y_heading, self.heading]
+    }
+}
