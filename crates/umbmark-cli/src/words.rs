@@ -3,6 +3,7 @@
 use std::error::Error;
 
 use umbmark_core::plan::PlanError;
+use umbmark_io::export::ExportError;
 use umbmark_io::{DatasetError, Words};
 
 const WORDS: Words = Words { replace: "say --force", before: "--", between: " " };
@@ -14,6 +15,8 @@ pub fn worded(error: &anyhow::Error) -> String {
 
 fn one(error: &(dyn Error + 'static)) -> String {
     if let Some(error) = error.downcast_ref::<DatasetError>() {
+        error.worded(&WORDS)
+    } else if let Some(error) = error.downcast_ref::<ExportError>() {
         error.worded(&WORDS)
     } else if let Some(PlanError::NoScatter) = error.downcast_ref() {
         format!("{error} (--wheel-noise 0.001)")

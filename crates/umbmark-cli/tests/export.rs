@@ -75,7 +75,7 @@ fn what_cannot_be_written_gets_one_error_and_no_file() {
             "model.toml",
             "--to urdf --urdf bot.urdf",
             1,
-            "bot.urdf:1: the joints of the left and the right wheel are not clear",
+            "bot.urdf:1: the joints of the left and the right wheel are not clear among none; name the joints of both wheels, on one link, with --joints LEFT,RIGHT",
         ),
         ("model.toml", "--to ros2_control --speed nan", 2, "must be finite"),
         ("model.toml", "--to ros2_control --rate 0", 2, "must be between 0.1 and 100000 Hz"),

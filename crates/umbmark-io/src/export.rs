@@ -8,7 +8,7 @@ mod text;
 
 pub use urdf::UrdfFile;
 
-use super::RobotFile;
+use super::{Remedy, RobotFile, Words};
 use std::fmt;
 use umbmark_core::calibrate::Correction;
 use umbmark_core::drive::{Drive, DriveError, Robot};
@@ -107,14 +107,24 @@ pub enum ExportError {
         reason: String,
     },
     /// A file to be edited that is not as it should be.
-    #[error("{file}:{line}: {problem}")]
+    #[error("{file}:{line}: {problem}{}", after(remedy.as_ref(), &Words::PLAIN))]
     File {
         /// The file.
         file: String,
         /// Its line.
         line: u32,
-        /// What is wrong, and what to do.
+        /// What is wrong.
         problem: String,
+        /// What to do, where the problem does not say it.
+        remedy: Option<Remedy>,
+    },
+    /// No file to be edited.
+    #[error("{target}: the file to edit is missing{}", after(Some(remedy), &Words::PLAIN))]
+    NoFile {
+        /// Name of the target.
+        target: &'static str,
+        /// What to do.
+        remedy: Remedy,
     },
     /// A correction that leaves no possible robot.
     #[error("the model belongs to no possible robot ({0}); are signs, units and directions right?")]
@@ -122,6 +132,26 @@ pub enum ExportError {
     /// An effect that the drive cannot have.
     #[error(transparent)]
     Model(#[from] ModelError),
+}
+
+impl ExportError {
+    /// In the words of an edge.
+    pub fn worded(&self, words: &Words) -> String {
+        match self {
+            ExportError::File { file, line, problem, remedy } => {
+                format!("{file}:{line}: {problem}{}", after(remedy.as_ref(), words))
+            }
+            ExportError::NoFile { target, remedy } => {
+                format!("{target}: the file to edit is missing{}", after(Some(remedy), words))
+            }
+            other => other.to_string(),
+        }
+    }
+}
+
+/// A remedy behind what is wrong.
+fn after(remedy: Option<&Remedy>, words: &Words) -> String {
+    remedy.map_or_else(String::new, |remedy| format!("; {}", remedy.worded(words)))
 }
 
 /// A model to be written, and how.

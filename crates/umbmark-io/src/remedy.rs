@@ -25,18 +25,24 @@ impl Words {
         let name = match argument {
             Argument::Ticks => "ticks",
             Argument::Reference => "reference",
+            Argument::Urdf => "urdf",
+            Argument::Joints => "joints",
         };
         format!("{}{name}", self.before)
     }
 }
 
-/// An argument that names a topic of an MCAP log.
+/// An argument that a remedy names: a topic of an MCAP log, or a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Argument {
     /// The topic of the wheels.
     Ticks,
     /// The topic of the measured poses.
     Reference,
+    /// The description of a robot that is edited.
+    Urdf,
+    /// The joints of the wheels in it.
+    Joints,
 }
 
 /// What to do about an error.

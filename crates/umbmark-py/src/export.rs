@@ -1,12 +1,13 @@
 //! `export`: a model as the file of another program.
 
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_io::RobotFile;
-use umbmark_io::export::{Export, TARGETS, UrdfFile, Usual};
+use umbmark_io::export::{Export, ExportError, TARGETS, UrdfFile, Usual};
 
 use crate::model::Model;
 use crate::path::Path;
-use crate::{choice, refused};
+use crate::{WORDS, choice, refused};
 
 /// A model as text for a target, and what the text does not hold.
 #[pyfunction]
@@ -29,10 +30,15 @@ pub fn export(
         noise: model.noise,
         controller,
         beside: path.map(|path| RobotFile::new(robot.clone(), Some(path.0.clone()))),
-        urdf: urdf.map(|(file, joints)| UrdfFile::read(file, joints)).transpose().map_err(refused)?,
+        urdf: urdf.map(|(file, joints)| UrdfFile::read(file, joints)).transpose().map_err(in_words)?,
         usual: Usual { speed, turn_rate, rate },
         ..Export::of(&model.model)
     };
-    let written = target.write(&export).map_err(refused)?;
+    let written = target.write(&export).map_err(in_words)?;
     Ok((written.text, written.notes))
+}
+
+/// Why a file cannot be written, in Python's words.
+fn in_words(error: ExportError) -> PyErr {
+    PyValueError::new_err(error.worded(&WORDS))
 }

@@ -66,9 +66,12 @@ fn refused(error: impl std::error::Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
+/// How Python names its arguments in messages.
+const WORDS: Words = Words { replace: "say replace=True", before: "", between: "=" };
+
 /// What is wrong with a file of a data set, or why one is not written, in Python's words.
 fn refused_data(error: DatasetError) -> PyErr {
-    PyValueError::new_err(error.worded(&Words { replace: "say replace=True", before: "", between: "=" }))
+    PyValueError::new_err(error.worded(&WORDS))
 }
 
 /// Why a file is not written, in Python's words.

@@ -27,7 +27,7 @@ fn write(export: &Export) -> Result<Written, ExportError> {
         let twist = list(&diagonal(of_twist(&noise, &export.usual)));
         notes.push(format!(
             "the filter takes covariances from the messages: the robot has to publish twist covariances of {twist}, \
-             as with --to ros2_control"
+             as the file for ros2_control sets them"
         ));
         notes.push(sentences(&export.usual)[0].clone());
     }

@@ -2,6 +2,7 @@
 
 use super::text::{number, to_nanometre};
 use super::{Export, ExportError, Target, Written};
+use crate::remedy::{Argument, Remedy};
 use crate::wheel_names::{Side, candidates};
 use crate::whole_file::in_words;
 use roxmltree::{Attribute, Document, Node};
@@ -12,12 +13,13 @@ use umbmark_core::drive::Wheel;
 /// Where the wheels stand and how large they are; all other bytes stay as they are.
 pub static TARGET: Target = Target {
     name: "urdf",
-    about: "your own URDF (--urdf) with corrected wheel radii and wheel separation, and nothing else changed",
+    about: "your own URDF with corrected wheel radii and wheel separation, and nothing else changed",
     write,
 };
 
 /// A difference between the file and the nominal robot that is worth a note \[m\].
 const NOTABLE: f64 = 1e-6;
+const NAME_THEM: &str = "name the joints of both wheels, on one link, with";
 const EXPAND: &str = "is an expression: give the file that xacro makes of it (xacro robot.urdf.xacro > robot.urdf)";
 
 /// A description of a robot, as the user has it.
@@ -37,8 +39,8 @@ fn write(export: &Export) -> Result<Written, ExportError> {
     if !(kind.has_axle_wheels() || kind.steers()) {
         return Err(export.no_drive(TARGET.name));
     }
-    let missing = "the file to edit is missing; give it with --urdf FILE (urdf=... in Python)";
-    let file = export.urdf.as_ref().ok_or(ExportError::Missing { target: TARGET.name, what: missing })?;
+    let remedy = Remedy::Name { purpose: "give it with", argument: Argument::Urdf, value: "FILE" };
+    let file = export.urdf.as_ref().ok_or(ExportError::NoFile { target: TARGET.name, remedy })?;
     let document = Document::parse(&file.text)
         .map_err(|error| file.wrong(error.pos().row, format!("is not XML: {error}; give a URDF file")))?;
     let wheels = file.wheels(&document)?;
@@ -99,7 +101,13 @@ impl UrdfFile {
     }
 
     fn wrong(&self, line: u32, problem: String) -> ExportError {
-        ExportError::File { file: self.name.clone(), line, problem }
+        ExportError::File { file: self.name.clone(), line, problem, remedy: None }
+    }
+
+    /// A problem that goes where the user names the joints.
+    fn unclear(&self, line: u32, problem: String) -> ExportError {
+        let remedy = Remedy::Name { purpose: NAME_THEM, argument: Argument::Joints, value: "LEFT,RIGHT" };
+        ExportError::File { file: self.name.clone(), line, problem, remedy: Some(remedy) }
     }
 
     fn wheels<'a>(&'a self, document: &'a Document) -> Result<[WheelJoint<'a>; 2], ExportError> {
@@ -114,10 +122,8 @@ impl UrdfFile {
                 let ([left], [right]) = (&sides[0][..], &sides[1][..]) else {
                     let all: Vec<&str> = names().collect();
                     let all = if all.is_empty() { "none".to_owned() } else { all.join(", ") };
-                    return Err(self.wrong(1, format!(
-                        "the joints of the left and the right wheel are not clear; name them with --joints LEFT,RIGHT; \
-                         the joints that turn on and on are: {all}"
-                    )));
+                    let problem = format!("the joints of the left and the right wheel are not clear among {all}");
+                    return Err(self.unclear(1, problem));
                 };
                 [*left, *right]
             }
@@ -134,10 +140,10 @@ impl UrdfFile {
         let [parent, other] = wheels.each_ref().map(|wheel| linked(wheel.joint, "parent"));
         if parent != other {
             let line = wheels[1].line();
-            return Err(self.wrong(line, format!(
-                "\"{left}\" and \"{right}\" have different parent links, so their distance is not in their origins; name the joints \
-                 of both wheels on one link with --joints LEFT,RIGHT"
-            )));
+            let problem = format!(
+                "\"{left}\" and \"{right}\" have different parent links, so they do not say how far apart they are"
+            );
+            return Err(self.unclear(line, problem));
         }
         Ok(wheels)
     }
@@ -308,10 +314,7 @@ mod tests {
         let said = |text: &str, joints| write_of(text, joints).unwrap_err().to_string();
         assert!(said("<robot>", None).starts_with("bot.urdf:1: is not XML: "));
         let both = URDF.replace("left_arm", "left_wheel_2");
-        assert!(
-            said(&both, None)
-                .contains("name them with --joints LEFT,RIGHT; the joints that turn on and on are: wheel_left_joint,")
-        );
+        assert!(said(&both, None).ends_with("name the joints of both wheels, on one link, with joints LEFT,RIGHT"));
         assert!(
             said(URDF, Some(["a", "b"]))
                 .contains("there is no joint \"a\"; its joints are wheel_left_joint, wheel_right_joint, left_arm")
@@ -328,7 +331,7 @@ mod tests {
         assert!(said(&apart, None).contains("have different parent links"));
         let bare = URDF.replace(" xyz=\"0 -.16 0.023\"", "");
         assert!(said(&bare, None).contains("the joint of the right wheel has no <origin xyz"), "{}", said(&bare, None));
-        let nothing = TARGET.write(&Export::of(&model())).unwrap_err().to_string();
-        assert!(nothing.starts_with("urdf: the file to edit is missing; give it with --urdf FILE"), "{nothing}");
+        let nothing = TARGET.write(&Export::of(&model())).unwrap_err();
+        assert_eq!(nothing.to_string(), "urdf: the file to edit is missing; give it with urdf FILE");
     }
 }
