@@ -1,8 +1,7 @@
 """How often the intervals of `umbmark solve` hold the true numbers of the robot, on tracks.
 
 Makes the data, runs the command on each set as a user would, and holds each new number against the
-sealed truth: `python tests/reference/answers.py --seeds 7 8 9`. The table stands in
-docs/studies/answers.md.
+sealed truth: `python tests/reference/answers.py --seeds 7 8 9`.
 """
 
 import argparse

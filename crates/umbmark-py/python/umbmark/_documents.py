@@ -1026,7 +1026,7 @@ class Nearest(Record, frozen=True):
     share: float
 
 
-class Suggestion(Record, frozen=True):
+class Suggestion(Record, frozen=True, kw_only=True):
     """A formula to try, and the share of the curve that it explains.
 
     Attributes
