@@ -47,6 +47,13 @@ pub enum Reason {
         /// \[m\]
         nominal: f64,
     },
+    /// The model misses the runs that it was fitted to by more than the nominal robot does.
+    FarFromTheRuns {
+        /// \[m\]
+        inside: f64,
+        /// \[m\]
+        nominal: f64,
+    },
     /// Runs that were left out are predicted far worse than those that were fitted: they do not agree, or are too few.
     LeftOutFarWorse {
         /// \[m\]
@@ -120,6 +127,11 @@ impl Reason {
             Reason::WorseThanNominal { left_out, nominal } => format!(
                 "the cross-validated error is {:.1} mm, worse than that of the nominal robot ({:.1} mm)",
                 1e3 * left_out,
+                1e3 * nominal
+            ),
+            Reason::FarFromTheRuns { inside, nominal } => format!(
+                "the model misses the runs that it was fitted to by {:.1} mm, the nominal robot by {:.1} mm",
+                1e3 * inside,
                 1e3 * nominal
             ),
             Reason::LeftOutFarWorse { left_out, inside } => format!(

@@ -39,9 +39,10 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
         let fitted = plainly(observed, &model)?;
         add(&mut model, own.effect, Some(own.p), fitted);
     }
-    let first = shown(observed, &model)?;
-    // Each row starts again from the values of the motion, because a ratio alone absorbs the effect of the next one.
-    let mut fresh = model.clone();
+    // Each row, and the fit of all of them, starts again from what the motion says: a ratio alone absorbs the effect of the next one, and
+    // a delay that was fitted beside a wrong ratio can be one step of the reference off, where the likelihood has another maximum.
+    let first = shown(observed, &begun)?;
+    let mut fresh = begun;
     for effect in &first {
         fresh.add(effect)?.free = true;
         let fitted = plainly(observed, &observed.begin(&fresh)?.0)?;
@@ -55,6 +56,11 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
         model.adopt(part);
         let fitted = fit(observed, &model)?;
         add(&mut model, part.effect.name(), None, fitted);
+    }
+    if !taken.is_empty() {
+        let values = std::mem::replace(&mut model, observed.begin(&fresh)?.0);
+        let is_new = |part: &&Part| fresh.parts().iter().all(|own| own.effect.name() != part.effect.name());
+        values.parts().iter().filter(is_new).for_each(|part| model.adopt(part));
     }
     let fitted = Fitted { taken, ..fit(observed, &model)? };
     let not_shown = observed.robot.drive.first_effects().into_iter().filter(|effect| !first.contains(effect));
@@ -170,6 +176,10 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     if runs >= ENOUGH_RUNS && end.held_out.position > WORSE * first.held_out.position {
         let (left_out, nominal) = (end.held_out.position, first.held_out.position);
         reasons.push(Reason::WorseThanNominal { left_out, nominal });
+    }
+    let (inside, nominal) = (end.error.position, first.error.position);
+    if inside > WORSE * nominal.max(written.observed.setup.noise.position) {
+        reasons.push(Reason::FarFromTheRuns { inside, nominal });
     }
     let (left_out, inside) = (end.held_out.position, end.error.position);
     if left_out > FAR_WORSE * inside.max(written.observed.setup.noise.position) {

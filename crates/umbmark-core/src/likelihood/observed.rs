@@ -4,6 +4,7 @@ mod blocks;
 mod columns;
 mod laid;
 mod pieces;
+mod readings;
 mod starts;
 mod walk;
 
@@ -25,6 +26,8 @@ use std::sync::Arc;
 const ONE_PLACE: (f64, f64) = (0.10, 0.10);
 /// A pose counts as measured at START if the robot had moved less than this \[m\].
 const AT_START: f64 = 0.03;
+/// A delay that the motion of a run shows is known where it is this multiple of its standard error.
+const KNOWN: f64 = 2.0;
 /// Minimum number of blocks of a run.
 const FEWEST: usize = 3;
 
@@ -112,8 +115,9 @@ pub struct Observed {
 }
 
 impl Observed {
-    /// Gathers the runs of a dataset that have ticks and absolute poses in at least three places. Wrong poses are left out, runs restart
-    /// where their track jumps, and long runs are cut into pieces.
+    /// Gathers the runs of a dataset that have ticks and absolute poses in at least three places. Wrong poses are left out, and those
+    /// between slow readings of counters that did not turn evenly. Runs restart where their track jumps, and long runs are cut into
+    /// pieces.
     pub fn new(data: &Dataset, robot: &Robot) -> Result<Observed, ReplayError> {
         let setup = Setup::of(&data.runs, robot, data.path.as_ref());
         let mut runs = Vec::new();
@@ -176,7 +180,10 @@ impl ObservedRun {
         origin: Pose2,
     ) -> Result<Option<ObservedRun>, ReplayError> {
         let Some(log) = &run.log else { return Ok(None) };
-        let is_lost = |pose: usize| found.is_some_and(|found| found.is_lost(pose));
+        let late =
+            found.and_then(|found| found.delay).filter(|delay| delay.is_beyond(KNOWN)).map_or(0.0, |delay| delay.value);
+        let uneven = readings::between_readings(log, robot, late);
+        let is_lost = |pose: usize| uneven[pose] || found.is_some_and(|found| found.is_lost(pose));
         let kept: Vec<usize> = (0..log.reference.len()).filter(|pose| !is_lost(*pose)).collect();
         let samples = kept.iter().map(|pose| log.reference[*pose].sample);
         let track = Track::from_log_seen(log, robot, place, samples)?.beginning_at(origin);

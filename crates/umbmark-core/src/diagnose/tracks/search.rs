@@ -219,12 +219,14 @@ impl Search {
     }
 
     /// Whether a law that was added predicts held-out runs better: positions or headings, or the innovations by far, and neither
-    /// positions nor headings worse. No physics supports such a law, so its predictions must.
+    /// positions nor headings worse, with the values that are written and with the likeliest ones. No physics supports such a law, so its
+    /// predictions must.
     fn is_worth_a_law(&self, grown: &Grown, name: &str) -> bool {
         let before = self.written[self.written.len() - 1].left_out();
         let [least, most] = grown.written.left_out().falls(&before);
         let [with, without] = with_and_without(&grown.exam, name);
-        least >= -LEAST_GAIN && (most >= WORTH_A_LAW || with.white_fall(&without) >= WORTH_BY_POSES)
+        let harmless = least.min(with.falls(&without)[0]) >= -LEAST_GAIN;
+        harmless && (most >= WORTH_A_LAW || with.white_fall(&without) >= WORTH_BY_POSES)
     }
 
     /// Whether a law that no catalogue lists explains far more than the effect that would be added.
