@@ -37,7 +37,7 @@ fn push_names(html: &mut String, text: &str) {
 }
 
 fn is_of_name(c: char) -> bool {
-    c.is_ascii_alphanumeric() || c == '_'
+    c.is_ascii_alphanumeric() || matches!(c, '_' | '-')
 }
 
 /// Two small letters at least before the first underscore: E_d is a symbol, wheel_noise a name.
