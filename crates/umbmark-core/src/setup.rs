@@ -200,7 +200,10 @@ impl Setup {
         let (faults, reading) = faults::look(&pooled(&seen), robot);
         let alone = |seen: &Seen| clock::beside(&seen.windows, &seen.rolled, &seen.late);
         let by_run: Vec<(&str, Vec<Beside>)> = seen.iter().map(|seen| (seen.run.name.as_str(), alone(seen))).collect();
-        let faults = faults::differing(&by_run, (&faults, reading), robot).unwrap_or(faults);
+        let mut faults = faults::differing(&by_run, (&faults, reading), robot).unwrap_or(faults);
+        if faults == [Fault::PositionsExchanged] {
+            faults.extend(faults::sizes(&Agreement::without_drift(&pooled(&seen), reading, wheelbase)));
+        }
         if !faults.is_empty() {
             return Setup { faults, runs: seen.iter().map(named).collect(), ..Setup::default() };
         }

@@ -2,7 +2,7 @@
 
 use super::agreement::{Agreement, Beside, Reading};
 use crate::drive::{DriveKind, Robot};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// If the misfit exceeds this, other readings are tried; one is accepted if its misfit is smaller by the second factor.
 const DOUBTFUL: f64 = 0.3;
@@ -39,6 +39,8 @@ pub enum Fault {
     HeadingClockwise,
     /// x and y are of a left-handed frame, and headings are not.
     PositionsMirrored,
+    /// x and y are exchanged.
+    PositionsExchanged,
     /// Headings are in degrees.
     HeadingInDegrees,
     /// Lengths of the reference are in another unit than their column says.
@@ -106,6 +108,9 @@ impl Fault {
             Fault::PositionsMirrored => {
                 "the measured track is mirrored: x and y are of a left-handed frame, the headings are not".into()
             }
+            Fault::PositionsExchanged => {
+                "x and y of the measured track are exchanged: it is mirrored, and a quarter turn from the headings".into()
+            }
             Fault::HeadingInDegrees => "the measured heading is in degrees, not in radians".into(),
             Fault::LengthsIn { unit, ratio } => {
                 format!(
@@ -150,6 +155,7 @@ impl Fault {
             }
             Fault::HeadingClockwise => "write heading_clockwise = true under [reference] in robot.toml".into(),
             Fault::PositionsMirrored => "write y_mirrored = true under [reference] in robot.toml".into(),
+            Fault::PositionsExchanged => "exchange the columns x_ref and y_ref, or their names".into(),
             Fault::HeadingInDegrees => "call the column theta_ref_deg".into(),
             Fault::LengthsIn { unit: unit @ ("mm" | "cm"), .. } => format!("call the columns x_ref_{unit} and y_ref_{unit}"),
             Fault::LengthsIn { .. } => "convert the columns to metres".into(),
@@ -186,6 +192,7 @@ impl Fault {
             }
             Fault::HeadingClockwise => "change the sign of the measured heading".into(),
             Fault::PositionsMirrored => "change the sign of y".into(),
+            Fault::PositionsExchanged => "exchange the columns of x and y".into(),
             Fault::HeadingInDegrees => "write the measured heading in radians".into(),
             _ => "check their columns".into(),
         }
@@ -248,13 +255,18 @@ pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
     let doubt = |found: &Agreement| {
         let possible =
             |k: usize, ratio: f64| found.misfits[k] > VAGUE || (LEAST_GAIN..=1.0 / LEAST_GAIN).contains(&ratio);
-        let sound = possible(0, found.scale()) && possible(1, found.turn[0].abs());
+        // If the rotations agree, a distance in another unit is possible too.
+        let turns = found.shown[1] && found.misfits[1] < DOUBTFUL;
+        let sound = (turns && unit_of(found.scale()).is_some() || possible(0, found.scale()))
+            && possible(1, found.turn[0].abs());
         if sound { found.misfit } else { found.misfit.max(1.0) }
     };
     let given = of(windows, Reading::default());
     let differential = robot.drive.kind().has_axle_wheels();
+    // On long parallel legs, headings of the wrong sign fit well but for rotations that seem to be the wheels' fault.
+    let accuses = given.shown[1] && given.turn[0] < -LEAST_GAIN;
     let (mut best, mut reading, mut degrees) = (given, Reading::default(), false);
-    if doubt(&given) > DOUBTFUL {
+    if accuses || doubt(&given) > DOUBTFUL {
         let in_degrees: Vec<Beside> = windows.iter().map(|(window, rolled)| (window.in_degrees(), *rolled)).collect();
         let as_degrees = windows.iter().any(|(window, _)| window.heading.abs() > 7.0);
         for (opposed, clockwise, degree) in (0..8)
@@ -286,9 +298,11 @@ fn turned(found: &Agreement, Reading { opposed, clockwise }: Reading, kind: Driv
     let [way, turns] = found.shown;
     let backward = way && found.yaw().abs() > FRAC_PI_2;
     let other_way = turns && found.turn[0] < -LEAST_GAIN;
-    if clockwise && other_way && !opposed && !backward {
-        // Clockwise headings together with wheels that turn the other way have a simpler explanation: a mirrored track.
-        return vec![Fault::PositionsMirrored];
+    if clockwise && other_way && !opposed {
+        // Clockwise headings together with wheels that turn the other way have a simpler explanation, whichever way the axes point: a
+        // mirrored track.
+        let across = way && (found.yaw().abs() - FRAC_PI_2).abs() < FRAC_PI_4;
+        return vec![if across { Fault::PositionsExchanged } else { Fault::PositionsMirrored }];
     }
     let of = |counters, exchanged| Some(Fault::Backward { names: kind.counters(), counters, exchanged });
     // The tracked body may face backward. If the wheels also turn the other way, the cause is another one.
@@ -315,9 +329,13 @@ pub(super) fn sizes(found: &Agreement) -> Vec<Fault> {
         return Vec::new();
     }
     // The nominal diameter may be wrong too, but not by as much as units differ.
-    let unit = UNITS.into_iter().find(|(size, _)| (ratio / size - 1.0).abs() < 3.0 * NEAR);
-    vec![match unit {
-        Some((_, unit)) => Fault::LengthsIn { unit, ratio },
+    vec![match unit_of(ratio) {
+        Some(unit) => Fault::LengthsIn { unit, ratio },
         None => Fault::OtherScale { ratio },
     }]
+}
+
+/// The unit that makes lengths so many times too large.
+fn unit_of(ratio: f64) -> Option<&'static str> {
+    UNITS.into_iter().find(|(size, _)| (ratio / size - 1.0).abs() < 3.0 * NEAR).map(|(_, unit)| unit)
 }

@@ -3,9 +3,13 @@ use crate::dataset::ReferencePose;
 use crate::drive::{DifferentialDrive, Encoder, Wiring};
 use crate::random::Stream;
 
-/// A free drive as it is put in; see [`Drive::runs`].
+mod driven;
+
+/// A drive as it is put in; see [`Drive::runs`].
 #[derive(Clone)]
 struct Drive {
+    /// How the robot drives for so long \[s\].
+    driven: fn(f64, &mut Stream) -> driven::Driven,
     wiring: Wiring,
     /// Delay of the stamps in each run \[s\], the first of them also where there are no more, and what is added each second.
     delays: Vec<f64>,
@@ -32,6 +36,7 @@ const WHEELBASE: f64 = 0.3;
 
 fn clean() -> Drive {
     Drive {
+        driven: driven::free,
         wiring: Wiring::default(),
         delays: vec![0.0],
         rate: 0.0,
@@ -54,31 +59,6 @@ fn robot() -> Robot {
     }
 }
 
-/// Where the robot is at each millisecond, with the travel of both wheels: every two seconds another speed and turn rate, with ramps
-/// of 0.4 s, and rest for two seconds at both ends. Integrated here, by midpoints.
-fn driven(seconds: f64, stream: &mut Stream) -> Vec<(Pose2, [f64; 2])> {
-    let pick = |values: &[f64], stream: &mut Stream| values[(stream.uniform() * values.len() as f64) as usize];
-    let (mut pose, mut rolled) = ([0.0; 3], [0.0; 2]);
-    let (mut now, mut goal) = ([0.0; 2], [0.0; 2]);
-    let mut driven = Vec::new();
-    for step in 0..(1000.0 * seconds) as usize {
-        driven.push((Pose2::new(pose[0], pose[1], pose[2]), rolled));
-        if step % 2000 == 0 {
-            let ends = step < 2000 || step as f64 >= 1000.0 * seconds - 4000.0;
-            goal = [pick(&[0.0, 0.15, 0.3, 0.45], stream), pick(&[-0.5, -0.2, 0.0, 0.0, 0.2, 0.5], stream)];
-            goal = if ends { [0.0; 2] } else { goal };
-        }
-        for (now, goal) in now.iter_mut().zip(goal) {
-            *now += (goal - *now).clamp(-1.5e-3, 1.5e-3);
-        }
-        let [way, turn] = now.map(|speed| 1e-3 * speed);
-        let middle = pose[2] + 0.5 * turn;
-        pose = [pose[0] + way * middle.cos(), pose[1] + way * middle.sin(), pose[2] + turn];
-        rolled = [rolled[0] + way - 0.5 * WHEELBASE * turn, rolled[1] + way + 0.5 * WHEELBASE * turn];
-    }
-    driven
-}
-
 impl Drive {
     fn runs(&self) -> Vec<Run> {
         (0..self.runs).map(|run| self.run(run)).collect()
@@ -86,7 +66,7 @@ impl Drive {
 
     fn run(&self, run: usize) -> Run {
         let mut stream = Stream::new(self.seed, 0, run as u64);
-        let driven = driven(self.seconds, &mut stream);
+        let driven = (self.driven)(self.seconds, &mut stream);
         let delay = self.delays.get(run).copied().unwrap_or(self.delays[0]);
         let per_tick = robot().metres_per_tick();
         let mut log = TickLog::default();
@@ -181,6 +161,10 @@ fn headings_and_positions_that_are_not_what_they_are_called_are_named() {
     assert_eq!(faults(|x, y, heading| (x, y, -heading)), [Fault::HeadingClockwise]);
     assert_eq!(faults(|x, y, heading| (x, -y, heading)), [Fault::PositionsMirrored]);
     assert_eq!(faults(|x, y, heading| (x, y, heading.to_degrees())), [Fault::HeadingInDegrees]);
+    assert_eq!(faults(|x, y, heading| (y, x, heading)), [Fault::PositionsExchanged]);
+    let found = faults(|x, y, heading| (1e3 * y, 1e3 * x, heading));
+    assert!(matches!(found[..], [Fault::PositionsExchanged, Fault::LengthsIn { unit: "mm", .. }]), "{found:?}");
+    assert_eq!(faults(|x, y, heading| (-x, y, heading)), [Fault::PositionsMirrored]);
     // A reference that is mirrored altogether looks like exchanged wheels, and the remedy says so.
     let mirrored = faults(|x, y, heading| (x, -y, -heading));
     assert_eq!(mirrored, [Fault::Exchanged]);
@@ -308,4 +292,18 @@ fn too_little_motion_says_nothing() {
     }
     assert!(Setup::of(&runs, &robot(), None).mounting.is_none());
     assert_eq!(Setup::of(&[], &robot(), None), Setup::default());
+}
+
+#[test]
+fn headings_that_grow_clockwise_are_named_on_long_parallel_legs_too() {
+    // Legs along x, and the same in a room that is turned by half a turn.
+    let written: [fn(f64, f64, f64) -> (f64, f64, f64); 2] =
+        [|x, y, heading| (x, y, -heading), |x, y, heading| (-x, -y, -heading - std::f64::consts::PI)];
+    for written in written {
+        let found = Drive { driven: driven::lawn, written, seconds: 80.0, runs: 2, ..clean() }.found();
+        assert_eq!(found.faults, [Fault::HeadingClockwise]);
+    }
+    let exchanged = Wiring { exchanged: true, backward: [false; 2] };
+    let found = Drive { driven: driven::lawn, wiring: exchanged, seconds: 80.0, runs: 2, ..clean() }.found();
+    assert_eq!(found.faults, [Fault::Exchanged]);
 }

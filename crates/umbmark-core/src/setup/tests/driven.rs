@@ -1,0 +1,69 @@
+//! Drives of a robot, by the millisecond.
+
+use super::WHEELBASE;
+use crate::geometry::Pose2;
+use crate::random::Stream;
+use std::f64::consts::FRAC_PI_2;
+
+/// Where the robot is at each millisecond, with the travel of both wheels.
+pub(super) type Driven = Vec<(Pose2, [f64; 2])>;
+/// Speed \[m/s\] and turn rate \[rad/s\] that a controller asks for.
+type Speeds = [f64; 2];
+
+/// Speeds and turn rates follow what is asked for by 1.5 a second. Integrated by midpoints.
+fn integrated(seconds: f64, mut asked: impl FnMut(usize) -> Speeds) -> Driven {
+    let (mut pose, mut rolled, mut now) = ([0.0; 3], [0.0; 2], [0.0; 2]);
+    let step = |step: usize| {
+        let driven = (Pose2::new(pose[0], pose[1], pose[2]), rolled);
+        for (now, goal) in now.iter_mut().zip(asked(step)) {
+            *now += (goal - *now).clamp(-1.5e-3, 1.5e-3);
+        }
+        let [way, turn] = now.map(|speed| 1e-3 * speed);
+        let middle = pose[2] + 0.5 * turn;
+        pose = [pose[0] + way * middle.cos(), pose[1] + way * middle.sin(), pose[2] + turn];
+        rolled = [rolled[0] + way - 0.5 * WHEELBASE * turn, rolled[1] + way + 0.5 * WHEELBASE * turn];
+        driven
+    };
+    (0..(1000.0 * seconds) as usize).map(step).collect()
+}
+
+/// Every two seconds another speed and turn rate, and rest for two seconds at both ends.
+pub(super) fn free(seconds: f64, stream: &mut Stream) -> Driven {
+    let pick = |values: &[f64], stream: &mut Stream| values[(stream.uniform() * values.len() as f64) as usize];
+    let mut goal = [0.0; 2];
+    integrated(seconds, |step| {
+        if step % 2000 == 0 {
+            let ends = step < 2000 || step as f64 >= 1000.0 * seconds - 4000.0;
+            goal = [pick(&[0.0, 0.15, 0.3, 0.45], stream), pick(&[-0.5, -0.2, 0.0, 0.0, 0.2, 0.5], stream)];
+            goal = if ends { [0.0; 2] } else { goal };
+        }
+        goal
+    })
+}
+
+/// Speeds one after the other, each for so long \[s\]; `next` gives more of them.
+fn in_turn(seconds: f64, mut next: impl FnMut() -> Vec<(Speeds, f64)>) -> Driven {
+    let (mut legs, mut until) = (Vec::new(), 0.0);
+    let mut goal = [0.0; 2];
+    integrated(seconds, |step| {
+        if 1e-3 * step as f64 >= until {
+            if legs.is_empty() {
+                legs = next();
+                legs.reverse();
+            }
+            let (speeds, lasts) = legs.pop().unwrap();
+            (goal, until) = (speeds, until + lasts);
+        }
+        goal
+    })
+}
+
+/// Long legs to and fro along x, half a metre apart.
+pub(super) fn lawn(seconds: f64, _: &mut Stream) -> Driven {
+    let mut side = -0.6;
+    in_turn(seconds, || {
+        side = -side;
+        let turn = ([0.0, side], FRAC_PI_2 / 0.6);
+        vec![([0.4, 0.0], 12.0), ([0.0, 0.0], 0.3), turn, ([0.0, 0.0], 0.4), ([0.3, 0.0], 1.6), ([0.0, 0.0], 0.3), turn]
+    })
+}
