@@ -1,7 +1,7 @@
 //! How far the measured motion between two poses is from that of the wheels, in standard deviations.
 
 use super::PoseNoise;
-use super::robust::median;
+use super::robust::{median, quantile};
 use crate::geometry::{Pose2, wrap};
 
 /// A difference of more standard deviations than this is a jump.
@@ -18,6 +18,8 @@ const LEAST: [f64; 2] = [1.5e-3, 3e-3];
 const JITTER: f64 = 0.01;
 /// The robot's sizes from the motion alone can be wrong by this share of distance and rotation.
 const SIZES: f64 = 0.005;
+/// Share of the changes from pose to pose up to the one that is taken for a step of rounding.
+const SMALLEST: f64 = 0.1;
 
 /// A pose of a run: by the wheels, and as measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +81,8 @@ impl Spread {
             headings.push((rolled, median(part.iter().filter_map(|edge| edge.2))));
         }
         let least = |line: [f64; 2], least: f64| [line[0].max(least * least), line[1]];
-        let (position, heading) = (rising(&positions), rising(&headings));
+        let [steps, turns] = rounded(runs);
+        let (position, heading) = (least(rising(&positions), steps), least(rising(&headings), turns));
         let noise = PoseNoise { position: (0.5 * position[0]).sqrt(), heading: (0.5 * heading[0]).sqrt() };
         (Spread { position: least(position, LEAST[0]), heading: least(heading, LEAST[1]) }, noise)
     }
@@ -95,6 +98,21 @@ impl Spread {
         let turned = turned.map_or(0.0, |turned| turned * turned / variance(&self.heading, to.turned - from.turned));
         ((x * x + y * y) / variance(&self.position, to.way - from.way) + turned).sqrt()
     }
+}
+
+/// Standard deviation that rounding makes in the difference of two coordinates \[m\] and of two headings \[rad\]: a step over the root of 6
+/// if most poses repeat the number of the one before, else 0.
+fn rounded(runs: &[Vec<Sighting>]) -> [f64; 2] {
+    let pairs = || runs.iter().flat_map(|run| run.windows(2)).map(|pair| (pair[0].measured, pair[1].measured));
+    let positions = pairs().flat_map(|(a, b)| [b.0 - a.0, b.1 - a.1]).collect();
+    let headings = pairs().filter_map(|(a, b)| Some(b.2? - a.2?)).collect();
+    let of = |mut changes: Vec<f64>| {
+        let all = changes.len();
+        changes.retain(|change| *change != 0.0);
+        let step = quantile(changes.iter().map(|change| change.abs()), SMALLEST);
+        if 2 * changes.len() < all { step / 6f64.sqrt() } else { 0.0 }
+    };
+    [positions, headings].map(of)
 }
 
 /// a + b x through medians, neither of them negative.

@@ -18,14 +18,18 @@ pub(super) const DEVIATION: f64 = 1.482_602_218_505_602;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Line<const K: usize> {
     pub values: [f64; K],
-    /// Standard deviation of the residuals, from their median size.
+    /// Standard deviation of the residuals, from their median size over observations that are not 0.
     pub scale: f64,
 }
 
 /// Fits rows of K columns to one observation each.
+///
+/// If observations are rounded to steps, one of exactly 0 only says that it is smaller than a step. Such rows are fitted too, but the scatter
+/// is not measured by them: with many of them it would vanish.
 pub(super) fn fit<const K: usize>(rows: &[([f64; K], f64)]) -> Line<K> {
     let mut values = SVector::<f64, K>::zeros();
-    let size = median(rows.iter().map(|(_, y)| y.abs())).max(f64::MIN_POSITIVE);
+    let moved = || rows.iter().filter(|(_, y)| *y != 0.0);
+    let size = median(moved().map(|(_, y)| y.abs())).max(f64::MIN_POSITIVE);
     let left = |values: &SVector<f64, K>, (x, y): &([f64; K], f64)| y - SVector::from(*x).dot(values);
     for _ in 0..STEPS[0] {
         let least = 1e-3 * size;
@@ -33,7 +37,7 @@ pub(super) fn fit<const K: usize>(rows: &[([f64; K], f64)]) -> Line<K> {
     }
     let mut scale = 0.0;
     for _ in 0..STEPS[1] {
-        scale = DEVIATION * median(rows.iter().map(|row| left(&values, row).abs()));
+        scale = DEVIATION * median(moved().map(|row| left(&values, row).abs()));
         values = weighted(rows, |row| biweight(left(&values, row) / (BEYOND * scale).max(1e-12 * size)));
     }
     Line { values: values.into(), scale }
@@ -100,6 +104,21 @@ mod tests {
         let Line { values, scale } = fit(&rows);
         assert!((values[0] - 2.0).abs() < 0.03 && (values[1] + 1.0).abs() < 0.03, "{values:?}");
         assert!((0.08..0.2).contains(&scale), "{scale}");
+    }
+
+    /// Most rows are of a robot that hardly turns, and observations are in steps of 0.02; a few are wild.
+    #[test]
+    fn observations_of_exactly_zero_do_not_make_the_scatter_vanish() {
+        let mut stream = Stream::new(5, 0, 0);
+        let rows: Vec<([f64; 1], f64)> = (0..400)
+            .map(|k| {
+                let x = if k % 5 == 0 { 0.3 * stream.normal() } else { 1e-3 * stream.normal() };
+                let wild = if k % 40 == 0 { 2.0 } else { 0.0 };
+                ([x], 0.02 * (50.0 * (0.9 * x + wild)).round())
+            })
+            .collect();
+        let Line { values, scale } = fit(&rows);
+        assert!((values[0] - 0.9).abs() < 0.01 && (1e-3..0.03).contains(&scale), "{values:?} {scale}");
     }
 
     #[test]

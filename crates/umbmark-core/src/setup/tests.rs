@@ -294,6 +294,40 @@ fn too_little_motion_says_nothing() {
     assert_eq!(Setup::of(&[], &robot(), None), Setup::default());
 }
 
+/// Headings in steps of 20 mrad.
+fn in_steps(x: f64, y: f64, heading: f64) -> (f64, f64, f64) {
+    (x, y, 0.02 * (50.0 * heading).round())
+}
+
+#[test]
+fn headings_in_steps_of_a_robot_that_seldom_turns_hide_nothing() {
+    let docking = Drive { driven: driven::docking, written: in_steps, ..clean() };
+    let found = docking.found();
+    assert_eq!((found.faults.len(), found.disturbances()), (0, [0, 0]), "{:?}", found.runs);
+    near(found.mounting.unwrap().gain, 1.0, 0.02);
+    let jumps = vec![(1, 23.0, [0.3, 0.2, 0.4]), (3, 31.0, [0.1, -0.4, -0.2])];
+    let found = Drive { jumps: jumps.clone(), ..docking.clone() }.found();
+    assert_eq!(found.disturbances(), [2, 0], "{:?}", found.runs);
+    for (run, time, _) in jumps {
+        let seen = &found.runs[run];
+        assert!((seen.jumps[0].time - time).abs() < 0.06, "{seen:?}");
+    }
+    let exchanged = Wiring { exchanged: true, backward: [false; 2] };
+    assert_eq!(Drive { wiring: exchanged, ..docking }.found().faults, [Fault::Exchanged]);
+}
+
+#[test]
+fn positions_in_steps_and_a_robot_that_mostly_stands_hide_nothing() {
+    let written = |x: f64, y: f64, heading: f64| {
+        ((50.0 * x).round() / 50.0, (50.0 * y).round() / 50.0, 0.02 * (50.0 * heading).round())
+    };
+    let found = Drive { driven: driven::stopping, written, ..clean() }.found();
+    assert_eq!((found.faults.len(), found.disturbances()), (0, [0, 0]), "{:?}", found.runs);
+    let mounting = found.mounting.unwrap();
+    near(mounting.scale, 1.0, 0.03);
+    near(mounting.gain, 1.0, 0.03);
+}
+
 #[test]
 fn headings_that_grow_clockwise_are_named_on_long_parallel_legs_too() {
     // Legs along x, and the same in a room that is turned by half a turn.

@@ -58,6 +58,28 @@ fn in_turn(seconds: f64, mut next: impl FnMut() -> Vec<(Speeds, f64)>) -> Driven
     })
 }
 
+/// Straight to a dock, a pause, straight back, and a turn on the spot.
+pub(super) fn docking(seconds: f64, stream: &mut Stream) -> Driven {
+    in_turn(seconds, || {
+        let [way, back, turn] = [0.0; 3].map(|_| stream.uniform());
+        let angle = if stream.uniform() < 0.5 { -0.6 } else { 0.6 };
+        vec![
+            ([0.3, 0.0], 4.0 + 3.0 * way),
+            ([0.0, 0.0], 0.7),
+            ([-0.2, 0.0], 4.0 + 3.0 * back),
+            ([0.0, angle], 0.5 + 1.5 * turn),
+        ]
+    })
+}
+
+/// A little way or a turn now and then, and rest for most of the time.
+pub(super) fn stopping(seconds: f64, stream: &mut Stream) -> Driven {
+    in_turn(seconds, || {
+        let turn = if stream.uniform() < 0.5 { -0.5 } else { 0.5 };
+        vec![([0.3, 0.0], 1.5 + stream.uniform()), ([0.0, 0.0], 5.0), ([0.0, turn], 1.5), ([0.0, 0.0], 5.0)]
+    })
+}
+
 /// Long legs to and fro along x, half a metre apart.
 pub(super) fn lawn(seconds: f64, _: &mut Stream) -> Driven {
     let mut side = -0.6;
