@@ -49,7 +49,7 @@ fn row(change: &Change) -> Vec<String> {
         number(change.new),
         end(change.interval.map(|i| i.low)),
         end(change.interval.map(|i| i.high)),
-        change.worth.map_or("-".to_owned(), |worth| millimetres(worth)),
+        change.worth.map_or("-".to_owned(), millimetres),
     ]
 }
 

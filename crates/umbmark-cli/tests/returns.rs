@@ -66,7 +66,7 @@ fn a_typing_error_is_named_first_and_nothing_is_written_from_it() {
     assert!(code == 0 && text.contains("LOOK") && text.contains("The return error of run cw_03"), "{text}");
     let page = std::fs::read_to_string(place.join("report.html")).unwrap();
     let first = page.find("LOOK FIRST").unwrap();
-    assert!(first < page.find("<main>").unwrap() && page[first..first + 200].contains("cw_03"));
+    assert!(first < page.find("class=\"tiles\"").unwrap() && page[first..first + 200].contains("cw_<wbr>03"));
 }
 
 #[test]

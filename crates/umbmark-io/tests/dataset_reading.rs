@@ -320,7 +320,7 @@ fn a_gap_in_which_the_wheels_rolled_on_is_not_taken_for_a_roll_over() {
 fn the_model_in_the_documents_is_one() {
     let blocks = include_str!("../../../docs/files.md").split("```toml\n").skip(1);
     let blocks: Vec<&str> = blocks.filter_map(|block| block.split("```").next()).collect();
-    let effects = blocks[1];
+    let effects = blocks[0];
     let noise = blocks.iter().find(|block| block.starts_with("[noise]")).unwrap();
     let robot = umbmark_core::drive::Robot::labmate();
     let umbmark_io::ModelFile { model, draws, noise, .. } =

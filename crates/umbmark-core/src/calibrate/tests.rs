@@ -386,7 +386,8 @@ fn the_covariance_of_every_method_is_that_of_its_influence_on_each_run() {
             *sum += influence * pooled.of(errors[i].0) * influence.transpose();
         }
     }
-    assert_eq!(calibration.estimates.iter().map(|e| e.method).collect::<Vec<_>>(), Method::ALL);
+    let methods = calibration.estimates.iter().map(|e| e.method);
+    assert!(methods.eq(Method::ALL.into_iter().filter(|method| *method != Method::Model)));
     for (estimate, expected) in calibration.estimates.iter().zip(expected) {
         let covariance = estimate.covariance.unwrap();
         for i in 0..2 {

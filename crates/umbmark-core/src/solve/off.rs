@@ -222,14 +222,14 @@ mod tests {
             parts.sort_by_key(|part| part.name);
             parts
         };
+        let near = |a: &[Part], b: &[Part]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.name == b.name && (a.worth - b.worth).abs() < 1e-12)
+        };
         let parts = of(&["a", "b", "c"]);
         // a first: 1 - 2 and b then 2; b first: 1 - 3 and a then 3.
         let expected = [("a", 1.0), ("b", 0.0), ("c", 5.0)].map(|(name, worth)| Part { name, worth });
-        assert!(
-            parts.iter().zip(&expected).all(|(a, b)| a.name == b.name && (a.worth - b.worth).abs() < 1e-12),
-            "{parts:?}"
-        );
-        assert_eq!(parts, of(&["c", "b", "a"]));
+        assert!(near(&parts, &expected), "{parts:?}");
+        assert!(near(&parts, &of(&["c", "b", "a"])), "{parts:?}");
         let many = shares(&["a", "b", "c", "d", "e", "f"], error);
         assert!((many.iter().map(|part| part.worth).sum::<f64>() - 6.0).abs() < 1e-12, "{many:?}");
     }

@@ -88,7 +88,7 @@ fn against_panel(nominal: &Against, model: &Against) -> Panel {
             .iter()
             .zip(&against.bins)
             .filter(|(own, _)| own.mean.is_some())
-            .map(|(_, bin)| bin.clone())
+            .map(|(_, bin)| *bin)
             .collect::<Vec<Bin>>()
     };
     let labels: Vec<String> = driven(model).iter().map(|bin| label(model, bin)).collect();

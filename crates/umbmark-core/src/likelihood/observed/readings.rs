@@ -110,12 +110,12 @@ mod tests {
         }
     }
 
-    /// Readings five times a second of counters of 20 000 counts a metre, poses 100 times, put in between them.
+    /// Readings five times a second of counters of 19 997 counts a metre, poses 100 times, put in between them.
     fn log(late: f64) -> (TickLog, Robot) {
         let mut robot = Robot::labmate();
-        robot.encoder = crate::drive::Encoder::new(std::f64::consts::PI * 0.15 * 20_000.0, None, None).unwrap();
+        robot.encoder = crate::drive::Encoder::new(std::f64::consts::PI * 0.15 * 19_997.0, None, None).unwrap();
         let time: Vec<f64> = (0..=25).map(|k| f64::from(k) / RATE).collect();
-        let counts: Vec<f64> = time.iter().map(|t| (20_000.0 * way(*t)).round()).collect();
+        let counts: Vec<f64> = time.iter().map(|t| (19_997.0 * way(*t)).round()).collect();
         let mut log = TickLog { time, left: counts.clone(), right: counts, ..TickLog::default() };
         let times: Vec<f64> = (0..=500).map(|k| 0.01 * f64::from(k)).collect();
         let poses: Vec<PoseRow> = times.iter().map(|t| (way(t - late), 0.0, Some(0.0))).collect();
