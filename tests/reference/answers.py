@@ -20,8 +20,8 @@ from cases import CASES, RETURNS, UNLISTED
 from generate import main as generate
 from study import COMMANDS
 
-ACTS_LIKE_WHEELS = {"wheel_diameter_ratio", "wheelbase", "scale"}
-"""Cases whose cause changes one of the three: its size is in the truth file."""
+ACTS_LIKE_WHEELS = {"wheel_diameter_ratio", "wheelbase", "scale", "turn_slip"}
+"""Cases whose cause is one of the three, or is the same as another value of it on every path."""
 
 
 @dataclass
