@@ -331,13 +331,13 @@ fn positions_in_steps_and_a_robot_that_mostly_stands_hide_nothing() {
 #[test]
 fn headings_that_grow_clockwise_are_named_on_long_parallel_legs_too() {
     // Legs along x, and the same in a room that is turned by half a turn.
-    let written: [fn(f64, f64, f64) -> (f64, f64, f64); 2] =
-        [|x, y, heading| (x, y, -heading), |x, y, heading| (-x, -y, -heading - std::f64::consts::PI)];
-    for written in written {
-        let found = Drive { driven: driven::lawn, written, seconds: 80.0, runs: 2, ..clean() }.found();
-        assert_eq!(found.faults, [Fault::HeadingClockwise]);
+    let lawn = || Drive { driven: driven::lawn, seconds: 80.0, runs: 2, ..clean() };
+    for drive in [
+        Drive { written: |x, y, heading| (x, y, -heading), ..lawn() },
+        Drive { written: |x, y, heading| (-x, -y, -heading - std::f64::consts::PI), ..lawn() },
+    ] {
+        assert_eq!(drive.found().faults, [Fault::HeadingClockwise]);
     }
     let exchanged = Wiring { exchanged: true, backward: [false; 2] };
-    let found = Drive { driven: driven::lawn, wiring: exchanged, seconds: 80.0, runs: 2, ..clean() }.found();
-    assert_eq!(found.faults, [Fault::Exchanged]);
+    assert_eq!(Drive { wiring: exchanged, ..lawn() }.found().faults, [Fault::Exchanged]);
 }

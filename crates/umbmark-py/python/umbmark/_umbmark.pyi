@@ -20,6 +20,7 @@ __all__ = [
     "Sobol",
     "Study",
     "__version__",
+    "apply",
     "calibrate",
     "calibrate_gears",
     "compare",
