@@ -18,17 +18,18 @@ pub(super) const DEVIATION: f64 = 1.482_602_218_505_602;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Line<const K: usize> {
     pub values: [f64; K],
-    /// Standard deviation of the residuals, from their median size over observations that are not 0.
+    /// Standard deviation of the residuals, from their median size, where most observations are 0 over the others.
     pub scale: f64,
 }
 
 /// Fits rows of K columns to one observation each.
 ///
-/// If observations are rounded to steps, one of exactly 0 only says that it is smaller than a step. Such rows are fitted too, but the scatter
-/// is not measured by them: with many of them it would vanish.
+/// If observations are rounded to steps, one of exactly 0 only says that it is smaller than a step. Where most are 0, such rows are fitted
+/// too, but the scatter is not measured by them: it would vanish.
 pub(super) fn fit<const K: usize>(rows: &[([f64; K], f64)]) -> Line<K> {
     let mut values = SVector::<f64, K>::zeros();
-    let moved = || rows.iter().filter(|(_, y)| *y != 0.0);
+    let most_are_zero = 2 * rows.iter().filter(|(_, y)| *y == 0.0).count() > rows.len();
+    let moved = || rows.iter().filter(|(_, y)| !most_are_zero || *y != 0.0);
     let size = median(moved().map(|(_, y)| y.abs())).max(f64::MIN_POSITIVE);
     let left = |values: &SVector<f64, K>, (x, y): &([f64; K], f64)| y - SVector::from(*x).dot(values);
     for _ in 0..STEPS[0] {
