@@ -249,8 +249,15 @@ def test_the_catalogue_is_that_of_the_command(command: Path) -> None:
 def test_a_calibration_is_put_to_use(data: umbmark.Dataset, folder: Path, tmp_path: Path) -> None:
     found = umbmark.calibrate(data)
     assert found.exact.e_d == pytest.approx(1.002, abs=2e-3)
+    exact = umbmark.Robot.from_toml(found.export("robot_toml", method="exact"))
+    assert exact.wheelbase_m == pytest.approx(found.exact.wheelbase_m)
+    # Without a method it is the learnt model, which calibrate's row and solve say too.
     robot = umbmark.Robot.from_toml(found.export("robot_toml"))
-    assert robot.wheelbase_m == pytest.approx(found.exact.wheelbase_m)
+    assert found.exported == "model"
+    assert robot.wheelbase_m == pytest.approx(found.methods["model"].wheelbase_m)
+    answer = umbmark.solve(data).correction["wheelbase_m"]
+    assert robot.wheelbase_m == pytest.approx(answer.new)
+    assert answer.low < 0.34 * 1.01 < answer.high
     assert "diff_drive_controller" in found.export("ros2_control")
     assert "#define" in found.export("c_header", method="closed_form_mean")
     with pytest.raises(ValueError, match=r'format must be one of ros2_control, .* got "xml"'):
