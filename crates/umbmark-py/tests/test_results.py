@@ -254,9 +254,13 @@ def test_a_calibration_is_put_to_use(data: umbmark.Dataset, folder: Path, tmp_pa
     # Without a method it is the learnt model, which calibrate's row and solve say too.
     robot = umbmark.Robot.from_toml(found.export("robot_toml"))
     assert found.exported == "model"
-    assert robot.wheelbase_m == pytest.approx(found.methods["model"].wheelbase_m)
+    row = found.methods["model"]
+    assert row is not None
+    assert robot.wheelbase_m == pytest.approx(row.wheelbase_m)
     answer = umbmark.solve(data).correction["wheelbase_m"]
     assert robot.wheelbase_m == pytest.approx(answer.new)
+    assert answer.low is not None
+    assert answer.high is not None
     assert answer.low < 0.34 * 1.01 < answer.high
     assert "diff_drive_controller" in found.export("ros2_control")
     assert "#define" in found.export("c_header", method="closed_form_mean")
