@@ -7,6 +7,7 @@
 
 mod ends;
 mod gears;
+mod misfits;
 mod story;
 mod tracks;
 

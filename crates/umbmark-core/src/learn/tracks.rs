@@ -1,8 +1,9 @@
 //! Learning from tracks: the same story, computed from products of columns instead of one fit per fold.
 
+use super::misfits::misfits;
 use super::story::{Error, Learnt, MOST_EFFECTS, Step};
 use crate::diagnose::tracks::{self, Added, Conclusion, Found, Search, Wanted};
-use crate::diagnose::{Diagnosis, Options, Reason, Verdict};
+use crate::diagnose::{Diagnosis, Options, Verdict};
 use crate::effect::{Model, Part, find};
 use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit};
 use crate::evidence::{Estimate, Evidence, FitError};
@@ -15,10 +16,6 @@ const OPEN: f64 = 10.0;
 const SURE: f64 = 4.0;
 /// A fitted ratio is credible within this factor of the ratio that the motion alone gives.
 const FAR: f64 = 1.5;
-/// Held-out runs count as predicted worse than by the nominal robot if their error exceeds this multiple of its error: three numbers that
-/// are fitted to few runs add some error if the nominal robot is right.
-const WORSE: f64 = 1.5;
-const ENOUGH_RUNS: usize = 5;
 
 /// Learns which effects the robot of some tracks has, beside those of a `start`.
 pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch: &Watch) -> Result<Learnt, FitError> {
@@ -151,9 +148,6 @@ fn is_shown(fitted: &Fitted, effect: &str) -> bool {
     possible && (own.standard_error < OPEN * parameter.typical || off > SURE * own.standard_error)
 }
 
-/// Held-out runs disagree with the fitted runs if their error exceeds this multiple.
-const FAR_WORSE: f64 = 5.0;
-
 /// The final diagnosis, of the learnt model.
 fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Learnt, FitError> {
     let told = Conclusion::new(&mut search, options)?;
@@ -172,19 +166,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     let (left, harmful, runs) = (search.left, search.harmful, search.exams[0].fitted.observed.runs.len());
     let Some(last) = search.exams.pop() else { return Err(FitError::NotConverged { how: "has no model" }) };
     let written = search.written.pop().map_or_else(|| last.fitted.clone(), Alone::into_fitted);
-    let (first, end) = (&steps[0], &steps[steps.len() - 1]);
-    if runs >= ENOUGH_RUNS && end.held_out.position > WORSE * first.held_out.position {
-        let (left_out, nominal) = (end.held_out.position, first.held_out.position);
-        reasons.push(Reason::WorseThanNominal { left_out, nominal });
-    }
-    let (inside, nominal) = (end.error.position, first.error.position);
-    if inside > WORSE * nominal.max(written.observed.setup.noise.position) {
-        reasons.push(Reason::FarFromTheRuns { inside, nominal });
-    }
-    let (left_out, inside) = (end.held_out.position, end.error.position);
-    if left_out > FAR_WORSE * inside.max(written.observed.setup.noise.position) {
-        reasons.push(Reason::LeftOutFarWorse { left_out, inside });
-    }
+    reasons.extend(misfits(&steps, runs, written.observed.setup.noise.position));
     let verdict = match (&left.smooth, more) {
         _ if verdict == Verdict::NotEnoughData => verdict,
         (Some(_), _) => Verdict::UnlistedEffect,

@@ -50,9 +50,11 @@ impl Noise {
 
     /// The noise of these values, in that order, with START marked on the floor.
     pub fn of_written(sizes: [f64; 10]) -> Noise {
-        let [heading_per_metre, heading_per_radian, forward_per_metre, sideways_per_metre, ..] = sizes;
         let [
-            ..,
+            heading_per_metre,
+            heading_per_radian,
+            forward_per_metre,
+            sideways_per_metre,
             reference_position,
             reference_heading,
             reference_time,
