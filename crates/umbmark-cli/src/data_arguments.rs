@@ -30,6 +30,11 @@ pub struct TopicArguments {
 }
 
 impl DataArguments {
+    /// What was said of topics.
+    pub fn topics(&self) -> Topics {
+        self.topics.topics()
+    }
+
     /// Reads them.
     pub fn load(&self) -> Result<Dataset, DatasetError> {
         self.topics.load(&self.data)
@@ -37,8 +42,20 @@ impl DataArguments {
 }
 
 impl TopicArguments {
+    /// What was said of topics.
+    pub fn topics(&self) -> Topics {
+        Topics { ticks: self.ticks.clone(), reference: self.reference.clone() }
+    }
+
+    /// The flags again, for a command that is proposed.
+    pub fn said(&self) -> String {
+        let flags = [("--ticks", &self.ticks), ("--reference", &self.reference)];
+        let given = flags.into_iter().filter_map(|(flag, value)| Some((flag, value.as_ref()?)));
+        given.map(|(flag, value)| format!(" {flag} {}", shlex::try_quote(value).unwrap_or_default())).collect()
+    }
+
     /// Reads a dataset.
     pub fn load(&self, place: &Path) -> Result<Dataset, DatasetError> {
-        umbmark_io::load_with(place, &Topics { ticks: self.ticks.clone(), reference: self.reference.clone() })
+        umbmark_io::load_with(place, &self.topics())
     }
 }

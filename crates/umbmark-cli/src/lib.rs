@@ -5,6 +5,7 @@
 
 mod answer;
 mod checkpoint_flags;
+mod contents_report;
 mod data_arguments;
 mod distribution_text;
 mod effect_flags;

@@ -6,7 +6,8 @@ use umbmark_core::plan::PlanError;
 use umbmark_io::export::ExportError;
 use umbmark_io::{DatasetError, Words};
 
-const WORDS: Words = Words { replace: "say --force", before: "--", between: " " };
+/// How the command names its arguments.
+pub const WORDS: Words = Words { replace: "say --force", before: "--", between: " " };
 
 /// The message of an error, and those of what caused it.
 pub fn worded(error: &anyhow::Error) -> String {

@@ -2,6 +2,7 @@
 //!
 //! [`Dataset::inspect`] measures; nothing here changes or fits anything.
 
+mod contents;
 mod determine;
 mod log_facts;
 mod moves;
@@ -18,6 +19,7 @@ use crate::run::{Mended, ReturnError, Run};
 use crate::setup::{Fault, Mounting, Setup};
 use crate::stats::Measured;
 
+pub use contents::{LogContents, LogPart, ReferenceFound, WheelUnit, WheelsFound, steps_per_turn, usual_rate};
 pub use determine::Determined;
 pub use log_facts::{Coverage, LogFacts, ReferenceFacts};
 pub use moves::MovesFound;

@@ -31,6 +31,7 @@ pub mod parameter;
 pub mod path;
 pub mod plan;
 pub mod preset;
+pub mod prose;
 pub mod random;
 mod register;
 pub mod replay;

@@ -122,7 +122,10 @@ impl Assembly {
             self.warnings.push(format!("{file}: has no row in the return sheet; its return error {follows}"));
         }
         let test = named.test.unwrap_or(TestKind::Systematic);
-        let number = named.number.unwrap_or_else(|| self.next_number(test, direction));
+        // The last number of a name that says no direction may be the second at which a recorder began.
+        let is_free = |number: &u32| !self.index.contains_key(&(test, direction, *number));
+        let number = named.number.filter(|number| named.direction.is_some() || is_free(number));
+        let number = number.unwrap_or_else(|| self.next_number(test, direction));
         let run = Run { name: stem.to_owned(), number, direction, test, log: Some(log), returned };
         self.push(run, &file, 1)
     }

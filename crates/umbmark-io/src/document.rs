@@ -1,6 +1,7 @@
 //! TOML with positions: tables that know their file and line, and say what they expected.
 
 use super::error::{At, DatasetError, LineProblem, quoted};
+use super::proposal::FILL_IN;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use umbmark_core::parameter::{Parameter, nearest};
@@ -196,6 +197,7 @@ impl<'a> Entry<'a> {
 
     fn unquote(&self) -> &'static str {
         match self.value.get_ref() {
+            DeValue::String(text) if text == FILL_IN => "no log shows it: put the number of your robot there",
             DeValue::String(text) if text.trim().parse::<f64>().is_ok() => "write the number without quotation marks",
             DeValue::String(text) if text.contains(',') => "write decimals with a point, without quotation marks",
             _ => "",

@@ -67,6 +67,26 @@ pub enum DatasetError {
         /// What to do.
         remedy: String,
     },
+    /// Parameters of a controller that do not describe a robot.
+    #[error("{file}: {problem}; {remedy}")]
+    Controller {
+        /// The file.
+        file: String,
+        /// What is wrong with it.
+        problem: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A place without a log that could be begun from.
+    #[error("{file}: {found}; {remedy}")]
+    NoLogs {
+        /// The place.
+        file: String,
+        /// What is there.
+        found: String,
+        /// What to do.
+        remedy: &'static str,
+    },
     /// A track with a clock of its own that the motion does not set.
     #[error("{file}: {reason}")]
     Clocks {

@@ -6,12 +6,14 @@ use self::mcap::Topics;
 use super::assembly::{Assembly, Tracked};
 use super::error::DatasetError;
 use super::probe::Probe;
+use super::remedy::Words;
 use super::save::Existing;
 use super::source::Source;
 use super::track_rows::TrackRows;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::{Dataset, Run, TickLog};
+use umbmark_core::inspect::LogContents;
 use umbmark_core::run::ReferenceTrack;
 
 macro_rules! layouts {
@@ -41,8 +43,16 @@ pub struct Layout {
 /// Whole data sets: whether a place is one, and what is in it.
 type ReadData = (fn(&Probe) -> bool, fn(&Probe, &Topics) -> Result<Dataset, DatasetError>);
 
-/// Files in `runs`: their ending, and how one is added, with its track where it takes one.
-type ReadLogs = (&'static str, fn(&mut Assembly, &Path, &mut Tracks, &Topics) -> Result<(), DatasetError>);
+/// Files in `runs`.
+#[derive(Clone, Copy, Debug)]
+struct ReadLogs {
+    /// Their ending.
+    ending: &'static str,
+    /// How one is added, with its track where it takes one.
+    add: fn(&mut Assembly, &Path, &mut Tracks, &Topics) -> Result<(), DatasetError>,
+    /// What one holds, before its robot is known.
+    look: fn(&Path, &Topics, &Words) -> Result<LogContents, DatasetError>,
+}
 
 /// Files in `reference`: their endings, whether a first row begins one, and its rows.
 type ReadTracks =
@@ -88,7 +98,7 @@ impl Layout {
     /// The layout that the name of a place asks for: that whose logs end like it, else `csv`.
     pub fn of_place(place: impl AsRef<Path>) -> &'static Layout {
         let ending = super::probe::extension(place.as_ref());
-        let is_its = |layout: &&Layout| layout.logs.is_some_and(|(own, _)| own == ending);
+        let is_its = |layout: &&Layout| layout.logs.is_some_and(|logs| logs.ending == ending);
         LAYOUTS.iter().find(is_its).unwrap_or(&LAYOUTS[0])
     }
 
@@ -125,7 +135,7 @@ pub(super) fn load(path: &Path, topics: &Topics) -> Result<Dataset, DatasetError
 
 /// The endings of logs.
 fn log_endings() -> Vec<&'static str> {
-    LAYOUTS.iter().filter_map(|layout| Some(layout.logs?.0)).collect()
+    LAYOUTS.iter().filter_map(|layout| Some(layout.logs?.ending)).collect()
 }
 
 /// Adds a log, where a layout knows its ending.
@@ -135,9 +145,28 @@ fn add_log(
     tracks: &mut Tracks,
     topics: &Topics,
 ) -> Option<Result<(), DatasetError>> {
+    Some((logs_of(file)?.add)(assembly, file, tracks, topics))
+}
+
+/// How files of this ending are read as logs.
+fn logs_of(file: &Path) -> Option<ReadLogs> {
     let ending = super::probe::extension(file);
-    let (_, add) = LAYOUTS.iter().filter_map(|layout| layout.logs).find(|(own, _)| *own == ending)?;
-    Some(add(assembly, file, tracks, topics))
+    LAYOUTS.iter().filter_map(|layout| layout.logs).find(|logs| logs.ending == ending)
+}
+
+/// Whether files of this ending are logs.
+pub(super) fn is_log(file: &Path) -> bool {
+    logs_of(file).is_some()
+}
+
+/// What a log holds, where a layout knows its ending.
+pub(super) fn look(file: &Path, topics: &Topics, words: &Words) -> Option<Result<LogContents, DatasetError>> {
+    Some((logs_of(file)?.look)(file, topics, words))
+}
+
+/// Whether a layout other than the own one recognises a place as a whole dataset.
+pub(super) fn is_foreign(probe: &Probe) -> bool {
+    LAYOUTS[1..].iter().filter_map(|layout| layout.data).any(|(recognises, _)| recognises(probe))
 }
 
 /// The endings of tracks.

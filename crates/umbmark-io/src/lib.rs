@@ -14,6 +14,8 @@
 mod assembly;
 pub mod checkpoint;
 mod columns;
+mod contents;
+mod controller_file;
 mod corrected;
 mod csv_text;
 
@@ -31,6 +33,7 @@ mod mutated_input;
 
 mod parameter_file;
 mod probe;
+mod proposal;
 mod recording;
 mod remedy;
 mod robot_file;
@@ -46,6 +49,8 @@ mod track_rows;
 mod wheel_names;
 pub mod whole_file;
 
+pub use contents::{contents, has_logs};
+pub use controller_file::read_controller;
 pub use corrected::CorrectedFormat;
 pub use error::{At, DatasetError, LineProblem};
 pub use layout::Layout;
@@ -53,6 +58,7 @@ pub use layout::csv::save;
 pub use layout::mcap::{McapProblem, Topics, save_mcap};
 pub use model_file::ModelFile;
 pub use parameter_file::{ParameterFile, parse_parameters, read_parameters};
+pub use proposal::{KnownNumber, KnownNumbers, Proposal, ProposedNumber};
 pub use remedy::{Argument, Remedy, Words};
 pub use robot_file::RobotFile;
 pub use save::Existing;

@@ -24,6 +24,26 @@ pub(super) fn put<Checked>(
     check: impl FnOnce(&Path) -> Result<Checked, DatasetError>,
 ) -> Result<Checked, DatasetError> {
     refuse_existing(folder, files, existing)?;
+    refuse_other_logs(folder, files)?;
+    lay(folder, files, check)
+}
+
+/// The same for files that belong to whatever logs the folder has.
+pub(super) fn put_beside_logs(
+    folder: &Path,
+    files: &BTreeMap<PathBuf, impl AsRef<[u8]>>,
+    existing: Existing,
+) -> Result<(), DatasetError> {
+    refuse_existing(folder, files, existing)?;
+    lay(folder, files, |_| Ok(()))
+}
+
+/// Writes files beside `folder`, has them checked, and renames them into it, over those that are there.
+fn lay<Checked>(
+    folder: &Path,
+    files: &BTreeMap<PathBuf, impl AsRef<[u8]>>,
+    check: impl FnOnce(&Path) -> Result<Checked, DatasetError>,
+) -> Result<Checked, DatasetError> {
     let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let beside = temporary_folder(parent).map_err(|error| unwritable(parent, &error))?;
     for (name, bytes) in files {
@@ -68,18 +88,27 @@ fn refuse_existing(
     files: &BTreeMap<PathBuf, impl AsRef<[u8]>>,
     existing: Existing,
 ) -> Result<(), DatasetError> {
-    let refuse = |file: PathBuf, remedy| DatasetError::AlreadyThere { file: file.display().to_string(), remedy };
     let there = files.keys().map(|name| folder.join(name)).find(|file| file.exists());
-    if let (Some(file), Existing::Keep) = (there, existing) {
-        return Err(refuse(file, Remedy::Replace { another: "folder" }));
+    match (there, existing) {
+        (Some(file), Existing::Keep) => Err(already_there(&file, Remedy::Replace { another: "folder" })),
+        _ => Ok(()),
     }
+}
+
+fn already_there(file: &Path, remedy: Remedy) -> DatasetError {
+    DatasetError::AlreadyThere { file: file.display().to_string(), remedy }
+}
+
+/// Refuses to mix a dataset with the logs of another one.
+fn refuse_other_logs(folder: &Path, files: &BTreeMap<PathBuf, impl AsRef<[u8]>>) -> Result<(), DatasetError> {
     let logs = std::fs::read_dir(folder.join(RUNS)).into_iter().flatten().flatten();
     let mut others = logs.map(|entry| Path::new(RUNS).join(entry.file_name()));
     let of_dataset = files.keys().any(|name| name.starts_with(RUNS) || name.as_path() == Path::new(RETURNS));
     match others.find(|name| of_dataset && !files.contains_key(name)) {
-        Some(other) => {
-            Err(refuse(folder.join(other), "it is the log of another run: choose another folder, or delete it".into()))
-        }
+        Some(other) => Err(already_there(
+            &folder.join(other),
+            "it is the log of another run: choose another folder, or delete it".into(),
+        )),
         None => Ok(()),
     }
 }

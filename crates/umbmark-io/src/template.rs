@@ -2,7 +2,7 @@
 
 use super::error::DatasetError;
 use super::layout::csv::{RETURNS, ROBOT};
-use super::save::{Existing, put};
+use super::save::{Existing, put_beside_logs};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::RETURNS_COLUMNS;
@@ -36,7 +36,7 @@ const RETURNS_TEXT: &str = "\
 #     x points forward along the robot, y to its left, theta is counter-clockwise; START is 0, 0, 0.
 #  2. Have it drive round the path, with stops, at walking pace or slower, and stop where it believes START to be.
 #  3. Measure where it really stands: x_abs_m, y_abs_m, theta_abs_rad.
-#  4. Write down where it believes to stand: x_calc_m, y_calc_m, theta_calc_rad.
+#  4. Write down where it believes to stand: x_calc_m, y_calc_m, theta_calc_rad. Left empty, they mean 0: on START.
 #  5. Repeat, with direction cw and ccw, and number the runs of each direction 1, 2, 3, ...
 #
 # Headings may be left empty where they were not measured. Millimetres and degrees are fine: name the columns _mm, _deg.
@@ -51,7 +51,7 @@ pub fn write_template(folder: impl AsRef<Path>, existing: Existing) -> Result<[P
     let folder = folder.as_ref();
     let [robot, returns] = template();
     let files = BTreeMap::from([(PathBuf::from(ROBOT), robot), (PathBuf::from(RETURNS), returns)]);
-    put(folder, &files, existing, |_| Ok(()))?;
+    put_beside_logs(folder, &files, existing)?;
     Ok([folder.join(ROBOT), folder.join(RETURNS)])
 }
 

@@ -246,7 +246,7 @@ pub fn inspect(py: Python<'_>, data: &Dataset, place: &str) -> PyResult<String> 
     }
     let shared = Arc::clone(&data.0);
     let found = watched(py, 1, None, move |_| shared.inspect())?;
-    json(&result::Inspection::new(place, &data.0, &found))
+    json(&result::Inspection::new(place, &data.0, &found, &[]))
 }
 
 /// Write a robot.toml and a returns.csv to fill in.

@@ -72,7 +72,8 @@ fn number(which: usize) -> impl Fn(&str) -> Result<f64, String> + Clone {
     }
 }
 
-fn two(text: &str) -> Result<[String; 2], String> {
+/// The names of two joints.
+pub fn two(text: &str) -> Result<[String; 2], String> {
     match text.split_once(',') {
         Some((left, right)) if !left.is_empty() && !right.is_empty() => Ok([left.to_owned(), right.to_owned()]),
         _ => Err("must be the names of two joints with a comma between them".to_owned()),

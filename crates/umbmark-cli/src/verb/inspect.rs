@@ -1,21 +1,25 @@
 //! `umbmark inspect`: what a dataset holds, whether it is any good, and what it can determine.
 
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
 use umbmark_core::dataset::{Dataset, RunTopics};
 use umbmark_core::drive::Robot;
-use umbmark_core::inspect::{Determined, Group, Inspection, LogFacts, MovesFound};
+use umbmark_core::inspect::{Determined, Group, Inspection, LogContents, LogFacts, MovesFound};
 use umbmark_core::path::Direction;
 use umbmark_core::result;
+use umbmark_io::{DatasetError, Topics};
 
 use crate::Session;
+use crate::contents_report::contents_text;
 use crate::data_arguments::DataArguments;
 use crate::prose::hanging;
 use crate::setup_report::{disturbances_text, faults_text, mounting_text, returns_text};
 use crate::table::{table, with_precision_of};
 use crate::terminal::{plan, sparkline};
 use crate::verb::convert::clocks_table;
+use crate::words::WORDS;
 
 /// Arguments of `inspect`.
 #[derive(Debug, clap::Args)]
@@ -25,15 +29,51 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = arguments.data.load()?;
+    let place = &arguments.data.data;
+    let read = arguments.data.load();
+    let contents = contents(place, &arguments.data.topics(), &read)?;
+    // Logs alone do not make a dataset before their robot is known.
+    let (data, problem) = match read {
+        Ok(data) => (data, None),
+        Err(error) if contents.is_empty() => return Err(error.into()),
+        Err(error) => (Dataset::default(), Some(error)),
+    };
     let inspection = data.inspect();
     if session.json() {
-        session.print_json(&result::Inspection::new(&arguments.data.data.display().to_string(), &data, &inspection))?;
-    } else {
-        let text = text(&data, &inspection, session.on_terminal());
-        write!(session.out(), "{text}")?;
+        let place = place.display().to_string();
+        session.print_json(&result::Inspection::new(&place, &data, &inspection, &contents))?;
+        return Ok(ExitCode::SUCCESS);
     }
+    let of_dataset = problem.is_none().then(|| text(&data, &inspection, session.on_terminal()));
+    let parts = [contents_text(&contents), of_dataset.unwrap_or_default(), next_text(place, &contents)?];
+    let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    write!(session.out(), "{}", parts.join("\n"))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// What the logs of a place hold whose robot is not known; nothing for return sheets.
+fn contents(
+    place: &Path,
+    topics: &Topics,
+    read: &Result<Dataset, DatasetError>,
+) -> Result<Vec<LogContents>, DatasetError> {
+    match read {
+        Ok(data) if data.robot.is_some() || data.runs.iter().all(|run| run.log.is_none()) => Ok(Vec::new()),
+        Ok(_) => umbmark_io::contents(place, topics, &WORDS),
+        // What the reader of the dataset says is nearer to the data than what that of its contents says.
+        Err(_) => Ok(umbmark_io::contents(place, topics, &WORDS).unwrap_or_default()),
+    }
+}
+
+/// How to go on from logs whose robot is not known.
+fn next_text(place: &Path, contents: &[LogContents]) -> anyhow::Result<String> {
+    if contents.iter().all(|log| log.wheels.is_err()) {
+        return Ok(String::new());
+    }
+    let place = place.to_string_lossy();
+    let place = shlex::try_quote(&place)?;
+    Ok(format!("next\n  umbmark init my_robot --logs {place}\n")
+        + &hanging("", 6, "proposes a robot.toml for these logs; without one they say nothing in metres"))
 }
 
 fn direction_name(direction: Option<Direction>) -> &'static str {

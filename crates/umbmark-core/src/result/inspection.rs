@@ -247,6 +247,109 @@ pub struct Determined {
     pub because: String,
 }
 
+/// A topic or a column of a log.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct LogPart {
+    /// Its name.
+    pub name: String,
+    /// The type of its messages; of a column the range of its numbers, or "text".
+    pub kind: String,
+    /// Messages, or cells that hold something; null if the file does not say it.
+    pub count: Option<u64>,
+    /// Messages or cells per second; null for fewer than two.
+    pub rate_hz: Option<f64>,
+    /// What it would be used for: "time", "wheels" or "reference"; null if it would not be used.
+    pub used: Option<&'static str>,
+}
+
+/// What tells how the wheels turned.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct WheelsFound {
+    /// The topic and its fields, or the columns.
+    pub source: String,
+    /// "counts", "joint positions" or "odometry".
+    pub unit: &'static str,
+    /// Number of readings.
+    pub readings: usize,
+    /// Readings per second.
+    pub rate_hz: f64,
+    /// Steps per turn of joint positions; null for counts, and if no step shows.
+    pub ticks_per_revolution: Option<f64>,
+    /// Width of counters that are seen to roll over; null if none is.
+    pub counter_bits: Option<u32>,
+}
+
+/// What tells where the robot was.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ReferenceFound {
+    /// The topic, or the columns.
+    pub source: String,
+    /// Number of poses.
+    pub poses: usize,
+    /// How many of them have a heading.
+    pub headings: usize,
+    /// Poses per second; null for fewer than two.
+    pub rate_hz: Option<f64>,
+}
+
+/// The topics or columns of a log whose robot is not known, and which of them would be read.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct LogContents {
+    /// The file.
+    pub file: String,
+    /// "csv" or "mcap".
+    pub layout: &'static str,
+    /// Time from the first message or row to the last, in s; null if the file does not say it.
+    pub duration_s: Option<f64>,
+    /// Its topics or columns.
+    pub parts: Vec<LogPart>,
+    /// The wheels; null if there are none that can be read.
+    pub wheels: Option<WheelsFound>,
+    /// The absolute poses; null if there are none that can be read.
+    pub reference: Option<ReferenceFound>,
+    /// Why wheels or poses cannot be read, a sentence each.
+    pub problems: Vec<String>,
+    /// What was noticed in it, a sentence each.
+    pub notes: Vec<String>,
+}
+
+impl From<&inspect::LogContents> for LogContents {
+    fn from(log: &inspect::LogContents) -> Self {
+        let part = |part: &inspect::LogPart| LogPart {
+            name: part.name.clone(),
+            kind: part.kind.clone(),
+            count: part.count,
+            rate_hz: part.rate,
+            used: part.used,
+        };
+        let wheels = |wheels: &inspect::WheelsFound| WheelsFound {
+            source: wheels.source.clone(),
+            unit: wheels.unit.name(),
+            readings: wheels.readings,
+            rate_hz: wheels.rate,
+            ticks_per_revolution: wheels.ticks_per_revolution,
+            counter_bits: wheels.counter_bits,
+        };
+        let reference = |reference: &inspect::ReferenceFound| ReferenceFound {
+            source: reference.source.clone(),
+            poses: reference.poses,
+            headings: reference.headings,
+            rate_hz: reference.rate,
+        };
+        let problems = log.wheels.as_ref().err().into_iter().chain(log.reference.as_ref().err());
+        LogContents {
+            file: log.file.clone(),
+            layout: log.layout,
+            duration_s: log.duration,
+            parts: log.parts.iter().map(part).collect(),
+            wheels: log.wheels.as_ref().ok().map(wheels),
+            reference: log.reference.as_ref().ok().and_then(Option::as_ref).map(reference),
+            problems: problems.cloned().collect(),
+            notes: log.notes.clone(),
+        }
+    }
+}
+
 /// The findings on a dataset.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Inspection {
@@ -264,6 +367,8 @@ pub struct Inspection {
     pub clocks: Vec<Clock>,
     /// Topics that were read.
     pub topics: Vec<Topics>,
+    /// Topics or columns of each log, if the nominal robot is not known; empty if it is.
+    pub contents: Vec<LogContents>,
     /// Checks of the quality of the data.
     pub checks: Vec<Check>,
     /// What it can determine of the robot.
@@ -279,8 +384,13 @@ pub struct Inspection {
 }
 
 impl Inspection {
-    /// What a dataset read from `place` holds.
-    pub fn new(place: &str, data: &Dataset, found: &inspect::Inspection) -> Inspection {
+    /// What a dataset read from `place` holds, and the logs there if its robot is not known.
+    pub fn new(
+        place: &str,
+        data: &Dataset,
+        found: &inspect::Inspection,
+        contents: &[inspect::LogContents],
+    ) -> Inspection {
         let topics = |topics: &RunTopics| Topics {
             run: topics.run.clone(),
             wheels: topics.wheels.clone(),
@@ -307,6 +417,7 @@ impl Inspection {
             logs: found.logs.iter().map(LogFacts::from).collect(),
             clocks: data.clocks.iter().map(Clock::from).collect(),
             topics: data.topics.iter().map(topics).collect(),
+            contents: contents.iter().map(LogContents::from).collect(),
             checks: found.checks.iter().map(check).collect(),
             determined: found.determined.iter().map(determined).collect(),
             rank: found.rank,

@@ -2,6 +2,7 @@
 
 use super::text::{number, to_nanometre};
 use super::{Export, ExportError, Target, Written};
+use crate::proposal::KnownNumbers;
 use crate::remedy::{Argument, Remedy};
 use crate::wheel_names::{Side, candidates};
 use crate::whole_file::in_words;
@@ -41,8 +42,7 @@ fn write(export: &Export) -> Result<Written, ExportError> {
     }
     let remedy = Remedy::Name { purpose: "give it with", argument: Argument::Urdf, value: "FILE" };
     let file = export.urdf.as_ref().ok_or(ExportError::NoFile { target: TARGET.name, remedy })?;
-    let document = Document::parse(&file.text)
-        .map_err(|error| file.wrong(error.pos().row, format!("is not XML: {error}; give a URDF file")))?;
+    let document = file.document()?;
     let wheels = file.wheels(&document)?;
     let mut notes = export.uncorrected();
     let mut edits = Vec::new();
@@ -98,6 +98,34 @@ impl UrdfFile {
         let bytes = std::fs::read(file).map_err(|error| unreadable(in_words(&error, "there is no such file")))?;
         let text = String::from_utf8(bytes).map_err(|_| unreadable("it is not UTF-8 text".to_owned()))?;
         Ok(UrdfFile { name, text, joints })
+    }
+
+    /// Wheelbase and wheel diameters of the robot that it describes.
+    ///
+    /// The wheelbase is the distance of the two wheels along y of their parent link, at their collision shapes; a diameter is twice
+    /// the radius of the collision shape, else of the largest cylinder or sphere that is seen. A wheel that is a mesh has none.
+    ///
+    /// # Errors
+    ///
+    /// Where it is not XML, and where its joints do not say which are the wheels.
+    pub fn numbers(&self) -> Result<KnownNumbers, ExportError> {
+        let document = self.document()?;
+        let wheels = self.wheels(&document)?;
+        let mut known = KnownNumbers::of(&self.name);
+        known.name = document.root_element().attribute("name").map(str::to_owned);
+        let separation = (wheels[0].contact()? - wheels[1].contact()?).abs();
+        known.push("wheelbase_m", to_nanometre(separation), "the joints of the wheels");
+        for (wheel, key) in wheels.iter().zip(["wheel_diameter_left_m", "wheel_diameter_right_m"]) {
+            if let Some((radius, _)) = wheel.radii()?.first() {
+                known.push(key, to_nanometre(2.0 * radius), "the shape of the wheel");
+            }
+        }
+        Ok(known)
+    }
+
+    fn document(&self) -> Result<Document<'_>, ExportError> {
+        Document::parse(&self.text)
+            .map_err(|error| self.wrong(error.pos().row, format!("is not XML: {error}; give a URDF file")))
     }
 
     fn wrong(&self, line: u32, problem: String) -> ExportError {

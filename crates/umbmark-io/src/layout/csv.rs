@@ -1,11 +1,12 @@
 //! The project's own layout: `robot.toml`, `returns.csv`, `runs/*.csv` and `reference/*.csv`.
 
+mod contents;
 mod returns;
 mod tick_log;
 mod track;
 
 use super::mcap::Topics;
-use super::{Layout, Tracks};
+use super::{Layout, ReadLogs, Tracks};
 use crate::RobotFile;
 use crate::assembly::Assembly;
 use crate::error::DatasetError;
@@ -22,14 +23,14 @@ use umbmark_core::run::dead_reckoning::EndPose;
 
 pub(super) const LAYOUT: Layout = Layout::new("csv", "robot.toml, returns.csv and runs/*.csv: holds everything")
     .reads_data((is_data, read))
-    .reads_logs(("csv", add_log))
+    .reads_logs(ReadLogs { ending: "csv", add: add_log, look: contents::look })
     .reads_tracks((&["csv"], track::is_track, track::parse_columns))
     .writes(write);
 
 pub(crate) const ROBOT: &str = "robot.toml";
 pub(crate) const RETURNS: &str = "returns.csv";
 pub(crate) const RUNS: &str = "runs";
-const REFERENCE: &str = "reference";
+pub(crate) const REFERENCE: &str = "reference";
 const EXPECTED: &str =
     "a dataset has robot.toml with returns.csv, runs/*.csv or runs/*.mcap (`umbmark init FOLDER` writes a start)";
 
@@ -52,12 +53,20 @@ fn read_folder(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> 
         });
     }
     let mut assembly = Assembly::new(Some(RobotFile::read(folder.join(ROBOT))?));
+    // A sheet that nobody has filled in yet says nothing beside logs; without logs there is nothing else to read.
+    let mut unfilled = None;
     for sheet in sheets() {
-        add_returns(&mut assembly, &folder.join(sheet))?;
+        match add_returns(&mut assembly, &folder.join(sheet)) {
+            Err(empty @ DatasetError::NoRows { .. }) => unfilled = Some(empty),
+            added => added?,
+        }
     }
     let mut logs = 0;
     if probe.has(RUNS) {
         logs = add_logs(&mut assembly, &folder.join(RUNS), topics)?;
+    }
+    if let Some(empty) = unfilled.filter(|_| logs == 0) {
+        return Err(empty);
     }
     if logs == 0 && sheets().count() == 0 {
         return Err(not_a_dataset(folder, "it has a robot and no measurement".into()));
@@ -150,7 +159,7 @@ fn read_file(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> {
 }
 
 /// The robot.toml of a file in `folder`: in it, or above it where it is called runs.
-pub(super) fn robot_beside(folder: &Path) -> Option<PathBuf> {
+pub(crate) fn robot_beside(folder: &Path) -> Option<PathBuf> {
     let in_runs = folder.file_name().is_some_and(|name| name == RUNS);
     let above = in_runs.then(|| folder.join("..").join(ROBOT));
     [Some(folder.join(ROBOT)), above].into_iter().flatten().find(|robot| robot.is_file())

@@ -10,6 +10,7 @@
 mod cdr;
 mod clock;
 mod container;
+mod contents;
 mod decoder;
 mod definitions;
 mod fields;
@@ -37,8 +38,8 @@ pub(super) use survey::Survey;
 pub use topics::Topics;
 pub(crate) use write::corrected;
 
-use super::Layout;
 use super::csv::robot_beside;
+use super::{Layout, ReadLogs};
 use crate::RobotFile;
 use crate::assembly::Assembly;
 use crate::error::{DatasetError, quoted};
@@ -63,7 +64,11 @@ use wheels::Wheels;
 
 pub(super) const LAYOUT: Layout = Layout::new("mcap", "the same with logs of ROS 2, runs/*.mcap; one run as NAME.mcap")
     .reads_data((|probe| probe.extension() == "mcap", read))
-    .reads_logs(("mcap", |assembly, file, _, topics| add(assembly, Survey::open(file)?, file, topics)))
+    .reads_logs(ReadLogs {
+        ending: "mcap",
+        add: |assembly, file, _, topics| add(assembly, Survey::open(file)?, file, topics),
+        look: contents::look,
+    })
     .writes(|data, place, existing| save_mcap(data, place, existing));
 
 fn add(assembly: &mut Assembly, survey: Survey, file: &Path, topics: &Topics) -> Result<(), DatasetError> {
@@ -138,6 +143,14 @@ struct Decoding {
     messages: [usize; 2],
 }
 
+/// What was decoded: readings of the wheels in the unit of their messages, and poses, on one clock.
+struct Gathered {
+    wheels: Wheels,
+    clock: Clock,
+    track: TrackRows,
+    topics: [String; 2],
+}
+
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Role {
     Wheels,
@@ -152,18 +165,32 @@ impl Survey {
         robot: Option<&Robot>,
         warnings: &mut Vec<String>,
     ) -> Result<Reading, DatasetError> {
-        let refuse = |problem| DatasetError::Mcap { file: self.file.clone(), problem: Box::new(problem) };
+        let needed = |wheels: &Wheels| match wheels.need_robot() && robot.is_none() {
+            true => Err(umbmark_core::dataset::NoRobot.into()),
+            false => Ok(()),
+        };
+        let Gathered { wheels, clock, track, topics } = self.gather(wish, &needed, warnings)?;
+        let are_counts = wheels.are_counts();
+        let recording = wheels.into_recording(&self.file, &topics[0], &clock, robot, warnings);
+        Ok(Reading { recording, are_counts, track, topics })
+    }
+
+    /// Decodes the wheels and the reference, where these wheels are of use.
+    fn gather(
+        &mut self,
+        wish: &Topics,
+        of_use: &dyn Fn(&Wheels) -> Result<(), DatasetError>,
+        warnings: &mut Vec<String>,
+    ) -> Result<Gathered, DatasetError> {
+        let file = self.file.clone();
+        let refuse = |problem| DatasetError::Mcap { file: file.clone(), problem: Box::new(problem) };
         let ticks = topics::ticks(&self.topics, wish).map_err(|problem| refuse(self.blamed(problem)))?;
         let reference = topics::reference(&self.topics, wish, &ticks).map_err(refuse)?;
         let mut decoding = self.decoding(&ticks, reference.as_ref()).map_err(refuse)?;
-        if decoding.wheels.need_robot() && robot.is_none() {
-            return Err(umbmark_core::dataset::NoRobot.into());
-        }
+        of_use(&decoding.wheels)?;
         let skip = self.chunks_without(|channel| decoding.decoders.iter().any(|(id, ..)| *id == channel));
         let damage = self.walk(&skip, &mut |record| decoding.take(record))?;
         let Decoding { wheels, track, topics, messages, .. } = decoding;
-        let file = self.file.clone();
-        let refuse = |problem| DatasetError::Mcap { file: file.clone(), problem: Box::new(problem) };
         if wheels.times.is_empty() {
             return Err(refuse(self.without_wheels(&topics[0], &wheels, damage)));
         }
@@ -179,9 +206,7 @@ impl Survey {
         };
         let clock = Clock::of(wheels.times.iter(), rows.iter().map(|(times, _)| times));
         let track = track::timed(rows, &clock, &file, &topics[1]);
-        let are_counts = wheels.are_counts();
-        let recording = wheels.into_recording(&file, &topics[0], &clock, robot, warnings);
-        Ok(Reading { recording, are_counts, track, topics })
+        Ok(Gathered { wheels, clock, track, topics })
     }
 
     /// Decoders for the topics that were chosen.

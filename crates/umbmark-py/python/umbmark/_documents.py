@@ -1332,6 +1332,8 @@ class Inspection(Result, frozen=True):
         Clocks that were set.
     topics : tuple[Topics, ...]
         Topics that were read.
+    contents : tuple[LogContents, ...]
+        Topics or columns of each log, if the nominal robot is not known; empty if it is.
     checks : tuple[Check, ...]
         Checks of the quality of the data.
     determined : tuple[Determined, ...]
@@ -1353,6 +1355,7 @@ class Inspection(Result, frozen=True):
     logs: tuple[LogFacts, ...]
     clocks: tuple[Clock, ...]
     topics: tuple[Topics, ...]
+    contents: tuple[LogContents, ...]
     checks: tuple[Check, ...]
     determined: tuple[Determined, ...]
     rank: int
@@ -1654,6 +1657,111 @@ class Topics(Record, frozen=True):
     run: str
     wheels: str
     reference: str | None
+
+
+class LogContents(Record, frozen=True):
+    """The topics or columns of a log whose robot is not known, and which of them would be read.
+
+    Attributes
+    ----------
+    file : str
+        The file.
+    layout : str
+        "csv" or "mcap".
+    duration_s : float or None
+        Time from the first message or row to the last, in s; None if the file does not say it.
+    parts : tuple[LogPart, ...]
+        Its topics or columns.
+    wheels : WheelsFound or None
+        The wheels; None if there are none that can be read.
+    reference : ReferenceFound or None
+        The absolute poses; None if there are none that can be read.
+    problems : tuple[str, ...]
+        Why wheels or poses cannot be read, a sentence each.
+    notes : tuple[str, ...]
+        What was noticed in it, a sentence each.
+    """
+
+    file: str
+    layout: str
+    duration_s: float | None
+    parts: tuple[LogPart, ...]
+    wheels: WheelsFound | None
+    reference: ReferenceFound | None
+    problems: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+class LogPart(Record, frozen=True):
+    """A topic or a column of a log.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    kind : str
+        The type of its messages; of a column the range of its numbers, or "text".
+    count : int or None
+        Messages, or cells that hold something; None if the file does not say it.
+    rate_hz : float or None
+        Messages or cells per second; None for fewer than two.
+    used : str or None
+        What it would be used for: "time", "wheels" or "reference"; None if it would not be used.
+    """
+
+    name: str
+    kind: str
+    count: int | None
+    rate_hz: float | None
+    used: str | None
+
+
+class WheelsFound(Record, frozen=True):
+    """What tells how the wheels turned.
+
+    Attributes
+    ----------
+    source : str
+        The topic and its fields, or the columns.
+    unit : str
+        "counts", "joint positions" or "odometry".
+    readings : int
+        Number of readings.
+    rate_hz : float
+        Readings per second.
+    ticks_per_revolution : float or None
+        Steps per turn of joint positions; None for counts, and if no step shows.
+    counter_bits : int or None
+        Width of counters that are seen to roll over; None if none is.
+    """
+
+    source: str
+    unit: str
+    readings: int
+    rate_hz: float
+    ticks_per_revolution: float | None
+    counter_bits: int | None
+
+
+class ReferenceFound(Record, frozen=True):
+    """What tells where the robot was.
+
+    Attributes
+    ----------
+    source : str
+        The topic, or the columns.
+    poses : int
+        Number of poses.
+    headings : int
+        How many of them have a heading.
+    rate_hz : float or None
+        Poses per second; None for fewer than two.
+    """
+
+    source: str
+    poses: int
+    headings: int
+    rate_hz: float | None
 
 
 class Check(Record, frozen=True):

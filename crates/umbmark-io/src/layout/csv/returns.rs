@@ -50,8 +50,9 @@ pub(crate) fn parse_returns(source: Source, warnings: &mut Vec<String>) -> Resul
     let test = columns.find("test", Bare)?;
     let convention = Convention::find(&sheet, &mut columns)?;
     columns.finish(warnings)?;
-    let mut rows = Vec::new();
+    let (mut rows, mut on_start, file) = (Vec::new(), 0, sheet.file().to_owned());
     sheet.for_each(|row| {
+        on_start += usize::from(convention.leaves_computed_empty(row));
         rows.push(ReturnRow {
             line: row.line,
             test: test.as_ref().map(|column| read_test(row, column)).transpose()?,
@@ -61,6 +62,12 @@ pub(crate) fn parse_returns(source: Source, warnings: &mut Vec<String>) -> Resul
         });
         Ok(())
     })?;
+    if on_start > 0 {
+        warnings.push(format!(
+            "{file}: {on_start} of {} rows leave a cell of the computed pose empty; it was taken as 0",
+            rows.len()
+        ));
+    }
     Ok(rows)
 }
 
@@ -83,6 +90,12 @@ impl PoseColumns {
         let heading = self.heading.as_ref().map(|column| row.number_or(column)).transpose()?.flatten();
         Ok((row.number(&self.x)?, row.number(&self.y)?, heading))
     }
+
+    /// The same, where an empty cell means 0: a robot that drives by its odometry believes to stand on START at the end.
+    fn read_or_zero(&self, row: &Row) -> Result<(f64, f64, Option<f64>), DatasetError> {
+        let number = |column: &Column| Ok::<_, DatasetError>(row.number_or(column)?.unwrap_or(0.0));
+        Ok((number(&self.x)?, number(&self.y)?, self.heading.as_ref().map(number).transpose()?))
+    }
 }
 
 impl Convention {
@@ -100,6 +113,15 @@ impl Convention {
             }
             _ => Ok(Convention::Poses(Box::new(EndPoses::find(columns)?))),
         }
+    }
+
+    /// Whether a row says nothing in a cell of the computed pose that it has to fill; a heading that was not measured needs none.
+    fn leaves_computed_empty(&self, row: &Row) -> bool {
+        let Convention::Poses(columns) = self else { return false };
+        let EndPoses { absolute, computed, .. } = &**columns;
+        let empty = |column: &Column| row.text(column).is_empty();
+        let measured = absolute.heading.as_ref().is_some_and(|column| !empty(column));
+        empty(&computed.x) || empty(&computed.y) || measured && computed.heading.as_ref().is_some_and(empty)
     }
 
     fn read(&self, row: &Row) -> Result<ReturnError, DatasetError> {
@@ -144,12 +166,9 @@ impl EndPoses {
             let seen = Pose2::new(start.0, start.1, turned).between(&Pose2::new(x, y, heading.unwrap_or(turned)));
             (x, y, heading) = (seen.x, seen.y, heading.map(|_| seen.heading));
         }
-        let (x_calc, y_calc, calc) = self.computed.read(row)?;
-        let heading = match (heading, calc, &self.computed.heading) {
-            (Some(absolute), Some(calc), _) => Some(wrap(absolute - calc)),
-            (Some(_), None, Some(column)) => {
-                return Err(row.wrong(column, "a finite number", "the absolute heading of this row needs it"));
-            }
+        let (x_calc, y_calc, calc) = self.computed.read_or_zero(row)?;
+        let heading = match (heading, calc) {
+            (Some(absolute), Some(calc)) => Some(wrap(absolute - calc)),
             _ => None,
         };
         Ok(ReturnError { x: x - x_calc, y: y - y_calc, heading })

@@ -38,6 +38,10 @@ pub(in super::super) struct Survey {
     channels: BTreeMap<u16, Channel>,
     /// Messages of each channel, where the log says so.
     counts: Option<BTreeMap<u16, u64>>,
+    /// The messages that were passed by where it does not.
+    passed: BTreeMap<u16, u64>,
+    /// Time of the first and of the last message \[ns\].
+    span: Option<[u64; 2]>,
     /// Which channels each chunk has messages of, where the log says so, and where it begins.
     chunks: Vec<(u64, Vec<u16>)>,
     pub(super) topics: Vec<Topic>,
@@ -60,6 +64,8 @@ impl Survey {
             definitions: HashMap::new(),
             channels: BTreeMap::new(),
             counts: None,
+            passed: BTreeMap::new(),
+            span: None,
             chunks: Vec::new(),
             topics: Vec::new(),
             damage: None,
@@ -84,6 +90,7 @@ impl Survey {
             self.channels.insert(*id, Channel { schema: schema.map_or(0, |schema| schema.id), topic, encoding });
         }
         self.counts = summary.stats.as_ref().map(|statistics| statistics.channel_message_counts.clone());
+        self.span = summary.stats.as_ref().map(|of| [of.message_start_time, of.message_end_time]);
         let with_index = summary.chunk_indexes.iter().filter(|chunk| !chunk.message_index_offsets.is_empty());
         self.chunks = with_index
             .map(|chunk| (chunk.chunk_start_offset, chunk.message_index_offsets.keys().copied().collect()))
@@ -104,6 +111,7 @@ impl Survey {
 
     fn look_through(&mut self) -> Result<(), DatasetError> {
         let (mut definitions, mut channels, mut robot) = (HashMap::new(), BTreeMap::new(), None);
+        let (mut passed, mut span) = (BTreeMap::new(), None::<[u64; 2]>);
         let damage = self.walk(&HashSet::new(), &mut |record| {
             take_robot(&record, &mut robot);
             match record {
@@ -113,10 +121,16 @@ impl Survey {
                 Record::Channel { id, schema, topic, encoding } => {
                     channels.entry(id).or_insert(Channel { schema, topic, encoding });
                 }
-                _ => {}
+                Record::Message { channel, log_time, .. } => {
+                    *passed.entry(channel).or_insert(0) += 1;
+                    let [first, last] = span.unwrap_or([log_time; 2]);
+                    span = Some([first.min(log_time), last.max(log_time)]);
+                }
+                Record::Metadata(_) => {}
             }
             Ok(())
         })?;
+        (self.passed, self.span) = (passed, span);
         (self.definitions, self.channels, self.robot, self.damage) = (definitions, channels, robot, damage);
         Ok(())
     }
@@ -166,6 +180,18 @@ impl Survey {
     pub(super) fn channels_of(&self, topic: &str) -> impl Iterator<Item = (u16, Definition)> {
         let of_topic = self.channels.iter().filter(move |(_, channel)| channel.topic == topic);
         of_topic.map(|(id, channel)| (*id, self.definitions.get(&channel.schema).cloned().unwrap_or_default()))
+    }
+
+    /// How many messages there are of a topic, as the log says or as were passed by.
+    pub(super) fn messages(&self, topic: &Topic) -> u64 {
+        let of_topic = self.channels.iter().filter(|(_, channel)| channel.topic == topic.name);
+        topic.messages.unwrap_or_else(|| of_topic.filter_map(|(id, _)| self.passed.get(id)).sum())
+    }
+
+    /// Time from the first message to the last \[s\]; `None` where there are none, or where only one time is known.
+    pub(super) fn duration(&self) -> Option<f64> {
+        let [first, last] = self.span?;
+        (last > first).then(|| (last - first) as f64 / 1e9)
     }
 
     /// How many messages there are of some topics, by their shown names, where the log says so.

@@ -5,10 +5,12 @@ use super::fields::{Fields, Number};
 use super::joints::Joints;
 use super::message_type::MessageType;
 use super::odometer::Odometer;
+use super::topics::shown;
 use crate::error::quoted;
 use crate::recording::Recording;
 use std::f64::consts::TAU;
 use umbmark_core::drive::Robot;
+use umbmark_core::inspect::{WheelUnit, steps_per_turn};
 
 /// Counts beyond it are no longer distinct in `f64`.
 const LARGEST: f64 = 9e15;
@@ -81,6 +83,23 @@ impl Wheels {
     /// Whether the robot must be known to make ticks of the values.
     pub fn need_robot(&self) -> bool {
         !self.are_counts()
+    }
+
+    /// What the readings are, and where among the messages; the steps per turn of positions that come in steps.
+    pub fn found(&self) -> (WheelUnit, Option<String>, Option<f64>) {
+        match &self.source {
+            Source::Counts | Source::List(_) => (WheelUnit::Counts, None, None),
+            Source::Odometry(_) => (WheelUnit::Odometry, None, None),
+            Source::Joints(joints) => {
+                let steps = self.values.clone().map(|mut positions| {
+                    unwind(&mut positions);
+                    steps_per_turn(&positions)
+                });
+                let same = steps[0].filter(|_| steps[0] == steps[1]);
+                let names = joints.names().map(|name| shown(&name));
+                (WheelUnit::Positions, Some(format!("joints {} and {}", names[0], names[1])), same)
+            }
+        }
     }
 
     /// Why there are no wheels among the joints, where there are joints and none of them could be used.
