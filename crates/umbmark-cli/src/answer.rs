@@ -41,7 +41,7 @@ fn row(change: &Change) -> Vec<String> {
         None => (change.key.to_owned(), 1.0),
     };
     let half = change.interval.map_or(1e-4 * change.new.abs(), |i| 0.5 * (i.high - i.low));
-    let number = |value: f64| plain(&with_precision_of(scale * value, scale * half));
+    let number = |value: f64| with_precision_of(scale * value, scale * half);
     let end = |of: Option<f64>| of.map_or("-".to_owned(), number);
     vec![
         name.replace('_', " "),
@@ -78,13 +78,5 @@ pub fn parts_text(solution: &Solution) -> String {
 }
 
 fn millimetres(metres: f64) -> String {
-    plain(&format!("{:.1}", 1e3 * metres))
-}
-
-/// No number is minus zero.
-fn plain(number: &str) -> String {
-    let unsigned = number.trim_start_matches('-');
-    let is_zero =
-        number.starts_with('-') && unsigned.chars().all(|digit| matches!(digit, '0' | '.')) && !unsigned.is_empty();
-    if is_zero { unsigned.to_owned() } else { number.to_owned() }
+    format!("{:.1}", 1e3 * metres)
 }

@@ -2,7 +2,9 @@
 
 use umbmark_core::inspect::{LogContents, LogPart, ReferenceFound, WheelsFound};
 
-use crate::prose::hanging;
+use umbmark_core::prose::counted;
+
+use crate::prose::{hanging, shortened};
 use crate::table::table;
 
 /// Where the text begins behind "wheels" and "reference".
@@ -40,7 +42,7 @@ fn log_text(log: &LogContents) -> String {
 fn part_row(part: &LogPart) -> Vec<String> {
     let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".into());
     vec![
-        part.name.clone(),
+        shortened(&part.name, 30),
         // As people write the types of ROS 2.
         part.kind.replace("/msg/", "/"),
         or_dash(part.count.map(|count| count.to_string())),
@@ -55,8 +57,9 @@ fn rate(hertz: f64) -> String {
 }
 
 fn wheels_line(wheels: &WheelsFound) -> String {
-    let (source, unit, readings) = (&wheels.source, wheels.unit.name(), wheels.readings);
-    let mut line = format!("{source}: {readings} readings of {unit} at {} Hz", rate(wheels.rate));
+    let (source, unit, readings) = (&wheels.source, wheels.unit.name(), &wheels.readings);
+    let readings = counted(*readings, "reading");
+    let mut line = format!("{source}: {readings} of {unit} at {} Hz", rate(wheels.rate));
     if let Some(steps) = wheels.ticks_per_revolution {
         line += &format!(", in steps of 1/{steps} turn");
     }
@@ -70,5 +73,5 @@ fn reference_line(reference: &ReferenceFound) -> String {
     let ReferenceFound { source, poses, headings, .. } = reference;
     let rate = reference.rate.map(|hertz| format!(" at {} Hz", rate(hertz))).unwrap_or_default();
     let with = if headings == poses { "all with a heading".to_owned() } else { format!("{headings} with a heading") };
-    format!("{source}: {poses} poses{rate}, {with}")
+    format!("{source}: {}{rate}, {with}", counted(*poses, "pose"))
 }

@@ -5,6 +5,7 @@ use umbmark_core::result::{Keyed, MonteCarlo, NumberOrWord, Setting, Study};
 use umbmark_plot::figure::Mark;
 
 use crate::distribution_text::distribution_words;
+use crate::prose::wrapped;
 use crate::table::{table, with_precision_of};
 use crate::terminal::histogram;
 
@@ -37,7 +38,7 @@ impl Report<'_> {
     pub fn text(&self, unicode: bool) -> String {
         let mut text = format!("Monte Carlo of UMBmark: {} trials of ", self.ensemble.trials());
         text += &heading(self.study).join("\n");
-        text += "\n\n";
+        text = wrapped(&text) + "\n";
         text += &self.table();
         text += "\n\n";
         text += &theory(self.study);

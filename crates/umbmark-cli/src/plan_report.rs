@@ -245,7 +245,8 @@ impl Separation {
     /// For people.
     pub fn text(&self) -> String {
         let [a, b] = &self.pair;
-        let mut text = format!("Experiments that separate {a} from {b}, together with {}\n\n", self.after);
+        let title = format!("Experiments that separate {a} from {b}, together with {}", self.after);
+        let mut text = hanging("", 0, &title) + "\n";
         if self.experiments.iter().all(|e| e.sd < 1.0) {
             text += &hanging("", 2, "No available experiment separates them by one standard deviation.");
             return text;

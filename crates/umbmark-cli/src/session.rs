@@ -32,6 +32,10 @@ pub struct Options {
     /// No progress bars
     #[arg(long, global = true)]
     pub quiet: bool,
+
+    /// Print the tables behind an answer, too
+    #[arg(long, global = true)]
+    pub verbose: bool,
 }
 
 /// One run of the command: its options, and its standard output.
@@ -49,6 +53,11 @@ impl Session {
     /// Whether a JSON document is wanted.
     pub fn json(&self) -> bool {
         self.options.json
+    }
+
+    /// Whether the tables behind an answer are wanted.
+    pub fn verbose(&self) -> bool {
+        self.options.verbose
     }
 
     /// The seed of all random numbers.

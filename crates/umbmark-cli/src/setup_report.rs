@@ -2,6 +2,7 @@
 
 use umbmark_core::diagnose::{Reason, Remains};
 use umbmark_core::likelihood::Taken;
+use umbmark_core::prose::counted;
 use umbmark_core::setup::{OutlyingReturn, RunSetup, Setup};
 use umbmark_core::stats::Measured;
 
@@ -77,7 +78,7 @@ pub fn disturbances_text(setup: &Setup) -> String {
         text += &hanging("wrong", 10, &format!("{}, and left out.", run.notice()));
     }
     if let rest @ 1.. = wrong.len().saturating_sub(JUMPS) {
-        text += &hanging("", 10, &format!("and wrong poses in {rest} more runs (--json)"));
+        text += &hanging("", 10, &format!("and wrong poses in {} (--json)", counted(rest, "more run")));
     }
     text
 }

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use umbmark_core::monte_carlo::{Axis, Metric, MetricSummary, Quantity, Study, Sweep, SweepPoint};
+use umbmark_core::prose::counted;
 use umbmark_core::result;
 use umbmark_io::checkpoint::{Checkpoint, Keeper};
 
@@ -168,7 +169,8 @@ impl SweepReport<'_> {
         let (axes, study) = (self.sweep.axes(), self.sweep.study());
         let count = self.points.len();
         let mut text = format!(
-            "Sweep of UMBmark: {count} points of {} trials, {}, {}\n",
+            "Sweep of UMBmark: {} of {} trials, {}, {}\n",
+            counted(count, "point"),
             study.trials,
             study.robot().name,
             study.path.shape().name.replace('_', "-")
@@ -182,7 +184,7 @@ impl SweepReport<'_> {
             text += &self.table();
         }
         if count > ROWS && axes.len() != 2 {
-            text += &format!("... {} more points; -o sweep.csv writes all of them\n", count - ROWS);
+            text += &format!("... {}; -o sweep.csv writes all of them\n", counted(count - ROWS, "more point"));
         }
         let partial = if (count as u64) < self.sweep.points() { ", PARTIAL: not all points were done" } else { "" };
         text + &format!("\nseed {}, umbmark {}{partial}\n", study.seed, umbmark_core::VERSION)

@@ -2,10 +2,11 @@
 
 use umbmark_core::compare::tracks::{Against, By, COVARIATES, Mean, Part, Rate, TrackComparison, TracksJudged};
 use umbmark_core::diagnose::{Options, Remains};
+use umbmark_core::prose::{counted, unsigned_zeros};
 use umbmark_core::stats::Interval;
 
 use crate::model_report::p_text;
-use crate::prose::hanging;
+use crate::prose::{details_text, hanging, shortened};
 use crate::residual_strips::{marks, strips};
 use crate::setup_report::{disturbances_text, faults_text, taken_text};
 use crate::table::table;
@@ -13,13 +14,22 @@ use crate::table::table;
 /// Runs are listed up to this many; --json has all.
 const RUNS: usize = 20;
 
-/// The whole comparison as text.
-pub fn text(comparison: &TrackComparison, options: &Options, terminal: bool) -> String {
+/// How a comparison is shown.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    /// On a terminal, which has more characters.
+    pub terminal: bool,
+    /// With all tables.
+    pub verbose: bool,
+}
+
+/// The comparison as text: what each model explains, and, where they are wanted, the tables behind that.
+pub fn text(comparison: &TrackComparison, options: &Options, look: Look) -> String {
+    let Look { terminal, verbose } = look;
     let [cw, ccw, neither] = comparison.runs;
     let others = if neither > 0 { format!(" + {neither} other") } else { String::new() };
-    let (poses, models) = (comparison.poses, comparison.models.len());
-    let mut text =
-        format!("Comparison of {models} model(s) with {cw} cw + {ccw} ccw{others} tracks, {poses} poses\n\n");
+    let (poses, models) = (counted(comparison.poses, "pose"), counted(comparison.models.len(), "model"));
+    let mut text = format!("Comparison of {models} with {cw} cw + {ccw} ccw{others} tracks, {poses}\n\n");
     let row = |m: &TracksJudged| {
         let explains = m.explains(options.size).map_or("-", |explains| if explains { "yes" } else { "no" });
         let [along, end] = [&m.along, &m.end].map(|rms| [mm(rms.position), rms.heading.map_or("-".into(), deg)]);
@@ -32,7 +42,7 @@ pub fn text(comparison: &TrackComparison, options: &Options, terminal: bool) -> 
     );
     text += "\n\n";
     let legend = "along, end: root mean square error of all measured poses, and of the last pose of each run. p: smallest of all tests \
-                  below, Bonferroni-corrected.";
+                  of a model, Bonferroni-corrected.";
     text += &hanging("", 0, legend);
     text += &(faults_text(&comparison.setup) + &disturbances_text(&comparison.setup));
     for judged in &comparison.models {
@@ -44,12 +54,17 @@ pub fn text(comparison: &TrackComparison, options: &Options, terminal: bool) -> 
         for sentence in judged.remains.iter().flat_map(Remains::sentences) {
             text += &hanging("", 2, &format!("  {sentence}"));
         }
-        text += &parts_text(judged, options.size);
-        text += &rates_text(judged, terminal, options.size);
-        text += &strips(&judged.residuals, terminal);
+        if verbose {
+            text += &parts_text(judged, options.size);
+            text += &rates_text(judged, terminal, options.size);
+            text += &strips(&judged.residuals, terminal);
+        }
     }
     for remark in &comparison.remarks {
         text += &hanging("note", 10, remark);
+    }
+    if !verbose {
+        text += &details_text("where the error is made, what it depends on, and how it grows along the way");
     }
     text
 }
@@ -84,28 +99,42 @@ fn parts_text(judged: &TracksJudged, size: f64) -> String {
             text += &part_line(part);
         }
         if let rest @ 1.. = parts.len() - shown {
-            text += &format!("and {rest} more runs (--json)\n");
+            text += &format!("and {} (--json)\n", counted(rest, "more run"));
         }
         if !parts.is_empty() {
             text += "\n";
         }
     }
+    if judged.parts.iter().any(|part| shown_share(part) < 0.0) {
+        text += &hanging("", 0, NEGATIVE_SHARES);
+        text += "\n";
+    }
     text
+}
+
+const NEGATIVE_SHARES: &str =
+    "Shares add up to 100 %. A negative one: the error made there undoes some of the error made elsewhere.";
+
+/// The share of a part in whole per cent, as it is shown.
+fn shown_share(part: &Part) -> f64 {
+    (100.0 * part.share.position).round() + 0.0
 }
 
 fn part_line(part: &Part) -> String {
     let direction = part.direction.filter(|_| part.by != By::Run).map_or(String::new(), |d| format!("{} ", d.name()));
-    let name: String = format!("{direction}{}", part.name).chars().take(18).collect();
+    let name = shortened(&format!("{direction}{}", part.name), 18);
     let scales = [1e3, 1e3, 1f64.to_degrees()];
     let cell = |k: usize| {
-        let decimals = if k == 2 { 2 } else { 1 };
         let mean = scales[k] * part.mean[k].value;
+        // Large errors have a digit less, so that the table keeps its columns.
+        let (decimals, large) = if k == 2 { (2, 100.0) } else { (1, 1000.0) };
+        let decimals = if mean.abs() < large { decimals } else { decimals - 1 };
         let interval =
             half_width(&part.mean[k]).map_or(String::new(), |half| format!(" ±{:.decimals$}", scales[k] * half));
         let spread = part.spread.map_or(String::new(), |spread| format!("{:.decimals$}", scales[k] * spread[k]));
-        format!("{:>11} {spread:>5}", format!("{mean:.decimals$}{interval}"))
+        format!("{:>11} {spread:>5}", unsigned_zeros(&format!("{mean:.decimals$}{interval}")))
     };
-    let share = (100.0 * part.share.position).round() + 0.0;
+    let share = shown_share(part);
     let line = format!("{name:<18} {} {} {:>18} {share:>4.0}", cell(0), cell(1), cell(2));
     format!("{}\n", line.trim_end())
 }

@@ -228,7 +228,7 @@ fn the_cheapest_tolerances_of_the_example_keep_the_target() {
     assert!(document["now"]["share_within"]["value"].as_f64().unwrap() < 0.5);
     assert!(cheapest["cost"].as_f64().unwrap() <= document["last"]["cost"].as_f64().unwrap());
     let text = stdout(&study);
-    assert!(text.contains("Buy: ") && text.contains("all at their last grade"), "{text}");
+    assert!(text.contains("Buy: ") && text.contains("all at last grade"), "{text}");
     let hopeless = stdout(&["tolerance", file, "-n", "1000", "--target", "1mm"]);
     assert!(hopeless.contains("None of the 27 choices certainly keeps the target"), "{hopeless}");
     umbmark(&["tolerance", file, "--target", "2deg"]).code(1).stderr_eq(str![[r#"

@@ -14,6 +14,7 @@ use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::geometry::{Pose2, wrap};
 use crate::path::{Direction, Path};
+use crate::prose::counted;
 use crate::run::dead_reckoning::{EndPose, computed_end, return_error};
 use crate::run::{Mended, ReturnError, Run};
 use crate::setup::{Fault, Mounting, Setup};
@@ -236,7 +237,7 @@ fn shape_check(logs: &[LogFacts], path: Option<&Path>) -> Option<Check> {
     let MovesFound { described, stops, .. } = found;
     Some(Check {
         name: "path by ticks",
-        found: format!("{described}; {stops} stops on the way"),
+        found: format!("{described}; {} on the way", counted(*stops, "stop")),
         good: "the shape that [path] in robot.toml has",
         ok: !differs(&found),
     })

@@ -23,3 +23,26 @@ pub fn of(count: usize, noun: &str) -> String {
         _ => format!("{noun}s"),
     }
 }
+
+/// The text without minus zeros: a number that rounds to nothing has no sign.
+///
+/// ```
+/// use umbmark_core::prose::unsigned_zeros;
+/// assert_eq!(unsigned_zeros("-0 degrees, (-0.00 to -0.05), run-01, 1e-0"), "0 degrees, (0.00 to -0.05), run-01, 1e-0");
+/// ```
+pub fn unsigned_zeros(text: &str) -> String {
+    let mut kept = String::with_capacity(text.len());
+    let mut before = ' ';
+    for (place, character) in text.char_indices() {
+        let number = &text[place + character.len_utf8()..];
+        let is_minus_zero = character == '-' && !before.is_alphanumeric() && !"-._".contains(before) && {
+            let digits = number.trim_start_matches(['0', '.']);
+            number.starts_with('0') && !digits.starts_with(|next: char| next.is_alphanumeric())
+        };
+        if !is_minus_zero {
+            kept.push(character);
+        }
+        before = character;
+    }
+    kept
+}

@@ -157,3 +157,21 @@ def test_files_to_fill_in_are_those_of_the_command(command: Path, tmp_path: Path
     with pytest.raises(ValueError, match="replace=True"):
         umbmark.init(ours)
     umbmark.init(ours, replace=True)
+
+
+def test_a_robot_proposed_from_logs_is_that_of_the_command(command: Path, tmp_path: Path) -> None:
+    umbmark.simulate(umbmark.Model().add("wheelbase", e_b=1.01)).save(tmp_path / "made")
+    yaml = tmp_path / "controller.yaml"
+    yaml.write_text("base:\n  wheel_separation: 0.34\n  wheel_radius: 0.075\n")
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    ours, theirs = tmp_path / "a" / "mine", tmp_path / "b" / "mine"
+    [written] = umbmark.init(ours, logs=tmp_path / "made", controller_yaml=yaml)
+    run(command, "init", theirs, "--logs", tmp_path / "made", "--controller-yaml", yaml)
+    assert written == ours / "robot.toml"
+    assert written.read_bytes() == (theirs / "robot.toml").read_bytes()
+    assert len(list((ours / "runs").iterdir())) == len(list((theirs / "runs").iterdir())) > 0
+    with pytest.raises(ValueError, match="FILL IN|fill in"):
+        umbmark.load_dataset(ours)
+    with pytest.raises(ValueError, match="need logs"):
+        umbmark.init(tmp_path / "c", urdf=yaml)

@@ -10,12 +10,13 @@ use umbmark_core::compare::{
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::Options;
 use umbmark_core::effect::Model;
+use umbmark_core::prose::counted;
 use umbmark_core::result;
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::model_report::{circle_table, contrasts_table, p_text, read_model};
-use crate::prose::hanging;
+use crate::prose::{details_text, hanging};
 use crate::setup_report::{faults_text, remains_text, returns_text};
 use crate::table::table;
 use crate::test_arguments::TestArguments;
@@ -60,7 +61,8 @@ fn on_return_poses(comparison: &Comparison, options: &Options, session: &mut Ses
     if session.json() {
         session.print_json(&result::Comparison::new(comparison, options))?;
     } else {
-        write!(session.out(), "{}", text(comparison, options))?;
+        let text = text(comparison, options, session.verbose());
+        write!(session.out(), "{text}")?;
     }
     Ok(comparison.models.iter().any(|model| model.explains(options.size)))
 }
@@ -70,8 +72,8 @@ fn on_tracks(comparison: &TrackComparison, options: &Options, session: &mut Sess
     if session.json() {
         session.print_json(&result::TrackComparison::new(comparison, options))?;
     } else {
-        let terminal = session.on_terminal();
-        write!(session.out(), "{}", tracks_report::text(comparison, options, terminal))?;
+        let look = tracks_report::Look { terminal: session.on_terminal(), verbose: session.verbose() };
+        write!(session.out(), "{}", tracks_report::text(comparison, options, look))?;
     }
     Ok(comparison.models.iter().any(|model| model.explains(options.size) != Some(false)))
 }
@@ -90,10 +92,12 @@ fn models(
     arguments.model.iter().map(read).collect()
 }
 
-fn text(comparison: &Comparison, options: &Options) -> String {
+fn text(comparison: &Comparison, options: &Options, verbose: bool) -> String {
     let [cw, ccw] = comparison.runs;
-    let mut text =
-        format!("Comparison of {} model(s) with {cw} cw + {ccw} ccw return poses\n\n", comparison.models.len());
+    let mut text = format!(
+        "Comparison of {} with {cw} cw + {ccw} ccw return poses\n\n",
+        counted(comparison.models.len(), "model")
+    );
     let row = |m: &Judged| {
         let heading = m.heading_rmse.map_or("-".to_owned(), |h| format!("{:.2}", h.to_degrees()));
         let explains = if m.explains(options.size) { "yes" } else { "no" };
@@ -104,22 +108,27 @@ fn text(comparison: &Comparison, options: &Options) -> String {
     text += &(faults_text(&comparison.setup) + &returns_text(&comparison.setup));
     for judged in &comparison.models {
         text += &format!("\n{}\n\n", judged.name);
-        text += &table(&["", "measured", "predicted", "p"], judged.statistics.iter().map(statistic_row));
-        text += "\n";
+        if verbose {
+            text += &table(&["", "measured", "predicted", "p"], judged.statistics.iter().map(statistic_row));
+            text += "\n";
+        }
         for sentence in &judged.sentences {
             text += &hanging("", 2, sentence);
         }
         text += &hanging("", 2, noise(judged.noise));
         text += &remains_text(Some(&judged.remains));
     }
-    if !comparison.contrasts.is_empty() {
+    if !comparison.contrasts.is_empty() && verbose {
         text += &format!("\n{}\n", contrasts_table(&comparison.contrasts));
     }
-    if !comparison.circle.is_empty() {
+    if !comparison.circle.is_empty() && verbose {
         text += &format!("\n{}\n", circle_table(&comparison.circle));
     }
     for remark in &comparison.remarks {
         text += &hanging("note", 10, remark);
+    }
+    if !verbose {
+        text += &details_text("each statistic, measured and predicted");
     }
     text
 }

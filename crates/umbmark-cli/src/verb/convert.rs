@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use serde_json::{Value, json};
 use umbmark_core::dataset::{Dataset, RunClock};
+use umbmark_core::prose::counted;
 use umbmark_core::result::Clock;
 use umbmark_core::stats::Measured;
 
@@ -46,7 +47,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
 
 fn text(arguments: &OutputArguments, data: &Dataset, lost: &[String]) -> String {
     let (place, runs) = (arguments.output.display(), data.runs.len());
-    let mut text = format!("wrote {runs} runs to {place} as {}\n", arguments.layout().name);
+    let mut text = format!("wrote {} to {place} as {}\n", counted(runs, "run"), arguments.layout().name);
     if !data.clocks.is_empty() {
         text += &format!("\n{}\n", clocks_table(&data.clocks));
     }

@@ -16,7 +16,7 @@ use crate::data_arguments::DataArguments;
 use crate::model_report::{
     circle_table, contrasts_table, estimates_table, meaning_text, model_of, outliers_text, p_text, unit_of,
 };
-use crate::prose::hanging;
+use crate::prose::{details_text, hanging};
 use crate::setup_report::{disturbances_text, faults_text, reasons_text, remains_text, taken_text};
 use crate::table::{table, with_precision_of};
 use crate::test_arguments::TestArguments;
@@ -54,7 +54,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if session.json() {
         session.print_json(&result::Diagnosis::new(&diagnosis, &options))?;
     } else {
-        let text = text(&data, &diagnosis, &options, session.on_terminal());
+        let look = (session.on_terminal(), session.verbose());
+        let text = text(&data, &diagnosis, &options, look);
         write!(session.out(), "{text}")?;
     }
     let missing = !matches!(diagnosis.verdict, Verdict::Explained | Verdict::NotEnoughData);
@@ -77,7 +78,8 @@ pub(super) fn in_words(verdict: Verdict) -> &'static str {
     }
 }
 
-fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, terminal: bool) -> String {
+/// The verdict, what to do, what is left and the fitted values; the tables of the tests behind that where they are wanted.
+fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, (terminal, verbose): (bool, bool)) -> String {
     let robot = data.robot.as_ref().map_or("", |robot| robot.name.as_str());
     let from = match diagnosis.level {
         Level::Ends => "return poses",
@@ -102,7 +104,19 @@ fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, terminal: bool
         text += &format!("\n{}\n", estimates_table(&diagnosis.fitted, 1.0 - options.size));
         text += &meaning_text(&diagnosis.fitted, &diagnosis.model);
     }
-    text += &ranking_text(&diagnosis.ranking);
+    if verbose {
+        text += &tests_text(diagnosis);
+    }
+    text += &unseen_text(diagnosis);
+    if !verbose {
+        text += &details_text("every test, and the smallest size of each effect that these runs would show");
+    }
+    text
+}
+
+/// All tests, and what the runs would have shown.
+fn tests_text(diagnosis: &Diagnosis) -> String {
+    let mut text = ranking_text(&diagnosis.ranking);
     text += &whole_model_text(&diagnosis.goodness_of_fit);
     text += &identifiability_text(&diagnosis.identifiability);
     if !diagnosis.contrasts.is_empty() {
@@ -111,8 +125,7 @@ fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, terminal: bool
     if !diagnosis.circle.is_empty() {
         text += &format!("\n{}\n", circle_table(&diagnosis.circle));
     }
-    text += &unseen_text(diagnosis);
-    text
+    text + &sizes_text(diagnosis)
 }
 
 /// What to do now: with the model, and with the robot.
@@ -204,7 +217,8 @@ fn ranking_text(ranking: &[Suspect]) -> String {
     text
 }
 
-fn unseen_text(diagnosis: &Diagnosis) -> String {
+/// How large each effect must be to be seen.
+fn sizes_text(diagnosis: &Diagnosis) -> String {
     let mut text = String::new();
     let sizes = diagnosis.least_sizes();
     if !sizes.is_empty() {
@@ -215,6 +229,12 @@ fn unseen_text(diagnosis: &Diagnosis) -> String {
             text += &hanging(&format!("  {}", effect[0].effect), 34, &own.join(", "));
         }
     }
+    text
+}
+
+/// What these runs cannot show.
+fn unseen_text(diagnosis: &Diagnosis) -> String {
+    let mut text = String::new();
     let (absorbed, below) = (diagnosis.absorbed(), diagnosis.below_noise());
     if !(absorbed.is_empty() && below.is_empty()) {
         text += "\nthis test cannot show\n";

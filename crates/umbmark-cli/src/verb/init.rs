@@ -164,7 +164,7 @@ fn template(folder: &Path, existing: Existing, session: &mut Session) -> anyhow:
          then\n  umbmark inspect {folder}      is the data good?\n  \
          umbmark score {folder}        how large are the errors?\n  \
          umbmark calibrate {folder}    what corrects them?\n\n\
-         If you have logs of its wheels: umbmark init {folder} --force --logs PLACE\n"
+         If you have logs of its wheels:\n  umbmark init {folder} --force --logs PLACE\n"
     )?;
     Ok(ExitCode::SUCCESS)
 }

@@ -14,12 +14,17 @@ use umbmark_io::{DatasetError, Topics};
 use crate::Session;
 use crate::contents_report::contents_text;
 use crate::data_arguments::DataArguments;
-use crate::prose::hanging;
+use crate::prose::{hanging, shortened};
 use crate::setup_report::{disturbances_text, faults_text, mounting_text, returns_text};
 use crate::table::{table, with_precision_of};
 use crate::terminal::{plan, sparkline};
 use crate::verb::convert::clocks_table;
 use crate::words::WORDS;
+
+/// So much of a name stands in a table of 80 columns; --json has all of it.
+const LONGEST_NAME: usize = 26;
+/// The same of a topic.
+const LONGEST_TOPIC: usize = 24;
 
 /// Arguments of `inspect`.
 #[derive(Debug, clap::Args)]
@@ -60,6 +65,8 @@ fn contents(
     match read {
         Ok(data) if data.robot.is_some() || data.runs.iter().all(|run| run.log.is_none()) => Ok(Vec::new()),
         Ok(_) => umbmark_io::contents(place, topics, &WORDS),
+        // A topic that was named and is not there is a mistake of the command.
+        Err(DatasetError::Mcap { .. }) if *topics != Topics::default() => Ok(Vec::new()),
         // What the reader of the dataset says is nearer to the data than what that of its contents says.
         Err(_) => Ok(umbmark_io::contents(place, topics, &WORDS).unwrap_or_default()),
     }
@@ -158,14 +165,15 @@ fn picture(log: &LogFacts, moves: &MovesFound, terminal: bool) -> String {
     let (seen, scale) = plan(&moves.computed, &moves.measured, WIDE, HIGH);
     let key = if moves.measured.is_empty() { "" } else { ", o measured, 8 both" };
     let most = moves.speed.iter().copied().fold(0.0, f64::max);
+    let name = shortened(&log.name, LONGEST_NAME);
     let lines = seen.lines().map(|line| format!("  {line}")).map(|line| line.trim_end().to_owned() + "\n");
+    let above = format!("{name} from above: . by ticks{key}; a character is {:.0} mm wide", 1e3 * scale);
+    let speed = format!("{name} speed of the faster wheel over {:.0} s, up to {most:.2} m/s", log.duration);
     format!(
-        "\n{} from above: . by ticks{key}; a character is {:.0} mm wide\n{}\n{} speed of the faster wheel over {:.0} s, up to {most:.2} m/s\n  {}\n",
-        log.name,
-        1e3 * scale,
+        "\n{}{}\n{}  {}\n",
+        hanging("", 0, &above),
         lines.collect::<String>(),
-        log.name,
-        log.duration,
+        hanging("", 0, &speed),
         sparkline(&moves.speed, WIDE, terminal)
     )
 }
@@ -203,7 +211,7 @@ fn logs_table(logs: &[LogFacts]) -> String {
         let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".into());
         let reference = log.reference.as_ref();
         vec![
-            log.name.clone(),
+            shortened(&log.name, LONGEST_NAME),
             log.rows.to_string(),
             format!("{:.1}", log.duration),
             format!("{:.1}", log.rate),
@@ -220,7 +228,11 @@ fn logs_table(logs: &[LogFacts]) -> String {
 fn topics_table(topics: &[RunTopics]) -> String {
     let rows = topics.iter().map(|topics| {
         let reference = topics.reference.clone().unwrap_or_else(|| "-".into());
-        vec![topics.run.clone(), topics.wheels.clone(), reference]
+        vec![
+            shortened(&topics.run, LONGEST_NAME),
+            shortened(&topics.wheels, LONGEST_TOPIC),
+            shortened(&reference, LONGEST_TOPIC),
+        ]
     });
     table(&["topics", "wheels", "reference"], rows)
 }

@@ -9,6 +9,7 @@ use umbmark_core::result::Paper;
 use umbmark_core::watch::Watch;
 
 use crate::Session;
+use crate::prose::wrapped;
 use crate::table::table;
 
 /// An experiment of the paper.
@@ -79,7 +80,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if session.json() {
         session.print_json(&found)?;
     } else {
-        writeln!(session.out(), "{}", texts.join("\n\n\n"))?;
+        write!(session.out(), "{}", wrapped(&texts.join("\n\n\n")))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -110,10 +111,10 @@ fn table_one(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
     }
     let error = |e: &LinkError| format!("  {} of {} off by {:.2e}\n", e.parameter, e.effect, e.size);
     let would: String = found.clapper_would_take.iter().map(error).collect();
-    let header = ["Table I", "E_max,sys [mm]", "simulated", "middle 95 %", "below it", "sigma [mm]", "simulated"];
+    let header = ["Table I [mm]", "E_max,sys", "simul.", "middle 95 %", "below it", "sigma", "simul."];
     Ok(format!(
-        "{}\n\n{} simulated tests of each. \"below it\": the share of them below the published E_max,sys.\n\
-         Noise with the CLAPPER's published sigma would give 13 mm at most in 95 % of tests (2.71 sigma/sqrt(5)). Its 22 mm are therefore\n\
+        "{}\n\n{} simulated tests of each. \"below it\": the share of them below the published E_max,sys; simul.: their mean.\n\
+         Noise with the CLAPPER's published sigma would give 13 mm at most in 95 % of tests (2.71 sigma/sqrt(5)). Its 22 mm are therefore \
          systematic. The paper does not give the cause, and the simulation has none. Each of these alone would be enough:\n{would}{notes}",
         table(&header, rows),
         found.trials
@@ -124,24 +125,24 @@ fn table_two(bench: &Bench, all: &mut Paper) -> Result<String, PaperError> {
     let found = all.table_2.insert(paper::table_two(bench)?);
     let rows = found.columns.iter().map(|column| {
         let exactly = column.heading_noise_rad == 0.0;
-        let robot = if exactly { column.robot.to_owned() } else { format!("{}, +-0.4 deg", column.robot) };
+        let robot = if exactly { column.robot.to_owned() } else { format!("{} +-0.4", column.robot) };
         let mut row = vec![robot, format!("{:.2}", column.printed_rad.to_degrees())];
         row.extend(cells(&column.recomputed, 1f64.to_degrees()));
         let [least, most] = column.runs_rad.map(f64::to_degrees);
         row.push(format!("{least:.1} .. {most:.1}"));
         row
     });
-    let header = ["Table II [deg]", "printed", "recomputed", "simulated", "middle 95 %", "below it", "its runs"];
+    let header = ["Table II [deg]", "printed", "Eq. (5)", "simul.", "middle 95 %", "below it", "its runs"];
     let (on, off) = (found.clapper_corrected_rad, found.clapper_uncorrected_rad);
     Ok(format!(
         "{}\n\n{} simulated tests of each, ten bumps of 10 mm under the inside wheel on the first leg.\n\
-         recomputed: half of Eq. (5), the mean over all runs, from the printed headings; the printed 8.35 of the LabMate needs\n\
+         Eq. (5): half of it, the mean over all runs, from the printed headings; the printed 8.35 of the LabMate needs \
          its two systematic means exchanged. \"its runs\": the least and the largest deviation of a single run.\n\
          The LabMate is assumed to be the calibrated one, whose systematic headings are smaller; the paper does not say which.\n\
-         The K2A turns by D/(2 sqrt(3) rho) a bump if three equal wheels share its slip: that rests on the assumed wheels and circle,\n\
+         The K2A turns by D/(2 sqrt(3) rho) a bump if three equal wheels share its slip: that rests on the assumed wheels and circle, \
          and is not fitted to the printed number.\n\
-         CLAPPER: {:.1} deg with its correction off, {:.3} deg with it: {:.0} times less. \"+-0.4 deg\": the same where each heading is\n\
-         measured to this accuracy (standard deviation 0.4/sqrt(3) deg), as reported, at second hand, for a sonar device in such tests.",
+         CLAPPER: {:.1} deg with its correction off, {:.3} deg with it: {:.0} times less. \"+-0.4\": the same where each heading is \
+         measured to +-0.4 deg (standard deviation 0.4/sqrt(3) deg), as reported, at second hand, for a sonar device in such tests.",
         table(&header, rows),
         found.trials,
         off.to_degrees(),
@@ -160,7 +161,7 @@ fn both_ways(rows: &[BothWays]) -> String {
         }
         words
     });
-    table(&["", "ccw [mm]", "heading [deg]", "cw [mm]", "heading [deg]"], rows)
+    table(&["", "ccw [mm]", "turned [deg]", "cw [mm]", "turned [deg]"], rows)
 }
 
 /// Figs. 2 to 4.
@@ -212,7 +213,7 @@ fn bump_places(_: &Bench, all: &mut Paper) -> Result<String, PaperError> {
 fn figure_eight(_: &Bench, all: &mut Paper) -> Result<String, PaperError> {
     let found = all.figure_eight.insert(paper::figure_eight()?);
     Ok(format!(
-        "Section 3.1: the figure-eight (two circles of 2 m) hides E_d from a tape measure and E_b from a compass,\n\
+        "Section 3.1: the figure-eight (two circles of 2 m) hides E_d from a tape measure and E_b from a compass, \
          in both directions of driving: with positions alone it has the shortcoming named in the paper, with headings it does not\n\n{}",
         both_ways(found)
     ))

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use serde_json::json;
 use umbmark_core::effect::TestKind;
 use umbmark_core::monte_carlo::draw_parameters;
+use umbmark_core::prose::counted;
 use umbmark_core::result::SimulatedRun;
 use umbmark_core::simulate::{is_extended, record_test};
 
@@ -98,6 +99,6 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let place = arguments.output.output.display();
     writeln!(session.out(), "{text}\n")?;
     let seed = session.seed();
-    writeln!(session.out(), "{count} runs of {} in {place}, seed {seed}", model.robot().name)?;
+    writeln!(session.out(), "{} of {} in {place}, seed {seed}", counted(count, "run"), model.robot().name)?;
     Ok(ExitCode::SUCCESS)
 }

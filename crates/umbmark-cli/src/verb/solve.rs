@@ -25,10 +25,6 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 
-    /// Print the model and what it leaves, too
-    #[arg(long)]
-    verbose: bool,
-
     /// Exit with code 3 if the robot has an error that the model does not explain
     #[arg(long)]
     check: bool,
@@ -60,7 +56,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
             session.message("warning", warning);
         }
         let mut text = answer_text(&solution, 1.0 - options.size);
-        if arguments.verbose {
+        if session.verbose() {
             text += &details(&solution, 1.0 - options.size);
         }
         write!(session.out(), "{text}")?;

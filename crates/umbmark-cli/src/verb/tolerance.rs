@@ -13,6 +13,7 @@ use umbmark_io::{ParameterFile, read_parameters};
 use crate::Session;
 use crate::distribution_text::distribution_words;
 use crate::ensemble_report::unit;
+use crate::prose::{hanging, wrapped};
 use crate::study_flags::StudyFlags;
 use crate::table::{table, with_precision_of};
 use crate::terminal::histogram;
@@ -135,16 +136,20 @@ impl Report<'_> {
         };
         let mut rows = vec![row("now".to_owned(), now)];
         for choice in &self.findings.alone {
-            rows.push(row(format!("  {}", self.changes(choice)), choice));
+            rows.push(row(format!(" {}", self.changes(choice)), choice));
         }
-        rows.push(row("all at their last grade".to_owned(), &self.findings.last));
+        rows.push(row("all at last grade".to_owned(), &self.findings.last));
         if let Some(choice) = &self.findings.cheapest {
-            rows.push(row("cheapest that keeps the target".to_owned(), choice));
+            rows.push(row("cheapest enough".to_owned(), choice));
         }
-        let quantile = format!("{:.0} % keep [{unit}]", 100.0 * self.target.share);
-        text += &table(&["grades", "cost", "within [%]", "95 %", &quantile, "95 %"], rows);
-        text += "\n\n";
-        text + &self.verdict()
+        let quantile = format!("{:.0} % [{unit}]", 100.0 * self.target.share);
+        text += &table(&["grades", "cost", "within", "95 %", &quantile, "95 %"], rows);
+        let legend = format!(
+            "within: share of the robots that keep the target, in %. {quantile}: what so many of them keep. 95 %: the interval of \
+             either. Cheapest enough: the cheapest choice that keeps the target."
+        );
+        text += &format!("\n\n{}\n", hanging("", 0, &legend));
+        text + &wrapped(&self.verdict())
     }
 
     /// What a choice has that is not so now.

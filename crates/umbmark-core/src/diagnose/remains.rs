@@ -11,6 +11,7 @@
 //! Source: U-statistics and their jackknife, Arvesen (1969).
 
 use crate::likelihood::Disturbance;
+use crate::prose::counted;
 use crate::stats::{Interval, student_t_quantile};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -300,9 +301,8 @@ impl Remains {
         }
         if !passing.is_empty() {
             let most = passing.iter().map(|at| at.by[0].hypot(at.by[1])).fold(0.0, f64::max);
-            let poses = if passing.len() == 1 { "pose" } else { "poses" };
-            let count = passing.len();
-            parts.push(format!("{count} reference {poses} briefly wrong, by up to {}", MILLIMETRES.text(most)));
+            let poses = counted(passing.len(), "reference pose");
+            parts.push(format!("{poses} briefly wrong, by up to {}", MILLIMETRES.text(most)));
         }
         (!parts.is_empty()).then(|| parts.join("; "))
     }

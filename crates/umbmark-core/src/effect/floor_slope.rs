@@ -1,6 +1,6 @@
 //! A sloping floor that lets the robot drift downhill.
 
-use super::words::mm;
+use super::words::{mm, whole_degrees};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
 use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
@@ -97,7 +97,7 @@ pub(super) fn carried(p: &[f64], when: &str) -> String {
     format!(
         "The floor carries the robot by {} {when}, towards {} degrees from its heading at START",
         mm(libm::hypot(p[0], p[1])),
-        libm::round(libm::atan2(p[1], p[0]).to_degrees())
+        whole_degrees(libm::atan2(p[1], p[0]))
     )
 }
 

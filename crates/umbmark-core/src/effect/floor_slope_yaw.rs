@@ -1,6 +1,6 @@
 //! A sloping floor that turns the robot as it drives across and as it turns.
 
-use super::words::deg;
+use super::words::{deg, whole_degrees};
 use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
 use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Displacement2, Real};
@@ -65,7 +65,7 @@ impl Effect for FloorSlopeYaw {
     const DRIVES: DriveKinds = DriveKinds::ALL;
 
     fn means(p: &[f64], _robot: &Robot) -> String {
-        let most = |p: &[f64]| (deg(libm::hypot(p[0], p[1])), libm::round(libm::atan2(p[1], p[0]).to_degrees()));
+        let most = |p: &[f64]| (deg(libm::hypot(p[0], p[1])), whole_degrees(libm::atan2(p[1], p[0])));
         let turned = |p: &[f64], when: &str| {
             let (size, heading) = most(p);
             format!(

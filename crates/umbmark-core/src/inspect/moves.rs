@@ -2,6 +2,7 @@
 
 use crate::drive::Robot;
 use crate::geometry::Pose2;
+use crate::prose::counted;
 use crate::run::TickLog;
 use crate::run::dead_reckoning::computed_poses;
 use std::f64::consts::FRAC_PI_2;
@@ -215,7 +216,15 @@ fn shape(moves: &[Done]) -> (Option<&'static str>, String) {
         (_, [(a, left), (b, right)]) if left * right < 0.0 && alike(*a, *b) && a + b > 0.8 * (a + b + way) => {
             (Some("figure_eight"), format!("a figure of eight of {:.2} m radius", (a + b) / (left.abs() + right.abs())))
         }
-        _ => (None, format!("no usual shape: {} legs, {} turns, {} arcs", legs.len(), turns.len(), arcs.len())),
+        _ => (
+            None,
+            format!(
+                "no usual shape: {}, {}, {}",
+                counted(legs.len(), "leg"),
+                counted(turns.len(), "turn"),
+                counted(arcs.len(), "arc")
+            ),
+        ),
     }
 }
 

@@ -32,6 +32,7 @@ use umbmark_core::drive::{AckermannDrive, DifferentialDrive, Encoder, Robot};
 use umbmark_core::effect::TestKind;
 use umbmark_core::geometry::wrap;
 use umbmark_core::path::{Path as DrivenPath, SQUARE, SpeedProfile};
+use umbmark_core::prose::counted;
 use umbmark_core::run::dead_reckoning::EndPose;
 
 pub(super) const LAYOUT: Layout = Layout::new("optiodom", "a set of OptiOdom: *_metadata.csv and *_run-NN.csv")
@@ -365,7 +366,7 @@ impl Lost {
     fn sentences(&self, data: &Dataset) -> Vec<String> {
         let mut said = Vec::new();
         let mut say = |is: bool, text: String| said.extend(is.then_some(text));
-        say(self.left_out > 0, format!("{} runs without measured poses with headings", self.left_out));
+        say(self.left_out > 0, format!("{} without measured poses with headings", counted(self.left_out, "run")));
         say(self.merged > 0, format!("{} rows without a pose: their ticks are in the next row with one", self.merged));
         say(self.trailing > 0.0, format!("{} ticks after the last poses", self.trailing));
         say(self.renumbered, "the numbers of the runs: they are counted through both directions".into());

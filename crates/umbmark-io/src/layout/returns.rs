@@ -7,6 +7,7 @@ use crate::save::{Existing, put};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::Dataset;
+use umbmark_core::prose::counted;
 
 pub(super) const LAYOUT: Layout = Layout::new("returns", "the return sheet alone: returns.csv").writes(write);
 
@@ -19,10 +20,10 @@ fn write(data: &Dataset, folder: &Path, existing: Existing) -> Result<Vec<String
     let mut lost = Vec::new();
     let (logs, unknown) = (super::logs(data).count(), data.runs.iter().filter(|run| run.returned.is_none()).count());
     if logs > 0 {
-        lost.push(format!("{logs} logs: a return sheet holds end poses only"));
+        lost.push(format!("{}: a return sheet holds end poses only", counted(logs, "log")));
     }
     if unknown > 0 {
-        lost.push(format!("{unknown} runs without a return error"));
+        lost.push(format!("{} without a return error", counted(unknown, "run")));
     }
     if data.robot.is_some() {
         lost.push("robot and path: copy robot.toml beside the sheet".into());

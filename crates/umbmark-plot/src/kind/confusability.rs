@@ -1,6 +1,7 @@
 //! Which effects look alike.
 
 use umbmark_core::diagnose::classes::ALIKE;
+use umbmark_core::prose::counted;
 
 use super::FigureKind;
 use super::correlations::cells;
@@ -71,7 +72,7 @@ fn phrases(alike: &[(String, String, f64)]) -> String {
     let first: Vec<String> = alike.iter().take(MAX_PAIRS).map(|(a, b, _)| format!("{a} and {b}")).collect();
     match alike.len().saturating_sub(MAX_PAIRS) {
         0 => first.join("; "),
-        rest => format!("{}; and {rest} more pairs", first.join("; ")),
+        rest => format!("{}; and {}", first.join("; "), counted(rest, "more pair")),
     }
 }
 

@@ -7,7 +7,7 @@ Units are SI throughout: m, rad and s, with headings counter-clockwise positive.
 carries a unit (``sigma_m``), that is its unit. What the command does, this package does:
 
 =================================  ===========================================================
-``init``                           files to fill in, for a new robot
+``init``                           files to fill in, or a robot.toml proposed from logs
 ``load_dataset``, ``inspect``      read measurements, and look at them
 ``score``, ``calibrate``           E_max,sys and the rest; E_d, E_b and E_s
 ``calibrate_gears``                the same for drives other than the differential one

@@ -279,7 +279,16 @@ class Figure:
     @staticmethod
     def _from_json(text: str) -> Figure: ...
 
-def init(folder: Place = ..., *, replace: bool = False) -> tuple[PathlibPath, PathlibPath]: ...
+def init(
+    folder: Place = ...,
+    *,
+    logs: Place | None = None,
+    urdf: Place | None = None,
+    controller_yaml: Place | None = None,
+    ticks: str | None = None,
+    reference: str | None = None,
+    replace: bool = False,
+) -> tuple[PathlibPath, ...]: ...
 def merge(files: Sequence[Place], output: Place | None, replace: bool) -> tuple[str, Ensemble]: ...
 def paper(
     names: Sequence[str],
