@@ -146,7 +146,7 @@ fn long_answers_are_short_until_their_tables_are_wanted() {
             .unwrap();
         String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect::<Vec<_>>()
     };
-    for (command, most) in [("compare fresh_day", 60), ("diagnose fresh_day", 50), ("diagnose slope", 40)] {
+    for (command, most) in [("compare fresh_day", 60), ("diagnose fresh_day", 50), ("diagnose slope", 50)] {
         let short = lines(command);
         let long = lines(&format!("{command} --verbose"));
         assert!(short.len() <= most && long.len() > short.len() + 10, "{command}: {} of {}", short.len(), long.len());
