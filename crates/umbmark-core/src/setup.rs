@@ -384,7 +384,7 @@ fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting>
     let mut samples = seen.log.time.iter().copied().peekable();
     let mut drive_to = |time: f64| {
         let from: f64 = *now.get_or_insert(time);
-        let [l, r] = seen.rolled.between(from, time);
+        let [l, r] = seen.rolled.between(from, time).travel;
         let (way, turn) = (0.5 * (l + r), (r - l) / wheelbase);
         let rotation = gain * turn + drift * way;
         pose = pose.moved(&Displacement2 { forward: scale * way, sideways: 0.0, rotation });

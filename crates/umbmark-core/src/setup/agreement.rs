@@ -4,14 +4,16 @@
 //! D = (l + r)/2 and β = (r - l)/b,
 //!
 //! ```text
-//! u = (c e^(-iδ)) D sinc(α/2) e^(iα/2) + (e^(iα) - 1) m,     α = g β + k D
+//! u = (c e^(-iδ)) (D sinc(α/2) + i g A) e^(iα/2) + (e^(iα) - 1) m,     α = g β + k D,     A = ½ ∫ (r dl - l dr) / b
 //! ```
 //!
 //! where c is the scale of the way, δ the yaw of the tracked body on the robot, m its lever arm turned by -δ, g the gain of
-//! turns and k the drift of the heading per metre. Both are linear in what is sought.
+//! turns and k the drift of the heading per metre. The term of A is what the window differs from an arc, to first order: a robot that turns
+//! early in it and drives late comes out beside the arc, and a lever arm would otherwise stand in for that. Rotations are fitted first;
+//! with g from there, both equations are linear in what is sought.
 
 use super::robust::{self, Line};
-use super::windows::Window;
+use super::windows::{Rolling, Window};
 use crate::geometry::Real;
 
 /// Minimum total rotation \[rad\] and distance \[m\] of all windows: less determines nothing.
@@ -30,8 +32,8 @@ pub(super) struct Reading {
     pub clockwise: bool,
 }
 
-/// A window and the travel of both wheels in it \[m\].
-pub(super) type Beside = (Window, [f64; 2]);
+/// A window, and how the wheels rolled in it.
+pub(super) type Beside = (Window, Rolling);
 
 /// The best agreement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,26 +53,60 @@ pub(super) struct Agreement {
     pub shown: [bool; 2],
 }
 
-impl Reading {
-    /// D and β of the wheels' travel, for a wheelbase.
-    pub fn motion(&self, [left, right]: [f64; 2], wheelbase: f64) -> [f64; 2] {
-        let left = if self.opposed { -left } else { left };
-        [0.5 * (left + right), (right - left) / wheelbase]
-    }
+/// A window as it is read.
+#[derive(Clone, Copy)]
+struct Told {
+    /// u \[m\], and α \[rad\].
+    moved: [f64; 2],
+    turned: f64,
+    /// D \[m\], and β \[rad\].
+    way: f64,
+    turn: f64,
+    /// A \[m rad\]; 0 where the headings are those of the course, which is itself that of an arc.
+    area: f64,
+}
 
-    /// u and α.
-    pub fn seen(&self, window: &Window) -> ([f64; 2], f64) {
+impl Reading {
+    fn told(self, (window, rolled): &Beside, wheelbase: f64) -> Told {
         let sign = if self.clockwise { -1.0 } else { 1.0 };
         let (sine, cosine) = libm::sincos(sign * window.heading);
         let [x, y] = window.moved;
-        ([cosine * x + sine * y, cosine * y - sine * x], sign * window.turned)
+        let [left, right] = rolled.travel;
+        let (left, area) = if self.opposed { (-left, -rolled.area) } else { (left, rolled.area) };
+        Told {
+            moved: [cosine * x + sine * y, cosine * y - sine * x],
+            turned: sign * window.turned,
+            way: 0.5 * (left + right),
+            turn: (right - left) / wheelbase,
+            area: if window.with_heading { area / wheelbase } else { 0.0 },
+        }
     }
 }
 
-/// sinc(α/2) e^(iα/2).
-fn chord(turned: f64) -> [f64; 2] {
-    let (sinc, cosine) = (0.5 * turned).sinc_cos();
-    [sinc * cosine, sinc * 0.5 * turned * sinc]
+impl Told {
+    /// The equation of α, without the drift where that is 0.
+    fn turn_row(&self, drift: f64) -> ([f64; 2], f64) {
+        ([self.turn, drift * self.way], self.turned)
+    }
+
+    /// The equations of both coordinates of u, for this gain of the rotations.
+    fn way_rows(&self, gain: f64) -> [([f64; 4], f64); 2] {
+        let (sinc, half) = (0.5 * self.turned).sinc_cos();
+        let (ahead, aside) = (self.way * sinc, gain * self.area);
+        // sin(α/2) is α/2 sinc(α/2).
+        let rise = 0.5 * self.turned * sinc;
+        let (real, imaginary) = (ahead * half - aside * rise, ahead * rise + aside * half);
+        let (sine, cosine) = libm::sincos(self.turned);
+        [
+            ([real, -imaginary, cosine - 1.0, -sine], self.moved[0]),
+            ([imaginary, real, sine, cosine - 1.0], self.moved[1]),
+        ]
+    }
+}
+
+/// What a row leaves with these values.
+fn left<const K: usize>((row, y): &([f64; K], f64), values: &[f64; K]) -> f64 {
+    y - row.iter().zip(values).map(|(x, v)| x * v).sum::<f64>()
 }
 
 impl Agreement {
@@ -87,38 +123,26 @@ impl Agreement {
     fn fitted(windows: &[Beside], reading: Reading, wheelbase: f64, with_drift: bool) -> Agreement {
         let arm = 0.5 * wheelbase;
         let drift = if with_drift { 1.0 } else { 0.0 };
-        let read: Vec<([f64; 2], f64, [f64; 2])> = windows
-            .iter()
-            .map(|(window, rolled)| {
-                let (moved, turned) = reading.seen(window);
-                (moved, turned, reading.motion(*rolled, wheelbase))
-            })
-            .collect();
-        let turns: Vec<([f64; 2], f64)> =
-            read.iter().map(|(_, turned, [way, turn])| ([*turn, drift * way], *turned)).collect();
-        let rows = |(moved, turned, [way, _]): &([f64; 2], f64, [f64; 2])| {
-            let [real, imaginary] = chord(*turned).map(|part| part * way);
-            let (sine, cosine) = libm::sincos(*turned);
-            [([real, -imaginary, cosine - 1.0, -sine], moved[0]), ([imaginary, real, sine, cosine - 1.0], moved[1])]
-        };
-        let ways: Vec<([f64; 4], f64)> = read.iter().flat_map(rows).collect();
-        let (turn, way): (Line<2>, Line<4>) = (robust::fit(&turns), robust::fit(&ways));
+        let told: Vec<Told> = windows.iter().map(|beside| reading.told(beside, wheelbase)).collect();
+        let turns: Vec<([f64; 2], f64)> = told.iter().map(|told| told.turn_row(drift)).collect();
+        let turn: Line<2> = robust::fit(&turns);
+        let ways: Vec<([f64; 4], f64)> = told.iter().flat_map(|told| told.way_rows(turn.values[0])).collect();
+        let way: Line<4> = robust::fit(&ways);
         // Limits the weight of a window to the largest wheel travel in any window.
-        let most = read.iter().map(|(_, _, [way, turn])| way.abs() + arm * turn.abs()).fold(0.0, f64::max);
-        let left = |row: &[f64], values: &[f64], y: f64| y - row.iter().zip(values).map(|(x, v)| x * v).sum::<f64>();
+        let most = told.iter().map(|told| told.way.abs() + arm * told.turn.abs()).fold(0.0, f64::max);
         let stretch = libm::hypot(way.values[0], way.values[1]).max(1.0);
         let (mut off, mut whole) = ([0.0; 2], [0.0; 2]);
-        for ((row, turned), pair) in turns.iter().zip(ways.chunks_exact(2)) {
-            let moved = libm::hypot(left(&pair[0].0, &way.values, pair[0].1), left(&pair[1].0, &way.values, pair[1].1));
+        for (row, pair) in turns.iter().zip(ways.chunks_exact(2)) {
+            let moved = libm::hypot(left(&pair[0], &way.values), left(&pair[1], &way.values));
             let cut = |value: f64, stretch: f64| (value / stretch).min(most);
             off[0] += cut(moved, stretch);
-            off[1] += cut(arm * left(row, &turn.values, *turned).abs(), 1.0);
+            off[1] += cut(arm * left(row, &turn.values).abs(), 1.0);
             whole[0] += cut(libm::hypot(pair[0].1, pair[1].1), stretch);
-            whole[1] += cut(arm * turned.abs(), 1.0);
+            whole[1] += cut(arm * row.1.abs(), 1.0);
         }
         let share = |off: f64, whole: f64| if whole > 0.0 { off / whole } else { 1.0 };
         let (driven, turned) =
-            read.iter().fold((0.0, 0.0), |(w, t), (_, _, [way, turn])| (w + way.abs(), t + turn.abs()));
+            told.iter().fold((0.0, 0.0), |(way, turn), told| (way + told.way.abs(), turn + told.turn.abs()));
         Agreement {
             way: [way.values[0], way.values[1]],
             lever: [way.values[2], way.values[3]],
@@ -156,38 +180,29 @@ impl Agreement {
     pub fn misfits_of(&self, windows: &[Beside], reading: Reading, wheelbase: f64) -> [f64; 2] {
         let (mut off, mut whole, mut shown) = ([0.0; 2], [0.0; 2], [0.0; 2]);
         for beside in windows {
-            let (moved, turned) = reading.seen(&beside.0);
-            let [way, turn] = reading.motion(beside.1, wheelbase);
-            let [x, y, left] = self.residual(reading, beside, wheelbase);
-            let most = way.abs() + 0.5 * wheelbase * turn.abs();
-            whole[0] += libm::hypot(moved[0], moved[1]);
-            whole[1] += turned.abs();
+            let told = reading.told(beside, wheelbase);
+            let [x, y, left] = self.residual_of(&told);
+            let most = told.way.abs() + 0.5 * wheelbase * told.turn.abs();
+            whole[0] += libm::hypot(told.moved[0], told.moved[1]);
+            whole[1] += told.turned.abs();
             // A single wrong pose must not look like another wiring.
             off[0] += libm::hypot(x, y).min(2.0 * most);
             off[1] += left.abs().min(2.0 * most / (0.5 * wheelbase));
-            shown = [shown[0] + way.abs(), shown[1] + turn.abs()];
+            shown = [shown[0] + told.way.abs(), shown[1] + told.turn.abs()];
         }
         let least = [LEAST_WAY, LEAST_TURN];
         [0, 1].map(|k| if shown[k] > least[k] && whole[k] > 0.0 { off[k] / whole[k] } else { 0.0 })
     }
 
     /// Residuals of a window: both coordinates \[m\] and the rotation \[rad\].
-    pub fn residual(&self, reading: Reading, (window, rolled): &Beside, wheelbase: f64) -> [f64; 3] {
-        let (moved, turned) = reading.seen(window);
-        let [way, turn] = reading.motion(*rolled, wheelbase);
-        let [real, imaginary] = chord(turned).map(|part| part * way);
-        let (sine, cosine) = libm::sincos(turned);
-        [
-            moved[0]
-                - (self.way[0] * real - self.way[1] * imaginary + self.lever[0] * (cosine - 1.0)
-                    - self.lever[1] * sine),
-            moved[1]
-                - (self.way[1] * real
-                    + self.way[0] * imaginary
-                    + self.lever[0] * sine
-                    + self.lever[1] * (cosine - 1.0)),
-            turned - self.turn[0] * turn - self.turn[1] * way,
-        ]
+    pub fn residual(&self, reading: Reading, beside: &Beside, wheelbase: f64) -> [f64; 3] {
+        self.residual_of(&reading.told(beside, wheelbase))
+    }
+
+    fn residual_of(&self, told: &Told) -> [f64; 3] {
+        let [x, y] = told.way_rows(self.turn[0]);
+        let way = [self.way[0], self.way[1], self.lever[0], self.lever[1]];
+        [left(&x, &way), left(&y, &way), left(&told.turn_row(1.0), &self.turn)]
     }
 }
 
@@ -209,10 +224,10 @@ mod tests {
                 let after = pose.compose(&body);
                 let moved = [after.x - before.x, after.y - before.y];
                 let turned = after.heading - before.heading;
-                (
-                    Window { from: 0.0, to: 0.4, moved, heading: before.heading, turned, raw_turn: turned },
-                    [way - 0.2 * turn, way + 0.2 * turn],
-                )
+                let heading = before.heading;
+                let window =
+                    Window { from: 0.0, to: 0.4, moved, heading, turned, raw_turn: turned, with_heading: true };
+                (window, Rolling { travel: [way - 0.2 * turn, way + 0.2 * turn], area: 0.0 })
             })
             .collect()
     }

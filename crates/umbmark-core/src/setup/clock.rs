@@ -64,7 +64,7 @@ impl Late {
     }
 }
 
-/// Wheel travel during the true time of each window.
+/// How the wheels rolled during the true time of each window.
 pub(super) fn beside(windows: &[Window], rolled: &Rolled, late: &Late) -> Vec<Beside> {
     windows.iter().map(|w| (*w, rolled.between(late.taken(w.from), late.taken(w.to)))).collect()
 }
@@ -99,7 +99,7 @@ fn delay_of(windows: &[&Window], rolled: &Rolled, wheelbase: f64) -> Option<f64>
         return None;
     }
     let way: Vec<f64> = windows.iter().map(|w| libm::hypot(w.moved[0], w.moved[1])).collect();
-    let still: Vec<f64> = windows.iter().map(|w| faster(rolled.between(w.from, w.to))).collect();
+    let still: Vec<f64> = windows.iter().map(|w| faster(rolled.between(w.from, w.to).travel)).collect();
     // Positions in another unit than metres must not outweigh the rotations.
     let unit = Some(ratio(&way, &still)).filter(|ratio| *ratio > OTHER_UNIT).unwrap_or(1.0);
     let seen: Vec<f64> =
@@ -107,7 +107,7 @@ fn delay_of(windows: &[&Window], rolled: &Rolled, wheelbase: f64) -> Option<f64>
     let reach = (FARTHEST / STEP).round() as i32;
     let off = |late: f64| {
         // The travel of the faster wheel is that of the body plus that of the lever arm, for all signs of the counts.
-        let own: Vec<f64> = windows.iter().map(|w| faster(rolled.between(w.from - late, w.to - late))).collect();
+        let own: Vec<f64> = windows.iter().map(|w| faster(rolled.between(w.from - late, w.to - late).travel)).collect();
         let ratio = ratio(&seen, &own);
         let most = 2.0 * ratio * own.iter().fold(0.0_f64, |most, v| most.max(*v));
         own.iter().zip(&seen).map(|(own, seen)| (seen - ratio * own).abs().min(most)).sum::<f64>()

@@ -233,6 +233,18 @@ fn lever_arm_and_yaw_are_found() {
 }
 
 #[test]
+fn turns_that_begin_at_once_and_fade_show_no_lever_arm() {
+    for (seed, body) in [(40, Pose2::IDENTITY), (41, Pose2::IDENTITY), (42, Pose2::new(0.06, -0.03, 0.0))] {
+        let found = Drive { driven: driven::pursuing, body, seed, ..clean() }.found();
+        assert_eq!(found.faults, [], "{seed}");
+        let mounting = found.mounting.unwrap();
+        near(mounting.ahead, body.x, 3e-3);
+        near(mounting.left, body.y, 3e-3);
+        near(Some(mounting.delay), 0.0, 5e-3);
+    }
+}
+
+#[test]
 fn several_jumps_in_a_set_and_one_in_every_run_are_named_with_time_and_size() {
     let size = [0.4, -0.3, 0.5];
     let two = vec![(0, 20.0, size), (0, 31.0, [-0.2, 0.1, -0.3]), (2, 25.0, [0.0, 0.3, 0.0])];

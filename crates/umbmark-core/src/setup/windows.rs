@@ -25,6 +25,8 @@ pub(super) struct Window {
     pub turned: f64,
     /// The rotation including full turns, as recorded.
     pub raw_turn: f64,
+    /// Whether headings were measured; otherwise they follow from the direction of motion.
+    pub with_heading: bool,
 }
 
 impl Window {
@@ -60,7 +62,7 @@ pub(super) fn windows(log: &TickLog) -> Vec<Window> {
             (Some(from), Some(to)) if with_heading => (from + log.start.heading, to - from),
             _ => (0.0, 0.0),
         };
-        windows.push(Window { from: *from, to: *to, moved, heading, turned: wrap(raw_turn), raw_turn });
+        windows.push(Window { from: *from, to: *to, moved, heading, turned: wrap(raw_turn), raw_turn, with_heading });
     }
     if with_heading { windows } else { by_course(windows) }
 }
@@ -89,19 +91,45 @@ pub(super) fn usual_step(time: &[f64]) -> f64 {
     super::robust::median(time.windows(2).map(|pair| pair[1] - pair[0]))
 }
 
+/// How the wheels rolled between two times.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Rolling {
+    /// Travel of the left and the right wheel \[m\].
+    pub travel: [f64; 2],
+    /// ½ ∫ (r dl - l dr), l and r being the travel since the earlier time: 0 where both wheels roll in one proportion throughout, as on
+    /// an arc, and positive where the robot turns left first and drives ahead afterwards \[m²\].
+    pub area: f64,
+}
+
 /// How far the wheels have rolled by any time, as the counts say.
 pub(super) struct Rolled<'a> {
     log: &'a TickLog,
     per_tick: WheelTravel,
+    /// ½ ∫ (r dl - l dr) from the first sample to each \[m²\].
+    areas: Vec<f64>,
     /// Samples a second, on average.
     rate: f64,
 }
+
+/// Travel of both wheels since the first sample \[m\], and the area up to there \[m²\].
+type Rolls = ([f64; 2], f64);
 
 impl<'a> Rolled<'a> {
     pub fn new(log: &'a TickLog, robot: &Robot) -> Rolled<'a> {
         let span = log.time.last().zip(log.time.first()).map_or(0.0, |(last, first)| last - first);
         let rate = if span > 0.0 { (log.time.len() - 1) as f64 / span } else { 0.0 };
-        Rolled { log, per_tick: robot.metres_per_tick(), rate }
+        let mut rolled = Rolled { log, per_tick: robot.metres_per_tick(), areas: vec![0.0; log.time.len()], rate };
+        for sample in 1..log.time.len() {
+            let (from, to) = (rolled.travel(sample - 1), rolled.travel(sample));
+            rolled.areas[sample] = rolled.areas[sample - 1] + swept(from, to);
+        }
+        rolled
+    }
+
+    /// Travel of both wheels from the first sample to this one \[m\].
+    fn travel(&self, sample: usize) -> [f64; 2] {
+        let WheelTravel { left, right } = self.per_tick;
+        [(self.log.left[sample] - self.log.left[0]) * left, (self.log.right[sample] - self.log.right[0]) * right]
     }
 
     /// Number of samples up to a time; the search starts where uniform sampling would place it.
@@ -118,23 +146,35 @@ impl<'a> Rolled<'a> {
         at
     }
 
-    /// Travel of the left and the right wheel by a time \[m\]: linear between samples, constant beyond the ends.
-    pub fn at(&self, time: f64) -> [f64; 2] {
+    /// By a time: linear between samples, and beyond the ends as in the next one.
+    fn at(&self, time: f64) -> Rolls {
         let times = &self.log.time;
         let after = self.after(time).clamp(1, times.len().max(2) - 1);
         let before = after - 1;
         let after = after.min(times.len() - 1);
         let span = times[after] - times[before];
         let share = if span > 0.0 { ((time - times[before]) / span).clamp(-50.0, 50.0) } else { 0.0 };
-        let of = |counts: &[f64]| counts[before] + share * (counts[after] - counts[before]);
-        [of(&self.log.left) * self.per_tick.left, of(&self.log.right) * self.per_tick.right]
+        let (from, to) = (self.travel(before), self.travel(after));
+        let now = [0, 1].map(|wheel| from[wheel] + share * (to[wheel] - from[wheel]));
+        (now, self.areas[before] + swept(from, now))
     }
 
-    /// Travel between two times \[m\].
-    pub fn between(&self, from: f64, to: f64) -> [f64; 2] {
-        let (from, to) = (self.at(from), self.at(to));
-        [to[0] - from[0], to[1] - from[1]]
+    /// What lies between two times.
+    pub fn between(&self, from: f64, to: f64) -> Rolling {
+        let ((from, before), (to, after)) = (self.at(from), self.at(to));
+        Rolling { travel: way(from, to), area: after - before - swept(from, to) }
     }
+}
+
+/// Travel of both wheels from one state to another \[m\].
+fn way(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
+    [to[0] - from[0], to[1] - from[1]]
+}
+
+/// ½ (r Δl - l Δr) of a straight line of both travels \[m²\].
+fn swept(from: [f64; 2], to: [f64; 2]) -> f64 {
+    let [left, right] = way(from, to);
+    0.5 * (from[1] * left - from[0] * right)
 }
 
 #[cfg(test)]
@@ -181,8 +221,26 @@ mod tests {
         let robot = Robot::labmate();
         let (rolled, per_tick) = (Rolled::new(&log, &robot), robot.metres_per_tick());
         for time in [-0.1, 0.0, 0.03, 4.999, 9.95, 10.2] {
-            let [left, right] = rolled.at(time);
+            let ([left, right], _) = rolled.at(time);
             assert!((left - time * per_tick.left).abs() < 1e-12 && (right - 2.0 * time * per_tick.right).abs() < 1e-12);
         }
+    }
+
+    /// The left wheel rolls by l, and then the right one by r: the area is that of a triangle, ½ (0 - l r).
+    #[test]
+    fn the_area_is_that_between_the_way_of_the_wheels_and_the_straight_one() {
+        let time: Vec<f64> = (0..=40).map(|k| 0.1 * f64::from(k)).collect();
+        let left: Vec<f64> = time.iter().map(|t| 500.0 * t.min(2.0)).collect();
+        let right = time.iter().map(|t| 300.0 * (t - 2.0).max(0.0)).collect();
+        let log = TickLog { left, right, time, ..TickLog::default() };
+        let robot = Robot::labmate();
+        let (rolled, per_tick) = (Rolled::new(&log, &robot), robot.metres_per_tick());
+        for (from, to) in [(0.0, 4.0), (1.5, 2.5), (0.73, 3.18)] {
+            let Rolling { travel: [left, right], area } = rolled.between(from, to);
+            let expected = [500.0 * (2.0 - from) * per_tick.left, 300.0 * (to - 2.0) * per_tick.right];
+            assert!((left - expected[0]).abs() < 1e-12 && (right - expected[1]).abs() < 1e-12);
+            assert!((area + 0.5 * left * right).abs() < 1e-12, "{area}");
+        }
+        assert!(rolled.between(0.1, 1.93).area.abs() < 1e-12);
     }
 }

@@ -10,21 +10,42 @@ pub(super) type Driven = Vec<(Pose2, [f64; 2])>;
 /// Speed \[m/s\] and turn rate \[rad/s\] that a controller asks for.
 type Speeds = [f64; 2];
 
-/// Speeds and turn rates follow what is asked for by 1.5 a second. Integrated by midpoints.
-fn integrated(seconds: f64, mut asked: impl FnMut(usize) -> Speeds) -> Driven {
-    let (mut pose, mut rolled, mut now) = ([0.0; 3], [0.0; 2], [0.0; 2]);
+/// At these speeds and turn rates, by the millisecond. Integrated by midpoints.
+fn at_speeds(seconds: f64, mut speeds: impl FnMut(usize) -> Speeds) -> Driven {
+    let (mut pose, mut rolled) = ([0.0; 3], [0.0; 2]);
     let step = |step: usize| {
         let driven = (Pose2::new(pose[0], pose[1], pose[2]), rolled);
-        for (now, goal) in now.iter_mut().zip(asked(step)) {
-            *now += (goal - *now).clamp(-1.5e-3, 1.5e-3);
-        }
-        let [way, turn] = now.map(|speed| 1e-3 * speed);
+        let [way, turn] = speeds(step).map(|speed| 1e-3 * speed);
         let middle = pose[2] + 0.5 * turn;
         pose = [pose[0] + way * middle.cos(), pose[1] + way * middle.sin(), pose[2] + turn];
         rolled = [rolled[0] + way - 0.5 * WHEELBASE * turn, rolled[1] + way + 0.5 * WHEELBASE * turn];
         driven
     };
     (0..(1000.0 * seconds) as usize).map(step).collect()
+}
+
+/// Speeds and turn rates follow what is asked for by 1.5 a second.
+fn integrated(seconds: f64, mut asked: impl FnMut(usize) -> Speeds) -> Driven {
+    let mut now = [0.0; 2];
+    at_speeds(seconds, |step| {
+        for (now, goal) in now.iter_mut().zip(asked(step)) {
+            *now += (goal - *now).clamp(-1.5e-3, 1.5e-3);
+        }
+        now
+    })
+}
+
+/// Every two seconds another heading is pursued on the way: a turn begins at once and fades, by a factor of e in 0.3 s.
+pub(super) fn pursuing(seconds: f64, stream: &mut Stream) -> Driven {
+    let mut angle = 0.0;
+    at_speeds(seconds, |step| {
+        let phase = step % 2000;
+        if phase == 0 {
+            angle = 2.4 * stream.uniform() - 1.2;
+        }
+        let speed = if step < 2000 { 0.0 } else { 0.4 };
+        [speed, speed / 0.4 * angle / 0.3 * (-1e-3 * phase as f64 / 0.3).exp()]
+    })
 }
 
 /// Every two seconds another speed and turn rate, and rest for two seconds at both ends.
