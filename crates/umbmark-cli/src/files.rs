@@ -2,10 +2,11 @@
 
 use std::io::{self, Write};
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Context;
 use umbmark_io::Existing;
-use umbmark_io::whole_file::{FileError, WholeFile};
+use umbmark_io::whole_file::{FileError, WholeFile, is_standard_output};
 
 /// A file that appears under its name only when it is whole.
 #[derive(Debug)]
@@ -17,7 +18,7 @@ pub struct Pending {
 impl Pending {
     /// Begins a file; refuses one that exists unless `force`.
     pub fn create(path: &Path, force: bool) -> anyhow::Result<Pending> {
-        let file = WholeFile::create(path, existing(force)).map_err(with_remedy)?;
+        let file = begin(path, force).map_err(with_remedy)?;
         Ok(Pending { file, failed: format!("cannot write {}", path.display()) })
     }
 
@@ -37,6 +38,22 @@ impl Pending {
         file.write_all(text.as_bytes()).with_context(|| file.failed())?;
         file.finish()
     }
+}
+
+/// Whether a file goes to standard output, so that everything else goes to standard error.
+static ON_STDOUT: AtomicBool = AtomicBool::new(false);
+
+/// Begins a whole file; refuses one that exists unless `force`. From then on, a file on standard output has it for itself.
+pub fn begin(path: &Path, force: bool) -> Result<WholeFile, FileError> {
+    if is_standard_output(path) {
+        ON_STDOUT.store(true, Ordering::Relaxed);
+    }
+    WholeFile::create(path, existing(force))
+}
+
+/// Whether a file goes to standard output.
+pub fn one_is_on_stdout() -> bool {
+    ON_STDOUT.load(Ordering::Relaxed)
 }
 
 /// Whether `--force` replaces files that exist.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use umbmark_core::dataset::Dataset;
+use umbmark_io::whole_file::is_standard_output;
 use umbmark_io::{DatasetError, Existing, Layout};
 
 use crate::prose::hanging;
@@ -43,6 +44,11 @@ impl OutputArguments {
     /// Writes a dataset; says what is lost.
     pub fn write(&self, data: &Dataset) -> Result<Vec<String>, DatasetError> {
         let existing = if self.force { Existing::Replace } else { Existing::Keep };
+        if is_standard_output(&self.output) {
+            let (file, reason) =
+                (self.output.display().to_string(), "a dataset is a folder, and standard output is none".into());
+            return Err(DatasetError::Unwritable { file, reason });
+        }
         self.layout().write(data, &self.output, existing)
     }
 }

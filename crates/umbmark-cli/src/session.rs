@@ -10,6 +10,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use umbmark_core::watch::Watch;
 use umbmark_plot::render::terminal::Look;
 
+use crate::files;
+
 /// Steps of the bar of work that tells a share.
 const STEPS: f64 = 100.0;
 
@@ -38,16 +40,30 @@ pub struct Options {
     pub verbose: bool,
 }
 
-/// One run of the command: its options, and its standard output.
+/// One run of the command: its options, and where it prints.
 #[derive(Debug)]
 pub struct Session {
     options: Options,
-    out: BufWriter<Stdout>,
+    out: Output,
+}
+
+/// Standard output, buffered; standard error as soon as a file goes to standard output.
+#[derive(Debug)]
+struct Output(BufWriter<Stdout>);
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if files::one_is_on_stdout() { io::stderr().write(bytes) } else { self.0.write(bytes) }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
 }
 
 impl Session {
     pub(crate) fn new(options: Options) -> Session {
-        Session { options, out: BufWriter::new(io::stdout()) }
+        Session { options, out: Output(BufWriter::new(io::stdout())) }
     }
 
     /// Whether a JSON document is wanted.

@@ -19,6 +19,11 @@ pub fn faults_text(setup: &Setup) -> String {
     setup.all_faults().map(|fault| (fault.sentence(), fault.remedy())).map(fault).collect()
 }
 
+/// What makes ticks or tracks suspicious.
+pub fn doubts_text(setup: &Setup) -> String {
+    setup.doubts.iter().map(|doubt| hanging("DOUBT", 10, &format!("{}.", doubt.sentence()))).collect()
+}
+
 /// Clock and mounting of the reference, each with its 95 % interval.
 pub fn mounting_text(setup: &Setup) -> String {
     let Some(m) = &setup.mounting else { return String::new() };

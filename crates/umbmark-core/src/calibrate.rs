@@ -27,7 +27,7 @@ use crate::drive::Robot;
 use crate::evidence::{FitError, Level, robot_of};
 use crate::likelihood::Taken;
 use crate::score::{sentence, summarise};
-use crate::setup::{Fault, Setup};
+use crate::setup::{Fault, Setup, Suspicion};
 use observations::Observations;
 use outcome::Forecast;
 use square::Square;
@@ -159,17 +159,17 @@ pub fn calibrate_beside(
     Ok(Calibration { estimates, level, heading_arm, warnings, doubts, setup, taken })
 }
 
-/// Doubts about the data: for return errors, outlying runs; for tracks, very many jumps, and headings that two different robots would
-/// have.
+/// Doubts about the data: counts that are a factor off; for return errors, outlying runs; for tracks, very many jumps, and headings that
+/// two different robots would have.
 fn doubts_of_data(setup: &Setup, level: Level, robot: &Robot) -> Vec<String> {
-    let outlying = || setup.outlying().map(|run| sentence(&format!("{}; {}", run.sentence(), run.remedy())));
-    match level {
-        Level::Ends => outlying().collect(),
-        Level::Tracks => {
-            let reasons = setup.tail_first(robot).into_iter().chain(setup.many_jumps());
-            reasons.map(|reason| sentence(&reason.sentence())).collect()
+    let reasons = match level {
+        Level::Ends => {
+            let outlying = setup.outlying().cloned().map(Suspicion::OutlyingReturn);
+            setup.doubts.iter().cloned().chain(outlying).collect()
         }
-    }
+        Level::Tracks => setup.suspicions_of_tracks(robot),
+    };
+    reasons.iter().map(|reason| sentence(&reason.sentence())).collect()
 }
 
 fn exact_estimate(

@@ -15,6 +15,7 @@ mod agreement;
 mod by_positions;
 mod cheapest;
 mod clock;
+mod counts_factor;
 mod disturbances;
 mod edges;
 mod faults;
@@ -37,6 +38,7 @@ use disturbances::Found;
 use edges::Sighting;
 use windows::{Rolled, Window, windows};
 
+pub use counts_factor::CountsFactor;
 pub use faults::Fault;
 pub use returns::{Coordinate, Deviant, OutlyingReturn, Returned};
 pub use suspicion::Suspicion;
@@ -137,6 +139,8 @@ pub struct Setup {
     pub noise: PoseNoise,
     /// What the return errors of all runs, also those with bumps, show by themselves.
     pub returned: Returned,
+    /// What makes the ticks, or the tracks as a whole, suspicious.
+    pub doubts: Vec<Suspicion>,
 }
 
 /// Noise of a single pose.
@@ -168,10 +172,15 @@ impl Setup {
     /// Examines all runs of the regular test that have ticks and poses, and the return errors of all runs. `path`: the commanded path, if
     /// it is known.
     pub fn of(runs: &[Run], robot: &Robot, path: Option<&Path>) -> Setup {
-        let setup = Setup::of_tracks(runs, robot);
+        let mut setup = Setup::of_tracks(runs, robot);
         // Return errors follow from the tracks and have the same faults.
-        let returned = if setup.is_sound() { Returned::of(runs, robot, path) } else { Returned::default() };
-        Setup { returned, ..setup }
+        if setup.is_sound() {
+            setup.returned = Returned::of(runs, robot, path);
+        }
+        if setup.is_sound() && setup.mounting.is_none() {
+            setup.doubts.extend(path.and_then(|path| counts_factor::by_path(runs, robot, path)));
+        }
+        setup
     }
 
     fn of_tracks(runs: &[Run], robot: &Robot) -> Setup {
@@ -194,6 +203,9 @@ impl Setup {
         if seen.iter().map(|seen| seen.windows.len()).sum::<usize>() < FEWEST {
             return Setup { runs: seen.iter().map(named).collect(), ..Setup::default() };
         }
+        if let Some(fault) = standing(&seen) {
+            return Setup { faults: vec![fault], runs: seen.iter().map(named).collect(), ..Setup::default() };
+        }
         let pooled = |seen: &[Seen]| -> Vec<Beside> {
             seen.iter().flat_map(|seen| clock::beside(&seen.windows, &seen.rolled, &seen.late)).collect()
         };
@@ -202,7 +214,7 @@ impl Setup {
         let by_run: Vec<(&str, Vec<Beside>)> = seen.iter().map(|seen| (seen.run.name.as_str(), alone(seen))).collect();
         let mut faults = faults::differing(&by_run, (&faults, reading), robot).unwrap_or(faults);
         if faults == [Fault::PositionsExchanged] {
-            faults.extend(faults::sizes(&Agreement::without_drift(&pooled(&seen), reading, wheelbase)));
+            faults.extend(faults::sizes(&Agreement::without_drift(&pooled(&seen), reading, wheelbase), robot));
         }
         if !faults.is_empty() {
             return Setup { faults, runs: seen.iter().map(named).collect(), ..Setup::default() };
@@ -215,18 +227,21 @@ impl Setup {
             agreement = Agreement::of(&pooled(&seen), reading, wheelbase);
         }
         let mounting = mounting(&seen, &agreement, reading, wheelbase);
-        let faults = faults::sizes(&agreement);
+        let faults = faults::sizes(&agreement, robot);
         if !faults.is_empty() {
             return Setup { faults, runs: seen.iter().map(named).collect(), ..Setup::default() };
         }
-        let (named_all, credible) = (|| seen.iter().map(named).collect(), agreement.is_credible());
-        if !credible {
-            return Setup { runs: named_all(), ..Setup::default() };
+        if !agreement.is_credible() {
+            let vague = Suspicion::LittleAgreement { misfit: agreement.misfit };
+            let doubts = agreement.is_vague().then_some(vague).into_iter().collect();
+            return Setup { runs: seen.iter().map(named).collect(), doubts, ..Setup::default() };
         }
+        let doubled = CountsFactor::of(&agreement, robot).filter(CountsFactor::is_double);
         let sightings: Vec<Vec<Sighting>> = seen.iter().map(|seen| sightings(seen, robot, &agreement)).collect();
         let (found, noise) = disturbances::search(&sightings);
         let runs = seen.iter().zip(found).map(|(seen, found)| RunSetup { ..told(named(seen), seen, found) }).collect();
-        Setup { faults, mounting: Some(mounting), runs, noise, returned: Returned::default() }
+        let doubts = doubled.map(Suspicion::Doubled).into_iter().collect();
+        Setup { faults, mounting: Some(mounting), runs, noise, doubts, returned: Returned::default() }
     }
 
     /// Whether the tracks are free of faults, so that the robot can be judged.
@@ -252,11 +267,17 @@ impl Setup {
             let (run, jump) = (run.run.clone(), run.jumps.first()?.clone());
             Some(Suspicion::JumpBeforeReturn { run, jump })
         });
-        self.outlying().cloned().map(Suspicion::OutlyingReturn).chain(jumped).collect()
+        let of_returns = self.outlying().cloned().map(Suspicion::OutlyingReturn).chain(jumped);
+        self.doubts.iter().cloned().chain(of_returns).collect()
+    }
+
+    /// Reasons to doubt the tracks of the regular runs.
+    pub(crate) fn suspicions_of_tracks(&self, robot: &Robot) -> Vec<Suspicion> {
+        self.doubts.iter().cloned().chain(self.tail_first(robot)).chain(self.many_jumps()).collect()
     }
 
     /// The suspicion that too many poses jump or are wrong for an accident.
-    pub(crate) fn many_jumps(&self) -> Option<Suspicion> {
+    fn many_jumps(&self) -> Option<Suspicion> {
         let poses: usize = self.runs.iter().map(|run| run.poses).sum();
         let lost = |run: &RunSetup| run.jumps.len() + (0..run.poses).filter(|pose| run.is_lost(*pose)).count();
         let count = self.runs.iter().map(lost).sum();
@@ -265,17 +286,18 @@ impl Setup {
 
     /// The suspicion that the tracked body faces backward, or that the wheels are exchanged and both count backward: both cause the same
     /// motion.
-    pub(crate) fn tail_first(&self, robot: &Robot) -> Option<Suspicion> {
+    fn tail_first(&self, robot: &Robot) -> Option<Suspicion> {
         let yaw = self.mounting?.yaw?.value;
         let half = robot.drive.kind().has_axle_wheels() && wrap(yaw - std::f64::consts::PI).abs() < HALF_TURN;
         half.then_some(Suspicion::TailFirst { yaw })
     }
 
-    /// What must be known before the return errors are trusted, a sentence each without a full stop: faults, jumps and wrong poses of
+    /// What must be known before the return errors are trusted, a sentence each without a full stop: faults and doubts, jumps and wrong poses of
     /// tracks, runs whose return is far from the others. Of many of a kind, the first [`TOLD`] are listed and the rest counted.
     pub fn notices(&self) -> Vec<String> {
         let told = |fault: &Fault| format!("{}; to correct it, {}", fault.sentence(), fault.remedy());
         let mut notices: Vec<String> = self.all_faults().map(told).collect();
+        notices.extend(self.doubts.iter().map(Suspicion::sentence));
         let jumps = self.runs.iter().flat_map(|run| run.jumps.iter().map(|jump| jump.notice(&run.run)));
         notices.extend(shortened(jumps.collect(), "jumps of tracks"));
         let wrong = self.runs.iter().filter(|run| !run.wrong.is_empty()).map(RunSetup::notice);
@@ -297,6 +319,10 @@ impl Setup {
     }
 }
 
+/// Distance from the beginning of a run at which the reference surely moves \[m\]. Wheels stand that roll less than this in a run \[m\], and
+/// less than this share of that distance.
+const MOVES: f64 = 0.3;
+const STANDS: (f64, f64) = (0.1, 0.01);
 /// A heading within this of half a turn is that of a body that faces backward \[rad\].
 const HALF_TURN: f64 = 0.05;
 /// If more than this share of all poses jump or are wrong, these are no accidents.
@@ -351,6 +377,25 @@ impl RunSetup {
         let (run, wrong, poses) = (&self.run, self.wrong.len(), self.poses);
         format!("{wrong} of {poses} poses of run {run} are wrong, by up to {moved:.3} m{turned}")
     }
+}
+
+/// The fault that the wheels stand while the reference moves: in most runs it comes far from where it began, and in none do they roll.
+fn standing(seen: &[Seen]) -> Option<Fault> {
+    let mut rolled = 0.0;
+    let mut ways = Vec::new();
+    for seen in seen.iter().filter(|seen| !seen.windows.is_empty()) {
+        let windows = seen.windows.iter().map(|window| seen.rolled.between(window.from, window.to).travel);
+        let most = windows.map(|[left, right]| left.abs().max(right.abs()));
+        // Windows overlap by half.
+        rolled += 0.5 * most.sum::<f64>();
+        let first = &seen.log.reference[0];
+        let from_first = seen.log.reference.iter().map(|pose| libm::hypot(pose.x - first.x, pose.y - first.y));
+        // Farther away than one pose in ten: a few wrong poses do not count.
+        ways.push(robust::quantile(from_first, 0.9));
+    }
+    let each = rolled / ways.len().max(1) as f64;
+    let moved = robust::median(ways.into_iter());
+    (moved > MOVES && each < STANDS.0.min(STANDS.1 * moved)).then_some(Fault::Standing { rolled, moved })
 }
 
 /// The findings of a run with times.

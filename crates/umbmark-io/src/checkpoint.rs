@@ -58,6 +58,9 @@ pub enum CheckpointError {
     /// The file exists, and the caller did not say what to do with it.
     #[error("{} exists already", .0.display())]
     Exists(PathBuf),
+    /// It is a device, a pipe or a folder, from which nothing can be gone on with.
+    #[error("{} is not a regular file, and a checkpoint is read again; name another", .0.display())]
+    NotRegular(PathBuf),
     /// It cannot be read.
     #[error("cannot read {}: {}", file.display(), in_words(error, "there is no such file"))]
     Read {
@@ -148,7 +151,9 @@ impl Checkpoint {
 
     /// What the file has, where it is to be gone on with.
     fn read<T: DeserializeOwned>(&self, what: &'static str) -> Result<Option<T>, CheckpointError> {
-        match (self.file.exists(), self.found) {
+        let there = std::fs::metadata(&self.file);
+        match (there.is_ok(), self.found) {
+            _ if there.is_ok_and(|there| !there.is_file()) => Err(CheckpointError::NotRegular(self.file.clone())),
             (true, Found::Refuse) => Err(CheckpointError::Exists(self.file.clone())),
             (true, Found::Resume) => read(&self.file, what).map(Some),
             _ => Ok(None),

@@ -20,6 +20,12 @@ pub enum DatasetError {
         /// What the system says.
         reason: String,
     },
+    /// What came through standard input or a named pipe, and cannot be used.
+    #[error("{message}")]
+    InPipe {
+        /// What is wrong, as with a file.
+        message: String,
+    },
     /// A file or folder that the system does not let us write.
     #[error("{file}: cannot be written: {reason}")]
     Unwritable {

@@ -9,6 +9,7 @@ use super::probe::Probe;
 use super::remedy::Words;
 use super::save::Existing;
 use super::source::Source;
+use super::spool::Spooled;
 use super::track_rows::TrackRows;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -124,8 +125,15 @@ fn choose<Read: Copy>(of: impl Fn(&Layout) -> Option<Read>, recognises: impl Fn(
     readers().find(recognises).or_else(|| readers().next())
 }
 
-/// A dataset from a folder, or from one file of it.
+/// A dataset from a folder, from one file of it, or from what comes through standard input (`-`) or a named pipe.
 pub(super) fn load(path: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
+    let Some(spooled) = Spooled::of(path)? else { return load_place(path, topics) };
+    let mut data = load_place(&spooled.path, topics).map_err(|error| spooled.error(error))?;
+    data.warnings.iter_mut().for_each(|warning| *warning = spooled.told(warning));
+    Ok(data)
+}
+
+fn load_place(path: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
     let probe = Probe::of(path)?;
     match choose(|layout| layout.data, |(recognises, _)| recognises(&probe)) {
         Some((_, read)) => read(&probe, topics),

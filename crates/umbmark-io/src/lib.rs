@@ -41,6 +41,7 @@ mod robot_text;
 mod save;
 mod sheet;
 mod source;
+mod spool;
 mod stale;
 mod start_frame;
 mod template;

@@ -3,6 +3,7 @@
 use super::error::DatasetError;
 use super::layout::csv::{RETURNS, RUNS};
 use super::remedy::Remedy;
+use super::whole_file::{Place, WholeFile};
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -59,9 +60,17 @@ fn lay<Checked>(
     for name in files.keys() {
         let to = folder.join(name);
         let made = to.parent().map_or(Ok(()), std::fs::create_dir_all);
-        made.and_then(|()| std::fs::rename(beside.path().join(name), &to)).map_err(|error| unwritable(&to, &error))?;
+        made.and_then(|()| place(&beside.path().join(name), &to)).map_err(|error| unwritable(&to, &error))?;
     }
     Ok(checked)
+}
+
+/// Gives a whole file its name; what is no regular file stays, and is written through.
+fn place(whole: &Path, to: &Path) -> std::io::Result<()> {
+    match Place::of(to) {
+        Place::Named(place) if place == to => std::fs::rename(whole, to),
+        _ => WholeFile::write(to, Existing::Replace, &std::fs::read(whole)?).map_err(std::io::Error::other),
+    }
 }
 
 /// A new folder with the rights that the user's folders have.

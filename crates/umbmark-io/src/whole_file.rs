@@ -1,4 +1,7 @@
 //! Files written beside and renamed, so that nobody ever sees half of one.
+//!
+//! Only regular files are replaced. A symbolic link stays, and the file that it leads to is replaced; what goes to a device, a named pipe or
+//! standard output (`-`, `/dev/stdout`) is written through it.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -11,10 +14,77 @@ use crate::Existing;
 /// A file that appears under its name only when it is whole.
 #[derive(Debug)]
 pub struct WholeFile {
+    /// As it was named.
     path: PathBuf,
-    file: BufWriter<File>,
-    beside: TempPath,
-    existing: Existing,
+    target: Target,
+}
+
+#[derive(Debug)]
+enum Target {
+    /// A regular file, or a new one: written beside `place` and renamed.
+    Beside { place: PathBuf, file: BufWriter<File>, beside: TempPath, existing: Existing },
+    /// What keeps its identity, and has no half.
+    Through(BufWriter<Sink>),
+}
+
+/// What is written through.
+#[derive(Debug)]
+enum Sink {
+    Stdout(io::Stdout),
+    Special(File),
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Sink::Stdout(out) => out.write(bytes),
+            Sink::Special(file) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Sink::Stdout(out) => out.flush(),
+            Sink::Special(file) => file.flush(),
+        }
+    }
+}
+
+/// Where the bytes of a file go.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// To standard output.
+    Stdout,
+    /// Into what is no regular file.
+    Special,
+    /// Under this name, which is that of no symbolic link.
+    Named(PathBuf),
+}
+
+/// Links that are followed before they are taken for a circle.
+const LINKS: usize = 40;
+
+impl Place {
+    /// Follows symbolic links, also to what does not exist yet.
+    pub(crate) fn of(path: &Path) -> Place {
+        if is_standard_output(path) {
+            return Place::Stdout;
+        }
+        if std::fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
+            return Place::Special;
+        }
+        let mut place = path.to_owned();
+        for _ in 0..LINKS {
+            let Ok(next) = std::fs::read_link(&place) else { break };
+            place = place.parent().map_or(next.clone(), |folder| folder.join(next));
+        }
+        Place::Named(place)
+    }
+}
+
+/// Whether a name is that of standard output: `-`, or what the system calls it.
+pub fn is_standard_output(path: &Path) -> bool {
+    ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|name| path == Path::new(name))
 }
 
 /// Why a file is not written.
@@ -32,6 +102,9 @@ pub enum FileError {
         /// Why.
         error: io::Error,
     },
+    /// A folder stands there.
+    #[error("{} is a folder; name a file", .0.display())]
+    IsFolder(PathBuf),
     /// It cannot be written.
     #[error("cannot write {}: {error}", file.display())]
     Write {
@@ -48,34 +121,50 @@ pub(crate) fn in_words(error: &io::Error, nothing: &str) -> String {
 }
 
 impl WholeFile {
-    /// Begins a file; refuses one that exists where that is to be kept.
+    /// Begins a file; refuses a regular one that exists where that is to be kept.
     pub fn create(path: &Path, existing: Existing) -> Result<WholeFile, FileError> {
-        if existing == Existing::Keep && path.exists() {
-            return Err(FileError::Exists(path.to_owned()));
-        }
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut builder = tempfile::Builder::new();
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let beside = builder.tempfile_in(folder);
-        let (file, beside) =
-            beside.map_err(|error| FileError::Folder { folder: folder.to_owned(), error })?.into_parts();
-        Ok(WholeFile { path: path.to_owned(), file: BufWriter::new(file), beside, existing })
+        let target = match Place::of(path) {
+            Place::Stdout => Target::Through(BufWriter::new(Sink::Stdout(io::stdout()))),
+            Place::Special => {
+                let file = File::options().write(true).open(path);
+                let failed = |error| FileError::Write { file: path.to_owned(), error };
+                Target::Through(BufWriter::new(Sink::Special(file.map_err(failed)?)))
+            }
+            Place::Named(place) if place.is_dir() => return Err(FileError::IsFolder(path.to_owned())),
+            Place::Named(place) if existing == Existing::Keep && place.exists() => {
+                return Err(FileError::Exists(path.to_owned()));
+            }
+            Place::Named(place) => {
+                let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+                let mut builder = tempfile::Builder::new();
+                #[cfg(unix)]
+                builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+                let beside = builder.tempfile_in(folder);
+                let (file, beside) =
+                    beside.map_err(|error| FileError::Folder { folder: folder.to_owned(), error })?.into_parts();
+                Target::Beside { place, file: BufWriter::new(file), beside, existing }
+            }
+        };
+        Ok(WholeFile { path: path.to_owned(), target })
     }
 
     /// Gives the file its name.
     pub fn finish(self) -> Result<(), FileError> {
-        let WholeFile { path, file, beside, existing } = self;
-        let named = file.into_inner().map_err(io::IntoInnerError::into_error).and_then(|file| {
-            file.sync_all()?;
-            drop(file);
-            let named = match existing {
-                Existing::Keep => beside.persist_noclobber(&path),
-                Existing::Replace => beside.persist(&path),
-            };
-            named.map_err(|error| error.error)
-        });
-        named.map_err(|error| FileError::Write { file: path, error })
+        let written = match self.target {
+            Target::Through(mut out) => out.flush(),
+            Target::Beside { place, file, beside, existing } => {
+                file.into_inner().map_err(io::IntoInnerError::into_error).and_then(|file| {
+                    file.sync_all()?;
+                    drop(file);
+                    let named = match existing {
+                        Existing::Keep => beside.persist_noclobber(&place),
+                        Existing::Replace => beside.persist(&place),
+                    };
+                    named.map_err(|error| error.error)
+                })
+            }
+        };
+        written.map_err(|error| FileError::Write { file: self.path, error })
     }
 
     /// Writes a whole file at once.
@@ -88,11 +177,17 @@ impl WholeFile {
 
 impl Write for WholeFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.file.write(bytes)
+        match &mut self.target {
+            Target::Beside { file, .. } => file.write(bytes),
+            Target::Through(out) => out.write(bytes),
+        }
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
+        match &mut self.target {
+            Target::Beside { file, .. } => file.flush(),
+            Target::Through(out) => out.flush(),
+        }
     }
 }
 
@@ -118,5 +213,40 @@ mod tests {
         let nowhere = folder.path().join("no/where.txt");
         let told = WholeFile::write(&nowhere, Existing::Keep, b"").unwrap_err();
         assert!(told.to_string().ends_with("/no: there is no such folder; make it first"), "{told}");
+    }
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_and_the_file_that_it_leads_to_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let [real, link, hanging] = ["real.txt", "link.txt", "hanging.txt"].map(|name| folder.path().join(name));
+        std::fs::write(&real, "one").unwrap();
+        std::os::unix::fs::symlink("real.txt", &link).unwrap();
+        std::os::unix::fs::symlink("new.txt", &hanging).unwrap();
+        assert!(matches!(WholeFile::write(&link, Existing::Keep, b"two"), Err(FileError::Exists(_))));
+        WholeFile::write(&link, Existing::Replace, b"two").unwrap();
+        WholeFile::write(&hanging, Existing::Keep, b"new").unwrap();
+        assert!(link.is_symlink() && hanging.is_symlink());
+        assert_eq!(std::fs::read(&real).unwrap(), b"two");
+        assert_eq!(std::fs::read(folder.path().join("new.txt")).unwrap(), b"new");
+        assert!(matches!(WholeFile::write(folder.path(), Existing::Replace, b""), Err(FileError::IsFolder(_))));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_and_a_named_pipe_are_written_through() {
+        use std::os::unix::fs::FileTypeExt;
+        WholeFile::write(Path::new("/dev/null"), Existing::Keep, b"gone").unwrap();
+        WholeFile::write(Path::new("/dev/null"), Existing::Replace, b"gone").unwrap();
+        assert!(std::fs::metadata("/dev/null").unwrap().file_type().is_char_device());
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let reader = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || std::fs::read(pipe).unwrap()
+        });
+        WholeFile::write(&pipe, Existing::Replace, b"through").unwrap();
+        assert_eq!(reader.join().unwrap(), b"through");
+        assert!(std::fs::metadata(&pipe).unwrap().file_type().is_fifo());
     }
 }

@@ -12,12 +12,12 @@ use umbmark_core::dataset::{Dataset, Run};
 use umbmark_core::geometry::Pose2;
 use umbmark_core::result::Applied;
 use umbmark_core::stats::normal_quantile;
-use umbmark_io::whole_file::{FileError, WholeFile};
+use umbmark_io::whole_file::{FileError, WholeFile, is_standard_output};
 use umbmark_io::{CorrectedFormat, ModelFile};
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
-use crate::files::{existing, with_remedy};
+use crate::files::{begin, with_remedy};
 use crate::prose::hanging;
 use crate::table::table;
 
@@ -76,6 +76,12 @@ impl Arguments {
                     "there are {} runs, and {place} holds one; name a folder, and the format with --to",
                     runs.len()
                 )
+            }
+            (None, [_]) if is_standard_output(&self.output) => {
+                Ok((wish.unwrap_or(CorrectedFormat::Csv), vec![self.output.clone()]))
+            }
+            (None, runs) if is_standard_output(&self.output) => {
+                anyhow::bail!("there are {} runs, and standard output holds one; name a folder", runs.len())
             }
             (None, _) => {
                 let format = wish.unwrap_or(CorrectedFormat::Csv);
@@ -141,7 +147,7 @@ fn write_all(
     let write = |file: &Path, corrected: &Corrected| {
         let failed = |error| FileError::Write { file: file.to_owned(), error };
         let bytes = format.bytes(corrected).map_err(failed)?;
-        let mut whole = WholeFile::create(file, existing(arguments.force))?;
+        let mut whole = begin(file, arguments.force)?;
         whole.write_all(&bytes).map_err(failed)?;
         Ok::<_, FileError>(whole)
     };

@@ -13,7 +13,7 @@ use crate::data_arguments::DataArguments;
 use crate::level_argument::LevelArgument;
 use crate::model_report::{estimates_table, meaning_text, model_of, outliers_text, write_model};
 use crate::prose::hanging;
-use crate::setup_report::{disturbances_text, taken_text};
+use crate::setup_report::{disturbances_text, doubts_text, taken_text};
 
 /// Arguments of `fit`.
 #[derive(Debug, clap::Args)]
@@ -67,7 +67,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         session.message("warning", &format!("{effect} was not fitted: {why}"));
     }
     writeln!(session.out(), "{}", estimates_table(estimates, arguments.intervals.level))?;
-    let disturbed = disturbances_text(setup) + &outliers_text(outliers, setup);
+    let disturbed = doubts_text(setup) + &disturbances_text(setup) + &outliers_text(outliers, setup);
     write!(session.out(), "{}{}{disturbed}", meaning_text(estimates, model), taken_text(taken))?;
     if *usual_noise {
         write!(session.out(), "{}", hanging("note", 10, USUAL_NOISE))?;

@@ -15,7 +15,7 @@ use crate::Session;
 use crate::contents_report::contents_text;
 use crate::data_arguments::DataArguments;
 use crate::prose::{hanging, shortened};
-use crate::setup_report::{disturbances_text, faults_text, mounting_text, returns_text};
+use crate::setup_report::{disturbances_text, doubts_text, faults_text, mounting_text, returns_text};
 use crate::table::{table, with_precision_of};
 use crate::terminal::{plan, sparkline};
 use crate::verb::convert::clocks_table;
@@ -89,7 +89,10 @@ fn direction_name(direction: Option<Direction>) -> &'static str {
 
 fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
     // What has to be mended first stands first.
-    let mut text = inspection.setup.as_ref().map_or(String::new(), |setup| faults_text(setup) + &returns_text(setup));
+    let mut text = inspection
+        .setup
+        .as_ref()
+        .map_or(String::new(), |setup| faults_text(setup) + &doubts_text(setup) + &returns_text(setup));
     if !text.is_empty() {
         text += "\n";
     }

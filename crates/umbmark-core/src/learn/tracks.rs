@@ -19,6 +19,9 @@ const FAR: f64 = 1.5;
 
 /// Learns which effects the robot of some tracks has, beside those of a `start`.
 pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch: &Watch) -> Result<Learnt, FitError> {
+    if !observed.is_sound() && observed.runs.is_empty() {
+        return Ok(Learnt::of_faults(observed, Vec::new()));
+    }
     let mut model = Model::new(&observed.robot);
     let mut steps = vec![step(plainly(observed, &model)?, None)];
     if !observed.is_sound() {

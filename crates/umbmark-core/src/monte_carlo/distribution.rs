@@ -6,6 +6,13 @@ use crate::parameter::{Parameter, ParameterError};
 use crate::random::Stream;
 use crate::stats::{normal_quantile, standard_normal_share};
 
+/// Normal draws beyond the bounds that are thrown away before the quantile of the cut distribution is taken: where the standard deviation
+/// is many times as wide as the bounds, hardly any draw lies within them.
+const REJECTIONS: usize = 64;
+/// Where less than this share of a normal distribution lies between the bounds, it is as good as flat there, and differences of shares have
+/// lost their digits.
+const FLAT: f64 = 1e-6;
+
 /// The distribution of a parameter over robots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Distribution {
@@ -100,7 +107,10 @@ impl Distribution {
                 let [low, high] = [bounds.0, bounds.1].map(|end| standard_normal_share((end - mean) / sd));
                 // Shares of 0 and 1 have no finite quantile.
                 let share = (low + u * (high - low)).clamp(f64::MIN_POSITIVE, 1.0 - 0.5 * f64::EPSILON);
-                (mean + sd * normal_quantile(share), bounds)
+                let is_flat = high - low < FLAT && bounds.0 <= mean && mean <= bounds.1;
+                let value =
+                    if is_flat { bounds.0 + u * (bounds.1 - bounds.0) } else { mean + sd * normal_quantile(share) };
+                (value, bounds)
             }
             Distribution::Uniform { min, max } => (min + (max - min) * u, (min, max)),
             Distribution::Triangular { min, mode, max } => (triangular([min, mode, max], u), (min, max)),
@@ -231,13 +241,13 @@ impl Draw {
     pub(super) fn draw(&self, stream: &mut Stream) -> f64 {
         match self.distribution {
             Distribution::Normal { mean, sd } => {
-                // The mean lies within the bounds, so half of the draws or more do: this ends.
-                loop {
+                for _ in 0..REJECTIONS {
                     let value = mean + sd * stream.normal();
                     if self.parameter.check(value).is_ok() || sd == 0.0 {
                         return value;
                     }
                 }
+                self.distribution.quantile(stream.uniform(), self.parameter.bounds)
             }
             other => other.quantile(stream.uniform(), self.parameter.bounds),
         }
@@ -247,6 +257,23 @@ impl Draw {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_normal_distribution_far_wider_than_its_bounds_is_flat_between_them() {
+        let mut stream = Stream::new(2, 0, 0);
+        for sd in [1e3, 1e8, 1e300] {
+            let wide = Draw::new("wheelbase", "e_b", Distribution::Normal { mean: 1.0, sd }).unwrap();
+            let (low, high) = wide.parameter().bounds;
+            let drawn: Vec<f64> = (0..2000).map(|_| wide.draw(&mut stream)).collect();
+            assert!(drawn.iter().all(|value| (low..=high).contains(value)), "{sd}");
+            let mean = drawn.iter().sum::<f64>() / 2000.0;
+            // Five standard errors of the mean of 2000 uniform values.
+            assert!(
+                (mean - 0.5 * (low + high)).abs() < 5.0 * (high - low) / 12f64.sqrt() / 2000f64.sqrt(),
+                "{sd}: {mean}"
+            );
+        }
+    }
 
     #[test]
     fn normal_draws_stay_within_the_bounds_and_uniform_ones_within_their_range() {

@@ -199,6 +199,8 @@ impl From<&setup::OutlyingReturn> for OutlyingReturn {
 pub struct Setup {
     /// Columns, units and frames that contradict their names. Correct these first: until then no number describes the robot.
     pub faults: Vec<Fault>,
+    /// What makes ticks or tracks suspicious although no fault is certain, a sentence each.
+    pub doubts: Vec<String>,
     /// Clock and mounting of the reference; null without enough absolute poses.
     pub reference: Option<Mounting>,
     /// The delay of the reference in each run with poses.
@@ -224,6 +226,7 @@ impl From<&setup::Setup> for Setup {
         let runs = || setup.runs.iter();
         Setup {
             faults: setup.all_faults().map(fault).collect(),
+            doubts: setup.doubts.iter().map(setup::Suspicion::sentence).collect(),
             reference: setup.mounting.as_ref().map(Mounting::from),
             delays: runs().map(delay).collect(),
             jumps: runs().flat_map(|run| run.jumps.iter().map(|jump| Jump::new(run, jump))).collect(),

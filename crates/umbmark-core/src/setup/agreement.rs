@@ -159,6 +159,11 @@ impl Agreement {
         self.shown.contains(&true) && (0..2).all(|k| !self.shown[k] || self.misfits[k] < CREDIBLE)
     }
 
+    /// Whether something moves, and yet most of the motion disagrees.
+    pub fn is_vague(&self) -> bool {
+        (0..2).any(|k| self.shown[k] && self.misfits[k] >= CREDIBLE)
+    }
+
     /// Way by the reference over way by the wheels.
     pub fn scale(&self) -> f64 {
         libm::hypot(self.way[0], self.way[1])

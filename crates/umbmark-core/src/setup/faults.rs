@@ -1,6 +1,7 @@
 //! Columns that contradict their names.
 
 use super::agreement::{Agreement, Beside, Reading};
+use super::counts_factor::CountsFactor;
 use crate::drive::{DriveKind, Robot};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -13,13 +14,15 @@ const NOTHING: f64 = 0.75;
 /// to another reading.
 const LEAST_GAIN: f64 = 0.2;
 /// If the misfit of distance or rotation exceeds this, its scale is meaningless.
-const VAGUE: f64 = 0.5;
+pub(super) const VAGUE: f64 = 0.5;
 /// Units in which lengths are written by mistake: how many of them a metre has.
 const UNITS: [(f64, &str); 4] = [(1000.0, "mm"), (100.0, "cm"), (39.37, "inches"), (3.2808, "feet")];
+/// Counts that are off by more than this factor, or the inverse, are no robot's.
+const MOST_SCALE: f64 = 3.0;
 /// Minimum number of windows for a run to be examined by itself.
 const FEWEST: usize = 20;
 /// Tolerance, as a share, to recognise a unit or a factor of the counts by its size.
-const NEAR: f64 = 0.08;
+pub(super) const NEAR: f64 = 0.08;
 
 /// Data that contradicts its name.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,7 +58,16 @@ pub enum Fault {
         /// Way by the reference over way by the wheels.
         ratio: f64,
     },
-    /// Some runs were recorded with other columns or headings than the rest.
+    /// Way and rotations by the reference are both so many times those by the wheels.
+    Counts(CountsFactor),
+    /// The reference moves, and the wheels hardly roll.
+    Standing {
+        /// Way by the counts in all runs \[m\].
+        rolled: f64,
+        /// How far the reference comes from the beginning of a run \[m\].
+        moved: f64,
+    },
+    /// Some runs were recorded with other columns or headings than the rest, or with ticks and poses of different drives.
     InRuns {
         /// What is wrong in these runs.
         fault: Box<Fault>,
@@ -122,6 +134,11 @@ impl Fault {
                     "the measured track is {ratio:.3} times as long as the wheels rolled: positions, wheel diameter or ticks per revolution are wrong"
                 )
             }
+            Fault::Counts(factor) => factor.sentence(),
+            Fault::Standing { rolled, moved } => format!(
+                "the wheels stand while the reference moves: {rolled:.3} m by the counts of all runs, and {moved:.2} m from the beginning of a \
+                 run by the reference"
+            ),
             Fault::InRuns { fault, runs } => {
                 format!("in {}, and not in the other runs, {}", named(runs), fault.sentence())
             }
@@ -160,6 +177,14 @@ impl Fault {
             Fault::LengthsIn { unit: unit @ ("mm" | "cm"), .. } => format!("call the columns x_ref_{unit} and y_ref_{unit}"),
             Fault::LengthsIn { .. } => "convert the columns to metres".into(),
             Fault::OtherScale { .. } => "check the unit of the positions and [robot] in robot.toml".into(),
+            Fault::Counts(factor) => factor.remedy(),
+            Fault::Standing { .. } => {
+                "check whether the columns of the ticks are those of the wheels, and ticks_per_revolution under [robot] in robot.toml".into()
+            }
+            Fault::InRuns { fault, runs } if matches!(**fault, Fault::OtherMotion { .. }) => format!(
+                "check whether the ticks and the poses of {} are of the same drive, or move their files out of runs",
+                named(runs)
+            ),
             Fault::InRuns { fault, runs } => format!(
                 "correct the recordings of {} ({}), or keep them in a folder of their own and {} there",
                 named(runs),
@@ -208,7 +233,8 @@ fn named(runs: &[String]) -> String {
     }
 }
 
-/// The faults of runs that were recorded with other columns or headings than the rest; `None` where all were recorded alike.
+/// The faults of runs that were recorded with other columns or headings than the rest, or whose wheels and reference do not belong together;
+/// `None` where all were recorded alike.
 ///
 /// A run is examined by itself only if it disagrees with the agreement of all runs.
 pub(super) fn differing(
@@ -226,10 +252,16 @@ pub(super) fn differing(
     if !runs.iter().any(|(_, own)| own.len() >= FEWEST && doubtful(own)) {
         return None;
     }
-    // Each run by itself, if its motion then agrees and determines distance and rotation.
+    // Each run by itself, if its motion then agrees and determines distance and rotation; and those that agree in no reading.
     let mut kinds: Vec<(Vec<Fault>, Vec<String>)> = Vec::new();
+    let (mut strange, mut least): (Vec<String>, f64) = (Vec::new(), 1.0);
     for (name, own) in runs.iter().filter(|(_, own)| own.len() >= FEWEST) {
         let (faults, reading) = look(own, robot);
+        if let ([Fault::OtherMotion { misfit }], true) = (&faults[..], doubtful(own)) {
+            strange.push((*name).to_owned());
+            least = least.min(*misfit);
+            continue;
+        }
         let in_degrees = || own.iter().map(|(window, rolled)| (window.in_degrees(), *rolled)).collect::<Vec<Beside>>();
         let read = if faults.contains(&Fault::HeadingInDegrees) { &in_degrees() } else { own };
         let found = Agreement::without_drift(read, reading, wheelbase);
@@ -244,7 +276,11 @@ pub(super) fn differing(
     let each = |(faults, runs): (Vec<Fault>, Vec<String>)| {
         faults.into_iter().map(move |fault| Fault::InRuns { fault: Box::new(fault), runs: runs.clone() })
     };
-    (kinds.len() > 1).then(|| kinds.into_iter().flat_map(each).collect())
+    let mut faults: Vec<Fault> = if kinds.len() > 1 { kinds.into_iter().flat_map(each).collect() } else { Vec::new() };
+    if !strange.is_empty() && strange.len() < runs.len() {
+        faults.push(Fault::InRuns { fault: Box::new(Fault::OtherMotion { misfit: least }), runs: strange });
+    }
+    (!faults.is_empty()).then_some(faults)
 }
 
 /// The faults of columns and headings, and the reading on which everything else is based.
@@ -257,8 +293,9 @@ pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
             |k: usize, ratio: f64| found.misfits[k] > VAGUE || (LEAST_GAIN..=1.0 / LEAST_GAIN).contains(&ratio);
         // If the rotations agree, a distance in another unit is possible too.
         let turns = found.shown[1] && found.misfits[1] < DOUBTFUL;
-        let sound = (turns && unit_of(found.scale()).is_some() || possible(0, found.scale()))
-            && possible(1, found.turn[0].abs());
+        let unit = turns && unit_of(found.scale()).is_some();
+        let sound = CountsFactor::of(found, robot).is_some()
+            || (unit || possible(0, found.scale())) && possible(1, found.turn[0].abs());
         if sound { found.misfit } else { found.misfit.max(1.0) }
     };
     let given = of(windows, Reading::default());
@@ -322,10 +359,14 @@ fn turned(found: &Agreement, Reading { opposed, clockwise }: Reading, kind: Driv
     clockwise.then_some(Fault::HeadingClockwise).into_iter().chain(wheels).collect()
 }
 
-/// Values whose unit differs from that of their column.
-pub(super) fn sizes(found: &Agreement) -> Vec<Fault> {
+/// Values whose unit differs from that of their column, and counts that are far off.
+pub(super) fn sizes(found: &Agreement, robot: &Robot) -> Vec<Fault> {
     let ratio = found.scale();
-    if !found.shown[0] || found.misfits[0] > VAGUE || (LEAST_GAIN..=1.0 / LEAST_GAIN).contains(&ratio) {
+    let within = |most: f64| (1.0 / most..=most).contains(&ratio);
+    if let Some(factor) = CountsFactor::of(found, robot).filter(|_| !within(MOST_SCALE)) {
+        return vec![Fault::Counts(factor)];
+    }
+    if !found.shown[0] || found.misfits[0] > VAGUE || within(1.0 / LEAST_GAIN) {
         return Vec::new();
     }
     // The nominal diameter may be wrong too, but not by as much as units differ.

@@ -171,7 +171,7 @@ impl Returned {
 }
 
 /// Way by the ticks of a log \[m\]; `None` where the robot has none.
-fn way(log: &TickLog, robot: &Robot) -> Option<f64> {
+pub(super) fn way(log: &TickLog, robot: &Robot) -> Option<f64> {
     let per_tick = robot.metres_per_tick();
     let steps = log.left.windows(2).zip(log.right.windows(2));
     let way: f64 = steps

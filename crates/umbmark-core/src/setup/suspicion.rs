@@ -1,5 +1,6 @@
 //! What makes the data suspicious although no fault is certain.
 
+use super::counts_factor::CountsFactor;
 use super::{Jump, OutlyingReturn};
 
 /// One suspicion.
@@ -26,6 +27,15 @@ pub enum Suspicion {
         /// Number of all poses.
         poses: usize,
     },
+    /// Way and rotations by the reference are twice those by the wheels, or half of them.
+    Doubled(CountsFactor),
+    /// The wheels roll much farther than the commanded path is long, or much less.
+    OtherWay(CountsFactor),
+    /// Wheels and reference agree so little that neither delay nor mounting nor jumps can be told.
+    LittleAgreement {
+        /// Share of the motion that disagrees.
+        misfit: f64,
+    },
 }
 
 impl Suspicion {
@@ -47,6 +57,16 @@ impl Suspicion {
             Suspicion::JumpBeforeReturn { run, jump } => jump.notice(run),
             Suspicion::ManyJumps { count, poses } => format!(
                 "{count} of {poses} poses are wrong or jump: look at the reference, and whether the counts are read as the drive makes them"
+            ),
+            Suspicion::Doubled(factor) => format!("{}; {}", factor.sentence(), factor.remedy()),
+            Suspicion::OtherWay(factor) => format!(
+                "by their counts the wheels roll {:.3} times the commanded path: ticks_per_revolution, the wheel diameter or [path] is wrong; if                  the path is right, {}",
+                1.0 / factor.ratio,
+                factor.remedy()
+            ),
+            Suspicion::LittleAgreement { misfit } => format!(
+                "the reference hardly moves as the wheels roll ({:.0} % of the motion disagrees), so that neither its delay nor wrong poses nor                  jumps could be looked for: check whether each file has ticks and poses of the same drive",
+                100.0 * misfit
             ),
         }
     }

@@ -182,6 +182,78 @@ fn headings_and_positions_that_are_not_what_they_are_called_are_named() {
 }
 
 #[test]
+fn counts_that_are_a_factor_off_are_named_with_the_line_that_mends_them() {
+    // Ticks per revolution that are written, for wheels with 20 000.
+    let looked = |written: f64| {
+        let robot = Robot { encoder: Encoder::new(written, None, None).unwrap(), ..robot() };
+        Setup::of(&clean().runs(), &robot, None)
+    };
+    for written in [80_000.0, 5_000.0, 200_000.0, 2_000.0] {
+        let found = looked(written);
+        let [Fault::Counts(factor)] = &found.faults[..] else { panic!("{written}: {:?}", found.faults) };
+        assert!((factor.ratio * 20_000.0 / written - 1.0).abs() < 0.01, "{factor:?}");
+        let line = format!("write ticks_per_revolution = 20000 under [robot] in robot.toml instead of {written} ");
+        assert!(found.faults[0].remedy().starts_with(&line), "{}", found.faults[0].remedy());
+    }
+    for written in [40_000.0, 10_000.0] {
+        let found = looked(written);
+        assert!(found.is_sound() && found.mounting.is_some());
+        let [doubt @ Suspicion::Doubled(_)] = &found.doubts[..] else { panic!("{written}: {:?}", found.doubts) };
+        assert!(doubt.sentence().contains("ticks_per_revolution = 20000 ") && doubt.forbids_writing());
+        assert!(found.notices().iter().any(|notice| *notice == doubt.sentence()));
+    }
+    let found = looked(20_000_000.0).faults;
+    assert!(matches!(found[..], [Fault::Standing { rolled, moved }] if rolled < 0.1 && moved > 0.3), "{found:?}");
+    // No usual factor: about so many.
+    let found = looked(70_000.0).faults;
+    assert!(matches!(&found[..], [fault @ Fault::Counts(_)] if fault.remedy().contains("about 20")), "{found:?}");
+    for written in [20_000.0, 17_000.0, 25_000.0] {
+        let found = looked(written);
+        assert_eq!((&found.faults[..], &found.doubts[..]), (&[][..], &[][..]));
+    }
+}
+
+#[test]
+fn wheels_that_roll_twice_the_commanded_path_are_suspicious_where_no_reference_tells() {
+    let mut runs = clean().runs();
+    let way = |run: &Run| {
+        let log = run.log.as_ref().unwrap();
+        let pairs = log.left.windows(2).zip(log.right.windows(2));
+        let ticks: f64 = pairs.map(|(l, r)| 0.5 * ((l[1] - l[0]).abs() + (r[1] - r[0]).abs())).sum();
+        ticks * robot().metres_per_tick().left
+    };
+    let rolled = way(&runs[0]);
+    runs.truncate(1);
+    runs[0].log.as_mut().unwrap().reference.clear();
+    for (times, suspicious) in [(1.0, false), (1.3, false), (2.0, true), (0.25, true)] {
+        let turns = 4.0 * 0.5 * WHEELBASE * std::f64::consts::FRAC_PI_2;
+        let side = 0.25 * (rolled / times - turns);
+        let path = Path::new(&crate::path::SQUARE, &[side], crate::path::SpeedProfile::default()).unwrap();
+        let doubts = Setup::of(&runs, &robot(), Some(&path)).doubts;
+        let told = doubts
+            .iter()
+            .any(|d| matches!(d, Suspicion::OtherWay(factor) if (factor.ratio * times - 1.0).abs() < 0.01));
+        assert_eq!(told, suspicious, "{times}: {doubts:?}");
+        assert_eq!(doubts.is_empty(), !suspicious);
+    }
+}
+
+#[test]
+fn runs_with_poses_of_another_drive_are_named_and_only_these() {
+    for strange in [vec![2], vec![0, 3]] {
+        let (mut runs, other) = (clean().runs(), Drive { seed: 78, ..clean() }.runs());
+        for index in &strange {
+            runs[*index].log.as_mut().unwrap().reference = other[*index].log.clone().unwrap().reference;
+        }
+        let found = Setup::of(&runs, &robot(), None);
+        let [Fault::InRuns { fault, runs }] = &found.faults[..] else { panic!("{strange:?}: {:?}", found.faults) };
+        assert!(matches!(**fault, Fault::OtherMotion { .. }), "{fault:?}");
+        assert_eq!(*runs, strange.iter().map(|index| format!("run_{index}")).collect::<Vec<String>>());
+        assert!(found.faults[0].remedy().contains("of the same drive"));
+    }
+}
+
+#[test]
 fn poses_of_another_drive_are_named_and_nothing_is_said_of_the_clock() {
     let (mut runs, other) = (clean().runs(), Drive { seed: 77, ..clean() }.runs());
     for (run, other) in runs.iter_mut().zip(other) {

@@ -36,8 +36,7 @@ const REMEMBERS: f64 = 2.5;
 /// Reasons from the noise, the jumps and the size of the residuals.
 pub(super) fn of_model(observed: &Observed, model: &Model, noise: &Noise, left: &Misses, seed: u64) -> Vec<Reason> {
     let mut reasons: Vec<Reason> = observed.setup.faults.iter().cloned().map(Reason::Fault).collect();
-    reasons.extend(observed.setup.tail_first(&observed.robot).map(Reason::Data));
-    reasons.extend(observed.setup.many_jumps().map(Reason::Data));
+    reasons.extend(observed.setup.suspicions_of_tracks(&observed.robot).into_iter().map(Reason::Data));
     reasons.extend(of_noise(observed, noise, model.robot().drive.wheelbase()));
     reasons.extend(of_size(observed, noise, left, seed));
     reasons

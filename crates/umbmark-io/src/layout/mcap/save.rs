@@ -7,6 +7,7 @@ use crate::RobotFile;
 use crate::error::DatasetError;
 use crate::remedy::Remedy;
 use crate::save::{Existing, unwritable};
+use crate::whole_file::{Place, WholeFile};
 use std::io::{Cursor, Write};
 use std::path::Path;
 use umbmark_core::dataset::{Dataset, Run, TickLog};
@@ -61,12 +62,18 @@ fn save_log(
     file: &Path,
     existing: Existing,
 ) -> Result<TickLog, DatasetError> {
-    if existing == Existing::Keep && file.exists() {
+    let place = Place::of(file);
+    if existing == Existing::Keep && matches!(&place, Place::Named(place) if place.exists()) {
         let (file, remedy) = (file.display().to_string(), Remedy::Replace { another: "name" });
         return Err(DatasetError::AlreadyThere { file, remedy });
     }
     let refuse = |reason: String| DatasetError::Unwritable { file: file.display().to_string(), reason };
-    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    // Read back before it gets its name; what is written through has no place beside it.
+    let elsewhere = std::env::temp_dir();
+    let folder = match &place {
+        Place::Named(place) => place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")),
+        Place::Stdout | Place::Special => &elsewhere,
+    };
     let mut builder = tempfile::Builder::new();
     builder.prefix(".umbmark-").suffix(".mcap");
     #[cfg(unix)]
@@ -86,11 +93,12 @@ fn save_log(
     if !same(log, &read) {
         return Err(refuse("its log would not be read back as it is".into()));
     }
-    let named = match existing {
-        Existing::Keep => beside.persist_noclobber(file),
-        Existing::Replace => beside.persist(file),
+    let named = match (place, existing) {
+        (Place::Named(place), Existing::Keep) => beside.persist_noclobber(place).map(drop).map_err(|error| error.error),
+        (Place::Named(place), Existing::Replace) => beside.persist(place).map(drop).map_err(|error| error.error),
+        _ => WholeFile::write(file, existing, &bytes).map_err(std::io::Error::other),
     };
-    named.map_err(|error| unwritable(file, &error.error))?;
+    named.map_err(|error| unwritable(file, &error))?;
     Ok(read)
 }
 
