@@ -22,7 +22,7 @@ pub(crate) mod watched;
 mod whiten;
 
 pub use beginning::Taken;
-pub(crate) use beginning::{FAR, of_reference, ratios};
+pub(crate) use beginning::{FAR, of_reference, ratios, stands_for_the_reference};
 pub use fitted::{Fitted, Outlier};
 pub use fitting::{NUISANCE, USUAL_NOISE};
 pub use noise::Noise;

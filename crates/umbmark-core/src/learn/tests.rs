@@ -145,6 +145,35 @@ fn learning_that_is_stopped_ends_with_the_step_that_it_is_at_and_says_so() {
     assert!(!whole.partial && whole.steps.len() == 4 && whole.steps[..3] == part.steps);
 }
 
+/// Seed 62; a reference that is 80 ms late.
+#[test]
+fn a_delay_that_the_given_model_fixes_is_kept_and_otherwise_it_is_that_of_the_motion() {
+    let robot = Robot::labmate();
+    let mut model = Model::new(&robot);
+    for (effect, parameter, value) in [
+        ("wheelbase", "e_b", 0.99),
+        ("reference_delay", "delay_s", 0.08),
+        ("wheel_noise", "k_sqrt_m", 4e-4),
+        ("reference_noise", "position_sd_m", 8e-4),
+        ("reference_noise", "heading_sd_rad", 1e-3),
+    ] {
+        model.set(effect, parameter, value).unwrap();
+    }
+    let data = watched(&model, 3, 62);
+    let options = Options { draws: 99, ..Options::default() };
+    let stop = AtomicBool::new(false);
+    let watch = Watch { stop: &stop, progress: &|_| () };
+    let delay = |start: &Model| {
+        let learnt = learn_from(&data, start, &options, &watch).unwrap();
+        learnt.model.get("reference_delay", "delay_s").unwrap()
+    };
+    let mut start = Model::new(&robot);
+    let found = delay(&start);
+    assert!((found - 0.08).abs() < 2e-3, "{found}");
+    start.set("reference_delay", "delay_s", 0.05).unwrap();
+    assert_eq!(delay(&start), 0.05);
+}
+
 /// Seed 61; 3 + 3 squares of 2 m, the model complete. Standard errors come from what is new from pose to pose, thousands of values,
 /// and Student's t from the runs, six of them: the intervals are wide rather than narrow.
 #[test]

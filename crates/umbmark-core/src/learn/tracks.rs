@@ -7,7 +7,7 @@ use crate::diagnose::{Diagnosis, Options, Verdict};
 use crate::effect::{Model, Part, find};
 use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit};
 use crate::evidence::{Estimate, Evidence, FitError};
-use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE};
+use crate::likelihood::{Fitted, Noise, Observed, USUAL_NOISE, stands_for_the_reference};
 use crate::watch::Watch;
 
 /// The runs do not determine a first effect if its standard error exceeds this multiple of its usual size ...
@@ -31,6 +31,13 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
         *model = fitted.model.clone();
         steps.push(step(fitted, Some((effect, vec![effect], p))));
     };
+    // What the given model fixes of the reference holds, whatever the motion says.
+    let fixed = |part: &&Part| !part.free && stands_for_the_reference(part.effect.name());
+    for part in start.parts().iter().filter(fixed) {
+        model.adopt(part);
+        let fitted = plainly(observed, &model)?;
+        add(&mut model, part.effect.name(), None, fitted);
+    }
     // The values of the reference from the motion come first: without them, physical effects cannot be separated from the reference.
     let (begun, taken) = observed.begin(&model)?;
     for own in &taken {
@@ -50,7 +57,7 @@ pub(super) fn learn(observed: &Observed, start: &Model, options: &Options, watch
     }
     let known =
         |part: &Part| first.contains(&part.effect.name()) || taken.iter().any(|own| own.effect == part.effect.name());
-    let given: Vec<&Part> = start.parts().iter().filter(|part| !known(part)).collect();
+    let given: Vec<&Part> = start.parts().iter().filter(|part| !known(part) && !fixed(part)).collect();
     let own: Vec<&str> = given.iter().filter(|part| part.free).map(|part| part.effect.name()).collect();
     for part in given {
         model.adopt(part);

@@ -25,6 +25,14 @@ const PARTS: f64 = 8.0;
 /// Effects that look like a delay of the reference to the motion.
 const CLOCKS: [&str; 3] = ["reference_delay", "reference_clock_rate", "encoder_skew"];
 
+/// Effects of clock and mounting of the reference that the motion alone determines.
+const OF_REFERENCE: [&str; 4] = ["reference_delay", "reference_clock_rate", "marker_offset", "marker_yaw"];
+
+/// Whether the motion alone determines what an effect is for: a model that fixes it says otherwise.
+pub(crate) fn stands_for_the_reference(effect: &str) -> bool {
+    OF_REFERENCE.contains(&effect) || CLOCKS.contains(&effect)
+}
+
 /// An effect of the reference that was taken from the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taken {

@@ -146,6 +146,8 @@ class Setup(Record, frozen=True):
     faults : tuple[Fault, ...]
         Columns, units and frames that contradict their names. Correct these first: until then no
         number describes the robot.
+    doubts : tuple[str, ...]
+        What makes ticks or tracks suspicious although no fault is certain, a sentence each.
     reference : Mounting or None
         Clock and mounting of the reference; None without enough absolute poses.
     delays : tuple[Delay, ...]
@@ -159,6 +161,7 @@ class Setup(Record, frozen=True):
     """
 
     faults: tuple[Fault, ...]
+    doubts: tuple[str, ...]
     reference: Mounting | None
     delays: tuple[Delay, ...]
     jumps: tuple[Jump, ...]
