@@ -71,7 +71,7 @@ fn a_file_on_standard_output_stands_there_alone() {
     let tape = tape();
     let figure = umbmark(tape.path(), &["plot", "returns", ".", "-o", "/dev/stdout"]);
     assert_ne!(figure.status.code(), Some(101), "{figure:?}");
-    let model = umbmark(tape.path(), &["fit", ".", "--add", "wheel_diameters", "-o", "-"]);
+    let model = umbmark(tape.path(), &["fit", ".", "--add", "wheel_diameter_ratio", "-o", "-"]);
     assert!(model.status.success() && text(&model.stdout).contains("[[effect]]"), "{model:?}");
     let refused = umbmark(tape.path(), &["convert", ".", "-o", "-"]);
     assert!(!refused.status.success() && text(&refused.stderr).contains("standard output is none"), "{refused:?}");
