@@ -24,12 +24,8 @@ fn umbmark(folder: &Path, arguments: &[&str]) -> Output {
 
 /// The command with some bytes on its standard input.
 fn fed(folder: &Path, arguments: &[&str], bytes: &[u8]) -> Output {
-    let mut child = command(folder, arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child =
+        command(folder, arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut input = child.stdin.take().unwrap();
     let bytes = bytes.to_vec();
     // What is not read to its end breaks the pipe.

@@ -20,6 +20,9 @@ use crate::geometry::Real;
 const LEAST_TURN: f64 = 0.5;
 const LEAST_WAY: f64 = 0.1;
 
+/// The wheels clearly turn the robot if by more than this in a window \[rad\].
+const CLEAR_TURN: f64 = 0.05;
+
 /// The misfit of distance and of rotation must be below this.
 const CREDIBLE: f64 = 0.7;
 
@@ -197,6 +200,20 @@ impl Agreement {
         }
         let least = [LEAST_WAY, LEAST_TURN];
         [0, 1].map(|k| if shown[k] > least[k] && whole[k] > 0.0 { off[k] / whole[k] } else { 0.0 })
+    }
+
+    /// Misfit of rotation in those windows of a run in which the wheels clearly turn the robot, as a share of their rotation: near 1 where the
+    /// reference turns at other times; 0 if there are too few.
+    pub fn misfit_of_turns(&self, windows: &[Beside], reading: Reading, wheelbase: f64) -> f64 {
+        let (mut off, mut whole) = (0.0, 0.0);
+        for told in
+            windows.iter().map(|beside| reading.told(beside, wheelbase)).filter(|told| told.turn.abs() > CLEAR_TURN)
+        {
+            let [_, _, left] = self.residual_of(&told);
+            off += left.abs().min(2.0 * told.turn.abs());
+            whole += told.turn.abs();
+        }
+        if whole > 2.0 * LEAST_TURN { off / whole } else { 0.0 }
     }
 
     /// Residuals of a window: both coordinates \[m\] and the rotation \[rad\].

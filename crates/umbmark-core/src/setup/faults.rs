@@ -254,18 +254,18 @@ pub(super) fn differing(
     }
     // Each run by itself, if its motion then agrees and determines distance and rotation; and those that agree in no reading.
     let mut kinds: Vec<(Vec<Fault>, Vec<String>)> = Vec::new();
-    let (mut strange, mut least): (Vec<String>, f64) = (Vec::new(), 1.0);
+    let (mut strange, mut least): (Vec<String>, f64) = (Vec::new(), f64::INFINITY);
     for (name, own) in runs.iter().filter(|(_, own)| own.len() >= FEWEST) {
-        let (faults, reading) = look(own, robot);
-        if let ([Fault::OtherMotion { misfit }], true) = (&faults[..], doubtful(own)) {
-            strange.push((*name).to_owned());
-            least = least.min(*misfit);
-            continue;
-        }
+        let (faults, own_reading) = look(own, robot);
         let in_degrees = || own.iter().map(|(window, rolled)| (window.in_degrees(), *rolled)).collect::<Vec<Beside>>();
         let read = if faults.contains(&Fault::HeadingInDegrees) { &in_degrees() } else { own };
-        let found = Agreement::without_drift(read, reading, wheelbase);
+        let found = Agreement::without_drift(read, own_reading, wheelbase);
         if found.shown != [true; 2] || found.misfits.iter().any(|misfit| *misfit > DOUBTFUL) {
+            let misfit = agreed.misfit_of_turns(own, reading, wheelbase);
+            if misfit > NOTHING {
+                strange.push((*name).to_owned());
+                least = least.min(misfit);
+            }
             continue;
         }
         match kinds.iter_mut().find(|(own, _)| *own == faults) {
@@ -277,7 +277,9 @@ pub(super) fn differing(
         faults.into_iter().map(move |fault| Fault::InRuns { fault: Box::new(fault), runs: runs.clone() })
     };
     let mut faults: Vec<Fault> = if kinds.len() > 1 { kinds.into_iter().flat_map(each).collect() } else { Vec::new() };
-    if !strange.is_empty() && strange.len() < runs.len() {
+    // Others must agree: if none do, nothing is known of any.
+    let others = runs.len() > strange.len() && !together.iter().any(|fault| matches!(fault, Fault::OtherMotion { .. }));
+    if !strange.is_empty() && others {
         faults.push(Fault::InRuns { fault: Box::new(Fault::OtherMotion { misfit: least }), runs: strange });
     }
     (!faults.is_empty()).then_some(faults)
