@@ -171,7 +171,7 @@ def test_a_robot_proposed_from_logs_is_that_of_the_command(command: Path, tmp_pa
     assert written == ours / "robot.toml"
     assert written.read_bytes() == (theirs / "robot.toml").read_bytes()
     assert len(list((ours / "runs").iterdir())) == len(list((theirs / "runs").iterdir())) > 0
-    with pytest.raises(ValueError, match="FILL IN|fill in"):
+    with pytest.raises(ValueError, match=r"FILL IN|fill in"):
         umbmark.load_dataset(ours)
     with pytest.raises(ValueError, match="need logs"):
         umbmark.init(tmp_path / "c", urdf=yaml)
