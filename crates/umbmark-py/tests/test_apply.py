@@ -65,7 +65,7 @@ def test_covariance_grows_as_the_noise_of_the_model_says() -> None:
     assert model.noise["heading_rad_per_sqrt_m"] == 0.004
     assert umbmark.Model().noise is None
     ticks = np.linspace(0.0, 20_000.0, 2001)
-    time = 0.01 * np.arange(2001)
+    time = np.linspace(0.0, 20.0, 2001)
     run = umbmark.Run("cw", 1, time_s=time, ticks_left=ticks, ticks_right=ticks)
     data = umbmark.Dataset(umbmark.Robot.labmate(), None, [run])
     (corrected,) = umbmark.apply(data, model)
