@@ -113,7 +113,8 @@ pub fn usual_rate(times: &[f64]) -> Option<f64> {
 }
 
 /// The steps per turn of wheel positions \[rad\] that come from a counter: all of their changes are multiples of one step,
-/// 2π / ticks per revolution. `None` where they are not, or where they are too few to say.
+/// 2π / ticks per revolution. `None` where they are not, where they are too few to say, or where every change is more than four steps, as in a
+/// log of fast wheels that does not begin at rest.
 ///
 /// The smallest change is the first guess of the step, or twice, thrice or four times the step. Larger changes, in their
 /// order, make it sharper, so that the number of steps in the next one is certain.
@@ -175,9 +176,11 @@ mod tests {
             // Steps that vary round an eighth of a radian per second, read at 50 Hz.
             let usual = (per_turn / TAU * 5.0 / 50.0).max(1.5);
             let mut tick = 0.0;
+            // From rest, so that the first readings are a few steps apart.
             let ticks: Vec<f64> = (0..400)
-                .map(|_| {
-                    tick += (stream.uniform() * 2.0 * usual).round();
+                .map(|reading| {
+                    let change = (stream.uniform() * 2.0 * usual).round();
+                    tick += change.min(f64::from(reading + 1));
                     tick
                 })
                 .collect();
