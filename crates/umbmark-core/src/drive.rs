@@ -12,6 +12,7 @@ macro_rules! every_drive {
             Synchro(synchro::SynchroDrive),
             Clapper(clapper::ClapperDrive),
             Ackermann(ackermann::AckermannDrive),
+            Tricycle(tricycle::TricycleDrive),
         }
     };
 }
@@ -25,6 +26,7 @@ pub use differential::WheelTravel;
 pub use encoder::{Encoder, MAX_COUNTER_BITS, Wiring, roll_over};
 pub use kind::{DriveKind, DriveKinds};
 pub use kinematics::Spelling;
+pub(crate) use tricycle::front_wheel_angle;
 
 use crate::parameter::{Parameter, ParameterError, Sizes};
 use kinematics::Kinematics;
@@ -298,6 +300,16 @@ impl Robot {
 
     /// Ticks of the axle's wheels since START, as logs hold them, for readings of the drive's own counters.
     pub fn axle_ticks(&self, counters: [Vec<f64>; 2]) -> [Vec<f64>; 2] {
+        self.axle_ticks_by(counters, |before, _| before)
+    }
+
+    /// The same where the angle of a row is that of all that was driven since the row before.
+    pub fn axle_ticks_by_rows(&self, counters: [Vec<f64>; 2]) -> [Vec<f64>; 2] {
+        self.axle_ticks_by(counters, |before, now| [before[0], now[1]])
+    }
+
+    /// The same, with the reading before as it is seen from the one after it.
+    fn axle_ticks_by(&self, counters: [Vec<f64>; 2], seen: impl Fn([f64; 2], [f64; 2]) -> [f64; 2]) -> [Vec<f64>; 2] {
         if self.drive.kind().counters() == DriveKind::Differential.counters() {
             return counters;
         }
@@ -306,7 +318,7 @@ impl Robot {
         let (mut left, mut right, mut before) = (0.0, 0.0, None);
         for (first, second) in counters[0].iter().zip(&counters[1]) {
             let now = [*first, *second];
-            let rolled = self.drive.travel(&self.encoder, before.unwrap_or(now), now);
+            let rolled = self.drive.travel(&self.encoder, seen(before.unwrap_or(now), now), now);
             (left, right, before) =
                 (left + rolled.left / per_tick.left, right + rolled.right / per_tick.right, Some(now));
             ticks[0].push(left);

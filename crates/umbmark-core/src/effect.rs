@@ -72,6 +72,8 @@ register! {
     steer_coupling,
     contact_trail,
     base_yaw,
+    front_wheel_zero,
+    front_wheel_gain,
     axle_distance,
     steering_zero,
     steering_gain,

@@ -226,7 +226,8 @@ impl<'a> Export<'a> {
     /// The robot with the numbers that its odometry should have.
     fn corrected(&self) -> Result<Robot, ExportError> {
         let mut drive = self.robot().drive.corrected(Correction::of(self.model).values())?;
-        for (effect, parameter, key) in LENGTHS {
+        let first = drive.first_effects();
+        for (effect, parameter, key) in LENGTHS.into_iter().filter(|(effect, ..)| !first.contains(effect)) {
             if let (Some(ratio), Some(nominal)) = (self.model.get(effect, parameter), drive.number(key)) {
                 drive = drive.with(key, ratio * nominal)?;
             }

@@ -209,7 +209,7 @@ fn damaged_optiodom_files() {
     let robot = optiodom::parse_metadata("set", source(tricycle)).unwrap().0;
     let steered = "0,0,0,0,0,0\n0.05,-5.3e-05,-3e-05,-0.0003,12,0.1\n0.1,0.002,0.004,0.02,-12,-0.2\n";
     survive(steered, 8, |text| {
-        let log = optiodom::parse_tricycle_run(source(text), &robot)
+        let log = optiodom::parse_tricycle_run(source(text))
             .and_then(|recording| recording.into_log(Some(&robot), None, &mut Vec::new()));
         log.is_ok_and(|log| {
             assert!(log.left.iter().chain(&log.right).chain(&log.time).all(|value| value.is_finite()));

@@ -29,6 +29,8 @@ pub(super) struct Recording {
     pub counts: [Vec<f64>; 2],
     /// Whether a reading is what was counted since the row before, rather than in all.
     pub per_cycle: bool,
+    /// Whether the angle of a row is that of all that was driven since the row before, rather than that at its time.
+    pub angle_of_row: bool,
     pub reference: Vec<ReferencePose>,
 }
 
@@ -61,6 +63,7 @@ impl Recording {
             ));
         }
         let [left, right] = match robot {
+            Some(robot) if self.angle_of_row => robot.axle_ticks_by_rows(robot.encoder.wiring().counters(ticks)),
             Some(robot) => robot.axle_ticks(robot.encoder.wiring().counters(ticks)),
             None => ticks,
         };

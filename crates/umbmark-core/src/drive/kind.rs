@@ -38,6 +38,7 @@ struct Facts {
     has_tick_logs: bool,
     has_axle_wheels: bool,
     steers: bool,
+    drives_front_wheel: bool,
     has_trucks: bool,
     from_values: fn(&[f64]) -> Result<Drive, DriveError>,
 }
@@ -54,6 +55,7 @@ impl Facts {
             has_tick_logs: D::HAS_TICK_LOGS,
             has_axle_wheels: D::HAS_AXLE_WHEELS,
             steers: D::STEERS,
+            drives_front_wheel: D::DRIVES_FRONT_WHEEL,
             has_trucks: D::HAS_TRUCKS,
             from_values: |values| D::from_values(values).map(Into::into),
         }
@@ -114,6 +116,11 @@ impl DriveKind {
     /// other way.
     pub fn steers(self) -> bool {
         self.facts().steers
+    }
+
+    /// Whether the steered wheel is also the one that is driven and counted, so that it can turn the robot on the spot.
+    pub fn drives_front_wheel(self) -> bool {
+        self.facts().drives_front_wheel
     }
 
     /// Whether it is two trucks with a link.

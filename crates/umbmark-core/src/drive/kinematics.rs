@@ -47,6 +47,9 @@ pub(super) trait Kinematics: Sized {
     /// See [`DriveKind::steers`](super::DriveKind::steers).
     const STEERS: bool = false;
 
+    /// See [`DriveKind::drives_front_wheel`](super::DriveKind::drives_front_wheel).
+    const DRIVES_FRONT_WHEEL: bool = false;
+
     /// See [`DriveKind::has_trucks`](super::DriveKind::has_trucks).
     const HAS_TRUCKS: bool = false;
 

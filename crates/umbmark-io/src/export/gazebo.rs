@@ -19,7 +19,7 @@ fn write(export: &Export) -> Result<Written, ExportError> {
     let mut elements = vec![("wheel_separation", drive.wheelbase()), ("wheel_radius", 0.5 * (left + right))];
     let (file, name, joints) = if kind.has_axle_wheels() {
         ("gz-sim-diff-drive-system", "DiffDrive", "left_joint and right_joint")
-    } else if kind.steers() {
+    } else if kind.steers() && !kind.drives_front_wheel() {
         elements.push(("wheel_base", drive.axle_distance()));
         let joints =
             "left_joint, right_joint, left_steering_joint, right_steering_joint, kingpin_width and steering_limit";

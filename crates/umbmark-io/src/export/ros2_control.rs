@@ -3,6 +3,7 @@
 use super::covariance::{diagonal, of_pose, of_twist, sentences};
 use super::text::{list, number};
 use super::{Comment, Export, ExportError, Target, Written};
+use umbmark_core::drive::Drive;
 
 /// Parameters to be loaded with the controller: some are read-only later.
 ///
@@ -11,7 +12,8 @@ use super::{Comment, Export, ExportError, Target, Written};
 /// controllers have no multipliers: they get the corrected lengths.
 pub static TARGET: Target = Target {
     name: "ros2_control",
-    about: "YAML for diff_drive_controller, ackermann_steering_controller or tricycle_steering_controller, with covariances",
+    about: "YAML for diff_drive_controller, ackermann_steering_controller, tricycle_steering_controller or tricycle_controller, with \
+            covariances",
     write,
 };
 
@@ -20,6 +22,8 @@ fn write(export: &Export) -> Result<Written, ExportError> {
     let mut notes = export.uncorrected();
     let (usual, values) = if kind.has_axle_wheels() {
         ("diff_drive_controller", of_two_wheels(export)?)
+    } else if kind.drives_front_wheel() {
+        ("tricycle_controller", of_front_wheel(export, &mut notes)?)
     } else if kind.steers() {
         ("ackermann_steering_controller", of_steering(export, &mut notes)?)
     } else {
@@ -52,8 +56,15 @@ fn of_two_wheels(export: &Export) -> Result<Vec<(&'static str, f64)>, ExportErro
     ])
 }
 
-fn of_steering(export: &Export, notes: &mut Vec<String>) -> Result<Vec<(&'static str, f64)>, ExportError> {
-    let (nominal, corrected) = (export.robot().drive, export.corrected()?.drive);
+/// Of a tricycle whose front wheel is driven.
+fn of_front_wheel(export: &Export, notes: &mut Vec<String>) -> Result<Vec<(&'static str, f64)>, ExportError> {
+    let corrected = export.corrected()?.drive;
+    of_the_driver(&export.robot().drive, &corrected, notes);
+    Ok(vec![("wheelbase", corrected.axle_distance()), ("wheel_radius", 0.5 * corrected.wheel_diameter_left())])
+}
+
+/// Notes on numbers of the steering, which no controller has.
+fn of_the_driver(nominal: &Drive, corrected: &Drive, notes: &mut Vec<String>) {
     for key in ["steering_zero_rad", "steering_ticks_per_revolution"] {
         let [before, after] = [nominal, corrected].map(|drive| drive.number(key));
         if let Some(after) = after.filter(|_| before != after) {
@@ -61,6 +72,11 @@ fn of_steering(export: &Export, notes: &mut Vec<String>) -> Result<Vec<(&'static
             notes.push(format!("not in this file: {key} = {value}, which the driver of the steering has to know"));
         }
     }
+}
+
+fn of_steering(export: &Export, notes: &mut Vec<String>) -> Result<Vec<(&'static str, f64)>, ExportError> {
+    let (nominal, corrected) = (export.robot().drive, export.corrected()?.drive);
+    of_the_driver(&nominal, &corrected, notes);
     Ok(vec![
         ("wheelbase", corrected.axle_distance()),
         ("traction_track_width", corrected.wheelbase()),

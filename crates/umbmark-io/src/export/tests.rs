@@ -78,6 +78,24 @@ fn a_car_gets_its_lengths_and_its_steering_is_named_as_left_over() {
     assert!(notes.iter().all(|note| !note.contains("axle_distance") && text.contains(note)), "{notes:?}");
 }
 
+#[test]
+fn a_tricycle_that_drives_its_front_wheel_has_a_controller_of_its_own_and_each_length_is_corrected_once() {
+    let robot = Robot { drive: DriveKind::Tricycle.usual(), ..Robot::labmate() };
+    let model = model_of(
+        &robot,
+        &[("front_wheel_zero", "angle_rad", 0.004), ("axle_distance", "ratio", 0.98), ("scale", "e_s", 1.01)],
+    );
+    let Written { text, notes } = written("ros2_control", &Export::of(&model));
+    assert!(text.contains("tricycle_controller:\n"), "{text}");
+    assert!((value(&text, "wheelbase", ": ") - 0.49).abs() < 1e-9, "{text}");
+    assert!((value(&text, "wheel_radius", ": ") - 0.075 * 1.01).abs() < 1e-9);
+    assert!(notes.iter().any(|note| note.contains("steering_zero_rad = 0.004")), "{notes:?}");
+    for target in ["gazebo", "urdf", "mujoco"] {
+        let refused = Target::named(target).unwrap().write(&Export::of(&model));
+        assert!(matches!(refused, Err(ExportError::Drive { .. })), "{target}");
+    }
+}
+
 /// Oracle: sums over one second of a filter that integrates speeds with that variance, by hand.
 #[test]
 fn covariances_of_speeds_add_up_to_the_noise_of_the_motion() {

@@ -37,7 +37,7 @@ pub struct UrdfFile {
 fn write(export: &Export) -> Result<Written, ExportError> {
     let corrected = export.corrected()?.drive;
     let kind = corrected.kind();
-    if !(kind.has_axle_wheels() || kind.steers()) {
+    if !kind.has_axle_wheels() && (!kind.steers() || kind.drives_front_wheel()) {
         return Err(export.no_drive(TARGET.name));
     }
     let remedy = Remedy::Name { purpose: "give it with", argument: Argument::Urdf, value: "FILE" };

@@ -7,9 +7,8 @@
 //! of each run, so the return error is taken there and reproduces their published numbers.
 //!
 //! Of a tricycle (`tricyc`), whose front wheel is driven and steered: `Li` the distance of that wheel from the rear axle \[m\], `Di` its
-//! diameter \[m\], `Thi` what is added to its angle \[rad\]; rows end with its ticks of this cycle and its angle \[rad\]. An
-//! [`AckermannDrive`] counts on the rear axle, so a row's ticks n count as n cos δ there. Its track width stands nowhere and is taken to be
-//! `Li`: nothing but the size of wheel noise depends on it.
+//! diameter \[m\], `Thi` what is added to its angle \[rad\]; rows end with its ticks of this cycle and its angle in it \[rad\]: a
+//! [`TricycleDrive`]. Its track width stands nowhere and is taken to be `Li`: nothing but the size of wheel noise depends on it.
 
 use super::Layout;
 use super::csv::not_a_dataset;
@@ -28,7 +27,7 @@ use crate::source::Source;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::{Dataset, ReferencePose, TickLog};
-use umbmark_core::drive::{AckermannDrive, DifferentialDrive, Encoder, Robot};
+use umbmark_core::drive::{DifferentialDrive, Encoder, Robot, TricycleDrive};
 use umbmark_core::effect::TestKind;
 use umbmark_core::geometry::wrap;
 use umbmark_core::path::{Path as DrivenPath, SQUARE, SpeedProfile};
@@ -101,15 +100,12 @@ fn add_run(assembly: &mut Assembly, folder: &Path, run: &RunFiles) -> Result<(),
     let file = folder.join(&run.ticks);
     let source = Source::open(&file)?;
     let named = Named { number: Some(run.number), ..Named::default() };
-    let tricycle = assembly.robot().filter(|robot| robot.drive.kind().steers());
+    let tricycle = assembly.robot().is_some_and(|robot| robot.drive.kind().steers());
     let Some(track) = &run.track else {
-        let recording = match tricycle {
-            Some(robot) => parse_tricycle_run(source, robot)?,
-            None => parse_run(source)?,
-        };
+        let recording = if tricycle { parse_tricycle_run(source)? } else { parse_run(source)? };
         return assembly.add_recording(recording, None, &stem(&file), named, EndPose::Last);
     };
-    if tricycle.is_some() {
+    if tricycle {
         let (key, value) = ("type".into(), "\"tricyc\"".into());
         let remedy = "of tricycles, runs are read whose two clocks were brought together (*_run-NN.csv)".into();
         return Err(At::new(source.file, 1).refuse(LineProblem::NotYet { key, value, remedy }));
@@ -193,8 +189,7 @@ fn tricycle(metadata: &Metadata, set: &str) -> Result<Robot, DatasetError> {
     let (distance, diameter) = (metadata.positive("Li", 0)?, metadata.positive("Di", 0)?);
     let zero = metadata.number_or("Thi", 0.0)?;
     let impossible = |error: &dyn std::fmt::Display| metadata.missing("robot", &error.to_string());
-    let drive =
-        AckermannDrive::new(distance, distance, diameter, STEERING, zero).map_err(|error| impossible(&error))?;
+    let drive = TricycleDrive::new(distance, distance, diameter, STEERING, zero).map_err(|error| impossible(&error))?;
     let encoder = Encoder::new(ticks, None, None).map_err(|error| impossible(&error))?;
     Ok(Robot { name: format!("OptiOdom {set}"), drive: drive.into(), encoder })
 }
@@ -295,19 +290,19 @@ pub(crate) fn parse_run(source: Source) -> Result<Recording, DatasetError> {
 }
 
 /// The rows of a tricycle's run.
-pub(crate) fn parse_tricycle_run(source: Source, robot: &Robot) -> Result<Recording, DatasetError> {
+pub(crate) fn parse_tricycle_run(source: Source) -> Result<Recording, DatasetError> {
     let names = ["time (1st)", "x (2nd)", "y (3rd)", "theta (4th)", "odoWh (5th)", "ThWh (6th)"];
     let mut recording = Recording {
         file: source.file.clone(),
         columns: [names[0], names[4], names[5]].map(str::to_owned),
+        angle_of_row: true,
         ..Recording::default()
     };
-    let zero = robot.drive.number("steering_zero_rad").unwrap_or(0.0);
     let mut driven = 0.0;
     headless(source, &names, |line, cells| {
         let [time, x, y, heading, ticks, angle] = *cells;
         let sample = recording.time.len();
-        driven += ticks * libm::cos(angle + zero);
+        driven += ticks;
         recording.lines.push(line);
         recording.time.push(time);
         recording.counts[0].push(driven);

@@ -145,6 +145,7 @@ impl Wheels {
             time: self.times.iter().map(|times| clock.seconds(times)).collect(),
             counts: self.values,
             per_cycle: false,
+            angle_of_row: false,
             reference: Vec::new(),
         }
     }
