@@ -33,11 +33,9 @@ fn twist(wheels: &[Rolling]) -> [f64; 3] {
             (column..rows.len()).max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs())).unwrap();
         rows.swap(column, pivot);
         let lead = rows[column];
-        for row in 0..rows.len() {
-            if row != column {
-                let times = rows[row][column] / lead[column];
-                (0..4).for_each(|k| rows[row][k] -= times * lead[k]);
-            }
+        for (_, row) in rows.iter_mut().enumerate().filter(|(index, _)| *index != column) {
+            let times = row[column] / lead[column];
+            row.iter_mut().zip(lead).for_each(|(value, own)| *value -= times * own);
         }
     }
     // Wheels that one motion cannot serve would leave a condition that fails.
@@ -126,7 +124,7 @@ fn paced(run: u32, time: f64, speed: f64) -> f64 {
 
 /// Swings of the steering while it drives, wide and narrow, left first in even runs.
 fn swings(run: u32, time: f64, most: f64) -> f64 {
-    let side = if run % 2 == 0 { 1.0 } else { -1.0 };
+    let side = if run.is_multiple_of(2) { 1.0 } else { -1.0 };
     let period = 9.0 + 1.7 * f64::from(run % 5);
     side * most * (TAU * time / period).sin() * (0.4 + 0.6 * (time / 31.0).sin().powi(2))
 }
@@ -159,7 +157,7 @@ fn a_tricycle_that_turns_about_its_axle_is_read_as_it_was_made() {
         ])
     }
     fn command(run: u32, time: f64) -> (f64, f64) {
-        let side = if run % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if run.is_multiple_of(2) { 1.0 } else { -1.0 };
         let speed = paced(run, time, 0.2);
         // From 15 to 19 s and from 27 to 31 s it stands, steered by a right angle, and turns on the spot; 1 s to steer before and after.
         for begin in [15.0, 27.0] {
@@ -172,7 +170,7 @@ fn a_tricycle_that_turns_about_its_axle_is_read_as_it_was_made() {
                 return (moving + speed * driving, steered);
             }
         }
-        let shut = if time < 13.0 || time > 33.0 { 0.5 * swings(run, time, 1.2) } else { 0.0 };
+        let shut = if !(13.0..=33.0).contains(&time) { 0.5 * swings(run, time, 1.2) } else { 0.0 };
         // The steering passes through zero at the joints.
         let joint = ((time - 13.0).abs().min((time - 33.0).abs())).min(1.0);
         (speed, shut * joint)
