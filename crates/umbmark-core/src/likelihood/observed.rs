@@ -59,9 +59,9 @@ pub struct Block {
     pub count: usize,
     /// How many of them have a heading.
     pub headings: usize,
-    /// Mean predicted pose.
+    /// Mean predicted position of the tracked point, and mean predicted heading of the robot.
     pub place: Pose2,
-    /// Mean rate of change of the predicted pose \[m/s, m/s, rad/s\].
+    /// Mean rate of change of the predicted pose of what is tracked \[m/s, m/s, rad/s\].
     pub velocity: [f64; 3],
     /// How the error grows from the previous block to this one.
     pub growth: Growth,

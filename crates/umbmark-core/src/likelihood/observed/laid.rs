@@ -17,13 +17,17 @@ impl ObservedRun {
         let walk = Walk::new(&self.track, chain);
         self.moments = self.track.moments(chain).into();
         self.places = self.moments.iter().map(|moment| walk.at(moment)).collect();
+        // A wrong heading moves the tracked point, which may be off the middle of the axle.
+        let mut tracked = Vec::with_capacity(self.places.len());
+        self.sighted(chain, &mut |_, pose| tracked.push(*pose));
         let mut before = 0;
         for block in &mut self.blocks {
             let own = block.first..block.first + block.count;
-            let (places, moments) = (&self.places[own.clone()], &self.moments[own]);
-            let mean = |of: fn(&Pose2) -> f64| places.iter().map(of).sum::<f64>() / places.len() as f64;
-            block.place = Pose2::new(mean(|p| p.x), mean(|p| p.y), mean(|p| p.heading));
-            block.velocity = velocity(places, moments);
+            let (places, moments) = (&self.places[own.clone()], &self.moments[own.clone()]);
+            let mean = |poses: &[Pose2], of: fn(&Pose2) -> f64| poses.iter().map(of).sum::<f64>() / poses.len() as f64;
+            let tracked = &tracked[own];
+            block.place = Pose2::new(mean(tracked, |p| p.x), mean(tracked, |p| p.y), mean(places, |p| p.heading));
+            block.velocity = velocity(places, tracked, moments);
             let middle = moments[(moments.len() - 1) / 2].made;
             block.growth = walk.growth(before, middle);
             before = middle;

@@ -5,12 +5,17 @@ use crate::effect::Chain;
 use crate::geometry::Pose2;
 use crate::replay::{Moment, Track};
 
-/// Mean rate of change of the pose over some observations: the effect of a delay of one second.
-pub(super) fn velocity(places: &[Pose2], moments: &[Moment]) -> [f64; 3] {
+/// Mean rate of change of the tracked pose over some observations: the effect of a delay of one second.
+///
+/// A point at r from the middle of the axle moves at v + ω J r.
+pub(super) fn velocity(places: &[Pose2], tracked: &[Pose2], moments: &[Moment]) -> [f64; 3] {
     let mut sum = [0.0; 3];
-    for (place, Moment { sight, .. }) in places.iter().zip(moments) {
+    for ((place, tracked), Moment { sight, .. }) in places.iter().zip(tracked).zip(moments) {
         let (sine, cosine) = libm::sincos(place.heading);
-        for (total, rate) in sum.iter_mut().zip([sight.speed * cosine, sight.speed * sine, sight.turn_rate]) {
+        let (x, y) = (tracked.x - place.x, tracked.y - place.y);
+        let rates =
+            [sight.speed * cosine - sight.turn_rate * y, sight.speed * sine + sight.turn_rate * x, sight.turn_rate];
+        for (total, rate) in sum.iter_mut().zip(rates) {
             *total += rate / places.len() as f64;
         }
     }
