@@ -6,6 +6,7 @@ use super::error::{At, DatasetError, LineProblem};
 use super::lines::Lines;
 use umbmark_core::dataset::{Mended, ReferencePose, TickLog};
 use umbmark_core::drive::{Robot, roll_over};
+use umbmark_core::prose::counted;
 
 /// No wheel of a robot rolls faster \[m/s\].
 const FASTEST: f64 = 100.0;
@@ -14,6 +15,8 @@ const USUAL_BITS: [u32; 5] = [8, 12, 16, 24, 32];
 /// A counter that was set back shows no more than so many usual steps, after more than so many.
 const AFTER_RESET: f64 = 2.0;
 const BEFORE_RESET: f64 = 20.0;
+/// The steps around a reset say what was turned between the two rows if these are no more than so many mean periods apart.
+const SHORT: f64 = 5.0;
 
 /// The rows of one log, before anything is mended.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,8 +61,11 @@ impl Recording {
         mended.resets = reset_rows.len();
         if let [first, ..] = reset_rows[..] {
             warnings.push(format!(
-                "{}:{}: {} counter resets: counted on from zero; what the wheels turned between the rows around each is lost",
-                self.file, self.lines.of(first), mended.resets
+                "{}:{}: {}: counted on; what the wheels turned between the rows around each is taken from the steps before and \
+                 after",
+                self.file,
+                self.lines.of(first),
+                counted(mended.resets, "counter reset")
             ));
         }
         let [left, right] = match robot {
@@ -107,31 +113,52 @@ impl Recording {
         let fastest = robot.map_or(f64::INFINITY, |robot| FASTEST / metres_per_tick(robot, wheel));
         let mut before = readings.first().copied().unwrap_or(0.0);
         let widths = widths_of(&readings);
+        let period = self.period();
         let (mut total, mut before_reset, mut origin) = (0.0, 0.0, before);
-        for (at, reading) in readings.iter_mut().enumerate() {
-            let after = *reading;
+        for at in 0..readings.len() {
+            let after = readings[at];
             let seconds = self.time[at] - self.time[at.saturating_sub(1)];
             let expected = (usual * seconds).max(1.0);
             let plain = after - before;
             let mut step = bits.map_or(plain, |bits| roll_over(before as i64, after as i64, bits) as f64);
             if was_reset(before, after, expected, bits, &widths) {
                 reset_rows.push(at);
-                (before_reset, origin, step) = (total, 0.0, after);
+                let hidden = if seconds <= SHORT * period { self.around(&readings, at, total) } else { after };
+                (before_reset, origin, step) = (total + hidden, after, hidden);
             } else {
                 *roll_overs += usize::from(step != plain);
             }
             if let (None, Some(bits)) = (bits, rolled_bits(step.abs(), expected, &widths)) {
                 return Err(self.rolled_over(wheel, at, [before, after], bits));
             }
+            // Rows that are read from a buffer at once bear stamps that nearly agree.
+            let seconds = seconds.max(period);
             if let Some(robot) = robot.filter(|_| step.abs() > fastest * seconds) {
                 let speed = step.abs() * metres_per_tick(robot, wheel) / seconds;
                 return Err(self.jump(wheel, at, [before, after], speed, bits));
             }
             // Sums of whole numbers are exact; of others, the difference from the first reading is.
             total = if bits.is_some() { total + step } else { before_reset + (after - origin) };
-            (*reading, before) = (total, after);
+            (readings[at], before) = (total, after);
         }
         Ok(readings)
+    }
+
+    /// The mean time from row to row \[s\].
+    fn period(&self) -> f64 {
+        let whole = self.time.last().zip(self.time.first()).map_or(0.0, |(last, first)| last - first);
+        whole / self.time.len().saturating_sub(1).max(1) as f64
+    }
+
+    /// What a wheel turned before a row, by the steps before and after it; the readings of rows before it are sums already, the last of them
+    /// `total`.
+    fn around(&self, readings: &[f64], at: usize, total: f64) -> f64 {
+        let before = at.checked_sub(2).map(|two| (total - readings[two]) / (self.time[at - 1] - self.time[two]));
+        let after = readings.get(at + 1).map(|next| (next - readings[at]) / (self.time[at + 1] - self.time[at]));
+        let rates = [before, after].into_iter().flatten();
+        let seconds = self.time[at] - self.time[at - 1];
+        let turned = seconds * rates.clone().sum::<f64>() / rates.count().max(1) as f64;
+        if readings[at].fract() == 0.0 { turned.round() } else { turned }
     }
 
     /// The rate of a wheel that all but one step in a hundred stay below \[ticks/s\]: the least of the largest hundredth, and

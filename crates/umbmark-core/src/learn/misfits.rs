@@ -12,12 +12,12 @@ const ENOUGH_RUNS: usize = 5;
 const FAR_WORSE: f64 = 5.0;
 
 /// What speaks against the model of the last step, by its errors in some runs and those of the nominal robot, the first step; `noise` is that
-/// of single positions \[m\].
-pub(super) fn misfits(steps: &[Step], runs: usize, noise: f64) -> Vec<Reason> {
+/// of single positions \[m\]. A model whose every size may be zero (`is_nominal`) is the nominal robot, and is not compared with it.
+pub(super) fn misfits(steps: &[Step], runs: usize, noise: f64, is_nominal: bool) -> Vec<Reason> {
     let [nominal, .., end] = steps else { return Vec::new() };
     let (inside, left_out) = (end.error.position, end.held_out.position);
     let mut reasons = Vec::new();
-    if runs >= ENOUGH_RUNS && left_out > WORSE * nominal.held_out.position {
+    if !is_nominal && runs >= ENOUGH_RUNS && left_out > WORSE * nominal.held_out.position {
         reasons.push(Reason::WorseThanNominal { left_out, nominal: nominal.held_out.position });
     }
     if inside > WORSE * nominal.error.position.max(noise) {
@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     /// The reasons against a model that misses its own runs and held-out ones by so many millimetres, the nominal robot by 10 mm.
-    fn against([inside, left_out]: [f64; 2], runs: usize, noise: f64) -> Vec<Reason> {
+    fn against([inside, left_out]: [f64; 2], runs: usize, noise: f64, is_nominal: bool) -> Vec<Reason> {
         let error = |mm: f64| Error { position: 1e-3 * mm, heading: None, weighted: 1.0 };
         let step = |[inside, left_out]: [f64; 2]| Step {
             added: None,
@@ -47,26 +47,27 @@ mod tests {
             aicc: None,
             bic: None,
         };
-        misfits(&[step([10.0, 10.0]), step([9.0, 9.0]), step([inside, left_out])], runs, 1e-3 * noise)
+        misfits(&[step([10.0, 10.0]), step([9.0, 9.0]), step([inside, left_out])], runs, 1e-3 * noise, is_nominal)
     }
 
     #[test]
     fn a_model_that_is_worse_than_the_nominal_robot_is_doubted_in_its_own_runs_however_few_and_in_others_from_five_on()
     {
-        assert_eq!(against([14.0, 14.0], 6, 1.0), []);
+        assert_eq!(against([14.0, 14.0], 6, 1.0, false), []);
         let left_out = Reason::WorseThanNominal { left_out: 0.016, nominal: 0.01 };
-        assert_eq!(against([14.0, 16.0], 5, 1.0), [left_out]);
-        assert_eq!(against([14.0, 16.0], 4, 1.0), []);
+        assert_eq!(against([14.0, 16.0], 5, 1.0, false), [left_out]);
+        assert_eq!(against([14.0, 16.0], 4, 1.0, false), []);
+        assert_eq!(against([14.0, 16.0], 5, 1.0, true), []);
         let inside = Reason::FarFromTheRuns { inside: 0.016, nominal: 0.01 };
-        assert_eq!(against([16.0, 14.0], 1, 1.0), [inside]);
+        assert_eq!(against([16.0, 14.0], 1, 1.0, false), [inside]);
         // Within the noise of single poses nothing is worse.
-        assert_eq!(against([16.0, 14.0], 1, 11.0), []);
+        assert_eq!(against([16.0, 14.0], 1, 11.0, false), []);
     }
 
     #[test]
     fn runs_that_disagree_are_doubted_unless_the_noise_is_as_large() {
         let disagree = Reason::LeftOutFarWorse { left_out: 0.011, inside: 0.002 };
-        assert_eq!(against([2.0, 11.0], 2, 1.0), [disagree]);
-        assert_eq!(against([2.0, 11.0], 2, 2.5), []);
+        assert_eq!(against([2.0, 11.0], 2, 1.0, false), [disagree]);
+        assert_eq!(against([2.0, 11.0], 2, 2.5, false), []);
     }
 }

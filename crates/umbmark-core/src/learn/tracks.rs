@@ -145,6 +145,17 @@ fn shown(observed: &Observed, model: &Model) -> Result<Vec<&'static str>, FitErr
     }
 }
 
+/// Whether every size of a model may be zero: its 95 % interval holds the value without effect.
+fn is_nominal(fitted: &Fitted) -> bool {
+    let may_be_zero = |own: &Estimate| {
+        let parameters = find(own.effect).ok().map(|entry| entry.about.parameters);
+        let parameter = parameters.and_then(|all| all.iter().find(|parameter| parameter.name == own.parameter));
+        let nothing = parameter.map(|parameter| parameter.default.resolve(fitted.model.robot()));
+        nothing.zip(own.interval(0.95)).is_some_and(|(nothing, interval)| interval.contains(nothing))
+    };
+    estimates(fitted).iter().all(may_be_zero)
+}
+
 /// Whether the runs determine one of the first effects: it differs from zero, or it is below [`OPEN`] times its usual size.
 fn is_shown(fitted: &Fitted, effect: &str) -> bool {
     let own = estimates(fitted).into_iter().find(|e| e.effect == effect);
@@ -176,7 +187,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     let (left, harmful, runs) = (search.left, search.harmful, search.exams[0].fitted.observed.runs.len());
     let Some(last) = search.exams.pop() else { return Err(FitError::NotConverged { how: "has no model" }) };
     let written = search.written.pop().map_or_else(|| last.fitted.clone(), Alone::into_fitted);
-    reasons.extend(misfits(&steps, runs, written.observed.setup.noise.position));
+    reasons.extend(misfits(&steps, runs, written.observed.setup.noise.position, is_nominal(&last.fitted)));
     let verdict = match (&left.smooth, more) {
         _ if verdict == Verdict::NotEnoughData => verdict,
         (Some(_), _) => Verdict::UnlistedEffect,

@@ -107,7 +107,8 @@ impl Noise {
     ///
     /// -2 l = Σ log|S| + log|AᵀΣ⁻¹A| + r̂ᵀΣ⁻¹r̂, with the columns A fitted out.
     ///
-    /// Noise within blocks is taken from successive differences. `columns` holds, run by run, the columns of the model
+    /// Noise within blocks is taken from successive differences. No pose is better known than the counters' resolution allows: without
+    /// that limit, a reference without noise (a simulator's) makes every tick significant. `columns` holds, run by run, the columns of the model
     /// and last the residuals.
     pub fn estimate(observed: &Observed, chain: &Chain<f64>, columns: &[Vec<Column>], from: &Noise) -> Noise {
         let mut start = *from;
@@ -125,8 +126,8 @@ impl Noise {
                 heading_per_radian: at(1, usual.heading_per_radian),
                 forward_per_metre: at(2, usual.forward_per_metre),
                 sideways_per_metre: at(3, usual.sideways_per_metre),
-                reference_position: at(4, usual.reference_position),
-                reference_heading: at(5, usual.reference_heading),
+                reference_position: at(4, usual.reference_position).max(observed.resolution[0]),
+                reference_heading: at(5, usual.reference_heading).max(observed.resolution[1]),
                 reference_time: at(6, usual.reference_time),
                 reference_delay: at(7, usual.reference_delay),
                 ..start

@@ -5,6 +5,7 @@ mod columns;
 mod laid;
 mod pieces;
 mod readings;
+mod resolution;
 mod starts;
 mod walk;
 
@@ -110,6 +111,8 @@ pub struct Observed {
     pub runs: Vec<ObservedRun>,
     /// The path that all of them were to follow, where it is known.
     pub path: Option<Path>,
+    /// Standard deviations of a position and a heading \[m, rad\] that the resolution of the counters gives; 0 where it is not known.
+    pub resolution: [f64; 2],
     /// What was found of the experiment before anything was fitted.
     pub setup: Arc<Setup>,
 }
@@ -134,7 +137,8 @@ impl Observed {
             }
         }
         let runs = pieces::cut(runs, robot);
-        Ok(Observed { robot: robot.clone(), runs, path: data.path.clone(), setup: Arc::new(setup) })
+        let resolution = resolution::resolution(data.runs.iter().filter_map(|run| run.log.as_ref()), robot);
+        Ok(Observed { robot: robot.clone(), runs, path: data.path.clone(), resolution, setup: Arc::new(setup) })
     }
 
     /// Believed travel of the runs.

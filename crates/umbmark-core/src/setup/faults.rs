@@ -17,7 +17,7 @@ const LEAST_GAIN: f64 = 0.2;
 pub(super) const VAGUE: f64 = 0.5;
 /// Units in which lengths are written by mistake: how many of them a metre has.
 const UNITS: [(f64, &str); 4] = [(1000.0, "mm"), (100.0, "cm"), (39.37, "inches"), (3.2808, "feet")];
-/// Counts that are off by more than this factor, or the inverse, are no robot's.
+/// Counts or lengths that are off by more than this factor, or the inverse, are no robot's.
 const MOST_SCALE: f64 = 3.0;
 /// Minimum number of windows for a run to be examined by itself.
 const FEWEST: usize = 20;
@@ -368,7 +368,7 @@ pub(super) fn sizes(found: &Agreement, robot: &Robot) -> Vec<Fault> {
     if let Some(factor) = CountsFactor::of(found, robot).filter(|_| !within(MOST_SCALE)) {
         return vec![Fault::Counts(factor)];
     }
-    if !found.shown[0] || found.misfits[0] > VAGUE || within(1.0 / LEAST_GAIN) {
+    if !found.shown[0] || found.misfits[0] > VAGUE || within(MOST_SCALE) {
         return Vec::new();
     }
     // The nominal diameter may be wrong too, but not by as much as units differ.

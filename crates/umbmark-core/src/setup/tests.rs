@@ -173,6 +173,7 @@ fn headings_and_positions_that_are_not_what_they_are_called_are_named() {
         ((|x, y, heading| (1e3 * x, 1e3 * y, heading)) as fn(f64, f64, f64) -> (f64, f64, f64), "mm"),
         (|x, y, heading| (1e2 * x, 1e2 * y, heading), "cm"),
         (|x, y, heading| (39.37 * x, 39.37 * y, heading), "inches"),
+        (|x, y, heading| (3.2808 * x, 3.2808 * y, heading), "feet"),
     ] {
         let found = faults(written);
         assert!(matches!(found[..], [Fault::LengthsIn { unit, .. }] if unit == expected), "{expected}: {found:?}");
