@@ -76,13 +76,18 @@ pub enum Reason {
     Data(Suspicion),
 }
 
+/// Counts may hide so many standard deviations of the counters' resolution.
+const HIDDEN: f64 = 2.0;
+
 impl Reason {
-    /// The reason for doubt if part of the residuals is the same in every run.
-    pub(crate) fn of_remains(remains: &Remains) -> Option<Reason> {
-        let parts = [(Some(remains.position), false), (remains.heading, true)];
-        let mut shown = parts.into_iter().filter_map(|(left, heading)| {
+    /// The reason for doubt if part of the residuals is the same in every run, and larger than what the counters' resolution (standard
+    /// deviations of a position and a heading) gives: the counts of runs without noise are alike, and so is what they hide.
+    pub(crate) fn of_remains(remains: &Remains, resolution: [f64; 2]) -> Option<Reason> {
+        let parts = [(Some(remains.position), resolution[0], false), (remains.heading, resolution[1], true)];
+        let mut shown = parts.into_iter().filter_map(|(left, resolution, heading)| {
             let left = left?;
-            let repeats = left.repeats.filter(Repeating::is_shown)?;
+            let shown = |repeats: &Repeating| repeats.is_shown() && repeats.value > HIDDEN * resolution;
+            let repeats = left.repeats.filter(shown)?;
             Some(Reason::SameInEveryRun { repeats, left: left.rms, heading })
         });
         shown.next()
@@ -142,5 +147,23 @@ impl Reason {
             Reason::Repeats(repeated) => repeated.sentence(),
             Reason::Data(suspicion) => suspicion.sentence(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::remains::Left;
+    use crate::stats::Interval;
+
+    #[test]
+    fn what_is_the_same_in_every_run_is_a_reason_where_counts_do_not_hide_it() {
+        let of = |value: f64| {
+            let repeats = Some(Repeating { value, interval: Some(Interval::around(value, 0.5 * value)) });
+            let position = Left { rms: 1e-3, repeats };
+            let remains = Remains { position, heading: None, pairs: 3, chance: Vec::new(), disturbances: Vec::new() };
+            Reason::of_remains(&remains, [1e-4, 1e-4]).is_some()
+        };
+        assert!(of(3e-4) && !of(1.9e-4));
     }
 }

@@ -17,9 +17,9 @@ pub struct Noise<T = f64> {
     pub heading_per_metre: T,
     /// Heading noise per square root of rotation \[rad/√rad\].
     pub heading_per_radian: T,
-    /// Noise of the way forward per square root of way \[m/√m\].
+    /// Noise of the way forward per square root of the wheels' mean way \[m/√m\].
     pub forward_per_metre: T,
-    /// Noise to the side per square root of way \[m/√m\].
+    /// Noise to the side per square root of the wheels' mean way \[m/√m\].
     pub sideways_per_metre: T,
     /// Reference noise that a block of poses shares, each coordinate \[m\].
     pub reference_position: T,
@@ -249,7 +249,7 @@ impl<T: Scalar> Noise<T> {
         }
         let [xx, xy, yy, x, y, own] = turned;
         let [forward_xx, forward_xy, forward_yy] = growth.forward;
-        let across = sideways * T::from(growth.way);
+        let across = sideways * T::from(growth.rolled);
         let xy = xy + along * T::from(forward_xy);
         let (xx, yy) = (xx + along * T::from(forward_xx) + across, yy + along * T::from(forward_yy) + across);
         [[xx, xy, x], [xy, yy, y], [x, y, own]]

@@ -45,10 +45,12 @@ pub struct Growth {
     pub heading_per_metre: [f64; 6],
     /// Σ |dθ| g gᵀ over the pieces \[rad\].
     pub heading_per_radian: [f64; 6],
-    /// Σ ds f fᵀ over the pieces, f the direction of the heading: xx, xy, yy.
+    /// Σ dr f fᵀ over the pieces, f the direction of the heading: xx, xy, yy.
     pub forward: [f64; 3],
     /// Way driven \[m\].
     pub way: f64,
+    /// Mean way of both wheels, Σ dr \[m\]: also in turns on the spot the wheels slip, and move the axle.
+    pub rolled: f64,
 }
 
 /// Neighbouring observations of a run.

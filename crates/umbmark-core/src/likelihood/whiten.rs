@@ -343,7 +343,8 @@ mod tests {
             .iter()
             .enumerate()
             .map(|(i, (x, y))| {
-                let mut growth = Growth { way: i as f64, forward: [0.5 * i as f64; 3], ..Growth::default() };
+                let mut growth =
+                    Growth { way: i as f64, rolled: i as f64, forward: [0.5 * i as f64; 3], ..Growth::default() };
                 for (sum, at) in
                     [(&mut growth.heading_per_metre, [*x - 0.5, *y]), (&mut growth.heading_per_radian, [*x, *y - 0.2])]
                 {

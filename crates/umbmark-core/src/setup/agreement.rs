@@ -20,6 +20,10 @@ use crate::geometry::Real;
 const LEAST_TURN: f64 = 0.5;
 const LEAST_WAY: f64 = 0.1;
 
+/// Distance or rotation contradicts the reference only where it makes this share of the wheels' motion: what wheels of unequal diameter and
+/// noise add up to in straight drives, or in turns on the spot, says nothing.
+const MAIN: f64 = 0.05;
+
 /// The wheels clearly turn the robot if by more than this in a window \[rad\].
 const CLEAR_TURN: f64 = 0.05;
 
@@ -54,6 +58,8 @@ pub(super) struct Agreement {
     pub misfit: f64,
     /// Whether the windows determine distance, and rotation.
     pub shown: [bool; 2],
+    /// Whether distance, and rotation, are more than a small part of the wheels' motion.
+    pub is_main: [bool; 2],
 }
 
 /// A window as it is read.
@@ -144,8 +150,9 @@ impl Agreement {
             whole[1] += cut(arm * row.1.abs(), 1.0);
         }
         let share = |off: f64, whole: f64| if whole > 0.0 { off / whole } else { 1.0 };
-        let (driven, turned) =
-            told.iter().fold((0.0, 0.0), |(way, turn), told| (way + told.way.abs(), turn + told.turn.abs()));
+        let sum = |of: fn(&Told) -> f64| told.iter().map(of).sum::<f64>();
+        let (driven, turned) = (sum(|told| told.way.abs()), sum(|told| told.turn.abs()));
+        let least = MAIN * (driven + arm * turned);
         Agreement {
             way: [way.values[0], way.values[1]],
             lever: [way.values[2], way.values[3]],
@@ -154,17 +161,18 @@ impl Agreement {
             misfits: [share(off[0], whole[0]), share(off[1], whole[1])],
             misfit: share(off[0] + off[1], whole[0] + whole[1]),
             shown: [driven > LEAST_WAY, turned > LEAST_TURN],
+            is_main: [driven > least, arm * turned > least],
         }
     }
 
     /// Whether the agreement is reliable: something moves, and most of the motion agrees.
     pub fn is_credible(&self) -> bool {
-        self.shown.contains(&true) && (0..2).all(|k| !self.shown[k] || self.misfits[k] < CREDIBLE)
+        self.shown.contains(&true) && !self.is_vague()
     }
 
     /// Whether something moves, and yet most of the motion disagrees.
     pub fn is_vague(&self) -> bool {
-        (0..2).any(|k| self.shown[k] && self.misfits[k] >= CREDIBLE)
+        (0..2).any(|k| self.shown[k] && self.is_main[k] && self.misfits[k] >= CREDIBLE)
     }
 
     /// Way by the reference over way by the wheels.

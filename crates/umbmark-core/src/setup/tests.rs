@@ -426,3 +426,11 @@ fn headings_that_grow_clockwise_are_named_on_long_parallel_legs_too() {
     let exchanged = Wiring { exchanged: true, backward: [false; 2] };
     assert_eq!(Drive { wiring: exchanged, ..lawn() }.found().faults, [Fault::Exchanged]);
 }
+
+/// The rotation that unequal wheels seem to make, and the noise of the headings, add up over minutes.
+#[test]
+fn straight_drives_on_unequal_wheels_are_no_other_motion() {
+    let found = Drive { driven: driven::forth_and_back, runs: 1, seconds: 300.0, ..clean() }.found();
+    assert_eq!((&found.faults[..], &found.doubts[..]), (&[][..], &[][..]));
+    assert!(found.mounting.is_some());
+}

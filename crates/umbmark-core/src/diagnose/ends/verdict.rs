@@ -75,7 +75,7 @@ pub(crate) fn diagnose(ends: &Ends, model: &Model, options: &Options) -> Result<
     diagnosis.likeness = asked.likeness();
     judge(&mut diagnosis, &asked, &family, options);
     if diagnosis.verdict == Verdict::Explained {
-        let repeats = diagnosis.remains.as_ref().and_then(Reason::of_remains);
+        let repeats = diagnosis.remains.as_ref().and_then(|remains| Reason::of_remains(remains, [0.0; 2]));
         diagnosis.reasons.extend(repeats);
         if !diagnosis.reasons.is_empty() {
             diagnosis.verdict = Verdict::NotExplained;

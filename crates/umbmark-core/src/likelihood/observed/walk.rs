@@ -22,25 +22,28 @@ pub(super) fn velocity(places: &[Pose2], tracked: &[Pose2], moments: &[Moment]) 
     sum
 }
 
-/// Predicted pose after each piece, with distance driven and rotation until then.
+/// Predicted pose after each piece, with distance driven, rotation and mean way of the wheels until then.
 pub(super) struct Walk {
     pub places: Vec<Pose2>,
     pub way: Vec<f64>,
     pub turned: Vec<f64>,
+    pub rolled: Vec<f64>,
 }
 
 impl Walk {
     pub fn new(track: &Track, chain: &Chain<f64>) -> Walk {
-        let (mut pose, mut way, mut turned) = (track.start(chain), 0.0, 0.0);
-        let mut walk = Walk { places: vec![pose], way: vec![way], turned: vec![turned] };
+        let (mut pose, mut way, mut turned, mut rolled) = (track.start(chain), 0.0, 0.0, 0.0);
+        let mut walk = Walk { places: vec![pose], way: vec![way], turned: vec![turned], rolled: vec![rolled] };
         for (travel, at) in track.travel().iter().zip(track.contexts()) {
             let motion = chain.displacement(&at.at_pose(&pose), travel);
             pose.advance(&motion);
             way += motion.forward.abs();
             turned += motion.rotation.abs();
+            rolled += 0.5 * (travel.left.abs() + travel.right.abs());
             walk.places.push(pose);
             walk.way.push(way);
             walk.turned.push(turned);
+            walk.rolled.push(rolled);
         }
         walk
     }
@@ -52,15 +55,17 @@ impl Walk {
     }
 
     pub fn growth(&self, from: usize, to: usize) -> Growth {
-        let mut growth = Growth { way: self.way[to] - self.way[from], ..Growth::default() };
+        let (way, rolled) = (self.way[to] - self.way[from], self.rolled[to] - self.rolled[from]);
+        let mut growth = Growth { way, rolled, ..Growth::default() };
         for piece in from..to {
             let (a, b) = (&self.places[piece], &self.places[piece + 1]);
             let g = [0.5 * (a.y + b.y), -0.5 * (a.x + b.x), 1.0];
             let outer = [g[0] * g[0], g[1] * g[0], g[1] * g[1], g[0], g[1], 1.0];
-            let (way, turned) = (self.way[piece + 1] - self.way[piece], self.turned[piece + 1] - self.turned[piece]);
+            let of = |sum: &[f64]| sum[piece + 1] - sum[piece];
+            let (way, turned, rolled) = (of(&self.way), of(&self.turned), of(&self.rolled));
             let (sine, cosine) = libm::sincos(0.5 * (a.heading + b.heading));
             for (sum, product) in growth.forward.iter_mut().zip([cosine * cosine, cosine * sine, sine * sine]) {
-                *sum += way * product;
+                *sum += rolled * product;
             }
             for (k, product) in outer.into_iter().enumerate() {
                 growth.heading_per_metre[k] += way * product;

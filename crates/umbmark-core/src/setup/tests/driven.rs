@@ -110,3 +110,9 @@ pub(super) fn lawn(seconds: f64, _: &mut Stream) -> Driven {
         vec![([0.4, 0.0], 12.0), ([0.0, 0.0], 0.3), turn, ([0.0, 0.0], 0.4), ([0.3, 0.0], 1.6), ([0.0, 0.0], 0.3), turn]
     })
 }
+
+/// Straight ahead and back, five seconds each, on wheels of unequal diameter: by their counts the robot turns, and by the reference it does not.
+pub(super) fn forth_and_back(seconds: f64, _: &mut Stream) -> Driven {
+    let straight = integrated(seconds, |step| [if step % 10_000 < 5_000 { 0.3 } else { -0.3 }, 0.0]);
+    straight.into_iter().map(|(pose, [left, right])| (pose, [0.99 * left, 1.01 * right])).collect()
+}
