@@ -60,12 +60,14 @@ impl Suspicion {
             ),
             Suspicion::Doubled(factor) => format!("{}; {}", factor.sentence(), factor.remedy()),
             Suspicion::OtherWay(factor) => format!(
-                "by their counts the wheels roll {:.3} times the commanded path: ticks_per_revolution, the wheel diameter or [path] is wrong; if the path is right, {}",
+                "by their counts the wheels roll {:.3} times the commanded path: ticks_per_revolution, the wheel diameter or [path] is wrong; if \
+                 the path is right, {}",
                 1.0 / factor.ratio,
                 factor.remedy()
             ),
             Suspicion::LittleAgreement { misfit } => format!(
-                "the reference hardly moves as the wheels roll ({:.0} % of the motion disagrees), so that neither its delay nor wrong poses nor jumps could be looked for: check whether each file has ticks and poses of the same drive",
+                "the reference hardly moves as the wheels roll ({:.0} % of the motion disagrees), so that neither its delay nor wrong poses nor \
+                 jumps could be looked for: check whether each file has ticks and poses of the same drive",
                 100.0 * misfit
             ),
         }
