@@ -51,7 +51,9 @@ fn a_floor_is_no_number_of_the_robot_and_what_everything_is_worth_adds_up() {
     ];
     for (key, ratio) in lengths {
         let change = answer.change(key).unwrap();
-        assert!(change.interval.unwrap().contains(change.old * ratio), "{change:?}");
+        // One of twenty intervals of 95 % misses; within one and a half times their width lie 99.7 %.
+        let half = 0.5 * (change.interval.unwrap().high - change.interval.unwrap().low);
+        assert!((change.new - change.old * ratio).abs() < 1.5 * half, "{change:?}");
         assert!(!change.interval.unwrap().contains(change.old), "{change:?}");
     }
     assert!(answer.needed && answer.is_trusted() && !answer.misses_something());
