@@ -63,7 +63,8 @@ pub fn taken_text(taken: &[Taken]) -> String {
 /// Jumps and wrong poses, a paragraph each.
 pub fn disturbances_text(setup: &Setup) -> String {
     let mut text = String::new();
-    let jumps = setup.runs.iter().flat_map(|run| run.jumps.iter().map(move |jump| (run, jump)));
+    let absolute = setup.runs.iter().filter(|run| !run.relative);
+    let jumps = absolute.flat_map(|run| run.jumps.iter().map(move |jump| (run, jump)));
     for (run, jump) in jumps.clone().take(JUMPS) {
         let turned = jump.turned.map(|t| format!(" and {:.1} deg", t.to_degrees())).unwrap_or_default();
         let said = format!(
@@ -78,6 +79,7 @@ pub fn disturbances_text(setup: &Setup) -> String {
     if let rest @ 1.. = jumps.count().saturating_sub(JUMPS) {
         text += &hanging("", 10, &format!("and {rest} more (--json)"));
     }
+    text += &setup.wrong_steps().map(|said| hanging("steps", 10, &format!("{said}."))).unwrap_or_default();
     let wrong: Vec<&RunSetup> = setup.runs.iter().filter(|run| !run.wrong.is_empty()).collect();
     for run in wrong.iter().take(JUMPS) {
         text += &hanging("wrong", 10, &format!("{}, and left out.", run.notice()));

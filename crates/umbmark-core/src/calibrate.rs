@@ -130,7 +130,9 @@ pub fn calibrate_beside(
     }
     let (mended, lost) = observations::mended(data, &setup);
     let data = mended.as_ref();
-    let mut observed = Observations::new(data, robot, options.heading_arm)?;
+    let steps = learnt.is_some() && Observations::are_steps(data);
+    let mut observed =
+        if steps { Observations::none() } else { Observations::new(data, robot, options.heading_arm)? };
     if let Some(mounting) = &setup.mounting {
         observed.begin_with(mounting, robot);
     }
@@ -139,7 +141,11 @@ pub fn calibrate_beside(
     warnings.extend(lost);
     let mut doubts = doubts_of_data(&setup, observed.level, robot);
     let square = Square::new(data.path.as_ref(), robot, &cw, &ccw, &mut warnings);
-    let fitted = exact_estimate(&observed, robot, &mut warnings, &mut doubts);
+    let fitted =
+        if steps { None } else { exact_estimate(&observed, robot, &mut warnings, &mut doubts) };
+    if steps {
+        warnings.push(STEPS.to_owned());
+    }
     let mut estimates: Vec<Estimate> =
         square.map(|s| s.estimates(options.radius_wheelbase, &mut warnings)).unwrap_or_default();
     let truth = fitted.as_ref().filter(|e| e.shown[0] && e.shown[1]).map(|e| e.correction);
@@ -158,6 +164,10 @@ pub fn calibrate_beside(
     let (level, taken, setup) = (observed.level, observed.taken, Arc::new(setup));
     Ok(Calibration { estimates, level, heading_arm, warnings, doubts, setup, taken })
 }
+
+/// Why there is one estimate only.
+const STEPS: &str = "The reference tells how the robot moved from step to step. The closed forms and the exact fit need poses, so only the model is \
+                     fitted.";
 
 /// Doubts about the data: counts that are a factor off; for return errors, outlying runs; for tracks, very many jumps, and headings that
 /// two different robots would have.

@@ -15,6 +15,7 @@ use crate::effect::TestKind;
 use crate::geometry::{Pose2, wrap};
 use crate::path::{Direction, Path};
 use crate::prose::counted;
+use crate::reference::{KINDS, Kind};
 use crate::run::dead_reckoning::{EndPose, computed_end, return_error};
 use crate::run::{Mended, ReturnError, Run};
 use crate::setup::{Fault, Mounting, Setup};
@@ -87,6 +88,7 @@ impl Dataset {
         let mut checks = vec![runs_check(&groups)];
         checks.extend(headings_check(&groups));
         checks.extend(log_checks(&logs, path, setup.as_ref()));
+        checks.extend(kind_checks(&self.runs));
         // Where a track was put into a log, its rows are those of two clocks.
         if !self.clocks.is_empty() {
             checks.retain(|check| check.name != "jitter");
@@ -347,6 +349,17 @@ fn reference_checks(logs: &[LogFacts]) -> Vec<Check> {
         });
     }
     checks
+}
+
+/// Logs whose reference tells less than poses, with what it shows.
+fn kind_checks(runs: &[Run]) -> impl Iterator<Item = Check> + '_ {
+    let logs = || runs.iter().filter(|run| run.log.is_some());
+    let all = logs().count();
+    KINDS.iter().filter(|kind| kind.name != "pose").filter_map(move |kind| {
+        let count = logs().filter(|run| Kind::of(run) == Some(*kind)).count();
+        let found = format!("{}, in {count} of {all} logs", kind.name);
+        (count > 0).then_some(Check { name: "kind of reference", found, good: kind.shows, ok: true })
+    })
 }
 
 /// Largest difference of the return errors in the sheet and those that follow from logs; errors that were taken from the

@@ -33,6 +33,7 @@ pub mod plan;
 pub mod preset;
 pub mod prose;
 pub mod random;
+pub mod reference;
 mod register;
 pub mod replay;
 pub mod result;

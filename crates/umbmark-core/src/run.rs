@@ -54,6 +54,10 @@ pub struct TickLog {
     pub right: Vec<f64>,
     /// Absolute poses in the order of their samples: many, few, or none.
     pub reference: Vec<ReferencePose>,
+    /// Whether these poses tell only how the robot moved from each to the next: those of scan matching or of visual odometry, whose errors add
+    /// up.
+    #[serde(default)]
+    pub relative: bool,
     /// Defects that were corrected while it was read.
     pub mended: Mended,
     /// Where START was found.

@@ -123,6 +123,8 @@ pub struct RunSetup {
     pub wrong: Vec<WrongPose>,
     /// Where it jumps.
     pub jumps: Vec<Jump>,
+    /// Whether its reference tells motion only: then a jump is a step that is wrong, and only this step is lost.
+    pub relative: bool,
 }
 
 /// What was found.
@@ -198,6 +200,7 @@ impl Setup {
         let named = |seen: &Seen| RunSetup {
             run: seen.run.name.clone(),
             poses: seen.log.reference.len(),
+            relative: seen.log.relative,
             ..RunSetup::default()
         };
         if seen.iter().map(|seen| seen.windows.len()).sum::<usize>() < FEWEST {
@@ -219,14 +222,16 @@ impl Setup {
         if !faults.is_empty() {
             return Setup { faults, runs: seen.iter().map(named).collect(), ..Setup::default() };
         }
-        let mut agreement = Agreement::of(&pooled(&seen), reading, wheelbase);
+        let courses = !has_headings(&seen);
+        let agreed = |windows: &[Beside]| agreed(windows, reading, wheelbase, courses);
+        let mut agreement = agreed(&pooled(&seen));
         for _ in 0..ROUNDS {
             for seen in &mut seen {
                 seen.late = clock::refined(&seen.windows, &seen.rolled, &seen.late, (&agreement, reading, wheelbase));
             }
-            agreement = Agreement::of(&pooled(&seen), reading, wheelbase);
+            agreement = agreed(&pooled(&seen));
         }
-        let mounting = mounting(&seen, &agreement, reading, wheelbase);
+        let mounting = mounting(&seen, &agreement, agreed);
         let faults = faults::sizes(&agreement, robot);
         if !faults.is_empty() {
             return Setup { faults, runs: seen.iter().map(named).collect(), ..Setup::default() };
@@ -238,7 +243,8 @@ impl Setup {
         }
         let doubled = CountsFactor::of(&agreement, robot).filter(CountsFactor::is_double);
         let sightings: Vec<Vec<Sighting>> = seen.iter().map(|seen| sightings(seen, robot, &agreement)).collect();
-        let (found, noise) = disturbances::search(&sightings);
+        let relative = seen.iter().any(|seen| seen.log.relative);
+        let (found, noise) = disturbances::search(&sightings, relative);
         let runs = seen.iter().zip(found).map(|(seen, found)| RunSetup { ..told(named(seen), seen, found) }).collect();
         let doubts = doubled.map(Suspicion::Doubled).into_iter().collect();
         Setup { faults, mounting: Some(mounting), runs, noise, doubts, returned: Returned::default() }
@@ -298,13 +304,23 @@ impl Setup {
         let told = |fault: &Fault| format!("{}; to correct it, {}", fault.sentence(), fault.remedy());
         let mut notices: Vec<String> = self.all_faults().map(told).collect();
         notices.extend(self.doubts.iter().map(Suspicion::sentence));
-        let jumps = self.runs.iter().flat_map(|run| run.jumps.iter().map(|jump| jump.notice(&run.run)));
+        let absolute = self.runs.iter().filter(|run| !run.relative);
+        let jumps = absolute.flat_map(|run| run.jumps.iter().map(|jump| jump.notice(&run.run)));
         notices.extend(shortened(jumps.collect(), "jumps of tracks"));
+        notices.extend(self.wrong_steps());
         let wrong = self.runs.iter().filter(|run| !run.wrong.is_empty()).map(RunSetup::notice);
         notices.extend(shortened(wrong.collect(), "runs with wrong poses"));
         let outlying = self.returned.outlying.iter().map(|run| format!("{}; {}", run.sentence(), run.remedy()));
         notices.extend(shortened(outlying.collect(), "runs far from the others"));
         notices
+    }
+
+    /// How many steps of references that tell motion only are wrong, in all runs together.
+    pub fn wrong_steps(&self) -> Option<String> {
+        let runs = || self.runs.iter().filter(|run| run.relative);
+        let wrong: usize = runs().map(|run| run.jumps.len()).sum();
+        let steps: usize = runs().map(|run| run.poses.saturating_sub(1)).sum();
+        (wrong > 0).then(|| format!("{wrong} of {steps} steps of the reference are far from the motion of the wheels and were left out"))
     }
 
     /// What was found of a run.
@@ -457,10 +473,25 @@ fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting>
     seen.log.reference.iter().map(of).collect()
 }
 
+/// Whether every pose of every run has a heading.
+fn has_headings(seen: &[Seen]) -> bool {
+    seen.iter().all(|seen| seen.log.reference.iter().all(|pose| pose.heading.is_some()))
+}
+
+/// The agreement of some windows. Positions alone show no turn on the spot: where their courses turn by chance only, they determine distances
+/// and the clock, and turns are taken from the wheels.
+fn agreed(windows: &[Beside], reading: Reading, wheelbase: f64, courses: bool) -> Agreement {
+    let agreement = Agreement::of(windows, reading, wheelbase);
+    if courses && agreement.shown[0] && !agreement.turns_are_credible() {
+        return Agreement { turn: [1.0, 0.0], shown: [true, false], ..agreement };
+    }
+    agreement
+}
+
 /// The values on which all runs agree, each with the scatter between parts of the data.
-fn mounting(seen: &[Seen], agreement: &Agreement, reading: Reading, wheelbase: f64) -> Mounting {
-    let with_heading = seen.iter().all(|seen| seen.log.reference.iter().all(|pose| pose.heading.is_some()));
-    let parts = parts(seen, reading, wheelbase);
+fn mounting(seen: &[Seen], agreement: &Agreement, agreed: impl Fn(&[Beside]) -> Agreement) -> Mounting {
+    let with_heading = has_headings(seen);
+    let parts = parts(seen, agreed);
     let [way, turns] = agreement.shown;
     let by_parts = |is_shown: bool, value: f64, of: &dyn Fn(&Agreement) -> f64| {
         let others: Vec<f64> =
@@ -507,7 +538,7 @@ fn of_runs(seen: &[Seen], of: impl Fn(&Late) -> (f64, f64)) -> Option<Measured> 
 }
 
 /// The agreement in parts of the data: whole runs if there are enough of them, otherwise sections of runs.
-fn parts(seen: &[Seen], reading: Reading, wheelbase: f64) -> Vec<Agreement> {
+fn parts(seen: &[Seen], agreed: impl Fn(&[Beside]) -> Agreement) -> Vec<Agreement> {
     let cut = PARTS.div_ceil(seen.len().max(1));
     let of = |seen: &Seen| {
         let beside = clock::beside(&seen.windows, &seen.rolled, &seen.late);
@@ -515,7 +546,7 @@ fn parts(seen: &[Seen], reading: Reading, wheelbase: f64) -> Vec<Agreement> {
         beside
             .chunks(length)
             .filter(|part| part.len() >= FEWEST)
-            .map(|part| Agreement::of(part, reading, wheelbase))
+            .map(&agreed)
             .collect::<Vec<_>>()
     };
     seen.iter().flat_map(of).collect()

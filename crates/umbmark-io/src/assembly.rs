@@ -1,9 +1,10 @@
 //! Runs put together from return rows and logs.
 
 use super::RobotFile;
+use super::closures::{Closure, Marks, closures};
 use super::error::{At, DatasetError, LineProblem};
 use super::label::{self, Named};
-use super::layout::csv::ReturnRow;
+use super::layout::csv::{Measured, ReturnRow};
 use super::recording::Recording;
 use super::stale::drop_stale;
 use super::start_frame::move_to_start;
@@ -15,8 +16,9 @@ use umbmark_core::drive::{DriveKind, Robot};
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::{Direction, Path};
 use umbmark_core::run::StartKnown;
-use umbmark_core::run::dead_reckoning::{EndPose, computed_end, return_error, standing_at_start};
-use umbmark_core::run::{ReferenceTrack, place};
+use umbmark_core::geometry::wrap;
+use umbmark_core::run::dead_reckoning::{EndPose, computed_end, computed_poses, return_error, standing_at_start};
+use umbmark_core::run::{PoseRow, ReferenceTrack, ReturnError, place};
 use umbmark_core::synchronise::{Alignment, synchronise};
 
 /// A log that turns by less than this has no direction \[rad\].
@@ -33,6 +35,10 @@ pub(super) struct Assembly {
     /// Where each run comes from.
     places: Vec<String>,
     has_returns: bool,
+    /// Runs whose absolute end pose is known and whose computed one follows from their log: place among the runs, pose, file and line.
+    awaited: BTreeMap<usize, (PoseRow, String, usize)>,
+    /// Places of marks that robots are driven onto.
+    pub marks: Marks,
     clocks: Vec<RunClock>,
     pub topics: Vec<RunTopics>,
     pub warnings: Vec<String>,
@@ -50,8 +56,21 @@ impl Assembly {
         let (robot, path) = file.map_or((None, None), |file| (Some(file.robot), file.path));
         let (runs, places, warnings) = (Vec::new(), Vec::new(), Vec::new());
         let (index, clocks, topics) = (BTreeMap::new(), Vec::new(), Vec::new());
-        let has_returns = false;
-        Assembly { robot, path, reference_frame, runs, index, places, has_returns, clocks, topics, warnings }
+        let (has_returns, awaited, marks) = (false, BTreeMap::new(), Marks::new());
+        Assembly {
+            robot,
+            path,
+            reference_frame,
+            runs,
+            index,
+            places,
+            has_returns,
+            awaited,
+            marks,
+            clocks,
+            topics,
+            warnings,
+        }
     }
 
     /// The nominal robot, where it is known.
@@ -65,7 +84,14 @@ impl Assembly {
         for row in rows {
             let test = row.test.unwrap_or(TestKind::Systematic);
             let name = label::label(test, row.direction, row.number);
-            let (number, direction, returned) = (row.number, row.direction, Some(row.error));
+            let (number, direction) = (row.number, row.direction);
+            let returned = match row.measured {
+                Measured::Error(error) => Some(error),
+                Measured::Absolute(end) => {
+                    self.awaited.insert(self.runs.len(), (end, file.to_owned(), row.line));
+                    None
+                }
+            };
             self.push(Run { name, number, direction, test, log: None, returned }, file, row.line)?;
         }
         Ok(())
@@ -87,8 +113,40 @@ impl Assembly {
     ) -> Result<(), DatasetError> {
         let file = recording.file.clone();
         let bits = self.robot.as_ref().and_then(|robot| robot.encoder.counter_bits());
-        let log = recording.into_log(self.robot.as_ref(), bits, &mut self.warnings)?;
-        self.add_log(file, log, tracked, stem, named, end)
+        let (log, marked) = recording.into_log(self.robot.as_ref(), bits, &mut self.warnings)?;
+        if marked.is_empty() || !log.reference.is_empty() || tracked.is_some() {
+            return self.add_log(file, log, tracked, stem, named, end);
+        }
+        self.add_closures(&file, &log, &marked, stem, named)
+    }
+
+    /// Adds the drives of a log from a mark to a mark, each as a run.
+    fn add_closures(
+        &mut self,
+        file: &str,
+        log: &TickLog,
+        marked: &[(usize, String)],
+        stem: &str,
+        named: Named,
+    ) -> Result<(), DatasetError> {
+        let found = closures(log, marked, &self.marks);
+        if found.is_empty() {
+            self.warnings.push(format!(
+                "{file}: no drive begins and ends on a mark whose place is known: drive onto the same mark again, or write the places of the marks in marks.csv"
+            ));
+            return self.add_log(file.to_owned(), log.clone(), None, stem, named, EndPose::Last);
+        }
+        let several = found.len() > 1;
+        for (index, Closure { log, end }) in found.into_iter().enumerate() {
+            let returned = self.robot.as_ref().and_then(|robot| returned_to(&end, &log, robot));
+            let turned = self.robot.as_ref().map_or(0.0, |robot| computed_end(&log, robot).1);
+            let direction = self.direction(file, named, turned);
+            let test = named.test.unwrap_or(TestKind::Systematic);
+            let number = named.number.filter(|_| !several).unwrap_or_else(|| self.next_number(test, direction));
+            let name = if several { format!("{stem}, drive {}", index + 1) } else { stem.to_owned() };
+            self.push(Run { name, number, direction, test, log: Some(log), returned }, file, 1)?;
+        }
+        Ok(())
     }
 
     /// Adds the ticks of a file that is called `stem`, with the poses in it or those of a track.
@@ -106,12 +164,15 @@ impl Assembly {
             self.reference_frame.mend_track(&mut tracked.track);
             self.set_clock(&mut log, tracked, stem)?;
         }
-        if let Some(robot) = &self.robot {
-            drop_stale(&file, &mut log, robot, &mut self.warnings);
+        log.relative |= self.reference_frame.drifting && !log.reference.is_empty();
+        if !log.relative {
+            if let Some(robot) = &self.robot {
+                drop_stale(&file, &mut log, robot, &mut self.warnings);
+            }
+            move_to_start(&file, &mut log, self.robot.as_ref(), &mut self.warnings)?;
         }
-        move_to_start(&file, &mut log, self.robot.as_ref(), &mut self.warnings)?;
         let (computed, turned) = self.robot.as_ref().map_or((None, 0.0), |robot| computed_end(&log, robot));
-        let measured = log.start.known != StartKnown::OnTheWay;
+        let measured = log.start.known != StartKnown::OnTheWay && !log.relative;
         let returned = computed.filter(|_| measured).and_then(|computed| return_error(&log, &computed, end));
         let direction = self.direction(&file, named, turned);
         if let Some(row) = self.row_of(named, direction) {
@@ -143,10 +204,20 @@ impl Assembly {
     }
 
     /// The dataset, its runs in order.
-    pub fn finish(self) -> Dataset {
+    ///
+    /// # Errors
+    ///
+    /// Where a row of the return sheet has no computed end pose and its run no log.
+    pub fn finish(self) -> Result<Dataset, DatasetError> {
+        if let Some((_, file, line)) = self.awaited.into_values().next() {
+            let remedy = "a return needs the end poses x_abs_m, y_abs_m, x_calc_m, y_calc_m, or the errors ex_m, ey_m, or the log of its \
+                          run in runs";
+            let column = "x_calc_m".to_owned();
+            return Err(At::new(file, line).refuse(LineProblem::MissingColumn { column, remedy: remedy.into() }));
+        }
         let Assembly { robot, path, reference_frame, mut runs, clocks, topics, warnings, .. } = self;
         runs.sort_by_key(|run| (run.test, run.direction, run.number));
-        Dataset { robot, path, reference_frame, runs, clocks, topics, warnings }
+        Ok(Dataset { robot, path, reference_frame, runs, clocks, topics, warnings })
     }
 
     fn push(&mut self, run: Run, file: &str, line: usize) -> Result<(), DatasetError> {
@@ -187,7 +258,8 @@ impl Assembly {
         let number = named.number?;
         let of = |test| {
             let place = *self.index.get(&(test, direction, number))?;
-            (self.has_returns && self.runs[place].returned.is_some()).then_some(place)
+            let has_row = self.runs[place].returned.is_some() || self.awaited.contains_key(&place);
+            (self.has_returns && has_row).then_some(place)
         };
         match named.test {
             Some(test) => of(test),
@@ -203,6 +275,11 @@ impl Assembly {
                 first: self.places[row].clone(),
             }));
         }
+        if let Some(robot) = &self.robot
+            && let Some((end, ..)) = self.awaited.remove(&row)
+        {
+            run.returned = returned_to(&end, &log, robot);
+        }
         run.log = Some(log);
         run.name = stem.to_owned();
         self.places[row] = file.to_owned();
@@ -213,6 +290,13 @@ impl Assembly {
         let of_kind = self.runs.iter().filter(|run| run.test == test && run.direction == direction);
         of_kind.map(|run| run.number).max().map_or(1, |most| most.saturating_add(1))
     }
+}
+
+/// The return error of a robot that stands at `end`, seen from where its log begins.
+fn returned_to((x, y, heading): &PoseRow, log: &TickLog, robot: &Robot) -> Option<ReturnError> {
+    let computed = computed_poses(log, robot).pop()?;
+    let heading = heading.map(|heading| wrap(heading - computed.heading));
+    Some(ReturnError { x: x - computed.x, y: y - computed.y, heading })
 }
 
 /// Puts a track that has its own clock into a log: its poses, those of the axle's centre now, belong to samples of the log.

@@ -97,6 +97,14 @@ impl<'s> Columns<'s> {
         Ok(found)
     }
 
+    /// Whether any of these columns is there, with whatever unit.
+    pub fn given(&self, bases: &[&str]) -> bool {
+        let stands = |base: &&str| {
+            self.sheet.header.iter().any(|header| header.strip_prefix(*base).is_some_and(|rest| rest.starts_with('_')))
+        };
+        bases.iter().any(stands)
+    }
+
     /// The column `base`, which must be there; `remedy` says why.
     pub fn need(&mut self, base: &str, quantity: Quantity, remedy: &str) -> Result<Column, DatasetError> {
         match self.find(base, quantity)? {

@@ -237,6 +237,14 @@ pub enum LineProblem {
         /// A column of an error.
         errors: String,
     },
+    /// Columns of two references.
+    #[error("there are columns of poses and of steps ({first} and {second}); keep those of one reference")]
+    BothReferences {
+        /// A column of poses.
+        first: String,
+        /// A column of steps.
+        second: String,
+    },
     /// A cell that cannot be what it is.
     #[error("column \"{column}\" must be {allowed}, got {value}{}", after(remedy))]
     Cell {

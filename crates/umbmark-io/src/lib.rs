@@ -13,6 +13,7 @@
 
 mod assembly;
 pub mod checkpoint;
+mod closures;
 mod columns;
 mod contents;
 mod controller_file;

@@ -4,7 +4,7 @@
 //! `UMBMARK_TEST_CASES=1000000` damages each of the files a million times and prints how many were read.
 
 use super::error::DatasetError;
-use super::layout::csv::{parse_returns, parse_tick_log};
+use super::layout::csv::{Measured, parse_returns, parse_tick_log};
 use super::layout::{optiodom, parse_track};
 use super::model_file::ModelFile;
 use super::recording::Recording;
@@ -89,7 +89,7 @@ fn source(text: &str) -> Source<'_> {
 }
 
 fn finished(recording: Recording, bits: Option<u32>) -> bool {
-    let log = recording.into_log(Some(&Robot::labmate()), bits, &mut Vec::new());
+    let log = recording.into_log(Some(&Robot::labmate()), bits, &mut Vec::new()).map(|(log, _)| log);
     let finite = |log: &TickLog| log.left.iter().chain(&log.right).chain(&log.time).all(|value| value.is_finite());
     log.is_ok_and(|mut log| {
         drop_stale("file", &mut log, &Robot::labmate(), &mut Vec::new());
@@ -106,7 +106,13 @@ fn damaged_return_sheets() {
                 # Monday\r\ncw,1,bumps,0.1,-0.2,0.3,1e-3,0,0,1,2,3\n\"ccw\",2,,0.1,-0.2,,1e-3,0,,1,2,3\n";
     survive(good, 1, |text| {
         parse_returns(source(text), &mut Vec::new()).is_ok_and(|rows| {
-            assert!(rows.iter().all(|row| row.error.x.is_finite() && row.error.heading.is_none_or(f64::is_finite)));
+            assert!(rows.iter().all(|row| {
+                let (x, y, heading) = match row.measured {
+                    Measured::Error(error) => (error.x, error.y, error.heading),
+                    Measured::Absolute(end) => end,
+                };
+                x.is_finite() && y.is_finite() && heading.is_none_or(f64::is_finite)
+            }));
             true
         })
     });
@@ -211,7 +217,7 @@ fn damaged_optiodom_files() {
     survive(steered, 8, |text| {
         let log = optiodom::parse_tricycle_run(source(text))
             .and_then(|recording| recording.into_log(Some(&robot), None, &mut Vec::new()));
-        log.is_ok_and(|log| {
+        log.is_ok_and(|(log, _)| {
             assert!(log.left.iter().chain(&log.right).chain(&log.time).all(|value| value.is_finite()));
             true
         })

@@ -35,16 +35,21 @@ pub(super) struct Recording {
     /// Whether the angle of a row is that of all that was driven since the row before, rather than that at its time.
     pub angle_of_row: bool,
     pub reference: Vec<ReferencePose>,
+    /// Whether these poses are sums of the steps of a reference that tells motion only.
+    pub relative: bool,
+    /// Rows at which the robot stood on a mark, and its name.
+    pub marked: Vec<(usize, String)>,
 }
 
 impl Recording {
-    /// Puts rows in order, undoes roll-overs of a counter of `bits` bits and resets, and counts from START.
+    /// Puts rows in order, undoes roll-overs of a counter of `bits` bits and resets, and counts from START. With the samples at which the
+    /// robot stood on a mark.
     pub fn into_log(
         mut self,
         robot: Option<&Robot>,
         bits: Option<u32>,
         warnings: &mut Vec<String>,
-    ) -> Result<TickLog, DatasetError> {
+    ) -> Result<(TickLog, Vec<(usize, String)>), DatasetError> {
         let mut mended = Mended::default();
         order::put_in_order(&mut self, &mut mended, warnings)?;
         if self.per_cycle {
@@ -73,7 +78,9 @@ impl Recording {
             Some(robot) => robot.axle_ticks(robot.encoder.wiring().counters(ticks)),
             None => ticks,
         };
-        Ok(TickLog { time: self.time, left, right, reference: self.reference, mended, ..TickLog::default() })
+        let (reference, relative) = (self.reference, self.relative);
+        let log = TickLog { time: self.time, left, right, reference, relative, mended, ..TickLog::default() };
+        Ok((log, self.marked))
     }
 
     fn add_up(&mut self) {

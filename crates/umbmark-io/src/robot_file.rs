@@ -191,11 +191,12 @@ pub(super) fn is_waypoints(shape: &Shape) -> bool {
 fn read_reference(table: &Table) -> Result<ReferenceFrame, DatasetError> {
     let keys = ReferenceFrame::default().keys().map(|(key, ..)| key);
     table.only(&keys)?;
-    let [y_mirrored, heading_clockwise, heading_backward] =
+    let [y_mirrored, heading_clockwise, heading_backward, drifting] =
         keys.map(|key| table.get(key).map_or(Ok(false), |entry| entry.flag()));
     Ok(ReferenceFrame {
         y_mirrored: y_mirrored?,
         heading_clockwise: heading_clockwise?,
         heading_backward: heading_backward?,
+        drifting: drifting?,
     })
 }

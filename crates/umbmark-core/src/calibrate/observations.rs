@@ -54,6 +54,19 @@ impl Observations {
         Ok(Observations { level, drives, heading_arm: arm, scale_shows, taken: Vec::new(), by_motion: None })
     }
 
+    /// Whether the reference of every regular run tells motion only, which is nothing that is offered here.
+    pub(super) fn are_steps(data: &Dataset) -> bool {
+        let mut runs = data.runs.iter().filter(|run| run.test == TestKind::Systematic).peekable();
+        let steps = |run: &Run| run.returned.is_none() && run.log.as_ref().is_some_and(|log| log.relative);
+        runs.peek().is_some() && runs.all(steps)
+    }
+
+    /// Those of a dataset that offers none.
+    pub(super) fn none() -> Observations {
+        let (level, drives, taken) = (Level::Tracks, Vec::new(), Vec::new());
+        Observations { level, drives, heading_arm: 1.0, scale_shows: false, taken, by_motion: None }
+    }
+
     /// On tracks, takes what the motion alone says of the reference and, where it is far from nominal, of the robot.
     pub(super) fn begin_with(&mut self, mounting: &Mounting, robot: &Robot) {
         if self.level == Level::Tracks {
@@ -70,7 +83,7 @@ impl Observations {
 /// A dataset without what is wrong with its tracks: wrong poses are left out, and each run ends before its first jump; its return
 /// error is then not known. With a sentence for each run that lost something.
 pub(super) fn mended<'a>(data: &'a Dataset, setup: &Setup) -> (Cow<'a, Dataset>, Vec<String>) {
-    let is_off = |run: &RunSetup| !(run.wrong.is_empty() && run.jumps.is_empty());
+    let is_off = |run: &RunSetup| !run.relative && !(run.wrong.is_empty() && run.jumps.is_empty());
     if !setup.runs.iter().any(is_off) {
         return (Cow::Borrowed(data), Vec::new());
     }

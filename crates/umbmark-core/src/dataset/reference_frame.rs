@@ -13,15 +13,18 @@ pub struct ReferenceFrame {
     pub heading_clockwise: bool,
     /// The tracked body faces backward: its heading is half a turn from the robot's.
     pub heading_backward: bool,
+    /// Each pose tells only how the robot moved since the one before: the track drifts.
+    pub drifting: bool,
 }
 
 impl ReferenceFrame {
     /// Each key with what it says here and what it means.
-    pub fn keys(&self) -> [(&'static str, bool, &'static str); 3] {
+    pub fn keys(&self) -> [(&'static str, bool, &'static str); 4] {
         [
             ("y_mirrored", self.y_mirrored, "y_ref grows to the right of x_ref"),
             ("heading_clockwise", self.heading_clockwise, "theta_ref grows clockwise"),
             ("heading_backward", self.heading_backward, "theta_ref is that of the robot's tail"),
+            ("drifting", self.drifting, "a pose tells the motion since the one before"),
         ]
     }
 

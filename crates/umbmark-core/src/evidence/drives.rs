@@ -62,7 +62,8 @@ fn check_path(data: &Dataset, robot: &Robot) -> Result<(), FitError> {
 
 /// A run with its recorded track, if it has one.
 pub(crate) fn tracked(run: &Run, robot: &Robot) -> Result<Option<Drive>, FitError> {
-    let Some(log) = run.log.as_ref().filter(|log| !log.reference.is_empty()) else { return Ok(None) };
+    let in_room = |log: &&crate::run::TickLog| !log.reference.is_empty() && !log.relative;
+    let Some(log) = run.log.as_ref().filter(in_room) else { return Ok(None) };
     let track = track_of(run, robot)?;
     let seen = log.reference.iter().map(|r| Seen { x: r.x, y: r.y, heading: r.heading }).collect();
     Ok(track.map(|track| Drive { direction: run.direction, track, seen, weight: Matrix3::identity(), recorded: true }))

@@ -225,6 +225,9 @@ impl<'a> Seen<'a> {
             (from, gone) = (piece.pose, gone + piece.way);
             while let Some((_, heading)) = seen.next_if(|(sample, _)| sample <= end) {
                 self.see(piece, *heading, reference);
+                if log.relative {
+                    self.begin((0.0, 0.0));
+                }
                 moved += usize::from(gone > 0.05 * way && gone < 0.95 * way);
             }
         }

@@ -61,6 +61,8 @@ impl Default for Noise {
 
 /// Range of each size, as multiples of its usual value.
 const RANGE: (f64, f64) = (1e-2, 1e3);
+/// The scatter of delays may be this multiple of the one that the motion of the runs shows.
+const BY_MOTION: f64 = 2.0;
 /// Number of rounds with the columns projected out once per round; after these they are projected out for every noise that is tried.
 const ROUNDS: usize = 2;
 
@@ -118,6 +120,7 @@ impl Noise {
             if count > 0 { (sum / count as f64).sqrt() } else { 0.0 }
         };
         (start.within_position, start.within_heading) = (pooled(0), pooled(1));
+        let longest = longest_delay(observed);
         let sizes = |x: &[f64; Noise::SIZES]| {
             let usual = Noise::default();
             let at = |i: usize, usual: f64| usual * libm::exp(x[i].clamp(libm::log(RANGE.0), libm::log(RANGE.1)));
@@ -129,7 +132,7 @@ impl Noise {
                 reference_position: at(4, usual.reference_position).max(observed.resolution[0]),
                 reference_heading: at(5, usual.reference_heading).max(observed.resolution[1]),
                 reference_time: at(6, usual.reference_time),
-                reference_delay: at(7, usual.reference_delay),
+                reference_delay: at(7, usual.reference_delay).min(longest),
                 ..start
             }
         };
@@ -212,6 +215,20 @@ fn deviance(products: &DMatrix<f64>, log_scale: f64) -> f64 {
     let Some(solver) = solver(products, &(0..p).collect::<Vec<_>>()) else { return deviance };
     let cross = products.view((0, p), (p, 1)).into_owned();
     deviance + solver.log_determinant() - solver.half(&cross).norm_squared()
+}
+
+/// The largest scatter of the delay from run to run that the motion allows \[s\], where no heading was measured: a late run then looks like
+/// one that began with another heading and turns by other angles, and the poses alone hardly tell these apart.
+fn longest_delay(observed: &Observed) -> f64 {
+    if observed.runs.iter().any(|run| run.blocks.iter().any(|block| block.headings > 0)) {
+        return f64::INFINITY;
+    }
+    let delays: Vec<_> = observed.setup.runs.iter().filter_map(|run| run.delay).collect();
+    let n = delays.len() as f64;
+    let mean = delays.iter().map(|delay| delay.value).sum::<f64>() / n;
+    let squares = delays.iter().map(|delay| (delay.value - mean).powi(2) + delay.std_error.powi(2)).sum::<f64>() / n;
+    let longest = BY_MOTION * squares.sqrt();
+    if longest.is_finite() && n > 1.0 { longest.max(Noise::default().reference_delay) } else { f64::INFINITY }
 }
 
 impl Noise<Eight> {

@@ -7,6 +7,7 @@ mod pieces;
 mod readings;
 mod resolution;
 mod starts;
+mod steps;
 mod walk;
 
 use crate::dataset::Dataset;
@@ -75,6 +76,9 @@ pub struct Block {
     pub afresh: bool,
     /// Whether the track jumps before it.
     pub jumped: bool,
+    /// Variances of the reference in it, in units of those of one measurement: how many steps are added up to it where the reference tells
+    /// motion only, else 1.
+    pub steps: f64,
 }
 
 /// A run, ready to be predicted.
@@ -102,6 +106,9 @@ pub struct ObservedRun {
     pub linear: bool,
     /// Whether the pose at START was measured or follows from the poses; otherwise the frame is trusted.
     pub start_seen: bool,
+    /// Whether the reference tells only the motion from each block to the next. Residuals and derivatives are then those of this motion,
+    /// turned into the frame of the room, and zero in the first block and where the run restarts.
+    pub relative: bool,
 }
 
 /// All runs of the regular test that were observed on the way.
@@ -177,6 +184,15 @@ fn in_one_room(first: &Pose2, start: &Pose2) -> Pose2 {
     if near { Pose2::IDENTITY } else { seen }
 }
 
+/// What was measured of a run.
+struct Seen<'a> {
+    measured: Arc<[(f64, f64, Option<f64>)]>,
+    jumps: &'a [usize],
+    start_seen: bool,
+    /// Of a reference that tells motion only, how many of its steps are added up to each measurement; empty of others.
+    added: Vec<f64>,
+}
+
 impl ObservedRun {
     fn new(
         run: &Run,
@@ -190,7 +206,10 @@ impl ObservedRun {
             found.and_then(|found| found.delay).filter(|delay| delay.is_beyond(KNOWN)).map_or(0.0, |delay| delay.value);
         let uneven = readings::between_readings(log, robot, late);
         let is_lost = |pose: usize| uneven[pose] || found.is_some_and(|found| found.is_lost(pose));
-        let kept: Vec<usize> = (0..log.reference.len()).filter(|pose| !is_lost(*pose)).collect();
+        let mut kept: Vec<usize> = (0..log.reference.len()).filter(|pose| !is_lost(*pose)).collect();
+        if log.relative {
+            kept = steps::apart(log, robot, &kept);
+        }
         let samples = kept.iter().map(|pose| log.reference[*pose].sample);
         let track = Track::from_log_seen(log, robot, place, samples)?.beginning_at(origin);
         let in_room = |pose: &usize| {
@@ -206,15 +225,17 @@ impl ObservedRun {
         let jumps: Vec<usize> = jumps.map(|jump| kept.partition_point(|pose| *pose < jump.pose)).collect();
         let at_start = track.seen_after().first().is_some_and(|made| track.way_before(*made) < AT_START);
         let start_seen = at_start || log.start.known == StartKnown::OnTheWay;
-        let observed =
-            ObservedRun::laid(&run.name, run.direction, track, measured, &jumps, start_seen, &Model::new(robot));
+        let added: Vec<f64> = if log.relative { steps::added_up(&kept) } else { Vec::new() };
+        let seen = Seen { measured, jumps: &jumps, start_seen, added };
+        let observed = ObservedRun::laid(&run.name, run.direction, track, seen, &Model::new(robot));
         Ok((observed.blocks.len() >= FEWEST).then_some(observed))
     }
 
     /// A run yet to be driven, as a model predicts it; `headings` says whether they will be measured.
     pub fn planned(track: Track, direction: Direction, headings: bool, model: &Model) -> ObservedRun {
         let measured = track.sights().iter().map(|_| (0.0, 0.0, headings.then_some(0.0))).collect();
-        ObservedRun::laid("", Some(direction), track, measured, &[], true, model)
+        let seen = Seen { measured, jumps: &[], start_seen: true, added: Vec::new() };
+        ObservedRun::laid("", Some(direction), track, seen, model)
     }
 
     /// A run in blocks, linearised about a model. No block contains observations from both sides of a jump.
@@ -222,13 +243,13 @@ impl ObservedRun {
         name: &str,
         direction: Option<Direction>,
         track: Track,
-        measured: Arc<[(f64, f64, Option<f64>)]>,
-        jumps: &[usize],
-        start_seen: bool,
+        Seen { measured, jumps, start_seen, added }: Seen,
         model: &Model,
     ) -> ObservedRun {
         let chain = model.chain();
-        let blocks = blocks(&track, &measured, jumps, &chain);
+        let relative = !added.is_empty();
+        let mut blocks = blocks(&track, &measured, jumps, (&chain, relative));
+        blocks.iter_mut().zip(&added).for_each(|(block, steps)| block.steps = *steps);
         let (name, log, track, seen) = (name.to_owned(), name.to_owned(), Arc::new(track), Arc::clone(&measured));
         let (moments, places) = ([].into(), [].into());
         let mut observed = ObservedRun {
@@ -243,6 +264,7 @@ impl ObservedRun {
             blocks,
             linear: false,
             start_seen,
+            relative,
         };
         observed.lay_along(&chain);
         observed

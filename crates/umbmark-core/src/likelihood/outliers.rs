@@ -24,6 +24,8 @@ const NEAR: f64 = 0.15;
 const SHARED: f64 = 0.2;
 /// Where a greater share of all blocks exceeds the threshold, these are not accidents.
 const MAX_SHARE: f64 = 0.01;
+/// The same where the reference tells motion only: a match of two scans may fail.
+const MAX_SHARE_OF_STEPS: f64 = 0.1;
 /// Blocks at the beginning that determine START.
 const SPENT: usize = 2;
 
@@ -43,7 +45,7 @@ impl Observed {
             };
             found.jumps.iter().map(of).collect::<Vec<_>>()
         };
-        self.setup.runs.iter().flat_map(of_run).collect()
+        self.setup.runs.iter().filter(|run| !run.relative).flat_map(of_run).collect()
     }
 }
 
@@ -64,11 +66,14 @@ impl Fitted {
         let least = BEYOND.max(beyond_tails(&runs, LEVEL));
         let beyond = |run: usize| runs[run].iter().enumerate().filter(|(_, d)| **d > least).map(|(block, _)| block);
         let places = (0..runs.len()).flat_map(|run| beyond(run).map(move |block| (run, block)));
-        let alone = places.filter(|(run, block)| !shared(*run, ways[*run][*block]));
+        // Steps of a reference that tells motion only fail at any place, and often.
+        let steps = self.observed.runs.iter().any(|run| run.relative);
+        let alone = places.filter(|(run, block)| steps || !shared(*run, ways[*run][*block]));
         let found: BTreeSet<_> = alone.map(|place| (place, runs[place.0][place.1].to_bits())).collect();
         let all: usize = self.observed.runs.iter().map(|run| run.blocks.len()).sum();
         let known = self.observed.runs.iter().flat_map(|run| &run.blocks).filter(|block| block.afresh).count();
-        if (found.len() + known) as f64 <= MAX_SHARE * all as f64 { found } else { BTreeSet::new() }
+        let most = if steps { MAX_SHARE_OF_STEPS } else { MAX_SHARE };
+        if (found.len() + known) as f64 <= most * all as f64 { found } else { BTreeSet::new() }
     }
 
     /// Innovation of each block, in standard deviations of this run.
@@ -91,7 +96,8 @@ impl Fitted {
     pub(super) fn outlier(&self, (run, block): BlockIndex, deviations: f64) -> Outlier {
         let run = &self.observed.runs[run];
         let residuals = run.residuals_along(&self.model.chain());
-        let [dx, dy, turned] = [0, 1, 2].map(|k| residuals[block][k] - residuals[block - 1][k]);
+        let before = |k: usize| if run.relative { 0.0 } else { residuals[block - 1][k] };
+        let [dx, dy, turned] = [0, 1, 2].map(|k| residuals[block][k] - before(k));
         let measured = run.blocks[block].headings > 0 && run.blocks[block - 1].headings > 0;
         Outlier {
             run: run.name.clone(),

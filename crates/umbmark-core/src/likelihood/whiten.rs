@@ -158,6 +158,14 @@ impl<'a, T: Scalar> Filter<'a, T> {
     #[inline(always)]
     fn take_in(&mut self, index: usize) -> usize {
         let (block, noise) = (&self.run.blocks[index], self.noise);
+        if self.run.relative {
+            if !self.run.has_step(index) {
+                return 0;
+            }
+            // A step begins where the last one ended, exactly.
+            self.p = diagonal([T::from(0.0); 3]);
+            self.states.forget();
+        }
         add(&mut self.p, &noise.growth(&block.growth));
         if block.afresh {
             add(&mut self.p, &noise.start(true));
@@ -196,11 +204,12 @@ impl<T: Scalar> Noise<T> {
     #[inline(always)]
     fn measurement(&self, block: &Block) -> [[T; 3]; 3] {
         let (shared, within) = (self.reference_position, self.within_position);
-        let position = shared * shared + within * within / T::from(block.count as f64);
+        let steps = T::from(block.steps);
+        let position = shared * shared * steps + within * within / T::from(block.count as f64);
         let (shared, within) = (self.reference_heading, self.within_heading);
         let heading = match block.headings {
             0 => T::from(NOT_MEASURED * NOT_MEASURED),
-            count => shared * shared + within * within / T::from(count as f64),
+            count => shared * shared * steps + within * within / T::from(count as f64),
         };
         let [x, y, turn] = block.velocity;
         let (x, y, turn) =
@@ -305,6 +314,11 @@ impl<T: Scalar> States<T> {
         States { states: zeros(), new: zeros() }
     }
 
+    /// Sets all states to zero.
+    fn forget(&mut self) {
+        self.states.iter_mut().for_each(|state| state.fill(T::from(0.0)));
+    }
+
     /// Innovation of a block in every column; updates the states.
     #[inline(always)]
     fn take_in<'b>(&mut self, stage: &Stage<T>, block: impl Iterator<Item = &'b [f64; 3]>) {
@@ -362,6 +376,7 @@ mod tests {
                     unit: 0,
                     afresh: false,
                     jumped: false,
+                    steps: 1.0,
                 }
             })
             .collect();
@@ -377,6 +392,7 @@ mod tests {
             blocks,
             linear: false,
             start_seen,
+            relative: false,
         }
     }
 

@@ -175,6 +175,11 @@ impl Agreement {
         (0..2).any(|k| self.shown[k] && self.is_main[k] && self.misfits[k] >= CREDIBLE)
     }
 
+    /// Whether the rotations agree, where there are some.
+    pub fn turns_are_credible(&self) -> bool {
+        !self.shown[1] || self.misfits[1] < CREDIBLE
+    }
+
     /// Way by the reference over way by the wheels.
     pub fn scale(&self) -> f64 {
         libm::hypot(self.way[0], self.way[1])

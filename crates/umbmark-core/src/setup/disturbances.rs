@@ -45,8 +45,9 @@ pub(super) struct Leap {
     pub deviations: f64,
 }
 
-/// Searches all runs; returns the findings of each, and the noise of a single pose.
-pub(super) fn search(runs: &[Vec<Sighting>]) -> (Vec<Found>, PoseNoise) {
+/// Searches all runs; returns the findings of each, and the noise of a single pose. What is wrong with single `steps` of a reference that tells
+/// motion only is an accident at whatever place, also where another run has one.
+pub(super) fn search(runs: &[Vec<Sighting>], steps_only: bool) -> (Vec<Found>, PoseNoise) {
     let (spread, noise) = Spread::of(runs);
     let ways: Vec<Way> = runs.iter().map(|run| Way::cheapest(run, &spread)).collect();
     let steps: Vec<Vec<Edge>> = runs.iter().zip(&ways).map(|(run, way)| way.steps(run, &spread)).collect();
@@ -55,7 +56,8 @@ pub(super) fn search(runs: &[Vec<Sighting>]) -> (Vec<Found>, PoseNoise) {
     };
     let shared = Shared::new(runs, runs.iter().zip(&steps).map(large).collect());
     let left = |(index, run): (usize, &Vec<Sighting>)| {
-        let own = |step: &&Edge| step.deviations > JUMP && !shared.stands_elsewhere(index, run[step.to].rolled);
+        let is_shared = |step: &Edge| !steps_only && shared.stands_elsewhere(index, run[step.to].rolled);
+        let own = |step: &&Edge| step.deviations > JUMP && !is_shared(step);
         let jumps = steps[index].iter().filter(own).copied().collect::<Vec<Edge>>();
         sorted_out(run, &ways[index].kept, jumps, &spread)
     };
@@ -163,7 +165,7 @@ mod tests {
 
     #[test]
     fn nothing_is_found_where_nothing_is() {
-        assert!(search(&runs(6)).0.iter().all(|found| *found == Found::default()));
+        assert!(search(&runs(6), false).0.iter().all(|found| *found == Found::default()));
     }
 
     #[test]
@@ -173,7 +175,7 @@ mod tests {
             jump(run, 100 + 77 * index, 0.1, -0.2);
         }
         jump(&mut runs[2], 400, 0.0, 0.5);
-        let (found, noise) = search(&runs);
+        let (found, noise) = search(&runs, false);
         assert!((noise.position / 2e-3 - 1.0).abs() < 0.2 && (noise.heading / 3e-3 - 1.0).abs() < 0.2, "{noise:?}");
         for (index, found) in found.iter().enumerate() {
             let expected: &[usize] = if index == 2 { &[254, 400] } else { &[100 + 77 * index] };
@@ -194,7 +196,7 @@ mod tests {
                 run[*pose].measured.0 += shift;
             }
         }
-        for (found, expected) in search(&runs).0.iter().zip(&wrong) {
+        for (found, expected) in search(&runs, false).0.iter().zip(&wrong) {
             assert_eq!(found.jumps, []);
             assert_eq!(found.wrong.iter().map(|wrong| wrong.pose).collect::<Vec<_>>(), *expected);
             assert!(found.wrong.iter().all(|wrong| (0.25..1.1).contains(&wrong.moved)), "{:?}", found.wrong);
@@ -212,7 +214,7 @@ mod tests {
     fn a_slip_of_a_second_is_found_as_one_jump_and_no_pose_is_wrong() {
         let mut runs = runs(4);
         slip(&mut runs[1], 16, 0.012);
-        let (found, _) = search(&runs);
+        let (found, _) = search(&runs, false);
         for (index, found) in found.iter().enumerate() {
             assert_eq!((found.wrong.len(), found.jumps.len()), (0, usize::from(index == 1)), "{found:?}");
         }
@@ -225,7 +227,7 @@ mod tests {
     fn a_robot_that_is_carried_for_two_seconds_jumps_once() {
         let mut runs = runs(4);
         slip(&mut runs[2], 40, 0.1);
-        let (found, _) = search(&runs);
+        let (found, _) = search(&runs, false);
         assert_eq!(found.iter().map(|found| found.jumps.len()).collect::<Vec<_>>(), [0, 0, 1, 0]);
         assert!(found.iter().all(|found| found.wrong.is_empty()), "{found:?}");
         let jump = found[2].jumps[0];
@@ -242,7 +244,7 @@ mod tests {
                 }
             }
         }
-        assert!(search(&runs).0.iter().all(|found| found.jumps.is_empty()));
+        assert!(search(&runs, false).0.iter().all(|found| found.jumps.is_empty()));
         let mut runs = self::runs(6);
         for run in &mut runs {
             let at = run.iter().position(|pose| pose.rolled > 3.0).unwrap();
@@ -250,7 +252,7 @@ mod tests {
                 jump(run, pose, 0.0, 0.012);
             }
         }
-        assert!(search(&runs).0.iter().all(|found| found.jumps.is_empty()));
+        assert!(search(&runs, false).0.iter().all(|found| found.jumps.is_empty()));
     }
 
     #[test]
@@ -260,6 +262,6 @@ mod tests {
             let at = run.iter().position(|pose| pose.rolled > 3.0).unwrap();
             jump(run, at, 0.0, 0.1);
         }
-        assert!(search(&runs).0.iter().all(|found| found.jumps.is_empty()));
+        assert!(search(&runs, false).0.iter().all(|found| found.jumps.is_empty()));
     }
 }

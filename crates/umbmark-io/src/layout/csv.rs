@@ -1,6 +1,7 @@
 //! The project's own layout: `robot.toml`, `returns.csv`, `runs/*.csv` and `reference/*.csv`.
 
 mod contents;
+mod marks;
 mod returns;
 mod tick_log;
 mod track;
@@ -14,7 +15,7 @@ use crate::label;
 use crate::probe::{Probe, extension, name_of, names_in, stem};
 use crate::save::{Existing, put};
 use crate::source::Source;
-pub(crate) use returns::{ReturnRow, parse_returns, returns_text};
+pub(crate) use returns::{Measured, ReturnRow, parse_returns, returns_text};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 pub(crate) use tick_log::{parse_tick_log, tick_log_text};
@@ -29,6 +30,7 @@ pub(super) const LAYOUT: Layout = Layout::new("csv", "robot.toml, returns.csv an
 
 pub(crate) const ROBOT: &str = "robot.toml";
 pub(crate) const RETURNS: &str = "returns.csv";
+const MARKS: &str = "marks.csv";
 pub(crate) const RUNS: &str = "runs";
 pub(crate) const REFERENCE: &str = "reference";
 const EXPECTED: &str =
@@ -61,6 +63,9 @@ fn read_folder(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> 
             added => added?,
         }
     }
+    if probe.has(MARKS) {
+        assembly.marks = marks::parse(Source::open(&folder.join(MARKS))?, &mut assembly.warnings)?;
+    }
     let mut logs = 0;
     if probe.has(RUNS) {
         logs = add_logs(&mut assembly, &folder.join(RUNS), topics)?;
@@ -76,7 +81,7 @@ fn read_folder(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> 
     for file in named_alike.filter(|file| sheets().all(|sheet| *sheet != name_of(file))) {
         assembly.warnings.push(format!("{}: is no return sheet ({RETURNS}) and was not read", file.display()));
     }
-    Ok(assembly.finish())
+    assembly.finish()
 }
 
 pub(super) fn not_a_dataset(file: &Path, found: String) -> DatasetError {
@@ -155,7 +160,7 @@ fn read_file(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> {
     } else {
         add_returns(&mut assembly, file)?;
     }
-    Ok(assembly.finish())
+    assembly.finish()
 }
 
 /// The robot.toml of a file in `folder`: in it, or above it where it is called runs.
@@ -196,7 +201,7 @@ const CSV: LogFormat = LogFormat { ending: "csv", bytes: csv, same: same_record 
 
 /// Whether two logs hold the same samples and poses, whatever had to be mended in either.
 fn same_record(a: &TickLog, b: &TickLog) -> bool {
-    (&a.time, &a.left, &a.right, &a.reference) == (&b.time, &b.left, &b.right, &b.reference)
+    (&a.time, &a.left, &a.right, &a.reference, a.relative) == (&b.time, &b.left, &b.right, &b.reference, b.relative)
 }
 
 fn csv(data: &Dataset, _: &Run, log: &TickLog) -> Result<Vec<u8>, DatasetError> {
@@ -222,7 +227,8 @@ pub(crate) fn save_with(
     let robot = data.nominal_robot()?;
     let mut files = BTreeMap::new();
     // The poses are written as they are meant to be.
-    let robot_file = RobotFile::new(robot.clone(), data.path.clone());
+    let mut robot_file = RobotFile::new(robot.clone(), data.path.clone());
+    robot_file.reference.drifting = super::logs(data).any(|(_, log)| log.relative);
     files.insert(PathBuf::from(ROBOT), robot_file.text().into_bytes());
     files.extend(returns_text(&data.runs).map(|text| (PathBuf::from(RETURNS), text)));
     for run in &data.runs {

@@ -92,7 +92,7 @@ fn read(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> {
     };
     let mut assembly = Assembly::new(robot_file);
     add(&mut assembly, survey, file, topics)?;
-    Ok(assembly.finish())
+    assembly.finish()
 }
 
 /// More messages of a topic are not kept: hours of a fast robot, and 300 MB.
@@ -118,7 +118,7 @@ impl Reading {
     pub fn into_log(mut self, robot: Option<&Robot>, warnings: &mut Vec<String>) -> Result<TickLog, DatasetError> {
         let file = self.recording.file.clone();
         let bits = robot.and_then(|robot| robot.encoder.counter_bits()).filter(|_| self.are_counts);
-        let mut log = self.recording.into_log(robot, bits, warnings)?;
+        let (mut log, _) = self.recording.into_log(robot, bits, warnings)?;
         self.track.put_in_order(warnings)?;
         self.track.count_turns();
         let poses = self.track.poses.len();

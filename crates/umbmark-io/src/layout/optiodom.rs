@@ -74,7 +74,7 @@ fn read(probe: &Probe, _: &Topics) -> Result<Dataset, DatasetError> {
         Some(run) => add_run(&mut assembly, folder, run)?,
         None => return Err(not_a_dataset(&probe.path, "it is no run of the OptiOdom set beside it".into())),
     }
-    Ok(assembly.finish())
+    assembly.finish()
 }
 
 fn read_set(folder: &Path, set: &str, names: &[String]) -> Result<Dataset, DatasetError> {
@@ -87,7 +87,7 @@ fn read_set(folder: &Path, set: &str, names: &[String]) -> Result<Dataset, Datas
     for run in runs {
         add_run(&mut assembly, folder, &run)?;
     }
-    Ok(assembly.finish())
+    assembly.finish()
 }
 
 fn assembly_of(folder: &Path, set: &str) -> Result<Assembly, DatasetError> {

@@ -104,13 +104,19 @@ fn refused(recording: &Recording, at: usize, remedy: &str) -> DatasetError {
 /// Keeps the rows of an order, in it, with the poses that belong to them or to a row of the same time.
 fn rearrange(recording: &mut Recording, order: &[usize]) {
     let mut references: Vec<_> = std::mem::take(&mut recording.reference);
-    let place = |time: f64| order.partition_point(|row| recording.time[*row] < time);
+    let stamps: Vec<f64> = order.iter().map(|row| recording.time[*row]).collect();
+    let place = |time: f64| stamps.partition_point(|stamp| *stamp < time);
     for pose in &mut references {
         pose.sample = place(recording.time[pose.sample]);
     }
     references.sort_by_key(|pose| pose.sample);
     references.dedup_by_key(|pose| pose.sample);
     recording.reference = references;
+    for (sample, _) in &mut recording.marked {
+        *sample = place(recording.time[*sample]);
+    }
+    recording.marked.sort_by_key(|(sample, _)| *sample);
+    recording.marked.dedup_by_key(|(sample, _)| *sample);
     let pick = |values: &[f64]| order.iter().map(|row| values[*row]).collect::<Vec<f64>>();
     recording.counts = [pick(&recording.counts[0]), pick(&recording.counts[1])];
     recording.lines = order.iter().map(|row| recording.lines.of(*row)).collect();

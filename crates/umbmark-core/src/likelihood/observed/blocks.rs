@@ -12,12 +12,12 @@ const BLOCK: (f64, f64) = (0.03, 0.05);
 /// Number of units of a run, by the distance driven.
 const UNITS: f64 = 4.0;
 
-/// Cuts the observations of a track into blocks; each of `jumps` is the first of one.
+/// Cuts the observations of a track into blocks, each for itself where they are to stand `alone`; each of `jumps` is the first of one.
 pub(super) fn blocks(
     track: &Track,
     seen: &[(f64, f64, Option<f64>)],
     jumps: &[usize],
-    chain: &Chain<f64>,
+    (chain, alone): (&Chain<f64>, bool),
 ) -> Vec<Block> {
     let walk = Walk::new(track, chain);
     let whole = walk.way.last().copied().unwrap_or(0.0);
@@ -29,7 +29,7 @@ pub(super) fn blocks(
             walk.way[*made] - walk.way[begins] < BLOCK.0 && walk.turned[*made] - walk.turned[begins] < BLOCK.1
         };
         let until = jumps.iter().copied().find(|jump| *jump > first).unwrap_or(seen.len());
-        let count = track.seen_after()[first..until].iter().take_while(|made| together(made)).count().max(1);
+        let count = track.seen_after()[first..until].iter().take_while(|made| !alone && together(made)).count().max(1);
         let unit = (UNITS * walk.way[begins] / whole.max(f64::MIN_POSITIVE)).min(UNITS - 1.0) as usize;
         let headings = seen[first..first + count].iter().filter(|s| s.2.is_some()).count();
         let jumped = first > 0 && jumps.contains(&first);
@@ -43,6 +43,7 @@ pub(super) fn blocks(
             unit,
             afresh: jumped,
             jumped,
+            steps: 1.0,
         });
         first += count;
     }

@@ -19,7 +19,7 @@ impl ObservedRun {
     fn less(&self, predicted: impl FnOnce(&mut dyn FnMut(usize, &Pose2))) -> Column {
         let mut sums = Sums::<1>::new(self);
         predicted(&mut |i, pose| sums.add_residual(i, pose));
-        sums.of_lane(0)
+        self.residual_steps(sums.of_lane(0))
     }
 
     /// Derivatives of the predicted poses, block by block: those in the first `count` lanes.
@@ -34,7 +34,8 @@ impl ObservedRun {
             slopes.add_slope(i, pose);
             left.add_residual(i, &pose.value());
         });
-        ((0..count).map(|lane| slopes.of_lane(lane)).collect(), left.of_lane(0))
+        let slopes = (0..count).map(|lane| self.slope_steps(slopes.of_lane(lane))).collect();
+        (slopes, self.residual_steps(left.of_lane(0)))
     }
 
     /// Derivatives by numbers that change only the measurement, at the model about which the run is linearised.
@@ -45,7 +46,7 @@ impl ObservedRun {
     fn slopes(&self, count: usize, predicted: impl FnOnce(&mut dyn FnMut(usize, &Pose2<Dual>))) -> Vec<Column> {
         let mut sums = Sums::<LANES>::new(self);
         predicted(&mut |i, pose| sums.add_slope(i, pose));
-        (0..count).map(|lane| sums.of_lane(lane)).collect()
+        (0..count).map(|lane| self.slope_steps(sums.of_lane(lane))).collect()
     }
 
     /// Calls `seen` with what is measured of each place.

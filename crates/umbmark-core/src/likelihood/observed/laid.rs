@@ -32,6 +32,12 @@ impl ObservedRun {
             block.growth = walk.growth(before, middle);
             before = middle;
         }
+        if self.relative {
+            let velocities: Vec<[f64; 3]> = self.blocks.iter().map(|block| block.velocity).collect();
+            let of = |k: usize| self.slope_step(k, &velocities[k], k.checked_sub(1).map(|k| &velocities[k]));
+            let steps: Vec<[f64; 3]> = (0..velocities.len()).map(of).collect();
+            self.blocks.iter_mut().zip(steps).for_each(|(block, step)| block.velocity = step);
+        }
         self.lay_measured(chain);
     }
 
@@ -53,7 +59,7 @@ impl ObservedRun {
             }));
         }
         self.seen = seen.into();
-        if self.linear {
+        if self.linear && !self.relative {
             self.linearise(chain);
         }
     }

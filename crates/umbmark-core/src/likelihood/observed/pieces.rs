@@ -3,7 +3,7 @@
 //! Noise differs from run to run, a physical cause does not. A drive of ten minutes shows this as well as ten drives of a minute, if each
 //! piece has its own START: its pose there is measured, and the error accumulated before is discarded.
 
-use super::{FEWEST, ObservedRun};
+use super::{FEWEST, ObservedRun, Seen};
 use crate::drive::Robot;
 use crate::effect::Model;
 use crate::geometry::Pose2;
@@ -84,7 +84,10 @@ fn piece(run: &ObservedRun, own: Range<usize>, robot: &Robot) -> Option<Observed
     let sights = run.track.sights();
     let (from, to) = (sights[own.start].time, sights[own.end - 1].time);
     let start_seen = begins.is_some() || run.start_seen;
-    let mut piece = ObservedRun::laid(&run.log, run.direction, track, measured.into(), &jumps, start_seen, &model);
+    let of_blocks = run.blocks.iter().filter(|block| run.relative && own.contains(&block.first));
+    let added = of_blocks.map(|block| block.steps).collect();
+    let seen = Seen { measured: measured.into(), jumps: &jumps, start_seen, added };
+    let mut piece = ObservedRun::laid(&run.log, run.direction, track, seen, &model);
     piece.name = format!("{}, {from:.0} to {to:.0} s", run.log);
     (piece.blocks.len() >= FEWEST).then_some(piece)
 }

@@ -20,6 +20,8 @@ pub struct Stretch {
     pub blocks: Range<usize>,
     /// How START is fitted; `None` where it is trusted.
     start: Option<Start>,
+    /// Whether its blocks tell motion only, the first one none.
+    relative: bool,
 }
 
 /// How START is fitted.
@@ -39,8 +41,9 @@ impl ObservedRun {
         let ends = begins.iter().skip(1).copied().chain([self.blocks.len()]);
         let stretch = |(begin, end): (&usize, usize)| {
             let blocks = *begin..end;
-            let is_fitted = *begin > 0 || self.start_seen;
-            Stretch { start: is_fitted.then(|| self.start_of(blocks.clone(), noise)), blocks }
+            let is_fitted = !self.relative && (*begin > 0 || self.start_seen);
+            let relative = self.relative;
+            Stretch { relative, start: is_fitted.then(|| self.start_of(blocks.clone(), noise)), blocks }
         };
         begins.iter().zip(ends).map(stretch).collect()
     }
@@ -151,7 +154,7 @@ impl Stretch {
 
     /// The blocks whose errors are reported: where START is fitted, the first determines it.
     pub fn told(&self) -> Range<usize> {
-        self.blocks.start + usize::from(self.start.is_some())..self.blocks.end
+        self.blocks.start + usize::from(self.start.is_some() || self.relative)..self.blocks.end
     }
 }
 

@@ -10,7 +10,7 @@
 //!
 //! Source: auxiliary residuals, Harvey & Koopman (1992); de Jong & Penzer (1998).
 
-use super::{NOT_MEASURED, Stage, States, add};
+use super::{NOT_MEASURED, Stage, States, add, diagonal};
 use crate::likelihood::outliers::beyond_tails;
 use crate::likelihood::{Column, Noise, ObservedRun};
 use crate::stats::chi_squared_upper_tail;
@@ -67,7 +67,15 @@ impl Noise {
         let mut p = self.start(run.start_seen);
         let mut states = States::new(1);
         let mut passed = Vec::with_capacity(run.blocks.len());
-        for (block, left) in run.blocks.iter().zip(left) {
+        for (index, (block, left)) in run.blocks.iter().zip(left).enumerate() {
+            if run.relative {
+                if !run.has_step(index) {
+                    passed.push(None);
+                    continue;
+                }
+                p = diagonal([0.0; 3]);
+                states.forget();
+            }
             add(&mut p, &self.growth(&block.growth));
             if block.afresh {
                 add(&mut p, &self.start(true));
@@ -83,6 +91,9 @@ impl Noise {
         let mut standing = Vec::new();
         for (index, stage) in passed.iter().enumerate().rev() {
             let Some((stage, new)) = stage else { continue };
+            if run.relative {
+                (r, n) = (Vector3::zeros(), Matrix3::zeros());
+            }
             let (w, v) = (Matrix3::from_fn(|i, j| stage.w[i][j]), Vector3::from(*new));
             let sighted = Matrix3::new(1.0, 0.0, -stage.y, 0.0, 1.0, stage.x, 0.0, 0.0, 1.0);
             let column = |j: usize| Vector3::from(stage.solved([sighted[(0, j)], sighted[(1, j)], sighted[(2, j)]]));

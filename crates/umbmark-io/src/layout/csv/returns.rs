@@ -11,6 +11,7 @@ use umbmark_core::dataset::{RETURNS_COLUMNS, ReturnError, Run};
 use umbmark_core::effect::TestKind;
 use umbmark_core::geometry::{Pose2, wrap};
 use umbmark_core::path::Direction;
+use umbmark_core::run::PoseRow;
 
 /// A row of the file.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +21,16 @@ pub(crate) struct ReturnRow {
     pub test: Option<TestKind>,
     pub direction: Option<Direction>,
     pub number: u32,
-    pub error: ReturnError,
+    pub measured: Measured,
+}
+
+/// What a row tells of the return.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Measured {
+    /// Absolute minus computed end pose.
+    Error(ReturnError),
+    /// The absolute end pose, in the frame of START; the computed one follows from the run's log.
+    Absolute(PoseRow),
 }
 
 struct PoseColumns {
@@ -32,7 +42,8 @@ struct PoseColumns {
 /// Columns of absolute and computed end poses, and of START where it was measured.
 struct EndPoses {
     absolute: PoseColumns,
-    computed: PoseColumns,
+    /// `None` where they follow from logs.
+    computed: Option<PoseColumns>,
     start: Option<PoseColumns>,
 }
 
@@ -58,7 +69,7 @@ pub(crate) fn parse_returns(source: Source, warnings: &mut Vec<String>) -> Resul
             test: test.as_ref().map(|column| read_test(row, column)).transpose()?,
             direction: row.word(&direction, &DIRECTIONS)?,
             number: read_run_number(row, &number)?,
-            error: convention.read(row)?,
+            measured: convention.read(row)?,
         });
         Ok(())
     })?;
@@ -119,17 +130,18 @@ impl Convention {
     fn leaves_computed_empty(&self, row: &Row) -> bool {
         let Convention::Poses(columns) = self else { return false };
         let EndPoses { absolute, computed, .. } = &**columns;
+        let Some(computed) = computed else { return false };
         let empty = |column: &Column| row.text(column).is_empty();
         let measured = absolute.heading.as_ref().is_some_and(|column| !empty(column));
         empty(&computed.x) || empty(&computed.y) || measured && computed.heading.as_ref().is_some_and(empty)
     }
 
-    fn read(&self, row: &Row) -> Result<ReturnError, DatasetError> {
+    fn read(&self, row: &Row) -> Result<Measured, DatasetError> {
         match self {
             Convention::Poses(columns) => columns.read(row),
             Convention::Errors(columns) => {
                 let (x, y, heading) = columns.read(row)?;
-                Ok(ReturnError { x, y, heading: heading.map(wrap) })
+                Ok(Measured::Error(ReturnError { x, y, heading: heading.map(wrap) }))
             }
         }
     }
@@ -139,8 +151,13 @@ impl EndPoses {
     fn find(columns: &mut Columns) -> Result<EndPoses, DatasetError> {
         let needs = "a return needs the end poses x_abs_m, y_abs_m, x_calc_m, y_calc_m, or the errors ex_m, ey_m";
         let absolute = PoseColumns::find(columns, ["x_abs", "y_abs", "theta_abs"], needs)?;
-        let computed = PoseColumns::find(columns, ["x_calc", "y_calc", "theta_calc"], needs)?;
-        if let (Some(_), None) | (None, Some(_)) = (&absolute.heading, &computed.heading) {
+        let given = columns.given(&["x_calc", "y_calc", "theta_calc"]);
+        let computed =
+            given.then(|| PoseColumns::find(columns, ["x_calc", "y_calc", "theta_calc"], needs)).transpose()?;
+        let computed_heading = computed.as_ref().and_then(|computed| computed.heading.as_ref());
+        if let (Some(_), None) | (None, Some(_)) = (&absolute.heading, computed_heading)
+            && computed.is_some()
+        {
             let base = if absolute.heading.is_some() { "theta_calc" } else { "theta_abs" };
             return Err(columns.missing(base, Angle, "a heading error needs both theta_abs_rad and theta_calc_rad"));
         }
@@ -157,7 +174,7 @@ impl EndPoses {
         Ok(EndPoses { absolute, computed, start })
     }
 
-    fn read(&self, row: &Row) -> Result<ReturnError, DatasetError> {
+    fn read(&self, row: &Row) -> Result<Measured, DatasetError> {
         let (mut x, mut y, mut heading) = self.absolute.read(row)?;
         if let Some(columns) = &self.start {
             let start = columns.read(row)?;
@@ -166,12 +183,13 @@ impl EndPoses {
             let seen = Pose2::new(start.0, start.1, turned).between(&Pose2::new(x, y, heading.unwrap_or(turned)));
             (x, y, heading) = (seen.x, seen.y, heading.map(|_| seen.heading));
         }
-        let (x_calc, y_calc, calc) = self.computed.read_or_zero(row)?;
+        let Some(computed) = &self.computed else { return Ok(Measured::Absolute((x, y, heading))) };
+        let (x_calc, y_calc, calc) = computed.read_or_zero(row)?;
         let heading = match (heading, calc) {
             (Some(absolute), Some(calc)) => Some(wrap(absolute - calc)),
             _ => None,
         };
-        Ok(ReturnError { x: x - x_calc, y: y - y_calc, heading })
+        Ok(Measured::Error(ReturnError { x: x - x_calc, y: y - y_calc, heading }))
     }
 }
 

@@ -9,6 +9,7 @@ use crate::source::Source;
 use Quantity::{Angle, Bare, Length, Time};
 use umbmark_core::dataset::{ReferencePose, TickLog};
 use umbmark_core::drive::{DriveKind, Robot};
+use umbmark_core::geometry::Pose2;
 
 /// The columns of the absolute poses.
 const REFERENCE: [&str; 3] = ["x_ref_m", "y_ref_m", "theta_ref_rad"];
@@ -26,6 +27,8 @@ struct LogColumns {
     time: Column,
     counts: [Column; 2],
     reference: Option<ReferenceColumns>,
+    steps: Option<[Column; 3]>,
+    mark: Option<Column>,
 }
 
 /// The rows of a log.
@@ -59,14 +62,20 @@ impl LogColumns {
         let time = columns.need("t", Time, &needs)?;
         let counts = [columns.need(&first, Bare, &needs)?, columns.need(&second, Bare, &needs)?];
         let reference = ReferenceColumns::find(&mut columns)?;
+        let mark = columns.find("mark", Bare)?;
+        let steps = find_steps(&mut columns)?;
+        if let (Some(steps), Some(poses)) = (&steps, &reference) {
+            let (first, second) = (poses.x.name.clone(), steps[0].name.clone());
+            return Err(At::new(sheet.file(), sheet.header_line).refuse(LineProblem::BothReferences { first, second }));
+        }
         columns.finish(warnings)?;
-        Ok(LogColumns { time, counts, reference })
+        Ok(LogColumns { time, counts, reference, steps, mark })
     }
 
     /// The recording of a file, before its first row.
     fn recording(&self, file: &str) -> Recording {
         let columns = [&self.time, &self.counts[0], &self.counts[1]].map(|column| column.name.clone());
-        Recording { file: file.to_owned(), columns, ..Recording::default() }
+        Recording { file: file.to_owned(), columns, relative: self.steps.is_some(), ..Recording::default() }
     }
 
     fn read(&self, row: &Row, recording: &mut Recording) -> Result<(), DatasetError> {
@@ -80,8 +89,46 @@ impl LogColumns {
         {
             recording.reference.push(pose);
         }
+        if let Some(columns) = &self.steps {
+            add_step(columns, row, recording)?;
+        }
+        if let Some(mark) = self.mark.as_ref().map(|column| row.text(column)).filter(|mark| !mark.is_empty()) {
+            recording.marked.push((recording.time.len() - 1, mark.to_owned()));
+        }
         Ok(())
     }
+}
+
+/// The columns of steps: how the sensor moved and turned since the last row that has them, as seen from where it was there.
+fn find_steps(columns: &mut Columns) -> Result<Option<[Column; 3]>, DatasetError> {
+    let names = ["dx_ref", "dy_ref", "dtheta_ref"];
+    if !columns.given(&names) {
+        return Ok(None);
+    }
+    let needs = "a step of the reference needs dx_ref_m, dy_ref_m and dtheta_ref_rad";
+    let [x, y] = [names[0], names[1]].map(|name| columns.need(name, Length, needs));
+    Ok(Some([x?, y?, columns.need(names[2], Angle, needs)?]))
+}
+
+/// Adds the step of a row, if it has one, to the last pose; the first one begins at the first row.
+fn add_step(columns: &[Column; 3], row: &Row, recording: &mut Recording) -> Result<(), DatasetError> {
+    let cells = columns.each_ref().map(|column| row.number_or(column));
+    let sample = recording.time.len() - 1;
+    let ([Ok(Some(dx)), Ok(Some(dy)), Ok(Some(turned))], before) = (cells.clone(), recording.reference.last()) else {
+        for (column, cell) in columns.iter().zip(&cells) {
+            if cells.iter().any(|cell| !matches!(cell, Ok(None))) && matches!(cell, Ok(None)) {
+                return Err(row.wrong(column, "a finite number", "fill in the step, or leave all its cells empty"));
+            }
+        }
+        return cells.into_iter().try_for_each(|cell| cell.map(|_| ()));
+    };
+    let before = before.map_or(Pose2::IDENTITY, |pose| Pose2::new(pose.x, pose.y, pose.heading.unwrap_or(0.0)));
+    if recording.reference.is_empty() && sample > 0 {
+        recording.reference.push(ReferencePose { sample: 0, x: 0.0, y: 0.0, heading: Some(0.0) });
+    }
+    let at = before.compose(&Pose2::new(dx, dy, turned));
+    recording.reference.push(ReferencePose { sample, x: at.x, y: at.y, heading: Some(at.heading) });
+    Ok(())
 }
 
 impl ReferenceColumns {

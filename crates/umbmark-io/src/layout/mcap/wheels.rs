@@ -138,6 +138,8 @@ impl Wheels {
             odometry_to_ticks(&mut self.values, robot);
         }
         Recording {
+            marked: Vec::new(),
+            relative: false,
             file: file.to_owned(),
             columns: [clock.name().to_owned(), names[0].clone(), names[1].clone()]
                 .map(|name| format!("{topic} {name}")),

@@ -1,0 +1,263 @@
+//! References that tell less than poses: they give what poses give, as far as they can.
+
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use std::io::Write;
+use std::path::Path;
+use umbmark_core::dataset::{Dataset, Run};
+use umbmark_core::drive::Robot;
+use umbmark_core::effect::{Model, TestKind};
+use umbmark_core::evidence::{Estimate, Fit, fit};
+use umbmark_core::geometry::Pose2;
+use umbmark_core::path::{self, Direction, SQUARE, SpeedProfile};
+use umbmark_core::random::Stream;
+use umbmark_core::run::TickLog;
+use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth};
+use umbmark_io::Existing;
+
+/// Squares of OptiOdom (Sousa et al. 2022) of both sizes, or a notice that they are not there.
+fn squares() -> Vec<Dataset> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/optiodom/raw/square");
+    if !folder.is_dir() {
+        // Past the harness, which keeps what a passing test prints to itself.
+        let _ = writeln!(std::io::stderr(), "skipped: {} is not there", folder.display());
+        return Vec::new();
+    }
+    ["230620202042", "230620202317", "231220200029"].map(|set| umbmark_io::load(folder.join(set)).unwrap()).into()
+}
+
+/// `runs` squares of 2 m each way of a robot of this model, watched at 20 Hz.
+fn watched(model: &Model, runs: u64, seed: u64) -> Dataset {
+    let (robot, path) = (model.robot(), path::Path::new(&SQUARE, &[2.0], SpeedProfile::default()).unwrap());
+    let mut simulator = Simulator::new(robot, &path, Odometry::EveryTick, Phase::Random).unwrap();
+    let mut truth = Truth::new(model);
+    let mut data = Dataset { robot: Some(robot.clone()), path: Some(path), ..Dataset::default() };
+    for (direction, number) in Direction::BOTH.into_iter().flat_map(|d| (0..runs).map(move |n| (d, n))) {
+        simulator.open(&mut truth, seed, 2 * number + direction as u64);
+        let recording = simulator.record(&mut truth, direction, TestKind::Systematic, [100.0, 20.0]).unwrap();
+        data.runs.push(Run {
+            name: format!("{}_{number}", direction.name()),
+            number: number as u32,
+            direction: Some(direction),
+            test: TestKind::Systematic,
+            log: Some(recording.log),
+            returned: Some(recording.returned),
+        });
+    }
+    data
+}
+
+fn logs(data: &mut Dataset) -> impl Iterator<Item = &mut TickLog> {
+    data.runs.iter_mut().filter_map(|run| run.log.as_mut())
+}
+
+/// The dataset as it is read from files, with the rows of each log written anew: `columns` names what stands behind the counts, and `cells` says
+/// it of a sample; with a marks.csv, where one is given.
+fn rewritten(
+    data: &Dataset,
+    marks: Option<&str>,
+    columns: &str,
+    mut cells: impl FnMut(&TickLog, usize) -> String,
+) -> Dataset {
+    let mut bare = data.clone();
+    bare.runs.iter_mut().for_each(|run| run.returned = None);
+    logs(&mut bare).for_each(|log| log.reference.clear());
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("data");
+    umbmark_io::save(&bare, &place, Existing::Keep).unwrap();
+    if let Some(marks) = marks {
+        std::fs::write(place.join("marks.csv"), marks).unwrap();
+    }
+    for run in &data.runs {
+        let log = run.log.as_ref().unwrap();
+        let mut text = format!("t_s,ticks_left,ticks_right,{columns}\n");
+        for (sample, time) in log.time.iter().enumerate() {
+            let (left, right) = (log.left[sample], log.right[sample]);
+            text += &format!("{time},{left},{right},{}\n", cells(log, sample));
+        }
+        let name = format!("{}_{:02}.csv", run.direction.unwrap().name(), run.number);
+        std::fs::write(place.join("runs").join(name), text).unwrap();
+    }
+    umbmark_io::load(&place).unwrap()
+}
+
+/// The dataset with positions only, each run measured in the frame of another room.
+fn positions_in_rooms(data: &Dataset) -> Dataset {
+    let mut stream = Stream::new(3, 0, 0);
+    let mut room = Pose2::IDENTITY;
+    rewritten(data, None, "x_ref_m,y_ref_m", |log, sample| {
+        if sample == 0 {
+            room = Pose2::new(4.0 + stream.normal(), -3.0 + stream.normal(), 6.0 * stream.uniform());
+        }
+        let seen = log.reference.binary_search_by_key(&sample, |pose| pose.sample).map(|found| log.reference[found]);
+        seen.map_or(",".into(), |pose| {
+            let at = room.compose(&Pose2::new(pose.x, pose.y, 0.0));
+            format!("{},{}", at.x, at.y)
+        })
+    })
+}
+
+/// A model of E_d, E_b, E_s and these effects, all free.
+fn asked(robot: &Robot, others: &[&str]) -> Model {
+    let mut model = Model::new(robot);
+    for effect in ["wheel_diameter_ratio", "wheelbase", "scale"].iter().chain(others) {
+        model.add(effect).unwrap().free = true;
+    }
+    model
+}
+
+fn of<'a>(fit: &'a Fit, parameter: &str) -> &'a Estimate {
+    fit.estimates.iter().find(|estimate| estimate.parameter == parameter).unwrap()
+}
+
+#[test]
+fn positions_alone_of_real_squares_give_the_ratios_of_whole_poses_in_intervals_at_most_half_as_long_again() {
+    for poses in squares() {
+        let positions = positions_in_rooms(&poses);
+        assert!(positions.runs.iter().flat_map(|run| &run.log).all(|log| log.reference.iter().all(|p| p.heading.is_none())));
+        let [whole, part] = [&poses, &positions].map(|data| fit(data, &asked(data.robot.as_ref().unwrap(), &[])).unwrap());
+        for parameter in ["e_d", "e_b", "e_s"] {
+            let (whole, part) = (of(&whole, parameter), of(&part, parameter));
+            let apart = (part.value - whole.value).abs();
+            let both = libm::hypot(part.standard_error, whole.standard_error);
+            assert!(apart < 2.0 * both, "{parameter}: {part:?} {whole:?}");
+            assert!(part.standard_error < 1.5 * whole.standard_error, "{parameter}: {part:?} {whole:?}");
+        }
+    }
+}
+
+/// 40 sets of 3 + 3 squares, seeds 0 to 39: of 200 intervals of 95 %, 20 or more miss the truth with a probability below 0.1 % if they are right
+/// (binomial), and so do 2 or fewer.
+#[test]
+fn a_marker_off_the_axle_that_shows_positions_only_gives_ratios_and_lever_arm_in_intervals_that_hold() {
+    let robot = Robot::labmate();
+    let mut model = Model::new(&robot);
+    let truth = [
+        ("wheel_diameter_ratio", "e_d", 1.002),
+        ("wheelbase", "e_b", 0.99),
+        ("scale", "e_s", 1.003),
+        ("marker_offset", "forward_m", 0.12),
+        ("marker_offset", "left_m", -0.05),
+    ];
+    let noise = [("wheel_noise", "k_sqrt_m", 6e-4), ("reference_noise", "position_sd_m", 2e-3)];
+    for (effect, parameter, value) in truth.iter().chain(&noise) {
+        model.set(effect, parameter, *value).unwrap();
+    }
+    let mut missed = Vec::new();
+    for seed in 0..40 {
+        let data = positions_in_rooms(&watched(&model, 3, seed));
+        let found = fit(&data, &asked(&robot, &["marker_offset"])).unwrap();
+        for (_, parameter, value) in truth {
+            let own = of(&found, parameter);
+            let half = umbmark_core::stats::student_t_quantile(0.975, own.degrees_of_freedom) * own.standard_error;
+            if (own.value - value).abs() > half {
+                missed.push((seed, parameter));
+            }
+        }
+    }
+    assert!((3..20).contains(&missed.len()), "{missed:?}");
+}
+
+#[test]
+fn a_robot_that_is_driven_from_mark_to_mark_unwatched_gives_the_exact_fit_of_its_returns() {
+    let robot = Robot::labmate();
+    let mut model = Model::new(&robot);
+    for (effect, parameter, value) in
+        [("wheel_diameter_ratio", "e_d", 1.002), ("wheelbase", "e_b", 0.99), ("wheel_noise", "k_sqrt_m", 4e-4)]
+    {
+        model.set(effect, parameter, value).unwrap();
+    }
+    let mut data = watched(&model, 5, 7);
+    // A mark at each place where a run ends, and one where all begin.
+    let mut marks = "mark,x_m,y_m,theta_rad\nSTART,0,0,0\n".to_owned();
+    for (index, run) in data.runs.iter_mut().enumerate() {
+        let (log, error) = (run.log.as_mut().unwrap(), run.returned.unwrap());
+        let computed = umbmark_core::run::dead_reckoning::computed_poses(log, &robot).pop().unwrap();
+        let (x, y, heading) = (computed.x + error.x, computed.y + error.y, computed.heading + error.heading.unwrap());
+        marks += &format!("end {index},{x},{y},{heading}\n");
+        log.reference.clear();
+    }
+    let mut run = 0;
+    let marked = rewritten(&data, Some(&marks), "mark", |log, sample| match sample {
+        0 => "START".into(),
+        _ if sample + 1 == log.time.len() => {
+            run += 1;
+            format!("end {}", run - 1)
+        }
+        _ => String::new(),
+    });
+    let mut asked = Model::new(&robot);
+    ["wheel_diameter_ratio", "wheelbase"].iter().for_each(|effect| asked.add(effect).unwrap().free = true);
+    let [by_returns, by_marks] = [&data, &marked].map(|data| fit(data, &asked).unwrap());
+    for (parameter, truth) in [("e_d", 1.002), ("e_b", 0.99)] {
+        let (returns, marks) = (of(&by_returns, parameter), of(&by_marks, parameter));
+        assert!((returns.value - marks.value).abs() < 1e-9, "{returns:?} {marks:?}");
+        assert!((returns.standard_error / marks.standard_error - 1.0).abs() < 1e-6, "{returns:?} {marks:?}");
+        assert!((marks.value - truth).abs() < 4.0 * marks.standard_error, "{marks:?}");
+    }
+}
+
+/// The dataset with nothing but what a scan matcher tells twice a second: the motion of a sensor since it last looked, to 0.5 mm and 0.5 mrad,
+/// and every fiftieth time anything at all.
+fn steps(data: &Dataset, mount: &Pose2, seed: u64) -> Dataset {
+    let mut stream = Stream::new(seed, 0, 0);
+    let mut before: Option<(f64, Pose2)> = None;
+    rewritten(data, None, "dx_ref_m,dy_ref_m,dtheta_ref_rad", |log, sample| {
+        if sample == 0 {
+            before = None;
+        }
+        let Ok(found) = log.reference.binary_search_by_key(&sample, |pose| pose.sample) else { return ",,".into() };
+        let (pose, time) = (log.reference[found], log.time[sample]);
+        let Some(heading) = pose.heading.filter(|_| before.is_none_or(|(at, _)| time - at > 0.49)) else { return ",,".into() };
+        let now = Pose2::new(pose.x, pose.y, heading).compose(mount);
+        let step = before.map_or(Pose2::IDENTITY, |(_, before)| before.between(&now));
+        before = Some((time, now));
+        let wild = if stream.uniform() < 0.02 { 1.0 } else { 0.0 };
+        let mut noisy = |value: f64, sd: f64, most: f64| {
+            value + sd * stream.normal() + wild * most * (2.0 * stream.uniform() - 1.0)
+        };
+        let (x, y, turned) = (noisy(step.x, 5e-4, 0.2), noisy(step.y, 5e-4, 0.2), noisy(step.heading, 5e-4, 0.3));
+        format!("{x},{y},{turned}")
+    })
+}
+
+#[test]
+fn steps_of_a_sensor_that_fails_every_fiftieth_time_give_the_ratios_of_whole_poses() {
+    for (seed, poses) in squares().iter().enumerate() {
+        let steps = steps(poses, &Pose2::new(0.06, -0.02, 0.1), seed as u64);
+        assert!(steps.runs.iter().all(|run| run.returned.is_none() && run.log.as_ref().is_some_and(|log| log.relative)));
+        let robot = poses.robot.as_ref().unwrap();
+        let [whole, part] = [poses, &steps].map(|data| fit(data, &asked(robot, &[])).unwrap());
+        let apart = |parameter: &str| (of(&whole, parameter).value - of(&part, parameter).value).abs();
+        assert!(apart("e_d") < 5e-4 && apart("e_b") < 3e-3, "{:?} {:?}", whole.estimates, part.estimates);
+    }
+}
+
+/// 30 sets of 3 + 3 squares, seeds 0 to 29: of 90 intervals of 95 %, 12 or more miss the truth with a probability below 0.2 % if they are right
+/// (binomial).
+#[test]
+fn intervals_from_steps_hold_the_truth_and_the_mounting_of_the_sensor_is_found() {
+    let robot = Robot::labmate();
+    let mut model = Model::new(&robot);
+    let truth = [("wheel_diameter_ratio", "e_d", 1.002), ("wheelbase", "e_b", 0.99), ("scale", "e_s", 1.003)];
+    for (effect, parameter, value) in truth.iter().chain(&[("wheel_noise", "k_sqrt_m", 6e-4)]) {
+        model.set(effect, parameter, *value).unwrap();
+    }
+    let mount = Pose2::new(0.2, 0.05, -0.3);
+    let mut missed = Vec::new();
+    for seed in 0..30 {
+        let data = steps(&watched(&model, 3, seed), &mount, seed);
+        let found = fit(&data, &asked(&robot, &[])).unwrap();
+        let mounting = found.setup.mounting.as_ref().unwrap();
+        let near = |found: Option<umbmark_core::stats::Measured>, value: f64| (found.unwrap().value - value).abs() < 0.01;
+        assert!(near(mounting.ahead, mount.x) && near(mounting.left, mount.y) && near(mounting.yaw, mount.heading), "{mounting:?}");
+        for (_, parameter, value) in truth {
+            let own = of(&found, parameter);
+            let half = umbmark_core::stats::student_t_quantile(0.975, own.degrees_of_freedom) * own.standard_error;
+            if (own.value - value).abs() > half {
+                missed.push((seed, parameter));
+            }
+        }
+    }
+    assert!((1..12).contains(&missed.len()), "{missed:?}");
+}
