@@ -114,8 +114,11 @@ fn of<'a>(fit: &'a Fit, parameter: &str) -> &'a Estimate {
 fn positions_alone_of_real_squares_give_the_ratios_of_whole_poses_in_intervals_at_most_half_as_long_again() {
     for poses in squares() {
         let positions = positions_in_rooms(&poses);
-        assert!(positions.runs.iter().flat_map(|run| &run.log).all(|log| log.reference.iter().all(|p| p.heading.is_none())));
-        let [whole, part] = [&poses, &positions].map(|data| fit(data, &asked(data.robot.as_ref().unwrap(), &[])).unwrap());
+        assert!(
+            positions.runs.iter().flat_map(|run| &run.log).all(|log| log.reference.iter().all(|p| p.heading.is_none()))
+        );
+        let [whole, part] =
+            [&poses, &positions].map(|data| fit(data, &asked(data.robot.as_ref().unwrap(), &[])).unwrap());
         for parameter in ["e_d", "e_b", "e_s"] {
             let (whole, part) = (of(&whole, parameter), of(&part, parameter));
             let apart = (part.value - whole.value).abs();
@@ -208,7 +211,9 @@ fn steps(data: &Dataset, mount: &Pose2, seed: u64) -> Dataset {
         }
         let Ok(found) = log.reference.binary_search_by_key(&sample, |pose| pose.sample) else { return ",,".into() };
         let (pose, time) = (log.reference[found], log.time[sample]);
-        let Some(heading) = pose.heading.filter(|_| before.is_none_or(|(at, _)| time - at > 0.49)) else { return ",,".into() };
+        let Some(heading) = pose.heading.filter(|_| before.is_none_or(|(at, _)| time - at > 0.49)) else {
+            return ",,".into();
+        };
         let now = Pose2::new(pose.x, pose.y, heading).compose(mount);
         let step = before.map_or(Pose2::IDENTITY, |(_, before)| before.between(&now));
         before = Some((time, now));
@@ -225,7 +230,9 @@ fn steps(data: &Dataset, mount: &Pose2, seed: u64) -> Dataset {
 fn steps_of_a_sensor_that_fails_every_fiftieth_time_give_the_ratios_of_whole_poses() {
     for (seed, poses) in squares().iter().enumerate() {
         let steps = steps(poses, &Pose2::new(0.06, -0.02, 0.1), seed as u64);
-        assert!(steps.runs.iter().all(|run| run.returned.is_none() && run.log.as_ref().is_some_and(|log| log.relative)));
+        assert!(
+            steps.runs.iter().all(|run| run.returned.is_none() && run.log.as_ref().is_some_and(|log| log.relative))
+        );
         let robot = poses.robot.as_ref().unwrap();
         let [whole, part] = [poses, &steps].map(|data| fit(data, &asked(robot, &[])).unwrap());
         let apart = |parameter: &str| (of(&whole, parameter).value - of(&part, parameter).value).abs();
@@ -249,8 +256,12 @@ fn intervals_from_steps_hold_the_truth_and_the_mounting_of_the_sensor_is_found()
         let data = steps(&watched(&model, 3, seed), &mount, seed);
         let found = fit(&data, &asked(&robot, &[])).unwrap();
         let mounting = found.setup.mounting.as_ref().unwrap();
-        let near = |found: Option<umbmark_core::stats::Measured>, value: f64| (found.unwrap().value - value).abs() < 0.01;
-        assert!(near(mounting.ahead, mount.x) && near(mounting.left, mount.y) && near(mounting.yaw, mount.heading), "{mounting:?}");
+        let near =
+            |found: Option<umbmark_core::stats::Measured>, value: f64| (found.unwrap().value - value).abs() < 0.01;
+        assert!(
+            near(mounting.ahead, mount.x) && near(mounting.left, mount.y) && near(mounting.yaw, mount.heading),
+            "{mounting:?}"
+        );
         for (_, parameter, value) in truth {
             let own = of(&found, parameter);
             let half = umbmark_core::stats::student_t_quantile(0.975, own.degrees_of_freedom) * own.standard_error;

@@ -131,8 +131,7 @@ pub fn calibrate_beside(
     let (mended, lost) = observations::mended(data, &setup);
     let data = mended.as_ref();
     let steps = learnt.is_some() && Observations::are_steps(data);
-    let mut observed =
-        if steps { Observations::none() } else { Observations::new(data, robot, options.heading_arm)? };
+    let mut observed = if steps { Observations::none() } else { Observations::new(data, robot, options.heading_arm)? };
     if let Some(mounting) = &setup.mounting {
         observed.begin_with(mounting, robot);
     }
@@ -141,8 +140,7 @@ pub fn calibrate_beside(
     warnings.extend(lost);
     let mut doubts = doubts_of_data(&setup, observed.level, robot);
     let square = Square::new(data.path.as_ref(), robot, &cw, &ccw, &mut warnings);
-    let fitted =
-        if steps { None } else { exact_estimate(&observed, robot, &mut warnings, &mut doubts) };
+    let fitted = if steps { None } else { exact_estimate(&observed, robot, &mut warnings, &mut doubts) };
     if steps {
         warnings.push(STEPS.to_owned());
     }

@@ -69,7 +69,8 @@ mod tests {
     #[test]
     fn each_kind_is_recognised_by_what_was_measured() {
         let run = |headings: &[Option<f64>], returned: bool| {
-            let pose = |(sample, heading): (usize, &Option<f64>)| ReferencePose { sample, x: 0.0, y: 0.0, heading: *heading };
+            let pose =
+                |(sample, heading): (usize, &Option<f64>)| ReferencePose { sample, x: 0.0, y: 0.0, heading: *heading };
             let reference = headings.iter().enumerate().map(pose).collect();
             Run {
                 name: "run".into(),

@@ -320,7 +320,9 @@ impl Setup {
         let runs = || self.runs.iter().filter(|run| run.relative);
         let wrong: usize = runs().map(|run| run.jumps.len()).sum();
         let steps: usize = runs().map(|run| run.poses.saturating_sub(1)).sum();
-        (wrong > 0).then(|| format!("{wrong} of {steps} steps of the reference are far from the motion of the wheels and were left out"))
+        (wrong > 0).then(|| {
+            format!("{wrong} of {steps} steps of the reference are far from the motion of the wheels and were left out")
+        })
     }
 
     /// What was found of a run.
@@ -543,11 +545,7 @@ fn parts(seen: &[Seen], agreed: impl Fn(&[Beside]) -> Agreement) -> Vec<Agreemen
     let of = |seen: &Seen| {
         let beside = clock::beside(&seen.windows, &seen.rolled, &seen.late);
         let length = beside.len().div_ceil(cut).max(FEWEST);
-        beside
-            .chunks(length)
-            .filter(|part| part.len() >= FEWEST)
-            .map(&agreed)
-            .collect::<Vec<_>>()
+        beside.chunks(length).filter(|part| part.len() >= FEWEST).map(&agreed).collect::<Vec<_>>()
     };
     seen.iter().flat_map(of).collect()
 }

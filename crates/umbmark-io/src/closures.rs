@@ -109,10 +109,10 @@ mod tests {
     fn a_robot_that_stands_on_a_mark_again_has_come_back_wherever_the_mark_is() {
         let back = (0.0, 0.0, Some(0.0));
         // It leaves at the last row of a visit and arrives at the first of the next.
-        assert_eq!(found(&[(0, "a"), (1, "a"), (9, "a"), (10, "a"), (17, "a")], &Marks::new()), [
-            (6.0, 14.0, back),
-            (15.0, 22.0, back)
-        ]);
+        assert_eq!(
+            found(&[(0, "a"), (1, "a"), (9, "a"), (10, "a"), (17, "a")], &Marks::new()),
+            [(6.0, 14.0, back), (15.0, 22.0, back)]
+        );
         // Of drives that share some way, those that end first.
         assert_eq!(found(&[(0, "a"), (4, "b"), (8, "a"), (12, "b"), (15, "c")], &Marks::new()), [(5.0, 13.0, back)]);
         assert_eq!(found(&[(0, "a"), (4, "b"), (6, "b"), (8, "a")], &Marks::new()), [(9.0, 11.0, back)]);
