@@ -59,6 +59,7 @@ pub fn parts_text(solution: &Solution) -> String {
     let what = match off.measure {
         Measure::Returns => "error: E_max,sys of the recorded runs [mm]",
         Measure::Ends => "error: of the ends of the recorded runs, root mean square [mm]",
+        Measure::Steps => "error: of all measured steps, root mean square [mm]",
         Measure::Along => "error: of all measured positions, root mean square [mm]",
     };
     let part = |part: &Part| vec![format!("  {}", part.name), millimetres(part.worth), String::new()];

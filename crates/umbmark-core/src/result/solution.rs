@@ -39,7 +39,8 @@ pub(super) fn changes(changes: &[solve::Change]) -> Changes {
 /// How far off a robot is, and what of it is what. Each list of parts adds up to the fall between the errors before and after it.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Off {
-    /// What is measured: "e_max_sys" (mean returns of both directions), "end_rmse" (ends of runs) or "rmse_along" (all measured poses).
+    /// What is measured: "e_max_sys" (mean returns of both directions), "end_rmse" (ends of runs), "rmse_along" (all measured
+    /// poses) or "rmse_steps" (all measured steps).
     pub measure: &'static str,
     /// Error as driven, in m.
     pub driven_m: Option<f64>,

@@ -24,6 +24,8 @@ pub enum Measure {
     Ends,
     /// The same of all measured poses along the way.
     Along,
+    /// The same of all measured steps, each from where it began.
+    Steps,
 }
 
 impl Measure {
@@ -33,6 +35,7 @@ impl Measure {
             Measure::Returns => "e_max_sys",
             Measure::Ends => "end_rmse",
             Measure::Along => "rmse_along",
+            Measure::Steps => "rmse_steps",
         }
     }
 }
@@ -161,7 +164,11 @@ impl Meter<'_> {
             (Some(ends), _) if both(&ends) => {
                 Some(Meter { measure: Measure::Returns, runs: Runs::Ends(Box::new(ends)) })
             }
-            (_, AnyEvidence::Tracks(observed)) => Some(Meter { measure: Measure::Along, runs: Runs::Along(observed) }),
+            (_, AnyEvidence::Tracks(observed)) => {
+                let steps = observed.runs.iter().all(|run| run.relative);
+                let measure = if steps { Measure::Steps } else { Measure::Along };
+                Some(Meter { measure, runs: Runs::Along(observed) })
+            }
             (Some(ends), _) => Some(Meter { measure: Measure::Ends, runs: Runs::Ends(Box::new(ends)) }),
             (None, _) => None,
         }

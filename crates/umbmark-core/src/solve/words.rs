@@ -31,6 +31,9 @@ fn how_far(off: &Off) -> String {
     match off.measure {
         Measure::Returns => format!("The robot comes back {far} off."),
         Measure::Ends => format!("The robot ends {far} from where its odometry says it is."),
+        Measure::Steps => {
+            format!("From one measurement to the next, the robot is {far} from where its odometry says it is, on average.")
+        }
         Measure::Along => format!("The robot is {far} from where its odometry says it is, on average along the way."),
     }
 }

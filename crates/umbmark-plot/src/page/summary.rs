@@ -117,6 +117,9 @@ fn beside_far(study: &Study, solution: Option<&Solution>) -> String {
         Some(Measure::Ends) => {
             return "from where its odometry says it is, at the ends of the runs (root mean square).".into();
         }
+        Some(Measure::Steps) => {
+            return "from where its odometry says it is, from one measurement to the next (root mean square).".into();
+        }
         Some(Measure::Along) => return "from where its odometry says it is, along the way (root mean square).".into(),
         Some(Measure::Returns) | None => "from START, the worse of both directions on average: E_max,sys",
     };
@@ -161,6 +164,7 @@ fn of_measure(off: &Off) -> String {
         Measure::Returns => "of E_max,sys",
         Measure::Ends => "at the ends",
         Measure::Along => "along the way",
+        Measure::Steps => "from step to step",
     };
     format!("{} {what}, averaged over the orders of adding them", millimetres(off.driven))
 }

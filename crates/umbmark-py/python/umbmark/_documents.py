@@ -2906,8 +2906,8 @@ class Off(Record, frozen=True):
     Attributes
     ----------
     measure : str
-        What is measured: "e_max_sys" (mean returns of both directions), "end_rmse" (ends of runs)
-        or "rmse_along" (all measured poses).
+        What is measured: "e_max_sys" (mean returns of both directions), "end_rmse" (ends of runs),
+        "rmse_along" (all measured poses) or "rmse_steps" (all measured steps).
     driven_m : float or None
         Error as driven, in m.
     reference_m : dict[str, float or None]
