@@ -64,7 +64,7 @@ pub fn taken_text(taken: &[Taken]) -> String {
 pub fn disturbances_text(setup: &Setup) -> String {
     let mut text = String::new();
     let absolute = setup.runs.iter().filter(|run| !run.relative);
-    let jumps = absolute.flat_map(|run| run.jumps.iter().map(move |jump| (run, jump)));
+    let jumps = absolute.clone().flat_map(|run| run.jumps.iter().map(move |jump| (run, jump)));
     for (run, jump) in jumps.clone().take(JUMPS) {
         let turned = jump.turned.map(|t| format!(" and {:.1} deg", t.to_degrees())).unwrap_or_default();
         let said = format!(
@@ -80,7 +80,7 @@ pub fn disturbances_text(setup: &Setup) -> String {
         text += &hanging("", 10, &format!("and {rest} more (--json)"));
     }
     text += &setup.wrong_steps().map(|said| hanging("steps", 10, &format!("{said}."))).unwrap_or_default();
-    let wrong: Vec<&RunSetup> = setup.runs.iter().filter(|run| !run.wrong.is_empty()).collect();
+    let wrong: Vec<&RunSetup> = absolute.filter(|run| !run.wrong.is_empty()).collect();
     for run in wrong.iter().take(JUMPS) {
         text += &hanging("wrong", 10, &format!("{}, and left out.", run.notice()));
     }

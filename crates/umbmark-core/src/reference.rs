@@ -45,6 +45,11 @@ pub struct Kind {
 }
 
 impl Kind {
+    /// Whether nothing is told of the way, only of where it ended.
+    pub fn is_at_ends(&self) -> bool {
+        self.position == Told::AtEnds
+    }
+
     /// The kind of a run's reference; `None` of a run that was not measured.
     pub fn of(run: &Run) -> Option<&'static Kind> {
         let log = run.log.as_ref();

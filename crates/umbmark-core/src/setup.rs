@@ -308,7 +308,7 @@ impl Setup {
         let jumps = absolute.flat_map(|run| run.jumps.iter().map(|jump| jump.notice(&run.run)));
         notices.extend(shortened(jumps.collect(), "jumps of tracks"));
         notices.extend(self.wrong_steps());
-        let wrong = self.runs.iter().filter(|run| !run.wrong.is_empty()).map(RunSetup::notice);
+        let wrong = self.runs.iter().filter(|run| !run.relative && !run.wrong.is_empty()).map(RunSetup::notice);
         notices.extend(shortened(wrong.collect(), "runs with wrong poses"));
         let outlying = self.returned.outlying.iter().map(|run| format!("{}; {}", run.sentence(), run.remedy()));
         notices.extend(shortened(outlying.collect(), "runs far from the others"));
@@ -318,7 +318,7 @@ impl Setup {
     /// How many steps of references that tell motion only are wrong, in all runs together.
     pub fn wrong_steps(&self) -> Option<String> {
         let runs = || self.runs.iter().filter(|run| run.relative);
-        let wrong: usize = runs().map(|run| run.jumps.len()).sum();
+        let wrong: usize = runs().map(|run| run.jumps.len() + run.wrong.len()).sum();
         let steps: usize = runs().map(|run| run.poses.saturating_sub(1)).sum();
         (wrong > 0).then(|| {
             format!("{wrong} of {steps} steps of the reference are far from the motion of the wheels and were left out")

@@ -96,6 +96,9 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     text += "\n\n";
     let of = match learnt.diagnosis.level {
         Level::Ends => "end poses",
+        Level::Tracks if data.runs.iter().filter_map(|run| run.log.as_ref()).all(|log| log.relative) => {
+            "all measured steps"
+        }
         Level::Tracks => "all measured poses",
     };
     let legend = format!(

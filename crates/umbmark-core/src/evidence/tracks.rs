@@ -74,12 +74,27 @@ pub(crate) fn estimates(fitted: &Fitted) -> Vec<Estimate> {
         .iter()
         .flat_map(|part| part.effect.parameters().iter().map(|parameter| (part.effect.name(), parameter.name)));
     let (names, values): (Vec<_>, Vec<f64>) = (names.collect(), model.values().collect());
+    let freedom = degrees_of_freedom(fitted);
     let of = |(k, index): (usize, &usize)| Estimate {
         effect: names[*index].0,
         parameter: names[*index].1,
         value: values[*index],
         standard_error: fitted.covariance.as_ref().map_or(f64::NAN, |c| c[(k, k)].max(0.0).sqrt()),
-        degrees_of_freedom: (system::folds_of(&fitted.observed).max(2) - 1) as f64,
+        degrees_of_freedom: freedom,
     };
     fitted.free.iter().enumerate().map(of).collect()
+}
+
+/// ν of Student's t for intervals: the parts of the data that can be left out in turn, less one. Along a run, the noise of poses is known by
+/// the few turns and ways on which it grows. Each step of a reference that tells motion only begins anew, so there its noise is known by all
+/// of them: their number less that of the fitted values.
+fn degrees_of_freedom(fitted: &Fitted) -> f64 {
+    let observed = &fitted.observed;
+    let folds = system::folds_of(observed).max(2) - 1;
+    if !observed.runs.iter().all(|run| run.relative) {
+        return folds as f64;
+    }
+    let steps: usize = observed.runs.iter().map(|run| (0..run.blocks.len()).filter(|k| run.has_step(*k)).count()).sum();
+    let values = fitted.free.len() + fitted.reference.first().map_or(0, Vec::len);
+    steps.saturating_sub(values).max(folds) as f64
 }

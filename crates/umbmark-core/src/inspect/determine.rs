@@ -75,6 +75,8 @@ pub(super) fn determine(
         let because = match (yes, column) {
             _ if seen.measured == 0 => NOTHING,
             _ if seen.poses == 0 => NO_MOTION,
+            (true, 2) if seen.stepwise => "measured steps are distances, as far as the sensor's own scale is right",
+            (true, _) if seen.stepwise => "measured steps show it",
             (true, 2) if seen.tracked => "absolute poses on the way measure distances",
             (true, 2) => "the path is open: its end measures a distance",
             (true, _) if seen.tracked => "absolute poses on the way show it",
@@ -111,6 +113,19 @@ struct Piece {
     turned: f64,
 }
 
+impl Piece {
+    /// What is seen of it from a pose before, whose heading turns all that follows: c - c' - c'_θ J (p - p').
+    fn since(&self, (from, before): &(Pose2, [Pose2; 3])) -> Piece {
+        let (x, y) = (self.pose.x - from.x, self.pose.y - from.y);
+        let slope = |k: usize| {
+            let (own, before) = (&self.slopes[k], &before[k]);
+            let turned = before.heading;
+            Pose2::new(own.x - before.x + turned * y, own.y - before.y - turned * x, own.heading - turned)
+        };
+        Piece { slopes: [0, 1, 2].map(slope), ..*self }
+    }
+}
+
 /// Everything that was measured so far.
 ///
 /// The state is (q, θ) of the pose error δp = q + θ J p, which stay constant while nothing is added, and the departures of the three
@@ -124,8 +139,9 @@ struct Seen<'a> {
     /// Poses and returns that there are, and those of them whose driving is known.
     measured: usize,
     poses: usize,
-    /// Whether there are poses on the way.
+    /// Whether there are poses on the way, and whether these tell steps only.
     tracked: bool,
+    stepwise: bool,
     /// Senses of driving of the runs.
     directions: Vec<Option<Direction>>,
 }
@@ -147,8 +163,9 @@ impl<'a> Seen<'a> {
         }
         let mut covariance = SMatrix::zeros();
         (3..6).for_each(|k| covariance[(k, k)] = AT_FIRST * AT_FIRST);
-        let (measured, poses, tracked, directions) = (0, 0, false, Vec::new());
-        Seen { robot, path, chain, noise, covariance, measured, poses, tracked, directions }
+        let (measured, poses, directions) = (0, 0, Vec::new());
+        let (tracked, stepwise) = (false, false);
+        Seen { robot, path, chain, noise, covariance, measured, poses, tracked, stepwise, directions }
     }
 
     /// What a run adds.
@@ -218,20 +235,27 @@ impl<'a> Seen<'a> {
         });
         let mut seen = poses.iter().peekable();
         let (mut from, mut moved) = (Pose2::IDENTITY, 0);
+        let mut last: Option<(Pose2, [Pose2; 3])> = None;
         let way: f64 = pieces.iter().map(|piece| piece.way).sum();
         let mut gone = 0.0;
         for (end, piece) in ends[1..].iter().zip(&pieces) {
             self.roll(&from, piece);
             (from, gone) = (piece.pose, gone + piece.way);
             while let Some((_, heading)) = seen.next_if(|(sample, _)| sample <= end) {
-                self.see(piece, *heading, reference);
                 if log.relative {
+                    let step = last.replace((piece.pose, piece.slopes)).map(|before| piece.since(&before));
+                    if let Some(step) = step {
+                        self.see(&step, *heading, reference);
+                    }
                     self.begin((0.0, 0.0));
+                } else {
+                    self.see(piece, *heading, reference);
                 }
                 moved += usize::from(gone > 0.05 * way && gone < 0.95 * way);
             }
         }
         self.tracked |= moved > 0;
+        self.stepwise |= log.relative;
     }
 
     /// Travel and time of each step of a log.

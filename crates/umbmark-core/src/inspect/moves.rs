@@ -74,6 +74,9 @@ impl MovesFound {
         let count = |is: fn(&Done) -> bool| moves.iter().filter(|done| is(done)).count();
         let inner = moves.len().saturating_sub(1);
         let (shape, described) = shape(&moves);
+        // Steps that are added up drift away from where the robot was.
+        let measured = log.reference.iter().filter(|_| !log.relative).step_by(log.reference.len() / SKETCH + 1);
+        let measured = measured.map(|pose| (pose.x, pose.y)).collect();
         MovesFound {
             stops: moves.iter().take(inner).skip(1).filter(|done| **done == Done::Stop).count(),
             legs: count(|done| matches!(done, Done::Leg { .. })),
@@ -82,7 +85,7 @@ impl MovesFound {
             shape,
             described,
             computed: poses.iter().step_by(poses.len() / SKETCH + 1).map(|pose| (pose.x, pose.y)).collect(),
-            measured: log.reference.iter().step_by(log.reference.len() / SKETCH + 1).map(|p| (p.x, p.y)).collect(),
+            measured,
             speed: speeds(&log.time, &poses, 0.5 * robot.drive.wheelbase()),
         }
     }

@@ -288,7 +288,13 @@ pub(super) fn differing(
 /// The faults of columns and headings, and the reading on which everything else is based.
 pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
     let wheelbase = robot.drive.wheelbase();
-    let of = |windows: &[Beside], reading: Reading| Agreement::without_drift(windows, reading, wheelbase);
+    let by_course = windows.iter().any(|(window, _)| !window.with_heading);
+    let of = |windows: &[Beside], reading: Reading| {
+        let found = Agreement::without_drift(windows, reading, wheelbase);
+        // A robot that turns on the spot moves a point on its axle nowhere: its courses then turn by chance only, and accuse nobody.
+        let [way, turns] = found.shown;
+        Agreement { shown: [way, turns && !(by_course && !found.turns_are_credible())], ..found }
+    };
     // If a counter is read wrongly, a small difference of the wheels can mimic distance or rotation, multiplied many times.
     let doubt = |found: &Agreement| {
         let possible =

@@ -32,7 +32,9 @@ fn how_far(off: &Off) -> String {
         Measure::Returns => format!("The robot comes back {far} off."),
         Measure::Ends => format!("The robot ends {far} from where its odometry says it is."),
         Measure::Steps => {
-            format!("From one measurement to the next, the robot is {far} from where its odometry says it is, on average.")
+            format!(
+                "From one measurement to the next, the robot is {far} from where its odometry says it is, on average."
+            )
         }
         Measure::Along => format!("The robot is {far} from where its odometry says it is, on average along the way."),
     }
@@ -70,6 +72,9 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
         let fall = off.driven - off.with_numbers;
         said.push(match fall > TOLD * off.driven {
             true => format!("Write {count} ({names}): with {these}, {left} are left{rest}."),
+            false if off.measure == Measure::Steps && -fall <= TOLD * off.driven => format!(
+                "Write {count} ({names}): they differ from the old ones by more than chance, though a single step hardly shows it."
+            ),
             false if -fall <= TOLD * off.driven => format!(
                 "Write {count} ({names}): they differ from the old ones by more than chance, though on this path the error of the \
                  position hardly shows it."

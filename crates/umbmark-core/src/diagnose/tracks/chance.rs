@@ -150,7 +150,12 @@ fn random_walk(run: &ObservedRun, noise: &Noise, single: PoseNoise, stream: &mut
     let mut state = Vector3::zeros();
     let late = noise.reference_delay * stream.normal();
     let draw = |stream: &mut Stream| Vector3::from_fn(|_, _| stream.normal());
+    // What is found of a single pose before the fit is, of steps, the whole noise of one.
+    let single = if run.relative { NOTHING } else { single };
     let block = |block: &crate::likelihood::Block| {
+        if run.relative {
+            state = Vector3::zeros();
+        }
         let growth = noise.growth(&block.growth);
         let covariance = Matrix3::from_fn(|i, j| growth[i][j]);
         if let Some(root) = (covariance + Matrix3::identity() * 1e-18).cholesky() {
@@ -158,8 +163,9 @@ fn random_walk(run: &ObservedRun, noise: &Noise, single: PoseNoise, stream: &mut
         }
         let (x, y) = (block.place.x, block.place.y);
         let measured = draw(stream);
-        let own =
-            |shared: f64, single: f64, count: usize| (shared * shared + single * single / count.max(1) as f64).sqrt();
+        let own = |shared: f64, single: f64, count: usize| {
+            (shared * shared * block.steps + single * single / count.max(1) as f64).sqrt()
+        };
         let position = own(noise.reference_position, noise.within_position.max(single.position), block.count);
         let heading = own(noise.reference_heading, noise.within_heading.max(single.heading), block.headings);
         let time = late + noise.reference_time * stream.normal();
