@@ -245,14 +245,14 @@ fn steps_of_a_sensor_that_fails_every_fiftieth_time_give_the_ratios_of_whole_pos
     }
 }
 
-/// 60 sets of 3 + 3 squares, seeds 0 to 59: of 180 intervals of 95 %, 18 or more miss the truth with a probability below 0.5 % if they are
-/// right (binomial), and so do 2 or fewer.
+/// 40 sets of 3 + 3 squares, seeds 0 to 39: of 120 intervals of 95 %, 13 or more miss the truth with a probability of 0.8 % if they are
+/// right (binomial), and 1 or none with one of 1.6 %.
 #[test]
 fn intervals_from_steps_hold_the_truth_and_the_mounting_of_the_sensor_is_found() {
     let (robot, model, truth) = (Robot::labmate(), rough(&[]), &RATIOS);
     let mount = Pose2::new(0.2, 0.05, -0.3);
     let mut missed = Vec::new();
-    for seed in 0..60 {
+    for seed in 0..40 {
         let data = steps(&watched(&model, 3, seed), &mount, seed);
         let found = fit(&data, &asked(&robot, &[])).unwrap();
         let mounting = found.setup.mounting.as_ref().unwrap();
@@ -264,7 +264,7 @@ fn intervals_from_steps_hold_the_truth_and_the_mounting_of_the_sensor_is_found()
         );
         missed.extend(truth.iter().filter(|number| misses(&found, number)).map(|(_, parameter, _)| (seed, *parameter)));
     }
-    assert!((3..18).contains(&missed.len()), "{missed:?}");
+    assert!((2..13).contains(&missed.len()), "{missed:?}");
 }
 
 /// What `inspect` promises of steps is what a fit of them gives.
@@ -285,8 +285,7 @@ fn what_steps_will_determine_is_told_before_the_fit() {
 fn positions_of_turns_on_the_spot_accuse_no_wheel_and_give_what_poses_give() {
     let poses = umbmark_io::load(Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/hidden")).unwrap();
     let positions = positions_in_rooms(&poses);
-    let mut asked = asked(poses.robot.as_ref().unwrap(), &["floor_slope_yaw"]);
-    asked.add("floor_slope_yaw").unwrap();
+    let asked = asked(poses.robot.as_ref().unwrap(), &["floor_slope_yaw"]);
     let [whole, part] = [&poses, &positions].map(|data| fit(data, &asked).unwrap());
     for parameter in ["e_d", "e_b", "e_s"] {
         let (whole, part) = (of(&whole, parameter), of(&part, parameter));

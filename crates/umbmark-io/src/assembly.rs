@@ -115,6 +115,9 @@ impl Assembly {
         let bits = self.robot.as_ref().and_then(|robot| robot.encoder.counter_bits());
         let (log, marked) = recording.into_log(self.robot.as_ref(), bits, &mut self.warnings)?;
         if marked.is_empty() || !log.reference.is_empty() || tracked.is_some() {
+            if !marked.is_empty() {
+                self.warnings.push(format!("{file}: poses were measured on the way, so the column mark is not used"));
+            }
             return self.add_log(file, log, tracked, stem, named, end);
         }
         self.add_closures(&file, &log, &marked, stem, named)
@@ -165,6 +168,12 @@ impl Assembly {
             self.set_clock(&mut log, tracked, stem)?;
         }
         log.relative |= self.reference_frame.drifting && !log.reference.is_empty();
+        if log.relative && log.reference.iter().any(|pose| pose.heading.is_none()) {
+            // Without the heading at its beginning, nobody knows where a step leads.
+            let remedy = "a track that drifts (drifting = true in [reference]) needs a heading with every pose".into();
+            let column = "theta_ref_rad".into();
+            return Err(At::new(file, 1).refuse(LineProblem::MissingColumn { column, remedy }));
+        }
         if !log.relative {
             if let Some(robot) = &self.robot {
                 drop_stale(&file, &mut log, robot, &mut self.warnings);

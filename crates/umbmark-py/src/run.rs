@@ -35,6 +35,8 @@ pub const TESTS: [(&str, TestKind); 2] = [("systematic", TestKind::Systematic), 
 ///     For each absolute pose, the sample that it belongs to.
 /// reference_pose : ndarray of float64, shape (m, 3), optional
 ///     The absolute poses: x in m, y in m, heading in rad (NaN where it was not measured), in the frame of START.
+/// relative : bool, default False
+///     Whether each pose tells only how the robot moved since the one before, as poses of visual odometry do.
 ///
 /// Raises
 /// ------
@@ -50,7 +52,7 @@ pub struct Run {
 impl Run {
     #[new]
     #[pyo3(signature = (direction, number, *, name=None, test="systematic", returned=None, time_s=None, ticks_left=None,
-        ticks_right=None, reference_sample=None, reference_pose=None))]
+        ticks_right=None, reference_sample=None, reference_pose=None, relative=false))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         direction: Option<&str>,
@@ -63,13 +65,14 @@ impl Run {
         ticks_right: Option<PyReadonlyArray1<'_, f64>>,
         reference_sample: Option<PyReadonlyArray1<'_, i64>>,
         reference_pose: Option<PyReadonlyArray2<'_, f64>>,
+        relative: bool,
     ) -> PyResult<Run> {
         let direction = direction.map(|word| choice("direction", word, &DIRECTIONS)).transpose()?;
         let log = match (time_s, ticks_left, ticks_right) {
             (Some(time), Some(left), Some(right)) => {
                 let [time, left, right] = [time, left, right].map(|array| array.as_array().to_vec());
                 let reference = references(reference_sample, reference_pose)?;
-                Some(checked(TickLog { time, left, right, reference, ..TickLog::default() })?)
+                Some(checked(TickLog { time, left, right, reference, relative, ..TickLog::default() })?)
             }
             (None, None, None) => None,
             _ => return Err(PyValueError::new_err("time_s, ticks_left and ticks_right go together")),
@@ -148,6 +151,12 @@ impl Run {
         let poses = log.reference.iter().flat_map(|p| [p.x, p.y, p.heading.unwrap_or(f64::NAN)]).collect();
         let array = Array2::from_shape_vec((log.reference.len(), 3), poses).map_err(refused)?;
         Ok(Some(PyArray2::from_owned_array(py, array)))
+    }
+
+    /// Whether each pose tells only how the robot moved since the one before; None without ticks.
+    #[getter]
+    fn relative(&self) -> Option<bool> {
+        self.core().log.as_ref().map(|log| log.relative)
     }
 
     fn __repr__(&self) -> String {

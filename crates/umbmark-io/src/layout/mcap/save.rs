@@ -110,7 +110,8 @@ fn bytes(data: &Dataset, run: &Run, log: &TickLog) -> Result<Vec<u8>, DatasetErr
         return Err(refuse(format!("time {time} s cannot be written; stamps go from 0 to {} s", i32::MAX)));
     }
     let mut file = Cursor::new(Vec::new());
-    let robot_file = RobotFile::new(data.nominal_robot()?.clone(), data.path.clone());
+    let mut robot_file = RobotFile::new(data.nominal_robot()?.clone(), data.path.clone());
+    robot_file.reference.drifting = log.relative;
     write(&mut file, &robot_file, log, begin).map_err(|error| refuse(error.to_string()))?;
     Ok(file.into_inner())
 }
