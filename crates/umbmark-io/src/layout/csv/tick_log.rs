@@ -11,6 +11,9 @@ use umbmark_core::dataset::{ReferencePose, TickLog};
 use umbmark_core::drive::{DriveKind, Robot};
 use umbmark_core::geometry::Pose2;
 
+/// The mark that the column `closed` means.
+const START: &str = "START";
+
 /// The columns of the absolute poses.
 const REFERENCE: [&str; 3] = ["x_ref_m", "y_ref_m", "theta_ref_rad"];
 /// The header of messages.
@@ -29,6 +32,7 @@ struct LogColumns {
     reference: Option<ReferenceColumns>,
     steps: Option<[Column; 3]>,
     mark: Option<Column>,
+    closed: Option<Column>,
 }
 
 /// The rows of a log.
@@ -62,14 +66,16 @@ impl LogColumns {
         let time = columns.need("t", Time, &needs)?;
         let counts = [columns.need(&first, Bare, &needs)?, columns.need(&second, Bare, &needs)?];
         let reference = ReferenceColumns::find(&mut columns)?;
-        let mark = columns.find("mark", Bare)?;
+        // Beside a range, it names a mark that was sighted and not one that the robot stands on.
+        let mark = if columns.given(&["range"]) { None } else { columns.find("mark", Bare)? };
+        let closed = columns.find("closed", Bare)?;
         let steps = find_steps(&mut columns)?;
         if let (Some(steps), Some(poses)) = (&steps, &reference) {
             let (first, second) = (poses.x.name.clone(), steps[0].name.clone());
             return Err(At::new(sheet.file(), sheet.header_line).refuse(LineProblem::BothReferences { first, second }));
         }
         columns.finish(warnings)?;
-        Ok(LogColumns { time, counts, reference, steps, mark })
+        Ok(LogColumns { time, counts, reference, steps, mark, closed })
     }
 
     /// The recording of a file, before its first row.
@@ -92,20 +98,31 @@ impl LogColumns {
         if let Some(columns) = &self.steps {
             add_step(columns, row, recording)?;
         }
-        if let Some(mark) = self.mark.as_ref().map(|column| row.text(column)).filter(|mark| !mark.is_empty()) {
+        let closed = self.closed.as_ref().map(|column| is_closed(column, row)).transpose()?.unwrap_or(false);
+        let named = self.mark.as_ref().map(|column| row.text(column)).filter(|mark| !mark.is_empty());
+        if let Some(mark) = named.or(closed.then_some(START)) {
             recording.marked.push((recording.time.len() - 1, mark.to_owned()));
         }
         Ok(())
     }
 }
 
+/// Whether the robot stands on its START mark.
+fn is_closed(column: &Column, row: &Row) -> Result<bool, DatasetError> {
+    match row.number_or(column)? {
+        None => Ok(false),
+        Some(closed) if closed == 0.0 || closed == 1.0 => Ok(closed == 1.0),
+        Some(_) => Err(row.wrong(column, "1 on the START mark, and 0 or nothing elsewhere", "")),
+    }
+}
+
 /// The columns of steps: how the sensor moved and turned since the last row that has them, as seen from where it was there.
 fn find_steps(columns: &mut Columns) -> Result<Option<[Column; 3]>, DatasetError> {
-    let names = ["dx_ref", "dy_ref", "dtheta_ref"];
+    let names = ["dx_rel", "dy_rel", "dtheta_rel"];
     if !columns.given(&names) {
         return Ok(None);
     }
-    let needs = "a step of the reference needs dx_ref_m, dy_ref_m and dtheta_ref_rad";
+    let needs = "a step of the reference needs dx_rel_m, dy_rel_m and dtheta_rel_rad";
     let [x, y] = [names[0], names[1]].map(|name| columns.need(name, Length, needs));
     Ok(Some([x?, y?, columns.need(names[2], Angle, needs)?]))
 }
