@@ -139,6 +139,25 @@ def driven() -> umbmark.Dataset:
     return umbmark.simulate(model, umbmark.Path(side_m=0.5), runs=2, reference_rate_hz=5)
 
 
+def test_a_run_says_whether_its_poses_tell_motion_only(tmp_path: Path) -> None:
+    data = driven()
+    run = data.runs[0]
+    assert run.relative is False
+    assert umbmark.Run("cw", 1).relative is None
+    steps = umbmark.Run(
+        "cw",
+        1,
+        time_s=run.time_s,
+        ticks_left=run.ticks_left,
+        ticks_right=run.ticks_right,
+        reference_sample=run.reference_sample,
+        reference_pose=run.reference_pose,
+        relative=True,
+    )
+    umbmark.Dataset(data.robot, data.path, [steps]).save(tmp_path / "steps")
+    assert umbmark.load_dataset(tmp_path / "steps").runs[0].relative is True
+
+
 def test_a_dataset_is_made_of_its_runs_to_the_last_bit(tmp_path: Path) -> None:
     data = driven()
     assert (
