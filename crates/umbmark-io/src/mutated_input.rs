@@ -3,6 +3,7 @@
 //!
 //! `UMBMARK_TEST_CASES=1000000` damages each of the files a million times and prints how many were read.
 
+use super::closures::{Closure, Marks, closures};
 use super::error::DatasetError;
 use super::layout::csv::{Measured, parse_returns, parse_tick_log};
 use super::layout::{optiodom, parse_track};
@@ -129,6 +130,34 @@ fn damaged_tick_logs() {
                 .is_ok_and(|recording| finished(recording, bits))
         });
     }
+}
+
+#[test]
+fn damaged_logs_of_steps() {
+    let good = "t_s,ticks_left,ticks_right,dx_rel_m,dy_rel_m,dtheta_rel_rad\n0.00,0,0,,,\n0.01,4,3,0.001,0,0\n0.02,7,9,,,\n\
+                0.03,9,12,0.002,-0.01,3.1\n0.04,12,20,1e-3,0,3.1\n";
+    survive(good, 17, |text| {
+        parse_tick_log(source(text), DriveKind::default(), &mut Vec::new())
+            .is_ok_and(|recording| finished(recording, None))
+    });
+}
+
+#[test]
+fn damaged_logs_of_marks() {
+    let good = "t_s,ticks_left,ticks_right,mark,closed\n0.00,0,0,,1\n0.01,4,3,a,\n0.02,7,9,,0\n0.03,9,12,a,0\n0.04,12,20,b,\n0.05,13,21,,1\n";
+    let places = Marks::from([("a".to_owned(), (1.0, 2.0, Some(0.5))), ("b".to_owned(), (0.0, 0.0, None))]);
+    survive(good, 18, |text| {
+        let read = parse_tick_log(source(text), DriveKind::default(), &mut Vec::new())
+            .and_then(|recording| recording.into_log(Some(&Robot::labmate()), None, &mut Vec::new()));
+        read.is_ok_and(|(log, marked)| {
+            let found = closures(&log, &marked, &places);
+            for Closure { log, end: (x, y, heading) } in &found {
+                assert!(x.is_finite() && y.is_finite() && heading.is_none_or(f64::is_finite));
+                assert!(log.time.len() > 1 && log.left[0] == 0.0 && log.right[0] == 0.0);
+            }
+            !found.is_empty()
+        })
+    });
 }
 
 /// Oracle: lines cut at their ends and commas.
