@@ -83,7 +83,7 @@ impl Observations {
 /// A dataset without what is wrong with its tracks: wrong poses are left out, and each run ends before its first jump; its return
 /// error is then not known. With a sentence for each run that lost something.
 pub(super) fn mended<'a>(data: &'a Dataset, setup: &Setup) -> (Cow<'a, Dataset>, Vec<String>) {
-    let is_off = |run: &RunSetup| !run.relative && !(run.wrong.is_empty() && run.jumps.is_empty());
+    let is_off = |run: &RunSetup| !(run.relative || run.wrong.is_empty() && run.jumps.is_empty());
     if !setup.runs.iter().any(is_off) {
         return (Cow::Borrowed(data), Vec::new());
     }

@@ -293,7 +293,7 @@ pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
         let found = Agreement::without_drift(windows, reading, wheelbase);
         // A robot that turns on the spot moves a point on its axle nowhere: its courses then turn by chance only, and accuse nobody.
         let [way, turns] = found.shown;
-        Agreement { shown: [way, turns && !(by_course && !found.turns_are_credible())], ..found }
+        Agreement { shown: [way, turns && (!by_course || found.turns_are_credible())], ..found }
     };
     // If a counter is read wrongly, a small difference of the wheels can mimic distance or rotation, multiplied many times.
     let doubt = |found: &Agreement| {
