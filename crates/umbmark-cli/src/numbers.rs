@@ -2,6 +2,8 @@
 
 use std::ops::RangeInclusive;
 
+use umbmark_core::geometry::Pose2;
+
 /// A number written with a decimal point.
 pub fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| {
@@ -28,4 +30,13 @@ pub fn whole_in<N: TryFrom<u64>>(range: RangeInclusive<u64>) -> impl Fn(&str) ->
 pub fn probability(text: &str) -> Result<f64, String> {
     let value = number(text)?;
     if value > 0.0 && value < 1.0 { Ok(value) } else { Err("must be between 0 and 1, both excluded".to_owned()) }
+}
+
+/// A pose: x and y in m, heading in rad.
+pub fn pose(text: &str) -> Result<Pose2, String> {
+    let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
+    let [x, y, heading] = numbers[..] else {
+        return Err(format!("must be x,y,heading, three numbers, but has {}", numbers.len()));
+    };
+    Ok(Pose2::new(x, y, heading))
 }

@@ -3,9 +3,10 @@
 //! The poses are those that [`replay`](crate::replay) predicts, to the last bit. What belongs to a reference (its delay, its clock, where
 //! its marker sits, how START was found) does nothing here.
 
-mod spread;
+mod compiled;
 
-pub use spread::Spread;
+pub use compiled::{CompileError, compiled};
+pub use umbmark_odometry::spread::Spread;
 
 use crate::dataset::Dataset;
 use crate::effect::{Model, ModelError, RunContext};
@@ -88,6 +89,7 @@ pub fn apply_to_all<'d>(
 
 fn along(track: &Track, log: &TickLog, model: &Model, noise: Option<&Noise>, start: Pose2) -> Corrected {
     let chain = model.chain();
+    let growth = noise.map(Noise::of_wheels);
     let (mut pose, mut spread, mut way) = (start, Spread::default(), 0.0);
     let mut pieces = track.travel().iter().zip(track.contexts());
     let (mut poses, mut spreads) = (Vec::with_capacity(log.time.len()), Vec::new());
@@ -98,8 +100,8 @@ fn along(track: &Track, log: &TickLog, model: &Model, noise: Option<&Noise>, sta
             let motion = chain.displacement(&at.at_pose(&from), travel);
             pose.advance(&motion);
             way += motion.forward.abs();
-            if let Some(noise) = noise {
-                spread = spread.after(&from, &motion, &pose, noise);
+            if let Some(growth) = &growth {
+                spread = spread.after(&from, &motion, &pose, growth);
             }
         }
         made = *after;

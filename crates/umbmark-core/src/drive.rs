@@ -26,11 +26,12 @@ pub use differential::WheelTravel;
 pub use encoder::{Encoder, MAX_COUNTER_BITS, Wiring, roll_over};
 pub use kind::{DriveKind, DriveKinds};
 pub use kinematics::Spelling;
-pub(crate) use tricycle::front_wheel_angle;
 
 use crate::parameter::{Parameter, ParameterError, Sizes};
 use kinematics::Kinematics;
 use std::ops::Deref;
+use umbmark_odometry::context::Nominal;
+use umbmark_odometry::gearing::Gearing;
 
 /// One of the two drive wheels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -161,6 +162,12 @@ macro_rules! drives {
             fn counting(&self, encoder: &Encoder, forward: f64, rotation: f64) -> Option<Counting> {
                 match self {
                     $(Drive::$kind(drive) => drive.counting(encoder, forward, rotation),)+
+                }
+            }
+
+            fn gearing(&self, encoder: &Encoder) -> Gearing {
+                match self {
+                    $(Drive::$kind(drive) => drive.gearing(encoder),)+
                 }
             }
 
@@ -352,6 +359,21 @@ impl Robot {
             counters[1].push(now[1]);
         }
         counters
+    }
+
+    /// What its two counters mean.
+    pub fn gearing(&self) -> Gearing {
+        self.drive.gearing(&self.encoder)
+    }
+
+    /// The numbers that the variables of effects are computed with.
+    pub fn nominal(&self) -> Nominal {
+        Nominal {
+            wheelbase: self.drive.wheelbase(),
+            wheel_radius: [0.5 * self.drive.wheel_diameter_left(), 0.5 * self.drive.wheel_diameter_right()],
+            metres_per_tick: self.metres_per_tick(),
+            axle_distance: self.drive.axle_distance(),
+        }
     }
 
     /// Travel of each wheel of the axle per encoder tick \[m\]: π D / (ticks per revolution).

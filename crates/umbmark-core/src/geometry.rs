@@ -1,22 +1,14 @@
 //! The plane: rigid motions SE(2), angles, and the scalars they are made of.
 //!
-//! | type | meaning | components |
-//! |---|---|---|
-//! | [`Pose2`] | where a body is, `world_from_body` | x \[m\], y \[m\], heading \[rad\], counter-clockwise |
-//! | [`Displacement2`] | a body-frame twist times a time: the logarithm of a motion | forward \[m\], sideways \[m\] (left positive), rotation \[rad\] |
-//!
-//! Everything is generic over [`Real`], so that the same code gives values (`f64`) and exact derivatives ([`Dual`]).
+//! Poses, motions and [`Real`] are those of [`umbmark_odometry::geometry`], which robots compute with; here is what only large machines need.
 
-mod angle;
 mod eight;
 mod instructions;
-mod pose;
-mod real;
+mod seeded;
 
-pub use angle::{mean_angle, wrap};
 pub(crate) use eight::{EIGHT, Eight, Scalar};
 pub use instructions::Instructions;
 pub(crate) use instructions::by_width;
-pub use pose::{Displacement2, Pose2};
-pub(crate) use real::{COSINE_SERIES, HALF_PI, SINC_SERIES, sinc_cos_near_zero};
-pub use real::{Dual, LANES, Real, direction, seeded};
+pub use seeded::seeded;
+pub(crate) use umbmark_odometry::geometry::{COSINE_SERIES, HALF_PI, SINC_SERIES, sinc_cos_near_zero};
+pub use umbmark_odometry::geometry::{Displacement2, Dual, LANES, Pose2, Real, direction, mean_angle, wrap};

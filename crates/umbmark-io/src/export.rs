@@ -10,9 +10,11 @@ pub use urdf::UrdfFile;
 
 use super::{Remedy, RobotFile, Words};
 use std::fmt;
+use umbmark_core::apply::CompileError;
 use umbmark_core::calibrate::Correction;
 use umbmark_core::drive::{Drive, DriveError, Robot};
 use umbmark_core::effect::{Changes, Model, ModelError, Part};
+use umbmark_core::geometry::Pose2;
 use umbmark_core::likelihood::Noise;
 use umbmark_core::parameter::Parameter;
 use umbmark_core::register;
@@ -28,6 +30,8 @@ register! {
     urdf,
     gazebo,
     mujoco,
+    embedded,
+    embedded_rust,
 }
 
 /// A program, or a kind of file, for which numbers of a model are written.
@@ -132,6 +136,9 @@ pub enum ExportError {
     /// An effect that the drive cannot have.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// A model that the library on the robot cannot hold.
+    #[error("embedded: {0}")]
+    Compile(#[from] CompileError),
 }
 
 impl ExportError {
@@ -167,6 +174,8 @@ pub struct Export<'a> {
     pub beside: Option<RobotFile>,
     /// The user's own description of the robot, to be edited.
     pub urdf: Option<UrdfFile>,
+    /// Where the robot stands at its first reading, for a table that computes poses.
+    pub start: Pose2,
     /// How the robot is usually driven: constant covariances are those of this motion.
     pub usual: Usual,
 }
@@ -215,7 +224,15 @@ impl Default for Usual {
 impl<'a> Export<'a> {
     /// A model without noise, as it is usually written.
     pub fn of(model: &'a Model) -> Export<'a> {
-        Export { model, noise: None, controller: None, beside: None, urdf: None, usual: Usual::default() }
+        Export {
+            model,
+            noise: None,
+            controller: None,
+            beside: None,
+            urdf: None,
+            start: Pose2::IDENTITY,
+            usual: Usual::default(),
+        }
     }
 
     /// The nominal robot.

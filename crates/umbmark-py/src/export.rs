@@ -2,6 +2,7 @@
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use umbmark_core::geometry::Pose2;
 use umbmark_io::RobotFile;
 use umbmark_io::export::{Export, ExportError, TARGETS, UrdfFile, Usual};
 
@@ -18,6 +19,7 @@ pub fn export(
     controller: Option<String>,
     urdf: Option<(String, Option<[String; 2]>)>,
     usual: [f64; 3],
+    start: [f64; 3],
 ) -> PyResult<(String, Vec<String>)> {
     let targets: Vec<_> = TARGETS.iter().map(|target| (target.name, *target)).collect();
     let target = choice("to", to, &targets)?;
@@ -25,6 +27,10 @@ pub fn export(
         parameter.check(value).map_err(refused)?;
     }
     let [speed, turn_rate, rate] = usual;
+    if start.iter().any(|number| !number.is_finite()) {
+        return Err(PyValueError::new_err(format!("start must be three finite numbers, got {start:?}")));
+    }
+    let [x, y, heading] = start;
     let robot = model.model.robot();
     let export = Export {
         noise: model.noise,
@@ -32,6 +38,7 @@ pub fn export(
         beside: path.map(|path| RobotFile::new(robot.clone(), Some(path.0.clone()))),
         urdf: urdf.map(|(file, joints)| UrdfFile::read(file, joints)).transpose().map_err(in_words)?,
         usual: Usual { speed, turn_rate, rate },
+        start: Pose2::new(x, y, heading),
         ..Export::of(&model.model)
     };
     let written = target.write(&export).map_err(in_words)?;

@@ -18,6 +18,7 @@ use umbmark_io::{CorrectedFormat, ModelFile};
 use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::files::{begin, with_remedy};
+use crate::numbers::pose;
 use crate::prose::hanging;
 use crate::table::table;
 
@@ -41,7 +42,7 @@ pub struct Arguments {
 
     /// Where each run begins: x and y in m, heading in rad. Effects that depend on heading or place need it where a run does
     /// not begin where those began that the model was learnt from
-    #[arg(long, value_name = "X,Y,HEADING", default_value = "0,0,0", value_parser = start, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,HEADING", default_value = "0,0,0", value_parser = pose, allow_hyphen_values = true)]
     start: Pose2,
 
     /// Replace files that exist
@@ -51,14 +52,6 @@ pub struct Arguments {
 
 fn names() -> PossibleValuesParser {
     PossibleValuesParser::new(CorrectedFormat::ALL.map(CorrectedFormat::name))
-}
-
-fn start(text: &str) -> Result<Pose2, String> {
-    let numbers: Vec<f64> = text.split(',').map(crate::numbers::number).collect::<Result<_, _>>()?;
-    let [x, y, heading] = numbers[..] else {
-        return Err(format!("must be x,y,heading, three numbers, but has {}", numbers.len()));
-    };
-    Ok(Pose2::new(x, y, heading))
 }
 
 impl Arguments {

@@ -6,12 +6,14 @@ use std::process::ExitCode;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde_json::json;
+use umbmark_core::geometry::Pose2;
 use umbmark_core::parameter::Parameter;
 use umbmark_io::ModelFile;
 use umbmark_io::export::{Export, TARGETS, Target, UrdfFile, Usual};
 
 use crate::Session;
 use crate::files::Pending;
+use crate::numbers::pose;
 use crate::prose::hanging;
 
 /// Arguments of `export`.
@@ -53,6 +55,10 @@ pub struct Arguments {
     /// Rate at which the robot publishes its odometry
     #[arg(long, value_name = "HZ", value_parser = number(2), default_value_t = Usual::default().rate)]
     rate: f64,
+
+    /// Where the robot stands at its first reading, x and y in m, heading in rad; for --to embedded
+    #[arg(long, value_name = "X,Y,HEADING", default_value = "0,0,0", value_parser = pose, allow_hyphen_values = true)]
+    start: Pose2,
 
     /// Replace a file that exists
     #[arg(long)]
@@ -99,7 +105,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let usual = Usual { speed: arguments.speed, turn_rate: arguments.turn_rate, rate: arguments.rate };
     let urdf = arguments.urdf.map(|file| UrdfFile::read(file, arguments.joints)).transpose()?;
     let (noise, controller) = (file.noise, arguments.controller);
-    let export = Export { noise, controller, urdf, usual, ..Export::of(&file.model) };
+    let export = Export { noise, controller, urdf, usual, start: arguments.start, ..Export::of(&file.model) };
     let written = arguments.to.write(&export)?;
     Pending::write_whole(&arguments.output, arguments.force, &written.text)?;
     for note in &written.notes {

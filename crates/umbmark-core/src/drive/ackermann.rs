@@ -4,9 +4,7 @@ use super::kinematics::Kinematics;
 use super::{Counting, DifferentialDrive, DriveError, Encoder, WheelTravel};
 use crate::parameter::Parameter;
 use std::f64::consts::{PI, TAU};
-
-/// No wheel is steered farther than this \[rad\]: at a right angle the robot would turn about its own axle.
-const MOST_STEERING: f64 = 1.4;
+use umbmark_odometry::gearing::{Gearing, MOST_STEERING, Steering};
 
 /// The nominal kinematics of a car or a tricycle, about the middle of its rear axle.
 ///
@@ -39,6 +37,10 @@ impl AckermannDrive {
         self.steering_zero
     }
 
+    fn steering_gear(&self, encoder: &Encoder) -> Steering {
+        Steering { per_count: self.per_count(encoder), zero: self.steering_zero, axle_distance: self.axle_distance }
+    }
+
     /// Metres per count of the drive, radians per count of the steering.
     fn per_count(&self, encoder: &Encoder) -> [f64; 2] {
         [PI * self.axle.wheel_diameter_left() / encoder.ticks_per_revolution(), TAU / self.steering_ticks]
@@ -46,8 +48,7 @@ impl AckermannDrive {
 
     /// Rotation per metre at a count of the steering.
     fn curvature(&self, encoder: &Encoder, steering: f64) -> f64 {
-        let angle = steering * self.per_count(encoder)[1] + self.steering_zero;
-        libm::tan(angle.clamp(-MOST_STEERING, MOST_STEERING)) / self.axle_distance
+        self.steering_gear(encoder).curvature(steering)
     }
 
     /// The count of the steering at which the robot turns so much \[rad/m\].
@@ -156,10 +157,8 @@ impl Kinematics for AckermannDrive {
         })
     }
 
-    /// The steering is taken halfway between the readings.
-    fn travel(&self, encoder: &Encoder, before: [f64; 2], after: [f64; 2]) -> WheelTravel {
-        let forward = (after[0] - before[0]) * self.per_count(encoder)[0];
-        self.axle.wheel_travel(forward, forward * self.curvature(encoder, 0.5 * (before[1] + after[1])))
+    fn gearing(&self, encoder: &Encoder) -> Gearing {
+        Gearing::Car(self.steering_gear(encoder))
     }
 
     /// The counts that gained this travel, from a reading on; the steering as it was where nothing moved.

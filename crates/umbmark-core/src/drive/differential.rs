@@ -5,22 +5,7 @@ use super::{DriveError, Encoder};
 use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 
-/// Distance rolled by each wheel \[m\], forward positive.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct WheelTravel<T = f64> {
-    /// \[m\]
-    pub left: T,
-    /// \[m\]
-    pub right: T,
-}
-
-impl<T: Real> WheelTravel<T> {
-    /// Both wheels' travel times a number.
-    #[inline]
-    pub fn scaled(&self, factor: f64) -> WheelTravel<T> {
-        WheelTravel { left: self.left * factor, right: self.right * factor }
-    }
-}
+pub use umbmark_odometry::travel::WheelTravel;
 
 /// The nominal kinematics of a differential drive.
 ///
@@ -84,18 +69,13 @@ impl DifferentialDrive {
     /// Body motion of the axle's centre for given wheel travels, at constant ratio of the wheel speeds.
     #[inline(always)]
     pub fn displacement<T: Real>(&self, travel: &WheelTravel<T>) -> Displacement2<T> {
-        Displacement2 {
-            forward: (travel.right + travel.left) * 0.5,
-            sideways: T::from(0.0),
-            rotation: (travel.right - travel.left) / self.wheelbase,
-        }
+        travel.displacement(self.wheelbase)
     }
 
     /// Wheel travels that make the axle's centre advance `forward` \[m\] while the body turns by `rotation` \[rad\].
     #[inline]
     pub fn wheel_travel(&self, forward: f64, rotation: f64) -> WheelTravel {
-        let half = 0.5 * self.wheelbase * rotation;
-        WheelTravel { left: forward - half, right: forward + half }
+        WheelTravel::of(forward, rotation, self.wheelbase)
     }
 }
 

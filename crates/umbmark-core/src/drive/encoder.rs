@@ -3,8 +3,7 @@
 use super::DriveError;
 use crate::parameter::Parameter;
 
-/// The widest counter that is unrolled.
-pub const MAX_COUNTER_BITS: u32 = 62;
+pub use umbmark_odometry::gearing::{MAX_COUNTER_BITS, roll_over};
 
 /// How the counters of a log are wired to the wheels: which is in which column, and which way it counts.
 ///
@@ -163,21 +162,6 @@ impl Encoder {
             None => count,
         }
     }
-}
-
-/// The change between two readings of a counter of `bits` bits, taken as the shorter way round: in [-2^(n-1), 2^(n-1)).
-///
-/// Right as long as a wheel moves less than half the counter's range between readings. Readings may be signed or
-/// unsigned; only their difference modulo 2^n counts.
-///
-/// ```
-/// # use umbmark_core::drive::roll_over;
-/// assert_eq!(roll_over(65533, 394, 16), 397);
-/// assert_eq!(roll_over(169, 65410, 16), -295);
-/// ```
-pub fn roll_over(before: i64, after: i64, bits: u32) -> i64 {
-    let unused = 64 - bits;
-    (after.wrapping_sub(before) << unused) >> unused
 }
 
 #[cfg(test)]

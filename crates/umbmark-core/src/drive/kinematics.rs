@@ -2,6 +2,7 @@
 
 use super::{ClapperDrive, Counting, DifferentialDrive, DriveError, Encoder, Wheel, WheelTravel};
 use crate::parameter::Parameter;
+use umbmark_odometry::gearing::Gearing;
 
 /// Another key for numbers of a drive in files.
 #[derive(Debug)]
@@ -98,10 +99,14 @@ pub(super) trait Kinematics: Sized {
         Some(Counting { per_count: [left, right], gain, held: 0 })
     }
 
+    /// What its counters mean.
+    fn gearing(&self, encoder: &Encoder) -> Gearing {
+        Gearing::Wheels(self.axle().metres_per_tick(encoder))
+    }
+
     /// Travel of the axle's wheels from one reading to another.
     fn travel(&self, encoder: &Encoder, before: [f64; 2], after: [f64; 2]) -> WheelTravel {
-        let per_tick = self.axle().metres_per_tick(encoder);
-        WheelTravel { left: (after[0] - before[0]) * per_tick.left, right: (after[1] - before[1]) * per_tick.right }
+        self.gearing(encoder).travel(self.axle().wheelbase(), before, after)
     }
 
     /// The counts that gained this travel, from a reading on.

@@ -7,6 +7,7 @@ use super::kinematics::Kinematics;
 use super::{Counting, DifferentialDrive, DriveError, Encoder, Wheel, WheelTravel};
 use crate::parameter::Parameter;
 use std::f64::consts::{PI, TAU};
+use umbmark_odometry::gearing::Gearing;
 
 /// The nominal kinematics of a synchro drive of three wheels, 120 degrees apart, one straight ahead of the centre at START.
 ///
@@ -117,10 +118,8 @@ impl Kinematics for SynchroDrive {
         })
     }
 
-    fn travel(&self, encoder: &Encoder, before: [f64; 2], after: [f64; 2]) -> WheelTravel {
-        let [drive, steering] = self.per_count(encoder);
-        let forward = (after[0] - before[0]) * drive;
-        self.axle.wheel_travel(forward, (after[1] - before[1]) * steering + self.coupling * forward)
+    fn gearing(&self, encoder: &Encoder) -> Gearing {
+        Gearing::Synchro { per_count: self.per_count(encoder), coupling: self.coupling }
     }
 
     /// The counts that gained this travel, from a reading on.

@@ -4,10 +4,7 @@ use super::kinematics::Kinematics;
 use super::{Counting, DifferentialDrive, DriveError, Encoder, WheelTravel};
 use crate::parameter::Parameter;
 use std::f64::consts::{PI, TAU};
-
-/// A motion is that of a wheel that rolls forward, if it is steered by no more than this beyond a right angle \[rad\]; else the
-/// wheel rolled backward.
-const BEYOND: f64 = 0.17;
+use umbmark_odometry::gearing::{Gearing, Steering, front_wheel};
 
 /// The nominal kinematics of a tricycle with a driven front wheel, about the middle of its rear axle.
 ///
@@ -20,18 +17,6 @@ pub struct TricycleDrive {
     axle_distance: f64,
     steering_ticks: f64,
     steering_zero: f64,
-}
-
-/// The way of the front wheel \[m\] and its steering angle \[rad\] in a motion of the rear axle's middle, `forward` \[m\] and
-/// `across` \[m\] (axle distance times rotation): the inverse of w (cos δ, sin δ).
-///
-/// Two of them make the same motion. The wheel rolls forward where this needs no angle far beyond 90 degrees.
-fn front_wheel(forward: f64, across: f64) -> (f64, f64) {
-    if forward >= -libm::tan(BEYOND) * across.abs() {
-        (libm::hypot(forward, across), libm::atan2(across, forward))
-    } else {
-        (-libm::hypot(forward, across), libm::atan2(-across, -forward))
-    }
 }
 
 impl TricycleDrive {
@@ -53,6 +38,10 @@ impl TricycleDrive {
         self.steering_zero
     }
 
+    fn steering_gear(&self, encoder: &Encoder) -> Steering {
+        Steering { per_count: self.per_count(encoder), zero: self.steering_zero, axle_distance: self.axle_distance }
+    }
+
     /// Metres per count of the drive, radians per count of the steering.
     fn per_count(&self, encoder: &Encoder) -> [f64; 2] {
         [PI * self.axle.wheel_diameter_left() / encoder.ticks_per_revolution(), TAU / self.steering_ticks]
@@ -60,8 +49,7 @@ impl TricycleDrive {
 
     /// Travel of the axle's wheels while the front wheel rolls so far \[m\] at a count of the steering.
     fn rolled(&self, encoder: &Encoder, way: f64, steering: f64) -> WheelTravel {
-        let angle = steering * self.per_count(encoder)[1] + self.steering_zero;
-        self.axle.wheel_travel(way * libm::cos(angle), way * libm::sin(angle) / self.axle_distance)
+        self.steering_gear(encoder).rolled(self.axle.wheelbase(), way, steering)
     }
 
     /// The counts that the drive gains over a motion, and the count of the steering in it.
@@ -153,9 +141,8 @@ impl Kinematics for TricycleDrive {
         Some(Counting { per_count: [per_count, WheelTravel::default()], gain: [gain, 0.0], held: held as i64 })
     }
 
-    /// The steering is taken halfway between the readings.
-    fn travel(&self, encoder: &Encoder, before: [f64; 2], after: [f64; 2]) -> WheelTravel {
-        self.rolled(encoder, (after[0] - before[0]) * self.per_count(encoder)[0], 0.5 * (before[1] + after[1]))
+    fn gearing(&self, encoder: &Encoder) -> Gearing {
+        Gearing::Tricycle(self.steering_gear(encoder))
     }
 
     /// The counts that gained this travel, from a reading on; the steering as it was where nothing moved.
@@ -177,12 +164,6 @@ impl Kinematics for TricycleDrive {
         });
         [before[0], steering.unwrap_or(before[1])]
     }
-}
-
-/// The steering angle δ of a motion \[rad\], without a derivative, as [`front_wheel`] reads it.
-#[inline]
-pub(crate) fn front_wheel_angle(forward: f64, across: f64) -> f64 {
-    front_wheel(forward, across).1
 }
 
 #[cfg(test)]

@@ -1,13 +1,10 @@
 //! Slip under drive and brake.
 
 use super::words::{either, percent};
-use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
-use crate::drive::{Robot, WheelTravel};
-use crate::geometry::Real;
+use super::{About, ActsOn, Effect, Entry, at_work};
+use crate::drive::Robot;
 use crate::parameter::Parameter;
-
-/// The share of travel that each wheel loses per acceleration, and gains per deceleration.
-pub struct AccelerationSlip;
+use umbmark_odometry::law::AccelerationSlip;
 
 pub(super) static EFFECT: Entry = Entry::of::<AccelerationSlip>().wheels::<AccelerationSlip>();
 
@@ -45,19 +42,6 @@ impl Effect for AccelerationSlip {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
-}
-
-impl WheelLaw for AccelerationSlip {
-    #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        travel.left *= -p[0] * gain(at, 0) + 1.0;
-        travel.right *= -p[0] * gain(at, 1) + 1.0;
-    }
-}
-
-/// Rate of change of the size of a wheel's speed \[m/s²\].
-fn gain<T>(at: &Context<T>, wheel: usize) -> f64 {
-    if at.duration > 0.0 { at.speed_change[wheel] * at.wheel_speed[wheel].signum() / at.duration } else { 0.0 }
 }
 
 #[cfg(test)]

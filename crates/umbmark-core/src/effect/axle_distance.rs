@@ -1,14 +1,11 @@
 //! The distance of the steered wheel.
 
 use super::words::{deg, either, percent};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, Effect, Entry};
 use crate::drive::{DriveKind, DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 use std::f64::consts::FRAC_PI_2;
-
-/// The ratio of true to nominal distance between the steered wheel and the axle.
-pub struct AxleDistance;
+use umbmark_odometry::law::AxleDistance;
 
 pub(super) static EFFECT: Entry = Entry::of::<AxleDistance>().body::<AxleDistance>();
 
@@ -44,13 +41,6 @@ impl Effect for AxleDistance {
             either(off, "farther from", "nearer to"),
             deg(FRAC_PI_2 / p[0])
         )
-    }
-}
-
-impl BodyLaw for AxleDistance {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
-        motion.rotation /= p[0];
     }
 }
 

@@ -1,13 +1,10 @@
 //! Play between motor and wheel.
 
 use super::words::{deg, mm};
-use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
-use crate::drive::{Robot, WheelTravel};
-use crate::geometry::Real;
+use super::{About, ActsOn, Effect, Entry, at_work};
+use crate::drive::Robot;
 use crate::parameter::Parameter;
-
-/// Travel that a wheel does not make when its motor reverses.
-pub struct Backlash;
+use umbmark_odometry::law::Backlash;
 
 pub(super) static EFFECT: Entry = Entry::of::<Backlash>().wheels::<Backlash>();
 
@@ -44,14 +41,6 @@ impl Effect for Backlash {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl WheelLaw for Backlash {
-    #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        travel.left -= p[0] * at.reversed[0];
-        travel.right -= p[0] * at.reversed[1];
     }
 }
 

@@ -1,13 +1,10 @@
 //! A base that turns as its wheels pull unevenly.
 
 use super::words::{deg, side};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
+use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::{DriveKind, DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// A rate of turn per metre that depends on how far the wheels are steered from where they were at START.
-pub struct BaseYaw;
+use umbmark_odometry::law::BaseYaw;
 
 pub(super) static EFFECT: Entry = Entry::of::<BaseYaw>().body::<BaseYaw>();
 
@@ -59,14 +56,6 @@ impl Effect for BaseYaw {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl BodyLaw for BaseYaw {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        let (sine, cosine) = (motion.rotation * 0.5 + at.believed_heading).sine_cosine();
-        motion.rotation += (p[0] * cosine + p[1] * sine) * motion.forward;
     }
 }
 

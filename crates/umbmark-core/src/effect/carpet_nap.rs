@@ -1,13 +1,10 @@
 //! A carpet whose pile leans one way.
 
-use super::floor_slope::{DRIFT, DRIFT_X, DRIFT_Y, carried, drift};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
+use super::floor_slope::{DRIFT, DRIFT_X, DRIFT_Y, carried};
+use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::{DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// A drift along the pile, for any heading.
-pub struct CarpetNap;
+use umbmark_odometry::law::CarpetNap;
 
 pub(super) static EFFECT: Entry = Entry::of::<CarpetNap>().body::<CarpetNap>();
 
@@ -47,12 +44,5 @@ impl Effect for CarpetNap {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl BodyLaw for CarpetNap {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        drift(p, at, motion);
     }
 }

@@ -1,13 +1,10 @@
 //! The kick of casters that swing round after a turn.
 
 use super::words::{deg, either, mm};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, Effect, Entry};
 use crate::drive::Robot;
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// A change of heading over the first way after each turn, in the sense of that turn.
-pub struct CasterKick;
+use umbmark_odometry::law::CasterKick;
 
 pub(super) static EFFECT: Entry = Entry::of::<CasterKick>().body::<CasterKick>();
 
@@ -56,21 +53,7 @@ impl Effect for CasterKick {
     }
 }
 
-impl BodyLaw for CasterKick {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        motion.rotation += p[0] * faded(at, p[1]) * at.last_turn;
-    }
-}
-
 pub(super) const TRAIL: Parameter = Parameter::shape("trail_m", "", "m", 0.05, (1e-3, 100.0), "");
-
-/// The share of a kick within a piece: e^(-d₀/λ) - e^(-d₁/λ).
-#[inline(always)]
-pub(super) fn faded<T: Real>(at: &Context<T>, trail: T) -> T {
-    let rate = -trail.recip();
-    (rate * at.since_turn).exponential() - (rate * (at.since_turn + at.length)).exponential()
-}
 
 #[cfg(test)]
 mod tests {

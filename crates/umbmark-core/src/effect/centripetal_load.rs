@@ -1,13 +1,10 @@
 //! The outer tyre gives way in arcs.
 
 use super::words::{either, percent};
-use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
-use crate::drive::{Robot, WheelTravel};
-use crate::geometry::Real;
+use super::{About, ActsOn, Effect, Entry, at_work};
+use crate::drive::Robot;
 use crate::parameter::Parameter;
-
-/// A difference of the wheel radii that grows with centripetal acceleration.
-pub struct CentripetalLoad;
+use umbmark_odometry::law::CentripetalLoad;
 
 pub(super) static EFFECT: Entry = Entry::of::<CentripetalLoad>().wheels::<CentripetalLoad>();
 
@@ -44,15 +41,6 @@ impl Effect for CentripetalLoad {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl WheelLaw for CentripetalLoad {
-    #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        let half = p[0] * (0.5 * at.speed * at.turn_rate);
-        travel.left *= half + 1.0;
-        travel.right *= -half + 1.0;
     }
 }
 

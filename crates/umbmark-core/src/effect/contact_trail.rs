@@ -1,14 +1,11 @@
 //! Distance that the robot moves while it turns, and that is not counted.
 
 use super::words::{either, mm};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, Effect, Entry};
 use crate::drive::{DriveKind, DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 use std::f64::consts::FRAC_PI_2;
-
-/// Way per radian of turn.
-pub struct ContactTrail;
+use umbmark_odometry::law::ContactTrail;
 
 pub(super) static EFFECT: Entry = Entry::of::<ContactTrail>().body::<ContactTrail>();
 
@@ -44,13 +41,6 @@ impl Effect for ContactTrail {
             "A quarter turn to the left carries the robot {way} {} that no encoder counts.",
             either(p[0], "ahead", "back")
         )
-    }
-}
-
-impl BodyLaw for ContactTrail {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
-        motion.forward += p[0] * motion.rotation;
     }
 }
 

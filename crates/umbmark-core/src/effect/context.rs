@@ -1,124 +1,10 @@
-//! Where and how a robot drives: the variables that effects may depend on.
+//! Where a run stands in its session, and the moment of a measurement.
 
-use crate::drive::{Robot, WheelTravel};
-use crate::geometry::{Pose2, Real};
+use crate::drive::Robot;
 use crate::path::Direction;
 
-/// One piece of a run, in the terms of the robot's own odometry.
-///
-/// Cumulative quantities have their value at the beginning of the piece, rates their mean over it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Context<T = f64> {
-    /// Heading in the room \[rad\], counter-clockwise from the heading at START, at the beginning of the piece.
-    pub heading: T,
-    /// Place of the robot in the room \[m\] along the heading at START, at the beginning of the piece; 0 in what [`Progress`] gives,
-    /// which knows no place: see [`Context::at_pose`].
-    pub x: T,
-    /// The same to the left of it \[m\].
-    pub y: T,
-    /// Duration of the piece \[s\].
-    pub duration: f64,
-    /// Speed of the axle's centre \[m/s\], forward positive.
-    pub speed: f64,
-    /// \[rad/s\], counter-clockwise positive.
-    pub turn_rate: f64,
-    /// Speeds of the left and the right wheel \[m/s\].
-    pub wheel_speed: [f64; 2],
-    /// Change of the speeds of the left and the right wheel during the piece \[m/s\].
-    pub speed_change: [f64; 2],
-    /// Change of the turn rate during the piece \[rad/s\].
-    pub turn_rate_change: f64,
-    /// Angles of the left and the right wheel since START \[rad\].
-    pub wheel_angle: [f64; 2],
-    /// Rotation of each wheel during the piece \[rad\].
-    pub wheel_rotation: [f64; 2],
-    /// +1 or -1 if the left or the right wheel has just reversed to forward or backward.
-    pub reversed: [f64; 2],
-    /// Path length driven in this run \[m\].
-    pub distance: f64,
-    /// Time since the run began \[s\].
-    pub time: f64,
-    /// Path length driven in all runs of the session so far \[m\].
-    pub session_distance: f64,
-    /// Path length since the last turn \[m\], or since START before the first turn.
-    pub since_turn: f64,
-    /// Path length of the piece \[m\]; negative if its counts are opposite to the direction of driving, as single counts can be.
-    pub length: f64,
-    /// Sense of the last turn: +1 to the left, -1 to the right, 0 before the first.
-    pub last_turn: f64,
-    /// Heading that the odometry believes at the beginning of the piece \[rad\], 0 at START; of a synchro drive, how far its wheels
-    /// are steered from there.
-    pub believed_heading: f64,
-    /// Which of two trucks: 0 for the front one, whose pose is measured, and for a robot with a single body; 1 for the rear one.
-    pub truck: f64,
-    /// Distance of the steered wheel from the axle \[m\]; see [`Drive::axle_distance`](crate::drive::Drive::axle_distance).
-    pub axle_distance: f64,
-    /// Number of the run in the session, from 0.
-    pub run: f64,
-    /// Sense of the run: +1 counter-clockwise, -1 clockwise, 0 where it has none.
-    pub direction: f64,
-    /// Whether the wheel travel was recorded by encoders; otherwise it is the commanded one.
-    pub recorded: bool,
-}
-
-impl Context {
-    /// The same piece where the robot is at this pose in the room at its beginning, values or duals.
-    #[inline(always)]
-    pub fn at_pose<T: Real>(&self, pose: &Pose2<T>) -> Context<T> {
-        Context {
-            heading: pose.heading,
-            x: pose.x,
-            y: pose.y,
-            duration: self.duration,
-            speed: self.speed,
-            turn_rate: self.turn_rate,
-            wheel_speed: self.wheel_speed,
-            speed_change: self.speed_change,
-            turn_rate_change: self.turn_rate_change,
-            wheel_angle: self.wheel_angle,
-            wheel_rotation: self.wheel_rotation,
-            reversed: self.reversed,
-            distance: self.distance,
-            time: self.time,
-            session_distance: self.session_distance,
-            since_turn: self.since_turn,
-            length: self.length,
-            last_turn: self.last_turn,
-            believed_heading: self.believed_heading,
-            truck: self.truck,
-            axle_distance: self.axle_distance,
-            run: self.run,
-            direction: self.direction,
-            recorded: self.recorded,
-        }
-    }
-}
-
-impl<T: Real> Context<T> {
-    /// Where the robot is at the beginning of the piece.
-    #[inline(always)]
-    pub fn pose(&self) -> Pose2<T> {
-        Pose2::new(self.x, self.y, self.heading)
-    }
-}
-
-impl<T> Context<T> {
-    /// Whether the robot turns about a point within a wheelbase of its axle's centre: |v_R - v_L| > |v|.
-    pub fn turns_on_the_spot(&self) -> bool {
-        let [left, right] = self.wheel_speed;
-        (right - left).abs() > self.speed.abs()
-    }
-
-    /// Mean acceleration of the axle's centre \[m/s²\].
-    pub fn acceleration(&self) -> f64 {
-        if self.duration > 0.0 { 0.5 * (self.speed_change[0] + self.speed_change[1]) / self.duration } else { 0.0 }
-    }
-
-    /// Mean change of the turn rate \[rad/s²\], counter-clockwise positive.
-    pub fn turn_acceleration(&self) -> f64 {
-        if self.duration > 0.0 { self.turn_rate_change / self.duration } else { 0.0 }
-    }
-}
+use umbmark_odometry::context::Place;
+pub use umbmark_odometry::context::{Context, Progress};
 
 /// The place of a run in its session.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -129,6 +15,22 @@ pub struct RunContext {
     pub session_distance: f64,
     /// Its sense, where it has one.
     pub direction: Option<Direction>,
+}
+
+impl RunContext {
+    /// As numbers that laws may depend on.
+    pub(crate) fn place(&self) -> Place {
+        Place {
+            run: self.run as f64,
+            session_distance: self.session_distance,
+            direction: self.direction.map_or(0.0, Direction::sign),
+        }
+    }
+
+    /// Follows this run of a robot from START; `recorded` says whether encoders record it.
+    pub fn progress(&self, robot: &Robot, recorded: bool) -> Progress {
+        Progress::new(&robot.nominal(), &self.place(), recorded)
+    }
 }
 
 /// The moment of an absolute measurement.
@@ -142,190 +44,4 @@ pub struct Sight {
     pub speed: f64,
     /// The same \[rad/s\].
     pub turn_rate: f64,
-}
-
-/// A turn is rotation by more than this \[rad\] about a point within a wheelbase of the axle's centre.
-const LEAST_TURN: f64 = 0.35;
-/// A turn ends when the robot has moved this far \[m\].
-const AWAY_FROM_TURN: f64 = 0.01;
-/// A wheel has reversed if it has rolled back by more than this \[m\] from its farthest point.
-const LEAST_REVERSAL: f64 = 0.5e-3;
-
-/// Follows a run piece by piece and tracks the variables of effects, except the place in the room.
-#[derive(Clone, Debug)]
-pub struct Progress {
-    now: Context,
-    wheelbase: f64,
-    radius: [f64; 2],
-    least_reversal: [f64; 2],
-    /// Rotation of the present turn \[rad\], and distance since the last rotation \[m\].
-    turned: f64,
-    gone: f64,
-    /// Rolling direction of each wheel, and its distance behind its farthest point \[m\].
-    sense: [f64; 2],
-    behind: [f64; 2],
-}
-
-impl Progress {
-    /// A run of `robot` that begins at START.
-    pub fn new(robot: &Robot, place: RunContext, recorded: bool) -> Progress {
-        let per_tick = robot.metres_per_tick();
-        let now = Context {
-            session_distance: place.session_distance,
-            run: place.run as f64,
-            direction: place.direction.map_or(0.0, Direction::sign),
-            recorded,
-            axle_distance: robot.drive.axle_distance(),
-            ..Context::default()
-        };
-        Progress {
-            now,
-            wheelbase: robot.drive.wheelbase(),
-            radius: [0.5 * robot.drive.wheel_diameter_left(), 0.5 * robot.drive.wheel_diameter_right()],
-            least_reversal: [per_tick.left, per_tick.right].map(|tick| LEAST_REVERSAL.max(2.0 * tick)),
-            turned: 0.0,
-            gone: 0.0,
-            sense: [0.0; 2],
-            behind: [0.0; 2],
-        }
-    }
-
-    /// The next piece: its believed wheel travel \[m\], how long it takes \[s\], and the speeds of the left and the right
-    /// wheel at its beginning and end \[m/s\].
-    pub fn piece(&mut self, travel: &WheelTravel, duration: f64, from: [f64; 2], to: [f64; 2]) -> Context {
-        let wheels = [travel.left, travel.right];
-        let forward = 0.5 * (travel.left + travel.right);
-        let rotation = (travel.right - travel.left) / self.wheelbase;
-        self.follow_turn(forward, rotation);
-        let mean = [0, 1].map(|w| 0.5 * (from[w] + to[w]));
-        let now = &mut self.now;
-        now.duration = duration;
-        now.speed = 0.5 * (mean[0] + mean[1]);
-        now.turn_rate = (mean[1] - mean[0]) / self.wheelbase;
-        now.wheel_speed = mean;
-        now.speed_change = [to[0] - from[0], to[1] - from[1]];
-        now.turn_rate_change = (now.speed_change[1] - now.speed_change[0]) / self.wheelbase;
-        now.wheel_rotation = [0, 1].map(|w| wheels[w] / self.radius[w]);
-        // Counters that oscillate about zero, as in a turn on the spot, add no path length.
-        now.length = if now.speed == 0.0 { forward.abs() } else { forward * now.speed.signum() };
-        now.reversed =
-            [0, 1].map(|w| reversal(&mut self.sense[w], &mut self.behind[w], wheels[w], self.least_reversal[w]));
-        now.believed_heading = now.heading;
-        let piece = *now;
-        now.heading += rotation;
-        now.wheel_angle = [0, 1].map(|w| now.wheel_angle[w] + now.wheel_rotation[w]);
-        now.distance += now.length;
-        now.session_distance += now.length;
-        now.since_turn += now.length;
-        now.time += duration;
-        piece
-    }
-
-    /// Time since the run began \[s\].
-    pub fn time(&self) -> f64 {
-        self.now.time
-    }
-
-    /// Path length driven in all runs of the session so far \[m\].
-    pub fn session_distance(&self) -> f64 {
-        self.now.session_distance
-    }
-
-    fn follow_turn(&mut self, forward: f64, rotation: f64) {
-        if rotation.abs() * self.wheelbase > forward.abs() {
-            self.turned += rotation;
-            self.gone = 0.0;
-        } else {
-            self.gone += forward.abs();
-            if self.gone > AWAY_FROM_TURN {
-                self.turned = 0.0;
-            }
-        }
-        if self.turned.abs() > LEAST_TURN && self.gone == 0.0 {
-            self.now.last_turn = self.turned.signum();
-            self.now.since_turn = 0.0;
-        }
-    }
-}
-
-/// The new sense of a wheel where it reverses in this piece, else 0.
-fn reversal(sense: &mut f64, behind: &mut f64, travel: f64, least: f64) -> f64 {
-    if *sense == 0.0 {
-        *sense = if travel == 0.0 { 0.0 } else { travel.signum() };
-        return 0.0;
-    }
-    *behind = (*behind - *sense * travel).max(0.0);
-    if *behind <= least {
-        return 0.0;
-    }
-    *sense = -*sense;
-    *behind = 0.0;
-    *sense
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn drive(pieces: &[(f64, f64)]) -> Vec<Context> {
-        let mut progress = Progress::new(&Robot::labmate(), RunContext::default(), true);
-        let travel = |(left, right): &(f64, f64)| WheelTravel { left: *left, right: *right };
-        pieces.iter().map(|p| progress.piece(&travel(p), 0.1, [0.0; 2], [0.1; 2])).collect()
-    }
-
-    #[test]
-    fn a_turn_on_the_spot_is_remembered_with_its_sense_and_the_way_since() {
-        let quarter = 0.5 * 0.34 * std::f64::consts::FRAC_PI_2 / 10.0;
-        let mut pieces = vec![(0.1, 0.1); 3];
-        pieces.extend([(quarter, -quarter); 10]);
-        pieces.extend([(0.1, 0.1); 2]);
-        let seen = drive(&pieces);
-        assert_eq!((seen[2].last_turn, seen[12].last_turn, seen[14].last_turn), (0.0, -1.0, -1.0));
-        assert!((seen[2].since_turn - 0.2).abs() < 1e-12 && (seen[14].since_turn - 0.1).abs() < 1e-12);
-        assert!((seen[14].heading + std::f64::consts::FRAC_PI_2).abs() < 1e-12);
-        assert!((seen[14].distance - 0.4).abs() < 1e-12 && (seen[14].time - 1.4).abs() < 1e-12);
-    }
-
-    #[test]
-    fn counters_that_tremble_in_a_turn_make_no_way_and_driving_backward_does() {
-        let mut progress = Progress::new(&Robot::labmate(), RunContext::default(), true);
-        let mut piece = |left: f64, right: f64, speeds: [f64; 2]| {
-            progress.piece(&WheelTravel { left, right }, 0.01, speeds, speeds);
-            progress.session_distance()
-        };
-        // Nine ticks against eight and eight against nine, at a mean speed that is not quite zero.
-        for _ in 0..50 {
-            piece(-9e-4, 8e-4, [-0.2, 0.2001]);
-            piece(-8e-4, 9e-4, [-0.2, 0.2001]);
-        }
-        assert!(piece(0.0, 0.0, [0.0; 2]).abs() < 1e-12);
-        assert!((piece(-0.01, -0.01, [-0.2; 2]) - 0.01).abs() < 1e-12);
-        assert!((piece(-0.01, -0.01, [0.0; 2]) - 0.02).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_correction_of_the_heading_is_no_turn() {
-        let seen = drive(&[(0.1, 0.1), (0.01, -0.01), (0.1, 0.1)]);
-        assert_eq!(seen[2].last_turn, 0.0);
-        assert!((seen[2].since_turn - 0.1).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_wheel_that_trembles_has_not_reversed_and_one_that_rolls_back_has_once() {
-        let tremble = [(1e-4, 1e-4), (-1e-4, 1e-4), (1e-4, 1e-4), (-1e-4, 1e-4)];
-        assert!(drive(&tremble).iter().all(|c| c.reversed == [0.0; 2]));
-        let back = [(0.01, 0.01), (-4e-4, 0.01), (-4e-4, 0.01), (-0.01, 0.01), (0.01, 0.01)];
-        let reversed: Vec<f64> = drive(&back).iter().map(|c| c.reversed[0]).collect();
-        assert_eq!(reversed, [0.0, 0.0, -1.0, 0.0, 1.0]);
-    }
-
-    #[test]
-    fn rates_are_means_and_acceleration_is_the_change_over_the_duration() {
-        let piece = drive(&[(0.005, 0.005)])[0];
-        assert!((piece.speed - 0.05).abs() < 1e-15 && (piece.acceleration() - 1.0).abs() < 1e-12);
-        assert_eq!(Context::<f64>::default().acceleration(), 0.0);
-        let mut progress = Progress::new(&Robot::labmate(), RunContext::default(), true);
-        let turn = progress.piece(&WheelTravel::default(), 0.5, [0.0; 2], [-0.034, 0.034]);
-        assert!((turn.turn_acceleration() - 0.4).abs() < 1e-12, "{}", turn.turn_acceleration());
-    }
 }

@@ -1,13 +1,10 @@
 //! Crab: both wheels are misaligned to the same side.
 
 use super::words::{deg, mm, side};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, Effect, Entry};
 use crate::drive::{DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// The angle between the course of the robot and its heading.
-pub struct Crab;
+use umbmark_odometry::law::Crab;
 
 pub(super) static EFFECT: Entry = Entry::of::<Crab>().body::<Crab>();
 
@@ -44,22 +41,6 @@ impl Effect for Crab {
             mm(libm::tan(p[0]))
         )
     }
-}
-
-impl BodyLaw for Crab {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
-        turn_course(motion, p[0]);
-    }
-}
-
-/// Turns the course of a motion to the left, the rotation unchanged.
-#[inline(always)]
-pub(super) fn turn_course<T: Real>(motion: &mut Displacement2<T>, angle: T) {
-    let (sine, cosine) = angle.sine_cosine();
-    let Displacement2 { forward, sideways, .. } = *motion;
-    motion.forward = cosine * forward - sine * sideways;
-    motion.sideways = sine * forward + cosine * sideways;
 }
 
 #[cfg(test)]

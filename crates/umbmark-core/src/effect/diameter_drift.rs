@@ -1,13 +1,10 @@
 //! Wheel diameters that change as the robot drives.
 
 use super::words::{either, mm};
-use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
-use crate::drive::{Robot, WheelTravel};
-use crate::geometry::Real;
+use super::{About, ActsOn, Effect, Entry, at_work};
+use crate::drive::Robot;
 use crate::parameter::Parameter;
-
-/// A ratio of the wheel diameters that grows with the way driven, in the run and in the session.
-pub struct DiameterDrift;
+use umbmark_odometry::law::DiameterDrift;
 
 pub(super) static EFFECT: Entry = Entry::of::<DiameterDrift>().wheels::<DiameterDrift>();
 
@@ -56,16 +53,6 @@ impl Effect for DiameterDrift {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl WheelLaw for DiameterDrift {
-    #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        let half = 0.5 * at.length;
-        let d = p[0] * (at.distance + half) + p[1] * (at.session_distance + half);
-        travel.left *= -d * 0.5 + 1.0;
-        travel.right *= d * 0.5 + 1.0;
     }
 }
 

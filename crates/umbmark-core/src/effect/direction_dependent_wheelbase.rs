@@ -1,13 +1,10 @@
 //! A wheelbase that is not the same for left and right turns.
 
 use super::words::mm;
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
+use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::Robot;
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// How much longer the effective wheelbase is in left turns than in right turns.
-pub struct DirectionDependentWheelbase;
+use umbmark_odometry::law::DirectionDependentWheelbase;
 
 pub(super) static EFFECT: Entry = Entry::of::<DirectionDependentWheelbase>().body::<DirectionDependentWheelbase>();
 
@@ -45,15 +42,6 @@ impl Effect for DirectionDependentWheelbase {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl BodyLaw for DirectionDependentWheelbase {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        if at.turn_rate != 0.0 {
-            motion.rotation /= p[0] * (0.5 * at.turn_rate.signum()) + 1.0;
-        }
     }
 }
 

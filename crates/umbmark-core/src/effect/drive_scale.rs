@@ -1,13 +1,10 @@
 //! The scale of a synchro drive's way.
 
 use super::words::{either, mm};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, Effect, Entry};
 use crate::drive::{DriveKind, DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// The ratio of true to nominal way; the steering has gears of its own and is not touched.
-pub struct DriveScale;
+use umbmark_odometry::law::DriveScale;
 
 pub(super) static EFFECT: Entry = Entry::of::<DriveScale>().body::<DriveScale>();
 
@@ -37,13 +34,6 @@ impl Effect for DriveScale {
     fn means(p: &[f64], _robot: &Robot) -> String {
         let off = p[0] - 1.0;
         format!("A metre by odometry is {} too {} on the floor.", mm(off), either(off, "long", "short"))
-    }
-}
-
-impl BodyLaw for DriveScale {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
-        motion.forward *= p[0];
     }
 }
 

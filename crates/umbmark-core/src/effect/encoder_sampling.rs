@@ -1,14 +1,10 @@
 //! Odometry that moves along the heading at the beginning of each step.
 
-use super::crab::turn_course;
 use super::words::{deg, size};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, Effect, Entry};
 use crate::drive::Robot;
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// Euler steps of the robot's own odometry, if its pose is not recomputed from its counts.
-pub struct EncoderSampling;
+use umbmark_odometry::law::EncoderSampling;
 
 pub(super) static EFFECT: Entry = Entry::of::<EncoderSampling>().body::<EncoderSampling>();
 
@@ -49,20 +45,12 @@ impl Effect for EncoderSampling {
     }
 }
 
-impl BodyLaw for EncoderSampling {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        if !at.recorded {
-            turn_course(motion, p[0] * (0.5 * at.turn_rate));
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::drive::WheelTravel;
     use crate::effect::tests::{ccw_and_cw, model_with, stops_with};
+    use crate::effect::{BodyLaw, Context};
     use crate::geometry::Pose2;
 
     #[test]

@@ -1,13 +1,10 @@
 //! Encoders that are not read at the same moment.
 
 use super::words::{deg, either, size};
-use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
-use crate::drive::{Robot, WheelTravel};
-use crate::geometry::Real;
+use super::{About, ActsOn, Effect, Entry, at_work};
+use crate::drive::Robot;
 use crate::parameter::Parameter;
-
-/// How much later the right counter is read than the left.
-pub struct EncoderSkew;
+use umbmark_odometry::law::EncoderSkew;
 
 pub(super) static EFFECT: Entry = Entry::of::<EncoderSkew>().wheels::<EncoderSkew>();
 
@@ -45,13 +42,6 @@ impl Effect for EncoderSkew {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl WheelLaw for EncoderSkew {
-    #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        travel.right -= p[0] * at.speed_change[1];
     }
 }
 

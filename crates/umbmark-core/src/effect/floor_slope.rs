@@ -1,13 +1,10 @@
 //! A sloping floor that lets the robot drift downhill.
 
 use super::words::{mm, whole_degrees};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
+use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::{DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// A drift in a fixed direction in the room, for any heading.
-pub struct FloorSlope;
+use umbmark_odometry::law::FloorSlope;
 
 pub(super) static EFFECT: Entry = Entry::of::<FloorSlope>().body::<FloorSlope>();
 
@@ -78,17 +75,6 @@ impl Effect for FloorSlope {
     }
 }
 
-impl BodyLaw for FloorSlope {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        drift(p, at, motion);
-        let turned = (at.turn_rate * at.duration).abs();
-        let (sine, cosine) = mean_heading(at, motion).sine_cosine();
-        motion.forward += (cosine * p[2] + sine * p[3]) * turned;
-        motion.sideways += (cosine * p[3] - sine * p[2]) * turned;
-    }
-}
-
 pub(super) const DRIFT: &str =
     "(forward, sideways) ← (forward, sideways) + R(-h) (g_x, g_y) · length,  h the mean heading";
 
@@ -104,19 +90,6 @@ pub(super) fn carried(p: &[f64], when: &str) -> String {
 pub(super) const DRIFT_X: Parameter = Parameter::size("drift_x", "", "m/m", 3e-3, (-1.0, 1.0), "");
 
 pub(super) const DRIFT_Y: Parameter = Parameter::size("drift_y", "", "m/m", 3e-3, (-1.0, 1.0), "");
-
-/// Adds a drift that is fixed in the room, (p₀, p₁) per metre driven.
-#[inline(always)]
-pub(super) fn drift<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-    let (sine, cosine) = mean_heading(at, motion).sine_cosine();
-    motion.forward += (cosine * p[0] + sine * p[1]) * at.length;
-    motion.sideways += (cosine * p[1] - sine * p[0]) * at.length;
-}
-
-#[inline(always)]
-fn mean_heading<T: Real>(at: &Context<T>, motion: &Displacement2<T>) -> T {
-    at.heading + motion.rotation * 0.5
-}
 
 #[cfg(test)]
 mod tests {

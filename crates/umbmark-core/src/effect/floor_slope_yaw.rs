@@ -1,13 +1,10 @@
 //! A sloping floor that turns the robot as it drives across and as it turns.
 
 use super::words::{deg, whole_degrees};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
+use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::{DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// A turn per metre, and per radian turned, that depends on the heading in the room.
-pub struct FloorSlopeYaw;
+use umbmark_odometry::law::FloorSlopeYaw;
 
 pub(super) static EFFECT: Entry = Entry::of::<FloorSlopeYaw>().body::<FloorSlopeYaw>();
 
@@ -86,15 +83,6 @@ impl Effect for FloorSlopeYaw {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl BodyLaw for FloorSlopeYaw {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        let (sine, cosine) = (at.heading + motion.rotation * 0.5).sine_cosine();
-        let turned = (at.turn_rate * at.duration).abs();
-        motion.rotation += (p[0] * cosine + p[1] * sine) * at.length + (p[2] * cosine + p[3] * sine) * turned;
     }
 }
 

@@ -1,14 +1,10 @@
 //! The gain of a driven front wheel's steering.
 
-use super::front_wheel_zero::steer_farther;
 use super::words::{deg, either, percent};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
-use crate::drive::{DriveKind, DriveKinds, Robot, front_wheel_angle};
-use crate::geometry::{Displacement2, Real};
+use super::{About, ActsOn, Effect, Entry, at_work};
+use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::parameter::Parameter;
-
-/// Relative excess of the true steering angle of a tricycle's driven wheel.
-pub struct FrontWheelGain;
+use umbmark_odometry::law::FrontWheelGain;
 
 /// A usual angle of steering \[rad\].
 const TWENTY: f64 = 0.349;
@@ -51,20 +47,6 @@ impl Effect for FrontWheelGain {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl BodyLaw for FrontWheelGain {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        let (ahead, across) = (motion.forward, motion.rotation * at.axle_distance);
-        let (f, a) = (ahead.value(), across.value());
-        if f != 0.0 || a != 0.0 {
-            let slope = 1.0 / (f * f + a * a);
-            let turned = (across * f - ahead * a) * slope;
-            // `turned` is 0, and its derivative that of the angle.
-            steer_farther(at, motion, p[0] * (turned + front_wheel_angle(f, a)));
-        }
     }
 }
 

@@ -1,13 +1,10 @@
 //! A driven front wheel that is not straight when its counter shows zero.
 
 use super::words::{deg, side};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
+use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::{DriveKind, DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// The true angle of a tricycle's driven wheel when the odometry takes it as zero.
-pub struct FrontWheelZero;
+use umbmark_odometry::law::FrontWheelZero;
 
 pub(super) static EFFECT: Entry = Entry::of::<FrontWheelZero>().body::<FrontWheelZero>();
 
@@ -41,27 +38,6 @@ impl Effect for FrontWheelZero {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl BodyLaw for FrontWheelZero {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        steer_farther(at, motion, p[0]);
-    }
-}
-
-/// Turns the driven front wheel farther to the left in a motion of the axle that it makes.
-#[inline(always)]
-pub(super) fn steer_farther<T: Real>(at: &Context<T>, motion: &mut Displacement2<T>, farther: T) {
-    // A context without a robot has no front wheel.
-    if at.axle_distance > 0.0 {
-        let (ahead, across) = (motion.forward, motion.rotation * at.axle_distance);
-        let (sine, cosine) = farther.sine_cosine();
-        // In this form, an angle of 0 leaves every bit.
-        let less = T::from(1.0) - cosine;
-        motion.forward -= less * ahead + sine * across;
-        motion.rotation += (sine * ahead - less * across) / at.axle_distance;
     }
 }
 

@@ -58,6 +58,11 @@ impl Law {
         self.formula().map_or_else(|| self.order() == CATALOGUE.len(), Formula::reads_place)
     }
 
+    /// Whether it is an effect of a program's own, outside the catalogue.
+    pub(crate) fn is_of_program(&self) -> bool {
+        self.entry().is_some() && self.order() == CATALOGUE.len()
+    }
+
     /// What it changes.
     pub(crate) fn changes(&self) -> Changes {
         self.entry().map_or(Changes::WHEELS.and(Changes::BODY), |entry| entry.changes)

@@ -3,22 +3,12 @@
 //!
 //! An effect has the laws that its [`Entry`](super::Entry) lists; other laws are not called.
 
-use super::{Bump, Context, Effect, Stretch, WheelVariance};
+use super::{Bump, Effect, Stretch, WheelVariance};
 use crate::drive::{LinkReading, WheelTravel};
-use crate::geometry::{Displacement2, Pose2, Real};
+use crate::geometry::{Pose2, Real};
 use crate::random::Stream;
 
-/// A law of the wheels. Mark it and what it calls `#[inline(always)]`, so that derivatives use the widest registers of the machine.
-pub trait WheelLaw: Effect {
-    /// Changes believed into true wheel travel \[m\].
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>);
-}
-
-/// A law of the body; see [`WheelLaw`].
-pub trait BodyLaw: Effect {
-    /// Changes the body motion that true wheel travel makes.
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>);
-}
+pub use umbmark_odometry::law::{BodyLaw, WheelLaw};
 
 /// A law of the link between two trucks.
 pub trait LinkLaw: Effect {

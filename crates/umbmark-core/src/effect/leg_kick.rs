@@ -1,14 +1,11 @@
 //! A kick at the start of every leg.
 
-use super::caster_kick::{TRAIL, faded};
+use super::caster_kick::TRAIL;
 use super::words::{deg, mm, side};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, Effect, Entry};
 use crate::drive::Robot;
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// A change of heading over the first way of each leg, always in the same sense.
-pub struct LegKick;
+use umbmark_odometry::law::LegKick;
 
 pub(super) static EFFECT: Entry = Entry::of::<LegKick>().body::<LegKick>();
 
@@ -53,13 +50,6 @@ impl Effect for LegKick {
 
     fn varies(p: &[f64]) -> bool {
         p[0] != 0.0
-    }
-}
-
-impl BodyLaw for LegKick {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        motion.rotation += p[0] * faded(at, p[1]);
     }
 }
 

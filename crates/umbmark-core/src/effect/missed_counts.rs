@@ -1,13 +1,10 @@
 //! Encoders that are too slow for the wheel.
 
 use super::words::{either, percent, size};
-use super::{About, ActsOn, Context, Effect, Entry, WheelLaw};
-use crate::drive::{Robot, WheelTravel};
-use crate::geometry::Real;
+use super::{About, ActsOn, Effect, Entry};
+use crate::drive::Robot;
 use crate::parameter::Parameter;
-
-/// The share of its counts that each wheel misses above a speed.
-pub struct MissedCounts;
+use umbmark_odometry::law::MissedCounts;
 
 pub(super) static EFFECT: Entry = Entry::of::<MissedCounts>().wheels::<MissedCounts>();
 
@@ -65,21 +62,6 @@ impl Effect for MissedCounts {
     fn varies(p: &[f64]) -> bool {
         p[0] != 0.0 || p[1] != 0.0
     }
-}
-
-impl WheelLaw for MissedCounts {
-    #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        travel.left *= p[0] * above(at.wheel_speed[0], p[2]) + 1.0;
-        travel.right *= p[1] * above(at.wheel_speed[1], p[2]) + 1.0;
-    }
-}
-
-/// Excess of a wheel's speed over the threshold \[m/s\].
-#[inline(always)]
-fn above<T: Real>(speed: f64, threshold: T) -> T {
-    let over = -threshold + speed.abs();
-    if over.value() > 0.0 { over } else { T::from(0.0) }
 }
 
 #[cfg(test)]

@@ -2,16 +2,12 @@
 
 use super::bumps::{HEIGHT, PROFILE, WHEEL_RADIUS, lost_travel};
 use super::words::{deg, mm, size};
-use super::{About, ActsOn, Bump, BumpLaw, Context, Effect, Entry, Stretch, TestKind, WheelLaw};
-use crate::drive::{DriveKind, DriveKinds, Robot, Wheel, WheelTravel};
-use crate::geometry::Real;
+use super::{About, ActsOn, Bump, BumpLaw, Effect, Entry, Stretch, TestKind};
+use crate::drive::{DriveKind, DriveKinds, Robot, Wheel};
 use crate::parameter::Parameter;
 use crate::path::Direction;
 use crate::random::Stream;
-
-/// Bumps spread evenly over the first leg, under the wheel on the inside of the path: as single bumps only in simulated runs of the
-/// extended test, or on average in every run that a model predicts.
-pub struct PlacedBumps;
+use umbmark_odometry::law::PlacedBumps;
 
 pub(super) static EFFECT: Entry = Entry::of::<PlacedBumps>().wheels::<PlacedBumps>().bumps::<PlacedBumps>();
 
@@ -77,20 +73,6 @@ impl Effect for PlacedBumps {
     }
 }
 
-impl WheelLaw for PlacedBumps {
-    #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        if at.last_turn != 0.0 || at.turns_on_the_spot() {
-            return;
-        }
-        if at.direction > 0.0 {
-            travel.left *= -p[4] + 1.0;
-        } else if at.direction < 0.0 {
-            travel.right *= -p[4] + 1.0;
-        }
-    }
-}
-
 impl BumpLaw for PlacedBumps {
     fn bumps(p: &[f64], stretch: &Stretch, _stream: &mut Stream, met: &mut Vec<Bump>) {
         if stretch.test != TestKind::Bumps || stretch.index != 0 {
@@ -109,6 +91,7 @@ impl BumpLaw for PlacedBumps {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drive::WheelTravel;
     use crate::effect::tests::{ccw_and_cw, stops_with};
 
     #[test]

@@ -1,13 +1,10 @@
 //! E_s: the scale.
 
 use super::words::{either, mm};
-use super::{About, ActsOn, Context, Effect, Entry, WheelLaw};
-use crate::drive::{DriveKind, DriveKinds, Robot, WheelTravel};
-use crate::geometry::Real;
+use super::{About, ActsOn, Effect, Entry};
+use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::parameter::Parameter;
-
-/// The ratio of the mean true wheel diameter to the nominal one.
-pub struct Scale;
+use umbmark_odometry::law::Scale;
 
 pub(super) static EFFECT: Entry = Entry::of::<Scale>().wheels::<Scale>();
 
@@ -47,13 +44,5 @@ impl Effect for Scale {
     fn means(p: &[f64], _robot: &Robot) -> String {
         let (off, word) = (p[0] - 1.0, either(p[0] - 1.0, "long", "short"));
         format!("A metre by odometry is {} too {word} on the floor.", mm(off))
-    }
-}
-
-impl WheelLaw for Scale {
-    #[inline(always)]
-    fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
-        travel.left *= p[0];
-        travel.right *= p[0];
     }
 }

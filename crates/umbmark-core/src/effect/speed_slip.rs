@@ -1,13 +1,10 @@
 //! Slip of both wheels that grows with their speed.
 
 use super::words::{either, percent};
-use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
-use crate::drive::{Robot, WheelTravel};
-use crate::geometry::Real;
+use super::{About, ActsOn, Effect, Entry, at_work};
+use crate::drive::Robot;
 use crate::parameter::Parameter;
-
-/// The share of travel that each wheel loses per speed.
-pub struct SpeedSlip;
+use umbmark_odometry::law::SpeedSlip;
 
 pub(super) static EFFECT: Entry = Entry::of::<SpeedSlip>().wheels::<SpeedSlip>();
 
@@ -38,14 +35,6 @@ impl Effect for SpeedSlip {
     }
 }
 
-impl WheelLaw for SpeedSlip {
-    #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        travel.left *= kept(p[0], at.wheel_speed[0]);
-        travel.right *= kept(p[0], at.wheel_speed[1]);
-    }
-}
-
 pub(super) const CREEP: &str = "A tyre transmits force only if it creeps, and rolling resistance grows with speed: the faster the \
      robot, the further the wheel turns beyond what it moves forward.";
 
@@ -55,12 +44,6 @@ pub(super) fn creeps(k: f64, who: &str) -> String {
 }
 
 pub(super) const PER_SPEED: Parameter = Parameter::size("s_per_m", "", "s/m", 0.015, (-1.0, 1.0), "");
-
-/// The share of a wheel's travel that is left at its speed \[m/s\].
-#[inline(always)]
-pub(super) fn kept<T: Real>(s_per_m: T, speed: f64) -> T {
-    -s_per_m * speed.abs() + 1.0
-}
 
 #[cfg(test)]
 mod tests {

@@ -1,13 +1,10 @@
 //! Slip of the left wheel that grows with its speed.
 
-use super::speed_slip::{CREEP, PER_SPEED, creeps, kept};
-use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
-use crate::drive::{Robot, WheelTravel};
-use crate::geometry::Real;
+use super::speed_slip::{CREEP, PER_SPEED, creeps};
+use super::{About, ActsOn, Effect, Entry, at_work};
+use crate::drive::Robot;
 use crate::parameter::Parameter;
-
-/// The share of travel that the left wheel loses per speed.
-pub struct SpeedSlipLeft;
+use umbmark_odometry::law::SpeedSlipLeft;
 
 pub(super) static EFFECT: Entry = Entry::of::<SpeedSlipLeft>().wheels::<SpeedSlipLeft>();
 
@@ -36,12 +33,5 @@ impl Effect for SpeedSlipLeft {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl WheelLaw for SpeedSlipLeft {
-    #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        travel.left *= kept(p[0], at.wheel_speed[0]);
     }
 }

@@ -1,13 +1,10 @@
 //! A course that turns as the robot drives.
 
 use super::words::{deg, side};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, Effect, Entry};
 use crate::drive::{DriveKind, DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// A turn of the course per metre driven.
-pub struct SteerCoupling;
+use umbmark_odometry::law::SteerCoupling;
 
 pub(super) static EFFECT: Entry = Entry::of::<SteerCoupling>().body::<SteerCoupling>();
 
@@ -37,13 +34,6 @@ impl Effect for SteerCoupling {
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("Each metre ahead turns the course by {} to the {}, whatever is steered.", deg(p[0]), side(p[0]))
-    }
-}
-
-impl BodyLaw for SteerCoupling {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
-        motion.rotation += p[0] * motion.forward;
     }
 }
 

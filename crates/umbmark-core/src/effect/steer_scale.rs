@@ -1,14 +1,11 @@
 //! The scale of a synchro drive's steering.
 
 use super::words::deg;
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, Effect, Entry};
 use crate::drive::{DriveKind, DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
 use std::f64::consts::FRAC_PI_2;
-
-/// The ratio of true to believed turns of the course.
-pub struct SteerScale;
+use umbmark_odometry::law::SteerScale;
 
 pub(super) static EFFECT: Entry = Entry::of::<SteerScale>().body::<SteerScale>();
 
@@ -31,13 +28,6 @@ impl Effect for SteerScale {
 
     fn means(p: &[f64], _robot: &Robot) -> String {
         format!("Where the steering counts 90 degrees the course turns by {}.", deg(p[0] * FRAC_PI_2))
-    }
-}
-
-impl BodyLaw for SteerScale {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
-        motion.rotation *= p[0];
     }
 }
 

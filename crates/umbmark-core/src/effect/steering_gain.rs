@@ -1,14 +1,10 @@
 //! The gain of a steered wheel.
 
-use super::steering_zero::{steer_on, steered};
 use super::words::{deg, either, percent};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
+use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::{DriveKind, DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// Relative excess of the true steering angle.
-pub struct SteeringGain;
+use umbmark_odometry::law::SteeringGain;
 
 /// A usual angle of steering \[rad\].
 const TWENTY: f64 = 0.349;
@@ -49,17 +45,6 @@ impl Effect for SteeringGain {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl BodyLaw for SteeringGain {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        if let Some(tangent) = steered(at, motion) {
-            let t = tangent.value();
-            let angle = tangent.mapped(libm::atan(t), 1.0 / (1.0 + t * t));
-            steer_on(at, motion, tangent, p[0] * angle);
-        }
     }
 }
 

@@ -1,13 +1,10 @@
 //! A steered wheel that is not straight when its counter shows zero.
 
 use super::words::{deg, side};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
+use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::{DriveKind, DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// The true steering angle when the odometry takes it as zero.
-pub struct SteeringZero;
+use umbmark_odometry::law::SteeringZero;
 
 pub(super) static EFFECT: Entry = Entry::of::<SteeringZero>().body::<SteeringZero>();
 
@@ -41,34 +38,6 @@ impl Effect for SteeringZero {
     fn varies(p: &[f64]) -> bool {
         at_work(p)
     }
-}
-
-impl BodyLaw for SteeringZero {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        if let Some(tangent) = steered(at, motion) {
-            steer_on(at, motion, tangent, p[0]);
-        }
-    }
-}
-
-/// Maximum tangent of a steering angle, tan of 1.4 rad: turns on the spot have no steering angle.
-const MAX_TANGENT: f64 = 5.8;
-
-/// The tangent of the steering angle of a motion; `None` for turns on the spot, and if the steering is unknown.
-#[inline(always)]
-pub(super) fn steered<T: Real>(at: &Context<T>, motion: &Displacement2<T>) -> Option<T> {
-    let across = motion.rotation * at.axle_distance;
-    let drives = at.axle_distance > 0.0 && across.value().abs() < MAX_TANGENT * motion.forward.value().abs();
-    drives.then(|| across / motion.forward)
-}
-
-/// Turns the wheel, steered by an angle of this tangent, farther to the left: tan(δ + ε) = t + (1 + t²) tan ε/(1 - t tan ε).
-#[inline(always)]
-pub(super) fn steer_on<T: Real>(at: &Context<T>, motion: &mut Displacement2<T>, tangent: T, farther: T) {
-    let (sine, cosine) = farther.sine_cosine();
-    let added = (tangent * tangent + 1.0) * sine / (cosine - tangent * sine);
-    motion.rotation += motion.forward * added / at.axle_distance;
 }
 
 #[cfg(test)]

@@ -1,13 +1,10 @@
 //! Scrub in turns on the spot.
 
 use super::words::{deg, either};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
+use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::Robot;
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// The share of rotation that turns on the spot lose.
-pub struct TurnSlip;
+use umbmark_odometry::law::TurnSlip;
 
 pub(super) static EFFECT: Entry = Entry::of::<TurnSlip>().body::<TurnSlip>();
 
@@ -44,15 +41,6 @@ impl Effect for TurnSlip {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl BodyLaw for TurnSlip {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        if at.turns_on_the_spot() {
-            motion.rotation *= -p[0] + 1.0;
-        }
     }
 }
 

@@ -1,13 +1,10 @@
 //! Slip that grows with the rate of turn.
 
 use super::words::{deg, either};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
+use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::Robot;
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// The share of rotation that is lost per rate of turn.
-pub struct TurnSlipRate;
+use umbmark_odometry::law::TurnSlipRate;
 
 pub(super) static EFFECT: Entry = Entry::of::<TurnSlipRate>().body::<TurnSlipRate>();
 
@@ -43,13 +40,6 @@ impl Effect for TurnSlipRate {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl BodyLaw for TurnSlipRate {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        motion.rotation *= -p[0] * at.turn_rate.abs() + 1.0;
     }
 }
 

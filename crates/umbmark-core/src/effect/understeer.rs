@@ -1,14 +1,10 @@
 //! Tyres that run wide in fast corners.
 
-use super::steering_zero::{steer_on, steered};
 use super::words::{deg, either};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry, at_work};
+use super::{About, ActsOn, Effect, Entry, at_work};
 use crate::drive::{DriveKind, DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// Steering lost per lateral acceleration.
-pub struct Understeer;
+use umbmark_odometry::law::Understeer;
 
 pub(super) static EFFECT: Entry = Entry::of::<Understeer>().body::<Understeer>();
 
@@ -43,16 +39,6 @@ impl Effect for Understeer {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl BodyLaw for Understeer {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
-        if let Some(tangent) = steered(at, motion) {
-            let acceleration = tangent * (at.speed * at.speed / at.axle_distance);
-            steer_on(at, motion, tangent, -p[0] * acceleration);
-        }
     }
 }
 

@@ -1,13 +1,10 @@
 //! E_d: unequal wheel diameters.
 
 use super::words::{deg, either, mm, side};
-use super::{About, ActsOn, Context, Effect, Entry, WheelLaw};
-use crate::drive::{DriveKind, DriveKinds, Robot, WheelTravel};
-use crate::geometry::Real;
+use super::{About, ActsOn, Effect, Entry};
+use crate::drive::{DriveKind, DriveKinds, Robot};
 use crate::parameter::Parameter;
-
-/// The ratio of the true wheel diameters, split symmetrically so that their mean stays nominal.
-pub struct WheelDiameterRatio;
+use umbmark_odometry::law::WheelDiameterRatio;
 
 pub(super) static EFFECT: Entry = Entry::of::<WheelDiameterRatio>().wheels::<WheelDiameterRatio>();
 
@@ -52,14 +49,5 @@ impl Effect for WheelDiameterRatio {
             deg(turned),
             side(turned)
         )
-    }
-}
-
-impl WheelLaw for WheelDiameterRatio {
-    #[inline(always)]
-    fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
-        let left = (p[0] + 1.0).recip() * 2.0;
-        travel.left *= left;
-        travel.right *= left * p[0];
     }
 }

@@ -1,13 +1,10 @@
 //! Run-out of the left wheel.
 
 use super::words::{deg, mm};
-use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
-use crate::drive::{Robot, WheelTravel};
-use crate::geometry::Real;
+use super::{About, ActsOn, Effect, Entry, at_work};
+use crate::drive::Robot;
 use crate::parameter::Parameter;
-
-/// A left wheel whose axle misses its centre.
-pub struct WheelEccentricityLeft;
+use umbmark_odometry::law::WheelEccentricityLeft;
 
 pub(super) static EFFECT: Entry = Entry::of::<WheelEccentricityLeft>().wheels::<WheelEccentricityLeft>();
 
@@ -48,13 +45,6 @@ impl Effect for WheelEccentricityLeft {
     }
 }
 
-impl WheelLaw for WheelEccentricityLeft {
-    #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        travel.left += wave(p, at, 0);
-    }
-}
-
 pub(super) const RUN_OUT: &str = "The wheel turns about a point that is e off its centre, so its effective radius varies by e within \
      each revolution: on one half it rolls further than it counts, on the other half less.";
 
@@ -71,14 +61,6 @@ pub(super) fn run_out(p: &[f64], robot: &Robot, wheel: &str) -> String {
 pub(super) const COSINE: Parameter = Parameter::size("cosine_m", "", "m", 3e-4, (-0.1, 0.1), "");
 
 pub(super) const SINE: Parameter = Parameter::size("sine_m", "", "m", 3e-4, (-0.1, 0.1), "");
-
-/// c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀) over a piece \[m\].
-#[inline(always)]
-pub(super) fn wave<T: Real>(p: &[T], at: &Context<T>, wheel: usize) -> T {
-    let half = 0.5 * at.wheel_rotation[wheel];
-    let (sine, cosine) = (at.wheel_angle[wheel] + half).sine_cosine();
-    (p[1] * cosine - p[0] * sine) * (2.0 * half.sine_cosine().0)
-}
 
 #[cfg(test)]
 mod tests {

@@ -1,13 +1,10 @@
 //! Run-out of the right wheel.
 
-use super::wheel_eccentricity_left::{COSINE, RUN_OUT, SINE, run_out, wave};
-use super::{About, ActsOn, Context, Effect, Entry, WheelLaw, at_work};
-use crate::drive::{Robot, WheelTravel};
-use crate::geometry::Real;
+use super::wheel_eccentricity_left::{COSINE, RUN_OUT, SINE, run_out};
+use super::{About, ActsOn, Effect, Entry, at_work};
+use crate::drive::Robot;
 use crate::parameter::Parameter;
-
-/// A right wheel whose axle misses its centre.
-pub struct WheelEccentricityRight;
+use umbmark_odometry::law::WheelEccentricityRight;
 
 pub(super) static EFFECT: Entry = Entry::of::<WheelEccentricityRight>().wheels::<WheelEccentricityRight>();
 
@@ -44,12 +41,5 @@ impl Effect for WheelEccentricityRight {
 
     fn varies(p: &[f64]) -> bool {
         at_work(p)
-    }
-}
-
-impl WheelLaw for WheelEccentricityRight {
-    #[inline(always)]
-    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        travel.right += wave(p, at, 1);
     }
 }

@@ -1,13 +1,10 @@
 //! E_b: the effective wheelbase.
 
 use super::words::{deg, mm};
-use super::{About, ActsOn, BodyLaw, Context, Effect, Entry};
+use super::{About, ActsOn, Effect, Entry};
 use crate::drive::{DriveKind, DriveKinds, Robot};
-use crate::geometry::{Displacement2, Real};
 use crate::parameter::Parameter;
-
-/// The ratio of the effective wheelbase to the nominal one.
-pub struct Wheelbase;
+use umbmark_odometry::law::Wheelbase;
 
 pub(super) static EFFECT: Entry = Entry::of::<Wheelbase>().body::<Wheelbase>();
 
@@ -37,12 +34,5 @@ impl Effect for Wheelbase {
             mm(b),
             deg(std::f64::consts::FRAC_PI_2 / p[0])
         )
-    }
-}
-
-impl BodyLaw for Wheelbase {
-    #[inline(always)]
-    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
-        motion.rotation /= p[0];
     }
 }

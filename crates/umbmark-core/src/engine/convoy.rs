@@ -114,7 +114,7 @@ impl Convoy {
             drive,
             speed: path.speed,
             period: 1.0 / robot.encoder.rate().unwrap_or(RATE),
-            progress: [0, 1].map(|_| Progress::new(robot, place, false)),
+            progress: [0, 1].map(|_| place.progress(robot, false)),
             target: at_start(drive.link()),
             steps: Vec::new(),
         };

@@ -8,7 +8,7 @@
 
 use super::Group;
 use crate::drive::{Robot, WheelTravel};
-use crate::effect::{Chain, Model, Progress, RunContext, TestKind, find};
+use crate::effect::{Chain, Model, RunContext, TestKind, find};
 use crate::engine::{Convoy, Predicted};
 use crate::geometry::{Dual, Pose2, seeded};
 use crate::likelihood::Noise;
@@ -281,7 +281,7 @@ impl<'a> Seen<'a> {
 
     /// The believed poses along some travel, with their derivatives.
     fn along(&self, travels: &[(WheelTravel, f64)], direction: Option<Direction>, recorded: bool) -> Vec<Piece> {
-        let mut progress = Progress::new(self.robot, RunContext { direction, ..RunContext::default() }, recorded);
+        let mut progress = RunContext { direction, ..RunContext::default() }.progress(self.robot, recorded);
         let mut pose: Pose2<Dual> = Pose2::IDENTITY.lift();
         let one = |(travel, seconds): &(WheelTravel, f64)| {
             let speeds = [travel.left / seconds, travel.right / seconds];

@@ -39,6 +39,18 @@ pub struct Noise<T = f64> {
     pub start_heading: T,
 }
 
+impl Noise {
+    /// The noise of the wheels, by which the covariance of a pose grows.
+    pub fn of_wheels(&self) -> umbmark_odometry::spread::Growth {
+        umbmark_odometry::spread::Growth {
+            heading_per_metre: self.heading_per_metre,
+            heading_per_radian: self.heading_per_radian,
+            forward_per_metre: self.forward_per_metre,
+            sideways_per_metre: self.sideways_per_metre,
+        }
+    }
+}
+
 impl Default for Noise {
     /// Usual sizes: wheels on a smooth floor, motion capture, START marked on the floor.
     fn default() -> Self {

@@ -5,7 +5,7 @@ use super::pace;
 use super::track::Track;
 use crate::dataset::TickLog;
 use crate::drive::{Robot, WheelTravel};
-use crate::effect::{Progress, RunContext, Sight};
+use crate::effect::{RunContext, Sight};
 use crate::engine::Convoy;
 use crate::path::{Direction, Path, Pieces, SpeedProfile};
 use std::sync::Arc;
@@ -33,7 +33,7 @@ impl Track {
         check(log)?;
         let per_tick = robot.metres_per_tick();
         let speeds = pace::wheel_speeds(log, &per_tick);
-        let mut progress = Progress::new(robot, place, true);
+        let mut progress = place.progress(robot, true);
         let mut track = Track::empty();
         let mut due = samples.peekable();
         let (mut left, mut right) = (0.0, 0.0);
@@ -85,7 +85,7 @@ impl Track {
             return Track::of_trucks(convoy, robot, observed);
         }
         let place = RunContext { direction: Some(direction), ..RunContext::default() };
-        let mut progress = Progress::new(robot, place, false);
+        let mut progress = place.progress(robot, false);
         let mut track = Track::empty();
         let moves = path.moves(direction);
         for (index, m) in moves.iter().enumerate() {

@@ -2,9 +2,7 @@
 
 use crate::dataset::TickLog;
 use crate::drive::WheelTravel;
-
-/// Half the width of the window that a speed is taken over \[s\].
-const HALF_WINDOW: f64 = 0.05;
+use umbmark_odometry::pace::{Reading, between, speeds, window};
 
 /// Speeds of the left and the right wheel at each sample \[m/s\]: (s(t + h) - s(t - h))/2h with h = 0.05 s, counts between samples
 /// interpolated; at the ends of the log over the available part of that window.
@@ -13,11 +11,8 @@ const HALF_WINDOW: f64 = 0.05;
 pub(super) fn wheel_speeds(log: &TickLog, per_tick: &WheelTravel) -> Vec<[f64; 2]> {
     let (mut early, mut late) = (Cursor::default(), Cursor::default());
     let speed = |time: &f64| {
-        let [first, last] = [log.time[0], log.time[log.time.len() - 1]];
-        let window = [(time - HALF_WINDOW).max(first), (time + HALF_WINDOW).min(last)];
-        let (from, to) = (early.at(log, window[0]), late.at(log, window[1]));
-        let scale = if window[1] > window[0] { 1.0 / (window[1] - window[0]) } else { 0.0 };
-        [(to[0] - from[0]) * per_tick.left * scale, (to[1] - from[1]) * per_tick.right * scale]
+        let window = window(*time, log.time[0], log.time[log.time.len() - 1]);
+        speeds(window, early.at(log, window[0]), late.at(log, window[1]), per_tick)
     };
     log.time.iter().map(speed).collect()
 }
@@ -32,10 +27,8 @@ impl Cursor {
         while self.0 + 1 < log.time.len() && log.time[self.0 + 1] <= time {
             self.0 += 1;
         }
-        let (i, j) = (self.0, (self.0 + 1).min(log.time.len() - 1));
-        let span = log.time[j] - log.time[i];
-        let share = if span > 0.0 { ((time - log.time[i]) / span).clamp(0.0, 1.0) } else { 0.0 };
-        [&log.left, &log.right].map(|counts| counts[i] + share * (counts[j] - counts[i]))
+        let reading = |i: usize| Reading { time: log.time[i], ticks: [log.left[i], log.right[i]] };
+        between(&reading(self.0), &reading((self.0 + 1).min(log.time.len() - 1)), time)
     }
 }
 

@@ -28,7 +28,7 @@ impl Way {
     pub(super) fn new(robot: &Robot, follows: bool) -> Way {
         Way {
             robot: robot.clone(),
-            progress: Progress::new(robot, RunContext::default(), false),
+            progress: RunContext::default().progress(robot, false),
             pieces: Pieces::of(&WheelTravel::default(), &SpeedProfile::default()),
             at: Context::default(),
             pose: Pose2::IDENTITY,
@@ -49,7 +49,7 @@ impl Way {
     pub(super) fn start(&mut self, direction: Direction, recorded: bool, pose: Pose2) {
         let session_distance = if self.next_run == 0 { 0.0 } else { self.progress.session_distance() };
         let place = RunContext { run: self.next_run, session_distance, direction: Some(direction) };
-        self.progress = Progress::new(&self.robot, place, recorded);
+        self.progress = place.progress(&self.robot, recorded);
         self.at = Context::default();
         self.pose = pose;
         self.next_run += 1;

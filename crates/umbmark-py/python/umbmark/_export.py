@@ -40,6 +40,7 @@ def export(
     speed_m_s: float = 0.2,
     turn_rate_rad_s: float = 0.5,
     rate_hz: float = 50.0,
+    start: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> Exported:
     """Write the numbers of a model for a program that needs them.
 
@@ -48,7 +49,8 @@ def export(
     model : Model
         The model. Covariances need its noise, which ``learn`` and ``fit`` find in tracks.
     to : str
-        "ros2_control", "amcl", "robot_localization", "toml", "c", "urdf", "gazebo" or "mujoco".
+        "ros2_control", "amcl", "robot_localization", "toml", "c", "urdf", "gazebo", "mujoco",
+        "embedded" or "embedded_rust".
     path : Path, optional
         The path that a robot.toml has beside the robot.
     controller : str, optional
@@ -61,6 +63,8 @@ def export(
         The usual motion, for which a constant covariance is right.
     rate_hz : float, default 50.0
         Rate at which the robot publishes its odometry.
+    start : tuple of float, default (0.0, 0.0, 0.0)
+        Where the robot stands at its first reading: x and y in m, heading in rad; for "embedded".
 
     Raises
     ------
@@ -79,4 +83,4 @@ def export(
     wheels = None if joints is None else list(joints)
     edited = None if urdf is None else (os.fspath(urdf), wheels)
     usual = [speed_m_s, turn_rate_rad_s, rate_hz]
-    return Exported(*_umbmark.export(model, to, path, controller, edited, usual))
+    return Exported(*_umbmark.export(model, to, path, controller, edited, usual, start))

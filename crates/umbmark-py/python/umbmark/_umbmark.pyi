@@ -405,6 +405,7 @@ def export(
     controller: str | None,
     urdf: tuple[str, list[str] | None] | None,
     usual: list[float],
+    start: tuple[float, float, float],
 ) -> tuple[str, list[str]]: ...
 def compare(
     data: Dataset,

@@ -1,6 +1,6 @@
 //! The scalars of the plane: `f64` for values, [`Dual`] for values with exact derivatives.
 
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// How many derivatives a [`Dual`] carries.
 pub const LANES: usize = 8;
@@ -10,10 +10,9 @@ pub const LANES: usize = 8;
 /// Value, trigonometry and branches are shared by all directions, and each direction's derivative is computed as if it were alone.
 ///
 /// ```
-/// use umbmark_core::geometry::{Dual, Real, seeded};
+/// use umbmark_odometry::geometry::{Dual, Real};
 /// // By x in the first lane, by y in the second.
-/// let xy = seeded([2.0, 3.0], &[0, 1]);
-/// let product = xy[0] * xy[1];
+/// let product = Dual::by_itself(2.0, 0) * Dual::by_itself(3.0, 1);
 /// assert_eq!((product.re, product.eps[0], product.eps[1]), (6.0, 3.0, 2.0));
 /// assert_eq!(Dual::from(5.0).recip().eps[0], 0.0);
 /// ```
@@ -27,21 +26,13 @@ pub struct Dual {
     pub re: f64,
 }
 
-/// Numbers of which those at `places` carry a derivative by themselves: place k in lane k.
-pub fn seeded(values: impl IntoIterator<Item = f64>, places: &[usize]) -> Vec<Dual> {
-    debug_assert!(places.len() <= LANES);
-    let mut duals: Vec<Dual> = values.into_iter().map(Dual::from).collect();
-    places.iter().enumerate().for_each(|(lane, place)| duals[*place].eps[lane] = 1.0);
-    duals
-}
-
 /// What the geometry computes with. Implemented by `f64` and [`Dual`] only.
 ///
 /// Trigonometry goes through [`Real::sinc_cos`], whose polynomials use only additions and multiplications: the same
 /// bits on every machine, where the system's mathematics library promises none.
 pub trait Real:
     Copy
-    + std::fmt::Debug
+    + core::fmt::Debug
     + PartialEq
     + Send
     + Sync
@@ -96,7 +87,7 @@ impl Real for f64 {
 
     #[inline]
     fn sinc_cos(self) -> (f64, f64) {
-        if self.abs() <= std::f64::consts::FRAC_PI_4 {
+        if self.abs() <= core::f64::consts::FRAC_PI_4 {
             sinc_cos_near_zero(self)
         } else {
             let (sine, cosine) = sin_cos_reduced(self);
@@ -116,7 +107,7 @@ impl Real for f64 {
 
     #[inline]
     fn sine_cosine(self) -> (f64, f64) {
-        if self.abs() <= std::f64::consts::FRAC_PI_4 {
+        if self.abs() <= core::f64::consts::FRAC_PI_4 {
             let (sinc, cosine) = sinc_cos_near_zero(self);
             (sinc * self, cosine)
         } else {
@@ -136,6 +127,16 @@ impl Real for f64 {
 }
 
 impl Dual {
+    /// A number that carries its derivative by itself in this lane.
+    ///
+    /// # Panics
+    /// Where there is no such lane.
+    pub fn by_itself(re: f64, lane: usize) -> Dual {
+        let mut number = Dual::from(re);
+        number.eps[lane] = 1.0;
+        number
+    }
+
     /// A number with this value, and this of each derivative.
     #[inline(always)]
     fn with(self, re: f64, eps: impl Fn(f64) -> f64) -> Dual {
@@ -145,7 +146,7 @@ impl Dual {
     /// A number with this value, and this of each pair of derivatives.
     #[inline(always)]
     fn joined(self, other: Dual, re: f64, eps: impl Fn(f64, f64) -> f64) -> Dual {
-        Dual { re, eps: std::array::from_fn(|lane| eps(self.eps[lane], other.eps[lane])) }
+        Dual { re, eps: core::array::from_fn(|lane| eps(self.eps[lane], other.eps[lane])) }
     }
 }
 
@@ -307,7 +308,7 @@ pub fn direction<T: Real>(y: T, x: T) -> T {
 }
 
 /// Coefficients of z, z², ... z⁶ in sinc x = 1 + ..., with z = x² and |x| <= π/4.
-pub(crate) const SINC_SERIES: [f64; 6] = [
+pub const SINC_SERIES: [f64; 6] = [
     -1.666_666_666_666_663_2e-1,
     8.333_333_333_322_49e-3,
     -1.984_126_982_985_795e-4,
@@ -317,7 +318,7 @@ pub(crate) const SINC_SERIES: [f64; 6] = [
 ];
 
 /// Coefficients of z², z³, ... z⁷ in cos x = 1 - z/2 + ..., with z = x² and |x| <= π/4.
-pub(crate) const COSINE_SERIES: [f64; 6] = [
+pub const COSINE_SERIES: [f64; 6] = [
     4.166_666_666_666_66e-2,
     -1.388_888_888_887_411e-3,
     2.480_158_728_947_673e-5,
@@ -327,11 +328,11 @@ pub(crate) const COSINE_SERIES: [f64; 6] = [
 ];
 
 /// π/2 in three parts; a multiple of the first below 2^20 is exact.
-pub(crate) const HALF_PI: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
+pub const HALF_PI: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 
 /// (sin x / x, cos x) for |x| <= π/4: minimax polynomials in x² of degree 12 and 14.
 #[inline]
-pub(crate) fn sinc_cos_near_zero(x: f64) -> (f64, f64) {
+pub fn sinc_cos_near_zero(x: f64) -> (f64, f64) {
     const S: [f64; 6] = SINC_SERIES;
     const C: [f64; 6] = COSINE_SERIES;
     // Estrin's scheme: independent halves, short dependency chain.
@@ -346,12 +347,12 @@ pub(crate) fn sinc_cos_near_zero(x: f64) -> (f64, f64) {
 /// (sin x, cos x) after subtracting the nearest multiple of π/2, kept in three parts (Cody & Waite); past 1e5 `libm`
 /// reduces with as many digits as it takes.
 #[inline]
-pub(crate) fn sin_cos_reduced(x: f64) -> (f64, f64) {
+pub fn sin_cos_reduced(x: f64) -> (f64, f64) {
     if !(x.abs() < 1e5) {
         return libm::sincos(x);
     }
     // Halves away from zero, as `round`, which without SSE 4.1 is a call of the system's library.
-    let turns = x * std::f64::consts::FRAC_2_PI;
+    let turns = x * core::f64::consts::FRAC_2_PI;
     let whole = (turns + 0.5_f64.next_down().copysign(turns)) as i64;
     let quarter_turns = whole as f64;
     let rest = ((x - quarter_turns * HALF_PI[0]) - quarter_turns * HALF_PI[1]) - quarter_turns * HALF_PI[2];
@@ -368,7 +369,6 @@ pub(crate) fn sin_cos_reduced(x: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Stream;
     use num_dual::{Dual64, DualNum};
 
     #[test]
@@ -389,7 +389,7 @@ mod tests {
     fn sinc_is_smooth_through_zero_and_its_derivative_is_exact_on_both_sides_of_the_series() {
         assert_eq!(0.0_f64.sinc_cos(), (1.0, 1.0));
         for x in [-9.0, -0.41, -0.39, -1e-3, 0.0, 1e-9, 0.2, 0.399, 0.401, 0.78, 0.79, 3.0] {
-            let slope = seeded([x], &[0])[0].sinc_cos().0.eps[0];
+            let slope = Dual::by_itself(x, 0).sinc_cos().0.eps[0];
             // Oracle: a central difference of libm's sin(x)/x in a step where its rounding is 1e-10.
             let h = 1e-4;
             let sinc = |v: f64| if v == 0.0 { 1.0 } else { libm::sin(v) / v };
@@ -415,8 +415,15 @@ mod tests {
     /// Oracle: num-dual's number with one derivative. 1000 pairs of numbers, a derivative of its own in each lane.
     #[test]
     fn each_lane_has_the_bits_of_a_number_with_that_derivative_alone() {
-        let mut stream = Stream::new(4, 0, 0);
-        let mut drawn = || Dual { re: stream.normal(), eps: std::array::from_fn(|_| stream.normal()) };
+        // Knuth's linear congruential generator; its upper bits, between -2 and 2.
+        let mut state = 4_u64;
+        let mut drawn = || {
+            let mut number = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (state >> 11) as f64 * 0.5_f64.powi(51) - 2.0
+            };
+            Dual { re: number(), eps: core::array::from_fn(|_| number()) }
+        };
         for _ in 0..1000 {
             let (a, b, c) = (drawn(), drawn(), drawn().re);
             let own = [-a, a + b, a - b, a * b, a / b, a + c, a - c, a * c, a / c, a.recip(), a.exponential()];
@@ -446,7 +453,7 @@ mod tests {
                 sum += term;
             }
             let oracle = (0..6).fold(sum, |power, _| power * power);
-            let grown = seeded([x], &[0])[0].exponential();
+            let grown = Dual::by_itself(x, 0).exponential();
             let (value, slope) = (grown.re, grown.eps[0]);
             assert_eq!(value, x.exponential());
             assert!((value / oracle - 1.0).abs() < 1e-13 && slope == value, "{x}: {value} {oracle} {slope}");

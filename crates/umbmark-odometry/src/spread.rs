@@ -1,7 +1,19 @@
 //! The covariance of a pose, and how it grows.
 
 use crate::geometry::{Displacement2, Pose2};
-use crate::likelihood::Noise;
+
+/// Sizes of the noise of the wheels, by which the covariance of a pose grows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Growth {
+    /// Heading noise per square root of way \[rad/√m\].
+    pub heading_per_metre: f64,
+    /// Heading noise per square root of rotation \[rad/√rad\].
+    pub heading_per_radian: f64,
+    /// Noise of the way forward per square root of way \[m/√m\].
+    pub forward_per_metre: f64,
+    /// Noise to the side per square root of way \[m/√m\].
+    pub sideways_per_metre: f64,
+}
 
 /// Covariance of a pose, in the frame in which the pose is told.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -26,7 +38,8 @@ impl Spread {
     /// A heading that is off carries over by the chord (d_x, d_y): δx -= d_y δθ, δy += d_x δθ. The noise of the heading, q = σ²_m s + σ²_r |Δθ|,
     /// arises evenly along the chord, so its share is q (d_y²/3, -d_x d_y/3, d_x²/3, -d_y/2, d_x/2, 1). Noise forward and sideways lies along
     /// the chord and across it.
-    pub(super) fn after(&self, from: &Pose2, motion: &Displacement2, to: &Pose2, noise: &Noise) -> Spread {
+    #[inline]
+    pub fn after(&self, from: &Pose2, motion: &Displacement2, to: &Pose2, noise: &Growth) -> Spread {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
         let way = motion.forward.abs();
         let [per_metre, per_radian, forward, sideways] =

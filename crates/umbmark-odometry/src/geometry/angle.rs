@@ -1,12 +1,12 @@
 //! Angles on the circle.
 
-use std::f64::consts::{PI, TAU};
+use core::f64::consts::{PI, TAU};
 
 /// The representative of `angle` \[rad\] in the half-open interval (-π, π].
 ///
 /// ```
-/// use std::f64::consts::PI;
-/// # use umbmark_core::geometry::wrap;
+/// use core::f64::consts::PI;
+/// # use umbmark_odometry::geometry::wrap;
 /// assert_eq!(wrap(-PI), PI);
 /// assert!((wrap(2.0 * PI + 0.25) - 0.25).abs() < 1e-15);
 /// ```
@@ -24,8 +24,8 @@ pub fn wrap(angle: f64) -> f64 {
 /// The arithmetic mean as seen from the first of them, so that the cut at ±π does no harm, and with its full turns.
 ///
 /// ```
-/// use std::f64::consts::PI;
-/// # use umbmark_core::geometry::mean_angle;
+/// use core::f64::consts::PI;
+/// # use umbmark_odometry::geometry::mean_angle;
 /// assert!((mean_angle([PI - 0.1, -PI + 0.3]).unwrap() - (PI + 0.1)).abs() < 1e-12);
 /// ```
 #[inline]

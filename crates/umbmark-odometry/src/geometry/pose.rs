@@ -162,8 +162,8 @@ impl Pose2<Dual> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use core::f64::consts::{FRAC_PI_2, PI, TAU};
     use nalgebra::{Matrix3, Vector3};
-    use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
     const ROTATIONS: [f64; 17] =
         [-TAU, -4.0, -PI, -FRAC_PI_2, -1.0, -1e-3, -1e-9, -0.0, 0.0, 1e-300, 1e-9, 1e-3, 0.8, FRAC_PI_2, PI, 5.0, TAU];

@@ -1,0 +1,159 @@
+//! Laws of the contact with the floor.
+
+use super::{BodyLaw, WheelLaw};
+use crate::context::Context;
+use crate::geometry::{Displacement2, Real};
+use crate::travel::WheelTravel;
+
+/// The angle between the course of the robot and its heading.
+///
+/// `(forward, sideways) ← R(τ) (forward, sideways)`
+pub struct Crab;
+
+impl BodyLaw for Crab {
+    #[inline(always)]
+    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+        turn_course(motion, p[0]);
+    }
+}
+
+/// Turns the course of a motion to the left, the rotation unchanged.
+#[inline(always)]
+pub(super) fn turn_course<T: Real>(motion: &mut Displacement2<T>, angle: T) {
+    let (sine, cosine) = angle.sine_cosine();
+    let Displacement2 { forward, sideways, .. } = *motion;
+    motion.forward = cosine * forward - sine * sideways;
+    motion.sideways = sine * forward + cosine * sideways;
+}
+
+/// The share of travel that each wheel loses per speed.
+///
+/// `s_w ← (1 - k |v_w|) s_w  for both wheels`
+pub struct SpeedSlip;
+
+impl WheelLaw for SpeedSlip {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.left *= kept(p[0], at.wheel_speed[0]);
+        travel.right *= kept(p[0], at.wheel_speed[1]);
+    }
+}
+
+/// The share of a wheel's travel that is left at its speed \[m/s\].
+#[inline(always)]
+pub(super) fn kept<T: Real>(s_per_m: T, speed: f64) -> T {
+    -s_per_m * speed.abs() + 1.0
+}
+
+/// The share of travel that the left wheel loses per speed.
+///
+/// `s_L ← (1 - k |v_L|) s_L`
+pub struct SpeedSlipLeft;
+
+impl WheelLaw for SpeedSlipLeft {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.left *= kept(p[0], at.wheel_speed[0]);
+    }
+}
+
+/// The share of travel that the right wheel loses per speed.
+///
+/// `s_R ← (1 - k |v_R|) s_R`
+pub struct SpeedSlipRight;
+
+impl WheelLaw for SpeedSlipRight {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.right *= kept(p[0], at.wheel_speed[1]);
+    }
+}
+
+/// The share of travel that each wheel loses per acceleration, and gains per deceleration.
+///
+/// `s_w ← (1 - k d|v_w|/dt) s_w`
+pub struct AccelerationSlip;
+
+impl WheelLaw for AccelerationSlip {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.left *= -p[0] * gain(at, 0) + 1.0;
+        travel.right *= -p[0] * gain(at, 1) + 1.0;
+    }
+}
+
+/// Rate of change of the size of a wheel's speed \[m/s²\].
+fn gain<T>(at: &Context<T>, wheel: usize) -> f64 {
+    if at.duration > 0.0 { at.speed_change[wheel] * at.wheel_speed[wheel].signum() / at.duration } else { 0.0 }
+}
+
+/// The share of rotation that turns on the spot lose.
+///
+/// `Δθ ← (1 - k) Δθ  where |v_R - v_L| > |v|: a turn about a point within a wheelbase`
+pub struct TurnSlip;
+
+impl BodyLaw for TurnSlip {
+    #[inline(always)]
+    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        if at.turns_on_the_spot() {
+            motion.rotation *= -p[0] + 1.0;
+        }
+    }
+}
+
+/// The share of rotation that is lost per rate of turn.
+///
+/// `Δθ ← (1 - k |ω|) Δθ`
+pub struct TurnSlipRate;
+
+impl BodyLaw for TurnSlipRate {
+    #[inline(always)]
+    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        motion.rotation *= -p[0] * at.turn_rate.abs() + 1.0;
+    }
+}
+
+/// How much longer the effective wheelbase is in left turns than in right turns.
+///
+/// `Δθ ← Δθ / (1 + sgn(ω) δ/2)`
+pub struct DirectionDependentWheelbase;
+
+impl BodyLaw for DirectionDependentWheelbase {
+    #[inline(always)]
+    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        if at.turn_rate != 0.0 {
+            motion.rotation /= p[0] * (0.5 * at.turn_rate.signum()) + 1.0;
+        }
+    }
+}
+
+/// A change of heading over the first way after each turn, in the sense of that turn.
+///
+/// `Δθ ← Δθ + κ · (sense of the last turn) · (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since that turn`
+pub struct CasterKick;
+
+impl BodyLaw for CasterKick {
+    #[inline(always)]
+    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        motion.rotation += p[0] * faded(at, p[1]) * at.last_turn;
+    }
+}
+
+/// The share of a kick within a piece: e^(-d₀/λ) - e^(-d₁/λ).
+#[inline(always)]
+pub(super) fn faded<T: Real>(at: &Context<T>, trail: T) -> T {
+    let rate = -trail.recip();
+    (rate * at.since_turn).exponential() - (rate * (at.since_turn + at.length)).exponential()
+}
+
+/// A change of heading over the first way of each leg, always in the same sense.
+///
+/// `Δθ ← Δθ + κ (e^(-d₀/λ) - e^(-d₁/λ)),  d the way since the last turn or START`
+pub struct LegKick;
+
+impl BodyLaw for LegKick {
+    #[inline(always)]
+    fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>) {
+        motion.rotation += p[0] * faded(at, p[1]);
+    }
+}

@@ -1,0 +1,119 @@
+//! Laws of the wheels' shape, and their play.
+
+use super::{BodyLaw, WheelLaw};
+use crate::context::Context;
+use crate::geometry::{Displacement2, Real};
+use crate::travel::WheelTravel;
+
+/// The ratio of the true wheel diameters, split symmetrically so that their mean stays nominal.
+///
+/// `s_R ← s_R · 2 E_d/(1 + E_d),  s_L ← s_L · 2/(1 + E_d)`
+pub struct WheelDiameterRatio;
+
+impl WheelLaw for WheelDiameterRatio {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
+        let left = (p[0] + 1.0).recip() * 2.0;
+        travel.left *= left;
+        travel.right *= left * p[0];
+    }
+}
+
+/// The ratio of the effective wheelbase to the nominal one.
+///
+/// `Δθ ← Δθ / E_b`
+pub struct Wheelbase;
+
+impl BodyLaw for Wheelbase {
+    #[inline(always)]
+    fn body<T: Real>(p: &[T], _at: &Context<T>, motion: &mut Displacement2<T>) {
+        motion.rotation /= p[0];
+    }
+}
+
+/// The ratio of the mean true wheel diameter to the nominal one.
+///
+/// `s_L ← E_s s_L,  s_R ← E_s s_R`
+pub struct Scale;
+
+impl WheelLaw for Scale {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], _at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.left *= p[0];
+        travel.right *= p[0];
+    }
+}
+
+/// A left wheel whose axle misses its centre.
+///
+/// `s_L ← s_L + c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀),  φ the wheel's angle since START`
+pub struct WheelEccentricityLeft;
+
+impl WheelLaw for WheelEccentricityLeft {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.left += wave(p, at, 0);
+    }
+}
+
+/// c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀) over a piece \[m\].
+#[inline(always)]
+pub(super) fn wave<T: Real>(p: &[T], at: &Context<T>, wheel: usize) -> T {
+    let half = 0.5 * at.wheel_rotation[wheel];
+    let (sine, cosine) = (at.wheel_angle[wheel] + half).sine_cosine();
+    (p[1] * cosine - p[0] * sine) * (2.0 * half.sine_cosine().0)
+}
+
+/// A right wheel whose axle misses its centre.
+///
+/// `s_R ← s_R + c (cos φ₁ - cos φ₀) + s (sin φ₁ - sin φ₀),  φ the wheel's angle since START`
+pub struct WheelEccentricityRight;
+
+impl WheelLaw for WheelEccentricityRight {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.right += wave(p, at, 1);
+    }
+}
+
+/// A ratio of the wheel diameters that grows with the way driven, in the run and in the session.
+///
+/// `s_R ← (1 + d/2) s_R,  s_L ← (1 - d/2) s_L,  d = k · way in the run + k' · way in the session`
+pub struct DiameterDrift;
+
+impl WheelLaw for DiameterDrift {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        let half = 0.5 * at.length;
+        let d = p[0] * (at.distance + half) + p[1] * (at.session_distance + half);
+        travel.left *= -d * 0.5 + 1.0;
+        travel.right *= d * 0.5 + 1.0;
+    }
+}
+
+/// A difference of the wheel radii that grows with centripetal acceleration.
+///
+/// `s_R ← (1 - c v ω/2) s_R,  s_L ← (1 + c v ω/2) s_L`
+pub struct CentripetalLoad;
+
+impl WheelLaw for CentripetalLoad {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        let half = p[0] * (0.5 * at.speed * at.turn_rate);
+        travel.left *= half + 1.0;
+        travel.right *= -half + 1.0;
+    }
+}
+
+/// Travel that a wheel does not make when its motor reverses.
+///
+/// `s_w ← s_w ∓ w  where the wheel begins to roll forward (-) or backward (+) after the opposite`
+pub struct Backlash;
+
+impl WheelLaw for Backlash {
+    #[inline(always)]
+    fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
+        travel.left -= p[0] * at.reversed[0];
+        travel.right -= p[0] * at.reversed[1];
+    }
+}
