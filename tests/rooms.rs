@@ -110,6 +110,48 @@ fn named_by(module: &Path, found: &mut Vec<(String, PathBuf)>) {
     }
 }
 
+/// The crates in the order of their table.
+fn crates() -> Vec<String> {
+    let page = std::fs::read_to_string(top().join("CONTRIBUTING.md")).expect("the page is there");
+    let table = page.split_once("| crate | holds |").expect("CONTRIBUTING.md has the table").1;
+    let rows = table.lines().skip(2).take_while(|line| line.starts_with('|'));
+    rows.map(|row| row.split('`').nth(1).expect("a row names a crate").to_owned()).collect()
+}
+
+#[test]
+fn every_crate_is_in_the_table_and_depends_only_on_those_before_it() {
+    let crates = crates();
+    let folders = std::fs::read_dir(top().join("crates")).unwrap();
+    let there: BTreeSet<String> =
+        folders.map(|entry| entry.unwrap().file_name().into_string().expect("a name is text")).collect();
+    assert_eq!(
+        crates.iter().cloned().collect::<BTreeSet<_>>(),
+        there,
+        "the table of CONTRIBUTING.md and the folder crates"
+    );
+    for (floor, name) in crates.iter().enumerate() {
+        let manifest = std::fs::read_to_string(top().join("crates").join(name).join("Cargo.toml")).unwrap();
+        let (_, depends) = manifest.split_once("\n[dependencies]\n").expect("a crate depends on something");
+        let depends = depends.split("\n[").next().expect("a text has a first part");
+        for other in
+            depends.lines().filter_map(|line| line.split('.').next().filter(|name| name.starts_with("umbmark")))
+        {
+            assert!(crates[..floor].iter().any(|below| below == other), "{name} depends on {other}");
+        }
+    }
+}
+
+#[test]
+fn odometry_on_the_robot_has_no_unsafe_code_no_allocation_and_one_dependency() {
+    let home = top().join("crates/umbmark-odometry");
+    let library = std::fs::read_to_string(home.join("src/lib.rs")).unwrap();
+    assert!(library.contains("\n#![no_std]\n#![forbid(unsafe_code)]\n"));
+    let outside_tests = library.replace("#[cfg(test)]\nextern crate std;\n", "");
+    assert!(!outside_tests.contains("extern crate"), "neither std nor alloc");
+    let manifest = std::fs::read_to_string(home.join("Cargo.toml")).unwrap();
+    assert!(manifest.contains("\n[dependencies]\nlibm.workspace = true\n\n["));
+}
+
 #[test]
 fn every_room_is_in_the_table_and_names_only_those_before_it() {
     let (core, rooms) = (top().join(CORE), rooms());

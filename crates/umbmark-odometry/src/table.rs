@@ -104,6 +104,13 @@ pub enum TableError {
         /// Its code.
         code: f64,
     },
+    /// A law with more or fewer numbers than it has.
+    Values {
+        /// The law.
+        law: &'static str,
+        /// How many numbers were given.
+        given: usize,
+    },
     /// More laws than [`MAX_LAWS`].
     TooManyLaws(usize),
 }
@@ -124,6 +131,7 @@ impl fmt::Display for TableError {
             TableError::UnknownLaw { place, code } => {
                 write!(f, "number {place} of the table names law {code}, which this library does not know")
             }
+            TableError::Values { law, given } => write!(f, "{law} does not have {given} numbers"),
             TableError::TooManyLaws(laws) => write!(f, "a table holds at most {MAX_LAWS} laws, got {laws}"),
         }
     }
@@ -190,6 +198,9 @@ impl<'t> Table<'t> {
     pub fn with_steps(mut self, steps: impl IntoIterator<Item = Step<'t>>) -> Result<Table<'t>, TableError> {
         self.steps = [None; MAX_LAWS];
         for (place, step) in steps.into_iter().enumerate() {
+            if step.values.len() != step.law.parameters {
+                return Err(TableError::Values { law: step.law.name, given: step.values.len() });
+            }
             *self.steps.get_mut(place).ok_or(TableError::TooManyLaws(place + 1))? = Some(step);
         }
         Ok(self)
@@ -352,6 +363,9 @@ mod tests {
             let written = numbers(&table);
             assert_eq!(Table::read(&written), Ok(table));
         }
+        let short = Step { law: &LAWS[0], values: &values[..2] };
+        let refused = Table::new(read.nominal, read.gearing).with_steps([short]);
+        assert_eq!(refused, Err(TableError::Values { law: "missed_counts", given: 2 }));
         let codes: std::collections::BTreeSet<u16> = LAWS.iter().map(|law| law.code).collect();
         assert_eq!(codes.len(), LAWS.len(), "a code names one law");
     }
