@@ -22,7 +22,7 @@ fn model(effects: &[(&str, &str, f64)]) -> String {
 
 /// A drive with legs, arcs, turns on the spot and stops at 50 Hz.
 fn log() -> String {
-    let mut text = "t_s,left_ticks,right_ticks\n".to_owned();
+    let mut text = "t_s,ticks_left,ticks_right\n".to_owned();
     let (mut left, mut right) = (0.0, 0.0);
     for row in 0..1500 {
         let [l, r] = [[30.0, 30.0], [-12.0, 12.0], [30.0, 22.0], [0.0, 0.0], [-20.0, -21.5]][row / 60 % 5];
@@ -87,7 +87,7 @@ fn the_example_in_c_prints_what_apply_writes() {
         umbmark(folder.path(), &[&["apply", "log.csv", "--model", "model.toml", "-o", "out.csv"], &start[..]].concat());
         let export = ["export", "model.toml", "--to", "embedded", "-o", "model.h"];
         let said = umbmark(folder.path(), &[&export, &start[..]].concat());
-        let late = String::from_utf8_lossy(&said.stderr).contains("turn_slip, speed_slip, floor_slope");
+        let late = String::from_utf8_lossy(&said.stderr).contains("speed_slip, turn_slip, floor_slope");
         assert_eq!(late, name == "six");
         let mut cc = Command::new("cc");
         cc.args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-I.", "-I"]).arg(crates.join("include"));
@@ -135,7 +135,7 @@ fn the_table_in_rust_has_the_numbers_of_that_in_c_and_a_formula_is_refused() {
     let table = umbmark_odometry::Table::read(&parsed).unwrap();
     assert_eq!(table.steps().map(|step| step.law.name).collect::<Vec<_>>(), ["wheelbase", "floor_slope"]);
     let own = text
-        + "\n[[effect]]\nname = \"draught\"\nacts_on = \"sideways\"\nformula = \"k * length\"\nparameters = { k = 0.01 }\n";
+        + "\n[[effect]]\nname = \"draught\"\nacts_on = \"sideways_per_metre\"\nformula = \"k * speed\"\nparameters = { k = 0.01 }\n";
     std::fs::write(folder.path().join("own.toml"), own).unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_umbmark"))
         .args(["export", "own.toml", "--to", "embedded", "-o", "own.h"])

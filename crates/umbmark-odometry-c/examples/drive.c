@@ -6,7 +6,7 @@
  *         target/release/libumbmark_odometry_c.a -lm -o drive
  *     ./drive < log.csv
  *
- * The log has rows of time [s] and both counts behind a line of column names.
+ * The log has the columns t_s, ticks_left and ticks_right, in this order.
  */
 #include <stdio.h>
 

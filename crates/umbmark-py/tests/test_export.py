@@ -123,6 +123,24 @@ def test_robot_file_and_its_path_read_back(model: umbmark.Model) -> None:
     assert read["path"]["side_m"] == 2.0
 
 
+def test_the_table_holds_start_noise_and_effects_and_both_languages_have_the_same(
+    model: umbmark.Model,
+) -> None:
+    tables = []
+    for to in ("embedded", "embedded_rust"):
+        text = umbmark.export(model, to=to, start=(1.5, -2.0, 0.25)).text
+        rows = [line.split("/")[0] for line in text.splitlines() if line.startswith("    ")]
+        tables.append([float(cell) for row in rows for cell in row.split(",") if cell.strip()])
+    table, other = tables
+    assert table == other
+    assert table[2] == len(table)
+    assert table[17:20] == [1.5, -2.0, 0.25]
+    assert table[20:25] == [1.0, 0.004, 0.03, 0.005, 0.0002]
+    assert table[25:] == [2.0, 4.0, 1.002, 5.0, 0.99]
+    with pytest.raises(ValueError, match="start must be three finite numbers"):
+        umbmark.export(model, to="embedded", start=(float("nan"), 0.0, 0.0))
+
+
 def test_what_cannot_be_written_is_refused_with_what_to_do(model: umbmark.Model) -> None:
     with pytest.raises(ValueError, match="to must be one of ros2_control, amcl"):
         umbmark.export(model, to="ros")
