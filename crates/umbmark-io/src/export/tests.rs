@@ -155,7 +155,8 @@ fn what_lengths_cannot_correct_is_said_in_the_file_and_beside_it() {
     model.set("floor_slope", "slide_x_m_per_rad", 0.5).unwrap();
     model.add("crab").unwrap();
     model.set("reference_noise", "position_sd_m", 0.001).unwrap();
-    for target in TARGETS.iter().filter(|target| target.name != "urdf") {
+    // A table holds all of them.
+    for target in TARGETS.iter().filter(|target| !["urdf", "embedded", "embedded_rust"].contains(&target.name)) {
         let Written { text, notes } =
             target.write(&Export { noise: Some(Noise::default()), ..Export::of(&model) }).unwrap();
         let said: Vec<&String> = notes.iter().filter(|note| note.contains("floor_slope (")).collect();
