@@ -49,7 +49,8 @@ fn a_slope_that_is_hidden_in_tracks_is_certified_with_its_size() {
     let mut class = found.class.clone();
     class.sort_unstable();
     assert_eq!(class, ["carpet_nap", "floor_slope"]);
-    assert!(found.p < 1e-20 && found.p_adjusted < 1e-3, "{found:?}");
+    // Signs of six runs by quarters: the flips next to the identity are as large.
+    assert!(found.p < 1e-20 && found.p_adjusted < 2e-3, "{found:?}");
     let (observed, mut model) = observed(&sloping);
     model.add("floor_slope").unwrap().free = true;
     let fitted = estimates(&fit(&observed, &model).unwrap());
