@@ -4,15 +4,15 @@
 
 use std::io::Write;
 use std::path::Path;
-use umbmark_core::dataset::{Dataset, Run};
+use umbmark_core::dataset::Dataset;
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::{Model, TestKind};
 use umbmark_core::evidence::{Estimate, Fit, fit};
 use umbmark_core::geometry::Pose2;
-use umbmark_core::path::{self, Direction, SQUARE, SpeedProfile};
+use umbmark_core::path::{self, SQUARE, SpeedProfile};
 use umbmark_core::random::Stream;
 use umbmark_core::run::TickLog;
-use umbmark_core::simulate::{Odometry, Phase, Simulator, Truth};
+use umbmark_core::simulate::record_test;
 use umbmark_io::Existing;
 
 /// Squares of OptiOdom (Sousa et al. 2022) of both sizes, or a notice that they are not there.
@@ -27,24 +27,9 @@ fn squares() -> Vec<Dataset> {
 }
 
 /// `runs` squares of 2 m each way of a robot of this model, watched at 20 Hz.
-fn watched(model: &Model, runs: u64, seed: u64) -> Dataset {
-    let (robot, path) = (model.robot(), path::Path::new(&SQUARE, &[2.0], SpeedProfile::default()).unwrap());
-    let mut simulator = Simulator::new(robot, &path, Odometry::EveryTick, Phase::Random).unwrap();
-    let mut truth = Truth::new(model);
-    let mut data = Dataset { robot: Some(robot.clone()), path: Some(path), ..Dataset::default() };
-    for (direction, number) in Direction::BOTH.into_iter().flat_map(|d| (0..runs).map(move |n| (d, n))) {
-        simulator.open(&mut truth, seed, 2 * number + direction as u64);
-        let recording = simulator.record(&mut truth, direction, TestKind::Systematic, [100.0, 20.0]).unwrap();
-        data.runs.push(Run {
-            name: format!("{}_{number}", direction.name()),
-            number: number as u32,
-            direction: Some(direction),
-            test: TestKind::Systematic,
-            log: Some(recording.log),
-            returned: Some(recording.returned),
-        });
-    }
-    data
+fn watched(model: &Model, runs: usize, seed: u64) -> Dataset {
+    let path = path::Path::new(&SQUARE, &[2.0], SpeedProfile::default()).unwrap();
+    record_test(model, &path, &[TestKind::Systematic], [runs, runs], 20.0, [seed, 0]).unwrap()
 }
 
 fn logs(data: &mut Dataset) -> impl Iterator<Item = &mut TickLog> {

@@ -40,12 +40,14 @@ pub enum Reason {
         /// Whether both are headings.
         heading: bool,
     },
-    /// Runs that were left out are predicted worse than by the nominal robot.
-    WorseThanNominal {
+    /// Runs that were left out are predicted worse than by the nominal robot, or by a model with fewer effects.
+    WorseThanSimpler {
         /// \[m\]
         left_out: f64,
         /// \[m\]
-        nominal: f64,
+        simpler: f64,
+        /// The effect that was added last to the simpler model; `None` for the nominal robot.
+        up_to: Option<&'static str>,
     },
     /// The model misses the runs that it was fitted to by more than the nominal robot does.
     FarFromTheRuns {
@@ -129,10 +131,11 @@ impl Reason {
                     scale * expected
                 )
             }
-            Reason::WorseThanNominal { left_out, nominal } => format!(
-                "the cross-validated error is {:.1} mm, worse than that of the nominal robot ({:.1} mm)",
+            Reason::WorseThanSimpler { left_out, simpler, up_to } => format!(
+                "the cross-validated error is {:.1} mm, worse than that of {} ({:.1} mm)",
                 1e3 * left_out,
-                1e3 * nominal
+                up_to.map_or("the nominal robot".into(), |effect| format!("the model up to {effect}")),
+                1e3 * simpler
             ),
             Reason::FarFromTheRuns { inside, nominal } => format!(
                 "the model misses the runs that it was fitted to by {:.1} mm, the nominal robot by {:.1} mm",

@@ -36,7 +36,8 @@ fn a_floor_is_no_number_of_the_robot_and_what_everything_is_worth_adds_up() {
         ("floor_slope_yaw", "sine_rad_per_m", 0.03),
     ];
     let data = watched(&robot(&truth), 5, 3);
-    let answer = answer(&data);
+    let found: Vec<Solution> = (3..7).map(|seed| answer(&watched(&robot(&truth), 5, seed))).collect();
+    let answer = &found[0];
     let off = answer.off.as_ref().unwrap();
     assert_eq!((off.measure, answer.learnt.verdict), (Measure::Returns, Verdict::Explained));
     assert_eq!(off.known.iter().map(|part| part.name).collect::<Vec<_>>(), ["floor_slope_yaw"]);
@@ -49,11 +50,16 @@ fn a_floor_is_no_number_of_the_robot_and_what_everything_is_worth_adds_up() {
         ("wheel_diameter_left_m", 0.998 * 2.0 / 2.001),
         ("wheel_diameter_right_m", 0.998 * 2.002 / 2.001),
     ];
-    for (key, ratio) in lengths {
+    // Four robots, 12 intervals of 95 %: more than two of them miss the truth with a probability of 2 %.
+    let misses = found.iter().flat_map(|answer| {
+        lengths.iter().filter(|(key, ratio)| {
+            let change = answer.change(key).unwrap();
+            !change.interval.unwrap().contains(change.old * ratio)
+        })
+    });
+    assert!(misses.count() <= 2);
+    for (key, _) in lengths {
         let change = answer.change(key).unwrap();
-        // One of twenty intervals of 95 % misses; within one and a half times their width lie 99.7 %.
-        let half = 0.5 * (change.interval.unwrap().high - change.interval.unwrap().low);
-        assert!((change.new - change.old * ratio).abs() < 1.5 * half, "{change:?}");
         assert!(!change.interval.unwrap().contains(change.old), "{change:?}");
     }
     assert!(answer.needed && answer.is_trusted() && !answer.misses_something());
