@@ -121,32 +121,28 @@ impl Noise {
     ///
     /// -2 l = Σ log|S| + log|AᵀΣ⁻¹A| + r̂ᵀΣ⁻¹r̂, with the columns A fitted out.
     ///
-    /// Noise within blocks is taken from successive differences. No pose is better known than the counters' resolution allows: without
-    /// that limit, a reference without noise (a simulator's) makes every tick significant. `columns` holds, run by run, the columns of the model
-    /// and last the residuals.
+    /// Noise within blocks is taken from successive differences, less what the wheels add between them. No pose is better known than the
+    /// counters' resolution allows: without that limit, a reference without noise (a simulator's) makes every tick significant. `columns`
+    /// holds, run by run, the columns of the model and last the residuals.
     pub fn estimate(observed: &Observed, chain: &Chain<f64>, columns: &[Vec<Column>], from: &Noise) -> Noise {
-        let mut start = *from;
-        let scatter: Vec<_> = observed.runs.par_iter().map(|run| run.scatter_within_blocks(chain)).collect();
-        let pooled = |which: usize| {
-            let (sum, count) = scatter.iter().fold((0.0, 0), |(s, n), run| (s + run[which].0, n + run[which].1));
-            if count > 0 { (sum / count as f64).sqrt() } else { 0.0 }
-        };
-        (start.within_position, start.within_heading) = (pooled(0), pooled(1));
+        let within = Within::of(observed, chain);
         let longest = longest_delay(observed);
         let sizes = |x: &[f64; Noise::SIZES]| {
             let usual = Noise::default();
             let at = |i: usize, usual: f64| usual * libm::exp(x[i].clamp(libm::log(RANGE.0), libm::log(RANGE.1)));
-            Noise {
+            let noise = Noise {
                 heading_per_metre: at(0, usual.heading_per_metre),
                 heading_per_radian: at(1, usual.heading_per_radian),
                 forward_per_metre: at(2, usual.forward_per_metre),
                 sideways_per_metre: at(3, usual.sideways_per_metre),
-                reference_position: at(4, usual.reference_position).max(observed.resolution[0]),
-                reference_heading: at(5, usual.reference_heading).max(observed.resolution[1]),
+                reference_position: at(4, usual.reference_position),
+                reference_heading: at(5, usual.reference_heading),
                 reference_time: at(6, usual.reference_time),
                 reference_delay: at(7, usual.reference_delay).min(longest),
-                ..start
-            }
+                ..*from
+            };
+            let [within_position, within_heading] = within.less_wheels(&noise);
+            Noise { within_position, within_heading, ..noise }
         };
         let usual = Noise::default();
         let first = [
@@ -216,6 +212,50 @@ impl Noise {
             }
             deviance(&sum, log_scale)
         })
+    }
+}
+
+/// How neighbouring poses within blocks differ, per difference.
+struct Within {
+    /// Half the mean square, of a coordinate \[m²\] and of the heading \[rad²\].
+    half: [f64; 2],
+    /// What the counters' resolution gives each pose: as below.
+    resolution: [f64; 2],
+    /// Mean way \[m\], mean way of both wheels \[m\] and rotation \[rad\] between them.
+    way: f64,
+    rolled: f64,
+    turned: f64,
+}
+
+impl Within {
+    fn of(observed: &Observed, chain: &Chain<f64>) -> Within {
+        let scatter: Vec<_> = observed.runs.par_iter().map(|run| run.scatter_within_blocks(chain)).collect();
+        let half = [0, 1].map(|which| {
+            let (sum, count) = scatter.iter().fold((0.0, 0), |(s, n), run| (s + run[which].0, n + run[which].1));
+            if count > 0 { sum / count as f64 } else { 0.0 }
+        });
+        let blocks = || observed.runs.iter().flat_map(|run| &run.blocks);
+        let count = blocks().map(|block| block.count - 1).sum::<usize>().max(1) as f64;
+        // On average, half the observations see what is added between two of them.
+        let mean = |of: fn(&Growth) -> f64| {
+            blocks().map(|block| 2.0 * (of(&block.growth) - of(&block.growth_seen))).sum::<f64>() / count
+        };
+        Within {
+            half,
+            resolution: observed.resolution,
+            way: mean(|g| g.way),
+            rolled: mean(|g| g.rolled),
+            turned: mean(|g| g.heading_per_radian[5]),
+        }
+    }
+
+    /// Standard deviation of a single pose \[m, rad\], less what this noise of the wheels adds between two of them, and not below the
+    /// resolution of the counters.
+    fn less_wheels(&self, noise: &Noise) -> [f64; 2] {
+        let plane = noise.forward_per_metre.powi(2) + noise.sideways_per_metre.powi(2);
+        let turning = noise.heading_per_metre.powi(2) * self.way + noise.heading_per_radian.powi(2) * self.turned;
+        let left = [self.half[0] - 0.25 * plane * self.rolled, self.half[1] - 0.5 * turning];
+        std::array::from_fn(|k| left[k].max(0.0).sqrt().max(self.resolution[k]))
     }
 }
 

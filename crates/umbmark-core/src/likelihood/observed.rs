@@ -67,8 +67,13 @@ pub struct Block {
     pub place: Pose2,
     /// Mean rate of change of the predicted pose of what is tracked \[m/s, m/s, rad/s\].
     pub velocity: [f64; 3],
-    /// How the error grows from the previous block to this one.
+    /// How the error grows from the last observation of the previous block to the last of this one.
     pub growth: Growth,
+    /// The same, each piece weighted by the share of the block's observations that see it: the covariance of what is added to the error
+    /// until its end with what is added to the mean of its observations.
+    pub growth_seen: Growth,
+    /// The same, weighted by the square of that share: the covariance of what is added to the mean.
+    pub growth_of_mean: Growth,
     /// Which quarter of the way it lies in, from 0.
     pub unit: usize,
     /// Whether the run restarts here, because what happened before it was not noise; see
@@ -285,8 +290,9 @@ impl ObservedRun {
         self.blocks.iter().scan(0.0, along).collect()
     }
 
-    /// How many pieces of the track are made at the middle of a block.
-    pub fn made_at(&self, block: &Block) -> usize {
-        self.moments[block.first + (block.count - 1) / 2].made
+    /// How many pieces of the track, and which share of the next, are made on the mean of a block's observations.
+    pub fn made_at(&self, block: &Block) -> f64 {
+        let moments = &self.moments[block.first..block.first + block.count];
+        moments.iter().map(Moment::reached).sum::<f64>() / moments.len() as f64
     }
 }

@@ -62,9 +62,10 @@ impl Whitened {
 impl Noise {
     /// Whitens `columns`, each with one (x, y, heading) a block, by the innovations of the filter
     ///
-    /// P ← P + Q_b,  S = H P Hᵀ + R = L Lᵀ,  v = L⁻¹ (y - H s),  W = L⁻¹ H P,  s ← s + Wᵀ v,  P ← P - Wᵀ W,
+    /// S = H (P + Q_m) Hᵀ + R = L Lᵀ,  v = L⁻¹ (y - H s),  W = L⁻¹ H (P + Q_s),  s ← s + Wᵀ v,  P ← P + Q - Wᵀ W,
     ///
-    /// in the error coordinates of [`Growth`](super::Growth). The same gains serve all columns, so linear relations between
+    /// in the error coordinates of [`Growth`](super::Growth). A block is observed by the mean of its observations, which has only part of
+    /// what is added until its last one: Q is the covariance of the whole, Q_m that of the part, Q_s that of both. The same gains serve all columns, so linear relations between
     /// columns are kept.
     pub fn whiten(&self, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> Whitened {
         let noise = self;
@@ -166,11 +167,10 @@ impl<'a, T: Scalar> Filter<'a, T> {
             self.p = diagonal([T::from(0.0); 3]);
             self.states.forget();
         }
-        add(&mut self.p, &noise.growth(&block.growth));
         if block.afresh {
             add(&mut self.p, &noise.start(true));
         }
-        let Some(stage) = Stage::new(block, &self.p, &noise.measurement(block)) else { return 0 };
+        let Some(stage) = Stage::new(block, &mut self.p, noise) else { return 0 };
         let rows = if block.headings > 0 { 3 } else { 2 };
         self.states.take_in(&stage, self.columns.iter().map(|column| &column[index]).chain([&block.velocity]));
         for diagonal in &stage.diagonal[..rows] {
@@ -181,7 +181,6 @@ impl<'a, T: Scalar> Filter<'a, T> {
             self.log_scale += self.scale.logarithm();
             self.scale = T::from(1.0);
         }
-        stage.take(&mut self.p);
         rows
     }
 
@@ -251,17 +250,40 @@ struct Stage<T> {
 }
 
 impl<T: Scalar> Stage<T> {
-    /// `None` where S is no covariance.
+    /// Takes the mean of a block's observations into the covariance P before it, which becomes that of its end; `None` where S is no covariance.
     #[inline(always)]
-    fn new(block: &Block, p: &[[T; 3]; 3], measurement: &[[T; 3]; 3]) -> Option<Stage<T>> {
+    fn new(block: &Block, p: &mut [[T; 3]; 3], noise: &Noise<T>) -> Option<Stage<T>> {
+        let measurement = noise.measurement(block);
+        let whole = noise.growth(&block.growth);
+        let stage = if block.count > 1 {
+            let (mut of_mean, mut seen) = (*p, *p);
+            add(&mut of_mean, &noise.growth(&block.growth_of_mean));
+            add(&mut seen, &noise.growth(&block.growth_seen));
+            add(p, &whole);
+            Stage::of(block, &of_mean, &seen, &measurement)?
+        } else {
+            add(p, &whole);
+            Stage::of(block, p, p, &measurement)?
+        };
+        stage.take(p);
+        Some(stage)
+    }
+
+    /// By the covariance of the mean of the block's observations, and that of its end with it.
+    #[inline(always)]
+    fn of(block: &Block, of_mean: &[[T; 3]; 3], seen: &[[T; 3]; 3], measurement: &[[T; 3]; 3]) -> Option<Stage<T>> {
         let (x, y) = (T::from(block.place.x), T::from(block.place.y));
         // H P, and of H P Hᵀ the lower triangle.
-        let mut hp = [[T::from(0.0); 3]; 3];
-        for k in 0..3 {
-            hp[0][k] = p[0][k] - y * p[2][k];
-            hp[1][k] = p[1][k] + x * p[2][k];
-            hp[2][k] = p[2][k];
-        }
+        let observed = |p: &[[T; 3]; 3]| {
+            let mut hp = [[T::from(0.0); 3]; 3];
+            for k in 0..3 {
+                hp[0][k] = p[0][k] - y * p[2][k];
+                hp[1][k] = p[1][k] + x * p[2][k];
+                hp[2][k] = p[2][k];
+            }
+            hp
+        };
+        let hp = observed(of_mean);
         let [first, second, third] = hp;
         let (s00, s10, s20) = (first[0] - y * first[2], second[0] - y * second[2], third[0] - y * third[2]);
         let (s11, s21, s22) = (second[1] + x * second[2], third[1] + x * third[2], third[2]);
@@ -274,7 +296,8 @@ impl<T: Scalar> Stage<T> {
         let l21 = (s21 + measurement[2][1] - l20 * l10) * i1;
         let d2 = (s22 + measurement[2][2] - l20 * l20 - l21 * l21).root()?;
         let (diagonal, inverse) = ([d0, d1, d2], [i0, i1, one / d2]);
-        let mut stage = Stage { x, y, diagonal, inverse, below: [l10, l20, l21], w: hp };
+        let mut stage = Stage { x, y, diagonal, inverse, below: [l10, l20, l21], w: observed(seen) };
+        let [first, second, third] = stage.w;
         for k in 0..3 {
             [stage.w[0][k], stage.w[1][k], stage.w[2][k]] = stage.solved([first[k], second[k], third[k]]);
         }
@@ -349,6 +372,16 @@ mod tests {
     use crate::replay::Track;
     use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
+    fn shared(growth: &Growth, share: f64) -> Growth {
+        Growth {
+            heading_per_metre: growth.heading_per_metre.map(|sum| share * sum),
+            heading_per_radian: growth.heading_per_radian.map(|sum| share * sum),
+            forward: growth.forward.map(|sum| share * sum),
+            way: share * growth.way,
+            rolled: share * growth.rolled,
+        }
+    }
+
     /// A run of a few scattered blocks, one of them without headings.
     pub(super) fn run(start_seen: bool) -> ObservedRun {
         let track = Track::from_path(&Path::umbmark(), Direction::Ccw, &Robot::labmate());
@@ -373,6 +406,8 @@ mod tests {
                     place: Pose2::new(*x, *y, 0.0),
                     velocity: [0.3 * i as f64, 0.1, 0.5],
                     growth,
+                    growth_seen: shared(&growth, 0.6),
+                    growth_of_mean: shared(&growth, 0.45),
                     unit: 0,
                     afresh: false,
                     jumped: false,
@@ -423,8 +458,10 @@ mod tests {
         let mut whole = DMatrix::zeros(3 * n, 3 * n);
         for i in 0..n {
             for j in 0..n {
-                let mut shared =
-                    observation(&run.blocks[i]) * grown[1 + i.min(j)] * observation(&run.blocks[j]).transpose();
+                let (first, block) = (i.min(j), &run.blocks[i.min(j)]);
+                let own = if i == j { &block.growth_of_mean } else { &block.growth_seen };
+                let common = grown[first] + matrix(noise.growth(own));
+                let mut shared = observation(&run.blocks[i]) * common * observation(&run.blocks[j]).transpose();
                 if i == j {
                     shared += matrix(noise.measurement(&run.blocks[i]));
                 }

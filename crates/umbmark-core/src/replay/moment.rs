@@ -17,6 +17,13 @@ pub struct Moment {
     pub sight: Sight,
 }
 
+impl Moment {
+    /// Pieces completed by then, and the share of the next that the log has.
+    pub fn reached(&self) -> f64 {
+        self.made as f64 + self.share.clamp(0.0, 1.0)
+    }
+}
+
 /// Goes through the moments of a track in the order of time.
 pub(super) struct Moments<'a> {
     track: &'a Track,

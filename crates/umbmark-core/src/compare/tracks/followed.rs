@@ -100,7 +100,7 @@ fn places(run: &ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Vec<Measur
             if block.headings > 0 {
                 turned = turn;
             }
-            let (made, predicted) = (run.made_at(block), block.place);
+            let (made, predicted) = (run.made_at(block).round() as usize, block.place);
             let starts = !stretch.told().contains(&index);
             let off = if starts { [0.0; 3] } else { [dx, dy, turned] };
             let measured = Pose2::new(predicted.x + off[0], predicted.y + off[1], predicted.heading + off[2]);

@@ -3,10 +3,10 @@
 use crate::diagnose::options::Options;
 use crate::diagnose::remains::{Chance, Remains, Trail};
 use crate::evidence::tracks::Misses;
-use crate::likelihood::{Column, Disturbance, Noise, Observed, ObservedRun, Stretch};
+use crate::likelihood::{Block, Column, Disturbance, Noise, Observed, ObservedRun, Stretch};
 use crate::random::Stream;
 use crate::setup::PoseNoise;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{SMatrix, SVector, Vector3};
 use rayon::prelude::*;
 
 /// Number of simulated sets for a source of noise; fewer if the data has more blocks than the second number.
@@ -17,6 +17,8 @@ const TICKS: f64 = 2.0;
 const POSES: f64 = 4.0;
 /// Purpose of the stream.
 const DOUBTS: u64 = 0x646f_7562;
+/// Variance that makes a covariance without noise one that has a root.
+const LEAST: f64 = 1e-18;
 const NOTHING: PoseNoise = PoseNoise { position: 0.0, heading: 0.0 };
 
 /// The remaining error of tracks: `misses` in total, and `left` run by run, from which effects of the reference that the model lacks are
@@ -152,15 +154,14 @@ fn random_walk(run: &ObservedRun, noise: &Noise, single: PoseNoise, stream: &mut
     let draw = |stream: &mut Stream| Vector3::from_fn(|_, _| stream.normal());
     // What is found of a single pose before the fit is, of steps, the whole noise of one.
     let single = if run.relative { NOTHING } else { single };
-    let block = |block: &crate::likelihood::Block| {
+    let block = |block: &Block| {
         if run.relative {
             state = Vector3::zeros();
         }
-        let growth = noise.growth(&block.growth);
-        let covariance = Matrix3::from_fn(|i, j| growth[i][j]);
-        if let Some(root) = (covariance + Matrix3::identity() * 1e-18).cholesky() {
-            state += root.l() * draw(stream);
-        }
+        let before = state;
+        let [end, mean] = grown(noise, block, stream);
+        state += end;
+        let at_mean = before + mean;
         let (x, y) = (block.place.x, block.place.y);
         let measured = draw(stream);
         let own = |shared: f64, single: f64, count: usize| {
@@ -170,10 +171,25 @@ fn random_walk(run: &ObservedRun, noise: &Noise, single: PoseNoise, stream: &mut
         let heading = own(noise.reference_heading, noise.within_heading.max(single.heading), block.headings);
         let time = late + noise.reference_time * stream.normal();
         [
-            state[0] - y * state[2] + position * measured[0] + time * block.velocity[0],
-            state[1] + x * state[2] + position * measured[1] + time * block.velocity[1],
-            state[2] + heading * measured[2] + time * block.velocity[2],
+            at_mean[0] - y * at_mean[2] + position * measured[0] + time * block.velocity[0],
+            at_mean[1] + x * at_mean[2] + position * measured[1] + time * block.velocity[1],
+            at_mean[2] + heading * measured[2] + time * block.velocity[2],
         ]
     };
     run.blocks.iter().map(block).collect()
+}
+
+/// What a block adds to the random error of a pose until its end, and until the mean of its observations.
+fn grown(noise: &Noise, block: &Block, stream: &mut Stream) -> [Vector3<f64>; 2] {
+    let [whole, seen, of_mean] =
+        [&block.growth, &block.growth_seen, &block.growth_of_mean].map(|growth| noise.growth(growth));
+    let covariance = SMatrix::<f64, 6, 6>::from_fn(|i, j| match (i < 3, j < 3) {
+        (true, true) => whole[i][j],
+        (false, false) => of_mean[i - 3][j - 3],
+        _ => seen[i % 3][j % 3],
+    });
+    let drawn = SVector::<f64, 6>::from_fn(|_, _| stream.normal());
+    let Some(root) = (covariance + SMatrix::identity() * LEAST).cholesky() else { return [Vector3::zeros(); 2] };
+    let errors = root.l() * drawn;
+    [errors.fixed_rows::<3>(0).into_owned(), errors.fixed_rows::<3>(3).into_owned()]
 }

@@ -284,9 +284,10 @@ fn of_run(run: &ObservedRun, chain: &Chain<f64>, scales: &Scales) -> Vec<Column>
     let mut states: [Vec<f64>; 5] = std::array::from_fn(|_| vec![0.0; terms]);
     let mut columns = vec![vec![[0.0; 3]; run.blocks.len()]; 3 * terms];
     let mut basis = vec![0.0; terms];
-    let (mut pose, mut made) = (track.start(chain), 0);
+    let (mut pose, mut made, mut turns) = (track.start(chain), 0, [0.0; 5]);
     for (index, block) in run.blocks.iter().enumerate() {
-        let until = run.made_at(block);
+        let reached = run.made_at(block);
+        let until = (reached.ceil() as usize).min(track.travel().len()).max(made);
         for (travel, at) in track.travel()[made..until].iter().zip(&track.contexts()[made..until]) {
             let motion = chain.displacement(&at.at_pose(&pose), travel);
             let middle = pose.moved(&crate::geometry::Displacement2 {
@@ -305,18 +306,22 @@ fn of_run(run: &ObservedRun, chain: &Chain<f64>, scales: &Scales) -> Vec<Column>
                 own.iter_mut().for_each(|value| *value *= exposure);
             }
             let (sine, cosine) = libm::sincos(middle.heading);
-            for (state, added) in states.iter_mut().zip([cosine, sine, middle.x, middle.y, 1.0]) {
+            turns = [cosine, sine, middle.x, middle.y, 1.0];
+            for (state, added) in states.iter_mut().zip(turns) {
                 state.iter_mut().zip(&basis).for_each(|(state, value)| *state += value * added);
             }
             pose = pose.moved(&motion);
         }
         made = until;
+        // Not yet of the last piece.
+        let ahead = (until as f64 - reached).clamp(0.0, 1.0);
         let (mut column, mut first) = (columns.iter_mut(), 0);
         for covariate in &COVARIATES {
             for motion in Motion::ALL {
                 for term in first..first + covariate.terms {
                     let Some(column) = column.next() else { continue };
-                    let [cosine, sine, x, y, one] = states.each_ref().map(|state| state[term]);
+                    let at = |k: usize| states[k][term] - ahead * turns[k] * basis[term];
+                    let [cosine, sine, x, y, one] = std::array::from_fn(at);
                     column[index] = match motion {
                         Motion::Forward => [cosine, sine, 0.0],
                         Motion::Sideways => [-sine, cosine, 0.0],

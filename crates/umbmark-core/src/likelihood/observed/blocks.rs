@@ -40,6 +40,8 @@ pub(super) fn blocks(
             place: Pose2::IDENTITY,
             velocity: [0.0; 3],
             growth: Growth::default(),
+            growth_seen: Growth::default(),
+            growth_of_mean: Growth::default(),
             unit,
             afresh: jumped,
             jumped,

@@ -5,6 +5,7 @@ use super::{Block, ObservedRun};
 use crate::effect::Chain;
 use crate::geometry::{Pose2, mean_angle, wrap};
 use crate::likelihood::observed::Column;
+use crate::replay::Moment;
 
 /// Without headings, poses are rotated so that this distance after a start agrees with the prediction \[m\].
 const WAY: f64 = 1.0;
@@ -20,7 +21,7 @@ impl ObservedRun {
         // A wrong heading moves the tracked point, which may be off the middle of the axle.
         let mut tracked = Vec::with_capacity(self.places.len());
         self.sighted(chain, &mut |_, pose| tracked.push(*pose));
-        let mut before = 0;
+        let mut before = 0.0;
         for block in &mut self.blocks {
             let own = block.first..block.first + block.count;
             let (places, moments) = (&self.places[own.clone()], &self.moments[own.clone()]);
@@ -28,9 +29,9 @@ impl ObservedRun {
             let tracked = &tracked[own];
             block.place = Pose2::new(mean(tracked, |p| p.x), mean(tracked, |p| p.y), mean(places, |p| p.heading));
             block.velocity = velocity(places, tracked, moments);
-            let middle = moments[(moments.len() - 1) / 2].made;
-            block.growth = walk.growth(before, middle);
-            before = middle;
+            [block.growth, block.growth_seen, block.growth_of_mean] =
+                walk.growths(before, moments.iter().map(Moment::reached));
+            before = moments.last().map_or(before, Moment::reached).max(before);
         }
         if self.relative {
             let velocities: Vec<[f64; 3]> = self.blocks.iter().map(|block| block.velocity).collect();

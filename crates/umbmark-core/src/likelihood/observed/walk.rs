@@ -54,14 +54,30 @@ impl Walk {
         self.places.get(moment.made + 1).map_or(*from, |to| from.toward(to, moment.share))
     }
 
-    pub fn growth(&self, from: usize, to: usize) -> Growth {
-        let (way, rolled) = (self.way[to] - self.way[from], self.rolled[to] - self.rolled[from]);
-        let mut growth = Growth { way, rolled, ..Growth::default() };
-        for piece in from..to {
+    /// How the error grows from a place on the walk (pieces made, and the share of the next) until the last of `seen`, each piece weighted by
+    /// the share of these places that see it, to the power 0, 1 and 2.
+    pub fn growths(&self, mut from: f64, seen: impl ExactSizeIterator<Item = f64>) -> [Growth; 3] {
+        let mut growths = [Growth::default(); 3];
+        let count = seen.len() as f64;
+        for (index, to) in seen.enumerate() {
+            let share = (count - index as f64) / count;
+            for (growth, weight) in growths.iter_mut().zip([1.0, share, share * share]) {
+                self.grow(growth, weight, from, to);
+            }
+            from = from.max(to);
+        }
+        growths
+    }
+
+    fn grow(&self, growth: &mut Growth, weight: f64, from: f64, to: f64) {
+        let last = self.places.len() - 1;
+        for piece in (from as usize)..(to.ceil() as usize).min(last) {
+            let (begun, ended) = ((from - piece as f64).max(0.0), (to - piece as f64).min(1.0));
+            let part = weight * (ended - begun).max(0.0);
             let (a, b) = (&self.places[piece], &self.places[piece + 1]);
             let g = [0.5 * (a.y + b.y), -0.5 * (a.x + b.x), 1.0];
             let outer = [g[0] * g[0], g[1] * g[0], g[1] * g[1], g[0], g[1], 1.0];
-            let of = |sum: &[f64]| sum[piece + 1] - sum[piece];
+            let of = |sum: &[f64]| part * (sum[piece + 1] - sum[piece]);
             let (way, turned, rolled) = (of(&self.way), of(&self.turned), of(&self.rolled));
             let (sine, cosine) = libm::sincos(0.5 * (a.heading + b.heading));
             for (sum, product) in growth.forward.iter_mut().zip([cosine * cosine, cosine * sine, sine * sine]) {
@@ -71,7 +87,8 @@ impl Walk {
                 growth.heading_per_metre[k] += way * product;
                 growth.heading_per_radian[k] += turned * product;
             }
+            growth.way += way;
+            growth.rolled += rolled;
         }
-        growth
     }
 }

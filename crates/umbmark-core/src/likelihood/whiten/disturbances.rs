@@ -76,14 +76,12 @@ impl Noise {
                 p = diagonal([0.0; 3]);
                 states.forget();
             }
-            add(&mut p, &self.growth(&block.growth));
             if block.afresh {
                 add(&mut p, &self.start(true));
             }
-            let stage = Stage::new(block, &p, &self.measurement(block));
+            let stage = Stage::new(block, &mut p, self);
             if let Some(stage) = &stage {
                 states.take_in(stage, std::iter::once(left));
-                stage.take(&mut p);
             }
             passed.push(stage.map(|stage| (stage, states.new.each_ref().map(|new| new[0]))));
         }

@@ -76,19 +76,22 @@ const ALIKE: f64 = 0.05;
 /// The steps of a run along a model.
 pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<TrackStep> {
     let track = &run.track;
-    let (mut pose, mut made, mut steps) = (track.start(chain), 0, Vec::new());
+    let (mut pose, mut made, mut steps) = (track.start(chain), 0.0_f64, Vec::new());
     for (block, own) in run.blocks.iter().enumerate() {
         let until = run.made_at(own).max(made);
         let (mut step, mut wheels, mut change) = (TrackStep::default(), [0.0; 2], [0.0; 2]);
         let mut begin = pose;
-        let pieces = track.travel()[made..until].iter().zip(&track.contexts()[made..until]);
-        let count = until - made;
-        for (index, (travel, at)) in pieces.enumerate() {
+        let pieces = made as usize..(until.ceil() as usize).min(track.travel().len());
+        for piece in pieces.clone() {
+            // A block may begin or end within a piece.
+            let (begun, ended) = ((made - piece as f64).max(0.0), (until - piece as f64).min(1.0));
+            let share = (ended - begun).max(0.0);
+            let (travel, at) = (&track.travel()[piece].scaled(share), &track.contexts()[piece]);
             if step.duration == 0.0 {
                 begin = pose;
                 step = TrackStep {
                     block,
-                    time: at.time,
+                    time: at.time + begun * at.duration,
                     distance: at.distance,
                     wheel_angle: at.wheel_angle,
                     since_turn: at.since_turn,
@@ -99,14 +102,15 @@ pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<TrackStep> {
             }
             let motion = chain.displacement(&at.at_pose(&pose), travel);
             pose = pose.moved(&motion);
-            step.duration += at.duration;
-            step.way += at.length.abs();
-            step.speed += at.speed * at.duration;
+            let duration = share * at.duration;
+            step.duration += duration;
+            step.way += share * at.length.abs();
+            step.speed += at.speed * duration;
             step.rotation += motion.rotation;
             wheels = [wheels[0] + travel.left, wheels[1] + travel.right];
-            change = [change[0] + at.acceleration() * at.duration, change[1] + at.turn_acceleration() * at.duration];
+            change = [change[0] + at.acceleration() * duration, change[1] + at.turn_acceleration() * duration];
             let full = step.way >= STEP.0 || step.rotation.abs() >= STEP.1 || step.duration >= STEP.2;
-            if (full || index + 1 == count) && step.duration > 0.0 {
+            if (full || piece + 1 == pieces.end) && step.duration > 0.0 {
                 let TrackStep { duration, way, rotation, .. } = step;
                 let between = begin.between(&pose);
                 step.middle = begin.moved(&Displacement2 {
