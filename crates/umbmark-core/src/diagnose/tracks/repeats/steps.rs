@@ -47,14 +47,15 @@ pub struct TrackStep {
     pub middle: Pose2,
     /// \[s\]
     pub duration: f64,
-    /// Way driven, ahead or back \[m\].
+    /// Way driven, ahead or back \[m\]; nothing where the wheels roll against each other nearly alike: what is left then is made of
+    /// single counts, which a law would take for motion.
     pub way: f64,
     /// \[rad\]; nothing where both wheels roll nearly alike: what is left then is made of single counts.
     pub rotation: f64,
     /// Since the run began \[s\] and \[m\], in its middle.
     pub time: f64,
     pub distance: f64,
-    /// \[m/s\], ahead positive.
+    /// \[m/s\], ahead positive; nothing as above.
     pub speed: f64,
     /// \[rad/s\]; nothing where both wheels roll nearly alike.
     pub turn_rate: f64,
@@ -70,7 +71,7 @@ pub struct TrackStep {
 
 /// A step ends after so much way \[m\], rotation \[rad\] or time \[s\].
 const STEP: (f64, f64, f64) = (0.02, 0.05, 0.1);
-/// Wheels roll alike where they differ by less than this share.
+/// Wheels roll alike where they, or their sizes, differ by less than this share.
 const ALIKE: f64 = 0.05;
 
 /// The steps of a run along a model.
@@ -111,16 +112,20 @@ pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<TrackStep> {
             change = [change[0] + at.acceleration() * duration, change[1] + at.turn_acceleration() * duration];
             let full = step.way >= STEP.0 || step.rotation.abs() >= STEP.1 || step.duration >= STEP.2;
             if (full || piece + 1 == pieces.end) && step.duration > 0.0 {
-                let TrackStep { duration, way, rotation, .. } = step;
+                let TrackStep { duration, way, .. } = step;
                 let between = begin.between(&pose);
                 step.middle = begin.moved(&Displacement2 {
                     forward: 0.5 * between.x,
                     sideways: 0.5 * between.y,
-                    rotation: 0.5 * rotation,
+                    rotation: 0.5 * step.rotation,
                 });
                 step.speed /= duration;
-                let alike = (wheels[1] - wheels[0]).abs() < ALIKE * wheels[0].abs().max(wheels[1].abs());
-                step.rotation = if alike { 0.0 } else { rotation };
+                let little = ALIKE * wheels[0].abs().max(wheels[1].abs());
+                if (wheels[1] - wheels[0]).abs() < little {
+                    step.rotation = 0.0;
+                } else if (wheels[1] + wheels[0]).abs() < little {
+                    (step.way, step.speed) = (0.0, 0.0);
+                }
                 step.turn_rate = step.rotation / duration;
                 (step.acceleration, step.turn_acceleration) = (change[0] / duration, change[1] / duration);
                 (step.time, step.distance) = (step.time + 0.5 * duration, step.distance + 0.5 * way);
