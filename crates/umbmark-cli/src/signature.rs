@@ -164,7 +164,7 @@ fn run(model: &Model, path: &Path, direction: Direction) -> Vec<Moment> {
     let pieces = track.travel().iter().zip(believed.iter().zip(&seen));
     pieces
         .map(|(travel, (believed, seen))| {
-            way += 0.5 * (travel.left.abs() + travel.right.abs());
+            way += travel.rolled();
             let error = believed.between(seen);
             let turning = travel.left * travel.right < 0.0;
             Moment { way, turning, forward: error.x, sideways: error.y, heading: error.heading }

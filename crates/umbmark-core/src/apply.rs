@@ -101,7 +101,7 @@ fn along(track: &Track, log: &TickLog, model: &Model, noise: Option<&Noise>, sta
             pose.advance(&motion);
             way += motion.forward.abs();
             if let Some(growth) = &growth {
-                spread = spread.after(&from, &motion, &pose, growth);
+                spread = spread.after(&from, &motion, travel.rolled(), &pose, growth);
             }
         }
         made = *after;

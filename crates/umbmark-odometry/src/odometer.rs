@@ -225,7 +225,7 @@ impl<const READINGS: usize> Log<'_, READINGS> {
                 let motion = self.displacement(&piece.at_pose(&from), travel);
                 at.pose.advance(&motion);
                 if let Some(growth) = &self.table.growth {
-                    at.spread = at.spread.after(&from, &motion, &at.pose, growth);
+                    at.spread = at.spread.after(&from, &motion, travel.rolled(), &at.pose, growth);
                 }
             }
             at.speeds = speeds;

@@ -9,11 +9,14 @@ pub struct Growth {
     pub heading_per_metre: f64,
     /// Heading noise per square root of rotation \[rad/√rad\].
     pub heading_per_radian: f64,
-    /// Noise of the way forward per square root of way \[m/√m\].
+    /// Noise of the way forward per square root of the wheels' mean way \[m/√m\].
     pub forward_per_metre: f64,
-    /// Noise to the side per square root of way \[m/√m\].
+    /// Noise to the side per square root of the wheels' mean way \[m/√m\].
     pub sideways_per_metre: f64,
 }
+
+/// The robot turns on the spot where the square of its chord is below this share of that of the wheels' mean way.
+const SPOT: f64 = 0.01;
 
 /// Covariance of a pose, in the frame in which the pose is told.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -33,13 +36,14 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// The covariance at the end of a piece that is driven `from` one pose `to` the next.
+    /// The covariance at the end of a piece that is driven `from` one pose `to` the next, on which the wheels roll by their mean way `rolled`
+    /// \[m\]: also in turns on the spot they slip, and move the axle.
     ///
     /// A heading that is off carries over by the chord (d_x, d_y): δx -= d_y δθ, δy += d_x δθ. The noise of the heading, q = σ²_m s + σ²_r |Δθ|,
     /// arises evenly along the chord, so its share is q (d_y²/3, -d_x d_y/3, d_x²/3, -d_y/2, d_x/2, 1). Noise forward and sideways lies along
-    /// the chord and across it.
+    /// the chord and across it; where the axle hardly moves, along the mean heading and across it.
     #[inline]
-    pub fn after(&self, from: &Pose2, motion: &Displacement2, to: &Pose2, noise: &Growth) -> Spread {
+    pub fn after(&self, from: &Pose2, motion: &Displacement2, rolled: f64, to: &Pose2, noise: &Growth) -> Spread {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
         let way = motion.forward.abs();
         let [per_metre, per_radian, forward, sideways] =
@@ -47,19 +51,25 @@ impl Spread {
                 .map(|sd| sd * sd);
         let heading = per_metre * way + per_radian * motion.rotation.abs();
         let chord = dx * dx + dy * dy;
-        let along = if chord > 0.0 { (forward - sideways) * way / chord } else { 0.0 };
-        let across = sideways * way;
+        let (ahead, aside, square) = if chord > SPOT * rolled * rolled {
+            (dx, dy, chord)
+        } else {
+            let (sine, cosine) = libm::sincos(from.heading + 0.5 * motion.rotation);
+            (cosine, sine, 1.0)
+        };
+        let along = (forward - sideways) * rolled / square;
+        let across = sideways * rolled;
         Spread {
             xx: self.xx - 2.0 * dy * self.x_heading
                 + dy * dy * (self.heading + heading / 3.0)
-                + along * dx * dx
+                + along * ahead * ahead
                 + across,
             xy: self.xy + dx * self.x_heading - dy * self.y_heading - dx * dy * (self.heading + heading / 3.0)
-                + along * dx * dy,
+                + along * ahead * aside,
             yy: self.yy
                 + 2.0 * dx * self.y_heading
                 + dx * dx * (self.heading + heading / 3.0)
-                + along * dy * dy
+                + along * aside * aside
                 + across,
             x_heading: self.x_heading - dy * (self.heading + 0.5 * heading),
             y_heading: self.y_heading + dx * (self.heading + 0.5 * heading),

@@ -32,6 +32,12 @@ impl<T: Real> WheelTravel<T> {
 }
 
 impl WheelTravel {
+    /// Mean way of both wheels \[m\], ahead or back.
+    #[inline]
+    pub fn rolled(&self) -> f64 {
+        0.5 * (self.left.abs() + self.right.abs())
+    }
+
     /// Travel that makes the middle of an axle with this wheelbase \[m\] advance `forward` \[m\] while the body turns by `rotation`
     /// \[rad\].
     #[inline]

@@ -90,9 +90,9 @@ fn the_covariance_is_that_of_drives_with_the_noise() {
         let mut pose = Pose2::IDENTITY;
         for (travel, at) in track.travel().iter().zip(track.contexts()) {
             let mut motion = chain.displacement(at, travel);
-            let (way, turned) = (motion.forward.abs(), motion.rotation.abs());
-            motion.forward += noise.forward_per_metre * way.sqrt() * stream.normal();
-            motion.sideways += noise.sideways_per_metre * way.sqrt() * stream.normal();
+            let (way, turned, rolled) = (motion.forward.abs(), motion.rotation.abs(), travel.rolled());
+            motion.forward += noise.forward_per_metre * rolled.sqrt() * stream.normal();
+            motion.sideways += noise.sideways_per_metre * rolled.sqrt() * stream.normal();
             motion.rotation += noise.heading_per_metre * way.sqrt() * stream.normal()
                 + noise.heading_per_radian * turned.sqrt() * stream.normal();
             pose.advance(&motion);

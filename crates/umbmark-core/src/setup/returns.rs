@@ -177,7 +177,7 @@ pub(super) fn way(log: &TickLog, robot: &Robot) -> Option<f64> {
     let way: f64 = steps
         .map(|(l, r)| {
             let travel = WheelTravel { left: (l[1] - l[0]) * per_tick.left, right: (r[1] - r[0]) * per_tick.right };
-            0.5 * (travel.left.abs() + travel.right.abs())
+            travel.rolled()
         })
         .sum();
     (way > 0.0 && way.is_finite()).then_some(way)

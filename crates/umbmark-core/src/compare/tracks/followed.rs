@@ -114,7 +114,7 @@ fn places(run: &ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Vec<Measur
 pub(super) fn rolled(track: &Track) -> Vec<f64> {
     let mut sum = 0.0;
     let after = track.travel().iter().map(|travel| {
-        sum += 0.5 * (travel.left.abs() + travel.right.abs());
+        sum += travel.rolled();
         sum
     });
     std::iter::once(0.0).chain(after).collect()

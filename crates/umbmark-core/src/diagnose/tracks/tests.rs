@@ -40,26 +40,35 @@ fn diagnosed(truth: &Model) -> Diagnosis {
     diagnose(&observed, &model, &Options::default()).unwrap()
 }
 
+/// Seeds 3 to 8. Of 40 such sets simulated, 38 give the slope and no reason for doubt, and 3 something else besides, which is chance.
 #[test]
 fn a_slope_that_is_hidden_in_tracks_is_certified_with_its_size() {
     let sloping = robot_with(&[("floor_slope", "drift_x", 6e-3)]);
-    let diagnosis = diagnosed(&sloping);
-    assert_eq!((diagnosis.verdict, diagnosis.certified), (Verdict::MissingEffect, 1));
-    let found = &diagnosis.ranking[0];
-    let mut class = found.class.clone();
-    class.sort_unstable();
-    assert_eq!(class, ["carpet_nap", "floor_slope"]);
-    // Signs of six runs by quarters: the flips next to the identity are as large.
-    assert!(found.p < 1e-20 && found.p_adjusted < 2e-3, "{found:?}");
-    let (observed, mut model) = observed(&sloping);
-    model.add("floor_slope").unwrap().free = true;
-    let fitted = estimates(&fit(&observed, &model).unwrap());
-    let of_slope: Vec<_> = fitted.iter().filter(|estimate| estimate.effect == "floor_slope").collect();
-    assert!(of_slope.iter().any(|estimate| estimate.parameter == "drift_x"));
-    for estimate in of_slope {
-        let truth = if estimate.parameter == "drift_x" { 6e-3 } else { 0.0 };
-        assert!((estimate.value - truth).abs() < 6e-5, "{estimate:?}");
+    let mut alone = Vec::new();
+    for seed in 3..9 {
+        let data = watched(&sloping, 3, seed);
+        let observed = Observed::new(&data, &Robot::labmate()).unwrap();
+        let mut model = first_model(&data).unwrap();
+        let diagnosis = diagnose(&observed, &model, &Options::default()).unwrap();
+        let found = &diagnosis.ranking[0];
+        let mut class = found.class.clone();
+        class.sort_unstable();
+        assert_eq!(class, ["carpet_nap", "floor_slope"]);
+        assert!(found.p < 1e-20 && found.p_adjusted < 1e-3, "{found:?}");
+        model.add("floor_slope").unwrap().free = true;
+        let fitted = estimates(&fit(&observed, &model).unwrap());
+        let of_slope: Vec<_> = fitted.iter().filter(|estimate| estimate.effect == "floor_slope").collect();
+        assert!(of_slope.iter().any(|estimate| estimate.parameter == "drift_x"));
+        for estimate in of_slope {
+            let truth = if estimate.parameter == "drift_x" { 6e-3 } else { 0.0 };
+            assert!((estimate.value - truth).abs() < 1e-4, "{estimate:?}");
+        }
+        if (diagnosis.verdict, diagnosis.certified) == (Verdict::MissingEffect, 1) {
+            alone.push(diagnosis);
+        }
     }
+    assert!(alone.len() >= 4, "{}", alone.len());
+    let diagnosis = &alone[0];
     assert!(diagnosis.dependence.is_none());
     // A body that crabs and a marker that is turned are the same to a track, and so are slip and a wheelbase in turns of one speed.
     let absorbed = |name| diagnosis.invisible.iter().find(|unseen| unseen.effect == name).unwrap().why.clone();

@@ -17,8 +17,8 @@ impl Noise {
     pub const WRITTEN: [Parameter; 10] = [
         size("heading_rad_per_sqrt_m", "rad/√m", 1.5e-3, "heading noise per square root of way"),
         size("heading_rad_per_sqrt_rad", "rad/√rad", 1e-3, "heading noise per square root of rotation"),
-        size("forward_m_per_sqrt_m", "m/√m", 3e-4, "noise of the way forward per square root of way"),
-        size("sideways_m_per_sqrt_m", "m/√m", 1e-4, "noise to the side per square root of way"),
+        size("forward_m_per_sqrt_m", "m/√m", 3e-4, "noise of the way forward per square root of the wheels' mean way"),
+        size("sideways_m_per_sqrt_m", "m/√m", 1e-4, "noise to the side per square root of the wheels' mean way"),
         size(
             "reference_position_m",
             "m",

@@ -39,7 +39,7 @@ impl Walk {
             pose.advance(&motion);
             way += motion.forward.abs();
             turned += motion.rotation.abs();
-            rolled += 0.5 * (travel.left.abs() + travel.right.abs());
+            rolled += travel.rolled();
             walk.places.push(pose);
             walk.way.push(way);
             walk.turned.push(turned);
