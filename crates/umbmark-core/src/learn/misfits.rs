@@ -59,7 +59,7 @@ mod tests {
         ];
         let worse = Reason::WorseThanSimpler { left_out: 0.125, simpler: 0.017, up_to: Some("reference_delay") };
         assert!(worse.sentence().ends_with("worse than that of the model up to reference_delay (17.0 mm)"));
-        assert_eq!(misfits(&steps, 9, 1e-3, false), [worse.clone()]);
+        assert_eq!(misfits(&steps, 9, 1e-3, false), std::slice::from_ref(&worse));
         assert_eq!(misfits(&steps, 9, 1e-3, true), [worse]);
     }
 
