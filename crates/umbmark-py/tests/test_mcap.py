@@ -267,7 +267,7 @@ def test_what_other_packages_write_calibrates_as_the_csv_does(
     assert_same_setup(theirs.pop("setup"), ours.pop("setup"))
     expected = list(numbers(ours))
     assert len(expected) > 50
-    # Stamps in whole nanoseconds move a mean of poses; the descent to the likeliest noise ends within some millionths.
+    # Stamps in whole nanoseconds move a mean of poses; noise is found within some millionths.
     assert list(numbers(theirs)) == pytest.approx(expected, rel=1e-5, abs=1e-9)
 
 
