@@ -1,6 +1,6 @@
 //! Learnt on squares, driven on circles and straights: OptiOdom's robot (Sousa et al. 2022) against its authors' calibrations.
 //!
-//! `UMBMARK_OPTIODOM=all cargo test -p umbmark-tests --test cross_table -- --nocapture` prints the table of docs/studies/optiodom.md.
+//! `UMBMARK_OPTIODOM=all cargo test -p umbmark-tests --test all cross_table -- --nocapture` prints the table of docs/studies/optiodom.md.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 

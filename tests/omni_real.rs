@@ -1,6 +1,6 @@
 //! Real robots that do not drive as two wheels on an axle: OptiOdom's sets (Sousa et al. 2022), beside what their authors published.
 //!
-//! `UMBMARK_OMNI=all cargo test -p umbmark-tests --test omni_real -- --nocapture` prints the tables.
+//! `UMBMARK_OMNI=all cargo test -p umbmark-tests --test all omni_real -- --nocapture` prints the tables.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 

@@ -105,10 +105,16 @@ def test_of_two_causes_the_first_is_kept_though_runs_left_out_are_worse_by_it_al
     assert answer["verdict"] == "explained"
 
 
-def test_an_effect_is_not_taken_out_where_the_fit_without_it_is_worse(tmp_path: File) -> None:
-    # So with seeds 9 and 10; with 7 and 8 too little is certain, and nothing is called explained.
-    answer, _ = learnt("missed_counts", tmp_path / "data", seed=10)
-    assert [step["added"] for step in added_in(answer)][:2] == ["speed_slip_right", "missed_counts"]
+@pytest.mark.parametrize("seed", [7, 8])
+def test_an_effect_is_not_taken_out_where_the_fit_without_it_is_worse(
+    seed: int, tmp_path: File
+) -> None:
+    answer, _ = learnt("missed_counts", tmp_path / "data", seed=seed)
+    added = [step["added"] for step in added_in(answer)]
+    # In truth the share that is missed does not grow: ramps leave 0.2 mm of the difference.
+    assert added in (
+        ["speed_slip_right", "missed_counts", *rest] for rest in ([], ["marker_offset"])
+    )
     assert answer["steps"][-1]["heldout_rmse_m"] < 0.02
     assert answer["verdict"] == "explained"
 

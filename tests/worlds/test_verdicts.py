@@ -45,6 +45,17 @@ def test_a_robot_that_drives_tail_first_may_be_wired_so_and_is_not_explained() -
     assert said["verdict"] == "not_explained"
 
 
+def test_wheels_that_follow_commands_late_are_not_explained_by_noise_that_grows(
+    tmp_path: File,
+) -> None:
+    # E_b is off by 4 standard errors: the lag of a motor is no delay, and noise grows to hold it.
+    write(make("command", 12002, []), tmp_path)
+    words = [str(COMMAND), "learn", str(tmp_path), "--json"]
+    said = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
+    assert said["verdict"] == "not_explained"
+    assert "absorbed something that the model lacks" in said["reasons"][-1]
+
+
 def test_a_law_that_no_catalogue_lists_is_added_with_its_period(tmp_path: File) -> None:
     made = make("time_wave", 3, [*SMALL, "wave_period_s=7.3", "wave_rad_s=0.02"])
     write(made, tmp_path)

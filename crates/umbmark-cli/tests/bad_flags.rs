@@ -1,7 +1,7 @@
 //! Each command that cannot be carried out gets one clear error, and leaves no file.
 //!
 //! The commands stand in `bad_flags/cases.txt`, and what is said of them in `docs/bad_flags.md`, which
-//! `SNAPSHOTS=overwrite cargo test -p umbmark-cli --test bad_flags` writes anew.
+//! `SNAPSHOTS=overwrite cargo test -p umbmark-cli --test all bad_flags` writes anew.
 
 #![allow(clippy::unwrap_used)]
 

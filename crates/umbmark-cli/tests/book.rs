@@ -1,6 +1,6 @@
 //! The pages of the book that are made of the code: the help of the command, effects, drives and paths.
 //!
-//! `SNAPSHOTS=overwrite cargo test -p umbmark-cli --test book` writes them anew.
+//! `SNAPSHOTS=overwrite cargo test -p umbmark-cli --test all book` writes them anew.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,6 +1,6 @@
 //! Python's classes of results, written from the structs that `--json` prints.
 //!
-//! `SNAPSHOTS=overwrite cargo test -p umbmark-cli --test python_classes` writes them anew.
+//! `SNAPSHOTS=overwrite cargo test -p umbmark-cli --test all python_classes` writes them anew.
 
 #![allow(clippy::unwrap_used)]
 
@@ -22,7 +22,7 @@ const OF_THE_EXTENSION: [&str; 1] = ["Model"];
 
 const HEAD: &str = r#""""Results as the command prints them, typed: written from the core's, not by hand.
 
-``SNAPSHOTS=overwrite cargo test -p umbmark-cli --test python_classes`` writes them anew.
+``SNAPSHOTS=overwrite cargo test -p umbmark-cli --test all python_classes`` writes them anew.
 """
 
 from __future__ import annotations

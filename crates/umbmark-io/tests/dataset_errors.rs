@@ -2,12 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod bad_input;
-#[path = "bad_input/sentences.rs"]
-mod sentences;
-
-use bad_input::{Case, cases};
-use sentences::{COMMAND, sentences};
+use crate::bad_input::{Case, cases};
+use crate::sentences::{COMMAND, sentences};
 use std::path::Path;
 
 /// What loading a case says, without the path of its folder.

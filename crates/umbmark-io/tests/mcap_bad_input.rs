@@ -2,13 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod mcap_log;
-#[path = "bad_input/sentences.rs"]
-mod sentences;
-
+use crate::mcap_log::*;
+use crate::sentences::{COMMAND, sentences};
 use mcap::{Compression, WriteOptions};
-use mcap_log::*;
-use sentences::{COMMAND, sentences};
 use std::collections::BTreeMap;
 use umbmark_io::Topics;
 

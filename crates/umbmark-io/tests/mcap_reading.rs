@@ -2,10 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
-mod mcap_log;
-
+use crate::mcap_log::*;
 use mcap::{Compression, WriteOptions};
-use mcap_log::*;
 use umbmark_core::dataset::{Dataset, ReferencePose, Run, TickLog};
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::TestKind;

@@ -267,8 +267,8 @@ def test_what_other_packages_write_calibrates_as_the_csv_does(
     assert_same_setup(theirs.pop("setup"), ours.pop("setup"))
     expected = list(numbers(ours))
     assert len(expected) > 50
-    # Stamps in whole nanoseconds move a mean of poses; noise is found within some millionths.
-    assert list(numbers(theirs)) == pytest.approx(expected, rel=1e-5, abs=1e-9)
+    # Stamps in whole nanoseconds move what is fitted a little, and a return pose by nanometres.
+    assert list(numbers(theirs)) == pytest.approx(expected, rel=1e-6, abs=2e-8)
 
 
 @pytest.fixture(scope="session")

@@ -40,6 +40,15 @@ pub enum Reason {
         /// Whether both are headings.
         heading: bool,
     },
+    /// A noise size is large, and runs that were left out are predicted better with noise of the usual sizes.
+    NoiseAbsorbs {
+        /// Which size, in words.
+        what: &'static str,
+        /// In the unit of the report.
+        value: f64,
+        /// That unit.
+        unit: &'static str,
+    },
     /// Runs that were left out are predicted worse than by the nominal robot, or by a model with fewer effects.
     WorseThanSimpler {
         /// \[m\]
@@ -113,6 +122,10 @@ impl Reason {
             ),
             Reason::NoiseTooLarge { what, value, most, unit } => format!(
                 "the {what} is {value:.2} {unit}; robots like this have at most {most:.2} {unit}, so the model leaves more than noise"
+            ),
+            Reason::NoiseAbsorbs { what, value, unit } => format!(
+                "the {what} is {value:.2} {unit}, and held-out runs are predicted better with noise of the usual sizes: the fitted noise \
+                 has absorbed something that the model lacks"
             ),
             Reason::SameInEveryRun { repeats, left, heading } => {
                 let (scale, unit) = if *heading { (1f64.to_degrees(), "deg") } else { (1e3, "mm") };

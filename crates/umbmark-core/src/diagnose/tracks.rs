@@ -52,6 +52,7 @@ pub(crate) use class::class_of_own;
 pub(crate) use conclusion::{Conclusion, of_model, uncertified};
 pub use curve::{Curve, CurvePoint};
 pub use dependence::Dependence;
+pub(crate) use doubts::of_usual_noise;
 pub(crate) use examination::Examination;
 pub(crate) use left::doubts_as_written;
 pub use repeats::{Repeated, UnlistedLaw, what_repeats};

@@ -188,6 +188,9 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     let Some(last) = search.exams.pop() else { return Err(FitError::NotConverged { how: "has no model" }) };
     let written = search.written.pop().map_or_else(|| last.fitted.clone(), Alone::into_fitted);
     reasons.extend(misfits(&steps, runs, written.observed.setup.noise.position, is_nominal(&last.fitted)));
+    if written.usual_noise {
+        reasons.extend(tracks::of_usual_noise(&written.observed, &written.noise));
+    }
     let verdict = match (&left.smooth, more) {
         _ if verdict == Verdict::NotEnoughData => verdict,
         (Some(_), _) => Verdict::UnlistedEffect,

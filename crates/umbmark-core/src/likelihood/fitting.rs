@@ -240,9 +240,9 @@ impl Fitted {
 }
 
 /// Remark on values that were fitted with noise of the usual sizes.
-pub const USUAL_NOISE: &str = "The cross-validated error is lower with noise of the usual sizes than with the fitted noise: the fitted noise \
-     has absorbed something that the model lacks. The values are those under noise of the usual sizes; their intervals come from \
-     leaving out one run after the other.";
+pub const USUAL_NOISE: &str = "Held-out runs are predicted better with noise of the usual sizes than with the fitted noise, which may have \
+     absorbed something that the model lacks. The values are those under noise of the usual sizes; their intervals come from leaving out one \
+     run after the other.";
 
 /// The free values of a model, and behind them the sizes of the effects of the reference.
 struct Tracks<'a> {

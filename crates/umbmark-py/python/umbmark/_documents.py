@@ -1,6 +1,6 @@
 """Results as the command prints them, typed: written from the core's, not by hand.
 
-``SNAPSHOTS=overwrite cargo test -p umbmark-cli --test python_classes`` writes them anew.
+``SNAPSHOTS=overwrite cargo test -p umbmark-cli --test all python_classes`` writes them anew.
 """
 
 from __future__ import annotations

@@ -193,3 +193,32 @@ fn grown(noise: &Noise, block: &Block, stream: &mut Stream) -> [Vector3<f64>; 2]
     let errors = root.l() * drawn;
     [errors.fixed_rows::<3>(0).into_owned(), errors.fixed_rows::<3>(3).into_owned()]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::Robot;
+    use crate::effect::Model;
+    use crate::likelihood::watched::watched;
+
+    /// Oracle: the covariance of the end with the mean of a walk, by its definition.
+    #[test]
+    fn the_end_and_the_mean_of_a_block_are_drawn_with_what_they_share() {
+        let observed = Observed::new(&watched(&Model::new(&Robot::labmate()), 1, 3), &Robot::labmate()).unwrap();
+        let noise = Noise { heading_per_metre: 0.02, forward_per_metre: 0.01, ..Noise::default() };
+        let block = &observed.runs[0].blocks[3];
+        let expected =
+            [&block.growth, &block.growth_seen, &block.growth_of_mean].map(|growth| noise.growth(growth));
+        assert!(expected[2][2][2] < 0.9 * expected[1][2][2] && expected[1][2][2] < 0.9 * expected[0][2][2]);
+        let mut stream = Stream::new(5, 0, 0);
+        let drawn: Vec<[Vector3<f64>; 2]> = (0..20_000).map(|_| grown(&noise, block, &mut stream)).collect();
+        for (k, (first, second)) in [(0, 0), (0, 1), (1, 1)].into_iter().enumerate() {
+            for i in 0..3 {
+                let product = |[end, mean]: &[Vector3<f64>; 2]| [end, mean][first][i] * [end, mean][second][i];
+                let found = drawn.iter().map(product).sum::<f64>() / drawn.len() as f64;
+                // Three standard errors of 20 000 draws.
+                assert!((found / expected[k][i][i] - 1.0).abs() < 0.04, "{k} {i}: {found} {:?}", expected[k][i][i]);
+            }
+        }
+    }
+}

@@ -2,7 +2,6 @@
 
 use super::chance;
 use crate::diagnose::reason::Reason;
-use crate::effect::Model;
 use crate::evidence::tracks::Misses;
 use crate::likelihood::{Growth, Noise, Observed};
 
@@ -23,6 +22,8 @@ const MAX_NOISE: Noise = Noise {
 };
 /// Wheelbase of a usual robot \[m\]: with wheels nearer together, the same slip turns a robot more.
 const USUAL_BASE: f64 = 0.3;
+/// Where held-out runs are predicted better with noise of the usual sizes, noise above this share of the largest credible one is in doubt.
+const DOUBTED: f64 = 0.5;
 /// A size is at its limit within this share of it.
 const AT_LIMIT: f64 = 0.9;
 /// Mean distance \[m\] and rotation \[rad\] per run below which the wheel noise is not judged.
@@ -34,26 +35,27 @@ const SETS: (usize, usize) = (100, 2_000_000);
 const REMEMBERS: f64 = 2.5;
 
 /// Reasons from the noise, the jumps and the size of the residuals.
-pub(super) fn of_model(observed: &Observed, model: &Model, noise: &Noise, left: &Misses, seed: u64) -> Vec<Reason> {
+pub(super) fn of_model(observed: &Observed, noise: &Noise, left: &Misses, seed: u64) -> Vec<Reason> {
     let mut reasons: Vec<Reason> = observed.setup.faults.iter().cloned().map(Reason::Fault).collect();
     reasons.extend(observed.setup.suspicions_of_tracks(&observed.robot).into_iter().map(Reason::Data));
-    reasons.extend(of_noise(observed, noise, model.robot().drive.wheelbase()));
+    reasons.extend(of_noise(observed, noise));
     reasons.extend(of_size(observed, noise, left, seed));
     reasons
 }
 
-/// Sizes at their limit, or too large. Runs with hardly any distance or rotation do not count.
-fn of_noise(observed: &Observed, noise: &Noise, wheelbase: f64) -> Vec<Reason> {
-    let slim = (USUAL_BASE / wheelbase).max(1.0);
+/// Name, accessor, whether the runs determine it, factor by which a larger value is still usual, unit of the report, and that unit per SI
+/// unit.
+type Size = (&'static str, fn(&Noise) -> f64, bool, f64, f64, &'static str);
+
+/// The sizes of the noise. Runs with hardly any distance or rotation do not determine that of the wheels.
+fn sizes(observed: &Observed) -> [Size; 8] {
+    let slim = (USUAL_BASE / observed.robot.drive.wheelbase()).max(1.0);
     let of_run = |of: fn(&Growth) -> f64| {
         let blocks = observed.runs.iter().flat_map(|run| &run.blocks);
         blocks.map(|block| of(&block.growth)).sum::<f64>() / observed.runs.len().max(1) as f64
     };
     let (drives, turns) = (of_run(|g| g.way) > LEAST.0, of_run(|g| g.heading_per_radian[5]) > LEAST.1);
-    /// Name, accessor, whether the runs determine it, factor by which a larger value is still usual, unit of the report, and that unit per
-    /// SI unit.
-    type Size = (&'static str, fn(&Noise) -> f64, bool, f64, f64, &'static str);
-    let sizes: [Size; 8] = [
+    [
         ("heading noise of the wheels", |n| n.heading_per_metre, drives, slim, 1e3, "mrad per root metre"),
         ("heading noise in turns", |n| n.heading_per_radian, turns, slim, 1e3, "mrad per root radian"),
         ("forward noise of the wheels", |n| n.forward_per_metre, drives, 1.0, 1e3, "mm per root metre"),
@@ -62,9 +64,13 @@ fn of_noise(observed: &Observed, noise: &Noise, wheelbase: f64) -> Vec<Reason> {
         ("noise of the reference's headings", |n| n.reference_heading, true, 1.0, 1e3, "mrad"),
         ("noise of the reference's clock from pose to pose", |n| n.reference_time, true, 1.0, 1e3, "ms"),
         ("noise of the reference's clock from run to run", |n| n.reference_delay, true, 1.0, 1e3, "ms"),
-    ];
+    ]
+}
+
+/// Sizes at their limit, or too large.
+fn of_noise(observed: &Observed, noise: &Noise) -> Vec<Reason> {
     let limits = Noise::largest();
-    let told = sizes.into_iter().filter(|size| size.2).filter_map(|(what, of, _, wider, scale, unit)| {
+    let told = sizes(observed).into_iter().filter(|size| size.2).filter_map(|(what, of, _, wider, scale, unit)| {
         let (value, limit, most) = (of(noise), of(&limits), wider * of(&MAX_NOISE));
         if value >= AT_LIMIT * limit {
             return Some(Reason::NoiseAtLimit { what, value: scale * value, unit });
@@ -72,6 +78,13 @@ fn of_noise(observed: &Observed, noise: &Noise, wheelbase: f64) -> Vec<Reason> {
         (value > most).then_some(Reason::NoiseTooLarge { what, value: scale * value, most: scale * most, unit })
     });
     told.collect()
+}
+
+/// The reason that the wheels' noise gives where held-out runs are predicted better with noise of the usual sizes.
+pub(crate) fn of_usual_noise(observed: &Observed, noise: &Noise) -> Option<Reason> {
+    let of_wheels = sizes(observed).into_iter().take(4).filter(|size| size.2);
+    let mut doubted = of_wheels.filter(|(_, of, _, wider, ..)| of(noise) > DOUBTED * wider * of(&MAX_NOISE));
+    doubted.next().map(|(what, of, _, _, scale, unit)| Reason::NoiseAbsorbs { what, value: scale * of(noise), unit })
 }
 
 /// Whether errors of positions and headings along the path exceed those of the noise.

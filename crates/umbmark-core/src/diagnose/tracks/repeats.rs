@@ -176,6 +176,24 @@ mod tests {
         }
     }
 
+    /// Oracle: the mean of the exact derivatives of all poses of a block, on the first leg, where a scale of one adds the way.
+    #[test]
+    fn a_law_stands_at_the_mean_of_the_poses_of_a_block() {
+        let model = Model::new(&Robot::labmate());
+        let observed = Observed::new(&watched(&model, 1, 3), &Robot::labmate()).unwrap();
+        let mut with = Model::new(&observed.robot);
+        with.add_formula(Formula::new("own", Target::ForwardScale, "k", &["k"]).unwrap(), &[0.0]).unwrap();
+        for (run, exact) in observed.runs.iter().zip(&observed.columns(&with, &[0])) {
+            let steps = steps(run, &model.chain());
+            // Behind the ramp the robot makes a centimetre between poses, and blocks hold odd and even numbers of them.
+            for (block, exact) in exact[0].iter().enumerate().take(6).skip(3) {
+                let way: f64 = steps.iter().filter(|step| step.block <= block).map(|step| step.way).sum();
+                let off = way - exact[0];
+                assert!(off.abs() < 2e-4, "{block}: {off}");
+            }
+        }
+    }
+
     /// Oracle: the columns of the law itself, and exact derivatives of replays of the formula that it is written as.
     #[test]
     fn every_law_moves_the_robot_as_the_formula_does_that_it_is_written_as() {

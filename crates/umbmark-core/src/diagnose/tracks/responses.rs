@@ -107,7 +107,7 @@ pub fn hold(along: &[Arc<[Pose2]>], observed: &Observed) -> bool {
 }
 
 /// A shape is tried at its usual value and at these multiples of it.
-const TRIED: [f64; 4] = [1.0, 0.5, 2.0, 4.0];
+const TRIED: [f64; 7] = [1.0, 0.5, 0.7, 1.4, 2.0, 2.8, 4.0];
 
 /// An effect of the catalogue that a model lacks, with one value of its shape.
 struct Offer {

@@ -142,3 +142,26 @@ pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<TrackStep> {
     }
     steps
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::Robot;
+    use crate::effect::Model;
+    use crate::likelihood::Observed;
+    use crate::likelihood::watched::watched;
+
+    #[test]
+    fn turns_on_the_spot_have_no_way_and_legs_no_rotation_that_single_counts_make() {
+        let model = Model::new(&Robot::labmate());
+        let observed = Observed::new(&watched(&model, 1, 3), &Robot::labmate()).unwrap();
+        for run in &observed.runs {
+            let steps = steps(run, &model.chain());
+            let (turns, legs): (Vec<TrackStep>, Vec<TrackStep>) =
+                steps.iter().partition(|step| step.rotation.abs() >= STEP.1);
+            assert!(turns.len() > 20 && legs.len() > 200, "{} {}", turns.len(), legs.len());
+            assert!(turns.iter().all(|step| (step.way, step.speed) == (0.0, 0.0)));
+            assert!(legs.iter().filter(|step| step.way >= STEP.0).all(|step| step.rotation == 0.0));
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! Tests of the command, one program: a file here is a module.
+
+#![allow(clippy::unwrap_used)]
+
+mod apply;
+mod bad_flags;
+mod begin;
+mod book;
+mod data;
+mod embedded;
+mod export;
+mod formula;
+mod interrupt;
+mod laws;
+mod r#loop;
+mod mc;
+mod paper;
+mod plan;
+mod python_classes;
+mod report;
+mod returns;
+mod robot_numbers;
+mod score_calibrate;
+mod sensitivity;
+mod simulate;
+mod solve;
+mod streams;
+mod terminal;
