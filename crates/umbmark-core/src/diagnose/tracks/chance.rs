@@ -207,8 +207,7 @@ mod tests {
         let observed = Observed::new(&watched(&Model::new(&Robot::labmate()), 1, 3), &Robot::labmate()).unwrap();
         let noise = Noise { heading_per_metre: 0.02, forward_per_metre: 0.01, ..Noise::default() };
         let block = &observed.runs[0].blocks[3];
-        let expected =
-            [&block.growth, &block.growth_seen, &block.growth_of_mean].map(|growth| noise.growth(growth));
+        let expected = [&block.growth, &block.growth_seen, &block.growth_of_mean].map(|growth| noise.growth(growth));
         assert!(expected[2][2][2] < 0.9 * expected[1][2][2] && expected[1][2][2] < 0.9 * expected[0][2][2]);
         let mut stream = Stream::new(5, 0, 0);
         let drawn: Vec<[Vector3<f64>; 2]> = (0..20_000).map(|_| grown(&noise, block, &mut stream)).collect();
