@@ -88,6 +88,8 @@ def squared_errors(rows: Array, model: Exported) -> tuple[Array, Array]:
     for row in rows[1:]:
         left, right = (row[1:3] - at[1:3]) * model.per_tick
         way, turn, dt = 0.5 * (left + right), (right - left) / model.wheelbase, row[0] - at[0]
+        # Wheels slip in turns on the spot too.
+        rolled = 0.5 * (abs(left) + abs(right))
         middle = pose[2] + 0.5 * turn
         share = np.sinc(0.5 * turn / np.pi)
         step = way * share * np.array([np.cos(middle), np.sin(middle)])
@@ -98,8 +100,8 @@ def squared_errors(rows: Array, model: Exported) -> tuple[Array, Array]:
         )
         of_model = np.array(
             [
-                square["forward_m_per_sqrt_m"] * abs(way),
-                square["sideways_m_per_sqrt_m"] * abs(way),
+                square["forward_m_per_sqrt_m"] * rolled,
+                square["sideways_m_per_sqrt_m"] * rolled,
                 square["heading_rad_per_sqrt_m"] * abs(way)
                 + square["heading_rad_per_sqrt_rad"] * abs(turn),
             ]
