@@ -2,8 +2,6 @@
 //!
 //! `UMBMARK_OPTIODOM=all cargo test -p umbmark-tests --test all cross_table -- --nocapture` prints the table of docs/studies/optiodom.md.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use umbmark_core::calibrate::{self, Correction, Method, calibrate};

@@ -1,7 +1,5 @@
 //! Diagnoses of real robots: squares of OptiOdom (Sousa et al. 2022), by their return poses.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use std::io::Write;
 use std::path::Path;
 use umbmark_core::dataset::Dataset;

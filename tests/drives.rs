@@ -1,7 +1,5 @@
 //! Robots of every drive, from simulation to what is learnt of them.
 
-#![allow(clippy::unwrap_used)]
-
 use umbmark_core::dataset::{Dataset, Run};
 use umbmark_core::diagnose::{Options, Verdict, diagnose};
 use umbmark_core::drive::{AckermannDrive, ClapperDrive, Encoder, Robot, TricycleDrive};

@@ -1,7 +1,5 @@
 //! Odometry on the robot gives the poses of `apply`, to the last bit, for every effect that a table of constants can hold.
 
-#![allow(clippy::unwrap_used)]
-
 use umbmark_core::apply::{Corrected, Spread, apply, compiled};
 use umbmark_core::drive::{DriveKind, Encoder, Robot, Wiring};
 use umbmark_core::effect::{CATALOGUE, Changes, Entry, Formula, Model, RunContext, Target, of_drive};

@@ -1,7 +1,5 @@
 //! Effects of the user's own, from the simulator to the fit.
 
-#![allow(clippy::unwrap_used)]
-
 use std::ops::ControlFlow;
 use umbmark_core::compare::compare_returns;
 use umbmark_core::dataset::{Dataset, Run, TickLog};

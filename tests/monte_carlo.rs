@@ -1,7 +1,5 @@
 //! Ensembles held against theory and against themselves.
 
-#![allow(clippy::unwrap_used)]
-
 use std::ops::ControlFlow;
 
 use umbmark_core::drive::Robot;

@@ -2,8 +2,6 @@
 //!
 //! `UMBMARK_OMNI=all cargo test -p umbmark-tests --test all omni_real -- --nocapture` prints the tables.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::Dataset;

@@ -1,7 +1,5 @@
 //! The numbers and claims of Borenstein & Feng (1995), from general code.
 
-#![allow(clippy::unwrap_used)]
-
 use umbmark_core::dataset::ReturnError;
 use umbmark_core::drive::{Robot, Wheel};
 use umbmark_core::effect::{Bump, Model, Stretch, TestKind};

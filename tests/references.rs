@@ -1,7 +1,5 @@
 //! References that tell less than poses: they give what poses give, as far as they can.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use std::io::Write;
 use std::path::Path;
 use umbmark_core::dataset::Dataset;

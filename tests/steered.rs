@@ -3,8 +3,6 @@
 //! A wheel touches the floor at a point of the body, rolls along its own direction and does not move across it. The twist of the
 //! body is the one that all wheels of a robot allow, found by elimination. What is logged goes through files, as other people's does.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
 use std::path::Path;

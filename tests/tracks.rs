@@ -1,7 +1,5 @@
 //! The loop on tracks: made data with a known cause, and a real robot's. Nothing here reads the answers but the assertions.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use std::io::Write;
 use std::path::PathBuf;
 use umbmark_core::dataset::Dataset;

@@ -1,9 +1,13 @@
 """How often the covariances of `umbmark apply` hold the measured poses of runs left out.
 
-The command learns a model on 3 + 3 runs of a made set, and corrects the logs of the other 2 + 2
-with it. A pose is held where its squared error, in units of the covariance that `apply` writes and
-with the noise of the reference as the generator made it, is below the 95 % quantile of chi-squared
-with 3 degrees of freedom (the NEES).
+The command learns a model on some runs and corrects the logs of others of the same robot with it.
+A pose is held where its squared error, in units of the covariance that `apply` writes and with the
+noise of the reference, is below the 95 % quantile of chi-squared with 3 degrees of freedom (the
+NEES). Three kinds of data:
+
+* 5 + 5 runs of each case of `CASES`: learnt on 3 + 3, the other 2 + 2 corrected;
+* `scatter`: the command's own simulator, wheels that scatter much: learnt on 5 + 5 of 25 + 25;
+* `examples`: learnt on `examples/hidden`, corrected in `examples/fresh_day`.
 
     python tests/reference/held_applied.py UMBMARK [CASE ...]
 """
@@ -15,13 +19,9 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 from generate import main as generate
-
-Array = npt.NDArray[np.float64]
-
-HELD = 7.815
-"""95 % quantile of chi-squared with 3 degrees of freedom."""
+from held_poses import HELD, Array
+from sensors import Reference
 
 CASES = (
     "none",
@@ -35,10 +35,14 @@ CASES = (
     "second_harmonic_yaw",
     "bumps",
     "wheel_noise",
+    "scatter",
+    "examples",
 )
-SEEDS = (51, 52, 53)
-LEFT_OUT = (4, 5)
-"""Numbers of the runs that are corrected, each way."""
+SETS = 3
+"""Of each case; no two sets have one seed, so their errors are independent."""
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+SCATTER = "--ed 1.001 --eb 0.995 --es 0.998 --wheel-noise 0.0005 --side 4 --runs 25"
+SEEN = "--reference-rate 20 --reference-position-noise 0.001 --reference-heading-noise 0.001"
 
 Row = dict[str, float]
 
@@ -77,30 +81,46 @@ def squared_errors(log: Path, corrected: Path, noise: Array) -> Array:
     return np.array(found)
 
 
-def leave_out(folder: Path, other: Path) -> None:
-    """Move the logs of some runs into another folder, and take their rows out of returns.csv."""
+def leave_out(folder: Path, other: Path, first: int) -> None:
+    """Move the logs of runs from a number on into another folder; returns.csv forgets them."""
     other.mkdir()
     for log in (folder / "runs").glob("*.csv"):
-        if int(log.stem.rpartition("_")[2]) in LEFT_OUT:
+        if int(log.stem.rpartition("_")[2]) >= first:
             log.rename(other / log.name)
     returns = folder / "returns.csv"
-    lines = returns.read_text().splitlines(keepends=True)
-    kept = [line for line in lines if line.split(",")[1:2] not in [[str(n)] for n in LEFT_OUT]]
-    returns.write_text("".join(kept))
+    rows = [line.split(",") for line in returns.read_text().splitlines()]
+    kept = [row for row in rows if len(row) < 2 or not row[1].isdigit() or int(row[1]) < first]
+    returns.write_text("".join(",".join(row) + "\n" for row in kept))
+
+
+def made(command: str, case: str, seed: int, place: Path) -> tuple[Path, Path, Array]:
+    """Folders of what is learnt from and of logs to correct, and the noise of the reference."""
+    if case == "examples":
+        # As it is learnt: 0.8 mm and 1.1 mrad.
+        noise = np.array([8e-4, 8e-4, 1.1e-3])
+        return EXAMPLES / "hidden", EXAMPLES / "fresh_day" / "runs", noise
+    learnt, other = place / "learnt", place / "other"
+    if case == "scatter":
+        words = [command, "simulate", *SCATTER.split(), *SEEN.split(), "--seed", str(seed)]
+        subprocess.run([*words, "-o", str(learnt)], check=True, capture_output=True)
+        leave_out(learnt, other, 6)
+        return learnt, other, np.array([1e-3, 1e-3, 1e-3])
+    generate([case, str(learnt), "--seed", str(seed)])
+    leave_out(learnt, other, 4)
+    sees = Reference()
+    return learnt, other, np.array([sees.position_sd_m] * 2 + [sees.heading_sd_rad])
 
 
 def held(command: str, case: str, seed: int) -> tuple[float, float]:
     """Shares of all poses and of the last of each run that are held."""
-    noise = np.array([8e-4, 8e-4, 8e-4])
-    with tempfile.TemporaryDirectory() as place:
-        learnt, other, model = (Path(place) / name for name in ("learnt", "other", "model.toml"))
-        generate([case, str(learnt), "--seed", str(seed)])
-        leave_out(learnt, other)
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder)
+        learnt, other, noise = made(command, case, seed, place)
+        model, corrected = place / "model.toml", place / "corrected.csv"
         learn = [command, "learn", str(learnt), "--quiet", "--force", "-o", str(model)]
         subprocess.run(learn, check=True, capture_output=True)
         every, last = [], []
         for log in sorted(other.glob("*.csv")):
-            corrected = Path(place) / "corrected.csv"
             apply = [command, "apply", str(log), "--model", str(model), "--quiet", "--force"]
             subprocess.run([*apply, "-o", str(corrected)], check=True, capture_output=True)
             errors = squared_errors(log, corrected, noise)
@@ -109,17 +129,27 @@ def held(command: str, case: str, seed: int) -> tuple[float, float]:
     return float(np.mean(np.concatenate(every))), float(np.mean(last))
 
 
+def row(name: str, shares: list[tuple[float, float]]) -> str:
+    """A row of the table: means, and their standard errors where there are several sets."""
+    means = 100 * np.mean(shares, axis=0)
+    if len(shares) == 1:
+        return f"| {name} | 1 | {means[0]:.1f} % | {means[1]:.1f} % |"
+    errors = 100 * np.std(shares, axis=0, ddof=1) / len(shares) ** 0.5
+    both = [f"{mean:.1f} ± {error:.1f} %" for mean, error in zip(means, errors, strict=True)]
+    return f"| {name} | {len(shares)} | {both[0]} | {both[1]} |"
+
+
 def main(command: str, cases: tuple[str, ...]) -> None:
-    """Print a table: a row for each case, over the seeds, and one over all."""
-    print("| hidden | all poses | last poses |\n|---|---|---|")
+    """Print a table: a row for each case, ± a standard error over its sets, and one over all."""
+    print("| hidden | sets | all poses | last poses |\n|---|---|---|---|")
     whole = []
     for case in cases:
-        shares = [held(command, case, seed) for seed in SEEDS]
-        whole.append(np.mean(shares, axis=0))
-        print(f"| {case} | {100 * whole[-1][0]:.1f} % | {100 * whole[-1][1]:.1f} % |", flush=True)
-    mean, error = np.mean(whole, axis=0), np.std(whole, axis=0, ddof=1) / len(whole) ** 0.5
-    both = [f"{100 * mean[k]:.1f} ± {100 * error[k]:.1f} %" for k in range(2)]
-    print(f"| all | {both[0]} | {both[1]} |")
+        first = 51 + SETS * CASES.index(case)
+        sets = 1 if case == "examples" else SETS
+        shares = [held(command, case, seed) for seed in range(first, first + sets)]
+        whole += shares
+        print(row(case, shares), flush=True)
+    print(row("all", whole))
 
 
 if __name__ == "__main__":

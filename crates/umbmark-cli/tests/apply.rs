@@ -1,7 +1,5 @@
 //! `umbmark apply`: corrected odometry from logs and a model.
 
-#![allow(clippy::unwrap_used)]
-
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

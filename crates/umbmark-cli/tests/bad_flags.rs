@@ -3,8 +3,6 @@
 //! The commands stand in `bad_flags/cases.txt`, and what is said of them in `docs/bad_flags.md`, which
 //! `SNAPSHOTS=overwrite cargo test -p umbmark-cli --test all bad_flags` writes anew.
 
-#![allow(clippy::unwrap_used)]
-
 use snapbox::{Data, assert_data_eq};
 use std::path::Path;
 use std::process::Command;

@@ -1,7 +1,5 @@
 //! How people begin: with logs of their own and no description of the robot, or with files to fill in.
 
-#![allow(clippy::unwrap_used)]
-
 use std::path::Path;
 use std::process::{Command, Output};
 

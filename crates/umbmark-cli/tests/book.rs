@@ -2,8 +2,6 @@
 //!
 //! `SNAPSHOTS=overwrite cargo test -p umbmark-cli --test all book` writes them anew.
 
-#![allow(clippy::unwrap_used)]
-
 use serde_json::Value;
 use snapbox::{Data, assert_data_eq};
 use std::path::Path;

@@ -2,8 +2,6 @@
 //!
 //! `SNAPSHOTS=overwrite cargo test -p umbmark-cli` writes the golden files anew.
 
-#![allow(clippy::unwrap_used)]
-
 #[path = "../../umbmark-io/tests/bad_input/mod.rs"]
 mod bad_input;
 

@@ -1,6 +1,6 @@
 //! `umbmark export --to embedded`: a program in C that includes the table gives the poses of `umbmark apply`, to every digit.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::print_stdout)]
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,5 @@
 //! `umbmark export`: a model becomes files of other programs, or one clear error and no file.
 
-#![allow(clippy::unwrap_used)]
-
 use std::path::Path;
 use std::process::Command;
 use umbmark_core::drive::{DriveKind, Robot};

@@ -1,7 +1,5 @@
 //! An effect of the user's own from `simulate` to `fit`, `diagnose` and `compare`, by a `model.toml` alone.
 
-#![allow(clippy::unwrap_used)]
-
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};

@@ -1,8 +1,6 @@
 //! Ctrl-C: what is done so far, marked partial, and nothing half-written.
 
 #![cfg(unix)]
-#![allow(clippy::unwrap_used)]
-
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;

@@ -1,7 +1,5 @@
 //! Laws that no catalogue lists, on the squares of `examples/unnamed`: what `learn` and `report` say of them.
 
-#![allow(clippy::unwrap_used)]
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

@@ -1,7 +1,5 @@
 //! `umbmark mc` as its users meet it.
 
-#![allow(clippy::unwrap_used)]
-
 use snapbox::cmd::{Command, OutputAssert, cargo_bin};
 use snapbox::str;
 

@@ -1,7 +1,5 @@
 //! `umbmark paper`, and robots of other drives, as their users meet them.
 
-#![allow(clippy::unwrap_used)]
-
 use snapbox::cmd::{Command, OutputAssert, cargo_bin};
 use snapbox::str;
 

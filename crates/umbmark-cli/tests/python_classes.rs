@@ -2,8 +2,6 @@
 //!
 //! `SNAPSHOTS=overwrite cargo test -p umbmark-cli --test all python_classes` writes them anew.
 
-#![allow(clippy::unwrap_used)]
-
 use std::path::Path;
 
 use schemars::generate::SchemaSettings;

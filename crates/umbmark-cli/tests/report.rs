@@ -1,7 +1,5 @@
 //! `umbmark plot` and `umbmark report`: what they write, and what they refuse.
 
-#![allow(clippy::unwrap_used)]
-
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

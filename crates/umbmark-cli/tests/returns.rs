@@ -1,7 +1,5 @@
 //! A typing error in a sheet of returns, and its unit, in all that uses them.
 
-#![allow(clippy::unwrap_used)]
-
 use std::path::Path;
 use std::process::{Command, Output};
 

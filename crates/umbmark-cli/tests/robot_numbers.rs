@@ -1,8 +1,6 @@
 //! A robot's and a path's numbers are described once: file, flag, sweep and constructor refuse the same values in the same
 //! words. What Python's `Robot` refuses is what the file refuses.
 
-#![allow(clippy::unwrap_used)]
-
 use snapbox::cmd::{Command, cargo_bin};
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::Model;

@@ -2,8 +2,6 @@
 //!
 //! `SNAPSHOTS=overwrite cargo test -p umbmark-cli` writes the golden files anew.
 
-#![allow(clippy::unwrap_used)]
-
 use serde_json::Value;
 use snapbox::{assert_data_eq, file};
 use std::path::{Path, PathBuf};

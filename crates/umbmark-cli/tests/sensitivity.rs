@@ -1,7 +1,5 @@
 //! `umbmark sensitivity`, `tolerance` and `mc --sweep` as their users meet them.
 
-#![allow(clippy::unwrap_used)]
-
 use serde_json::Value;
 use snapbox::cmd::{Command, OutputAssert, cargo_bin};
 use snapbox::str;

@@ -1,8 +1,6 @@
 //! Standard input and output, pipes, devices and links in place of files.
 
 #![cfg(unix)]
-#![allow(clippy::unwrap_used)]
-
 use std::io::Write;
 use std::os::unix::fs::FileTypeExt;
 use std::path::Path;

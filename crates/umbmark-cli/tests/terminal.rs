@@ -1,7 +1,5 @@
 //! What a terminal of 80 columns shows: every verb's text, on the examples and on data with awkward names.
 
-#![allow(clippy::unwrap_used)]
-
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,8 +1,6 @@
 //! Two clocks aligned from the motion, on the unsynchronised originals of OptiOdom, against the files that their authors
 //! synchronised by hand.
 
-#![allow(clippy::unwrap_used)]
-
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use umbmark_core::calibrate::{ClosedForm, Method, Options, Ratio, calibrate};

@@ -1,7 +1,5 @@
 //! Each piece of unusable input gets one clear error: file, line, column or key, value, what is allowed, what to do.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::bad_input::{Case, cases};
 use crate::sentences::{COMMAND, sentences};
 use std::path::Path;

@@ -1,7 +1,5 @@
 //! What good files mean, and what is tolerated in them.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::{FRAC_PI_2, PI};
 use umbmark_core::dataset::{Dataset, ReturnError, Run};
 use umbmark_core::effect::TestKind;

@@ -1,7 +1,5 @@
 //! Datasets that were measured, or made by another simulator: read as they are, where they are there.
 
-#![allow(clippy::unwrap_used)]
-
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use umbmark_core::effect::TestKind;

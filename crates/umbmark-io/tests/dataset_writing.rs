@@ -1,7 +1,5 @@
 //! Datasets are written whole or not at all, and read back as they were.
 
-#![allow(clippy::unwrap_used)]
-
 use std::path::Path;
 use umbmark_core::dataset::{Dataset, ReferencePose, ReturnError, Run, TickLog};
 use umbmark_core::drive::{DifferentialDrive, Encoder, Robot};

@@ -1,7 +1,5 @@
 //! Core and io know nothing of the command: no message of theirs names a flag.
 
-#![allow(clippy::unwrap_used)]
-
 use std::path::{Path, PathBuf};
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {

@@ -1,7 +1,5 @@
 //! Each unusable MCAP log gets one clear error: file, topic or place in the file, what is wrong, what to do.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::mcap_log::*;
 use crate::sentences::{COMMAND, sentences};
 use mcap::{Compression, WriteOptions};

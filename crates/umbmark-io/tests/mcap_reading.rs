@@ -1,7 +1,5 @@
 //! What is made of good, damaged and unusual MCAP logs; and that what is written is read back.
 
-#![allow(clippy::unwrap_used)]
-
 use crate::mcap_log::*;
 use mcap::{Compression, WriteOptions};
 use umbmark_core::dataset::{Dataset, ReferencePose, Run, TickLog};

@@ -1,7 +1,5 @@
 //! MCAP logs of real runs, held against the same runs in CSV, where they are there.
 
-#![allow(clippy::unwrap_used)]
-
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use umbmark_core::dataset::{Dataset, TickLog};

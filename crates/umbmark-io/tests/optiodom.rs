@@ -1,7 +1,5 @@
 //! Calibrations of real robots: the squares of OptiOdom (Sousa et al. 2022) against their authors' own result sheet.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use umbmark_core::calibrate::{

@@ -215,7 +215,7 @@ mod tests {
             for i in 0..3 {
                 let product = |[end, mean]: &[Vector3<f64>; 2]| [end, mean][first][i] * [end, mean][second][i];
                 let found = drawn.iter().map(product).sum::<f64>() / drawn.len() as f64;
-                // Three standard errors of 20 000 draws.
+                // Some four standard errors of 20 000 draws.
                 assert!((found / expected[k][i][i] - 1.0).abs() < 0.04, "{k} {i}: {found} {:?}", expected[k][i][i]);
             }
         }

@@ -43,48 +43,75 @@ pub(super) fn of_model(observed: &Observed, noise: &Noise, left: &Misses, seed: 
     reasons
 }
 
-/// Name, accessor, whether the runs determine it, factor by which a larger value is still usual, unit of the report, and that unit per SI
-/// unit.
-type Size = (&'static str, fn(&Noise) -> f64, bool, f64, f64, &'static str);
+/// A size of the noise.
+struct Size {
+    /// In words.
+    what: &'static str,
+    of: fn(&Noise) -> f64,
+    /// Factor by which a larger value is still usual for this robot.
+    wider: f64,
+    /// Unit of the report.
+    unit: &'static str,
+}
 
-/// The sizes of the noise. Runs with hardly any distance or rotation do not determine that of the wheels.
-fn sizes(observed: &Observed) -> [Size; 8] {
+impl Size {
+    /// The largest credible value.
+    fn most(&self) -> f64 {
+        self.wider * (self.of)(&MAX_NOISE)
+    }
+}
+
+/// Units of the report in an SI unit: all are thousandths.
+const REPORTED: f64 = 1e3;
+
+/// The sizes of the wheels' noise that the runs determine: not those of runs with hardly any distance or rotation.
+fn of_wheels(observed: &Observed) -> Vec<Size> {
     let slim = (USUAL_BASE / observed.robot.drive.wheelbase()).max(1.0);
     let of_run = |of: fn(&Growth) -> f64| {
         let blocks = observed.runs.iter().flat_map(|run| &run.blocks);
         blocks.map(|block| of(&block.growth)).sum::<f64>() / observed.runs.len().max(1) as f64
     };
     let (drives, turns) = (of_run(|g| g.way) > LEAST.0, of_run(|g| g.heading_per_radian[5]) > LEAST.1);
+    let size = |what, of, wider, unit| Size { what, of, wider, unit };
+    let sizes = [
+        (drives, size("heading noise of the wheels", |n| n.heading_per_metre, slim, "mrad per root metre")),
+        (turns, size("heading noise in turns", |n| n.heading_per_radian, slim, "mrad per root radian")),
+        (drives, size("forward noise of the wheels", |n| n.forward_per_metre, 1.0, "mm per root metre")),
+        (drives, size("sideways noise of the wheels", |n| n.sideways_per_metre, 1.0, "mm per root metre")),
+    ];
+    sizes.into_iter().filter_map(|(told, size)| told.then_some(size)).collect()
+}
+
+/// The sizes of the reference's noise.
+fn of_reference() -> [Size; 4] {
+    let size = |what, of, unit| Size { what, of, wider: 1.0, unit };
     [
-        ("heading noise of the wheels", |n| n.heading_per_metre, drives, slim, 1e3, "mrad per root metre"),
-        ("heading noise in turns", |n| n.heading_per_radian, turns, slim, 1e3, "mrad per root radian"),
-        ("forward noise of the wheels", |n| n.forward_per_metre, drives, 1.0, 1e3, "mm per root metre"),
-        ("sideways noise of the wheels", |n| n.sideways_per_metre, drives, 1.0, 1e3, "mm per root metre"),
-        ("noise of the reference's positions", |n| n.reference_position, true, 1.0, 1e3, "mm"),
-        ("noise of the reference's headings", |n| n.reference_heading, true, 1.0, 1e3, "mrad"),
-        ("noise of the reference's clock from pose to pose", |n| n.reference_time, true, 1.0, 1e3, "ms"),
-        ("noise of the reference's clock from run to run", |n| n.reference_delay, true, 1.0, 1e3, "ms"),
+        size("noise of the reference's positions", |n| n.reference_position, "mm"),
+        size("noise of the reference's headings", |n| n.reference_heading, "mrad"),
+        size("noise of the reference's clock from pose to pose", |n| n.reference_time, "ms"),
+        size("noise of the reference's clock from run to run", |n| n.reference_delay, "ms"),
     ]
 }
 
 /// Sizes at their limit, or too large.
 fn of_noise(observed: &Observed, noise: &Noise) -> Vec<Reason> {
     let limits = Noise::largest();
-    let told = sizes(observed).into_iter().filter(|size| size.2).filter_map(|(what, of, _, wider, scale, unit)| {
-        let (value, limit, most) = (of(noise), of(&limits), wider * of(&MAX_NOISE));
-        if value >= AT_LIMIT * limit {
-            return Some(Reason::NoiseAtLimit { what, value: scale * value, unit });
+    let told = of_wheels(observed).into_iter().chain(of_reference()).filter_map(|size| {
+        let (found, most) = ((size.of)(noise), size.most());
+        let Size { what, unit, .. } = size;
+        let value = REPORTED * found;
+        if found >= AT_LIMIT * (size.of)(&limits) {
+            return Some(Reason::NoiseAtLimit { what, value, unit });
         }
-        (value > most).then_some(Reason::NoiseTooLarge { what, value: scale * value, most: scale * most, unit })
+        (found > most).then_some(Reason::NoiseTooLarge { what, value, most: REPORTED * most, unit })
     });
     told.collect()
 }
 
 /// The reason that the wheels' noise gives where held-out runs are predicted better with noise of the usual sizes.
 pub(crate) fn of_usual_noise(observed: &Observed, noise: &Noise) -> Option<Reason> {
-    let of_wheels = sizes(observed).into_iter().take(4).filter(|size| size.2);
-    let mut doubted = of_wheels.filter(|(_, of, _, wider, ..)| of(noise) > DOUBTED * wider * of(&MAX_NOISE));
-    doubted.next().map(|(what, of, _, _, scale, unit)| Reason::NoiseAbsorbs { what, value: scale * of(noise), unit })
+    let size = of_wheels(observed).into_iter().find(|size| (size.of)(noise) > DOUBTED * size.most())?;
+    Some(Reason::NoiseAbsorbs { what: size.what, value: REPORTED * (size.of)(noise), unit: size.unit })
 }
 
 /// Whether errors of positions and headings along the path exceed those of the noise.
@@ -105,4 +132,29 @@ fn of_size(observed: &Observed, noise: &Noise, left: &Misses, seed: u64) -> Vec<
         }
     }
     reasons
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::Robot;
+    use crate::effect::Model;
+    use crate::likelihood::watched::watched;
+
+    /// Noise of the wheels just below and just above half of the largest credible; noise of the reference does not count.
+    #[test]
+    fn noise_that_predicts_worse_than_the_usual_is_doubted_from_half_of_the_credible_on() {
+        let observed = Observed::new(&watched(&Model::new(&Robot::labmate()), 1, 3), &Robot::labmate()).unwrap();
+        let of = |noise: Noise| of_usual_noise(&observed, &noise);
+        let usual = Noise { reference_delay: MAX_NOISE.reference_delay, ..Noise::default() };
+        assert_eq!(of(usual), None);
+        assert_eq!(of(Noise { heading_per_metre: 0.0149, forward_per_metre: 0.0199, ..usual }), None);
+        let reason = of(Noise { heading_per_radian: 0.0151, ..usual }).unwrap();
+        assert!(
+            reason
+                .sentence()
+                .starts_with("the heading noise in turns is 15.10 mrad per root radian, and held-out runs")
+        );
+        assert!(of(Noise { sideways_per_metre: 0.0201, ..usual }).is_some());
+    }
 }
