@@ -3,6 +3,7 @@
 pub mod dead_reckoning;
 mod place;
 mod reference_track;
+pub mod resolution;
 
 pub use place::{PoseRow, place};
 pub use reference_track::ReferenceTrack;

@@ -30,6 +30,7 @@ use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::geometry::{Displacement2, Pose2, wrap};
 use crate::path::Path;
+use crate::run::resolution::hidden;
 use crate::run::{Run, TickLog};
 use crate::stats::Measured;
 use agreement::{Agreement, Beside, Reading};
@@ -244,7 +245,7 @@ impl Setup {
         let doubled = CountsFactor::of(&agreement, robot).filter(CountsFactor::is_double);
         let sightings: Vec<Vec<Sighting>> = seen.iter().map(|seen| sightings(seen, robot, &agreement)).collect();
         let relative = seen.iter().any(|seen| seen.log.relative);
-        let (found, noise) = disturbances::search(&sightings, relative);
+        let (found, noise) = disturbances::search(&sightings, relative, counted(&seen, wheelbase));
         let runs = seen.iter().zip(found).map(|(seen, found)| RunSetup { ..told(named(seen), seen, found) }).collect();
         let doubts = doubled.map(Suspicion::Doubled).into_iter().collect();
         Setup { faults, mounting: Some(mounting), runs, noise, doubts, returned: Returned::default() }
@@ -473,6 +474,12 @@ fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting>
         }
     };
     seen.log.reference.iter().map(of).collect()
+}
+
+/// Variances of a pose \[m², rad²\] that whole counts make; those of the run where they are largest.
+fn counted(seen: &[Seen], wheelbase: f64) -> [f64; 2] {
+    let of_runs = seen.iter().map(|seen| hidden(seen.rolled.counts, [1.0; 2], wheelbase));
+    of_runs.fold([0.0; 2], |most, of_run| [0, 1].map(|k| f64::max(most[k], of_run[k])))
 }
 
 /// Whether every pose of every run has a heading.

@@ -121,9 +121,8 @@ impl Noise {
     ///
     /// -2 l = Σ log|S| + log|AᵀΣ⁻¹A| + r̂ᵀΣ⁻¹r̂, with the columns A fitted out.
     ///
-    /// Noise within blocks is taken from successive differences, less what the wheels add between them. No pose is better known than the
-    /// counters' resolution allows: without that limit, a reference without noise (a simulator's) makes every tick significant. `columns`
-    /// holds, run by run, the columns of the model and last the residuals.
+    /// Noise within blocks is taken from successive differences, less what wheels and counters add between them. `columns` holds, run by
+    /// run, the columns of the model and last the residuals.
     pub fn estimate(observed: &Observed, chain: &Chain<f64>, columns: &[Vec<Column>], from: &Noise) -> Noise {
         let within = Within::of(observed, chain);
         let longest = longest_delay(observed);
@@ -219,8 +218,6 @@ impl Noise {
 struct Within {
     /// Half the mean square, of a coordinate \[m²\] and of the heading \[rad²\].
     half: [f64; 2],
-    /// What the counters' resolution gives each pose: as below.
-    resolution: [f64; 2],
     /// Mean way \[m\], mean way of both wheels \[m\] and rotation \[rad\] between them.
     way: f64,
     rolled: f64,
@@ -240,22 +237,15 @@ impl Within {
         let mean = |of: fn(&Growth) -> f64| {
             blocks().map(|block| 2.0 * (of(&block.growth) - of(&block.growth_seen))).sum::<f64>() / count
         };
-        Within {
-            half,
-            resolution: observed.resolution,
-            way: mean(|g| g.way),
-            rolled: mean(|g| g.rolled),
-            turned: mean(|g| g.heading_per_radian[5]),
-        }
+        Within { half, way: mean(|g| g.way), rolled: mean(|g| g.rolled), turned: mean(|g| g.heading_per_radian[5]) }
     }
 
-    /// Standard deviation of a single pose \[m, rad\], less what this noise of the wheels adds between two of them, and not below the
-    /// resolution of the counters.
+    /// Standard deviation of a single pose \[m, rad\], less what this noise of the wheels adds between two of them.
     fn less_wheels(&self, noise: &Noise) -> [f64; 2] {
         let plane = noise.forward_per_metre.powi(2) + noise.sideways_per_metre.powi(2);
         let turning = noise.heading_per_metre.powi(2) * self.way + noise.heading_per_radian.powi(2) * self.turned;
         let left = [self.half[0] - 0.25 * plane * self.rolled, self.half[1] - 0.5 * turning];
-        std::array::from_fn(|k| left[k].max(0.0).sqrt().max(self.resolution[k]))
+        left.map(|left| left.max(0.0).sqrt())
     }
 }
 

@@ -84,6 +84,12 @@ pub struct Block {
     /// Variances of the reference in it, in units of those of one measurement: how many steps are added up to it where the reference tells
     /// motion only, else 1.
     pub steps: f64,
+    /// Variances of the mean of its observations that the resolution of the counters gives: of a coordinate \[m²\] and of the heading
+    /// \[rad²\].
+    pub resolution: [f64; 2],
+    /// Where the middle of its observations lies beside the predicted path because the wheels did not turn evenly between readings, summed
+    /// up since the run began \[m\].
+    pub beside: [f64; 2],
 }
 
 /// A run, ready to be predicted.
@@ -114,6 +120,10 @@ pub struct ObservedRun {
     /// Whether the reference tells only the motion from each block to the next. Residuals and derivatives are then those of this motion,
     /// turned into the frame of the room, and zero in the first block and where the run restarts.
     pub relative: bool,
+    /// How far the left and the right wheel roll in one count \[m\]; 0 where readings are not whole counts.
+    pub counts: [f64; 2],
+    /// Nominal distance of the wheels \[m\].
+    pub wheelbase: f64,
 }
 
 /// All runs of the regular test that were observed on the way.
@@ -125,8 +135,6 @@ pub struct Observed {
     pub runs: Vec<ObservedRun>,
     /// The path that all of them were to follow, where it is known.
     pub path: Option<Path>,
-    /// Standard deviations of a position and a heading \[m, rad\] that the resolution of the counters gives; 0 where it is not known.
-    pub resolution: [f64; 2],
     /// What was found of the experiment before anything was fitted.
     pub setup: Arc<Setup>,
 }
@@ -151,8 +159,7 @@ impl Observed {
             }
         }
         let runs = pieces::cut(runs, robot);
-        let resolution = resolution::resolution(data.runs.iter().filter_map(|run| run.log.as_ref()), robot);
-        Ok(Observed { robot: robot.clone(), runs, path: data.path.clone(), resolution, setup: Arc::new(setup) })
+        Ok(Observed { robot: robot.clone(), runs, path: data.path.clone(), setup: Arc::new(setup) })
     }
 
     /// Believed travel of the runs.
@@ -196,6 +203,7 @@ struct Seen<'a> {
     start_seen: bool,
     /// Of a reference that tells motion only, how many of its steps are added up to each measurement; empty of others.
     added: Vec<f64>,
+    counts: [f64; 2],
 }
 
 impl ObservedRun {
@@ -231,7 +239,7 @@ impl ObservedRun {
         let at_start = track.seen_after().first().is_some_and(|made| track.way_before(*made) < AT_START);
         let start_seen = at_start || log.start.known == StartKnown::OnTheWay;
         let added: Vec<f64> = if log.relative { steps::added_up(&kept) } else { Vec::new() };
-        let seen = Seen { measured, jumps: &jumps, start_seen, added };
+        let seen = Seen { measured, jumps: &jumps, start_seen, added, counts: log.count_lengths(robot) };
         let observed = ObservedRun::laid(&run.name, run.direction, track, seen, &Model::new(robot));
         Ok((observed.blocks.len() >= FEWEST).then_some(observed))
     }
@@ -239,7 +247,7 @@ impl ObservedRun {
     /// A run yet to be driven, as a model predicts it; `headings` says whether they will be measured.
     pub fn planned(track: Track, direction: Direction, headings: bool, model: &Model) -> ObservedRun {
         let measured = track.sights().iter().map(|_| (0.0, 0.0, headings.then_some(0.0))).collect();
-        let seen = Seen { measured, jumps: &[], start_seen: true, added: Vec::new() };
+        let seen = Seen { measured, jumps: &[], start_seen: true, added: Vec::new(), counts: [0.0; 2] };
         ObservedRun::laid("", Some(direction), track, seen, model)
     }
 
@@ -248,7 +256,7 @@ impl ObservedRun {
         name: &str,
         direction: Option<Direction>,
         track: Track,
-        Seen { measured, jumps, start_seen, added }: Seen,
+        Seen { measured, jumps, start_seen, added, counts }: Seen,
         model: &Model,
     ) -> ObservedRun {
         let chain = model.chain();
@@ -270,7 +278,10 @@ impl ObservedRun {
             linear: false,
             start_seen,
             relative,
+            counts,
+            wheelbase: model.robot().drive.wheelbase(),
         };
+        observed.resolve();
         observed.lay_along(&chain);
         observed
     }

@@ -204,11 +204,12 @@ impl<T: Scalar> Noise<T> {
     fn measurement(&self, block: &Block) -> [[T; 3]; 3] {
         let (shared, within) = (self.reference_position, self.within_position);
         let steps = T::from(block.steps);
-        let position = shared * shared * steps + within * within / T::from(block.count as f64);
+        let [in_position, in_heading] = block.resolution.map(T::from);
+        let position = shared * shared * steps + within * within / T::from(block.count as f64) + in_position;
         let (shared, within) = (self.reference_heading, self.within_heading);
         let heading = match block.headings {
             0 => T::from(NOT_MEASURED * NOT_MEASURED),
-            count => shared * shared * steps + within * within / T::from(count as f64),
+            count => shared * shared * steps + within * within / T::from(count as f64) + in_heading,
         };
         let [x, y, turn] = block.velocity;
         let (x, y, turn) =
@@ -412,6 +413,8 @@ mod tests {
                     afresh: false,
                     jumped: false,
                     steps: 1.0,
+                    resolution: [1e-6, 4e-6],
+                    beside: [0.0; 2],
                 }
             })
             .collect();
@@ -428,6 +431,8 @@ mod tests {
             linear: false,
             start_seen,
             relative: false,
+            counts: [0.0; 2],
+            wheelbase: 0.34,
         }
     }
 

@@ -178,7 +178,9 @@ pub(super) fn refined(
     let with_rate = span > PIECE;
     let size = |r: &[f64; 3]| r.iter().map(|r| r * r).sum::<f64>().sqrt();
     let mut late = *from;
-    let mut widest = LEAST_SCALE;
+    // The travel in a window is known to whole counts at both ends.
+    let least = LEAST_SCALE.max(rolled.uncertain(wheelbase));
+    let mut widest = least;
     for step in 0..STEPS[0] + STEPS[1] {
         let (now, before, after) = (residuals(&late, 0.0), residuals(&late, -HALF), residuals(&late, HALF));
         // Some coordinates may have no noise at all.
@@ -186,7 +188,7 @@ pub(super) fn refined(
         widest = widest.max(scale);
         let mut sums = Sums::default();
         for (w, ((now, before), after)) in windows.iter().zip(now.iter().zip(&before).zip(&after)) {
-            let off = size(now) / scale.max(LEAST_SCALE);
+            let off = size(now) / scale.max(least);
             let weight = if step < STEPS[0] { 1.0 / off.max(1.0) } else { biweight(off / BEYOND) };
             let at = if with_rate { 0.5 * (w.from + w.to) - late.middle } else { 0.0 };
             // Derivative of the residuals by time, which is minus that by the delay.

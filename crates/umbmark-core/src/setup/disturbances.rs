@@ -46,9 +46,10 @@ pub(super) struct Leap {
 }
 
 /// Searches all runs; returns the findings of each, and the noise of a single pose. What is wrong with single `steps` of a reference that tells
-/// motion only is an accident at whatever place, also where another run has one.
-pub(super) fn search(runs: &[Vec<Sighting>], steps_only: bool) -> (Vec<Found>, PoseNoise) {
-    let (spread, noise) = Spread::of(runs);
+/// motion only is an accident at whatever place, also where another run has one. `counted`: variances of a pose \[m², rad²\] that whole counts
+/// make.
+pub(super) fn search(runs: &[Vec<Sighting>], steps_only: bool, counted: [f64; 2]) -> (Vec<Found>, PoseNoise) {
+    let (spread, noise) = Spread::of(runs, counted);
     let ways: Vec<Way> = runs.iter().map(|run| Way::cheapest(run, &spread)).collect();
     let steps: Vec<Vec<Edge>> = runs.iter().zip(&ways).map(|(run, way)| way.steps(run, &spread)).collect();
     let large = |(run, steps): (&Vec<Sighting>, &Vec<Edge>)| {
@@ -165,7 +166,7 @@ mod tests {
 
     #[test]
     fn nothing_is_found_where_nothing_is() {
-        assert!(search(&runs(6), false).0.iter().all(|found| *found == Found::default()));
+        assert!(search(&runs(6), false, [0.0; 2]).0.iter().all(|found| *found == Found::default()));
     }
 
     #[test]
@@ -175,7 +176,7 @@ mod tests {
             jump(run, 100 + 77 * index, 0.1, -0.2);
         }
         jump(&mut runs[2], 400, 0.0, 0.5);
-        let (found, noise) = search(&runs, false);
+        let (found, noise) = search(&runs, false, [0.0; 2]);
         assert!((noise.position / 2e-3 - 1.0).abs() < 0.2 && (noise.heading / 3e-3 - 1.0).abs() < 0.2, "{noise:?}");
         for (index, found) in found.iter().enumerate() {
             let expected: &[usize] = if index == 2 { &[254, 400] } else { &[100 + 77 * index] };
@@ -196,7 +197,7 @@ mod tests {
                 run[*pose].measured.0 += shift;
             }
         }
-        for (found, expected) in search(&runs, false).0.iter().zip(&wrong) {
+        for (found, expected) in search(&runs, false, [0.0; 2]).0.iter().zip(&wrong) {
             assert_eq!(found.jumps, []);
             assert_eq!(found.wrong.iter().map(|wrong| wrong.pose).collect::<Vec<_>>(), *expected);
             assert!(found.wrong.iter().all(|wrong| (0.25..1.1).contains(&wrong.moved)), "{:?}", found.wrong);
@@ -214,7 +215,7 @@ mod tests {
     fn a_slip_of_a_second_is_found_as_one_jump_and_no_pose_is_wrong() {
         let mut runs = runs(4);
         slip(&mut runs[1], 16, 0.012);
-        let (found, _) = search(&runs, false);
+        let (found, _) = search(&runs, false, [0.0; 2]);
         for (index, found) in found.iter().enumerate() {
             assert_eq!((found.wrong.len(), found.jumps.len()), (0, usize::from(index == 1)), "{found:?}");
         }
@@ -227,7 +228,7 @@ mod tests {
     fn a_robot_that_is_carried_for_two_seconds_jumps_once() {
         let mut runs = runs(4);
         slip(&mut runs[2], 40, 0.1);
-        let (found, _) = search(&runs, false);
+        let (found, _) = search(&runs, false, [0.0; 2]);
         assert_eq!(found.iter().map(|found| found.jumps.len()).collect::<Vec<_>>(), [0, 0, 1, 0]);
         assert!(found.iter().all(|found| found.wrong.is_empty()), "{found:?}");
         let jump = found[2].jumps[0];
@@ -244,7 +245,7 @@ mod tests {
                 }
             }
         }
-        assert!(search(&runs, false).0.iter().all(|found| found.jumps.is_empty()));
+        assert!(search(&runs, false, [0.0; 2]).0.iter().all(|found| found.jumps.is_empty()));
         let mut runs = self::runs(6);
         for run in &mut runs {
             let at = run.iter().position(|pose| pose.rolled > 3.0).unwrap();
@@ -252,7 +253,7 @@ mod tests {
                 jump(run, pose, 0.0, 0.012);
             }
         }
-        assert!(search(&runs, false).0.iter().all(|found| found.jumps.is_empty()));
+        assert!(search(&runs, false, [0.0; 2]).0.iter().all(|found| found.jumps.is_empty()));
     }
 
     #[test]
@@ -262,6 +263,6 @@ mod tests {
             let at = run.iter().position(|pose| pose.rolled > 3.0).unwrap();
             jump(run, at, 0.0, 0.1);
         }
-        assert!(search(&runs, false).0.iter().all(|found| found.jumps.is_empty()));
+        assert!(search(&runs, false, [0.0; 2]).0.iter().all(|found| found.jumps.is_empty()));
     }
 }

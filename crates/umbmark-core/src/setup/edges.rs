@@ -58,8 +58,10 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    /// From all runs, with the noise of a single pose: half the variance between two poses at the same place.
-    pub fn of(runs: &[Vec<Sighting>]) -> (Spread, PoseNoise) {
+    /// From all runs, with the noise of a single pose: half the variance between two poses at the same place. Neither is below what whole
+    /// counts make, of which `counted` holds the variances of a pose \[m², rad²\]: most poses may be measured at rest, where the counts say
+    /// the same.
+    pub fn of(runs: &[Vec<Sighting>], counted: [f64; 2]) -> (Spread, PoseNoise) {
         let mut edges: Vec<(f64, f64, Option<f64>)> = Vec::new();
         for run in runs {
             for over in OVER {
@@ -82,6 +84,8 @@ impl Spread {
         }
         let least = |line: [f64; 2], least: f64| [line[0].max(least * least), line[1]];
         let [steps, turns] = rounded(runs);
+        let [steps, turns] =
+            [(steps, counted[0]), (turns, counted[1])].map(|(step, counted)| step.max((2.0 * counted).sqrt()));
         let (position, heading) = (least(rising(&positions), steps), least(rising(&headings), turns));
         let noise = PoseNoise { position: (0.5 * position[0]).sqrt(), heading: (0.5 * heading[0]).sqrt() };
         (Spread { position: least(position, LEAST[0]), heading: least(heading, LEAST[1]) }, noise)

@@ -11,6 +11,8 @@ struct Drive {
     /// How the robot drives for so long \[s\].
     driven: fn(f64, &mut Stream) -> driven::Driven,
     wiring: Wiring,
+    /// Counts of a turn of a wheel.
+    counts: f64,
     /// Delay of the stamps in each run \[s\], the first of them also where there are no more, and what is added each second.
     delays: Vec<f64>,
     rate: f64,
@@ -38,6 +40,7 @@ fn clean() -> Drive {
     Drive {
         driven: driven::free,
         wiring: Wiring::default(),
+        counts: 20_000.0,
         delays: vec![0.0],
         rate: 0.0,
         body: Pose2::IDENTITY,
@@ -52,14 +55,18 @@ fn clean() -> Drive {
 }
 
 fn robot() -> Robot {
-    Robot {
-        name: "free".into(),
-        drive: DifferentialDrive::new(WHEELBASE, 0.1, 0.1).unwrap().into(),
-        encoder: Encoder::new(20_000.0, None, None).unwrap(),
-    }
+    clean().robot()
 }
 
 impl Drive {
+    fn robot(&self) -> Robot {
+        Robot {
+            name: "free".into(),
+            drive: DifferentialDrive::new(WHEELBASE, 0.1, 0.1).unwrap().into(),
+            encoder: Encoder::new(self.counts, None, None).unwrap(),
+        }
+    }
+
     fn runs(&self) -> Vec<Run> {
         (0..self.runs).map(|run| self.run(run)).collect()
     }
@@ -68,7 +75,7 @@ impl Drive {
         let mut stream = Stream::new(self.seed, 0, run as u64);
         let driven = (self.driven)(self.seconds, &mut stream);
         let delay = self.delays.get(run).copied().unwrap_or(self.delays[0]);
-        let per_tick = robot().metres_per_tick();
+        let per_tick = self.robot().metres_per_tick();
         let mut log = TickLog::default();
         let mut counters = [Vec::new(), Vec::new()];
         for sample in 0..(RATE * self.seconds) as usize {
@@ -100,7 +107,7 @@ impl Drive {
     }
 
     fn found(&self) -> Setup {
-        Setup::of(&self.runs(), &robot(), None)
+        Setup::of(&self.runs(), &self.robot(), None)
     }
 }
 
@@ -272,6 +279,16 @@ fn a_delay_of_either_sign_is_found_in_all_runs_and_in_each() {
         assert_eq!((found.faults.len(), found.disturbances()), (0, [0, 0]), "{delay}");
         near(found.mounting.map(|m| m.delay), delay, 5e-3);
         assert!(found.runs.iter().all(|run| (run.delay.unwrap().value - delay).abs() < 8e-3), "{:?}", found.runs);
+    }
+}
+
+/// Counts of 12 mm: a pose at rest is off by up to two degrees, and stays so until the robot moves.
+#[test]
+fn coarse_counters_show_no_delay_that_is_not_there_and_make_no_pose_wrong() {
+    for (seed, delay) in [(40, 0.0), (41, 0.0), (42, 0.0), (43, 0.0), (44, 0.1), (45, -0.06)] {
+        let found = Drive { counts: 26.0, delays: vec![delay], runs: 6, seed, ..clean() }.found();
+        assert_eq!((found.faults.len(), found.disturbances()), (0, [0, 0]), "{seed} {:?}", found.runs);
+        near(found.mounting.map(|mounting| mounting.delay), delay, 1e-2);
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::drive::{Robot, WheelTravel};
 use crate::geometry::wrap;
 use crate::run::TickLog;
+use crate::run::resolution::hidden;
 
 /// Length of a window \[s\], where both are sampled faster.
 const LENGTH: f64 = 0.4;
@@ -101,10 +102,19 @@ pub(super) struct Rolling {
     pub area: f64,
 }
 
+/// Counters are coarse if a travel is uncertain by this \[m\].
+const COARSE: f64 = 1e-3;
+/// Their counts are averaged over this time before and after \[s\], or over two readings where these take longer.
+const LONG: f64 = 0.1;
+
 /// How far the wheels have rolled by any time, as the counts say.
 pub(super) struct Rolled<'a> {
-    log: &'a TickLog,
-    per_tick: WheelTravel,
+    times: &'a [f64],
+    /// How far the left and the right wheel roll in one count \[m\]; 0 where readings are not whole counts.
+    pub counts: [f64; 2],
+    /// Travel of both wheels from the first sample to each \[m\]. That of coarse counters is smooth: the line between two readings is nearer
+    /// to the wheels in its middle than at the readings, so a delay of half a reading would seem to agree best.
+    travel: Vec<[f64; 2]>,
     /// ½ ∫ (r dl - l dr) from the first sample to each \[m²\].
     areas: Vec<f64>,
     /// Samples a second, on average.
@@ -116,25 +126,56 @@ type Rolls = ([f64; 2], f64);
 
 impl<'a> Rolled<'a> {
     pub fn new(log: &'a TickLog, robot: &Robot) -> Rolled<'a> {
-        let span = log.time.last().zip(log.time.first()).map_or(0.0, |(last, first)| last - first);
-        let rate = if span > 0.0 { (log.time.len() - 1) as f64 / span } else { 0.0 };
-        let mut rolled = Rolled { log, per_tick: robot.metres_per_tick(), areas: vec![0.0; log.time.len()], rate };
-        for sample in 1..log.time.len() {
-            let (from, to) = (rolled.travel(sample - 1), rolled.travel(sample));
-            rolled.areas[sample] = rolled.areas[sample - 1] + swept(from, to);
+        let times = &log.time[..];
+        let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+        let rate = if span > 0.0 { (times.len() - 1) as f64 / span } else { 0.0 };
+        let WheelTravel { left, right } = robot.metres_per_tick();
+        let counted = log.left.iter().zip(&log.right);
+        let travel = counted.map(|(l, r)| [(l - log.left[0]) * left, (r - log.right[0]) * right]).collect();
+        let (counts, areas) = (log.count_lengths(robot), vec![0.0; times.len()]);
+        let mut rolled = Rolled { times, counts, travel, areas, rate };
+        if rolled.uncertain(robot.drive.wheelbase()) > COARSE {
+            let readings: Vec<f64> = (0..times.len()).filter(|k| !log.is_put_in(*k)).map(|k| times[k]).collect();
+            rolled.travel = rolled.smooth(LONG.max(2.0 * usual_step(&readings)));
+        }
+        for sample in 1..times.len() {
+            rolled.areas[sample] = rolled.areas[sample - 1] + swept(rolled.travel[sample - 1], rolled.travel[sample]);
         }
         rolled
     }
 
-    /// Travel of both wheels from the first sample to this one \[m\].
-    fn travel(&self, sample: usize) -> [f64; 2] {
-        let WheelTravel { left, right } = self.per_tick;
-        [(self.log.left[sample] - self.log.left[0]) * left, (self.log.right[sample] - self.log.right[0]) * right]
+    /// Standard deviation of a travel that whole counts at both ends make \[m\], of a coordinate of the robot.
+    pub fn uncertain(&self, wheelbase: f64) -> f64 {
+        hidden(self.counts, [2.0; 2], wheelbase)[0].sqrt()
+    }
+
+    /// The travel of each sample, averaged over this time before and after \[s\]; near the ends over less, but as long before as after.
+    fn smooth(&self, half: f64) -> Vec<[f64; 2]> {
+        // ∫ travel dt.
+        let mut sums = vec![[0.0; 2]; self.times.len()];
+        for (k, (travel, times)) in (1..).zip(self.travel.windows(2).zip(self.times.windows(2))) {
+            let half = 0.5 * (times[1] - times[0]);
+            sums[k] = [0, 1].map(|wheel| sums[k - 1][wheel] + half * (travel[0][wheel] + travel[1][wheel]));
+        }
+        let sum = |time: f64| {
+            let (before, now) = self.on_the_line(time);
+            let (since, from) = (time - self.times[before], self.travel[before]);
+            [0, 1].map(|wheel| sums[before][wheel] + 0.5 * since * (from[wheel] + now[wheel]))
+        };
+        let of = |(time, own): (&f64, &[f64; 2])| {
+            let half = half.min(time - self.times[0]).min(self.times[self.times.len() - 1] - time);
+            if half <= 0.0 {
+                return *own;
+            }
+            let (since, until) = (sum(time - half), sum(time + half));
+            [0, 1].map(|wheel| (until[wheel] - since[wheel]) / (2.0 * half))
+        };
+        self.times.iter().zip(&self.travel).map(of).collect()
     }
 
     /// Number of samples up to a time; the search starts where uniform sampling would place it.
     fn after(&self, time: f64) -> usize {
-        let times = &self.log.time;
+        let times = self.times;
         let guess = ((time - times[0]) * self.rate) as usize + 1;
         let mut at = guess.min(times.len());
         while at < times.len() && times[at] <= time {
@@ -146,17 +187,22 @@ impl<'a> Rolled<'a> {
         at
     }
 
-    /// By a time: linear between samples, and beyond the ends as in the next one.
-    fn at(&self, time: f64) -> Rolls {
-        let times = &self.log.time;
+    /// The sample before a time, and the travel by then: linear between samples, and beyond the ends as in the next one.
+    fn on_the_line(&self, time: f64) -> (usize, [f64; 2]) {
+        let times = self.times;
         let after = self.after(time).clamp(1, times.len().max(2) - 1);
         let before = after - 1;
         let after = after.min(times.len() - 1);
         let span = times[after] - times[before];
         let share = if span > 0.0 { ((time - times[before]) / span).clamp(-50.0, 50.0) } else { 0.0 };
-        let (from, to) = (self.travel(before), self.travel(after));
-        let now = [0, 1].map(|wheel| from[wheel] + share * (to[wheel] - from[wheel]));
-        (now, self.areas[before] + swept(from, now))
+        let (from, to) = (self.travel[before], self.travel[after]);
+        (before, [0, 1].map(|wheel| from[wheel] + share * (to[wheel] - from[wheel])))
+    }
+
+    /// By a time.
+    fn at(&self, time: f64) -> Rolls {
+        let (before, now) = self.on_the_line(time);
+        (now, self.areas[before] + swept(self.travel[before], now))
     }
 
     /// What lies between two times.

@@ -164,11 +164,14 @@ fn random_walk(run: &ObservedRun, noise: &Noise, single: PoseNoise, stream: &mut
         let at_mean = before + mean;
         let (x, y) = (block.place.x, block.place.y);
         let measured = draw(stream);
-        let own = |shared: f64, single: f64, count: usize| {
-            (shared * shared * block.steps + single * single / count.max(1) as f64).sqrt()
+        let [in_position, in_heading] = block.resolution;
+        let own = |shared: f64, [within, single]: [f64; 2], count: usize, hidden: f64| {
+            let of_mean = |sd: f64| sd * sd / count.max(1) as f64;
+            (shared * shared * block.steps + of_mean(single).max(of_mean(within) + hidden)).sqrt()
         };
-        let position = own(noise.reference_position, noise.within_position.max(single.position), block.count);
-        let heading = own(noise.reference_heading, noise.within_heading.max(single.heading), block.headings);
+        let (position, heading) = ([noise.within_position, single.position], [noise.within_heading, single.heading]);
+        let position = own(noise.reference_position, position, block.count, in_position);
+        let heading = own(noise.reference_heading, heading, block.headings, in_heading);
         let time = late + noise.reference_time * stream.normal();
         [
             at_mean[0] - y * at_mean[2] + position * measured[0] + time * block.velocity[0],

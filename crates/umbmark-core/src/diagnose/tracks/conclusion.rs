@@ -56,7 +56,7 @@ impl Conclusion {
         let remains = remains_of(last, options);
         let mut reasons = doubts_of(last, options);
         reasons.extend(reason_to_doubt(repeats.as_ref()));
-        reasons.extend(Reason::of_remains(&remains, last.fitted.observed.resolution));
+        reasons.extend(Reason::of_remains(&remains, last.fitted.observed.resolution()));
         let (mut experiments, mut hints) = (Vec::new(), Vec::new());
         for (exam, added) in search.exams.iter().zip(&search.added) {
             let (told, hint) = next_experiments(exam, added)?;

@@ -57,7 +57,7 @@ pub(crate) fn doubts_as_written(
     );
     let left: Vec<Column> = columns.iter().map(|columns| less(columns, &[])).collect();
     let remains = chance::remains(&fixed.observed, &noise, &left, &errors.in_sample(), options);
-    reasons.extend(Reason::of_remains(&remains, fixed.observed.resolution));
+    reasons.extend(Reason::of_remains(&remains, fixed.observed.resolution()));
     (reasons, Some(remains))
 }
 

@@ -46,6 +46,8 @@ pub(super) fn blocks(
             afresh: jumped,
             jumped,
             steps: 1.0,
+            resolution: [0.0; 2],
+            beside: [0.0; 2],
         });
         first += count;
     }

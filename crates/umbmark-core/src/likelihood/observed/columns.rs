@@ -56,9 +56,9 @@ impl ObservedRun {
         }
     }
 
-    /// Mean squared difference of successive residuals within blocks, halved: variance of one reference pose (position per coordinate
-    /// \[m²\], heading \[rad²\]) and how many differences it was taken from. The chain is that of the model about which the run is
-    /// linearised.
+    /// Sum of the squared differences of successive residuals within blocks, halved and less what the resolution of the counters gives: the
+    /// variance of one reference pose (position per coordinate \[m²\], heading \[rad²\]) times the number of differences, and that number. The
+    /// chain is that of the model about which the run is linearised.
     pub fn scatter_within_blocks(&self, chain: &Chain<f64>) -> [(f64, usize); 2] {
         let mut raw = Vec::with_capacity(self.seen.len());
         self.sighted(chain, &mut |i, pose| {
@@ -67,11 +67,12 @@ impl ObservedRun {
         });
         let (mut position, mut heading) = ((0.0, 0), (0.0, 0));
         for block in &self.blocks {
-            for pair in raw[block.first..block.first + block.count].windows(2) {
+            for (index, pair) in (block.first..).zip(raw[block.first..block.first + block.count].windows(2)) {
                 let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
-                position = (position.0 + 0.25 * (dx * dx + dy * dy), position.1 + 1);
+                let counted = self.hidden(self.have_turned(index).map(f64::from));
+                position = (position.0 + 0.25 * (dx * dx + dy * dy) - counted[0], position.1 + 1);
                 if let (Some(a), Some(b)) = (pair[0].2, pair[1].2) {
-                    heading = (heading.0 + 0.5 * (b - a) * (b - a), heading.1 + 1);
+                    heading = (heading.0 + 0.5 * (b - a) * (b - a) - counted[1], heading.1 + 1);
                 }
             }
         }

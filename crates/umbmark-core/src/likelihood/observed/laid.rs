@@ -29,6 +29,9 @@ impl ObservedRun {
             let tracked = &tracked[own];
             block.place = Pose2::new(mean(tracked, |p| p.x), mean(tracked, |p| p.y), mean(places, |p| p.heading));
             block.velocity = velocity(places, tracked, moments);
+            let beside = moments.iter().map(|moment| walk.beside_at(moment));
+            block.beside =
+                beside.fold([0.0; 2], |sum, at| std::array::from_fn(|k| sum[k] + at[k] / block.count as f64));
             [block.growth, block.growth_seen, block.growth_of_mean] =
                 walk.growths(before, moments.iter().map(Moment::reached));
             before = moments.last().map_or(before, Moment::reached).max(before);
@@ -82,7 +85,9 @@ impl ObservedRun {
             } else {
                 let square = off[index - 1] * off[index];
                 let (from, to) = (self.blocks[index - 1].place, block.place);
-                (x, y) = (x + 0.5 * square * (to.x - from.x), y + 0.5 * square * (to.y - from.y));
+                let [aside_x, aside_y] = [0, 1].map(|k| block.beside[k] - self.blocks[index - 1].beside[k]);
+                x += 0.5 * square * (to.x - from.x) - aside_x;
+                y += 0.5 * square * (to.y - from.y) - aside_y;
             }
             for place in &mut seen[block.first..block.first + block.count] {
                 (place.0, place.1) = (place.0 + x, place.1 + y);

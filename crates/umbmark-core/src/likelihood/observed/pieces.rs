@@ -86,7 +86,7 @@ fn piece(run: &ObservedRun, own: Range<usize>, robot: &Robot) -> Option<Observed
     let start_seen = begins.is_some() || run.start_seen;
     let of_blocks = run.blocks.iter().filter(|block| run.relative && own.contains(&block.first));
     let added = of_blocks.map(|block| block.steps).collect();
-    let seen = Seen { measured: measured.into(), jumps: &jumps, start_seen, added };
+    let seen = Seen { measured: measured.into(), jumps: &jumps, start_seen, added, counts: run.counts };
     let mut piece = ObservedRun::laid(&run.log, run.direction, track, seen, &model);
     piece.name = format!("{}, {from:.0} to {to:.0} s", run.log);
     (piece.blocks.len() >= FEWEST).then_some(piece)

@@ -7,15 +7,13 @@ use crate::drive::Robot;
 use crate::run::TickLog;
 use std::ops::Range;
 
-/// Counts that are not whole and lie so near to the line between their neighbours were put in between readings \[counts\].
-const ON_THE_LINE: f64 = 0.01;
 /// Counts on that line may be off by this \[m\], or by this share of a count where that is more.
 const UNEVEN: f64 = 0.2e-3;
 const UNEVEN_COUNTS: f64 = 0.25;
 
 /// Which poses of a log say nothing that the nearest pose to a reading does not say better, `late` being the delay of the poses \[s\].
 pub(super) fn between_readings(log: &TickLog, robot: &Robot, late: f64) -> Vec<bool> {
-    let readings: Vec<usize> = (0..log.time.len()).filter(|sample| !is_put_in(log, *sample)).collect();
+    let readings: Vec<usize> = (0..log.time.len()).filter(|sample| !log.is_put_in(*sample)).collect();
     let mut left_out = vec![false; log.reference.len()];
     if readings.len() == log.time.len() {
         return left_out;
@@ -75,23 +73,6 @@ impl Interval {
             changes.fold(0.0, f64::max) * duration / 8.0
         })
     }
-}
-
-/// Whether the counts of a sample were put in on the line between its neighbours, for a pose.
-fn is_put_in(log: &TickLog, sample: usize) -> bool {
-    let Some(before) = sample.checked_sub(1) else { return false };
-    let after = sample + 1;
-    if after >= log.time.len() || log.reference.binary_search_by_key(&sample, |pose| pose.sample).is_err() {
-        return false;
-    }
-    let share = (log.time[sample] - log.time[before]) / (log.time[after] - log.time[before]);
-    let is_whole = |counts: &[f64]| counts[sample].fract() == 0.0;
-    let is_on_the_line = |counts: &[f64]| {
-        let line = counts[before] + share * (counts[after] - counts[before]);
-        (counts[sample] - line).abs() < ON_THE_LINE
-    };
-    let [left, right] = [&log.left[..], &log.right[..]];
-    is_on_the_line(left) && is_on_the_line(right) && !(is_whole(left) && is_whole(right))
 }
 
 #[cfg(test)]

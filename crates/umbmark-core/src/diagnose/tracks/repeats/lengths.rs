@@ -63,7 +63,6 @@ mod tests {
             robot: Robot::labmate(),
             runs: Vec::new(),
             path: Some(Path::umbmark()),
-            resolution: [0.0; 2],
             setup: Default::default(),
         };
         let of = |value: f64, standard_error: f64| {
