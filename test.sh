@@ -121,9 +121,9 @@ begin 'Python: types'
     --allowlist "$package/stubtest-allowlist.txt" umbmark
 
 begin 'Python: tests'
-"$python" -m pytest "$package"
-"$python" -m pytest --config-file "$package/pyproject.toml" tests/reference
-"$python" -m pytest --config-file "$package/pyproject.toml" tests/worlds
+"$python" -m pytest --numprocesses auto "$package"
+"$python" -m pytest --numprocesses auto --config-file "$package/pyproject.toml" tests/reference
+"$python" -m pytest --numprocesses auto --config-file "$package/pyproject.toml" tests/worlds
 
 begin 'Python: notebooks'
 # Jupyter and matplotlib write into the home folder unless they are told otherwise.
@@ -132,7 +132,7 @@ export IPYTHONDIR=$made JUPYTER_CONFIG_DIR=$made JUPYTER_DATA_DIR=$made JUPYTER_
 for notebook in notebooks/*.py; do
     "$python" -m jupytext --quiet --to ipynb --output "$made/$(basename "$notebook" .py).ipynb" "$notebook"
 done
-"$python" -m pytest --nbmake --config-file "$package/pyproject.toml" "$made"
+"$python" -m pytest --numprocesses auto --nbmake --config-file "$package/pyproject.toml" "$made"
 rm -rf "$made"
 
 begin 'Report: in a browser'
@@ -140,7 +140,7 @@ if ! command -v chromedriver > /dev/null && [ "$(id -u)" = 0 ] && command -v apt
     install_chromium || true
 fi
 command -v chromedriver > /dev/null || echo 'skipped in part: chromium and chromium-driver are not installed'
-"$python" -m pytest --config-file "$package/pyproject.toml" tests/report
+"$python" -m pytest --numprocesses auto --config-file "$package/pyproject.toml" tests/report
 
 end_section
 printf '\nall tests passed in %d s\n' "$SECONDS"
