@@ -8,6 +8,7 @@ mod readings;
 mod resolution;
 mod starts;
 mod steps;
+mod uneven;
 mod walk;
 
 use crate::dataset::Dataset;
@@ -87,9 +88,9 @@ pub struct Block {
     /// Variances of the mean of its observations that the resolution of the counters gives: of a coordinate \[m²\] and of the heading
     /// \[rad²\].
     pub resolution: [f64; 2],
-    /// Where the middle of its observations lies beside the predicted path because the wheels did not turn evenly between readings, summed
-    /// up since the run began \[m\].
-    pub beside: [f64; 2],
+    /// How far its observations are from the predicted poses, in the mean, because the wheels did not turn evenly between readings
+    /// \[m, m, rad\].
+    pub beside: [f64; 3],
 }
 
 /// A run, ready to be predicted.
@@ -124,6 +125,8 @@ pub struct ObservedRun {
     pub counts: [f64; 2],
     /// Nominal distance of the wheels \[m\].
     pub wheelbase: f64,
+    /// Times at which the counters were read, since the log began \[s\]; none of a run that was not recorded.
+    pub readings: Arc<[f64]>,
 }
 
 /// All runs of the regular test that were observed on the way.
@@ -204,6 +207,7 @@ struct Seen<'a> {
     /// Of a reference that tells motion only, how many of its steps are added up to each measurement; empty of others.
     added: Vec<f64>,
     counts: [f64; 2],
+    readings: Arc<[f64]>,
 }
 
 impl ObservedRun {
@@ -239,7 +243,9 @@ impl ObservedRun {
         let at_start = track.seen_after().first().is_some_and(|made| track.way_before(*made) < AT_START);
         let start_seen = at_start || log.start.known == StartKnown::OnTheWay;
         let added: Vec<f64> = if log.relative { steps::added_up(&kept) } else { Vec::new() };
-        let seen = Seen { measured, jumps: &jumps, start_seen, added, counts: log.count_lengths(robot) };
+        let readings = (0..log.time.len()).filter(|sample| !log.is_put_in(*sample));
+        let readings = readings.map(|sample| log.time[sample] - log.time[0]).collect();
+        let seen = Seen { measured, jumps: &jumps, start_seen, added, counts: log.count_lengths(robot), readings };
         let observed = ObservedRun::laid(&run.name, run.direction, track, seen, &Model::new(robot));
         Ok((observed.blocks.len() >= FEWEST).then_some(observed))
     }
@@ -247,7 +253,8 @@ impl ObservedRun {
     /// A run yet to be driven, as a model predicts it; `headings` says whether they will be measured.
     pub fn planned(track: Track, direction: Direction, headings: bool, model: &Model) -> ObservedRun {
         let measured = track.sights().iter().map(|_| (0.0, 0.0, headings.then_some(0.0))).collect();
-        let seen = Seen { measured, jumps: &[], start_seen: true, added: Vec::new(), counts: [0.0; 2] };
+        let seen =
+            Seen { measured, jumps: &[], start_seen: true, added: Vec::new(), counts: [0.0; 2], readings: [].into() };
         ObservedRun::laid("", Some(direction), track, seen, model)
     }
 
@@ -256,7 +263,7 @@ impl ObservedRun {
         name: &str,
         direction: Option<Direction>,
         track: Track,
-        Seen { measured, jumps, start_seen, added, counts }: Seen,
+        Seen { measured, jumps, start_seen, added, counts, readings }: Seen,
         model: &Model,
     ) -> ObservedRun {
         let chain = model.chain();
@@ -280,6 +287,7 @@ impl ObservedRun {
             relative,
             counts,
             wheelbase: model.robot().drive.wheelbase(),
+            readings,
         };
         observed.resolve();
         observed.lay_along(&chain);

@@ -414,7 +414,7 @@ mod tests {
                     jumped: false,
                     steps: 1.0,
                     resolution: [1e-6, 4e-6],
-                    beside: [0.0; 2],
+                    beside: [0.0; 3],
                 }
             })
             .collect();
@@ -433,6 +433,7 @@ mod tests {
             relative: false,
             counts: [0.0; 2],
             wheelbase: 0.34,
+            readings: [].into(),
         }
     }
 

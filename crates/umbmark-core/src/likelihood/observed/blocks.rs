@@ -47,7 +47,7 @@ pub(super) fn blocks(
             jumped,
             steps: 1.0,
             resolution: [0.0; 2],
-            beside: [0.0; 2],
+            beside: [0.0; 3],
         });
         first += count;
     }

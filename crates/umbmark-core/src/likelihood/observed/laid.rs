@@ -1,5 +1,6 @@
 //! A run linearised about a model: places its blocks, and aligns its measured poses with the prediction where it starts and restarts.
 
+use super::uneven::Uneven;
 use super::walk::{Walk, velocity};
 use super::{Block, ObservedRun};
 use crate::effect::Chain;
@@ -21,6 +22,7 @@ impl ObservedRun {
         // A wrong heading moves the tracked point, which may be off the middle of the axle.
         let mut tracked = Vec::with_capacity(self.places.len());
         self.sighted(chain, &mut |_, pose| tracked.push(*pose));
+        let uneven = Uneven::new(&self.track, &walk.places, &self.readings);
         let mut before = 0.0;
         for block in &mut self.blocks {
             let own = block.first..block.first + block.count;
@@ -29,9 +31,8 @@ impl ObservedRun {
             let tracked = &tracked[own];
             block.place = Pose2::new(mean(tracked, |p| p.x), mean(tracked, |p| p.y), mean(places, |p| p.heading));
             block.velocity = velocity(places, tracked, moments);
-            let beside = moments.iter().map(|moment| walk.beside_at(moment));
-            block.beside =
-                beside.fold([0.0; 2], |sum, at| std::array::from_fn(|k| sum[k] + at[k] / block.count as f64));
+            let mean = |k: usize| moments.iter().map(|moment| uneven.at(moment)[k]).sum::<f64>() / block.count as f64;
+            block.beside = [0, 1, 2].map(mean);
             [block.growth, block.growth_seen, block.growth_of_mean] =
                 walk.growths(before, moments.iter().map(Moment::reached));
             before = moments.last().map_or(before, Moment::reached).max(before);
@@ -68,7 +69,7 @@ impl ObservedRun {
         }
     }
 
-    /// Removes from the residuals the terms of second order in heading errors.
+    /// Removes from the residuals the terms of second order in heading errors, and what lies beside the arcs of the odometry ([`Uneven`]).
     ///
     /// Where the heading is off by θ(s), the robot stands off by ∫ (R(θ) - 1) dp, dp its predicted way: to first order ∫ θ J dp, which the
     /// filter and the columns contain, and to second order -½ ∫ θ² dp, which would look like wheels that are too large. θ² is taken as the
@@ -91,6 +92,7 @@ impl ObservedRun {
             }
             for place in &mut seen[block.first..block.first + block.count] {
                 (place.0, place.1) = (place.0 + x, place.1 + y);
+                place.2 = place.2.map(|heading| heading - block.beside[2]);
             }
         }
         self.seen = seen.into();

@@ -8,6 +8,7 @@ use crate::drive::Robot;
 use crate::effect::Model;
 use crate::geometry::Pose2;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// If there are fewer runs than this, long ones are cut, into this many pieces in total.
 const FEW: usize = 6;
@@ -86,7 +87,14 @@ fn piece(run: &ObservedRun, own: Range<usize>, robot: &Robot) -> Option<Observed
     let start_seen = begins.is_some() || run.start_seen;
     let of_blocks = run.blocks.iter().filter(|block| run.relative && own.contains(&block.first));
     let added = of_blocks.map(|block| block.steps).collect();
-    let seen = Seen { measured: measured.into(), jumps: &jumps, start_seen, added, counts: run.counts };
+    let seen = Seen {
+        measured: measured.into(),
+        jumps: &jumps,
+        start_seen,
+        added,
+        counts: run.counts,
+        readings: Arc::clone(&run.readings),
+    };
     let mut piece = ObservedRun::laid(&run.log, run.direction, track, seen, &model);
     piece.name = format!("{}, {from:.0} to {to:.0} s", run.log);
     (piece.blocks.len() >= FEWEST).then_some(piece)
