@@ -267,7 +267,7 @@ def test_what_other_packages_write_calibrates_as_the_csv_does(
     assert_same_setup(theirs.pop("setup"), ours.pop("setup"))
     expected = list(numbers(ours))
     assert len(expected) > 50
-    # Stamps in whole nanoseconds move what is fitted within the tolerance of the fit (a step of 1e-7),
+    # Stamps in whole nanoseconds move what is fitted within the tolerance of the fit (1e-7 a step),
     # and with it the end of a drive of eight metres.
     assert list(numbers(theirs)) == pytest.approx(expected, rel=1e-6, abs=1e-7)
 
