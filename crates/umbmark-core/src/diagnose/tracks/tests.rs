@@ -54,7 +54,7 @@ fn a_slope_that_is_hidden_in_tracks_is_certified_with_its_size() {
         let mut class = found.class.clone();
         class.sort_unstable();
         assert_eq!(class, ["carpet_nap", "floor_slope"]);
-        assert!(found.p < 1e-20 && found.p_adjusted < 2e-3, "{found:?}");
+        assert!(found.p < 1e-20 && found.p_adjusted < 1e-3, "{found:?}");
         model.add("floor_slope").unwrap().free = true;
         let fitted = estimates(&fit(&observed, &model).unwrap());
         let of_slope: Vec<_> = fitted.iter().filter(|estimate| estimate.effect == "floor_slope").collect();
