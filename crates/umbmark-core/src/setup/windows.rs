@@ -103,7 +103,7 @@ pub(super) struct Rolling {
 }
 
 /// Counters are coarse if a travel is uncertain by this \[m\].
-const COARSE: f64 = 1e-3;
+const COARSE: f64 = 2.5e-4;
 /// Their counts are averaged over this time before and after \[s\], or over two readings where these take longer.
 const LONG: f64 = 0.1;
 
