@@ -1,6 +1,6 @@
 //! The covariance of a pose, and how it grows.
 
-use crate::geometry::{Displacement2, Pose2};
+use crate::geometry::{Displacement2, Pose2, Real};
 
 /// Sizes of the noise of the wheels, by which the covariance of a pose grows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -54,7 +54,7 @@ impl Spread {
         let (ahead, aside, square) = if chord > SPOT * rolled * rolled {
             (dx, dy, chord)
         } else {
-            let (sine, cosine) = libm::sincos(from.heading + 0.5 * motion.rotation);
+            let (sine, cosine) = (from.heading + 0.5 * motion.rotation).sine_cosine();
             (cosine, sine, 1.0)
         };
         let along = (forward - sideways) * rolled / square;

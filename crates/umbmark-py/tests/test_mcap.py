@@ -231,15 +231,15 @@ def numbers(value: Any) -> Iterator[float]:
 
 
 def assert_same_setup(theirs: Any, ours: Any) -> None:
-    """Compare findings; what was estimated, within a twentieth of its standard error.
+    """Compare findings; what was estimated, within a hundredth of its standard error.
 
     Estimates rest on windows of the motion, and stamps in nanoseconds move a row across the edge of
     one.
     """
     if isinstance(ours, dict) and "std_error" in ours:
-        allowed = 0.05 * ours["std_error"]
+        allowed = 0.01 * ours["std_error"]
         assert theirs["value"] == pytest.approx(ours["value"], rel=0, abs=allowed)
-        assert theirs["std_error"] == pytest.approx(ours["std_error"], rel=0.05)
+        assert theirs["std_error"] == pytest.approx(ours["std_error"], rel=0.01)
     elif isinstance(ours, dict):
         assert theirs.keys() == ours.keys()
         for key, value in ours.items():
@@ -267,9 +267,8 @@ def test_what_other_packages_write_calibrates_as_the_csv_does(
     assert_same_setup(theirs.pop("setup"), ours.pop("setup"))
     expected = list(numbers(ours))
     assert len(expected) > 50
-    # Stamps in whole nanoseconds move what is fitted within the tolerance of the fit (1e-7 a step),
-    # and with it the end of a drive of eight metres.
-    assert list(numbers(theirs)) == pytest.approx(expected, rel=1e-6, abs=1e-7)
+    # Stamps since an epoch have other last bits, and the search for the noise may end 1e-10 m away.
+    assert list(numbers(theirs)) == pytest.approx(expected, rel=1e-6, abs=1e-9)
 
 
 @pytest.fixture(scope="session")

@@ -7,6 +7,9 @@ type Point = SVector<f64, EIGHT>;
 
 /// Step of the finite differences for slopes.
 const NEAR: f64 = 1e-3;
+/// Step of the finite differences for curvatures: their error, that of the cost by the square of the step, must not reach the point that is
+/// found, or other last bits of the data lead elsewhere.
+const FAR: f64 = 0.03;
 /// Step lengths that are tried, in units of the quasi-Newton step.
 const LENGTHS: [f64; EIGHT] = [2.0, 1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 0.001];
 /// Stops when a step gains less than this.
@@ -45,15 +48,18 @@ impl Descent {
             Point::from(cost(&points))
         };
         let mut least = cost(&[self.here(); EIGHT])[0];
-        let above = around(&self.at, NEAR);
-        let mut slope = (above - Point::repeat(least)) / NEAR;
-        let mut inverse = self.inverse.unwrap_or_else(|| {
-            let below = around(&self.at, -NEAR);
-            slope = (above - below) / (2.0 * NEAR);
-            let curvature = (above + below - Point::repeat(2.0 * least)) / (NEAR * NEAR);
-            // Far from the minimum, the slope indicates its distance better than the curvature.
-            SMatrix::from_diagonal(&curvature.zip_map(&slope, |c, s| 1.0 / c.max(s.abs()).max(FLATTEST)))
-        });
+        let slope_at = |at: &Point, here: f64| (around(at, NEAR) - Point::repeat(here)) / NEAR;
+        let (mut slope, mut inverse) = match self.inverse {
+            Some(inverse) => (slope_at(&self.at, least), inverse),
+            None => {
+                let (above, below) = (around(&self.at, FAR), around(&self.at, -FAR));
+                let slope = (above - below) / (2.0 * FAR);
+                let curvature = (above + below - Point::repeat(2.0 * least)) / (FAR * FAR);
+                // Far from the minimum, the slope indicates its distance better than the curvature.
+                let inverse = curvature.zip_map(&slope, |c, s| 1.0 / c.max(s.abs()).max(FLATTEST));
+                (slope, SMatrix::from_diagonal(&inverse))
+            }
+        };
         for _ in 0..STEPS {
             let step: Point = -inverse * slope;
             let points = LENGTHS.map(|length| self.at + step * length);
@@ -66,7 +72,7 @@ impl Descent {
             if gain < ENOUGH {
                 break;
             }
-            let now = (around(&self.at, NEAR) - Point::repeat(least)) / NEAR;
+            let now = slope_at(&self.at, least);
             let turned = now - slope;
             slope = now;
             let along = moved.dot(&turned);
