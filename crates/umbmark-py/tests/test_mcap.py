@@ -231,15 +231,15 @@ def numbers(value: Any) -> Iterator[float]:
 
 
 def assert_same_setup(theirs: Any, ours: Any) -> None:
-    """Compare findings; what was estimated, within a hundredth of its standard error.
+    """Compare findings; what was estimated, within a twentieth of its standard error.
 
     Estimates rest on windows of the motion, and stamps in nanoseconds move a row across the edge of
     one.
     """
     if isinstance(ours, dict) and "std_error" in ours:
-        allowed = 0.01 * ours["std_error"]
+        allowed = 0.05 * ours["std_error"]
         assert theirs["value"] == pytest.approx(ours["value"], rel=0, abs=allowed)
-        assert theirs["std_error"] == pytest.approx(ours["std_error"], rel=0.01)
+        assert theirs["std_error"] == pytest.approx(ours["std_error"], rel=0.05)
     elif isinstance(ours, dict):
         assert theirs.keys() == ours.keys()
         for key, value in ours.items():
