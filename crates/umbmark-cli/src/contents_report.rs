@@ -17,9 +17,9 @@ pub fn contents_text(contents: &[LogContents]) -> String {
 
 fn log_text(log: &LogContents) -> String {
     let lasts = log.duration.map(|seconds| format!(", {seconds:.1} s")).unwrap_or_default();
-    let what = if log.layout == "mcap" { "topic" } else { "column" };
+    let what = if log.layout == "csv" { "column" } else { "topic" };
     let title = format!("{} ({}{lasts})", log.file, log.layout.to_uppercase());
-    let kind = if log.layout == "mcap" { "type" } else { "holds" };
+    let kind = if log.layout == "csv" { "holds" } else { "type" };
     let mut text = hanging("", 0, &title);
     text += &table(&[what, kind, "count", "Hz", "used"], log.parts.iter().map(part_row));
     text += "\n";

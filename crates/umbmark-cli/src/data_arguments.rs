@@ -8,7 +8,7 @@ use umbmark_io::{DatasetError, Topics};
 /// Where the measurements are.
 #[derive(Debug, clap::Args)]
 pub struct DataArguments {
-    /// A dataset folder, an OptiOdom folder, or one file of either (returns.csv, a CSV or MCAP log)
+    /// A dataset folder, an OptiOdom folder, or one file of either (returns.csv, a log in CSV or MCAP, a bag of ROS 1 or 2)
     #[arg(value_name = "DATA")]
     pub data: PathBuf,
 
@@ -16,16 +16,16 @@ pub struct DataArguments {
     topics: TopicArguments,
 }
 
-/// What is read of MCAP logs.
+/// What is read of MCAP files and bags.
 #[derive(Debug, clap::Args)]
 pub struct TopicArguments {
-    /// Topic of the wheels in MCAP logs, if it is not found by type; append :LEFT,RIGHT for the names of the joints, or
+    /// Topic of the wheels in MCAP files and bags, if it is not found by type; append :LEFT,RIGHT for the names of the joints, or
     /// :left,right or :right,left for the order in a list of counts
-    #[arg(long, value_name = "TOPIC", help_heading = "MCAP logs")]
+    #[arg(long, value_name = "TOPIC", help_heading = "MCAP files and bags")]
     ticks: Option<String>,
 
-    /// Topic of the absolute poses in MCAP logs; append :FRAME to choose one of several transforms; "none" reads no poses
-    #[arg(long, value_name = "TOPIC", help_heading = "MCAP logs")]
+    /// Topic of the absolute poses in MCAP files and bags; append :FRAME to choose one of several transforms; "none" reads no poses
+    #[arg(long, value_name = "TOPIC", help_heading = "MCAP files and bags")]
     reference: Option<String>,
 }
 

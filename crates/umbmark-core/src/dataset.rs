@@ -25,7 +25,7 @@ pub struct RunClock {
     pub alignment: Alignment,
 }
 
-/// Where the log of a run was found in an MCAP file.
+/// Where the log of a run was found in an MCAP file or a bag.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RunTopics {
     /// The run's name.
@@ -49,7 +49,7 @@ pub struct Dataset {
     pub runs: Vec<Run>,
     /// The clocks that were set while reading: one for each log whose poses came from a track with its own clock.
     pub clocks: Vec<RunClock>,
-    /// The topics that were read: those of each MCAP log.
+    /// The topics that were read: those of each MCAP file and bag.
     pub topics: Vec<RunTopics>,
     /// What the reader noticed and mended, one sentence each.
     pub warnings: Vec<String>,

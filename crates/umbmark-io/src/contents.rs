@@ -2,7 +2,7 @@
 
 use super::error::{DatasetError, LineProblem};
 use super::layout::csv::{RETURNS, RUNS, robot_beside};
-use super::layout::mcap::Topics;
+use super::layout::messages::Topics;
 use super::layout::{is_foreign, is_log, look};
 use super::probe::{Probe, names_in, stem};
 use super::recording::Recording;
@@ -10,56 +10,32 @@ use super::remedy::Words;
 use std::path::{Path, PathBuf};
 use umbmark_core::inspect::LogContents;
 
-/// What `metadata.yaml` is to a bag of ROS 2: the mark of a folder that is one recording.
-const BAG: &str = "metadata.yaml";
-
 /// A log in a place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct FoundLog {
     pub path: PathBuf,
-    /// What its run is called: the name of the file, or of the folder of a bag with one file.
+    /// What its run is called: the name of the file, or of the folder of a bag.
     pub name: String,
 }
 
-/// The logs of a place: the file itself, or those in a folder, in its `runs` where it has that, and in the bags of ROS 2 in it.
+/// The logs of a place: the place itself where it is one, else those in a folder, in its `runs` where it has that.
 pub(super) fn logs_in(place: &Path) -> Result<Vec<FoundLog>, DatasetError> {
     let probe = Probe::of(place)?;
-    if !probe.is_folder {
-        let log = FoundLog { path: place.to_owned(), name: stem(place) };
-        return Ok(if is_log(place) { vec![log] } else { Vec::new() });
+    if is_log(place) {
+        let whole = place.canonicalize().unwrap_or_else(|_| place.to_owned());
+        return Ok(vec![FoundLog { path: place.to_owned(), name: stem(&whole) }]);
     }
-    if probe.has(RUNS) {
-        return in_folder(&place.join(RUNS));
+    match (probe.is_folder, probe.has(RUNS)) {
+        (false, _) => Ok(Vec::new()),
+        (true, true) => in_folder(&place.join(RUNS)),
+        (true, false) => in_folder(place),
     }
-    in_folder(place)
 }
 
 fn in_folder(folder: &Path) -> Result<Vec<FoundLog>, DatasetError> {
-    let names = names_in(folder)?;
-    let mut logs = Vec::new();
-    for path in names.iter().map(|name| folder.join(name)) {
-        if path.is_dir() {
-            if path.join(BAG).is_file() {
-                logs.extend(bag(&path)?);
-            }
-        } else if is_log(&path) && stem(&path).to_lowercase() != stem(Path::new(RETURNS)) {
-            logs.push(FoundLog { name: stem(&path), path });
-        }
-    }
-    if names.iter().any(|name| name == BAG) {
-        logs = bag(folder)?;
-    }
-    Ok(logs)
-}
-
-/// The files of a bag. One that was split has several, each a run of its own.
-fn bag(folder: &Path) -> Result<Vec<FoundLog>, DatasetError> {
-    let files = names_in(folder)?.into_iter().map(|name| folder.join(name)).filter(|file| is_log(file));
-    let mut logs: Vec<FoundLog> = files.map(|path| FoundLog { name: stem(&path), path }).collect();
-    if let ([log], Some(name)) = (&mut logs[..], folder.file_name()) {
-        log.name = name.to_string_lossy().into_owned();
-    }
-    Ok(logs)
+    let paths = names_in(folder)?.into_iter().map(|name| folder.join(name));
+    let logs = paths.filter(|path| is_log(path) && stem(path).to_lowercase() != stem(Path::new(RETURNS)));
+    Ok(logs.map(|path| FoundLog { name: stem(&path), path }).collect())
 }
 
 /// What the logs of a place hold: a file, a folder of logs, a folder with `runs`, or a bag of ROS 2. Empty where no robot is

@@ -1,6 +1,6 @@
 //! What can be wrong with measurements, and what to do about it.
 
-use super::layout::mcap::McapProblem;
+use super::layout::messages::LogProblem;
 use super::remedy::{Remedy, Words};
 use std::fmt;
 use umbmark_core::dataset::NoRobot;
@@ -55,13 +55,13 @@ pub enum DatasetError {
     /// A dataset without the robot that the question needs.
     #[error(transparent)]
     NoRobot(#[from] NoRobot),
-    /// An MCAP log that cannot be used.
+    /// A log of messages that cannot be used.
     #[error("{file}: {problem}")]
-    Mcap {
+    Messages {
         /// The file.
         file: String,
         /// What is wrong with it.
-        problem: Box<McapProblem>,
+        problem: Box<LogProblem>,
     },
     /// No rows.
     #[error("{file}: {found}; {remedy}")]
@@ -403,7 +403,7 @@ impl DatasetError {
             DatasetError::AlreadyThere { file, remedy } => {
                 format!("{file}: is there already; {}", remedy.worded(words))
             }
-            DatasetError::Mcap { file, problem } => format!("{file}: {}", problem.worded(words)),
+            DatasetError::Messages { file, problem } => format!("{file}: {}", problem.worded(words)),
             _ => self.to_string(),
         }
     }

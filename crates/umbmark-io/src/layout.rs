@@ -2,7 +2,7 @@
 //!
 //! A layout holds what it can hold; what it cannot is said in words, never left out silently.
 
-use self::mcap::Topics;
+use self::messages::{OpenMessages, Opened, Topics};
 use super::assembly::{Assembly, Tracked};
 use super::error::DatasetError;
 use super::probe::Probe;
@@ -17,6 +17,8 @@ use umbmark_core::dataset::{Dataset, Run, TickLog};
 use umbmark_core::inspect::LogContents;
 use umbmark_core::run::ReferenceTrack;
 
+pub(super) mod messages;
+
 macro_rules! layouts {
     ($($name:ident),+ $(,)?) => {
         $(pub(super) mod $name;)+
@@ -26,7 +28,7 @@ macro_rules! layouts {
     };
 }
 
-layouts! { csv, mcap, optiodom, tum, returns, motive }
+layouts! { csv, mcap, rosbag2, rosbag, optiodom, tum, returns, motive }
 
 /// How some files are recognised, read and written. A layout does what its file says that it does.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +40,8 @@ pub struct Layout {
     data: Option<ReadData>,
     logs: Option<ReadLogs>,
     tracks: Option<ReadTracks>,
+    messages: Option<OpenMessages>,
+    folder: Option<OpenFolder>,
     write: Option<Write>,
 }
 
@@ -59,6 +63,9 @@ struct ReadLogs {
 type ReadTracks =
     (&'static [&'static str], fn(&str) -> bool, fn(Source, &mut Vec<String>) -> Result<TrackRows, DatasetError>);
 
+/// The file that makes a folder one log of messages, and how that is opened.
+type OpenFolder = (&'static str, fn(&Path) -> Opened);
+
 /// Writes a data set into a folder and says what is lost.
 type Write = fn(&Dataset, &Path, Existing) -> Result<Vec<String>, DatasetError>;
 
@@ -67,7 +74,7 @@ type Tracks = BTreeMap<String, PathBuf>;
 
 impl Layout {
     const fn new(name: &'static str, about: &'static str) -> Layout {
-        Layout { name, about, data: None, logs: None, tracks: None, write: None }
+        Layout { name, about, data: None, logs: None, tracks: None, messages: None, folder: None, write: None }
     }
 
     const fn reads_data(self, read: ReadData) -> Layout {
@@ -80,6 +87,14 @@ impl Layout {
 
     const fn reads_tracks(self, read: ReadTracks) -> Layout {
         Layout { tracks: Some(read), ..self }
+    }
+
+    const fn reads_messages(self, messages: OpenMessages) -> Layout {
+        Layout { messages: Some(messages), ..self }
+    }
+
+    const fn reads_folders(self, folder: OpenFolder) -> Layout {
+        Layout { folder: Some(folder), ..self }
     }
 
     const fn writes(self, write: Write) -> Layout {
@@ -115,7 +130,12 @@ impl Layout {
         folder: impl AsRef<Path>,
         existing: Existing,
     ) -> Result<Vec<String>, DatasetError> {
-        self.write.map_or_else(|| Ok(Vec::new()), |write| write(data, folder.as_ref(), existing))
+        let file = || folder.as_ref().display().to_string();
+        let write = self.write.ok_or_else(|| DatasetError::Unwritable {
+            file: file(),
+            reason: format!("files of the layout {} are read and not written; write NAME.mcap or a folder", self.name),
+        })?;
+        write(data, folder.as_ref(), existing)
     }
 }
 
@@ -142,7 +162,7 @@ fn load_place(path: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
 }
 
 /// The endings of logs.
-fn log_endings() -> Vec<&'static str> {
+pub(super) fn log_endings() -> Vec<&'static str> {
     LAYOUTS.iter().filter_map(|layout| Some(layout.logs?.ending)).collect()
 }
 
@@ -156,8 +176,19 @@ fn add_log(
     Some((logs_of(file)?.add)(assembly, file, tracks, topics))
 }
 
-/// How files of this ending are read as logs.
+/// The layout of a folder that is one log, and how it is opened.
+fn folder_of_messages(path: &Path) -> Option<(&'static Layout, fn(&Path) -> Opened)> {
+    LAYOUTS.iter().find_map(|layout| {
+        let (_, open) = layout.folder.filter(|(marker, _)| path.join(marker).is_file())?;
+        Some((layout, open))
+    })
+}
+
+/// How files of this ending, or folders that are one log, are read.
 fn logs_of(file: &Path) -> Option<ReadLogs> {
+    if let Some((layout, _)) = folder_of_messages(file) {
+        return layout.logs;
+    }
     let ending = super::probe::extension(file);
     LAYOUTS.iter().filter_map(|layout| layout.logs).find(|logs| logs.ending == ending)
 }
@@ -172,9 +203,16 @@ pub(super) fn look(file: &Path, topics: &Topics, words: &Words) -> Option<Result
     Some((logs_of(file)?.look)(file, topics, words))
 }
 
-/// Whether a layout other than the own one recognises a place as a whole dataset.
+/// Whether a layout other than the own one recognises a place as a whole dataset, and not as a log.
 pub(super) fn is_foreign(probe: &Probe) -> bool {
-    LAYOUTS[1..].iter().filter_map(|layout| layout.data).any(|(recognises, _)| recognises(probe))
+    let others = LAYOUTS[1..].iter().filter(|layout| layout.messages.is_none());
+    others.filter_map(|layout| layout.data).any(|(recognises, _)| recognises(probe))
+}
+
+/// How a file of messages ends that begins with these bytes.
+pub(super) fn ending_of_messages(start: &[u8]) -> Option<&'static str> {
+    let of_magic = |layout: &&Layout| layout.messages.is_some_and(|messages| start.starts_with(messages.magic));
+    LAYOUTS.iter().find(of_magic).and_then(|layout| Some(layout.logs?.ending))
 }
 
 /// The endings of tracks.

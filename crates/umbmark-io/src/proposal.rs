@@ -4,8 +4,8 @@ use super::contents::{FoundLog, logs_in};
 use super::error::DatasetError;
 use super::export::UrdfFile;
 use super::layout::csv::{REFERENCE, ROBOT, RUNS};
-use super::layout::look;
-use super::layout::mcap::Topics;
+use super::layout::messages::Topics;
+use super::layout::{log_endings, look};
 use super::probe::{extension, name_of, names_in};
 use super::remedy::{Remedy, Words};
 use super::save::{Existing, put_beside_logs, unwritable};
@@ -212,7 +212,7 @@ fn usable(place: &Path, logs: Vec<FoundLog>, topics: &Topics, words: &Words) -> 
     }
     match (&kept[..], &notes[..]) {
         ([], []) => {
-            let found = "there is no log (.csv, .mcap) in it".to_owned();
+            let found = format!("there is no log (.{}) in it", log_endings().join(", ."));
             Err(DatasetError::NoLogs { file, found, remedy: "give a log, or a folder of logs" })
         }
         ([], [first, ..]) => {
@@ -241,6 +241,7 @@ fn placed(place: &Path, folder: &Path, logs: &[FoundLog]) -> Result<Vec<(PathBuf
             continue;
         }
         let packed = name_of(&log.path).to_lowercase().ends_with(".gz");
+        let is_folder = log.path.is_dir();
         let ending = format!("{}{}", extension(&log.path), if packed { ".gz" } else { "" });
         let mut name = log.name.clone();
         for again in 2.. {
@@ -249,7 +250,13 @@ fn placed(place: &Path, folder: &Path, logs: &[FoundLog]) -> Result<Vec<(PathBuf
             }
             name = format!("{}_{again}", log.name);
         }
-        files.push((log.path.clone(), Path::new(RUNS).join(format!("{name}.{ending}"))));
+        if is_folder {
+            let own = Path::new(RUNS).join(name);
+            let names = names_in(&log.path)?.into_iter().filter(|name| log.path.join(name).is_file());
+            files.extend(names.map(|name| (log.path.join(&name), own.join(name))));
+        } else {
+            files.push((log.path.clone(), Path::new(RUNS).join(format!("{name}.{ending}"))));
+        }
     }
     let tracks = place.join(REFERENCE);
     if tracks.is_dir() && !same(place, folder) {

@@ -32,7 +32,7 @@ impl Words {
     }
 }
 
-/// An argument that a remedy names: a topic of an MCAP log, or a file.
+/// An argument that a remedy names: a topic of an MCAP file or bag, or a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Argument {
     /// The topic of the wheels.

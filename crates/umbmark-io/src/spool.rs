@@ -2,13 +2,14 @@
 
 use super::error::DatasetError;
 use super::layout::csv::ROBOT;
+use super::layout::ending_of_messages;
 use super::source::unreadable;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-/// The first bytes of an MCAP file.
-const MCAP: &[u8] = b"\x89MCAP0\r\n";
+/// More than the bytes with which files of messages begin.
+const HEAD: u64 = 32;
 
 /// A copy of what came through a pipe.
 pub(super) struct Spooled {
@@ -33,8 +34,8 @@ impl Spooled {
             if is_stdin { Box::new(std::io::stdin().lock()) } else { Box::new(File::open(path).map_err(failed)?) };
         let folder = tempfile::Builder::new().prefix("umbmark-").tempdir().map_err(failed)?;
         let mut head = Vec::new();
-        input.by_ref().take(MCAP.len() as u64).read_to_end(&mut head).map_err(failed)?;
-        let copy = folder.path().join(if head == MCAP { "log.mcap" } else { "log.csv" });
+        input.by_ref().take(HEAD).read_to_end(&mut head).map_err(failed)?;
+        let copy = folder.path().join(format!("log.{}", ending_of_messages(&head).unwrap_or("csv")));
         let mut file = File::create(&copy).map_err(failed)?;
         file.write_all(&head).and_then(|()| std::io::copy(&mut input, &mut file)).map_err(failed)?;
         let beside = [path.with_file_name(ROBOT), PathBuf::from(ROBOT)];

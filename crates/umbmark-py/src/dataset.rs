@@ -209,13 +209,13 @@ impl Rest {
 /// Parameters
 /// ----------
 /// place : path-like
-///     A folder with robot.toml and returns.csv, runs/*.csv or runs/*.mcap; a folder of OptiOdom; a return sheet; a CSV or
-///     MCAP log.
+///     A folder with robot.toml and returns.csv, and logs in runs; a folder of OptiOdom; a return sheet; a log in CSV or MCAP;
+///     a bag of ROS 1 (.bag) or ROS 2 (.db3, or its folder).
 /// ticks : str, optional
-///     Topic of the wheels in MCAP logs, where it is not found by type; ":LEFT,RIGHT" behind it names the joints,
+///     Topic of the wheels in MCAP files and bags, where it is not found by type; ":LEFT,RIGHT" behind it names the joints,
 ///     ":left,right" or ":right,left" the order in a list of counts.
 /// reference : str, optional
-///     Topic of the absolute poses in MCAP logs; ":FRAME" behind it picks one of several transforms, "none" reads no poses.
+///     Topic of the absolute poses in MCAP files and bags; ":FRAME" behind it picks one of several transforms, "none" reads no poses.
 ///
 /// Returns
 /// -------
@@ -257,14 +257,14 @@ pub fn inspect(py: Python<'_>, data: &Dataset, place: &str) -> PyResult<String> 
 /// folder : path-like, default "."
 ///     Where to write; it is made where it is not there.
 /// logs : path-like, optional
-///     A CSV or MCAP log, a bag of ROS 2, or a folder of these. A robot.toml is proposed from them, and they are put into
+///     A log in CSV or MCAP, a bag of ROS 1 or 2, or a folder of these. A robot.toml is proposed from them, and they are put into
 ///     ``runs``. What they do not show is left to fill in, in lines marked FILL IN.
 /// urdf : path-like, optional
 ///     Take wheelbase and wheel diameters from this URDF; with ``logs``.
 /// controller_yaml : path-like, optional
 ///     Take them from the parameters of this ROS 2 controller; with ``logs``.
 /// ticks, reference : str, optional
-///     Topics of MCAP logs, as of ``load_dataset``.
+///     Topics of MCAP files and bags, as of ``load_dataset``.
 /// replace : bool, default False
 ///     Whether files that exist are replaced.
 ///

@@ -1,10 +1,12 @@
 """Settings and fixtures of all tests."""
 
+import subprocess
 from pathlib import Path
 
 import matplotlib as mpl
 import pytest
 from hypothesis import settings
+from recorded import TICKS_PER_REVOLUTION
 
 # A machine under load is slow, not wrong.
 settings.register_profile("umbmark", deadline=None)
@@ -20,3 +22,23 @@ def command() -> Path:
     if not COMMAND.exists():
         pytest.skip(f"{COMMAND} is not built (cargo build)")
     return COMMAND
+
+
+@pytest.fixture(scope="session")
+def measured(command: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a dataset in CSV."""
+    folder = tmp_path_factory.mktemp("measured") / "robot"
+    flags = [
+        "--side",
+        "0.5",
+        "--runs",
+        "3",
+        "--eb",
+        "1.01",
+        "--ed",
+        "1.002",
+        "--ticks-per-revolution",
+        str(TICKS_PER_REVOLUTION),
+    ]
+    subprocess.run([command, "simulate", "-o", folder, *flags], check=True, capture_output=True)
+    return folder

@@ -25,74 +25,12 @@ from mcap_ros2.writer import Writer as Ros2Writer
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as BagWriter
+from recorded import EPOCH_NS, TICKS_PER_REVOLUTION, Row, answer, assert_calibrates_alike, numbers, rows
 from rosbags.typesys import Stores, get_typestore
 
 ROOT = Path(__file__).parents[3]
-TICKS_PER_REVOLUTION = 2000
 STORE = get_typestore(Stores.ROS2_JAZZY)
-# Times of a calendar, as recorders have them.
-EPOCH_NS = 1_760_000_000_000_000_000
 NO_RATES: dict[str, list[float]] = {"velocity": [], "effort": []}
-
-
-def answer(command: Path, *arguments: str | Path) -> Any:
-    """Return the JSON document that the command prints."""
-    run = [command, *arguments, "--json"]
-    return json.loads(subprocess.run(run, check=True, capture_output=True, text=True).stdout)
-
-
-@pytest.fixture(scope="session")
-def measured(command: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a dataset in CSV."""
-    folder = tmp_path_factory.mktemp("measured") / "robot"
-    flags = [
-        "--side",
-        "0.5",
-        "--runs",
-        "3",
-        "--eb",
-        "1.01",
-        "--ed",
-        "1.002",
-        "--ticks-per-revolution",
-        str(TICKS_PER_REVOLUTION),
-    ]
-    subprocess.run([command, "simulate", "-o", folder, *flags], check=True, capture_output=True)
-    return folder
-
-
-@dataclass(frozen=True)
-class Row:
-    """A row of a tick log."""
-
-    stamp: int
-    left: int
-    right: int
-    pose: tuple[float, float, float] | None
-
-    @property
-    def time(self) -> dict[str, int]:
-        return {"sec": self.stamp // 10**9, "nanosec": self.stamp % 10**9}
-
-    @property
-    def positions(self) -> list[float]:
-        scale = math.tau / TICKS_PER_REVOLUTION
-        return [self.left * scale, self.right * scale]
-
-    @property
-    def quaternion(self) -> dict[str, float]:
-        assert self.pose is not None
-        half = 0.5 * self.pose[2]
-        return {"x": 0.0, "y": 0.0, "z": math.sin(half), "w": math.cos(half)}
-
-
-def rows(file: Path) -> Iterator[Row]:
-    with file.open() as text:
-        for row in csv.DictReader(text):
-            stamp = EPOCH_NS + round(float(row["t_s"]) * 1e9)
-            cells = [row["x_ref_m"], row["y_ref_m"], row["theta_ref_rad"]]
-            pose = tuple(map(float, cells)) if cells[0] else None
-            yield Row(stamp, int(row["ticks_left"]), int(row["ticks_right"]), pose)  # type: ignore[arg-type]
 
 
 def definition(name: str) -> str:
@@ -218,39 +156,6 @@ WRITERS = {
 }
 
 
-def numbers(value: Any) -> Iterator[float]:
-    """Yield every number in a document."""
-    if isinstance(value, dict):
-        for key in sorted(value):
-            yield from numbers(value[key])
-    elif isinstance(value, list):
-        for item in value:
-            yield from numbers(item)
-    elif isinstance(value, float):
-        yield value
-
-
-def assert_same_setup(theirs: Any, ours: Any) -> None:
-    """Compare findings; what was estimated, within a twentieth of its standard error.
-
-    Estimates rest on windows of the motion, and stamps in nanoseconds move a row across the edge of
-    one.
-    """
-    if isinstance(ours, dict) and "std_error" in ours:
-        allowed = 0.05 * ours["std_error"]
-        assert theirs["value"] == pytest.approx(ours["value"], rel=0, abs=allowed)
-        assert theirs["std_error"] == pytest.approx(ours["std_error"], rel=0.05)
-    elif isinstance(ours, dict):
-        assert theirs.keys() == ours.keys()
-        for key, value in ours.items():
-            assert_same_setup(theirs[key], value)
-    elif isinstance(ours, list):
-        for one, other in zip(theirs, ours, strict=True):
-            assert_same_setup(one, other)
-    else:
-        assert theirs == ours
-
-
 @pytest.mark.parametrize("writer", WRITERS)
 def test_what_other_packages_write_calibrates_as_the_csv_does(
     writer: str, command: Path, measured: Path, tmp_path: Path
@@ -261,14 +166,7 @@ def test_what_other_packages_write_calibrates_as_the_csv_does(
         shutil.copy(measured / name, folder)
     for file in (measured / "runs").iterdir():
         WRITERS[writer](folder / "runs" / f"{file.stem}.mcap", list(rows(file)))
-    ours = answer(command, "calibrate", measured)
-    theirs = answer(command, "calibrate", folder)
-    assert theirs["warnings"] == ours["warnings"]
-    assert_same_setup(theirs.pop("setup"), ours.pop("setup"))
-    expected = list(numbers(ours))
-    assert len(expected) > 50
-    # Stamps since an epoch have other last bits, and the search for the noise may end 1e-10 m away.
-    assert list(numbers(theirs)) == pytest.approx(expected, rel=1e-6, abs=1e-9)
+    assert_calibrates_alike(command, measured, folder)
 
 
 @pytest.fixture(scope="session")

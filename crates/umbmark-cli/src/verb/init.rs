@@ -28,7 +28,7 @@ pub struct Arguments {
     /// current folder]
     folder: Option<PathBuf>,
 
-    /// Begin from logs: a CSV or MCAP log, a bag of ROS 2, or a folder of these. A robot.toml is proposed from them, and they are
+    /// Begin from logs: a log in CSV or MCAP, a bag of ROS 1 or 2, or a folder of these. A robot.toml is proposed from them, and they are
     /// put into runs; without this option, from the logs that are in runs already
     #[arg(long, value_name = "PLACE")]
     logs: Option<PathBuf>,

@@ -66,7 +66,7 @@ fn contents(
         Ok(data) if data.robot.is_some() || data.runs.iter().all(|run| run.log.is_none()) => Ok(Vec::new()),
         Ok(_) => umbmark_io::contents(place, topics, &WORDS),
         // A topic that was named and is not there is a mistake of the command.
-        Err(DatasetError::Mcap { .. }) if *topics != Topics::default() => Ok(Vec::new()),
+        Err(DatasetError::Messages { .. }) if *topics != Topics::default() => Ok(Vec::new()),
         // What the reader of the dataset says is nearer to the data than what that of its contents says.
         Err(_) => Ok(umbmark_io::contents(place, topics, &WORDS).unwrap_or_default()),
     }

@@ -7,7 +7,7 @@ use crate::drive::DriveKind;
 pub struct LogContents {
     /// The file.
     pub file: String,
-    /// Name of its layout: "csv" or "mcap".
+    /// Name of its layout: "csv", "mcap", "rosbag" or "rosbag2".
     pub layout: &'static str,
     /// Time from the first message or row to the last \[s\]; `None` where the file does not say it.
     pub duration: Option<f64>,

@@ -207,7 +207,7 @@ impl From<&inspect::LogFacts> for LogFacts {
     }
 }
 
-/// Where the log of a run was found in an MCAP file.
+/// Where the log of a run was found in an MCAP file or a bag.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Topics {
     /// Name of the run.
@@ -297,7 +297,7 @@ pub struct ReferenceFound {
 pub struct LogContents {
     /// The file.
     pub file: String,
-    /// "csv" or "mcap".
+    /// "csv", "mcap", "rosbag" or "rosbag2".
     pub layout: &'static str,
     /// Time from the first message or row to the last, in s; null if the file does not say it.
     pub duration_s: Option<f64>,

@@ -6,7 +6,7 @@ mod returns;
 mod tick_log;
 mod track;
 
-use super::mcap::Topics;
+use super::messages::Topics;
 use super::{Layout, ReadLogs, Tracks};
 use crate::RobotFile;
 use crate::assembly::Assembly;

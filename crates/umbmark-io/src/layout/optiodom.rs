@@ -12,7 +12,7 @@
 
 use super::Layout;
 use super::csv::not_a_dataset;
-use super::mcap::Topics;
+use super::messages::Topics;
 use crate::RobotFile;
 use crate::assembly::Assembly;
 use crate::columns::headless;

@@ -3,7 +3,7 @@
 use super::tick_log::parse_tick_log;
 use crate::contents::rolls_over;
 use crate::error::{DatasetError, LineProblem};
-use crate::layout::mcap::Topics;
+use crate::layout::messages::Topics;
 use crate::recording::Recording;
 use crate::remedy::Words;
 use crate::sheet::Sheet;

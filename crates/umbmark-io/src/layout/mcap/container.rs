@@ -4,7 +4,7 @@
 //! place of damage is known to the byte. Chunks are unpacked by the `mcap` crate, each with its checksum tested before
 //! any of its messages is used. No more than one chunk is in memory.
 
-use super::problem::McapProblem;
+use super::super::messages::{Channel, Container, Contents, Definition, LONGEST, Opened, Record, Stop, Visit};
 use crate::error::quoted;
 use mcap::McapError;
 use mcap::records::op;
@@ -13,11 +13,9 @@ use mcap::sans_io::{
 };
 use std::collections::HashSet;
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The longest record or unpacked chunk that is read \[byte\].
-pub(super) const LONGEST: usize = 128 << 20;
 /// No long log packs better than this; what claims to is not unpacked beyond `FREE` bytes.
 const MOST_PACKED: u64 = 1000;
 const FREE: u64 = 1 << 30;
@@ -26,88 +24,74 @@ const HEAD: usize = 9;
 /// Start of a chunk: its times and its unpacked size.
 const CHUNK_SIZES: usize = 24;
 
-/// A record that matters here.
-pub(super) enum Record<'a> {
-    /// A message definition.
-    Schema { id: u16, name: String, encoding: String, data: &'a [u8] },
-    /// A topic and how its messages are written.
-    Channel { id: u16, schema: u16, topic: String, encoding: String },
-    /// A message.
-    Message { channel: u16, log_time: u64, data: &'a [u8] },
-    /// Named values.
-    Metadata(mcap::records::Metadata),
-}
-
-/// Where reading ended before the end.
-#[derive(Clone, Debug)]
-pub(super) struct Damage {
-    /// First byte that was not used.
-    pub at: u64,
-    /// What is wrong there.
-    pub what: String,
-}
+/// Metadata with the robot of a simulated log, and its key.
+pub(super) const METADATA: &str = "umbmark";
+pub(super) const ROBOT: &str = "robot.toml";
 
 /// An open file.
-pub(super) struct Container {
+struct McapFile {
     file: BufReader<File>,
-    pub size: u64,
+    size: u64,
     /// What came out of chunks \[byte\].
     unpacked: u64,
+    /// Where each chunk begins, and which channels it has messages of, where the log says so.
+    chunks: Vec<(u64, Vec<u16>)>,
 }
 
-/// What ends a walk early.
-enum Stop {
-    Damage(Damage),
-    Problem(McapProblem),
-    System(io::Error),
+/// Begins a file.
+pub(super) fn open(file: File) -> Opened {
+    let size = file.metadata()?.len();
+    Ok(Box::new(McapFile { file: BufReader::with_capacity(1 << 16, file), size, unpacked: 0, chunks: Vec::new() }))
 }
 
-impl Stop {
-    fn at(self, at: u64) -> Stop {
-        match self {
-            Stop::Damage(Damage { what, .. }) => Stop::Damage(Damage { at, what }),
-            stop => stop,
+impl Container for McapFile {
+    fn size(&self) -> u64 {
+        self.size
+    }
+
+    fn contents(&mut self) -> Option<Contents> {
+        let summary = self.summary().filter(|summary| !summary.channels.is_empty())?;
+        let mut contents = Contents::default();
+        for (id, channel) in &summary.channels {
+            let schema = channel.schema.as_ref();
+            if let Some(schema) = schema {
+                let (name, encoding) = (schema.name.clone(), schema.encoding.clone());
+                contents.definitions.insert(schema.id, Definition { name, encoding, data: schema.data.to_vec() });
+            }
+            let (topic, encoding) = (channel.topic.clone(), channel.message_encoding.clone());
+            contents.channels.insert(*id, Channel { schema: schema.map_or(0, |schema| schema.id), topic, encoding });
         }
-    }
-}
-
-impl From<McapProblem> for Stop {
-    fn from(problem: McapProblem) -> Stop {
-        Stop::Problem(problem)
-    }
-}
-
-impl From<io::Error> for Stop {
-    fn from(error: io::Error) -> Stop {
-        Stop::System(error)
-    }
-}
-
-/// Takes the records of a walk.
-pub(super) type Visit<'v> = dyn FnMut(Record) -> Result<(), McapProblem> + 'v;
-
-impl Container {
-    /// Begins a file, whose first bytes must be those of MCAP.
-    pub fn open(file: File) -> io::Result<Result<Container, McapProblem>> {
-        let size = file.metadata()?.len();
-        let mut file = BufReader::with_capacity(1 << 16, file);
-        let mut magic = Vec::new();
-        file.by_ref().take(mcap::MAGIC.len() as u64).read_to_end(&mut magic)?;
-        if magic == mcap::MAGIC {
-            return Ok(Ok(Container { file, size, unpacked: 0 }));
+        contents.counts = summary.stats.as_ref().map(|statistics| statistics.channel_message_counts.clone());
+        contents.span = summary.stats.as_ref().map(|of| [of.message_start_time, of.message_end_time]);
+        let with_index = summary.chunk_indexes.iter().filter(|chunk| !chunk.message_index_offsets.is_empty());
+        self.chunks = with_index
+            .map(|chunk| (chunk.chunk_start_offset, chunk.message_index_offsets.keys().copied().collect()))
+            .collect();
+        if summary.metadata_indexes.iter().any(|index| index.name == METADATA) {
+            // What the metadata says stands before the chunks, all of which are stepped over.
+            let all = summary.chunk_indexes.iter().map(|chunk| chunk.chunk_start_offset).collect();
+            let robot = &mut contents.robot;
+            // Damage is told by the walk that reads messages.
+            let _ = self.records(&all, &mut |record| {
+                if let Record::Robot(text) = record {
+                    *robot = Some(text);
+                }
+                Ok(())
+            });
         }
-        let found = match magic {
-            _ if magic.is_empty() => "is empty".to_owned(),
-            _ if magic.starts_with(b"#ROSBAG") => "is a ROS 1 bag".to_owned(),
-            _ if magic.starts_with(&[0x1f, 0x8b]) => "is packed by gzip (unpack it first)".to_owned(),
-            _ if magic.starts_with(b"SQLite") => "is an SQLite bag (.db3)".to_owned(),
-            _ => format!("begins with the bytes {magic:02x?}"),
-        };
-        Ok(Err(McapProblem::NotMcap { found }))
+        Some(contents)
     }
 
+    fn walk(&mut self, wanted: &dyn Fn(u16) -> bool, visit: &mut Visit) -> Result<(), Stop> {
+        let without = self.chunks.iter().filter(|(_, channels)| !channels.iter().any(|channel| wanted(*channel)));
+        let skip = without.map(|(start, _)| *start).collect();
+        self.records(&skip, visit)
+    }
+}
+
+impl McapFile {
     /// The summary at the end of the file, where there is one and it is sound.
-    pub fn summary(&mut self) -> Option<mcap::Summary> {
+    fn summary(&mut self) -> Option<mcap::Summary> {
         let options = SummaryReaderOptions::default().with_file_size(self.size).with_record_length_limit(LONGEST);
         let mut reader = SummaryReader::new_with_options(options);
         let file = &mut self.file;
@@ -126,24 +110,14 @@ impl Container {
         read.ok().flatten()
     }
 
-    /// Visits the records of the data section but for the chunks that begin at the bytes in `skip`; says where there is
-    /// damage.
-    pub fn walk(&mut self, skip: &HashSet<u64>, visit: &mut Visit) -> io::Result<Result<Option<Damage>, McapProblem>> {
-        match self.records(skip, visit) {
-            Ok(()) => Ok(Ok(None)),
-            Err(Stop::Damage(damage)) => Ok(Ok(Some(damage))),
-            Err(Stop::Problem(problem)) => Ok(Err(problem)),
-            Err(Stop::System(error)) => Err(error),
-        }
-    }
-
+    /// Visits the records of the data section but for the chunks that begin at the bytes in `skip`.
     fn records(&mut self, skip: &HashSet<u64>, visit: &mut Visit) -> Result<(), Stop> {
         let mut at = mcap::MAGIC.len() as u64;
         let mut body = Vec::new();
         self.file.seek(SeekFrom::Start(at))?;
         self.unpacked = 0;
         loop {
-            let damaged = |what: &str| Stop::Damage(Damage { at, what: what.to_owned() });
+            let damaged = |what: &str| Stop::damage(at, what);
             if self.size - at < HEAD as u64 {
                 return Err(damaged("the file ends without the end of an MCAP file"));
             }
@@ -172,7 +146,7 @@ impl Container {
     /// A chunk. Where it is whole, none of its records is used if its checksum is wrong; where its end is missing, they
     /// are used as far as they can be unpacked.
     fn chunk(&mut self, at: u64, head: [u8; HEAD], length: u64, visit: &mut Visit) -> Result<(), Stop> {
-        let damaged = |what: String| Stop::Damage(Damage { at, what });
+        let damaged = |what: String| Stop::damage(at, what);
         let left = self.size - at - HEAD as u64;
         let whole = length <= left;
         let mut start = [0; CHUNK_SIZES];
@@ -191,9 +165,8 @@ impl Container {
         };
         // The crate's arithmetic overflows on some inconsistent chunks; in builds that check for it, that is a panic.
         let read = catch_unwind(AssertUnwindSafe(|| chunk.read(visit)));
-        match read.unwrap_or_else(|_| Err(Stop::Damage(Damage { at, what: "a chunk that contradicts itself".into() })))
-        {
-            Err(Stop::Damage(Damage { what, .. })) if whole => Err(damaged(what)),
+        match read.unwrap_or_else(|_| Err(Stop::damage(at, "a chunk that contradicts itself"))) {
+            Err(Stop::Damage(damage)) if whole => Err(damaged(damage.what)),
             Ok(()) if whole => Ok(()),
             Ok(()) | Err(Stop::Damage(_)) => Err(damaged("the file ends in the middle of a chunk".into())),
             stop => stop,
@@ -214,7 +187,7 @@ struct Unpacking<'c, R> {
 
 impl<R: Read> Unpacking<'_, R> {
     fn read(&mut self, visit: &mut Visit) -> Result<(), Stop> {
-        let damaged = |what: String| Stop::Damage(Damage { at: 0, what });
+        let damaged = |what: String| Stop::damage(0, what);
         while let Some(event) = self.reader.next_event() {
             match event.map_err(|error| damaged(described(&error)))? {
                 LinearReadEvent::ReadRequest(n) => {
@@ -248,7 +221,7 @@ fn options() -> LinearReaderOptions {
 fn record(opcode: u8, body: &[u8], visit: &mut Visit) -> Result<(), Stop> {
     if opcode == op::MESSAGE {
         let (Some((head, data)), true) = (body.split_first_chunk::<22>(), body.len() >= 22) else {
-            return Err(Stop::Damage(Damage { at: 0, what: "a message that is shorter than its header".into() }));
+            return Err(Stop::damage(0, "a message that is shorter than its header"));
         };
         let channel = u16::from_le_bytes([head[0], head[1]]);
         let log_time = head[6..14].iter().rev().fold(0, |time, byte| time << 8 | u64::from(*byte));
@@ -257,19 +230,24 @@ fn record(opcode: u8, body: &[u8], visit: &mut Visit) -> Result<(), Stop> {
     if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::METADATA) {
         return Ok(());
     }
-    let parsed =
-        mcap::parse_record(opcode, body).map_err(|error| Stop::Damage(Damage { at: 0, what: described(&error) }))?;
+    let parsed = mcap::parse_record(opcode, body).map_err(|error| Stop::damage(0, described(&error)))?;
     let record = match &parsed {
         mcap::records::Record::Schema { header, data } => {
-            Record::Schema { id: header.id, name: header.name.clone(), encoding: header.encoding.clone(), data }
+            let (name, encoding) = (header.name.clone(), header.encoding.clone());
+            Record::Schema { id: header.id, definition: Definition { name, encoding, data: data.to_vec() } }
         }
         mcap::records::Record::Channel(channel) => Record::Channel {
             id: channel.id,
-            schema: channel.schema_id,
-            topic: channel.topic.clone(),
-            encoding: channel.message_encoding.clone(),
+            channel: Channel {
+                schema: channel.schema_id,
+                topic: channel.topic.clone(),
+                encoding: channel.message_encoding.clone(),
+            },
         },
-        mcap::records::Record::Metadata(metadata) => Record::Metadata(metadata.clone()),
+        mcap::records::Record::Metadata(metadata) if metadata.name == METADATA => {
+            let Some(robot) = metadata.metadata.get(ROBOT) else { return Ok(()) };
+            Record::Robot(robot.clone())
+        }
         _ => return Ok(()),
     };
     Ok(visit(record)?)

@@ -1,7 +1,7 @@
 //! Runs saved as MCAP: one as a file, read back and renamed; or each as a file of a folder.
 
 use super::super::csv::{LogFormat, save_with};
-use super::clock::is_calendar;
+use super::super::messages::{Survey, Topics, is_calendar};
 use super::write::{nanoseconds, write};
 use crate::RobotFile;
 use crate::error::DatasetError;
@@ -82,8 +82,8 @@ fn save_log(
     let bytes = bytes(data, run, log)?;
     beside.write_all(&bytes).and_then(|()| beside.as_file().sync_all()).map_err(|error| unwritable(file, &error))?;
     let robot = data.robot.as_ref();
-    let read = super::Survey::open(beside.path()).and_then(|survey| {
-        let reading = survey.read(&super::Topics::default(), robot, &mut Vec::new())?;
+    let read = Survey::open(beside.path()).and_then(|survey| {
+        let reading = survey.read(&Topics::default(), robot, &mut Vec::new())?;
         reading.into_log(robot, &mut Vec::new())
     });
     let read = read.map_err(|error| {

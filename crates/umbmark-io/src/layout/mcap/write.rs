@@ -5,10 +5,10 @@
 //! zeros, which is no rotation. The nominal robot goes along as metadata. Chunks are packed with zstd, and the same log
 //! gives the same bytes.
 
-use super::definitions::{Definition, JOINT_STATE, MARKER_ARRAY, ODOMETRY, PATH, POSE_STAMPED, TF};
+use super::super::messages::{JOINT_STATE, KnownType, MARKER_ARRAY, ODOMETRY, PATH, POSE_STAMPED, TF};
+use super::container::{METADATA, ROBOT};
 use super::parts::{Cdr, header, numbers, orientation};
 use super::scene;
-use super::survey::{METADATA, ROBOT};
 use crate::RobotFile;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, McapResult, WriteOptions, Writer};
@@ -130,7 +130,7 @@ struct Topic {
 }
 
 impl Topic {
-    fn add<W: Write + Seek>(writer: &mut Writer<W>, topic: &str, definition: &Definition) -> McapResult<Topic> {
+    fn add<W: Write + Seek>(writer: &mut Writer<W>, topic: &str, definition: &KnownType) -> McapResult<Topic> {
         let schema = writer.add_schema(definition.name, "ros2msg", definition.text().as_bytes())?;
         let channel = writer.add_channel(schema, topic, "cdr", &BTreeMap::new())?;
         Ok(Topic { channel, sequence: 0, message: Vec::new() })

@@ -4,7 +4,7 @@ use super::fields::{Fields, Layout, Slot, same_field};
 use serde_json::Value;
 
 /// Decodes a message, and visits it, or each message of its list.
-pub(super) fn read<E>(
+pub(in crate::layout) fn read<E>(
     layout: &Layout,
     data: &[u8],
     fields: &mut Fields,

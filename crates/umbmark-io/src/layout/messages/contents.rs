@@ -1,10 +1,9 @@
 //! What a log holds, and what of it would be read, before anything is known of its robot.
 
-use super::cdr::Plan;
 use super::container::Record;
 use super::decoder::Decoder;
 use super::fields::{Fields, Layout, Slot};
-use super::schema::Schema;
+use super::message_type::Encoding;
 use super::topics::{Topic, shown};
 use super::{Gathered, Survey, Topics};
 use crate::contents::rolls_over;
@@ -18,12 +17,12 @@ use umbmark_core::inspect::{LogContents, LogPart, ReferenceFound, WheelUnit, Whe
 ///
 /// # Errors
 ///
-/// Where the file cannot be opened or is no MCAP log. What keeps wheels or poses from being read is told in the contents.
-pub(super) fn look(file: &Path, topics: &Topics, words: &Words) -> Result<LogContents, DatasetError> {
+/// Where the file cannot be opened or is no log of messages. What keeps wheels or poses from being read is told in the contents.
+pub(in crate::layout) fn look(file: &Path, topics: &Topics, words: &Words) -> Result<LogContents, DatasetError> {
     let mut survey = Survey::open(file)?;
     let any = |_: &super::Wheels| Ok(());
     let said = |error: DatasetError| match error {
-        DatasetError::Mcap { problem, .. } => problem.worded(words),
+        DatasetError::Messages { problem, .. } => problem.worded(words),
         error => error.worded(words),
     };
     let mut warnings = Vec::new();
@@ -47,7 +46,7 @@ pub(super) fn look(file: &Path, topics: &Topics, words: &Words) -> Result<LogCon
     let (file, duration) = (survey.file.clone(), survey.duration());
     let before = format!("{file}: ");
     let notes = warnings.into_iter().map(|note| note.strip_prefix(&before).unwrap_or(&note).to_owned()).collect();
-    let (robot, urdf, layout) = (survey.robot.take(), description(&mut survey), super::LAYOUT.name);
+    let (robot, urdf, layout) = (survey.robot().map(str::to_owned), description(&mut survey), survey.layout);
     Ok(LogContents { file, layout, duration, parts, wheels, reference, notes, robot, urdf })
 }
 
@@ -55,12 +54,12 @@ pub(super) fn look(file: &Path, topics: &Topics, words: &Words) -> Result<LogCon
 fn description(survey: &mut Survey) -> Option<String> {
     let is_description = |topic: &&Topic| topic.name.rsplit('/').next() == Some("robot_description");
     let topic = survey.topics.iter().find(is_description)?.name.clone();
-    let (channel, schema) = survey.channels_of(&topic).next()?;
+    let (channel, encoding, schema) = survey.channels_of(&topic).next()?;
     let layout = Layout::default().need("data", Slot::Frame);
-    let decoder = Decoder::Cdr(Plan::new(&Schema::parse(&schema.name, &schema.data).ok()?, &layout).ok()?);
+    let decoder =
+        Decoder::of_layout(Encoding::of(encoding, &schema.encoding)?, layout, &schema.name, &schema.data).ok()?;
     let (mut fields, mut text) = (Fields::default(), None);
-    let skip = survey.chunks_without(|of| of == channel);
-    let walked = survey.walk(&skip, &mut |record| {
+    let walked = survey.walk(&|of| of == channel, &mut |record| {
         if let Record::Message { channel: of, data, .. } = record
             && of == channel
             && text.is_none()

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 /// A type that is not made of others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Primitive {
+pub(in crate::layout) enum Primitive {
     Bool,
     I8,
     U8,
@@ -56,7 +56,7 @@ impl Primitive {
 
 /// What a field is made of.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum FieldType {
+pub(in crate::layout) enum FieldType {
     Primitive(Primitive),
     Text,
     /// Text of wide characters, whose width on the wire differs between systems.
@@ -67,7 +67,7 @@ pub(super) enum FieldType {
 
 /// How many of it there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Count {
+pub(in crate::layout) enum Count {
     One,
     Exactly(usize),
     Any,
@@ -75,7 +75,7 @@ pub(super) enum Count {
 
 /// A field of a definition.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Field {
+pub(in crate::layout) struct Field {
     pub name: String,
     pub kind: FieldType,
     pub count: Count,
@@ -83,7 +83,7 @@ pub(super) struct Field {
 
 /// The definitions of a schema.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Schema {
+pub(in crate::layout) struct Schema {
     pub root: String,
     messages: HashMap<String, Vec<Field>>,
 }
@@ -115,7 +115,7 @@ impl Schema {
 }
 
 /// A name without the folder that ROS 2 puts between package and type.
-pub(super) fn normal(name: &str) -> String {
+pub(in crate::layout) fn normal(name: &str) -> String {
     name.replace("/msg/", "/")
 }
 

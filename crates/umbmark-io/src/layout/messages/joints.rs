@@ -6,7 +6,7 @@ use crate::error::quoted;
 use crate::wheel_names::{Side, candidates};
 
 /// The joints of the left and the right wheel.
-pub(super) struct Joints {
+pub(in crate::layout) struct Joints {
     /// As the user named them, or as they were found.
     chosen: Option<[String; 2]>,
     /// The names of the last message, and where the wheels are among them.

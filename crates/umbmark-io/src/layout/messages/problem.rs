@@ -1,20 +1,20 @@
-//! What can be wrong with an MCAP log.
+//! What can be wrong with a log of messages.
 
 use crate::remedy::{Argument, Remedy, Words};
 use std::fmt;
 
-/// What makes an MCAP log unusable, without the name of its file.
+/// What makes a log of messages unusable, without the name of its file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum McapProblem {
-    /// The file does not begin as MCAP files do.
-    #[error("is no MCAP file: it {found}; record with `ros2 bag record -s mcap`, or convert the log")]
-    NotMcap {
+pub enum LogProblem {
+    /// The file does not begin as files of messages do.
+    #[error("is no MCAP file and no bag of ROS: it {found}; record with `ros2 bag record`, or convert the log")]
+    Unknown {
         /// What it does instead.
         found: String,
     },
     /// Nothing could be read before the damage.
-    #[error("cannot be read as MCAP: {damage}; nothing before that can be used; record or copy the log again")]
+    #[error("cannot be read: {damage}; nothing before that can be used; record or copy the log again")]
     Damaged {
         /// Where and what.
         damage: String,
@@ -69,24 +69,24 @@ pub enum McapProblem {
     },
 }
 
-impl McapProblem {
+impl LogProblem {
     /// The message, which names the arguments as an edge does.
     pub fn worded(&self, words: &Words) -> String {
         match self {
-            McapProblem::AmbiguousTopic { role, topics, argument } => {
+            LogProblem::AmbiguousTopic { role, topics, argument } => {
                 format!("{role} could be {topics}; {}", Remedy::which(*argument).worded(words))
             }
-            McapProblem::UnknownTopic { topic, argument, topics } => {
+            LogProblem::UnknownTopic { topic, argument, topics } => {
                 format!("there is no topic {topic} for {}; there are: {topics}", words.name(*argument))
             }
-            McapProblem::Topic { topic, found, remedy } => format!("topic {topic}: {found}; {}", remedy.worded(words)),
+            LogProblem::Topic { topic, found, remedy } => format!("topic {topic}: {found}; {}", remedy.worded(words)),
             _ => self.to_string(),
         }
     }
 }
 
 /// Names for a message: as they are, separated by commas, and no more than a few.
-pub(super) fn listed<T: fmt::Display>(names: impl IntoIterator<Item = T>) -> String {
+pub(in crate::layout) fn listed<T: fmt::Display>(names: impl IntoIterator<Item = T>) -> String {
     const MAX_NAMES: usize = 12;
     let mut names = names.into_iter();
     let mut shown: Vec<String> = names.by_ref().take(MAX_NAMES).map(|name| name.to_string()).collect();

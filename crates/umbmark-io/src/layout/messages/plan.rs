@@ -1,11 +1,13 @@
-//! Messages in CDR, decoded by a plan that is made of their schema once.
+//! Messages of ROS, decoded by a plan that is made of their schema once.
 //!
 //! A plan steps over what is not wanted and ends behind the last field that is. Every length is bounded by the bytes that
 //! are left, and nothing is allocated for what a message only claims to hold.
 
 use super::fields::{Fields, Layout, Number, Slot, Wanted, same_field};
+use super::message_type::Encoding;
 use super::schema::{Count, Field, FieldType, Primitive, Schema};
-use re_cdr::{BigEndian, CdrEndian, CdrReader, LittleEndian};
+use super::wire::{Broken, Packed, Wire};
+use re_cdr::{BigEndian, CdrReader, LittleEndian};
 
 /// Definitions in definitions, at most so deep.
 const DEEPEST: usize = 32;
@@ -42,16 +44,16 @@ enum Instruction {
 
 /// How to decode the messages of a topic.
 #[derive(Clone, Debug)]
-pub(super) struct Plan {
+pub(in crate::layout) struct Plan {
+    encoding: Encoding,
     steps: Box<[Instruction]>,
 }
 
-type Read<T> = re_cdr::Result<T>;
-
 impl Plan {
-    /// A plan that finds what is wanted.
-    pub fn new(schema: &Schema, layout: &Layout) -> Result<Plan, String> {
-        let mut compiler = Compiler { schema, layout, found: vec![false; layout.wanted.len()], steps: 0 };
+    /// A plan that finds what is wanted in messages of ROS 2 (CDR) or of ROS 1.
+    pub fn new(encoding: Encoding, schema: &Schema, layout: &Layout) -> Result<Plan, String> {
+        let packed = encoding == Encoding::Ros1;
+        let mut compiler = Compiler { schema, layout, packed, found: vec![false; layout.wanted.len()], steps: 0 };
         let mut steps = compiler.message(&schema.root, Some(""), 0)?;
         let missing = layout.wanted.iter().zip(&compiler.found).find(|(wanted, found)| wanted.needed && !**found);
         if let Some((wanted, _)) = missing {
@@ -60,7 +62,7 @@ impl Plan {
         shorten(&mut steps);
         match wall(&steps) {
             Some(what) => Err(format!("its type has {what} before what is wanted, which cannot be read")),
-            None => Ok(Plan { steps: steps.into() }),
+            None => Ok(Plan { encoding, steps: steps.into() }),
         }
     }
 
@@ -71,18 +73,21 @@ impl Plan {
         fields: &mut Fields,
         visit: &mut dyn FnMut(&Fields) -> Result<(), E>,
     ) -> Result<Result<(), E>, String> {
-        let [_, kind, _, _, body @ ..] = data else { return Err("is shorter than the header of CDR".to_owned()) };
         fields.clear();
         let mut run = Run { fields, visit, single: true, failed: None };
-        let end = match (data[0], kind) {
-            (0, 0) => run.all(&self.steps, &mut CdrReader::<BigEndian>::new(body)),
-            (0, 1) => run.all(&self.steps, &mut CdrReader::<LittleEndian>::new(body)),
-            _ => return Err(format!("is encoded in CDR of kind {:#04x}, where 0 and 1 can be read", kind)),
+        let end = match (self.encoding, data) {
+            (Encoding::Ros1, _) => run.all(&self.steps, &mut Packed::new(data)),
+            (_, [0, 0, _, _, body @ ..]) => run.all(&self.steps, &mut CdrReader::<BigEndian>::new(body)),
+            (_, [0, 1, _, _, body @ ..]) => run.all(&self.steps, &mut CdrReader::<LittleEndian>::new(body)),
+            (_, [_, kind, _, _, ..]) => {
+                return Err(format!("is encoded in CDR of kind {kind:#04x}, where 0 and 1 can be read"));
+            }
+            _ => return Err("is shorter than the header of CDR".to_owned()),
         };
         match (end, run.failed) {
             (_, Some(error)) => Ok(Err(error)),
-            (Err(re_cdr::Error::Utf8(_)), None) => Err("has a name that is not UTF-8".to_owned()),
-            (Err(_), None) => Err("ends before its type does".to_owned()),
+            (Err(Broken::Text), None) => Err("has a name that is not UTF-8".to_owned()),
+            (Err(Broken::Short), None) => Err("ends before its type does".to_owned()),
             (Ok(()), None) if run.single => Ok(visit(fields)),
             (Ok(()), None) => Ok(Ok(())),
         }
@@ -92,6 +97,8 @@ impl Plan {
 struct Compiler<'s> {
     schema: &'s Schema,
     layout: &'s Layout,
+    /// Whether it is ROS 1, which puts nothing between fields.
+    packed: bool,
     found: Vec<bool>,
     steps: usize,
 }
@@ -125,8 +132,8 @@ impl Compiler<'_> {
             }
             steps.extend(step);
         }
-        // A definition without fields takes a byte.
-        Ok(if fields.is_empty() { vec![Instruction::Skip { size: 1, count: 1 }] } else { steps })
+        // A definition without fields takes a byte of CDR.
+        Ok(if fields.is_empty() && !self.packed { vec![Instruction::Skip { size: 1, count: 1 }] } else { steps })
     }
 
     fn field(&mut self, field: &Field, path: Option<&str>, depth: usize) -> Result<Vec<Instruction>, String> {
@@ -229,102 +236,74 @@ struct Run<'r, E> {
 }
 
 impl<E> Run<'_, E> {
-    fn all<B: CdrEndian>(&mut self, steps: &[Instruction], cdr: &mut CdrReader<B>) -> Read<()> {
-        steps.iter().try_for_each(|step| self.step(step, cdr))
+    fn all(&mut self, steps: &[Instruction], wire: &mut impl Wire) -> Result<(), Broken> {
+        steps.iter().try_for_each(|step| self.step(step, wire))
     }
 
     /// Does something `count` times, or once where it takes no room: then it may be there any number of times.
-    fn repeat<B: CdrEndian>(
+    fn repeat<W: Wire>(
         &mut self,
         count: usize,
-        cdr: &mut CdrReader<B>,
-        mut once: impl FnMut(&mut Self, &mut CdrReader<B>) -> Read<()>,
-    ) -> Read<()> {
+        wire: &mut W,
+        mut once: impl FnMut(&mut Self, &mut W) -> Result<(), Broken>,
+    ) -> Result<(), Broken> {
         for _ in 0..count {
-            let before = cdr.position();
-            once(self, cdr)?;
-            if cdr.position() == before {
+            let before = wire.position();
+            once(self, wire)?;
+            if wire.position() == before {
                 break;
             }
         }
         Ok(())
     }
 
-    fn step<B: CdrEndian>(&mut self, step: &Instruction, cdr: &mut CdrReader<B>) -> Read<()> {
+    fn step(&mut self, step: &Instruction, wire: &mut impl Wire) -> Result<(), Broken> {
         match step {
-            Instruction::Skip { size, count } => skip(cdr, *size, *count),
-            Instruction::SkipText => {
-                let length = cdr.read_u32()? as usize;
-                cdr.read_bytes(length).map(|_| ())
-            }
+            Instruction::Skip { size, count } => wire.skip(*size, *count),
+            Instruction::SkipText => wire.skip_text(),
             Instruction::SkipList { size } => {
-                let count = cdr.read_u32()? as usize;
-                skip(cdr, *size, count)
+                let count = wire.length()?;
+                wire.skip(*size, count)
             }
             Instruction::Number(primitive, place) => {
-                let value = number(cdr, *primitive)?;
+                let value = wire.number(*primitive)?;
                 self.fields.set(*place, value);
                 Ok(())
             }
             Instruction::Text(slot) => {
-                let text = cdr.read_str()?;
-                self.fields.set_text(*slot, text);
+                self.fields.set_text(*slot, wire.text()?);
                 Ok(())
             }
             Instruction::Names => {
-                for _ in 0..cdr.read_u32()? {
-                    let name = cdr.read_str()?;
-                    self.fields.names.push(name);
+                for _ in 0..wire.length()? {
+                    self.fields.names.push(wire.text()?);
                 }
                 Ok(())
             }
             Instruction::Values(primitive) => {
-                for _ in 0..cdr.read_u32()? {
-                    let value = number(cdr, *primitive)?;
+                for _ in 0..wire.length()? {
+                    let value = wire.number(*primitive)?;
                     self.fields.values.push(value);
                 }
                 Ok(())
             }
             Instruction::Repeat { count, steps } => {
-                let count = count.map_or_else(|| cdr.read_u32().map(|n| n as usize), Ok)?;
-                self.repeat(count, cdr, |run, cdr| run.all(steps, cdr))
+                let count = count.map_or_else(|| wire.length(), Ok)?;
+                self.repeat(count, wire, |run, wire| run.all(steps, wire))
             }
             Instruction::Each(steps) => {
                 self.single = false;
-                let count = cdr.read_u32()? as usize;
-                self.repeat(count, cdr, |run, cdr| {
+                let count = wire.length()?;
+                self.repeat(count, wire, |run, wire| {
                     run.fields.clear();
-                    run.all(steps, cdr)?;
+                    run.all(steps, wire)?;
                     if run.failed.is_none() {
                         run.failed = (run.visit)(run.fields).err();
                     }
                     Ok(())
                 })
             }
-            Instruction::Wall(_) => Err(re_cdr::Error::UnexpectedEof),
+            Instruction::Wall(_) => Err(Broken::Short),
         }
     }
-}
-
-fn skip<B: CdrEndian>(cdr: &mut CdrReader<B>, size: usize, count: usize) -> Read<()> {
-    if count == 0 {
-        return Ok(());
-    }
-    cdr.align(size)?;
-    cdr.read_bytes(size.saturating_mul(count)).map(|_| ())
-}
-
-fn number<B: CdrEndian>(cdr: &mut CdrReader<B>, primitive: Primitive) -> Read<f64> {
-    Ok(match primitive {
-        Primitive::Bool | Primitive::U8 => cdr.read_u8()?.into(),
-        Primitive::I8 => cdr.read_i8()?.into(),
-        Primitive::I16 => cdr.read_i16()?.into(),
-        Primitive::U16 => cdr.read_u16()?.into(),
-        Primitive::I32 => cdr.read_i32()?.into(),
-        Primitive::U32 => cdr.read_u32()?.into(),
-        Primitive::I64 => cdr.read_i64()? as f64,
-        Primitive::U64 => cdr.read_u64()? as f64,
-        Primitive::F32 => cdr.read_f32()?.into(),
-        Primitive::F64 => cdr.read_f64()?,
-    })
 }

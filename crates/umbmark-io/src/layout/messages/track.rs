@@ -3,7 +3,7 @@
 use super::clock::{Clock, Times};
 use super::fields::{Fields, Number};
 use super::message_type::MessageType;
-use super::problem::{McapProblem, listed};
+use super::problem::{LogProblem, listed};
 use super::topics::{Chosen, shown};
 use crate::remedy::Argument;
 use crate::track_rows::TrackRows;
@@ -15,7 +15,7 @@ const FARTHEST: f64 = 1e6;
 
 /// A pose in the plane, without its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PlanarPose {
+pub(in crate::layout) struct PlanarPose {
     pub x: f64,
     pub y: f64,
     /// Missing where the orientation is all zeros.
@@ -30,7 +30,7 @@ struct Frames {
 }
 
 /// The poses of a topic.
-pub(super) struct Track {
+pub(in crate::layout) struct Track {
     kind: MessageType,
     frames: Vec<Frames>,
 }
@@ -60,14 +60,14 @@ impl Track {
         mut self,
         chosen: &Chosen,
         warnings: &mut Vec<String>,
-    ) -> Result<Vec<(Times, PlanarPose)>, McapProblem> {
+    ) -> Result<Vec<(Times, PlanarPose)>, LogProblem> {
         if let Some(part) = &chosen.part {
             let names: Vec<String> = self.frames.iter().map(|frames| shown(&frames.child)).collect();
             self.frames.retain(|frames| bare(&frames.child) == bare(part) || bare(&frames.frame) == bare(part));
             if self.frames.is_empty() {
                 let found = format!("it has no frame {}", crate::error::quoted(part));
                 let remedy = format!("its frames are: {}", listed(names)).into();
-                return Err(McapProblem::Topic { topic: shown(&chosen.topic), found, remedy });
+                return Err(LogProblem::Topic { topic: shown(&chosen.topic), found, remedy });
             }
         } else if !chosen.named
             && matches!(self.kind, MessageType::Odometry | MessageType::Transform | MessageType::Transforms)
@@ -92,7 +92,7 @@ impl Track {
                 child => format!("{topic}:{} (in {})", shown(child), shown(&frames.frame)),
             });
             let (role, argument) = ("the reference", Argument::Reference);
-            return Err(McapProblem::AmbiguousTopic { role, topics: listed(frames), argument });
+            return Err(LogProblem::AmbiguousTopic { role, topics: listed(frames), argument });
         }
         Ok(self.frames.pop().map(|frames| frames.rows).unwrap_or_default())
     }
@@ -110,7 +110,7 @@ fn bare(frame: &str) -> &str {
 }
 
 /// The pose of a message, seen from above.
-pub(super) fn place(fields: &Fields) -> Result<PlanarPose, String> {
+pub(in crate::layout) fn place(fields: &Fields) -> Result<PlanarPose, String> {
     let [x, y] = [Number::X, Number::Y].map(|number| fields.number(number));
     if let Some(value) = [x, y].into_iter().find(|value| !(value.abs() <= FARTHEST)) {
         return Err(format!("has position {value}, where a finite number in m of at most {FARTHEST:e} is allowed"));
@@ -128,7 +128,7 @@ pub(super) fn place(fields: &Fields) -> Result<PlanarPose, String> {
 }
 
 /// The rows on a clock, as those of any track.
-pub(super) fn timed(rows: Vec<(Times, PlanarPose)>, clock: &Clock, file: &str, topic: &str) -> TrackRows {
+pub(in crate::layout) fn timed(rows: Vec<(Times, PlanarPose)>, clock: &Clock, file: &str, topic: &str) -> TrackRows {
     TrackRows {
         file: file.to_owned(),
         column: format!("{topic} {}", clock.name()),

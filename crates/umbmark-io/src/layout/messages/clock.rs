@@ -2,7 +2,7 @@
 
 /// The two times of a message \[ns\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Times {
+pub(in crate::layout) struct Times {
     /// When the recorder got it.
     pub logged: i64,
     /// What its header says; zero where it says nothing.
@@ -17,7 +17,7 @@ impl Times {
 
 /// The clock of a log: which of the two times, counted from where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Clock {
+pub(in crate::layout) struct Clock {
     stamps: bool,
     zero: i64,
 }
@@ -27,7 +27,7 @@ pub(super) struct Clock {
 const CALENDAR: i64 = 1 << 52;
 
 /// Whether a time \[ns\] is of a calendar.
-pub(super) fn is_calendar(nanoseconds: i64) -> bool {
+pub(in crate::layout) fn is_calendar(nanoseconds: i64) -> bool {
     nanoseconds.saturating_abs() > CALENDAR
 }
 

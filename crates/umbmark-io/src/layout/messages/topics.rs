@@ -5,7 +5,7 @@
 //! transforms, then odometry that is not the wheels, then /tf. Between two of the same kind the user must choose.
 
 use super::message_type::{Encoding, MessageType};
-use super::problem::{McapProblem, listed};
+use super::problem::{LogProblem, listed};
 use crate::error::quoted;
 use crate::remedy::{Argument, Remedy};
 
@@ -21,7 +21,7 @@ pub struct Topics {
 
 /// A topic of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Topic {
+pub(in crate::layout) struct Topic {
     pub name: String,
     /// Name of its type.
     pub schema: String,
@@ -35,7 +35,7 @@ pub(super) struct Topic {
 
 /// A topic that was chosen.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Chosen {
+pub(in crate::layout) struct Chosen {
     pub topic: String,
     /// What was said behind its name.
     pub part: Option<String>,
@@ -74,16 +74,20 @@ const REFERENCE: Role = Role {
 };
 
 /// The topic of the wheels.
-pub(super) fn ticks(topics: &[Topic], wish: &Topics) -> Result<Chosen, McapProblem> {
+pub(in crate::layout) fn ticks(topics: &[Topic], wish: &Topics) -> Result<Chosen, LogProblem> {
     let found = match &wish.ticks {
         Some(wish) => Some(TICKS.named(topics, wish)?),
         None => TICKS.found(topics, None)?,
     };
-    found.ok_or_else(|| McapProblem::NoTicks { topics: listed(topics.iter().map(described)) })
+    found.ok_or_else(|| LogProblem::NoTicks { topics: listed(topics.iter().map(described)) })
 }
 
 /// The topic of the reference, which is not that of the wheels; there may be none.
-pub(super) fn reference(topics: &[Topic], wish: &Topics, ticks: &Chosen) -> Result<Option<Chosen>, McapProblem> {
+pub(in crate::layout) fn reference(
+    topics: &[Topic],
+    wish: &Topics,
+    ticks: &Chosen,
+) -> Result<Option<Chosen>, LogProblem> {
     match wish.reference.as_deref() {
         Some("none") => Ok(None),
         Some(wish) => REFERENCE.named(topics, wish).map(Some),
@@ -97,13 +101,13 @@ impl Role {
     }
 
     /// What the user asked for.
-    fn named(&self, topics: &[Topic], wish: &str) -> Result<Chosen, McapProblem> {
+    fn named(&self, topics: &[Topic], wish: &str) -> Result<Chosen, LogProblem> {
         let whole = topics.iter().find(|topic| topic.name == wish).map(|topic| (topic, None));
         let found = whole.or_else(|| {
             let (name, part) = wish.rsplit_once(':')?;
             topics.iter().find(|topic| topic.name == name).map(|topic| (topic, Some(part.to_owned())))
         });
-        let (topic, part) = found.ok_or_else(|| McapProblem::UnknownTopic {
+        let (topic, part) = found.ok_or_else(|| LogProblem::UnknownTopic {
             topic: quoted(wish),
             argument: self.argument,
             topics: listed(topics.iter().map(described)),
@@ -112,13 +116,13 @@ impl Role {
             let found = format!("its type {} does not tell {}", quoted(&topic.schema), self.name);
             let able = topics.iter().filter(|topic| self.rank(topic).is_some()).map(described);
             let remedy = Remedy::CanBe { argument: self.argument, values: listed(able) };
-            return Err(McapProblem::Topic { topic: quoted(&topic.name), found, remedy });
+            return Err(LogProblem::Topic { topic: quoted(&topic.name), found, remedy });
         }
         Ok(Chosen { topic: topic.name.clone(), part, named: true })
     }
 
     /// The only topic of the best kind.
-    fn found(&self, topics: &[Topic], not: Option<&str>) -> Result<Option<Chosen>, McapProblem> {
+    fn found(&self, topics: &[Topic], not: Option<&str>) -> Result<Option<Chosen>, LogProblem> {
         let able = |topic: &&Topic| topic.messages != Some(0) && Some(topic.name.as_str()) != not;
         let ranked = || topics.iter().filter(able).filter_map(|topic| Some((self.rank(topic)?, topic)));
         let Some(best) = ranked().map(|(rank, _)| rank).min() else { return Ok(None) };
@@ -127,7 +131,7 @@ impl Role {
             [topic] => Ok(Some(Chosen { topic: topic.name.clone(), part: None, named: false })),
             _ => {
                 let topics = listed(candidates.into_iter().map(described));
-                Err(McapProblem::AmbiguousTopic { role: self.name, topics, argument: self.argument })
+                Err(LogProblem::AmbiguousTopic { role: self.name, topics, argument: self.argument })
             }
         }
     }
@@ -142,7 +146,7 @@ fn described(topic: &Topic) -> String {
 }
 
 /// A name as it is where that is harmless, else quoted.
-pub(super) fn shown(name: &str) -> String {
+pub(in crate::layout) fn shown(name: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "/_.-~".contains(c);
     if !name.is_empty() && name.len() <= 60 && name.chars().all(plain) { name.to_owned() } else { quoted(name) }
 }

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 /// What a message is.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum MessageType {
+pub(in crate::layout) enum MessageType {
     /// Integers called left and right, by the paths of these fields.
     Counts { left: String, right: String },
     /// A list of integers, which does not say what they are: std_msgs/Int*MultiArray.
@@ -25,7 +25,7 @@ pub(super) enum MessageType {
 
 /// Types of a pose with a stamp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum PoseType {
+pub(in crate::layout) enum PoseType {
     /// geometry_msgs/PoseStamped
     Stamped,
     /// geometry_msgs/PoseWithCovarianceStamped
@@ -36,9 +36,11 @@ pub(super) enum PoseType {
 
 /// How messages of a topic are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Encoding {
+pub(in crate::layout) enum Encoding {
     /// ROS 2: CDR with a `ros2msg` schema.
     Cdr,
+    /// ROS 1: its own packed form with a `ros1msg` schema.
+    Ros1,
     Json,
     Protobuf,
 }
@@ -47,6 +49,7 @@ impl Encoding {
     pub fn of(message: &str, schema: &str) -> Option<Encoding> {
         match (message, schema) {
             ("cdr", "ros2msg") => Some(Encoding::Cdr),
+            ("ros1", "ros1msg") => Some(Encoding::Ros1),
             ("json", _) => Some(Encoding::Json),
             ("protobuf", "protobuf") => Some(Encoding::Protobuf),
             _ => None,
@@ -58,7 +61,7 @@ impl MessageType {
     /// The type called `name`, or the one that its schema resembles.
     pub fn of(encoding: Encoding, name: &str, schema: &[u8]) -> Option<MessageType> {
         MessageType::named(name).or_else(|| match encoding {
-            Encoding::Cdr => counts(&integers(&Schema::parse(name, schema).ok()?)),
+            Encoding::Cdr | Encoding::Ros1 => counts(&integers(&Schema::parse(name, schema).ok()?)),
             Encoding::Json => counts(&integers_of_json(schema)?),
             Encoding::Protobuf => None,
         })

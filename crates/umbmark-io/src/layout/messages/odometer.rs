@@ -7,7 +7,7 @@ use umbmark_core::geometry::wrap;
 
 /// Sums from message to message: by the poses, and by the speeds for robots that fill in only these.
 #[derive(Default)]
-pub(super) struct Odometer {
+pub(in crate::layout) struct Odometer {
     before: Option<(Times, PlanarPose)>,
     /// Distance \[m\] and turn \[rad\] by the poses.
     by_pose: [f64; 2],

@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use std::panic::catch_unwind;
 
 /// The type `name` of a schema, which is a set of file descriptors.
-pub(super) fn descriptor(name: &str, data: &[u8]) -> Result<MessageDescriptor, String> {
+pub(in crate::layout) fn descriptor(name: &str, data: &[u8]) -> Result<MessageDescriptor, String> {
     // Descriptors without a name where one must be make the crate look for the name in a file that is not there yet.
     let decoded = catch_unwind(|| DescriptorPool::decode(data));
     let none = "its schema is no set of protobuf descriptors";
@@ -16,7 +16,7 @@ pub(super) fn descriptor(name: &str, data: &[u8]) -> Result<MessageDescriptor, S
 }
 
 /// Decodes a message and visits it.
-pub(super) fn read<E>(
+pub(in crate::layout) fn read<E>(
     descriptor: &MessageDescriptor,
     layout: &Layout,
     data: &[u8],

@@ -2,7 +2,7 @@
 
 /// A number that a message may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Number {
+pub(in crate::layout) enum Number {
     /// Stamp, whole part \[s\].
     Seconds,
     /// Stamp, the rest \[ns\].
@@ -29,7 +29,7 @@ const NUMBERS: usize = 12;
 
 /// A place in [`Fields`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Slot {
+pub(in crate::layout) enum Slot {
     Number(Number),
     /// Name of the frame in which a pose is given.
     Frame,
@@ -43,7 +43,7 @@ pub(super) enum Slot {
 
 /// A field of a message, by its path.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Wanted {
+pub(in crate::layout) struct Wanted {
     pub path: String,
     pub slot: Slot,
     /// Whether the message is of no use without it.
@@ -52,7 +52,7 @@ pub(super) struct Wanted {
 
 /// What is wanted of a type of message.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Layout {
+pub(in crate::layout) struct Layout {
     /// The list whose elements are messages of their own, where there is one.
     pub each: Option<&'static str>,
     pub wanted: Vec<Wanted>,
@@ -89,7 +89,7 @@ impl Layout {
 
 /// The fields of one message that were wanted.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Fields {
+pub(in crate::layout) struct Fields {
     numbers: [f64; NUMBERS],
     pub frame: String,
     pub child: String,
@@ -132,7 +132,7 @@ impl Fields {
 
 /// A list of names in one piece of memory.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Names {
+pub(in crate::layout) struct Names {
     text: String,
     ends: Vec<usize>,
 }
@@ -155,7 +155,7 @@ impl Names {
 }
 
 /// Whether a field called `name` is the one called `wanted`; parts of stamps have several names.
-pub(super) fn same_field(name: &str, wanted: &str) -> bool {
+pub(in crate::layout) fn same_field(name: &str, wanted: &str) -> bool {
     const SECONDS: [&str; 3] = ["sec", "secs", "seconds"];
     const NANOSECONDS: [&str; 4] = ["nanosec", "nsec", "nsecs", "nanos"];
     name == wanted

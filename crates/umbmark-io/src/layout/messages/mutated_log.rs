@@ -6,26 +6,21 @@
 //! schemas and messages, 1.5 million of JSON and 3 million of protobuf; and 200 000 whole files with
 //! `UMBMARK_MUTATIONS=4000000`. They found one panic in a library, which is guarded against (docs/studies/mutations.md).
 
-use super::cdr::Plan;
-use super::definitions::{Definition, JOINT_STATE, ODOMETRY, POSE_STAMPED, TF};
+use super::super::mcap::write;
+use super::damaged::{exaggerated, read_file, rounds};
+use super::definitions::{JOINT_STATE, KnownType, ODOMETRY, POSE_STAMPED, TF};
 use super::fields::Fields;
-use super::message_type::{MessageType, PoseType};
+use super::message_type::{Encoding, MessageType, PoseType};
+use super::plan::Plan;
 use super::protobuf;
 use super::schema::Schema;
-use super::write::write;
-use super::{Survey, Topics, json};
+use super::{Topics, json};
 use crate::RobotFile;
 use crate::mutated_input::damage;
 use std::io::{Cursor, Write};
 use umbmark_core::dataset::{ReferencePose, TickLog};
 use umbmark_core::drive::Robot;
 use umbmark_core::random::Stream;
-
-/// Inputs of a layer; `share` of them where it is slow.
-fn rounds(share: u64) -> u64 {
-    let wish = std::env::var("UMBMARK_MUTATIONS").ok().and_then(|text| text.parse().ok());
-    wish.unwrap_or(20_000) / share
-}
 
 fn log() -> TickLog {
     let pose = |sample: usize| ReferencePose { sample, x: 0.01 * sample as f64, y: 0.0, heading: Some(0.1) };
@@ -44,52 +39,31 @@ fn file_of(log: &TickLog) -> Vec<u8> {
     file.into_inner()
 }
 
-/// Reads a file as the command does; says whether it could be read. What is read is finite.
-fn read(file: &mut tempfile::NamedTempFile, bytes: &[u8], wish: &Topics) -> bool {
-    let handle = file.as_file_mut();
-    handle.set_len(0).unwrap();
-    std::io::Seek::rewind(handle).unwrap();
-    handle.write_all(bytes).unwrap();
-    let robot = Robot::labmate();
-    let read = Survey::open(file.path())
-        .and_then(|survey| survey.read(wish, Some(&robot), &mut Vec::new()))
-        .and_then(|reading| reading.into_log(Some(&robot), &mut Vec::new()));
-    read.is_ok_and(|log| {
-        assert!(log.time.iter().chain(&log.left).chain(&log.right).all(|value| value.is_finite()));
-        assert!(log.reference.iter().all(|pose| pose.x.is_finite() && pose.sample < log.time.len()));
-        assert!(log.time.windows(2).all(|pair| pair[0] < pair[1]));
-        true
-    })
-}
-
 /// Damages files as they are, and files of records without chunks, where no checksum stands in the way.
 #[test]
 fn damaged_files() {
-    let mut file = tempfile::Builder::new().suffix(".mcap").tempfile().unwrap();
+    let mut file = tempfile::NamedTempFile::new().unwrap();
+    let mut read = |bytes: &[u8], wish: &Topics| {
+        let handle = file.as_file_mut();
+        handle.set_len(0).unwrap();
+        std::io::Seek::rewind(handle).unwrap();
+        handle.write_all(bytes).unwrap();
+        read_file(file.path(), wish, &Robot::labmate()).is_ok()
+    };
     let packed = file_of(&log());
     let loose = loose(&packed);
     let wishes = [Topics::default(), Topics { ticks: Some("/odom".into()), reference: Some("/tf".into()) }];
     for (purpose, good) in [(31, &packed), (32, &loose)] {
         let mut stream = Stream::new(7, purpose, 0);
         let mut fine = 0;
-        assert!(wishes.iter().all(|wish| read(&mut file, good, wish)), "the undamaged file is good");
+        assert!(wishes.iter().all(|wish| read(good, wish)), "the undamaged file is good");
         let rounds = rounds(40);
         for round in 0..rounds {
             let bytes = if round % 3 == 0 { exaggerated(good, &mut stream) } else { damage(good, &mut stream) };
-            fine += u64::from(read(&mut file, &bytes, &wishes[round as usize % 2]));
+            fine += u64::from(read(&bytes, &wishes[round as usize % 2]));
         }
         assert!(fine > 0 && fine < rounds, "{fine}: damage too heavy or too light to tell anything");
     }
-}
-
-/// A file with one number of 4 or 8 bytes that is as large or as odd as a length can be.
-fn exaggerated(good: &[u8], stream: &mut Stream) -> Vec<u8> {
-    const LENGTHS: [u64; 8] = [0, 1, 1 << 20, 1 << 31, 1 << 40, 1 << 63, u64::MAX - 9, u64::MAX];
-    let mut bytes = good.to_vec();
-    let mut below = |n: usize| ((stream.uniform() * n as f64) as usize).min(n - 1);
-    let (at, width) = (below(bytes.len() - 8), [4, 8][below(2)]);
-    bytes[at..at + width].copy_from_slice(&LENGTHS[below(LENGTHS.len())].to_le_bytes()[..width]);
-    bytes
 }
 
 /// The records of a file in one chunk that is neither packed nor has a checksum.
@@ -103,7 +77,7 @@ fn loose(packed: &[u8]) -> Vec<u8> {
     writer.into_inner().into_inner()
 }
 
-fn types() -> [(Definition, MessageType); 4] {
+fn types() -> [(KnownType, MessageType); 4] {
     [
         (JOINT_STATE, MessageType::Joints),
         (ODOMETRY, MessageType::Odometry),
@@ -113,7 +87,7 @@ fn types() -> [(Definition, MessageType); 4] {
 }
 
 /// A message of a type.
-fn message_of(definition: &Definition) -> Vec<u8> {
+fn message_of(definition: &KnownType) -> Vec<u8> {
     let packed = file_of(&log());
     let messages = mcap::MessageStream::new(&packed).unwrap().map(Result::unwrap);
     let of_type =
@@ -137,7 +111,7 @@ fn damaged_schemas_and_messages() {
     for (number, (definition, kind)) in types().into_iter().enumerate() {
         let text = definition.text();
         let message = message_of(&definition);
-        let plan = |text: &[u8]| Plan::new(&Schema::parse(definition.name, text)?, &kind.layout());
+        let plan = |text: &[u8]| Plan::new(Encoding::Cdr, &Schema::parse(definition.name, text)?, &kind.layout());
         let whole = plan(text.as_bytes()).unwrap();
         assert!(decoded(&whole, &message), "{}", definition.name);
         let mut stream = Stream::new(7, 33 + number as u64, 0);

@@ -27,7 +27,7 @@ enum Source {
 }
 
 /// The wheels of a log, in the unit of their messages.
-pub(super) struct Wheels {
+pub(in crate::layout) struct Wheels {
     source: Source,
     pub times: Vec<Times>,
     values: [Vec<f64>; 2],
