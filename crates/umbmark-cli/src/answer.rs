@@ -10,6 +10,9 @@ pub fn answer_text(solution: &Solution, level: f64) -> String {
     let mut text = hanging("", 0, &solution.sentence());
     if !solution.changes.is_empty() {
         text += &format!("\n{}\n", numbers_table(solution, level));
+        if solution.changes.iter().any(|change| change.worth.is_some_and(|worth| worth < -5e-5)) {
+            text += &hanging("", 0, "A worth below zero: this error had hidden a part of the others, and all together help.");
+        }
     }
     if solution.assumes_scale() {
         text += &hanging("", 0, "These hold if the mean wheel diameter is right: the runs do not show it.");
@@ -28,6 +31,7 @@ pub fn answer_text(solution: &Solution, level: f64) -> String {
 fn numbers_table(solution: &Solution, level: f64) -> String {
     let from = format!("{:.0} % from", 100.0 * level);
     let title = match (solution.is_trusted(), solution.needed) {
+        (false, _) if solution.misleads_alone() => "not to be written alone",
         (false, _) => "not to be written yet",
         (true, false) => "nothing to write",
         (true, true) => "write",

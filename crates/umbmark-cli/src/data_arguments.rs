@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use umbmark_core::dataset::Dataset;
+use umbmark_core::drive::Robot;
 use umbmark_io::{DatasetError, Topics};
 
 /// Where the measurements are.
@@ -38,6 +39,11 @@ impl DataArguments {
     /// Reads them.
     pub fn load(&self) -> Result<Dataset, DatasetError> {
         self.topics.load(&self.data)
+    }
+
+    /// Reads logs that are of a robot, where no other stands beside them.
+    pub fn load_of(&self, robot: &Robot) -> Result<Dataset, DatasetError> {
+        umbmark_io::load_of(&self.data, &self.topics.topics(), robot)
     }
 }
 

@@ -11,7 +11,8 @@ use umbmark_core::likelihood::{Noise, Outlier};
 use umbmark_core::result::meaning;
 use umbmark_core::setup::Setup;
 use umbmark_core::stats::Interval;
-use umbmark_io::ModelFile;
+use umbmark_core::solve::Solution;
+use umbmark_io::{Doubt, ModelFile};
 
 use crate::files::Pending;
 use crate::prose::hanging;
@@ -35,6 +36,14 @@ pub fn read_model(file: &Path, data: &Dataset, session: &Session) -> anyhow::Res
 /// Writes a `model.toml`, with the noise that was fitted with the model.
 pub fn write_model(model: &Model, noise: Option<Noise>, file: &Path, force: bool) -> anyhow::Result<()> {
     let written = ModelFile { noise, ..ModelFile::new(model.clone()) };
+    Pending::write_whole(file, force, &written.text()).context("the model was not written")
+}
+
+/// Writes the model of an answer, with what speaks against using it.
+pub fn write_learnt(solution: &Solution, file: &Path, force: bool) -> anyhow::Result<()> {
+    let doubt = solution.doubt().map(|because| Doubt { because, alone: !solution.learnt.is_in_doubt() });
+    let learnt = &solution.learnt;
+    let written = ModelFile { noise: learnt.noise, doubt, ..ModelFile::new(learnt.model.clone()) };
     Pending::write_whole(file, force, &written.text()).context("the model was not written")
 }
 

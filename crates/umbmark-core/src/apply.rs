@@ -20,12 +20,24 @@ use crate::run::{Run, TickLog};
 pub struct Corrected {
     /// Time of each sample \[s\], as in the log.
     pub time: Vec<f64>,
+    /// The recorder's clock at time 0 \[ns\], where that is of a calendar; else 0.
+    pub begin_ns: i64,
     /// Pose at each sample.
     pub poses: Vec<Pose2>,
     /// How sure each pose is; `None` where no noise is known.
     pub spread: Option<Vec<Spread>>,
+    /// Variances of the motion to each sample from the one before: forward and to the side \[m²\], and of the heading \[rad²\]; `None` where
+    /// no noise is known.
+    pub motion_variances: Option<Vec<[f64; 3]>>,
     /// Way that the axle's centre has driven \[m\].
     pub way: f64,
+}
+
+impl Corrected {
+    /// Time of a sample on the recorder's clock \[ns\], where that is of a calendar: a double does not hold its nanoseconds.
+    pub fn stamp_ns(&self, sample: usize) -> Option<i64> {
+        (self.begin_ns > 0).then(|| self.begin_ns.saturating_add((self.time[sample] * 1e9).round() as i64))
+    }
 }
 
 /// Why a model cannot be applied to a log.
@@ -92,9 +104,10 @@ fn along(track: &Track, log: &TickLog, model: &Model, noise: Option<&Noise>, sta
     let growth = noise.map(Noise::of_wheels);
     let (mut pose, mut spread, mut way) = (start, Spread::default(), 0.0);
     let mut pieces = track.travel().iter().zip(track.contexts());
-    let (mut poses, mut spreads) = (Vec::with_capacity(log.time.len()), Vec::new());
+    let (mut poses, mut spreads, mut variances) = (Vec::with_capacity(log.time.len()), Vec::new(), Vec::new());
     let mut made = 0;
     for after in track.seen_after() {
+        let mut step = [0.0; 3];
         for (travel, at) in pieces.by_ref().take(after - made) {
             let from = pose;
             let motion = chain.displacement(&at.at_pose(&from), travel);
@@ -102,15 +115,25 @@ fn along(track: &Track, log: &TickLog, model: &Model, noise: Option<&Noise>, sta
             way += motion.forward.abs();
             if let Some(growth) = &growth {
                 spread = spread.after(&from, &motion, travel.rolled(), &pose, growth);
+                let grown = growth.of(&motion, travel.rolled());
+                step = std::array::from_fn(|k| step[k] + grown[k]);
             }
         }
         made = *after;
         poses.push(pose);
         if noise.is_some() {
             spreads.push(spread);
+            variances.push(step);
         }
     }
-    Corrected { time: log.time.clone(), poses, spread: noise.map(|_| spreads), way }
+    Corrected {
+        time: log.time.clone(),
+        begin_ns: log.begin_ns,
+        poses,
+        spread: noise.map(|_| spreads),
+        motion_variances: noise.map(|_| variances),
+        way,
+    }
 }
 
 #[cfg(test)]

@@ -61,6 +61,9 @@ pub struct TickLog {
     pub relative: bool,
     /// Defects that were corrected while it was read.
     pub mended: Mended,
+    /// The recorder's clock at time 0 \[ns\], where that is of a calendar; else 0.
+    #[serde(default)]
+    pub begin_ns: i64,
     /// Where START was found.
     #[serde(default)]
     pub start: Start,

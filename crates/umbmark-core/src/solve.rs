@@ -126,9 +126,29 @@ impl Solution {
         self.learnt.diagnosis.setup.all_faults().collect()
     }
 
-    /// Whether the new numbers are to be trusted: the model explains the runs, and the data are in order.
+    /// Whether the new numbers may be written: the model explains the runs, the data are in order, and they do not
+    /// [mislead alone](Solution::misleads_alone).
     pub fn is_trusted(&self) -> bool {
-        !self.learnt.is_in_doubt()
+        !self.learnt.is_in_doubt() && !self.misleads_alone()
+    }
+
+    /// Whether the new numbers alone leave a larger error in these runs than there is, and more than chance makes. They hold only beside
+    /// effects that the robot takes along to every path, and that no number of it holds. Effects of the floor stay there.
+    pub fn misleads_alone(&self) -> bool {
+        let model = &self.learnt.model;
+        let travels = |part: &Part| {
+            let law = model.parts().iter().find(|own| own.effect.name() == part.name);
+            law.and_then(|own| own.effect.entry()).is_none_or(|entry| !entry.is_of_floor)
+        };
+        self.off.as_ref().is_some_and(|off| {
+            let is_worse = off.with_numbers > (1.0 + words::TOLD) * off.driven;
+            self.needed && is_worse && !off.is_chance(off.with_numbers) && off.known.iter().any(travels)
+        })
+    }
+
+    /// Why the model, or its numbers alone, should not be used; `None` where nothing speaks against it.
+    pub fn doubt(&self) -> Option<String> {
+        words::doubt(self)
     }
 
     /// Whether the lengths, and their intervals, hold only if the wheels are right on the whole, which these runs do not show.

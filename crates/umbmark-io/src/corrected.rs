@@ -52,13 +52,22 @@ impl CorrectedFormat {
     }
 }
 
+/// The time of a sample \[s\] as in the log, to the nanosecond where its clock is of a calendar.
+pub(crate) fn time_text(corrected: &Corrected, sample: usize) -> String {
+    match corrected.stamp_ns(sample) {
+        Some(stamp) => format!("{}.{:09}", stamp / 1_000_000_000, stamp % 1_000_000_000),
+        None => format!("{:?}", corrected.time[sample]),
+    }
+}
+
 fn csv(corrected: &Corrected) -> Vec<u8> {
     let mut text = CsvText::behind("");
     let spread = corrected.spread.as_deref();
     text.row(POSE.into_iter().chain(spread.iter().flat_map(|_| COVARIANCE)));
-    for (sample, (time, pose)) in corrected.time.iter().zip(&corrected.poses).enumerate() {
+    for (sample, pose) in corrected.poses.iter().enumerate() {
         let covariance = spread.map(|spread| spread[sample].numbers());
-        for value in [*time, pose.x, pose.y, pose.heading].into_iter().chain(covariance.into_iter().flatten()) {
+        text.cell(time_text(corrected, sample));
+        for value in [pose.x, pose.y, pose.heading].into_iter().chain(covariance.into_iter().flatten()) {
             text.decimal(value);
         }
         text.end();
@@ -77,7 +86,9 @@ mod tests {
         Corrected {
             time: vec![0.0, 0.1],
             poses: vec![Pose2::IDENTITY, Pose2::new(1.0 / 3.0, -0.25, 7.0)],
+            begin_ns: 0,
             spread: spread.then(|| vec![Spread::default(), at]),
+            motion_variances: spread.then(|| vec![[0.0; 3], [1e-6, 4e-6, 9e-6]]),
             way: 0.5,
         }
     }
@@ -92,6 +103,24 @@ mod tests {
              0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0\n\
              0.1,0.3333333333333333,-0.25,7.0,1e-6,-2e-7,3e-6,1e-5,-2e-5,0.3333333333333333\n"
         );
+    }
+
+    #[test]
+    fn times_of_a_calendar_are_written_to_the_nanosecond() {
+        let corrected = Corrected { begin_ns: 1_760_000_000_123_456_789, ..corrected(true) };
+        for format in [CorrectedFormat::Csv, CorrectedFormat::Tum] {
+            let text = String::from_utf8(format.bytes(&corrected).unwrap()).unwrap();
+            assert!(text.contains("\n1760000000.123456789") && text.contains("\n1760000000.223456789"), "{text}");
+        }
+        let bytes = CorrectedFormat::Mcap.bytes(&corrected).unwrap();
+        let message = ::mcap::MessageStream::new(&bytes).unwrap().last().unwrap().unwrap();
+        assert_eq!(message.log_time, 1_760_000_000_223_456_789);
+        // Variances of the twist: of the motion, by the square of a tenth of a second.
+        let twist = &message.data[message.data.len() - 36 * 8..];
+        let number = |place: usize| f64::from_le_bytes(twist[8 * place..][..8].try_into().unwrap());
+        for (place, variance) in [(0, 1e-4), (7, 4e-4), (35, 9e-4), (1, 0.0)] {
+            assert!((number(place) - variance).abs() < 1e-15, "{place}: {}", number(place));
+        }
     }
 
     #[test]

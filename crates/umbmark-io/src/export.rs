@@ -41,6 +41,8 @@ pub struct Target {
     pub name: &'static str,
     /// What it is.
     pub about: &'static str,
+    /// Whether it holds every effect of a model, and not the numbers of the robot alone.
+    pub holds_all: bool,
     write: fn(&Export) -> Result<Written, ExportError>,
 }
 

@@ -7,6 +7,7 @@ use super::assembly::{Assembly, Tracked};
 use super::error::DatasetError;
 use super::probe::Probe;
 use super::remedy::Words;
+use super::robot_file::RobotFile;
 use super::save::Existing;
 use super::source::Source;
 use super::spool::Spooled;
@@ -146,15 +147,15 @@ fn choose<Read: Copy>(of: impl Fn(&Layout) -> Option<Read>, recognises: impl Fn(
 }
 
 /// A dataset from a folder, from one file of it, or from what comes through standard input (`-`) or a named pipe.
-pub(super) fn load(path: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
-    let Some(spooled) = Spooled::of(path)? else { return load_place(path, topics) };
-    let mut data = load_place(&spooled.path, topics).map_err(|error| spooled.error(error))?;
+pub(super) fn load(path: &Path, topics: &Topics, robot: Option<&RobotFile>) -> Result<Dataset, DatasetError> {
+    let Some(spooled) = Spooled::of(path)? else { return load_place(path, topics, robot) };
+    let mut data = load_place(&spooled.path, topics, robot).map_err(|error| spooled.error(error))?;
     data.warnings.iter_mut().for_each(|warning| *warning = spooled.told(warning));
     Ok(data)
 }
 
-fn load_place(path: &Path, topics: &Topics) -> Result<Dataset, DatasetError> {
-    let probe = Probe::of(path)?;
+fn load_place(path: &Path, topics: &Topics, robot: Option<&RobotFile>) -> Result<Dataset, DatasetError> {
+    let probe = Probe { robot: robot.cloned(), ..Probe::of(path)? };
     match choose(|layout| layout.data, |(recognises, _)| recognises(&probe)) {
         Some((_, read)) => read(&probe, topics),
         None => Ok(Dataset::default()),

@@ -59,7 +59,7 @@ pub use layout::Layout;
 pub use layout::csv::save;
 pub use layout::mcap::save_mcap;
 pub use layout::messages::{LogProblem, Topics};
-pub use model_file::ModelFile;
+pub use model_file::{Doubt, ModelFile};
 pub use parameter_file::{ParameterFile, parse_parameters, read_parameters};
 pub use proposal::{KnownNumber, KnownNumbers, Proposal, ProposedNumber};
 pub use remedy::{Argument, Remedy, Words};
@@ -69,6 +69,7 @@ pub use template::{template, write_template};
 
 use std::path::Path;
 use umbmark_core::dataset::Dataset;
+use umbmark_core::drive::Robot;
 
 /// Reads a dataset folder, an OptiOdom folder, or one file of either. Never touches what it reads.
 ///
@@ -79,5 +80,10 @@ pub fn load(path: impl AsRef<Path>) -> Result<Dataset, DatasetError> {
 
 /// Reads a dataset whose MCAP logs hold wheels and reference on the given topics.
 pub fn load_with(path: impl AsRef<Path>, topics: &Topics) -> Result<Dataset, DatasetError> {
-    layout::load(path.as_ref(), topics)
+    layout::load(path.as_ref(), topics, None)
+}
+
+/// The same of logs beside which no robot stands: they are of `robot`, where another does not stand there.
+pub fn load_of(path: impl AsRef<Path>, topics: &Topics, robot: &Robot) -> Result<Dataset, DatasetError> {
+    layout::load(path.as_ref(), topics, Some(&RobotFile::new(robot.clone(), None)))
 }

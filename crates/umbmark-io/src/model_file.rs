@@ -29,6 +29,17 @@ pub struct ModelFile {
     pub conversion: Option<Conversion>,
     /// The sizes of the noise, where they were fitted.
     pub noise: Option<Noise>,
+    /// What speaks against using it, as the verb said that wrote it.
+    pub doubt: Option<Doubt>,
+}
+
+/// What speaks against using a model.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Doubt {
+    /// In a sentence or more.
+    pub because: String,
+    /// Whether it holds only for the numbers of the robot without the other effects.
+    pub alone: bool,
 }
 
 impl ModelFile {
@@ -62,22 +73,31 @@ impl ModelFile {
         let source = Source { file, text };
         let root = source.parse()?;
         let root = Table::root(&source, &root);
-        root.only(&["robot", "effect", "noise"])?;
+        root.only(&["robot", "effect", "noise", "doubt"])?;
         let made_for = root.get("robot").map(|entry| read_robot_table(&entry.table("[robot]".into())?)).transpose()?;
         let own = made_for.as_ref().or(robot).cloned().unwrap_or_else(Robot::labmate);
         let (model, draws) = read_effects(&root, &own)?;
         let noise = root.get("noise").map(|entry| read_noise(&entry.table("[noise]".into())?)).transpose()?;
+        let doubt = root.get("doubt").map(|entry| read_doubt(&entry.table("[doubt]".into())?)).transpose()?;
         let (Some(robot), Some(entry)) = (robot, root.get("robot")) else {
-            return Ok(ModelFile { model, draws, conversion: None, noise });
+            return Ok(ModelFile { model, draws, conversion: None, noise, doubt });
         };
         let refuse = |reason: &str| entry.wrong("the nominal robot that the model is used for", reason);
         let (model, conversion) = model.converted(robot).map_err(|error| refuse(&error.to_string()))?;
         let drawn = draws.iter().any(|draw| CONVERTED.contains(&draw.effect()));
         match conversion {
             Some(_) if drawn => Err(refuse("E_d, E_b or E_s is drawn, and distributions are not converted")),
-            _ => Ok(ModelFile { model, draws, conversion, noise }),
+            _ => Ok(ModelFile { model, draws, conversion, noise, doubt }),
         }
     }
+}
+
+/// What speaks against the model.
+fn read_doubt(table: &Table) -> Result<Doubt, DatasetError> {
+    table.only(&["because", "alone"])?;
+    let because = table.need("because", "the reason, in words")?.word("a text")?.to_owned();
+    let alone = table.get("alone").map(|entry| entry.flag()).transpose()?.unwrap_or(false);
+    Ok(Doubt { because, alone })
 }
 
 /// The sizes of the noise; what is not given is 0.

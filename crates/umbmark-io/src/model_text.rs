@@ -1,6 +1,6 @@
 //! `model.toml` as text.
 
-use super::ModelFile;
+use super::model_file::{Doubt, ModelFile};
 use super::robot_text::robot_text;
 use umbmark_core::effect::{Model, effects_text_with};
 use umbmark_core::likelihood::Noise;
@@ -9,7 +9,7 @@ use umbmark_core::monte_carlo::{Distribution, Draw};
 impl ModelFile {
     /// A model whose parameters are not drawn.
     pub fn new(model: Model) -> ModelFile {
-        ModelFile { model, draws: Vec::new(), conversion: None, noise: None }
+        ModelFile { model, draws: Vec::new(), conversion: None, noise: None, doubt: None }
     }
 
     /// A `model.toml` that reads back as this, to the last bit, with its nominal robot. Effects that a program has added to the
@@ -28,7 +28,8 @@ impl ModelFile {
     pub fn text(&self) -> String {
         let effects = effects_with(&self.model, &self.draws);
         let noise = self.noise.as_ref().map(noise_text).unwrap_or_default();
-        let tables = [robot_text(self.model.robot()), effects, noise];
+        let doubt = self.doubt.as_ref().map(doubt_text).unwrap_or_default();
+        let tables = [robot_text(self.model.robot()), effects, noise, doubt];
         tables.into_iter().filter(|table| !table.is_empty()).collect::<Vec<_>>().join("\n")
     }
 }
@@ -37,6 +38,12 @@ impl ModelFile {
 fn noise_text(noise: &Noise) -> String {
     let lines = Noise::WRITTEN.iter().zip(noise.written()).map(|(size, value)| format!("{} = {value:?}\n", size.name));
     std::iter::once("[noise]\n".to_owned()).chain(lines).collect()
+}
+
+/// What speaks against the model.
+fn doubt_text(doubt: &Doubt) -> String {
+    let because = toml::Value::from(doubt.because.as_str());
+    format!("[doubt]\nbecause = {because}\n{}", if doubt.alone { "alone = true\n" } else { "" })
 }
 
 /// The effects of a model, with the distributions of what is drawn.
@@ -79,7 +86,8 @@ mod tests {
         assert_eq!(ModelFile::parse("model.toml", &file.text(), None).unwrap(), file);
         assert_eq!(ModelFile::parse("model.toml", &effects_text(&file.model), Some(&robot)).unwrap(), file);
         let noise = Noise { heading_per_metre: 1e-3 / 3.0, within_heading: 0.0, ..Noise::default() };
-        let file = ModelFile { noise: Some(noise), ..file };
+        let doubt = Doubt { because: "With \"quotes\",\nand lines.".into(), alone: true };
+        let file = ModelFile { noise: Some(noise), doubt: Some(doubt), ..file };
         assert!(file.text().contains("\n[noise]\nheading_rad_per_sqrt_m = 0.000333"));
         assert_eq!(ModelFile::parse("model.toml", &file.text(), None).unwrap(), file);
     }

@@ -1,6 +1,8 @@
 //! What a place shows of itself before anything in it is read.
 
 use super::error::DatasetError;
+use super::layout::csv::robot_beside;
+use super::robot_file::RobotFile;
 use super::source::{Source, unreadable};
 use std::path::{Path, PathBuf};
 
@@ -13,6 +15,8 @@ pub(super) struct Probe {
     pub folder: PathBuf,
     /// What stands in that folder, sorted, without what is hidden.
     pub names: Vec<String>,
+    /// The robot of logs beside which there is none.
+    pub robot: Option<RobotFile>,
 }
 
 impl Probe {
@@ -20,7 +24,15 @@ impl Probe {
         let is_folder = std::fs::metadata(path).map_err(|error| unreadable(path, &error))?.is_dir();
         let folder = if is_folder { path } else { folder_of(path) }.to_owned();
         let names = if is_folder { names_in(&folder)? } else { names_in(&folder).unwrap_or_default() };
-        Ok(Probe { path: path.to_owned(), is_folder, folder, names })
+        Ok(Probe { path: path.to_owned(), is_folder, folder, names, robot: None })
+    }
+
+    /// The robot that stands beside the logs, or else the one that was named.
+    pub fn robot_file(&self) -> Result<Option<RobotFile>, DatasetError> {
+        match robot_beside(&self.folder) {
+            Some(robot) => RobotFile::read(robot).map(Some),
+            None => Ok(self.robot.clone()),
+        }
     }
 
     /// Whether something of this name stands in the folder.

@@ -15,6 +15,19 @@ pub struct Growth {
     pub sideways_per_metre: f64,
 }
 
+impl Growth {
+    /// Variances of a motion on which the wheels roll by their mean way `rolled` \[m\]: forward and to the side \[m²\], and of the heading
+    /// \[rad²\].
+    #[inline]
+    pub fn of(&self, motion: &Displacement2, rolled: f64) -> [f64; 3] {
+        let [per_metre, per_radian, forward, sideways] =
+            [self.heading_per_metre, self.heading_per_radian, self.forward_per_metre, self.sideways_per_metre]
+                .map(|sd| sd * sd);
+        let heading = per_metre * motion.forward.abs() + per_radian * motion.rotation.abs();
+        [forward * rolled, sideways * rolled, heading]
+    }
+}
+
 /// The robot turns on the spot where the square of its chord is below this share of that of the wheels' mean way.
 const SPOT: f64 = 0.01;
 
@@ -45,11 +58,7 @@ impl Spread {
     #[inline]
     pub fn after(&self, from: &Pose2, motion: &Displacement2, rolled: f64, to: &Pose2, noise: &Growth) -> Spread {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
-        let way = motion.forward.abs();
-        let [per_metre, per_radian, forward, sideways] =
-            [noise.heading_per_metre, noise.heading_per_radian, noise.forward_per_metre, noise.sideways_per_metre]
-                .map(|sd| sd * sd);
-        let heading = per_metre * way + per_radian * motion.rotation.abs();
+        let [forward, sideways, heading] = noise.of(motion, rolled);
         let chord = dx * dx + dy * dy;
         let (ahead, aside, square) = if chord > SPOT * rolled * rolled {
             (dx, dy, chord)
@@ -57,8 +66,8 @@ impl Spread {
             let (sine, cosine) = (from.heading + 0.5 * motion.rotation).sine_cosine();
             (cosine, sine, 1.0)
         };
-        let along = (forward - sideways) * rolled / square;
-        let across = sideways * rolled;
+        let along = (forward - sideways) / square;
+        let across = sideways;
         Spread {
             xx: self.xx - 2.0 * dy * self.x_heading
                 + dy * dy * (self.heading + heading / 3.0)

@@ -157,7 +157,7 @@ impl Model {
     /// Write it as the text of a model.toml with its robot, which reads back to the last bit.
     fn to_toml(&self) -> String {
         let Model { model, draws, noise } = self.clone();
-        ModelFile { model, draws, noise, conversion: None }.text()
+        ModelFile { draws, noise, ..ModelFile::new(model) }.text()
     }
 
     /// Give its effects, as results have them.
@@ -203,7 +203,7 @@ impl Model {
 
     /// What was read, with a warning of what was converted.
     fn of_file(py: Python<'_>, file: ModelFile, name: &str) -> PyResult<Model> {
-        let ModelFile { model, draws, conversion, noise } = file;
+        let ModelFile { model, draws, conversion, noise, .. } = file;
         if let Some(conversion) = conversion {
             warn(py, &format!("{name} {conversion}"))?;
         }

@@ -13,7 +13,7 @@ use umbmark_core::geometry::Pose2;
 use umbmark_core::result::Applied;
 use umbmark_core::stats::normal_quantile;
 use umbmark_io::whole_file::{FileError, WholeFile, is_standard_output};
-use umbmark_io::{CorrectedFormat, ModelFile};
+use umbmark_io::{CorrectedFormat, DatasetError, ModelFile};
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
@@ -86,9 +86,16 @@ impl Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let data = arguments.data.load()?;
     let name = arguments.model.display();
-    let ModelFile { model, draws, conversion, noise } = ModelFile::read(&arguments.model, data.robot.as_ref())?;
+    let own = ModelFile::read(&arguments.model, None)?.model;
+    let alone = arguments.data.load();
+    // Positions of joints and odometry become counts by the numbers of a robot, counts do without.
+    let (data, is_own) = match alone {
+        Err(DatasetError::NoRobot(_)) => (arguments.data.load_of(own.robot())?, true),
+        data => data.map(|data| (data, false))?,
+    };
+    let ModelFile { model, draws, conversion, noise, doubt } =
+        ModelFile::read(&arguments.model, data.robot.as_ref())?;
     if let Some(drawn) = draws.first() {
         anyhow::bail!("{name}: {} of {} is drawn; give it a value", drawn.parameter().name, drawn.effect());
     }
@@ -98,8 +105,11 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if let Some(conversion) = conversion {
         session.message("note", &format!("{name} {conversion}"));
     }
-    if data.robot.is_none() {
+    if is_own || data.robot.is_none() {
         session.message("note", &format!("no robot.toml beside the log: the robot of {name} is taken"));
+    }
+    if let Some(doubt) = doubt.filter(|doubt| !doubt.alone) {
+        session.message("warning", &doubt.because);
     }
     if noise.is_none() {
         session

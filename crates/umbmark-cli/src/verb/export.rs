@@ -60,7 +60,7 @@ pub struct Arguments {
     #[arg(long, value_name = "X,Y,HEADING", default_value = "0,0,0", value_parser = pose, allow_hyphen_values = true)]
     start: Pose2,
 
-    /// Replace a file that exists
+    /// Replace a file that exists, and write a model even if something speaks against it
     #[arg(long)]
     force: bool,
 }
@@ -101,6 +101,16 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
             draw.effect()
         );
         session.message("note", &what);
+    }
+    if let Some(doubt) = file.doubt.as_ref().filter(|doubt| !(doubt.alone && arguments.to.holds_all)) {
+        if !arguments.force {
+            anyhow::bail!(
+                "{}: {} Nothing was written; --force writes it anyway",
+                arguments.model.display(),
+                doubt.because
+            );
+        }
+        session.message("warning", &doubt.because);
     }
     let usual = Usual { speed: arguments.speed, turn_rate: arguments.turn_rate, rate: arguments.rate };
     let urdf = arguments.urdf.map(|file| UrdfFile::read(file, arguments.joints)).transpose()?;

@@ -16,7 +16,7 @@ use super::diagnose::{experiment_text, in_words};
 use crate::Session;
 use crate::answer::answer_text;
 use crate::data_arguments::DataArguments;
-use crate::model_report::{estimates_table, meaning_text, outliers_text, p_text, read_model, write_model};
+use crate::model_report::{estimates_table, meaning_text, outliers_text, p_text, read_model, write_learnt};
 use crate::prose::hanging;
 use crate::setup_report::{disturbances_text, faults_text, reasons_text, remains_text, taken_text};
 use crate::table::table;
@@ -65,7 +65,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let learnt = &solution.learnt;
     let withheld = learnt.is_in_doubt() && !arguments.force;
     if let Some(file) = arguments.output.as_ref().filter(|_| !withheld) {
-        write_model(&learnt.model, learnt.noise, file, arguments.force)?;
+        write_learnt(&solution, file, arguments.force)?;
     }
     if session.json() {
         session.print_json(&result::Learnt::new(&solution, &options))?;

@@ -11,7 +11,7 @@ use umbmark_core::solve::{Solution, solve};
 use crate::Session;
 use crate::answer::{answer_text, parts_text};
 use crate::data_arguments::DataArguments;
-use crate::model_report::{estimates_table, meaning_text, write_model};
+use crate::model_report::{estimates_table, meaning_text, write_learnt};
 use crate::setup_report::{disturbances_text, faults_text, reasons_text, remains_text, taken_text};
 use crate::test_arguments::TestArguments;
 
@@ -45,9 +45,9 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     if solution.learnt.partial {
         session.message("partial", "stopped while an effect was still missing");
     }
-    let withheld = !solution.is_trusted() && !arguments.force;
+    let withheld = solution.learnt.is_in_doubt() && !arguments.force;
     if let Some(file) = arguments.output.as_ref().filter(|_| !withheld) {
-        write_model(&solution.learnt.model, solution.learnt.noise, file, arguments.force)?;
+        write_learnt(&solution, file, arguments.force)?;
     }
     if session.json() {
         session.print_json(&result::Solution::new(&solution, &options))?;

@@ -6,7 +6,7 @@ use crate::drive::{DriveKinds, Robot};
 use crate::parameter::Parameter;
 use umbmark_odometry::law::CarpetNap;
 
-pub(super) static EFFECT: Entry = Entry::of::<CarpetNap>().body::<CarpetNap>();
+pub(super) static EFFECT: Entry = Entry::of::<CarpetNap>().body::<CarpetNap>().of_floor();
 
 impl Effect for CarpetNap {
     const ABOUT: About = About {

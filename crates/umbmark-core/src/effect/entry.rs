@@ -106,6 +106,8 @@ pub struct Entry {
     pub means: fn(&[f64], &Robot) -> String,
     /// See [`Effect::varies`].
     pub varies: fn(&[f64]) -> bool,
+    /// Whether it is the floor's: it stays there when the robot goes elsewhere.
+    pub is_of_floor: bool,
     pub(crate) values: MeanLaws<f64>,
     /// For each of the [`Instructions`], in their order.
     pub(super) duals: [MeanLaws<Dual>; 3],
@@ -137,6 +139,7 @@ impl Entry {
             changes: Changes::NOTHING,
             means: E::means,
             varies: E::varies,
+            is_of_floor: false,
             values: MeanLaws::nothing(),
             duals: [MeanLaws::nothing(), MeanLaws::nothing(), MeanLaws::nothing()],
             scatter: RandomLaws::NOTHING,
@@ -190,6 +193,11 @@ impl Entry {
         self.scatter.diffusion = E::diffusion;
         self.changes = self.changes.and(Changes::DIFFUSION);
         self
+    }
+
+    /// Says that it is the floor's.
+    pub const fn of_floor(self) -> Entry {
+        Entry { is_of_floor: true, ..self }
     }
 
     /// Lists its law of bumps.

@@ -6,7 +6,7 @@ use crate::drive::{DriveKinds, Robot};
 use crate::parameter::Parameter;
 use umbmark_odometry::law::FloorSlope;
 
-pub(super) static EFFECT: Entry = Entry::of::<FloorSlope>().body::<FloorSlope>();
+pub(super) static EFFECT: Entry = Entry::of::<FloorSlope>().body::<FloorSlope>().of_floor();
 
 impl Effect for FloorSlope {
     const ABOUT: About = About {

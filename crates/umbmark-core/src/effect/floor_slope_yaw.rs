@@ -6,7 +6,7 @@ use crate::drive::{DriveKinds, Robot};
 use crate::parameter::Parameter;
 use umbmark_odometry::law::FloorSlopeYaw;
 
-pub(super) static EFFECT: Entry = Entry::of::<FloorSlopeYaw>().body::<FloorSlopeYaw>();
+pub(super) static EFFECT: Entry = Entry::of::<FloorSlopeYaw>().body::<FloorSlopeYaw>().of_floor();
 
 impl Effect for FloorSlopeYaw {
     const ABOUT: About = About {

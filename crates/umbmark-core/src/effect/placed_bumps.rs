@@ -9,7 +9,7 @@ use crate::path::Direction;
 use crate::random::Stream;
 use umbmark_odometry::law::PlacedBumps;
 
-pub(super) static EFFECT: Entry = Entry::of::<PlacedBumps>().wheels::<PlacedBumps>().bumps::<PlacedBumps>();
+pub(super) static EFFECT: Entry = Entry::of::<PlacedBumps>().wheels::<PlacedBumps>().bumps::<PlacedBumps>().of_floor();
 
 impl Effect for PlacedBumps {
     const ABOUT: About = About {

@@ -172,7 +172,7 @@ fn is_shown(fitted: &Fitted, effect: &str) -> bool {
 /// The final diagnosis, of the learnt model.
 fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Learnt, FitError> {
     let told = Conclusion::new(&mut search, options)?;
-    let Conclusion { verdict, mut reasons, repeats, remains, dependence, mut experiments, mut hints } = told;
+    let Conclusion { verdict, mut reasons, repeats, mut remains, dependence, mut experiments, mut hints } = told;
     let more = search.left.effect.is_some();
     hints.extend(search.removed.iter().map(|effect| {
         format!("{effect} was added and removed again: beside the other effects it no longer lowers the cross-validated error.")
@@ -187,10 +187,14 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     let (left, harmful, runs) = (search.left, search.harmful, search.exams[0].fitted.observed.runs.len());
     let Some(last) = search.exams.pop() else { return Err(FitError::NotConverged { how: "has no model" }) };
     let written = search.written.pop().map_or_else(|| last.fitted.clone(), Alone::into_fitted);
-    reasons.extend(misfits(&steps, runs, written.observed.setup.noise.position, is_nominal(&last.fitted)));
     if written.usual_noise {
+        // The model is written with other values than those that were examined: what is said of it is said of these, as `compare` does.
+        let (doubts, left) = tracks::doubts_as_written(&written.observed, &written.model, options);
+        reasons = doubts;
+        remains = left.unwrap_or(remains);
         reasons.extend(tracks::of_usual_noise(&written.observed, &written.noise));
     }
+    reasons.extend(misfits(&steps, runs, written.observed.setup.noise.position, is_nominal(&last.fitted)));
     let verdict = match (&left.smooth, more) {
         _ if verdict == Verdict::NotEnoughData => verdict,
         (Some(_), _) => Verdict::UnlistedEffect,

@@ -109,6 +109,13 @@ impl Off {
     }
 }
 
+impl Off {
+    /// Whether chance alone would leave as much of an error; false where that is not known.
+    pub fn is_chance(&self, error: f64) -> bool {
+        self.chance.is_some_and(|chance| error <= chance)
+    }
+}
+
 /// A model with some of its effects.
 fn only(model: &Model, effects: &[&str]) -> Model {
     let mut some = Model::new(model.robot());

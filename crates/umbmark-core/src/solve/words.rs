@@ -7,7 +7,7 @@ use crate::effect::find;
 /// An error is told in tenths of a millimetre below this \[m\].
 const FINE: f64 = 0.01;
 /// A part is told where it is more than this share of the whole.
-const TOLD: f64 = 0.02;
+pub(super) const TOLD: f64 = 0.02;
 
 pub(super) fn sentence(solution: &Solution) -> String {
     if let Some(fault) = solution.faults().first() {
@@ -19,7 +19,11 @@ pub(super) fn sentence(solution: &Solution) -> String {
     let mut said = vec![how_far(off)];
     let reference: f64 = off.reference.iter().map(|part| part.worth).sum();
     if reference > TOLD * off.driven {
-        said.push(format!("{} of it is the reference's, not the robot's: {}.", mm(reference), titles(&off.reference)));
+        said.push(format!(
+            "{} of it is the reference's, not the robot's: {}.",
+            mm(reference),
+            titles(solution, &off.reference)
+        ));
     }
     said.extend(of_numbers(solution, off));
     said.join(" ")
@@ -49,13 +53,20 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
             _ => "These runs do not show the numbers of the robot.".into(),
         }];
     }
-    if !solution.is_trusted() {
+    if solution.learnt.is_in_doubt() {
         return vec!["No model explains these runs, so do not write the new numbers below into the robot yet.".into()];
+    }
+    if solution.misleads_alone() {
+        return vec![alone(solution, off)];
     }
     let known: f64 = off.known.iter().map(|part| part.worth).sum();
     let explained = verdict == Verdict::Explained;
     let is_chance = |error: f64| off.chance.map_or(explained, |chance| error <= chance);
-    let by_chance = |error: f64| if is_chance(error) { ", no more than chance makes" } else { "" };
+    let by_chance = |error: f64| match off.chance {
+        _ if is_chance(error) => ", no more than chance makes".to_owned(),
+        Some(chance) => format!(", and chance stays below {} in 95 % of tests", mm(chance)),
+        None => String::new(),
+    };
     let mut said = Vec::new();
     if !solution.needed {
         said.push(match off.known.is_empty() && is_chance(off.driven) {
@@ -68,7 +79,7 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
             count => (format!("the {count} new numbers"), "them"),
         };
         let (left, names) = (mm(off.with_numbers), listed(&names(solution)));
-        let rest = if off.known.is_empty() { by_chance(off.with_numbers) } else { "" };
+        let rest = if off.known.is_empty() { by_chance(off.with_numbers) } else { String::new() };
         let fall = off.driven - off.with_numbers;
         said.push(match fall > TOLD * off.driven {
             true => format!("Write {count} ({names}): with {these}, {left} are left{rest}."),
@@ -79,14 +90,15 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
                 "Write {count} ({names}): they differ from the old ones by more than chance, though on this path the error of the \
                  position hardly shows it."
             ),
+            false if off.known.is_empty() => format!("Write {count} ({names}): with {these}, {left} are left{rest}."),
             false => format!(
                 "Write {count} ({names}). With {these} alone, {left} are left on this path: what no number holds had hidden a \
-                 part of their error."
+                 part of their error. On another floor they are better."
             ),
         });
     }
     if !off.known.is_empty() {
-        let titles = titles(&off.known);
+        let titles = titles(solution, &off.known);
         said.push(match known > TOLD * off.driven {
             true => format!("{} of it is known but no number of the robot can hold it: {titles}.", mm(known)),
             false => format!("Known besides, and no number of the robot can hold it: {titles}."),
@@ -100,8 +112,26 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
     said
 }
 
+/// Why the new numbers are not to be written alone.
+fn alone(solution: &Solution, off: &Off) -> String {
+    let these = match solution.changes.len() {
+        1 => "The new number holds".to_owned(),
+        count => format!("The {count} new numbers hold"),
+    };
+    format!(
+        "{these} only beside {}, which no number of the robot can hold. Alone, they would leave {} on this path, more than the {} \
+         as driven: do not write them alone.",
+        titles(solution, &off.known),
+        mm(off.with_numbers),
+        mm(off.driven)
+    )
+}
+
 /// Why the numbers of a model are not to be written, where they are not.
 pub(super) fn doubt(solution: &Solution) -> Option<String> {
+    if !solution.learnt.is_in_doubt() && solution.misleads_alone() {
+        return solution.off.as_ref().map(|off| alone(solution, off));
+    }
     let reasons = solution.learnt.diagnosis.reasons.iter().map(|reason| reason.sentence());
     let told = reasons.collect::<Vec<_>>().join("; ");
     (!solution.is_trusted()).then(|| format!("No model explains these runs: {told}."))
@@ -113,7 +143,7 @@ pub(super) fn beyond_wheels(solution: &Solution) -> Option<String> {
     let more = match (known.is_empty(), solution.misses_something()) {
         (true, false) => return None,
         (true, true) => "there is a further error source, which no model explains".to_owned(),
-        (false, _) => format!("there is also {}", titles(known)),
+        (false, _) => format!("there is also {}", titles(solution, known)),
     };
     Some(format!(
         "E_d, E_b and E_s do not explain these runs: {more}. The other methods take that for wheels and wheelbase; the learnt \
@@ -130,9 +160,15 @@ pub(super) fn next(solution: &Solution) -> Vec<String> {
     let mut next = Vec::new();
     let diagnosis = &solution.learnt.diagnosis;
     let enough = solution.learnt.verdict != Verdict::NotEnoughData;
-    if !solution.is_trusted() {
+    if solution.learnt.is_in_doubt() {
         next.extend(diagnosis.reasons.iter().map(|reason| capital(&format!("{}.", reason.sentence()))));
         next.push("Correct what is named above, or measure again; `umbmark inspect DATA` checks the data.".into());
+    } else if solution.misleads_alone() {
+        next.push(
+            "Let the robot compute its odometry by the whole model: `umbmark solve DATA -o model.toml`, then `umbmark export \
+             model.toml --to embedded -o model.h`."
+                .into(),
+        );
     } else if solution.needed && !solution.changes.is_empty() {
         next.push(
             "Write the new numbers: `umbmark solve DATA -o model.toml`, then `umbmark export model.toml --to ros2_control -o \
@@ -155,7 +191,7 @@ pub(super) fn next(solution: &Solution) -> Vec<String> {
     if has(&["wheelbase"]) && enough {
         next.push("Drive turns: these runs do not show the wheelbase.".into());
     }
-    if solution.is_trusted() && solution.off.as_ref().is_some_and(|off| !off.known.is_empty()) {
+    if !solution.learnt.is_in_doubt() && solution.off.as_ref().is_some_and(|off| !off.known.is_empty()) {
         next.push("Correct logs by all that is known: `umbmark apply LOG --model model.toml -o corrected.csv`.".into());
     }
     next.extend(unsure(solution).map(|e| {
@@ -172,15 +208,21 @@ fn unsure(solution: &Solution) -> Option<&Experiment> {
     solution.learnt.diagnosis.next_experiments.iter().find(tells)
 }
 
-/// What effects are called, the largest part first.
-fn titles(parts: &[Part]) -> String {
+/// What effects are called, the largest part first, each with those that the runs cannot tell from it.
+fn titles(solution: &Solution, parts: &[Part]) -> String {
     let mut parts: Vec<&Part> = parts.iter().collect();
     parts.sort_by(|a, b| b.worth.abs().total_cmp(&a.worth.abs()));
-    let title = |part: &&Part| match find(part.name) {
-        Ok(entry) => entry.about.title.to_owned(),
-        Err(_) => format!("the law {}", part.name),
+    let title = |name: &str| find(name).map_or_else(|_| name.replace('_', " "), |entry| entry.about.title.to_owned());
+    let told = |part: &&Part| {
+        let step = solution.learnt.steps.iter().find(|step| step.added == Some(part.name));
+        if let Some(law) = step.and_then(|step| step.law.as_ref()) {
+            return format!("a law that is in no catalogue ({})", law.law.words());
+        }
+        let others = step.into_iter().flat_map(|step| &step.class).filter(|name| **name != part.name);
+        let others: Vec<String> = others.map(|name| title(name)).collect();
+        if others.is_empty() { title(part.name) } else { format!("{} (or {})", title(part.name), others.join(" or ")) }
     };
-    listed(&parts.iter().map(title).collect::<Vec<_>>())
+    listed(&parts.iter().map(told).collect::<Vec<_>>())
 }
 
 /// What the new numbers are called; two of which only the side differs are one.

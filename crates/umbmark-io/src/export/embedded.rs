@@ -8,6 +8,7 @@ use umbmark_core::likelihood::Noise;
 pub static TARGET: Target = Target {
     name: "embedded",
     about: "a C header with the whole model as a table, for the umbmark-odometry library on the robot",
+    holds_all: true,
     write,
 };
 

@@ -8,6 +8,7 @@ use super::{Comment, Export, ExportError, Target, Written};
 pub static TARGET: Target = Target {
     name: "gazebo",
     about: "plugins DiffDrive or AckermannSteering of Gazebo for a <model> of SDF, and OdometryPublisher with the noise",
+    holds_all: false,
     write,
 };
 

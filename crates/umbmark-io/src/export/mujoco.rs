@@ -11,6 +11,7 @@ const WIDTH: f64 = 0.3;
 pub static TARGET: Target = Target {
     name: "mujoco",
     about: "MJCF of a robot with the true wheels and wheelbase, and the sizes of its noise as custom numbers",
+    holds_all: false,
     write,
 };
 

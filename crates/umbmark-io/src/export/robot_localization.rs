@@ -18,6 +18,7 @@ const FUSED: [usize; 3] = [6, 7, 11];
 pub static TARGET: Target = Target {
     name: "robot_localization",
     about: "YAML for ekf_node or ukf_node of robot_localization: which values of the odometry to fuse",
+    holds_all: false,
     write,
 };
 

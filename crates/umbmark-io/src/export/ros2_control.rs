@@ -14,6 +14,7 @@ pub static TARGET: Target = Target {
     name: "ros2_control",
     about: "YAML for diff_drive_controller, ackermann_steering_controller, tricycle_steering_controller or tricycle_controller, with \
             covariances",
+    holds_all: false,
     write,
 };
 

@@ -7,7 +7,7 @@ use umbmark_core::drive::{Drive, Robot};
 
 /// Lengths are rounded to the nanometre.
 pub static TARGET: Target =
-    Target { name: "toml", about: "a robot.toml with the corrected numbers, for every drive", write };
+    Target { name: "toml", about: "a robot.toml with the corrected numbers, for every drive", holds_all: false, write };
 
 fn write(export: &Export) -> Result<Written, ExportError> {
     let corrected = export.corrected()?;

@@ -15,6 +15,7 @@ use umbmark_core::drive::Wheel;
 pub static TARGET: Target = Target {
     name: "urdf",
     about: "your own URDF with corrected wheel radii and wheel separation, and nothing else changed",
+    holds_all: false,
     write,
 };
 

@@ -152,7 +152,7 @@ fn read_file(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> {
         let (file, found) = (file.display().to_string(), "it describes one".into());
         return Err(DatasetError::NotADataset { file, found, remedy: "give the folder it is in, or returns.csv" });
     }
-    let mut assembly = Assembly::new(robot_beside(folder).map(RobotFile::read).transpose()?);
+    let mut assembly = Assembly::new(probe.robot_file()?);
     if probe.first_row()?.to_lowercase().contains("ticks") {
         let in_runs = folder.file_name().is_some_and(|name| name == RUNS);
         let mut tracks = if in_runs { tracks_beside(folder, &mut Vec::new())? } else { Tracks::new() };

@@ -37,7 +37,6 @@ pub use problem::LogProblem;
 pub(super) use survey::{Definition, Survey};
 pub use topics::Topics;
 
-use super::csv::robot_beside;
 use crate::RobotFile;
 use crate::assembly::Assembly;
 use crate::error::{DatasetError, quoted};
@@ -87,10 +86,9 @@ fn add_survey(assembly: &mut Assembly, survey: Survey, file: &Path, topics: &Top
 pub(super) fn read(probe: &Probe, topics: &Topics) -> Result<Dataset, DatasetError> {
     let file = &probe.path;
     let survey = Survey::open(file)?;
-    let robot_file = match (robot_beside(&probe.folder), survey.robot()) {
-        (Some(robot), _) => Some(RobotFile::read(robot)?),
+    let robot_file = match (probe.robot_file()?, survey.robot()) {
         (None, Some(text)) => Some(RobotFile::parse(&format!("{} (its robot.toml)", file.display()), text)?),
-        (None, None) => None,
+        (found, _) => found,
     };
     let mut assembly = Assembly::new(robot_file);
     add_survey(&mut assembly, survey, file, topics)?;
@@ -103,6 +101,7 @@ const MOST_MESSAGES: usize = 2_000_000;
 /// The wheels and the poses of a log, each with its times.
 pub(super) struct Reading {
     recording: Recording,
+    begin_ns: i64,
     are_counts: bool,
     track: TrackRows,
     topics: [String; 2],
@@ -121,6 +120,7 @@ impl Reading {
         let file = self.recording.file.clone();
         let bits = robot.and_then(|robot| robot.encoder.counter_bits()).filter(|_| self.are_counts);
         let (mut log, _) = self.recording.into_log(robot, bits, warnings)?;
+        log.begin_ns = self.begin_ns;
         self.track.put_in_order(warnings)?;
         self.track.count_turns();
         let poses = self.track.poses.len();
@@ -174,7 +174,7 @@ impl Survey {
         let Gathered { wheels, clock, track, topics } = self.gather(wish, &needed, warnings)?;
         let are_counts = wheels.are_counts();
         let recording = wheels.into_recording(&self.file, &topics[0], &clock, robot, warnings);
-        Ok(Reading { recording, are_counts, track, topics })
+        Ok(Reading { recording, begin_ns: clock.zero(), are_counts, track, topics })
     }
 
     /// Decodes the wheels and the reference, where these wheels are of use.
@@ -267,11 +267,14 @@ impl Survey {
         let of = expected.map_or(String::new(), |n| format!(" of {n}"));
         match (damage, expected) {
             (Some(damage), _) => {
-                let lost = self.size() - damage.at;
-                let share = 100.0 * lost as f64 / self.size() as f64;
                 let place = self.place(&damage);
+                let lost = damage.at.map_or(String::new(), |at| {
+                    let lost = self.size().saturating_sub(at);
+                    let share = 100.0 * lost as f64 / self.size() as f64;
+                    format!("; {lost} bytes ({share:.1} %) of the file are lost")
+                });
                 Some(format!(
-                    "{file}: damaged {place}; read up to there: {read}{of} messages of the wheels and the reference; {lost} bytes ({share:.1} %) of the file are lost"
+                    "{file}: damaged {place}; read up to there: {read}{of} messages of the wheels and the reference{lost}"
                 ))
             }
             (None, Some(_)) => Some(format!(

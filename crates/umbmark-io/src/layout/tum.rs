@@ -74,18 +74,25 @@ fn yaw(qx: f64, qy: f64, qz: f64, qw: f64) -> f64 {
 
 /// A trajectory of times, positions and headings.
 fn tum_text(what: &str, poses: impl Iterator<Item = (f64, f64, f64, f64)>) -> String {
+    timed_text(what, poses.map(|(time, x, y, heading)| (format!("{time:?}"), x, y, heading)))
+}
+
+fn timed_text(what: &str, poses: impl Iterator<Item = (String, f64, f64, f64)>) -> String {
     let mut text = format!("# {what}\n# t tx ty tz qx qy qz qw\n");
     for (time, x, y, heading) in poses {
         let (qz, qw) = (libm::sin(0.5 * heading), libm::cos(0.5 * heading));
-        let _ = writeln!(text, "{time:?} {x:?} {y:?} 0 0 0 {qz:?} {qw:?}");
+        let _ = writeln!(text, "{time} {x:?} {y:?} 0 0 0 {qz:?} {qw:?}");
     }
     text
 }
 
 /// Corrected odometry as a trajectory.
 pub(crate) fn corrected(corrected: &Corrected) -> String {
-    let poses = corrected.time.iter().zip(&corrected.poses);
-    tum_text("poses corrected by a model", poses.map(|(t, p)| (*t, p.x, p.y, p.heading)))
+    let poses = corrected.poses.iter().enumerate();
+    timed_text(
+        "poses corrected by a model",
+        poses.map(|(sample, p)| (crate::corrected::time_text(corrected, sample), p.x, p.y, p.heading)),
+    )
 }
 
 /// Measured and computed poses of each run, for tools that compare trajectories.

@@ -142,9 +142,16 @@ fn why(solution: &Solution) -> Tile {
     let mut parts: Vec<&Part> = off.reference.iter().chain(&off.written).chain(&off.known).collect();
     parts.sort_by(|a, b| b.worth.total_cmp(&a.worth));
     let mut rows: Vec<Row> = parts.iter().map(|part| of_part(part, solution)).collect();
-    let rest = if solution.misses_something() { "not explained" } else { "the rest: scatter" };
-    rows.push(Row { words: rest.into(), id: String::new(), value: millimetres(off.rest), beside: String::new() });
-    let answer = match parts.len() {
+    let above = |chance: f64| off.rest > chance;
+    let rest = match off.chance {
+        _ if solution.misses_something() => "not explained".to_owned(),
+        Some(chance) if above(chance) => format!("the rest; chance stays below {}", millimetres(chance)),
+        _ => "the rest: scatter".to_owned(),
+    };
+    rows.push(Row { words: rest, id: String::new(), value: millimetres(off.rest), beside: String::new() });
+    // What does not show at all is no error source here.
+    let shown = parts.iter().filter(|part| part.worth.abs() >= 5e-5).count();
+    let answer = match shown {
         0 => "no error source".to_owned(),
         1 => "1 error source".to_owned(),
         count => format!("{count} error sources"),
@@ -210,6 +217,9 @@ fn to_write(solution: &Solution) -> Tile {
     let rows: Vec<Row> = solution.changes.iter().map(of_change).collect();
     let (answer, says) = match (rows.len(), solution.is_trusted(), solution.needed) {
         (0, ..) => ("nothing", "These runs do not show the numbers of the robot.".to_owned()),
+        (_, false, _) if solution.misleads_alone() => {
+            ("nothing alone", "Alone, these numbers would make it worse: see the sentence above.".to_owned())
+        }
         (_, false, _) => ("nothing yet", "The runs are not explained, so these numbers are not to be trusted.".into()),
         (_, true, false) => ("nothing", "The numbers of the robot are right as far as these runs can show.".into()),
         (count, true, true) => {

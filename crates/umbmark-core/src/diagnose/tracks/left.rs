@@ -1,7 +1,6 @@
 //! The residuals of a model on tracks, and the reasons against the model that follow from them.
 
 use super::examination::Examination;
-use super::finding::TELLING;
 use super::repeats::{Repeated, what_repeats};
 use super::{chance, doubts};
 use crate::diagnose::options::Options;
@@ -53,7 +52,7 @@ pub(crate) fn doubts_as_written(
     let mut reasons = doubts::of_model(&fixed.observed, &noise, &errors.in_sample(), options.seed);
     let repeated = what_repeats(&fixed.observed, model, &noise, &columns, options.seed);
     reasons.extend(
-        repeated.filter(|repeated| repeated.is_doubt(TELLING)).map(|repeated| Reason::Repeats(Box::new(repeated))),
+        repeated.filter(|repeated| repeated.is_doubt(LEAST_GAIN)).map(|repeated| Reason::Repeats(Box::new(repeated))),
     );
     let left: Vec<Column> = columns.iter().map(|columns| less(columns, &[])).collect();
     let remains = chance::remains(&fixed.observed, &noise, &left, &errors.in_sample(), options);

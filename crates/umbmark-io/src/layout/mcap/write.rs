@@ -39,13 +39,22 @@ pub(crate) fn corrected(corrected: &Corrected) -> McapResult<Vec<u8>> {
     let mut file = Cursor::new(Vec::new());
     let mut writer = options().create(&mut file)?;
     let mut odometry = Topic::add(&mut writer, "/odom", &ODOMETRY)?;
-    let begin = corrected.time.first().copied().unwrap_or(0.0).min(0.0);
+    let begin = if corrected.begin_ns > 0 { 0.0 } else { corrected.time.first().copied().unwrap_or(0.0).min(0.0) };
     for (sample, pose) in corrected.poses.iter().enumerate() {
         let before = sample.saturating_sub(1);
-        let time = nanoseconds(corrected.time[sample] - begin);
-        let twist = twist(&corrected.poses[before], pose, corrected.time[sample] - corrected.time[before]);
+        let time = corrected.stamp_ns(sample).map_or_else(|| nanoseconds(corrected.time[sample] - begin), |ns| ns as u64);
+        let duration = corrected.time[sample] - corrected.time[before];
+        let twist = twist(&corrected.poses[before], pose, duration);
         let covariance = corrected.spread.as_ref().map_or([0.0; 36], |spread| of_axes(&spread[sample]));
-        odometry.write(&mut writer, time, |cdr| odom(cdr, time, pose, &covariance, twist))?;
+        let mut of_twist = [0.0; 36];
+        if let Some([forward, sideways, heading]) = corrected.motion_variances.as_ref().map(|all| all[sample])
+            && duration > 0.0
+        {
+            for (place, variance) in [(0, forward), (7, sideways), (35, heading)] {
+                of_twist[place] = variance / (duration * duration);
+            }
+        }
+        odometry.write(&mut writer, time, |cdr| odom(cdr, time, pose, &covariance, twist, &of_twist))?;
     }
     writer.finish()?;
     drop(writer);
@@ -66,7 +75,7 @@ fn of_axes(spread: &Spread) -> [f64; 36] {
 }
 
 /// Writes a log into a file, its stamps counted from `begin` \[s\].
-pub(super) fn write(file: impl Write + Seek, robot_file: &RobotFile, log: &TickLog, begin: f64) -> McapResult<()> {
+pub(in crate::layout) fn write(file: impl Write + Seek, robot_file: &RobotFile, log: &TickLog, begin: f64) -> McapResult<()> {
     let mut writer = options().create(file)?;
     let robot = &robot_file.robot;
     let robot_toml = BTreeMap::from([(ROBOT.to_owned(), robot_file.text())]);
@@ -89,7 +98,7 @@ pub(super) fn write(file: impl Write + Seek, robot_file: &RobotFile, log: &TickL
         joint_states.write(&mut writer, time, |cdr| joint_state(cdr, time, positions))?;
         let before = sample.saturating_sub(1);
         let twist = twist(&poses[before], pose, log.time[sample] - log.time[before]);
-        odometry.write(&mut writer, time, |cdr| odom(cdr, time, pose, &[0.0; 36], twist))?;
+        odometry.write(&mut writer, time, |cdr| odom(cdr, time, pose, &[0.0; 36], twist, &[0.0; 36]))?;
         transforms.write(&mut writer, time, |cdr| transform(cdr, time, pose))?;
         while let (Some(topic), Some(pose)) = (&mut ground_truth, references.next_if(|pose| pose.sample == sample)) {
             topic.write(&mut writer, time, |cdr| pose_stamped(cdr, time, pose))?;
@@ -168,14 +177,21 @@ fn joint_state(cdr: &mut Cdr, time: u64, positions: [f64; 2]) {
     }
 }
 
-fn odom(cdr: &mut Cdr, time: u64, pose: &Pose2, covariance: &[f64; 36], [speed, turn_rate]: [f64; 2]) {
+fn odom(
+    cdr: &mut Cdr,
+    time: u64,
+    pose: &Pose2,
+    covariance: &[f64; 36],
+    [speed, turn_rate]: [f64; 2],
+    of_twist: &[f64; 36],
+) {
     header(cdr, time, "odom");
     cdr.write_string("base_link");
     numbers(cdr, [pose.x, pose.y, 0.0]);
     numbers(cdr, orientation(pose.heading));
     numbers(cdr, *covariance);
     numbers(cdr, [speed, 0.0, 0.0, 0.0, 0.0, turn_rate]);
-    numbers(cdr, [0.0; 36]);
+    numbers(cdr, *of_twist);
 }
 
 fn transform(cdr: &mut Cdr, time: u64, pose: &Pose2) {

@@ -54,6 +54,11 @@ impl Clock {
         nanoseconds.saturating_sub(self.zero) as f64 / 1e9
     }
 
+    /// The time of the recorder from which it counts \[ns\].
+    pub fn zero(&self) -> i64 {
+        self.zero
+    }
+
     /// What the time is called.
     pub fn name(&self) -> &'static str {
         if self.stamps { "stamp" } else { "log time" }

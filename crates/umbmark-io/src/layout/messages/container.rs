@@ -49,8 +49,8 @@ pub(in crate::layout) struct Contents {
 /// Where reading ended before the end.
 #[derive(Clone, Debug)]
 pub(in crate::layout) struct Damage {
-    /// First byte that was not used.
-    pub at: u64,
+    /// First byte that was not used, where there is such an order.
+    pub at: Option<u64>,
     /// What is wrong there.
     pub what: String,
 }
@@ -64,13 +64,13 @@ pub(in crate::layout) enum Stop {
 
 impl Stop {
     /// Damage at this byte.
-    pub fn damage(at: u64, what: impl Into<String>) -> Stop {
-        Stop::Damage(Damage { at, what: what.into() })
+    pub fn damage(at: impl Into<Option<u64>>, what: impl Into<String>) -> Stop {
+        Stop::Damage(Damage { at: at.into(), what: what.into() })
     }
 
     pub fn at(self, at: u64) -> Stop {
         match self {
-            Stop::Damage(Damage { what, .. }) => Stop::Damage(Damage { at, what }),
+            Stop::Damage(Damage { what, .. }) => Stop::damage(at, what),
             stop => stop,
         }
     }

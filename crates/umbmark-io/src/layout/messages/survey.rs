@@ -152,7 +152,10 @@ impl Survey {
 
     /// Damage for people.
     pub(in crate::layout) fn place(&self, damage: &Damage) -> String {
-        format!("at byte {} of {} ({})", damage.at, self.size(), damage.what)
+        match damage.at {
+            Some(at) => format!("at byte {at} of {} ({})", self.size(), damage.what),
+            None => format!("({})", damage.what),
+        }
     }
 
     /// The damage, where that is why a topic was not found.

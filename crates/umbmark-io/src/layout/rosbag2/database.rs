@@ -122,7 +122,7 @@ fn broken(error: rusqlite::Error) -> Stop {
         rusqlite::Error::SqliteFailure(_, Some(text)) => format!("SQLite says: {text}"),
         error => format!("SQLite says: {error}"),
     };
-    Stop::damage(0, what)
+    Stop::damage(None, what)
 }
 
 #[cfg(test)]

@@ -48,7 +48,7 @@ struct Part {
 pub(super) fn open(folder: &Path) -> Opened {
     let text = std::fs::read_to_string(folder.join(METADATA))?;
     let document: Document = serde_saphyr::from_str(&text)
-        .map_err(|error| Stop::damage(0, format!("{METADATA} does not list its files: {error}")))?;
+        .map_err(|error| Stop::damage(None, format!("{METADATA} does not list its files: {error}")))?;
     let bag = document.rosbag2_bagfile_information;
     let mode = bag.compression_mode.to_lowercase();
     let packed = matches!(mode.as_str(), "file" | "message");
@@ -57,7 +57,7 @@ pub(super) fn open(folder: &Path) -> Opened {
         return Err(LogProblem::Unknown { found }.into());
     }
     if bag.relative_file_paths.is_empty() {
-        return Err(Stop::damage(0, format!("{METADATA} lists no files")));
+        return Err(Stop::damage(None, format!("{METADATA} lists no files")));
     }
     let parts = bag.relative_file_paths.iter().map(|path| part(folder, path)).collect::<Result<_, _>>()?;
     Ok(Box::new(Folder { parts, packs_messages: mode == "message" }))
@@ -68,13 +68,13 @@ fn part(folder: &Path, path: &Path) -> Result<Part, Stop> {
     let name = path.display().to_string();
     let inside = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
     if !inside {
-        return Err(Stop::damage(0, format!("{METADATA} lists {}, which is outside of the folder", quoted(&name))));
+        return Err(Stop::damage(None, format!("{METADATA} lists {}, which is outside of the folder", quoted(&name))));
     }
     // Older bags list paths that begin with the name of the folder.
     let places = [Some(folder.join(path)), path.file_name().map(|name| folder.join(name))];
     let file = places.into_iter().flatten().find(|place| place.is_file());
     let file =
-        file.ok_or_else(|| Stop::damage(0, format!("{METADATA} lists {}, which is not there", quoted(&name))))?;
+        file.ok_or_else(|| Stop::damage(None, format!("{METADATA} lists {}, which is not there", quoted(&name))))?;
     let unpacked = file.extension().is_some_and(|ending| ending == "zstd" || ending == "zst");
     let unpacked = unpacked.then(|| unpack(&file)).transpose()?;
     let (_, container) = messages::open(unpacked.as_ref().map_or(&file, |unpacked| unpacked.path()))?;
@@ -84,7 +84,7 @@ fn part(folder: &Path, path: &Path) -> Result<Part, Stop> {
 /// A packed file beside it, unpacked; it goes away with what holds it.
 fn unpack(file: &Path) -> Result<NamedTempFile, Stop> {
     let mut unpacked = NamedTempFile::new()?;
-    let broken = |_| Stop::damage(0, format!("{} cannot be unpacked", quoted(&file.display().to_string())));
+    let broken = |_| Stop::damage(None, format!("{} cannot be unpacked", quoted(&file.display().to_string())));
     let mut source = zstd::Decoder::new(File::open(file)?).map_err(broken)?.take(MOST_UNPACKED);
     copy(&mut source, &mut unpacked).map_err(broken)?;
     Ok(unpacked)
@@ -144,7 +144,7 @@ impl Container for Folder {
                 visit(Record::Message { channel, log_time, data: &buffer })
             });
             walked.map_err(|stop| match stop {
-                Stop::Damage(damage) => Stop::damage(at + damage.at, format!("{name}: {}", damage.what)),
+                Stop::Damage(damage) => Stop::damage(damage.at.map(|own| at + own), format!("{name}: {}", damage.what)),
                 stop => stop,
             })?;
             at += size;
