@@ -11,7 +11,11 @@ pub fn answer_text(solution: &Solution, level: f64) -> String {
     if !solution.changes.is_empty() {
         text += &format!("\n{}\n", numbers_table(solution, level));
         if solution.changes.iter().any(|change| change.worth.is_some_and(|worth| worth < -5e-5)) {
-            text += &hanging("", 0, "A worth below zero: this error had hidden a part of the others, and all together help.");
+            text += &hanging(
+                "",
+                0,
+                "A worth below zero: this error had hidden a part of the others, and all together help.",
+            );
         }
     }
     if solution.assumes_scale() {
@@ -42,7 +46,10 @@ fn numbers_table(solution: &Solution, level: f64) -> String {
 fn row(change: &Change) -> Vec<String> {
     let (name, scale) = match change.key.strip_suffix("_m").filter(|name| !name.ends_with("rad_per")) {
         Some(name) => (format!("{name} [mm]"), 1e3),
-        None => (change.key.to_owned(), 1.0),
+        None => match change.key.strip_suffix("_rad") {
+            Some(name) => (format!("{name} [rad]"), 1.0),
+            None => (change.key.to_owned(), 1.0),
+        },
     };
     let half = change.interval.map_or(1e-4 * change.new.abs(), |i| 0.5 * (i.high - i.low));
     let number = |value: f64| with_precision_of(scale * value, scale * half);

@@ -10,8 +10,8 @@ use umbmark_core::evidence::Estimate;
 use umbmark_core::likelihood::{Noise, Outlier};
 use umbmark_core::result::meaning;
 use umbmark_core::setup::Setup;
-use umbmark_core::stats::Interval;
 use umbmark_core::solve::Solution;
+use umbmark_core::stats::Interval;
 use umbmark_io::{Doubt, ModelFile};
 
 use crate::files::Pending;

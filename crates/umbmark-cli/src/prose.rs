@@ -3,7 +3,7 @@
 use umbmark_core::prose::unsigned_zeros;
 
 /// Columns of a line.
-const WIDTH: usize = 80;
+pub const WIDTH: usize = 80;
 
 /// `text` after `head`, broken at spaces; further lines are indented as far as the text of the first one.
 ///

@@ -394,7 +394,8 @@ impl RunSetup {
         let (moved, turned) = (most(|wrong| wrong.moved), most(|wrong| wrong.turned.map_or(0.0, f64::abs)));
         let turned = if turned > 0.0 { format!(" and {:.1} deg", turned.to_degrees()) } else { String::new() };
         let (run, wrong, poses) = (&self.run, self.wrong.len(), self.poses);
-        format!("{wrong} of {poses} poses of run {run} are wrong, by up to {moved:.3} m{turned}")
+        let are = if wrong == 1 { "is" } else { "are" };
+        format!("{wrong} of {poses} poses of run {run} {are} wrong, by up to {moved:.3} m{turned}")
     }
 }
 

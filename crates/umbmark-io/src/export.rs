@@ -305,7 +305,7 @@ fn moves(part: &Part, robot: &Robot) -> bool {
 
 fn not_corrected(part: &Part) -> String {
     let name = part.effect.name();
-    let what = part.effect.entry().map_or("an effect by a formula of your own", |entry| entry.about.title);
+    let what = part.effect.entry().map_or("a law that is in no catalogue", |entry| entry.about.title);
     format!("not corrected by this file: {name} ({what})")
 }
 

@@ -4,6 +4,7 @@ use super::error::DatasetError;
 use super::lines::Lines;
 use super::recording::time_error;
 use std::f64::consts::TAU;
+use umbmark_core::prose::counted;
 use umbmark_core::run::{PoseRow, ReferenceTrack};
 
 /// The rows of a track.
@@ -41,14 +42,19 @@ impl TrackRows {
         }
         let rows = order.len();
         order.dedup_by(|b, a| self.time[*b] == self.time[*a]);
-        let mut note = |n: usize, what: &str| {
+        let mut note = |n: usize, noun: &str, what: [&str; 2]| {
             if n > 0 {
-                warnings.push(format!("{}: {n} {what}", self.file));
+                let what = what[usize::from(n > 1)];
+                warnings.push(format!("{}: {} {what}", self.file, counted(n, noun)));
             }
         };
-        note(late.len(), "rows out of order were put where their time stamps say");
-        note(rows - order.len(), "rows that repeat a time stamp were left out");
-        note(self.lost, "frames without a pose (the body was not seen) are gaps");
+        let out_of_order = "out of order was put where its time stamp says";
+        note(late.len(), "row", [out_of_order, "out of order were put where their time stamps say"]);
+        let again = ["that repeats a time stamp was left out", "that repeat a time stamp were left out"];
+        note(rows - order.len(), "row", again);
+        let unseen =
+            ["without a pose (the body was not seen) is a gap", "without a pose (the body was not seen) are gaps"];
+        note(self.lost, "frame", unseen);
         self.lines = order.iter().map(|i| self.lines.of(*i)).collect();
         self.time = order.iter().map(|i| self.time[*i]).collect();
         self.poses = order.iter().map(|i| self.poses[*i]).collect();

@@ -94,8 +94,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         Err(DatasetError::NoRobot(_)) => (arguments.data.load_of(own.robot())?, true),
         data => data.map(|data| (data, false))?,
     };
-    let ModelFile { model, draws, conversion, noise, doubt } =
-        ModelFile::read(&arguments.model, data.robot.as_ref())?;
+    let ModelFile { model, draws, conversion, noise, doubt } = ModelFile::read(&arguments.model, data.robot.as_ref())?;
     if let Some(drawn) = draws.first() {
         anyhow::bail!("{name}: {} of {} is drawn; give it a value", drawn.parameter().name, drawn.effect());
     }

@@ -247,7 +247,8 @@ fn text(robot: &Robot, calibration: &Calibration, level: f64) -> String {
     text += &table(&header, estimates.iter().map(|e| length_row(robot, e)));
     text += "\n\npredicted: E_max,sys of the same test with the correction\nreplayed: E_max,sys of the recorded ticks with the correction\n";
     if let Some(estimate) = calibration.to_write() {
-        text += &hanging("exported:", 10, why(estimate));
+        let head = if calibration.doubts.is_empty() { "exported:" } else { "exported, but only with --force:" };
+        text += &hanging(head, 10, why(estimate));
     }
     text
 }

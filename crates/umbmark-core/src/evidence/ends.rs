@@ -21,6 +21,9 @@ pub(crate) use fitted::{Fitted, names};
 /// Minimum number of runs in each direction for any test.
 pub(crate) const FEWEST_RUNS: usize = 3;
 
+/// A run comes back that ends within this share of its way from where it began.
+const NEAR: f64 = 0.15;
+
 /// Return poses, ready to be predicted.
 #[derive(Clone, Debug)]
 pub(crate) struct Ends {
@@ -88,6 +91,15 @@ impl Ends {
         let setup = Setup::of(&data.runs, &ends.robot, data.path.as_ref());
         let doubts = setup.suspicions(&data.runs);
         Ok(Ends { setup: Arc::new(setup), doubts, ..ends })
+    }
+
+    /// Whether the robot came back to START: it was told a path, or most runs end near where they began.
+    pub fn come_back(&self) -> bool {
+        let near = |end: &&End| {
+            let way = self.tracks[end.track].whole.length();
+            libm::hypot(end.seen.x, end.seen.y) <= NEAR * way
+        };
+        self.path.is_some() || 2 * self.runs.iter().filter(near).count() > self.runs.len()
     }
 
     fn push(&mut self, drive: Drive) {

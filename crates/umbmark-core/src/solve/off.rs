@@ -168,7 +168,7 @@ impl Meter<'_> {
             Direction::BOTH.into_iter().all(driven) && ends.counts().iter().all(|n| *n > 0)
         };
         match (ends, evidence) {
-            (Some(ends), _) if both(&ends) => {
+            (Some(ends), _) if both(&ends) && ends.come_back() => {
                 Some(Meter { measure: Measure::Returns, runs: Runs::Ends(Box::new(ends)) })
             }
             (_, AnyEvidence::Tracks(observed)) => {

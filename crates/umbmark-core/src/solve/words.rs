@@ -169,6 +169,11 @@ pub(super) fn next(solution: &Solution) -> Vec<String> {
              model.toml --to embedded -o model.h`."
                 .into(),
         );
+        next.push(
+            "Or write numbers that fit drives like these without the other effects: `umbmark fit DATA -o plain.toml`, then \
+             `umbmark export plain.toml --to ros2_control -o robot.yaml`. They are not the robot's true lengths."
+                .into(),
+        );
     } else if solution.needed && !solution.changes.is_empty() {
         next.push(
             "Write the new numbers: `umbmark solve DATA -o model.toml`, then `umbmark export model.toml --to ros2_control -o \

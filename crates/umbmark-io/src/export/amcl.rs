@@ -26,8 +26,12 @@ use super::{Comment, Export, ExportError, Target, Written};
 const STEP: (f64, f64) = (0.25, 0.2);
 
 /// The alphas stand beside the steps that they are right for.
-pub static TARGET: Target =
-    Target { name: "amcl", about: "YAML for AMCL of Nav2: alpha1 to alpha5 from the fitted noise", holds_all: false, write };
+pub static TARGET: Target = Target {
+    name: "amcl",
+    about: "YAML for AMCL of Nav2: alpha1 to alpha5 from the fitted noise",
+    holds_all: false,
+    write,
+};
 
 fn write(export: &Export) -> Result<Written, ExportError> {
     let noise = export.noise.ok_or(ExportError::Missing { target: TARGET.name, what: NO_NOISE })?;

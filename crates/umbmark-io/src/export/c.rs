@@ -4,8 +4,12 @@ use super::text::number;
 use super::{Comment, Export, ExportError, Target, Written};
 
 /// One `#define` a number of the drive, and the sizes of the noise.
-pub static TARGET: Target =
-    Target { name: "c", about: "a C header with the corrected numbers and the noise, for every drive", holds_all: false, write };
+pub static TARGET: Target = Target {
+    name: "c",
+    about: "a C header with the corrected numbers and the noise, for every drive",
+    holds_all: false,
+    write,
+};
 
 fn write(export: &Export) -> Result<Written, ExportError> {
     let corrected = export.corrected()?;

@@ -4,8 +4,12 @@ use super::embedded::rows;
 use super::{Export, ExportError, Target, Written};
 
 /// A file of Rust with the table that `umbmark_odometry::Table` reads.
-pub static TARGET: Target =
-    Target { name: "embedded_rust", about: "the same table as a file of Rust, for include! or mod", holds_all: true, write };
+pub static TARGET: Target = Target {
+    name: "embedded_rust",
+    about: "the same table as a file of Rust, for include! or mod",
+    holds_all: true,
+    write,
+};
 
 fn write(export: &Export) -> Result<Written, ExportError> {
     let (rows, notes) = rows(export, |meaning| format!(" // {meaning}"))?;

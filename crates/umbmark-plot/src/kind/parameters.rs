@@ -109,9 +109,9 @@ fn told(numbers: &[Number], study: &Study) -> Told {
     let percent = 100.0 * study.level();
     let certain: Vec<String> = numbers.iter().filter(|n| n.certain()).map(Number::said).collect();
     let says = if certain.is_empty() {
-        "Every interval contains zero.".to_owned()
+        "Every interval contains the value without effect.".to_owned()
     } else {
-        format!("Different from zero: {}.", certain.join("; "))
+        format!("Different from the value without effect: {}.", certain.join("; "))
     };
     Told {
         shows: format!(

@@ -79,6 +79,12 @@ impl Summary {
         let means = study.diagnosis().map(|diagnosis| meaning(&diagnosis.fitted, &diagnosis.model));
         let is_chance = solution.as_ref().is_ok_and(|solution| is_chance(solution));
         let means = means.iter().filter(|_| !is_chance).flat_map(|means| means.iter());
+        let means = means.map(|(effect, sentence)| (effect.to_owned(), sentence.clone()));
+        let steps = study.learnt().map(|learnt| learnt.steps.iter()).into_iter().flatten();
+        let of_law = |step: &Step| {
+            let words = step.law.as_ref()?.law.words();
+            Some((step.added?.to_owned(), format!("A law that is in no catalogue: {words}.")))
+        };
         Summary {
             name: said.name,
             notices: said.notices,
@@ -89,7 +95,7 @@ impl Summary {
             why: told(why, why_of_model),
             write: told(to_write, |_, why| Tile { answer: "–".into(), says: why.to_string(), rows: Vec::new() }),
             fall: study.learnt().map(fall).unwrap_or_default(),
-            meaning: means.map(|(effect, sentence)| (effect.to_owned(), sentence.clone())).collect(),
+            meaning: means.chain(steps.filter_map(of_law)).collect(),
             next: solution.map(Solution::next).unwrap_or_default(),
         }
     }
@@ -141,6 +147,8 @@ fn why(solution: &Solution) -> Tile {
     }
     let mut parts: Vec<&Part> = off.reference.iter().chain(&off.written).chain(&off.known).collect();
     parts.sort_by(|a, b| b.worth.total_cmp(&a.worth));
+    // What does not show at all is no error source here.
+    parts.retain(|part| part.worth.abs() >= 5e-5);
     let mut rows: Vec<Row> = parts.iter().map(|part| of_part(part, solution)).collect();
     let above = |chance: f64| off.rest > chance;
     let rest = match off.chance {
@@ -149,9 +157,7 @@ fn why(solution: &Solution) -> Tile {
         _ => "the rest: scatter".to_owned(),
     };
     rows.push(Row { words: rest, id: String::new(), value: millimetres(off.rest), beside: String::new() });
-    // What does not show at all is no error source here.
-    let shown = parts.iter().filter(|part| part.worth.abs() >= 5e-5).count();
-    let answer = match shown {
+    let answer = match parts.len() {
         0 => "no error source".to_owned(),
         1 => "1 error source".to_owned(),
         count => format!("{count} error sources"),

@@ -42,7 +42,8 @@ pub(crate) fn corrected(corrected: &Corrected) -> McapResult<Vec<u8>> {
     let begin = if corrected.begin_ns > 0 { 0.0 } else { corrected.time.first().copied().unwrap_or(0.0).min(0.0) };
     for (sample, pose) in corrected.poses.iter().enumerate() {
         let before = sample.saturating_sub(1);
-        let time = corrected.stamp_ns(sample).map_or_else(|| nanoseconds(corrected.time[sample] - begin), |ns| ns as u64);
+        let time =
+            corrected.stamp_ns(sample).map_or_else(|| nanoseconds(corrected.time[sample] - begin), |ns| ns as u64);
         let duration = corrected.time[sample] - corrected.time[before];
         let twist = twist(&corrected.poses[before], pose, duration);
         let covariance = corrected.spread.as_ref().map_or([0.0; 36], |spread| of_axes(&spread[sample]));
@@ -75,7 +76,12 @@ fn of_axes(spread: &Spread) -> [f64; 36] {
 }
 
 /// Writes a log into a file, its stamps counted from `begin` \[s\].
-pub(in crate::layout) fn write(file: impl Write + Seek, robot_file: &RobotFile, log: &TickLog, begin: f64) -> McapResult<()> {
+pub(in crate::layout) fn write(
+    file: impl Write + Seek,
+    robot_file: &RobotFile,
+    log: &TickLog,
+    begin: f64,
+) -> McapResult<()> {
     let mut writer = options().create(file)?;
     let robot = &robot_file.robot;
     let robot_toml = BTreeMap::from([(ROBOT.to_owned(), robot_file.text())]);
