@@ -259,7 +259,7 @@ fn logs_that_are_in_runs_already_are_begun_from_where_they_are() {
     std::fs::create_dir(place.path().join("none")).unwrap();
     assert_eq!(
         refused(place.path(), &["init", "x", "--logs", "none"]),
-        "error: none: there is no log (.csv, .mcap) in it; give a log, or a folder of logs\n"
+        "error: none: there is no log (.csv, .mcap, .db3, .bag) in it; give a log, or a folder of logs\n"
     );
     assert!(
         refused(place.path(), &["init", "x", "--wheelbase", "0.4"])

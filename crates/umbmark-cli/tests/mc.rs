@@ -29,22 +29,23 @@ TRC LabMate, square (side_m 4)
   wheel_noise: k_sqrt_m 0
   assumed: wheel diameter 0.150 m and 2000 ticks per revolution where not given
 
- metric                        mean  std error  std dev       5 %      50 %      95 %
- E_max,sys [mm]             447.564      0.000    0.000   447.564   447.564   447.564
- sigma (per axis) [mm]        0.000      0.000    0.000     0.000     0.000     0.000
- centroid cw, x [mm]       -293.593      0.000    0.000  -293.593  -293.593  -293.593
- centroid cw, y [mm]       -337.811      0.000    0.000  -337.811  -337.811  -337.811
- centroid ccw, x [mm]        62.942      0.000    0.000    62.942    62.942    62.942
- centroid ccw, y [mm]       -60.080      0.000    0.000   -60.080   -60.080   -60.080
- return heading cw [deg]      8.898      0.000    0.000     8.898     8.898     8.898
- return heading ccw [deg]     1.769      0.000    0.000     1.769     1.769     1.769
+metric                        mean    std    std       5 %      50 %      95 %
+                                    error    dev
+E_max,sys [mm]             447.564  0.000  0.000   447.564   447.564   447.564
+sigma (per axis) [mm]        0.000  0.000  0.000     0.000     0.000     0.000
+centroid cw, x [mm]       -293.593  0.000  0.000  -293.593  -293.593  -293.593
+centroid cw, y [mm]       -337.811  0.000  0.000  -337.811  -337.811  -337.811
+centroid ccw, x [mm]        62.942  0.000  0.000    62.942    62.942    62.942
+centroid ccw, y [mm]       -60.080  0.000  0.000   -60.080   -60.080   -60.080
+return heading cw [deg]      8.898  0.000  0.000     8.898     8.898     8.898
+return heading ccw [deg]     1.769  0.000  0.000     1.769     1.769     1.769
 
 E_max,sys without noise: 447.6 mm by exact kinematics, 439.3 mm to first order
-
 [..]
 [..]
+447.6 mm |######################################## 100.0 %
 
-seed 1, [..] trials/s, umbmark [..]
+seed 1, 55152 trials/s, umbmark 0.1.0
 
 "#]]);
 }

@@ -487,7 +487,7 @@ fn what_a_folder_holds_and_was_not_read_is_said() {
         ("returns.csv.gz", sheet),
         ("returns.xlsx", ""),
         ("runs/cw_01.csv", ticks),
-        ("runs/cw_02.bag", ""),
+        ("runs/cw_02.mat", ""),
         ("reference/cw_01.tak", ""),
         ("reference/cw_07.tum", ""),
     ];
@@ -499,7 +499,7 @@ fn what_a_folder_holds_and_was_not_read_is_said() {
         said,
         [
             "cw_01.tak: is no track",
-            "cw_02.bag: is no log",
+            "cw_02.mat: is no log",
             "cw_07.tum: belongs to no log of its name",
             "returns.xlsx: is no return sheet",
         ]

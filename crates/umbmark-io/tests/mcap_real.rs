@@ -79,19 +79,16 @@ fn every_packing_encoding_and_source_of_wheels_gives_the_ticks_and_poses_of_the_
 }
 
 #[test]
-fn logs_of_other_robots_and_of_ros_1_are_refused_with_what_they_hold() {
+fn logs_of_other_robots_are_refused_with_what_they_hold() {
     let said = |name: &str| {
         let folder = shared("mcap_samples")?.join("crate_mcap");
         let file = folder.join(name);
         Some(umbmark_io::load(&file).unwrap_err().to_string().replace(&format!("{}/", folder.display()), ""))
     };
     let Some(ros_1) = said("compressed.mcap") else { return };
-    assert!(
-        ros_1.contains("no topic holds wheel counts") && ros_1.contains("/tf (tf2_msgs/TFMessage, \"ros1\")"),
-        "{ros_1}"
-    );
+    assert!(ros_1.contains("no topic holds wheel counts") && ros_1.contains("/tf (tf2_msgs/TFMessage)"), "{ros_1}");
     for name in ["uncompressed.mcap", "zstd_chunk_with_padding.mcap", "chunk_not_closed.mcap"] {
         let said = said(name).unwrap();
-        assert!(said.contains("no topic") || said.contains("cannot be read as MCAP"), "{said}");
+        assert!(said.contains("no topic") || said.contains("cannot be read"), "{said}");
     }
 }

@@ -1645,7 +1645,7 @@ class Clock(Record, frozen=True):
 
 
 class Topics(Record, frozen=True):
-    """Where the log of a run was found in an MCAP file.
+    """Where the log of a run was found in an MCAP file or a bag.
 
     Attributes
     ----------
@@ -1670,7 +1670,7 @@ class LogContents(Record, frozen=True):
     file : str
         The file.
     layout : str
-        "csv" or "mcap".
+        "csv", "mcap", "rosbag" or "rosbag2".
     duration_s : float or None
         Time from the first message or row to the last, in s; None if the file does not say it.
     parts : tuple[LogPart, ...]

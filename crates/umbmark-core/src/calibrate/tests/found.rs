@@ -56,7 +56,7 @@ fn a_run_is_used_up_to_its_jump_and_wrong_poses_are_left_out() {
     let (calibration, correction) = exact(&data);
     assert!((correction.e_d - 1.003).abs() < 1e-3 && (correction.e_b - 0.99).abs() < 2e-3, "{correction:?}");
     let told = |words: &str| calibration.warnings.iter().filter(|warning| warning.contains(words)).count();
-    assert_eq!([told("jumps by 0.5"), told("is used up to"), told("poses of run ccw_1 are wrong")], [2, 2, 1]);
+    assert_eq!([told("jumps by 0.5"), told("is used up to"), told("poses of run ccw_1 is wrong")], [2, 2, 1]);
     assert!(calibration.doubts.is_empty(), "{:?}", calibration.doubts);
     assert_eq!(calibration.setup.disturbances(), [2, 1]);
 }

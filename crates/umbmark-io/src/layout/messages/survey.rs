@@ -38,7 +38,9 @@ impl Survey {
             Stop::System(error) => unreadable(path, &error),
             Stop::Problem(problem) => DatasetError::Messages { file: file.clone(), problem: Box::new(problem) },
             Stop::Damage(damage) => {
-                let problem = LogProblem::Damaged { damage: damage.what };
+                let place = damage.at.map(|at| format!("at byte {at} (")).unwrap_or_default();
+                let end = if damage.at.is_some() { ")" } else { "" };
+                let problem = LogProblem::Damaged { damage: format!("{place}{}{end}", damage.what) };
                 DatasetError::Messages { file: file.clone(), problem: Box::new(problem) }
             }
         })?;

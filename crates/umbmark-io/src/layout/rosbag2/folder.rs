@@ -3,6 +3,7 @@
 use super::super::messages::{self, Channel, Container, Contents, LONGEST, LogProblem, Opened, Record, Stop, Visit};
 use super::METADATA;
 use crate::error::quoted;
+use crate::probe::names_in;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -18,6 +19,7 @@ struct Document {
 
 #[derive(Deserialize)]
 struct Bag {
+    #[serde(default)]
     relative_file_paths: Vec<PathBuf>,
     #[serde(default)]
     compression_format: String,
@@ -27,6 +29,16 @@ struct Bag {
 
 /// What packed files and messages may unpack to.
 const MOST_UNPACKED: u64 = 64 << 30;
+
+/// Endings of files of a bag.
+const PARTS: [&str; 6] = ["mcap", "db3", "mcap.zstd", "db3.zstd", "mcap.zst", "db3.zst"];
+
+/// The number at the end of the name of a file that was split.
+fn number_of(path: &Path) -> u64 {
+    let name = path.display().to_string();
+    let stem = name.split('.').next().unwrap_or_default();
+    stem.rsplit('_').next().and_then(|number| number.parse().ok()).unwrap_or(0)
+}
 
 /// The files of a bag, read one after the other.
 struct Folder {
@@ -56,10 +68,21 @@ pub(super) fn open(folder: &Path) -> Opened {
         let found = format!("is packed by {}, where zstd can be read", quoted(&bag.compression_format));
         return Err(LogProblem::Unknown { found }.into());
     }
-    if bag.relative_file_paths.is_empty() {
-        return Err(Stop::damage(None, format!("{METADATA} lists no files")));
+    let mut paths = bag.relative_file_paths;
+    if paths.is_empty() {
+        // A recorder that was killed lists nothing; files that were split are numbered.
+        let is_part = |name: &String| PARTS.iter().any(|ending| name.to_lowercase().ends_with(&format!(".{ending}")));
+        let names = names_in(folder).map_err(|_| Stop::damage(None, "its folder cannot be read"))?;
+        paths = names.into_iter().filter(is_part).map(PathBuf::from).collect();
+        paths.sort_by_key(|path| number_of(path));
     }
-    let parts = bag.relative_file_paths.iter().map(|path| part(folder, path)).collect::<Result<_, _>>()?;
+    if paths.is_empty() {
+        return Err(Stop::damage(
+            None,
+            format!("{METADATA} lists no files, and there are none (.{})", PARTS.join(", .")),
+        ));
+    }
+    let parts = paths.iter().map(|path| part(folder, path)).collect::<Result<_, _>>()?;
     Ok(Box::new(Folder { parts, packs_messages: mode == "message" }))
 }
 
