@@ -276,6 +276,8 @@ fn fall(learnt: &Learnt) -> Vec<Fallen> {
 #[derive(Debug, Serialize)]
 pub(super) struct Changed {
     outcome: &'static str,
+    /// In a word or two; nothing where it is not known.
+    word: &'static str,
     says: String,
 }
 
@@ -289,7 +291,7 @@ pub(super) fn changed(studies: &[Study]) -> Option<Changed> {
     let draws = options.draws.max(FEWEST_DRAWS);
     let named = |says: String| format!("From {} to {}: {says}", before.name, after.name);
     Some(match Difference::of(&before.data, &after.data, options.size, draws, options.seed) {
-        Err(why) => Changed { outcome: "unknown", says: named(format!("{why}.")) },
+        Err(why) => Changed { outcome: "unknown", word: "", says: named(format!("{why}.")) },
         Ok(change) => {
             let [was, is] = change.rms.map(millimetres);
             let [n, m] = change.runs;
@@ -299,7 +301,7 @@ pub(super) fn changed(studies: &[Study]) -> Option<Changed> {
                 crate::kind::p_is(change.p)
             );
             let outcome = change.outcome.name();
-            Changed { outcome, says: format!("{} {}", judged(outcome), named(says)) }
+            Changed { outcome, word: judged(outcome), says: named(says) }
         }
     })
 }

@@ -73,7 +73,12 @@ fn where_made(parts: &[Part]) -> Option<String> {
         format!("{}{direction} ({:.0} %)", part.name, 100.0 * part.share.position)
     };
     let told: Vec<String> = moves.iter().take(NAMED).map(told).collect();
-    (!told.is_empty()).then(|| format!("Most of the position error is made in {}.", told.join(", ")))
+    let undone = if moves.iter().take(NAMED).any(|part| part.share.position > 1.0) {
+        " Other moves undo a part of that."
+    } else {
+        ""
+    };
+    (!told.is_empty()).then(|| format!("Most of the position error is made in {}.{undone}", told.join(", ")))
 }
 
 fn with_interval(mean: &Mean, scale: f64) -> String {
