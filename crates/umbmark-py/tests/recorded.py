@@ -33,21 +33,25 @@ class Row:
 
     @property
     def time(self) -> dict[str, int]:
+        """Return the stamp as messages have it."""
         return {"sec": self.stamp // 10**9, "nanosec": self.stamp % 10**9}
 
     @property
     def positions(self) -> list[float]:
+        """Return the angles of the wheels [rad]."""
         scale = math.tau / TICKS_PER_REVOLUTION
         return [self.left * scale, self.right * scale]
 
     @property
     def quaternion(self) -> dict[str, float]:
+        """Return the heading as a quaternion."""
         assert self.pose is not None
         half = 0.5 * self.pose[2]
         return {"x": 0.0, "y": 0.0, "z": math.sin(half), "w": math.cos(half)}
 
 
 def rows(file: Path) -> Iterator[Row]:
+    """Return the rows of a CSV log."""
     with file.open() as text:
         for row in csv.DictReader(text):
             stamp = EPOCH_NS + round(float(row["t_s"]) * 1e9)

@@ -1,9 +1,10 @@
 """Bags of ROS that the package rosbags writes are read as the CSV of the same runs."""
 
 import shutil
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -51,7 +52,9 @@ def pose(store: Typestore, row: Row) -> Any:
     return t["geometry_msgs/msg/PoseWithCovarianceStamped"](header(store, row, "map"), whole)
 
 
-def write(writer: Any, store: Typestore, wheels: Callable[[Typestore, Row], Any], log: list[Row]) -> None:
+def write(
+    writer: Any, store: Typestore, wheels: Callable[[Typestore, Row], Any], log: list[Row]
+) -> None:
     """Write wheels and poses, and a topic that nobody asked for."""
     kind = TICKS if wheels is ticks else "sensor_msgs/msg/JointState"
     posed = "geometry_msgs/msg/PoseWithCovarianceStamped"
@@ -67,7 +70,9 @@ def write(writer: Any, store: Typestore, wheels: Callable[[Typestore, Row], Any]
             writer.write(of_poses, row.stamp + 5, serialize(pose(store, row), posed))
 
 
-def bag1(compression: Any, wheels: Callable[[Typestore, Row], Any]) -> Callable[[Path, list[Row]], None]:
+def bag1(
+    compression: Any, wheels: Callable[[Typestore, Row], Any]
+) -> Callable[[Path, list[Row]], None]:
     def bag(place: Path, log: list[Row]) -> None:
         writer = Bag1Writer(place.with_suffix(".bag"))
         writer.chunk_threshold = 30_000
@@ -83,7 +88,7 @@ def bag2(
     plugin: StoragePlugin,
     wheels: Callable[[Typestore, Row], Any],
     mode: CompressionMode | None = None,
-    version: int = 9,
+    version: Literal[8, 9] = 9,
     bare: bool = False,
 ) -> Callable[[Path, list[Row]], None]:
     def bag(place: Path, log: list[Row]) -> None:
@@ -99,6 +104,35 @@ def bag2(
     return bag
 
 
+def split(plugin: StoragePlugin, listed: bool) -> Callable[[Path, list[Row]], None]:
+    """Write a bag in twelve files, which its metadata.yaml lists, or which a killed recorder left.
+
+    The last of the files of a killed recorder ends in the middle of a record.
+    """
+
+    def bag(place: Path, log: list[Row]) -> None:
+        place.mkdir()
+        parts = 12
+        size = -(-len(log) // parts)
+        names = []
+        for part in range(parts):
+            own = place / f"part_{part}"
+            bag2(plugin, joints)(own, log[part * size : (part + 1) * size])
+            (file,) = (f for f in own.iterdir() if f.name != "metadata.yaml")
+            names.append(f"rosbag2_{part}{file.suffix}")
+            shutil.move(file, place / names[-1])
+            shutil.rmtree(own)
+        lines = ["rosbag2_bagfile_information:", "  version: 9"]
+        if listed:
+            lines += ["  relative_file_paths:", *(f"    - {name}" for name in names)]
+        (place / "metadata.yaml").write_text("\n".join(lines) + "\n")
+        if not listed:
+            last = place / names[-1]
+            last.write_bytes(last.read_bytes()[: last.stat().st_size // 2])
+
+    return bag
+
+
 SQLITE, MCAP = StoragePlugin.SQLITE3, StoragePlugin.MCAP
 BAGS = {
     "ROS 1": bag1(None, ticks),
@@ -110,6 +144,8 @@ BAGS = {
     "SQLite, messages packed": bag2(SQLITE, ticks, CompressionMode.MESSAGE),
     "folder of MCAP": bag2(MCAP, ticks),
     "folder of MCAP, packed": bag2(MCAP, joints, CompressionMode.FILE),
+    "SQLite in parts": split(SQLITE, listed=True),
+    "MCAP in parts": split(MCAP, listed=True),
 }
 
 
@@ -140,3 +176,31 @@ def test_one_bag_is_inspected_without_a_robot(
     assert topics["/wheels"] == (len(log), "wheels")
     assert topics["/mocap"] == (sum(row.pose is not None for row in log), "reference")
     assert topics["/chatter"] == (len(log), None)
+
+
+def test_a_bag_of_a_recorder_that_was_killed_is_read_in_the_order_of_its_files(
+    command: Path, measured: Path, tmp_path: Path
+) -> None:
+    file = min((measured / "runs").iterdir())
+    log = list(rows(file))
+    split(MCAP, listed=False)(tmp_path / file.stem, log)
+    found = answer(command, "inspect", tmp_path / file.stem)
+    (contents,) = found["contents"]
+    # The index and the end of the last of twelve files are lost, and not the messages before.
+    assert 11 / 12 < contents["wheels"]["readings"] / len(log) < 1
+    assert contents["wheels"]["rate_hz"] == pytest.approx(100, rel=1e-6)
+    assert any("damaged" in note and "rosbag2_11.mcap" in note for note in contents["notes"])
+
+
+def test_files_that_a_bag_lists_must_be_in_it(command: Path, tmp_path: Path) -> None:
+    bag = tmp_path / "bag"
+    bag.mkdir()
+    for name, said in [
+        ("../other.mcap", "outside of the folder"),
+        ("gone.mcap", "not there"),
+    ]:
+        text = f"rosbag2_bagfile_information:\n  relative_file_paths: [{name}]\n"
+        (bag / "metadata.yaml").write_text(text)
+        refused = subprocess.run([command, "inspect", bag], capture_output=True, text=True)
+        assert refused.returncode == 1
+        assert said in refused.stderr

@@ -1,6 +1,5 @@
 """MCAP logs that other packages write are read as the CSV of the same runs, and they read ours."""
 
-import csv
 import json
 import math
 import random
@@ -9,8 +8,7 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -22,10 +20,16 @@ from mcap.writer import Writer as PlainWriter
 from mcap_protobuf.writer import Writer as ProtobufWriter
 from mcap_ros2.decoder import DecoderFactory
 from mcap_ros2.writer import Writer as Ros2Writer
+from recorded import (
+    TICKS_PER_REVOLUTION,
+    Row,
+    answer,
+    assert_calibrates_alike,
+    rows,
+)
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as BagWriter
-from recorded import EPOCH_NS, TICKS_PER_REVOLUTION, Row, answer, assert_calibrates_alike, numbers, rows
 from rosbags.typesys import Stores, get_typestore
 
 ROOT = Path(__file__).parents[3]
