@@ -65,7 +65,8 @@ type ReadTracks =
     (&'static [&'static str], fn(&str) -> bool, fn(Source, &mut Vec<String>) -> Result<TrackRows, DatasetError>);
 
 /// The file that makes a folder one log of messages, and how that is opened.
-type OpenFolder = (&'static str, fn(&Path) -> Opened);
+type OpenFolder = (&'static str, Open);
+type Open = fn(&Path) -> Opened;
 
 /// Writes a data set into a folder and says what is lost.
 type Write = fn(&Dataset, &Path, Existing) -> Result<Vec<String>, DatasetError>;
@@ -178,7 +179,7 @@ fn add_log(
 }
 
 /// The layout of a folder that is one log, and how it is opened.
-fn folder_of_messages(path: &Path) -> Option<(&'static Layout, fn(&Path) -> Opened)> {
+fn folder_of_messages(path: &Path) -> Option<(&'static Layout, Open)> {
     LAYOUTS.iter().find_map(|layout| {
         let (_, open) = layout.folder.filter(|(marker, _)| path.join(marker).is_file())?;
         Some((layout, open))
