@@ -87,7 +87,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(code) => code,
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            let _ = writeln!(io::stderr(), "error: {}", words::worded(&error));
+            let _ = writeln!(io::stderr(), "error: {}", session::visible(&words::worded(&error)));
             ExitCode::from(1)
         }
     }

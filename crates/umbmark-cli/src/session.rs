@@ -47,13 +47,16 @@ pub struct Session {
     out: Output,
 }
 
-/// Standard output, buffered; standard error as soon as a file goes to standard output.
+/// Standard output, buffered; standard error as soon as a file goes to standard output. Names of files and topics may hold anything: nothing
+/// that moves the cursor of a terminal goes out.
 #[derive(Debug)]
 struct Output(BufWriter<Stdout>);
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if files::one_is_on_stdout() { io::stderr().write(bytes) } else { self.0.write(bytes) }
+        let moves = |byte: u8| byte == 0x7f || (byte < b' ' && !b"\n\t\r".contains(&byte));
+        let safe: Vec<u8> = bytes.iter().map(|byte| if moves(*byte) { b'?' } else { *byte }).collect();
+        if files::one_is_on_stdout() { io::stderr().write(&safe) } else { self.0.write(&safe) }
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -107,7 +110,7 @@ impl Session {
 
     /// A message for people, on stderr.
     pub fn message(&self, kind: &str, text: &str) {
-        let _ = writeln!(io::stderr(), "{kind}: {text}");
+        let _ = writeln!(io::stderr(), "{kind}: {}", visible(text));
     }
 
     pub(crate) fn flush(&mut self) -> io::Result<()> {
@@ -163,6 +166,14 @@ impl Session {
         let shown = !self.options.quiet && io::stderr().is_terminal();
         Progress { bar: None, total, unit, began: Instant::now(), shown }
     }
+}
+
+/// Text in which nothing moves the cursor: names of files and topics may hold anything.
+pub fn visible(text: &str) -> String {
+    let harmless = |c: &char| !c.is_control() || matches!(c, '\n' | '\t');
+    text.chars()
+        .map(|c| Some(c).filter(harmless).map_or_else(|| c.escape_default().to_string(), String::from))
+        .collect()
 }
 
 /// A progress bar that appears when the work takes more than a second.

@@ -1,4 +1,4 @@
-//! Ctrl-C: what is done so far, marked partial, and nothing half-written.
+//! Ctrl-C and SIGTERM: what is done so far, marked partial, and nothing half-written.
 
 #![cfg(unix)]
 use std::path::Path;
@@ -7,6 +7,11 @@ use std::time::Duration;
 
 /// The command, interrupted once after some time.
 fn interrupted(folder: &Path, after: Duration, arguments: &[&str]) -> Output {
+    ended_by("-INT", folder, after, arguments)
+}
+
+/// The command, ended by a signal after some time.
+fn ended_by(signal: &str, folder: &Path, after: Duration, arguments: &[&str]) -> Output {
     let child = Command::new(env!("CARGO_BIN_EXE_umbmark"))
         .args(arguments)
         .current_dir(folder)
@@ -15,13 +20,26 @@ fn interrupted(folder: &Path, after: Duration, arguments: &[&str]) -> Output {
         .spawn()
         .unwrap();
     std::thread::sleep(after);
-    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
     child.wait_with_output().unwrap()
 }
 
 fn told(output: &Output) -> serde_json::Value {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// A scheduler ends jobs by SIGTERM. The checkpoint holds what is done, though the next was due in an hour.
+#[test]
+fn a_study_that_is_told_to_end_saves_its_last_checkpoint() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["mc", "-n", "100000000", "--checkpoint", "study.json", "--checkpoint-every", "3600", "--json"];
+    let output = ended_by("-TERM", folder.path(), Duration::from_secs(3), &words);
+    assert_eq!(told(&output)["partial"], true);
+    let saved = std::fs::read(folder.path().join("study.json")).unwrap();
+    assert!(!saved.is_empty());
+    let names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(names, ["study.json"]);
 }
 
 /// Work far longer than the test waits for.

@@ -164,3 +164,36 @@ fn counts_that_are_a_factor_off_are_named_by_every_verb_with_the_line_that_mends
         }
     }
 }
+
+/// Names may hold anything; a terminal must not do what they say.
+#[cfg(unix)]
+#[test]
+fn a_name_moves_no_cursor_and_one_that_is_no_text_is_told() {
+    use std::os::unix::ffi::OsStringExt;
+    let folder = tempfile::tempdir().unwrap();
+    let runs = folder.path().join("runs");
+    std::fs::create_dir(&runs).unwrap();
+    std::fs::copy(examples("fresh_day/robot.toml"), folder.path().join("robot.toml")).unwrap();
+    for name in ["cw_01.csv", "cw_02\u{1b}[31m\u{7}.csv", "notes\u{1b}[2J.mat"] {
+        std::fs::copy(examples("fresh_day/runs/cw_01.csv"), runs.join(name)).unwrap();
+    }
+    let output = umbmark(folder.path(), &["inspect", "."]);
+    let said = text(&output.stdout) + &text(&output.stderr);
+    assert!(output.status.success() && said.contains("notes?[2J.mat: is no log"), "{said}");
+    assert!(said.chars().all(|c| c == '\n' || !c.is_control()), "{said:?}");
+    let name = std::ffi::OsString::from_vec(b"cw_03\xff.csv".to_vec());
+    std::fs::copy(examples("fresh_day/runs/cw_01.csv"), runs.join(name)).unwrap();
+    let output = umbmark(folder.path(), &["inspect", "."]);
+    assert!(
+        !output.status.success() && text(&output.stderr).contains("its name is not UTF-8; rename it"),
+        "{output:?}"
+    );
+    // A key of YAML that would begin others.
+    let model = examples("hidden");
+    let fitted = umbmark(folder.path(), &["fit", model.to_str().unwrap(), "-o", "model.toml"]);
+    assert!(fitted.status.success(), "{fitted:?}");
+    let words = ["export", "model.toml", "--to", "ros2_control", "-o", "r.yaml", "--controller", "x:\n  evil: 1"];
+    let refused = umbmark(folder.path(), &words);
+    assert!(!refused.status.success() && text(&refused.stderr).contains("the name of a controller"), "{refused:?}");
+    assert!(!folder.path().join("r.yaml").exists());
+}

@@ -162,6 +162,10 @@ impl<'a> Entry<'a> {
     /// The value as text.
     pub fn word(&self, allowed: &str) -> Result<&'a str, DatasetError> {
         match self.value.get_ref() {
+            // They would move the cursor of a terminal, or end a line of a file that is written.
+            DeValue::String(text) if text.chars().any(|c| c.is_control() && !matches!(c, '\t' | '\n')) => {
+                Err(self.wrong("text without control characters", "remove them"))
+            }
             DeValue::String(text) => Ok(text),
             _ => Err(self.wrong(allowed, "put it in quotation marks")),
         }

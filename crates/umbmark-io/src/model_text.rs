@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(ModelFile::parse("model.toml", &file.text(), None).unwrap(), file);
         assert_eq!(ModelFile::parse("model.toml", &effects_text(&file.model), Some(&robot)).unwrap(), file);
         let noise = Noise { heading_per_metre: 1e-3 / 3.0, within_heading: 0.0, ..Noise::default() };
-        let doubt = Doubt { because: "With \"quotes\",\nand lines.".into(), alone: true };
+        let doubt = Doubt { because: "With \"quotes\" and \\ lines.".into(), alone: true };
         let file = ModelFile { noise: Some(noise), doubt: Some(doubt), ..file };
         assert!(file.text().contains("\n[noise]\nheading_rad_per_sqrt_m = 0.000333"));
         assert_eq!(ModelFile::parse("model.toml", &file.text(), None).unwrap(), file);

@@ -56,7 +56,10 @@ pub(super) fn names_in(folder: &Path) -> Result<Vec<String>, DatasetError> {
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(|error| unreadable(folder, &error))? {
         let entry = entry.map_err(|error| unreadable(folder, &error))?;
-        names.push(entry.file_name().to_string_lossy().into_owned());
+        names.push(entry.file_name().into_string().map_err(|name| DatasetError::Unreadable {
+            file: folder.join(&name).display().to_string(),
+            reason: "its name is not UTF-8; rename it".to_owned(),
+        })?);
     }
     names.retain(|name| !name.starts_with('.'));
     names.sort();
@@ -78,9 +81,9 @@ pub(super) fn extension(file: &Path) -> String {
     name.rsplit_once('.').map_or(String::new(), |(_, extension)| extension.to_owned())
 }
 
-/// The name of a file without its endings.
+/// The name of a file without its endings, as its run is called: without characters that move the cursor of a terminal.
 pub(super) fn stem(file: &Path) -> String {
-    let name = name_of(file);
+    let name = name_of(file).replace(char::is_control, "?");
     let name = name.strip_suffix(".gz").unwrap_or(&name);
     name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned()
 }

@@ -31,6 +31,11 @@ fn write(export: &Export) -> Result<Written, ExportError> {
         return Err(export.no_drive(TARGET.name));
     };
     let controller = export.controller.as_deref().unwrap_or(usual);
+    // It is a key of YAML.
+    if controller.is_empty() || !controller.chars().all(|c| c.is_ascii_alphanumeric() || "_/.-".contains(c)) {
+        let what = "the name of a controller has letters, digits, _, /, . and - only; give it as ROS 2 lists it";
+        return Err(ExportError::Missing { target: TARGET.name, what });
+    }
     let mut lines: Vec<String> = values.iter().map(|(key, value)| format!("{key}: {}", number(*value))).collect();
     if let Some(noise) = export.noise_or(&mut notes) {
         let [twist, pose] = sentences(&export.usual);
