@@ -188,29 +188,46 @@ fn judge(name: &str, data: &Dataset, observed: &Observed, model: &Model, options
     let chain = model.chain();
     let runs: Vec<Followed> =
         observed.runs.iter().map(|run| Followed::new(run, &chain, observed.setup.noise)).collect();
+    let (reasons, remains) = doubts_as_written(observed, model, options);
+    let parts = parts(data, observed, &runs, 1.0 - options.size);
+    let mut judged = TracksJudged { reasons, remains, parts, ..tested(name, observed, &runs, options) };
+    judged.sentences = sentences::of(&judged, options.size);
+    judged
+}
+
+/// The tests of what repeats, and the errors that they are of.
+fn tested(name: &str, observed: &Observed, runs: &[Followed], options: &Options) -> TracksJudged {
     let confidence = 1.0 - options.size;
-    let overall = rates::overall(&runs, &observed.robot, confidence);
-    let against = rates::against(&runs, &overall, &observed.robot, confidence);
+    let overall = rates::overall(runs, &observed.robot, confidence);
+    let against = rates::against(runs, &overall, &observed.robot, confidence);
     let tests: Vec<f64> = overall.iter().map(|o| o.p).chain(against.iter().map(|a| a.p)).flatten().collect();
     let smallest = tests.iter().copied().reduce(f64::min);
-    let (reasons, remains) = doubts_as_written(observed, model, options);
-    let mut judged = TracksJudged {
+    TracksJudged {
         name: name.to_owned(),
-        along: rms(&runs, |_| 0),
-        end: rms(&runs, |run| run.places.len() - 1),
+        along: rms(runs, |_| 0),
+        end: rms(runs, |run| run.places.len() - 1),
         tests: tests.len(),
         p: smallest.map(|p| (p * tests.len() as f64).min(1.0)),
         overall,
         against,
-        parts: parts(data, observed, &runs, confidence),
+        parts: Vec::new(),
         residuals: runs.iter().map(residuals).collect(),
         taken: Vec::new(),
-        reasons,
-        remains,
+        reasons: Vec::new(),
+        remains: None,
         sentences: Vec::new(),
-    };
-    judged.sentences = sentences::of(&judged, options.size);
-    judged
+    }
+}
+
+/// What the tests of `compare` have against a model as it is written: p of all of them, and what repeats, in words.
+pub(crate) fn against_as_written(observed: &Observed, model: &Model, options: &Options) -> Option<Reason> {
+    let (observed, chain) = (observed.along(model), model.chain());
+    let runs: Vec<Followed> =
+        observed.runs.iter().map(|run| Followed::new(run, &chain, observed.setup.noise)).collect();
+    let judged = tested("", &observed, &runs, options);
+    let p = judged.p.filter(|p| *p < options.size)?;
+    let what = sentences::accused(&judged, options.size);
+    (!what.is_empty()).then(|| Reason::Depends { p, what: what.join("; ") })
 }
 
 /// Root mean square error \[m\] of the positions along the way that a model leaves as it is, START fitted.

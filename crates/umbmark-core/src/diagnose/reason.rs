@@ -83,6 +83,13 @@ pub enum Reason {
         /// Whether both are headings.
         heading: bool,
     },
+    /// Errors of the model as it is written repeat in its runs, by the tests of `compare`.
+    Depends {
+        /// Of all tests.
+        p: f64,
+        /// What is off, and on what it depends, in words.
+        what: String,
+    },
     /// The data are in doubt.
     Data(Suspicion),
 }
@@ -127,6 +134,10 @@ impl Reason {
                 "the {what} is {value:.2} {unit}, and held-out runs are predicted better with noise of the usual sizes: the fitted noise \
                  has absorbed something that the model lacks"
             ),
+            Reason::Depends { p, what } => {
+                let p = if *p < 0.001 { "p < 0.001".to_owned() } else { format!("p = {p:.3}") };
+                format!("what the model leaves repeats ({p}): {what}")
+            }
             Reason::SameInEveryRun { repeats, left, heading } => {
                 let (scale, unit) = if *heading { (1f64.to_degrees(), "deg") } else { (1e3, "mm") };
                 let low = repeats.interval.map_or(0.0, |interval| interval.low);

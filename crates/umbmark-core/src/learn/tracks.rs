@@ -2,8 +2,9 @@
 
 use super::misfits::misfits;
 use super::story::{Error, Learnt, MOST_EFFECTS, Step};
+use crate::compare::tracks::against_as_written;
 use crate::diagnose::tracks::{self, Added, Conclusion, Found, Search, Wanted};
-use crate::diagnose::{Diagnosis, Options, Verdict};
+use crate::diagnose::{Diagnosis, Options, Reason, Verdict};
 use crate::effect::{Model, Part, find};
 use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, estimates, fit};
 use crate::evidence::{Estimate, Evidence, FitError};
@@ -190,8 +191,15 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     if written.usual_noise {
         // The model is written with other values than those that were examined: what is said of it is said of these, as `compare` does.
         let (doubts, left) = tracks::doubts_as_written(&written.observed, &written.model, options);
-        reasons = doubts;
+        let of_laws = |reason: &Reason| matches!(reason, Reason::Repeats(_));
+        // What repeats with the likeliest values is in the data, whichever values are written; by how much is told in per cent.
+        let examined = std::mem::replace(&mut reasons, doubts).into_iter().find(of_laws);
+        if let Some(Reason::Repeats(mut repeated)) = examined.filter(|_| !reasons.iter().any(of_laws)) {
+            repeated.law.left_out = [f64::NAN; 2];
+            reasons.push(Reason::Repeats(repeated));
+        }
         remains = left.unwrap_or(remains);
+        reasons.extend(against_as_written(&written.observed, &written.model, options));
         reasons.extend(tracks::of_usual_noise(&written.observed, &written.noise));
     }
     reasons.extend(misfits(&steps, runs, written.observed.setup.noise.position, is_nominal(&last.fitted)));

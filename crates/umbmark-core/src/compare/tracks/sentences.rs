@@ -24,6 +24,13 @@ pub(super) fn of(judged: &TracksJudged, size: f64) -> Vec<String> {
     sentences
 }
 
+/// What is off and on what it depends, without more words.
+pub(super) fn accused(judged: &TracksJudged, size: f64) -> Vec<String> {
+    let least = size / judged.tests.max(1) as f64;
+    let told = levels(judged, least).into_iter().chain(dependences(judged, least));
+    told.map(|said| said.trim_start_matches("Not explained: ").trim_end_matches('.').to_owned()).collect()
+}
+
 fn levels(judged: &TracksJudged, least: f64) -> Vec<String> {
     let accused = judged.overall.iter().filter(|o| o.p.is_some_and(|p| p < least));
     let told = accused.map(|o| {

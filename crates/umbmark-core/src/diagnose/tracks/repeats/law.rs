@@ -59,7 +59,8 @@ pub struct UnlistedLaw {
     pub nearest: Option<(&'static str, f64)>,
     /// How long its formula is: operations, variables and numbers.
     pub length: usize,
-    /// Root mean square error of runs left out \[m\], and with the law.
+    /// Root mean square error of runs left out \[m\], and with the law; no number in a [reason](crate::diagnose::Reason) against a model that is
+    /// written with other values than those for which these were found.
     pub left_out: [f64; 2],
     /// Relative decrease of the errors of held-out runs: the largest of those of positions, headings and innovations, minus any increase of
     /// positions.
@@ -144,6 +145,12 @@ impl Repeated {
         };
         let words = self.law.words();
         match after < 0.995 * before {
+            _ if before.is_nan() => {
+                format!(
+                    "{told}: {words}; with that law, runs left out would be predicted {:.0} % nearer",
+                    100.0 * self.law.gain
+                )
+            }
             true => format!(
                 "{told}: {words}; with that law, the cross-validated error would be {:.1} mm instead of {:.1} mm",
                 1e3 * after,
