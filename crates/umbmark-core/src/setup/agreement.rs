@@ -216,12 +216,13 @@ impl Agreement {
     }
 
     /// Misfit of rotation in those windows of a run in which the wheels clearly turn the robot, as a share of their rotation: near 1 where the
-    /// reference turns at other times; 0 if there are too few.
+    /// reference turns at other times; 0 if there are too few. Where positions alone are measured, a turn on the spot has no course.
     pub fn misfit_of_turns(&self, windows: &[Beside], reading: Reading, wheelbase: f64) -> f64 {
         let (mut off, mut whole) = (0.0, 0.0);
-        for told in
-            windows.iter().map(|beside| reading.told(beside, wheelbase)).filter(|told| told.turn.abs() > CLEAR_TURN)
-        {
+        let is_seen =
+            |told: &Told, with_heading: bool| with_heading || told.way.abs() > 0.5 * wheelbase * told.turn.abs();
+        let told = windows.iter().map(|beside| (reading.told(beside, wheelbase), beside.0.with_heading));
+        for (told, _) in told.filter(|(told, headed)| told.turn.abs() > CLEAR_TURN && is_seen(told, *headed)) {
             let [_, _, left] = self.residual_of(&told);
             off += left.abs().min(2.0 * told.turn.abs());
             whole += told.turn.abs();

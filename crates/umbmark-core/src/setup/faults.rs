@@ -327,7 +327,12 @@ pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
             }
         }
     }
-    if best.misfit > NOTHING && best.shown.contains(&true) {
+    // Courses of single positions are of little use where the robot hardly moves: then only the way can disagree.
+    let disagrees = match by_course {
+        true => best.shown[0] && best.is_main[0] && best.misfits[0] > NOTHING,
+        false => best.misfit > NOTHING && best.shown.contains(&true),
+    };
+    if disagrees {
         return (vec![Fault::OtherMotion { misfit: best.misfit }], reading);
     }
     let mut faults = Vec::new();
