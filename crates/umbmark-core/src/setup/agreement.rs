@@ -51,6 +51,8 @@ pub(super) struct Agreement {
     pub lever: [f64; 2],
     /// g, and k \[rad/m\].
     pub turn: [f64; 2],
+    /// Which way most windows are driven along their course: +1 ahead, -1 back.
+    pub ahead: f64,
     /// Standard deviation of the residuals of a coordinate \[m\] and of a rotation \[rad\].
     pub left: [f64; 2],
     /// Misfit of distance, of rotation and of both, as a share: 0 for perfect agreement, about 1 for none.
@@ -73,7 +75,12 @@ struct Told {
     turn: f64,
     /// A \[m rad\]; 0 where the headings are those of the course, which is itself that of an arc.
     area: f64,
+    /// Whether a heading was measured; else it is that of the course.
+    with_heading: bool,
 }
+
+/// Most windows are driven backward if the way of all of them is below this share of their ways.
+const BACKWARD: f64 = -0.5;
 
 impl Reading {
     fn told(self, (window, rolled): &Beside, wheelbase: f64) -> Told {
@@ -88,11 +95,18 @@ impl Reading {
             way: 0.5 * (left + right),
             turn: (right - left) / wheelbase,
             area: if window.with_heading { area / wheelbase } else { 0.0 },
+            with_heading: window.with_heading,
         }
     }
 }
 
 impl Told {
+    /// Where only the course is known, it points back in a window that is driven against most others.
+    fn along(self, ahead: f64) -> Told {
+        let against = !self.with_heading && self.way * ahead < 0.0;
+        if against { Told { moved: self.moved.map(|moved| -moved), ..self } } else { self }
+    }
+
     /// The equation of α, without the drift where that is 0.
     fn turn_row(&self, drift: f64) -> ([f64; 2], f64) {
         ([self.turn, drift * self.way], self.turned)
@@ -133,6 +147,10 @@ impl Agreement {
         let arm = 0.5 * wheelbase;
         let drift = if with_drift { 1.0 } else { 0.0 };
         let told: Vec<Told> = windows.iter().map(|beside| reading.told(beside, wheelbase)).collect();
+        let [along, ways] =
+            [told.iter().map(|told| told.way).sum::<f64>(), told.iter().map(|told| told.way.abs()).sum()];
+        let ahead = if along < BACKWARD * ways { -1.0 } else { 1.0 };
+        let told: Vec<Told> = told.into_iter().map(|told| told.along(ahead)).collect();
         let turns: Vec<([f64; 2], f64)> = told.iter().map(|told| told.turn_row(drift)).collect();
         let turn: Line<2> = robust::fit(&turns);
         let ways: Vec<([f64; 4], f64)> = told.iter().flat_map(|told| told.way_rows(turn.values[0])).collect();
@@ -157,6 +175,7 @@ impl Agreement {
             way: [way.values[0], way.values[1]],
             lever: [way.values[2], way.values[3]],
             turn: turn.values,
+            ahead,
             left: [way.scale, turn.scale],
             misfits: [share(off[0], whole[0]), share(off[1], whole[1])],
             misfit: share(off[0] + off[1], whole[0] + whole[1]),
@@ -201,7 +220,7 @@ impl Agreement {
     pub fn misfits_of(&self, windows: &[Beside], reading: Reading, wheelbase: f64) -> [f64; 2] {
         let (mut off, mut whole, mut shown) = ([0.0; 2], [0.0; 2], [0.0; 2]);
         for beside in windows {
-            let told = reading.told(beside, wheelbase);
+            let told = reading.told(beside, wheelbase).along(self.ahead);
             let [x, y, left] = self.residual_of(&told);
             let most = told.way.abs() + 0.5 * wheelbase * told.turn.abs();
             whole[0] += libm::hypot(told.moved[0], told.moved[1]);
@@ -216,13 +235,12 @@ impl Agreement {
     }
 
     /// Misfit of rotation in those windows of a run in which the wheels clearly turn the robot, as a share of their rotation: near 1 where the
-    /// reference turns at other times; 0 if there are too few. Where positions alone are measured, a turn on the spot has no course.
+    /// reference turns at other times; 0 if there are too few.
     pub fn misfit_of_turns(&self, windows: &[Beside], reading: Reading, wheelbase: f64) -> f64 {
         let (mut off, mut whole) = (0.0, 0.0);
-        let is_seen =
-            |told: &Told, with_heading: bool| with_heading || told.way.abs() > 0.5 * wheelbase * told.turn.abs();
-        let told = windows.iter().map(|beside| (reading.told(beside, wheelbase), beside.0.with_heading));
-        for (told, _) in told.filter(|(told, headed)| told.turn.abs() > CLEAR_TURN && is_seen(told, *headed)) {
+        for told in
+            windows.iter().map(|beside| reading.told(beside, wheelbase)).filter(|told| told.turn.abs() > CLEAR_TURN)
+        {
             let [_, _, left] = self.residual_of(&told);
             off += left.abs().min(2.0 * told.turn.abs());
             whole += told.turn.abs();
@@ -232,7 +250,7 @@ impl Agreement {
 
     /// Residuals of a window: both coordinates \[m\] and the rotation \[rad\].
     pub fn residual(&self, reading: Reading, beside: &Beside, wheelbase: f64) -> [f64; 3] {
-        self.residual_of(&reading.told(beside, wheelbase))
+        self.residual_of(&reading.told(beside, wheelbase).along(self.ahead))
     }
 
     fn residual_of(&self, told: &Told) -> [f64; 3] {

@@ -261,7 +261,11 @@ pub(super) fn differing(
         let read = if faults.contains(&Fault::HeadingInDegrees) { &in_degrees() } else { own };
         let found = Agreement::without_drift(read, own_reading, wheelbase);
         if found.shown != [true; 2] || found.misfits.iter().any(|misfit| *misfit > DOUBTFUL) {
-            let misfit = agreed.misfit_of_turns(own, reading, wheelbase);
+            // Courses of single positions turn by chance where the robot is slow: then the way says more than the turns.
+            let misfit = match own.iter().all(|(window, _)| window.with_heading) {
+                true => agreed.misfit_of_turns(own, reading, wheelbase),
+                false => agreed.misfits_of(own, reading, wheelbase)[0],
+            };
             if misfit > NOTHING {
                 strange.push((*name).to_owned());
                 least = least.min(misfit);

@@ -261,6 +261,33 @@ fn runs_with_poses_of_another_drive_are_named_and_only_these() {
     }
 }
 
+/// Positions alone show a course, which points back while the robot drives back, and none in turns on the spot.
+#[test]
+fn positions_alone_accuse_nobody_who_drives_back_or_turns_on_the_spot() {
+    type Kind = fn(f64, &mut Stream) -> driven::Driven;
+    let spinning: Kind = |seconds, stream| {
+        let driven = driven::free(seconds, stream);
+        driven
+            .into_iter()
+            .map(|(pose, [l, r])| (Pose2 { x: 0.0, y: 0.0, ..pose }, [0.5 * (l - r), 0.5 * (r - l)]))
+            .collect()
+    };
+    for (name, kinds) in [
+        ("forth and back", [driven::forth_and_back as Kind; 2]),
+        ("free, and on the spot", [driven::free as Kind, spinning]),
+        ("stopping, and forth and back", [driven::stopping as Kind, driven::forth_and_back]),
+    ] {
+        let mut runs: Vec<Run> =
+            kinds.into_iter().flat_map(|driven| Drive { driven, runs: 2, ..clean() }.runs()).collect();
+        for (index, run) in runs.iter_mut().enumerate() {
+            run.name = format!("run_{index}");
+            run.log.as_mut().unwrap().reference.iter_mut().for_each(|pose| pose.heading = None);
+        }
+        let found = Setup::of(&runs, &robot(), None);
+        assert_eq!(found.faults, [], "{name}");
+    }
+}
+
 #[test]
 fn poses_of_another_drive_are_named_and_nothing_is_said_of_the_clock() {
     let (mut runs, other) = (clean().runs(), Drive { seed: 77, ..clean() }.runs());
