@@ -135,15 +135,19 @@ impl Solution {
     /// Whether the new numbers alone leave a larger error in these runs than there is, and more than chance makes. They hold only beside
     /// effects that the robot takes along to every path, and that no number of it holds. Effects of the floor stay there.
     pub fn misleads_alone(&self) -> bool {
-        let model = &self.learnt.model;
-        let travels = |part: &Part| {
-            let law = model.parts().iter().find(|own| own.effect.name() == part.name);
-            law.and_then(|own| own.effect.entry()).is_none_or(|entry| !entry.is_of_floor)
-        };
         self.off.as_ref().is_some_and(|off| {
             let is_worse = off.with_numbers > (1.0 + words::TOLD) * off.driven;
-            self.needed && is_worse && !off.is_chance(off.with_numbers) && off.known.iter().any(travels)
+            self.needed
+                && is_worse
+                && !off.is_chance(off.with_numbers)
+                && off.known.iter().any(|part| self.travels(part))
         })
+    }
+
+    /// Whether the robot takes an effect along to every path. One of the floor stays there.
+    fn travels(&self, part: &Part) -> bool {
+        let law = self.learnt.model.parts().iter().find(|own| own.effect.name() == part.name);
+        law.and_then(|own| own.effect.entry()).is_none_or(|entry| !entry.is_of_floor)
     }
 
     /// Why the model, or its numbers alone, should not be used; `None` where nothing speaks against it.

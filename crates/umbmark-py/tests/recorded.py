@@ -3,8 +3,9 @@
 import csv
 import json
 import math
+import shutil
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -91,6 +92,17 @@ def assert_same_setup(theirs: Any, ours: Any) -> None:
             assert_same_setup(one, other)
     else:
         assert theirs == ours
+
+
+def record(measured: Path, place: Path, write: Callable[[Path, list[Row]], None]) -> Path:
+    """Write the logs of a dataset anew into a folder beside its robot and its returns."""
+    folder = place / "robot"
+    (folder / "runs").mkdir(parents=True)
+    for name in ["robot.toml", "returns.csv"]:
+        shutil.copy(measured / name, folder)
+    for file in (measured / "runs").iterdir():
+        write(folder / "runs" / file.stem, list(rows(file)))
+    return folder
 
 
 def assert_calibrates_alike(command: Path, measured: Path, recorded: Path) -> None:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 import pytest
-from recorded import Row, answer, assert_calibrates_alike, rows
+from recorded import Row, answer, assert_calibrates_alike, record, rows
 from rosbags.rosbag1 import Writer as Bag1Writer
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as Bag2Writer
@@ -153,12 +153,7 @@ BAGS = {
 def test_a_bag_calibrates_as_the_csv_does(
     kind: str, command: Path, measured: Path, tmp_path: Path
 ) -> None:
-    folder = tmp_path / "robot"
-    (folder / "runs").mkdir(parents=True)
-    for name in ["robot.toml", "returns.csv"]:
-        shutil.copy(measured / name, folder)
-    for file in (measured / "runs").iterdir():
-        BAGS[kind](folder / "runs" / file.stem, list(rows(file)))
+    folder = record(measured, tmp_path, BAGS[kind])
     assert_calibrates_alike(command, measured, folder)
 
 

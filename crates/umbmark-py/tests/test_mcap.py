@@ -25,6 +25,7 @@ from recorded import (
     Row,
     answer,
     assert_calibrates_alike,
+    record,
     rows,
 )
 from rosbags.highlevel import AnyReader
@@ -164,12 +165,10 @@ WRITERS = {
 def test_what_other_packages_write_calibrates_as_the_csv_does(
     writer: str, command: Path, measured: Path, tmp_path: Path
 ) -> None:
-    folder = tmp_path / "robot"
-    (folder / "runs").mkdir(parents=True)
-    for name in ["robot.toml", "returns.csv"]:
-        shutil.copy(measured / name, folder)
-    for file in (measured / "runs").iterdir():
-        WRITERS[writer](folder / "runs" / f"{file.stem}.mcap", list(rows(file)))
+    def write(place: Path, log: list[Row]) -> None:
+        WRITERS[writer](place.with_suffix(".mcap"), log)
+
+    folder = record(measured, tmp_path, write)
     assert_calibrates_alike(command, measured, folder)
 
 

@@ -91,10 +91,16 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
                  position hardly shows it."
             ),
             false if off.known.is_empty() => format!("Write {count} ({names}): with {these}, {left} are left{rest}."),
-            false => format!(
-                "Write {count} ({names}). With {these} alone, {left} are left on this path: what no number holds had hidden a \
-                 part of their error. On another floor they are better."
-            ),
+            false => {
+                let elsewhere = match off.known.iter().any(|part| solution.travels(part)) {
+                    true => "",
+                    false => " On another floor they are better.",
+                };
+                format!(
+                    "Write {count} ({names}). With {these} alone, {left} are left on this path: what no number holds had hidden a \
+                     part of their error.{elsewhere}"
+                )
+            }
         });
     }
     if !off.known.is_empty() {

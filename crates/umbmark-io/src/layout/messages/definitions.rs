@@ -8,6 +8,10 @@ const POSE: (&str, &str) =
     ("geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n");
 const POINT: (&str, &str) = ("geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n");
 const QUATERNION: (&str, &str) = ("geometry_msgs/Quaternion", "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n");
+const POSE_WITH_COVARIANCE: (&str, &str) =
+    ("geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n");
+const TRANSFORM: (&str, &str) =
+    ("geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n");
 const VECTOR: (&str, &str) = ("geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n");
 
 /// The type of a message, its own definition, and those that it needs.
@@ -31,7 +35,7 @@ pub(in crate::layout) const ODOMETRY: KnownType = KnownType {
     needs: &[
         HEADER,
         TIME,
-        ("geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"),
+        POSE_WITH_COVARIANCE,
         POSE,
         POINT,
         QUATERNION,
@@ -50,17 +54,7 @@ pub(in crate::layout) const POSE_STAMPED: KnownType = KnownType {
 pub(in crate::layout) const TF: KnownType = KnownType {
     name: "tf2_msgs/msg/TFMessage",
     own: "geometry_msgs/TransformStamped[] transforms\n",
-    needs: &[
-        (
-            "geometry_msgs/TransformStamped",
-            "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n",
-        ),
-        HEADER,
-        TIME,
-        ("geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"),
-        VECTOR,
-        QUATERNION,
-    ],
+    needs: &[("geometry_msgs/TransformStamped", TRANSFORM_STAMPED.own), HEADER, TIME, TRANSFORM, VECTOR, QUATERNION],
 };
 
 /// Types that a bag without definitions may have.
@@ -86,26 +80,13 @@ pub(in crate::layout) const DEFINITIONS: [&KnownType; 16] = [
 const POSE_WITH_COVARIANCE_STAMPED: KnownType = KnownType {
     name: "geometry_msgs/msg/PoseWithCovarianceStamped",
     own: "std_msgs/Header header\ngeometry_msgs/PoseWithCovariance pose\n",
-    needs: &[
-        HEADER,
-        TIME,
-        ("geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"),
-        POSE,
-        POINT,
-        QUATERNION,
-    ],
+    needs: &[HEADER, TIME, POSE_WITH_COVARIANCE, POSE, POINT, QUATERNION],
 };
 
 const TRANSFORM_STAMPED: KnownType = KnownType {
     name: "geometry_msgs/msg/TransformStamped",
     own: "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n",
-    needs: &[
-        HEADER,
-        TIME,
-        ("geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"),
-        VECTOR,
-        QUATERNION,
-    ],
+    needs: &[HEADER, TIME, TRANSFORM, VECTOR, QUATERNION],
 };
 
 const STRING: KnownType = KnownType { name: "std_msgs/msg/String", own: "string data\n", needs: &[] };

@@ -27,8 +27,9 @@ struct Bag {
     compression_mode: String,
 }
 
-/// What packed files and messages may unpack to.
-const MOST_UNPACKED: u64 = 64 << 30;
+/// No log packs better than this; what claims to is not unpacked beyond `FREE` bytes.
+const MOST_PACKED: u64 = 1000;
+const FREE: u64 = 1 << 30;
 
 /// Endings of files of a bag.
 const PARTS: [&str; 6] = ["mcap", "db3", "mcap.zstd", "db3.zstd", "mcap.zst", "db3.zst"];
@@ -108,8 +109,13 @@ fn part(folder: &Path, path: &Path) -> Result<Part, Stop> {
 fn unpack(file: &Path) -> Result<NamedTempFile, Stop> {
     let mut unpacked = NamedTempFile::new()?;
     let broken = |_| Stop::damage(None, format!("{} cannot be unpacked", quoted(&file.display().to_string())));
-    let mut source = zstd::Decoder::new(File::open(file)?).map_err(broken)?.take(MOST_UNPACKED);
-    copy(&mut source, &mut unpacked).map_err(broken)?;
+    let source = File::open(file)?;
+    let most = FREE.saturating_add(MOST_PACKED.saturating_mul(source.metadata()?.len()));
+    let mut source = zstd::Decoder::new(source).map_err(broken)?.take(most);
+    if copy(&mut source, &mut unpacked).map_err(broken)? == most {
+        let name = quoted(&file.display().to_string());
+        return Err(Stop::damage(None, format!("{name} unpacks to more than {MOST_PACKED} times its size")));
+    }
     Ok(unpacked)
 }
 
