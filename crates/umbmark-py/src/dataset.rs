@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use numpy::{PyArray2, ndarray::Array2};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyTuple};
+use pyo3::types::{PyBytes, PyIterator, PySlice, PyTuple};
 use serde::{Deserialize, Serialize};
 use umbmark_core::dataset::{self as core, RunClock, RunTopics};
 use umbmark_core::result;
@@ -17,9 +17,12 @@ use crate::path::{DIRECTIONS, Path};
 use crate::robot::Robot;
 use crate::run::{Run, TESTS};
 use crate::work::{detached, watched};
-use crate::{WORDS, choice, existing, json, refused, refused_data};
+use crate::{WORDS, choice, existing, hash_of, json, refused, refused_data};
 
 /// A robot and its runs, measured or simulated. Frozen; ``umbmark.load_dataset`` reads one.
+///
+/// It is a sequence of its runs: ``len(data)``, ``data[0]``, ``data["cw_01"]``, ``for run in data``; a slice is the dataset of
+/// those runs. Datasets are equal if robot, path and runs are.
 ///
 /// Parameters
 /// ----------
@@ -28,7 +31,12 @@ use crate::{WORDS, choice, existing, json, refused, refused_data};
 /// path : Path, optional
 ///     The path that it was told to drive.
 /// runs : sequence of Run
-///     Its runs.
+///     Its runs; two of one direction and test have different numbers, and all have different names.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If two runs have the same number or name.
 ///
 /// Examples
 /// --------
@@ -37,8 +45,15 @@ use crate::{WORDS, choice, existing, json, refused, refused_data};
 /// >>> data = umbmark.Dataset(umbmark.Robot.labmate(), umbmark.Path.umbmark(), runs)
 /// >>> data.returns("cw")
 /// array([[-0.21, -0.19, -0.05]])
-#[pyclass(frozen, module = "umbmark")]
+#[pyclass(frozen, eq, sequence, module = "umbmark")]
 pub struct Dataset(pub Arc<core::Dataset>);
+
+impl PartialEq for Dataset {
+    fn eq(&self, other: &Dataset) -> bool {
+        let of = |data: &Dataset| (data.0.robot.clone(), data.path(), data.0.reference_frame);
+        of(self) == of(other) && self.0.runs == other.0.runs
+    }
+}
 
 impl From<core::Dataset> for Dataset {
     fn from(data: core::Dataset) -> Dataset {
@@ -60,9 +75,10 @@ struct Rest {
 impl Dataset {
     #[new]
     #[pyo3(signature = (robot=None, path=None, runs=Vec::new()))]
-    fn new(robot: Option<&Robot>, path: Option<&Path>, runs: Vec<Py<Run>>) -> Dataset {
-        let runs = runs.iter().map(|run| run.get().core().clone()).collect();
-        Rest { runs, ..Rest::default() }.with(robot, path)
+    fn new(robot: Option<&Robot>, path: Option<&Path>, runs: Vec<Py<Run>>) -> PyResult<Dataset> {
+        let runs: Vec<core::Run> = runs.iter().map(|run| run.get().core().clone()).collect();
+        all_differ(&runs)?;
+        Ok(Rest { runs, ..Rest::default() }.with(robot, path))
     }
 
     /// The nominal robot; None where a return sheet was given without one.
@@ -81,6 +97,47 @@ impl Dataset {
     #[getter]
     fn runs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, (0..self.0.runs.len()).map(|index| Run::of(&self.0, index)))
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.runs.len()
+    }
+
+    /// Give a run by its place or its name, or the dataset of a slice of the runs.
+    fn __getitem__<'py>(&self, py: Python<'py>, key: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        if let Ok(name) = key.extract::<&str>() {
+            let named = self.0.runs.iter().position(|run| run.name == name);
+            let index = named.ok_or_else(|| {
+                let names: Vec<&str> = self.0.runs.iter().map(|run| run.name.as_str()).collect();
+                PyKeyError::new_err(format!("there is no run \"{name}\"; there are {}", names.join(", ")))
+            })?;
+            return Ok(Run::of(&self.0, index).into_pyobject(py)?.into_any());
+        }
+        if let Ok(slice) = key.cast::<PySlice>() {
+            let indices = slice.indices(self.0.runs.len() as isize)?;
+            let place = |step: isize| (indices.start + step * indices.step) as usize;
+            let steps = 0..indices.slicelength as isize;
+            let runs: Vec<core::Run> = steps.map(|step| self.0.runs[place(step)].clone()).collect();
+            let names: Vec<String> = runs.iter().map(|run| run.name.clone()).collect();
+            let (clocks, topics) = (self.0.clocks.iter(), self.0.topics.iter());
+            let part = core::Dataset {
+                clocks: clocks.filter(|clock| names.contains(&clock.run)).cloned().collect(),
+                topics: topics.filter(|topics| names.contains(&topics.run)).cloned().collect(),
+                runs,
+                ..(*self.0).clone()
+            };
+            return Ok(Dataset::from(part).into_pyobject(py)?.into_any());
+        }
+        self.runs(py)?.as_any().get_item(key)
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        self.runs(py)?.try_iter()
+    }
+
+    fn __hash__(&self) -> u64 {
+        let lengths = self.0.runs.iter().map(|run| (&run.name, run.log.as_ref().map(|log| log.time.len())));
+        hash_of(&lengths.collect::<Vec<_>>())
     }
 
     /// What the reader noticed and mended, one sentence each.
@@ -191,6 +248,24 @@ impl Dataset {
         let rest: Rest = serde_json::from_slice(rest).map_err(refused)?;
         Ok(rest.with(robot, path))
     }
+}
+
+/// Refuses runs that cannot be told apart.
+fn all_differ(runs: &[core::Run]) -> PyResult<()> {
+    for (index, run) in runs.iter().enumerate() {
+        let same = |other: &core::Run| {
+            let alike = (other.direction, other.test, other.number) == (run.direction, run.test, run.number);
+            alike || other.name == run.name
+        };
+        if let Some(first) = runs[..index].iter().position(same) {
+            let (number, name) = (run.number, &run.name);
+            let words = "must each have a number of their own within a direction and test, and a name of their own";
+            return Err(PyValueError::new_err(format!(
+                "runs {words}; runs[{first}] and runs[{index}] are both number {number} or \"{name}\""
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// Arguments that make a dataset again.

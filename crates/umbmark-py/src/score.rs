@@ -7,7 +7,7 @@ use umbmark_core::dataset::ReturnError;
 use umbmark_core::result;
 use umbmark_core::score::{self as core, Convention, ScoreError};
 
-use crate::arrays::ReturnErrors;
+use crate::arguments::poses;
 use crate::dataset::Dataset;
 use crate::work::{detached, watched};
 use crate::{choice, json, refused};
@@ -30,9 +30,11 @@ pub fn score_arrays(
     let convention = choice("convention", convention, &CONVENTIONS)?;
     let given = ARRAYS.into_iter().zip([Some(cw), Some(ccw), bumps_cw, bumps_ccw]);
     let arrays: PyResult<Vec<_>> =
-        given.map(|(name, array)| array.map(|array| ReturnErrors::new(name, array)).transpose()).collect();
+        given.map(|(name, array)| array.map(|array| poses(name, array)).transpose()).collect();
     let arrays = arrays?;
-    let rows = |index: usize| arrays[index].as_ref().map_or(Ok(&[][..]), ReturnErrors::rows);
+    let rows = |index: usize| -> PyResult<&[[f64; 3]]> {
+        arrays[index].as_ref().map_or(Ok(&[][..]), |array| Ok(array.as_slice()?.as_chunks().0))
+    };
     let all = [rows(0)?, rows(1)?, rows(2)?, rows(3)?];
     let score = detached(cw.py(), || {
         ARRAYS.into_iter().zip(all).try_for_each(|(name, rows)| all_finite(name, rows))?;

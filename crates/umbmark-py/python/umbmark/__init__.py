@@ -29,6 +29,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 """
 
 from umbmark._apply import Corrected, apply
+from umbmark._arguments import Numbers, Seed
 from umbmark._calibration import Calibration, GearCalibration, calibrate, calibrate_gears
 from umbmark._comparison import Comparison, TrackComparison, compare
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
@@ -79,6 +80,7 @@ __all__ = [
     "Learnt",
     "Model",
     "MonteCarlo",
+    "Numbers",
     "Paper",
     "Path",
     "Plan",
@@ -86,6 +88,7 @@ __all__ = [
     "Robot",
     "Run",
     "Score",
+    "Seed",
     "Sensitivity",
     "Separation",
     "Setup",

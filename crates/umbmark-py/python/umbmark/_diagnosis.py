@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from umbmark import _documents, _umbmark
+from umbmark._arguments import Seed, options_of
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
@@ -72,7 +73,7 @@ def diagnose(
     *,
     size: float = 0.05,
     draws: int = 999,
-    seed: int = 1,
+    seed: Seed = 1,
     return_poses: bool = False,
     threads: int = 0,
 ) -> Diagnosis:
@@ -89,7 +90,7 @@ def diagnose(
         False-alarm rate: probability that a complete model is rejected.
     draws : int, default 999
         Simulated tests for p-values that have no closed form.
-    seed : int, default 1
+    seed : int, numpy Generator, BitGenerator or SeedSequence, or None, default 1
         Seed of those.
     return_poses : bool, default False
         Whether to use return poses alone, even where the runs were observed on the way.
@@ -109,7 +110,7 @@ def diagnose(
     >>> umbmark.diagnose(umbmark.simulate(truth, reference_rate_hz=0)).verdict
     'missing_effect'
     """
-    options = (size, draws, seed)
+    options = options_of(size, draws, seed)
     document, fitted = _umbmark.diagnose(data_of(data), model, options, return_poses, threads)
     return Diagnosis._of(document, model=fitted)
 
@@ -146,7 +147,7 @@ def learn(
     *,
     size: float = 0.05,
     draws: int = 999,
-    seed: int = 1,
+    seed: Seed = 1,
     return_poses: bool = False,
     threads: int = 0,
     progress: Progress = None,
@@ -179,7 +180,7 @@ def learn(
     >>> [step.added for step in learnt.steps], learnt.verdict
     ([None, 'wheel_diameter_ratio', 'wheelbase'], 'explained')
     """
-    options = (size, draws, seed)
+    options = options_of(size, draws, seed)
     with Bar(progress, 1000, "steps") as bar:
         document, learnt = _umbmark.learn(
             data_of(data), model, options, return_poses, threads, bar.at

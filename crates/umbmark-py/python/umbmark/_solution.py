@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from umbmark import _documents, _umbmark
+from umbmark._arguments import Seed, options_of
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
@@ -23,7 +24,7 @@ def solve(
     *,
     size: float = 0.05,
     draws: int = 999,
-    seed: int = 1,
+    seed: Seed = 1,
     return_poses: bool = False,
     threads: int = 0,
     progress: Progress = None,
@@ -59,7 +60,7 @@ def solve(
     >>> answer.needed, f"{answer.correction['wheelbase_m'].new:.3f}"
     (True, '0.343')
     """
-    options = (size, draws, seed)
+    options = options_of(size, draws, seed)
     with Bar(progress, 1000, "steps") as bar:
         document, model = _umbmark.solve(data_of(data), options, return_poses, threads, bar.at)
     return Solution._of(document, model=model)
