@@ -58,6 +58,7 @@ module! {
     simulate: simulate;
     sweep: sweep;
     tolerance: tolerance;
+    tracks: tracks;
     work;
 }
 

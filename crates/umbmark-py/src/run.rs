@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use numpy::{PyArray1, PyArray2, ndarray::Array2, ndarray::ArrayView1};
+use numpy::ndarray::{Array2, ArrayView1};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_core::dataset::{self as core, Dataset, ReferencePose, ReturnError, TickLog};
@@ -85,7 +86,11 @@ impl Run {
                 let read = |name, array| column(name, array).map(|array| array.as_array().to_vec());
                 let time = read("time_s", time)?;
                 let (left, right) = (read("ticks_left", left)?, read("ticks_right", right)?);
-                let reference = references(reference_sample, reference_pose)?;
+                let reference = match (reference_sample, reference_pose) {
+                    (None, None) => Vec::new(),
+                    (Some(samples), Some(poses)) => given_references(samples, poses)?,
+                    _ => return Err(PyValueError::new_err("reference_sample and reference_pose go together")),
+                };
                 Some(checked(TickLog { time, left, right, reference, relative, ..TickLog::default() })?)
             }
             (None, None, None) => None,
@@ -229,26 +234,26 @@ fn return_error(error: &[f64]) -> PyResult<ReturnError> {
     }
 }
 
-fn references(samples: Option<&Bound<'_, PyAny>>, poses: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<ReferencePose>> {
-    let (samples, poses) = match (samples, poses) {
-        (None, None) => return Ok(Vec::new()),
-        (Some(samples), Some(poses)) => {
-            (indices("reference_sample", samples)?, arguments::poses("reference_pose", poses)?)
-        }
-        _ => return Err(PyValueError::new_err("reference_sample and reference_pose go together")),
-    };
-    let (samples, poses) = (samples.as_array(), poses.as_array());
-    if poses.shape() != [samples.len(), 3] {
-        let (n, shape) = (samples.len(), poses.shape());
-        return Err(PyValueError::new_err(format!("reference_pose must have shape ({n}, 3), got {shape:?}")));
+/// The absolute poses of a call.
+fn given_references(samples: &Bound<'_, PyAny>, poses: &Bound<'_, PyAny>) -> PyResult<Vec<ReferencePose>> {
+    let (samples, poses) = (indices("reference_sample", samples)?, arguments::poses("reference_pose", poses)?);
+    let (count, rows) = (samples.as_array().len(), poses.as_array().nrows());
+    if count != rows {
+        return Err(PyValueError::new_err(format!("reference_pose must have shape ({count}, 3), got [{rows}, 3]")));
     }
+    Ok(references(&samples, &poses))
+}
+
+/// Absolute poses, each with its sample.
+pub fn references(samples: &PyReadonlyArray1<'_, i64>, poses: &PyReadonlyArray2<'_, f64>) -> Vec<ReferencePose> {
+    let (samples, poses) = (samples.as_array(), poses.as_array());
     let pose = |(sample, pose): (&i64, ArrayView1<'_, f64>)| ReferencePose {
         sample: usize::try_from(*sample).unwrap_or(usize::MAX),
         x: pose[0],
         y: pose[1],
         heading: Some(pose[2]).filter(|heading| !heading.is_nan()),
     };
-    Ok(samples.iter().zip(poses.rows()).map(pose).collect())
+    samples.iter().zip(poses.rows()).map(pose).collect()
 }
 
 /// Refuses a log that could not have been recorded.

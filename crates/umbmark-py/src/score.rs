@@ -15,7 +15,7 @@ use crate::{choice, json, refused};
 const CONVENTIONS: [(&str, Convention); 2] = [("mean", Convention::Mean), ("sum", Convention::Sum)];
 
 /// The names of the arrays, as in the call.
-const ARRAYS: [&str; 4] = ["cw", "ccw", "bumps_cw", "bumps_ccw"];
+pub const ARRAYS: [&str; 4] = ["cw", "ccw", "bumps_cw", "bumps_ccw"];
 
 /// The score of return errors in arrays.
 #[pyfunction]
@@ -56,7 +56,7 @@ pub fn score_dataset(py: Python<'_>, data: &Dataset, level: f64, convention: &st
 }
 
 /// Refuses a return error that is no number, its run named as Python would index it.
-fn all_finite(name: &str, rows: &[[f64; 3]]) -> Result<(), ScoreError> {
+pub fn all_finite(name: &str, rows: &[[f64; 3]]) -> Result<(), ScoreError> {
     let wrong = |[x, y, heading]: &[f64; 3]| !x.is_finite() || !y.is_finite() || heading.is_infinite();
     let Some(row) = rows.iter().position(wrong) else { return Ok(()) };
     let ReturnError { x, y, heading } = rows[row].into();

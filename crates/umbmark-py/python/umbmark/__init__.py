@@ -14,6 +14,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``compare``, ``diagnose``          what models explain, and what they are missing
 ``solve``                          the one answer: what to write into the robot
 ``apply``                          corrected odometry from counts and a model
+``tracks``                         measured runs beside odometry and a model: residuals as arrays
 ``fit``, ``learn``                 fit a model; add what is missing until nothing is
 ``export``                         a model for ROS 2, Nav2, URDF, C, Gazebo or MuJoCo
 ``report``, ``plot``               everything on one page; one figure of it
@@ -46,6 +47,7 @@ from umbmark._sensitivity import Sensitivity, sensitivity
 from umbmark._solution import Solution, solve
 from umbmark._sweep import Sweep, sweep
 from umbmark._tolerance import Tolerance, tolerance
+from umbmark._tracks import Track, Tracks, tracks
 from umbmark._umbmark import (
     Dataset,
     Ensemble,
@@ -96,7 +98,9 @@ __all__ = [
     "Study",
     "Sweep",
     "Tolerance",
+    "Track",
     "TrackComparison",
+    "Tracks",
     "__version__",
     "apply",
     "calibrate",
@@ -126,4 +130,5 @@ __all__ = [
     "solve",
     "sweep",
     "tolerance",
+    "tracks",
 ]

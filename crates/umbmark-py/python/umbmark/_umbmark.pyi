@@ -49,6 +49,7 @@ __all__ = [
     "solve",
     "sweep",
     "tolerance",
+    "tracks",
     "write",
 ]
 
@@ -183,6 +184,27 @@ class Dataset:
     def __new__(
         cls, robot: Robot | None = None, path: Path | None = None, runs: Sequence[Run] = ...
     ) -> Self: ...
+    @staticmethod
+    def from_arrays(
+        cw: Numbers | None = None,
+        ccw: Numbers | None = None,
+        *,
+        robot: Robot | None = None,
+        path: Path | None = None,
+        bumps_cw: Numbers | None = None,
+        bumps_ccw: Numbers | None = None,
+    ) -> Dataset: ...
+    @staticmethod
+    def from_frame(
+        frame: Any,
+        *,
+        robot: Robot | None = None,
+        path: Path | None = None,
+        run: str | None = "run",
+        t: str = "t_s",
+        ticks: tuple[str, str] = ("ticks_left", "ticks_right"),
+        pose: Sequence[str] | None = ("x_ref_m", "y_ref_m", "theta_ref_rad"),
+    ) -> Dataset: ...
     @property
     def robot(self) -> Robot | None: ...
     @property
@@ -462,6 +484,9 @@ def solve(
 def apply(
     data: Dataset, model: Model, start: tuple[float, float, float]
 ) -> list[tuple[str, Floats, Floats, Floats | None]]: ...
+def tracks(
+    data: Dataset, model: Model
+) -> list[tuple[str, str | None, Floats, list[Floats], Floats | None]]: ...
 def simulate(
     model: Model,
     path: Path | None = None,
