@@ -33,17 +33,12 @@ measured = umbmark.simulate(secret, path, reference_rate_hz=0, seed=11)
 
 # %% [markdown]
 # Your own measurements come from files (`umbmark.load_dataset("my_robot")`: CSV, MCAP logs of ROS
-# 2, OptiOdom), or from arrays: one row per run with x, y in m and heading in rad, each where the
-# robot was minus where it believed to be.
+# 2, OptiOdom), from frames of logs (`umbmark.Dataset.from_frame`), or from arrays: one row per run
+# with x, y in m and heading in rad, each where the robot was minus where its odometry says it is.
 
 # %%
 cw, ccw = measured.returns("cw"), measured.returns("ccw")
-runs = [
-    umbmark.Run(direction, number, returned=error.tolist())
-    for direction, errors in (("cw", cw), ("ccw", ccw))
-    for number, error in enumerate(errors, start=1)
-]
-data = umbmark.Dataset(robot, path, runs)
+data = umbmark.Dataset.from_arrays(cw, ccw, robot=robot, path=path)
 data
 
 # %% [markdown]

@@ -36,8 +36,10 @@ def robot(e_d: float = 1.0, b_mm: float = 340.0, noise: float = 0.0) -> umbmark.
 # ## Figs. 2 to 4: one direction hides what two show
 #
 # An error of the wheelbase turns the robot too little or too much at each corner (dashed in Fig.
-# 3), unequal wheels bend each leg (dotted). Driven clockwise only, both together can cancel;
-# driven the other way they add up. The errors are drawn many times too large, as in the paper.
+# 3), unequal wheels bend each leg (dotted). Either alone shows in both directions. With these two
+# together, the robot that drives counter-clockwise comes back to START as if nothing were wrong;
+# clockwise the errors add up. Had the right wheel been the smaller one, clockwise runs would hide
+# them. The errors are drawn many times too large, as in the paper.
 
 # %%
 cases = {
@@ -61,9 +63,11 @@ for axis, direction in zip(axes, ("cw", "ccw"), strict=True):
 
 # %%
 single = min(ends[way, name] for way in ("cw", "ccw") for name in ("$E_b$ alone", "$E_d$ alone"))
-both = sorted(ends[way, "both"] for way in ("cw", "ccw"))
-assert both[0] < single / 3, "in one direction they cancel"
-assert both[1] > 1.5 * single, "in the other they add up"
+assert ends["ccw", "both"] < single / 10, "counter-clockwise they cancel"
+assert ends["cw", "both"] > 1.9 * single, "clockwise they add up"
+mirrored = umbmark.simulate(robot(e_d=1 / 1.0053, b_mm=340 / 0.96), square, runs=1)
+cw, ccw = (np.hypot(*mirrored.returns(way)[0, :2]) for way in ("cw", "ccw"))
+assert cw < single / 10 < 1.9 * single < ccw, "with the other wheel smaller, clockwise runs hide it"
 
 # %% [markdown]
 # ## Fig. 5: two clusters, and the score

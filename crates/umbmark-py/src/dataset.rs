@@ -3,23 +3,28 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use numpy::{PyArray2, ndarray::Array2};
-use pyo3::exceptions::PyValueError;
+use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2, ndarray::Array2};
+use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyTuple};
+use pyo3::types::{PyBytes, PyIterator, PySlice, PyTuple};
 use serde::{Deserialize, Serialize};
 use umbmark_core::dataset::{self as core, RunClock, RunTopics};
 use umbmark_core::result;
 use umbmark_io::export::{ExportError, UrdfFile};
-use umbmark_io::{KnownNumbers, Layout, Proposal, Topics, read_controller, write_template};
+use umbmark_io::{KnownNumbers, Layout, Proposal, Recorded, Topics, assemble, read_controller, write_template};
 
+use crate::arguments::poses;
 use crate::path::{DIRECTIONS, Path};
 use crate::robot::Robot;
-use crate::run::{Run, TESTS};
+use crate::run::{self, Run, TESTS};
+use crate::score::{ARRAYS, all_finite};
 use crate::work::{detached, watched};
-use crate::{WORDS, choice, existing, json, refused, refused_data};
+use crate::{WORDS, choice, existing, hash_of, json, refused, refused_data};
 
 /// A robot and its runs, measured or simulated. Frozen; ``umbmark.load_dataset`` reads one.
+///
+/// It is a sequence of its runs: ``len(data)``, ``data[0]``, ``data["cw_01"]``, ``for run in data``; a slice is the dataset of
+/// those runs. Datasets are equal if robot, path and runs are.
 ///
 /// Parameters
 /// ----------
@@ -28,7 +33,12 @@ use crate::{WORDS, choice, existing, json, refused, refused_data};
 /// path : Path, optional
 ///     The path that it was told to drive.
 /// runs : sequence of Run
-///     Its runs.
+///     Its runs; two of one direction and test have different numbers, and all have different names.
+///
+/// Raises
+/// ------
+/// ValueError
+///     If two runs have the same number or name.
 ///
 /// Examples
 /// --------
@@ -37,8 +47,15 @@ use crate::{WORDS, choice, existing, json, refused, refused_data};
 /// >>> data = umbmark.Dataset(umbmark.Robot.labmate(), umbmark.Path.umbmark(), runs)
 /// >>> data.returns("cw")
 /// array([[-0.21, -0.19, -0.05]])
-#[pyclass(frozen, module = "umbmark")]
+#[pyclass(frozen, eq, sequence, module = "umbmark")]
 pub struct Dataset(pub Arc<core::Dataset>);
+
+impl PartialEq for Dataset {
+    fn eq(&self, other: &Dataset) -> bool {
+        let of = |data: &Dataset| (data.0.robot.clone(), data.path(), data.0.reference_frame);
+        of(self) == of(other) && self.0.runs == other.0.runs
+    }
+}
 
 impl From<core::Dataset> for Dataset {
     fn from(data: core::Dataset) -> Dataset {
@@ -60,9 +77,136 @@ struct Rest {
 impl Dataset {
     #[new]
     #[pyo3(signature = (robot=None, path=None, runs=Vec::new()))]
-    fn new(robot: Option<&Robot>, path: Option<&Path>, runs: Vec<Py<Run>>) -> Dataset {
-        let runs = runs.iter().map(|run| run.get().core().clone()).collect();
-        Rest { runs, ..Rest::default() }.with(robot, path)
+    fn new(robot: Option<&Robot>, path: Option<&Path>, runs: Vec<Py<Run>>) -> PyResult<Dataset> {
+        let runs: Vec<core::Run> = runs.iter().map(|run| run.get().core().clone()).collect();
+        all_differ(&runs)?;
+        Ok(Rest { runs, ..Rest::default() }.with(robot, path))
+    }
+
+    /// Make a dataset of return errors in arrays, one row a run.
+    ///
+    /// Parameters
+    /// ----------
+    /// cw, ccw : array of numbers, shape (n, 3) or (n, 2), optional
+    ///     Return errors of the clockwise and of the counter-clockwise runs: x in m, y in m, heading in rad, each absolute minus
+    ///     computed (Eq. 1), in the frame of START; NaN, or no third column, for a heading that was not measured.
+    /// robot : Robot, optional
+    ///     The nominal robot; scores do without.
+    /// path : Path, optional
+    ///     The path that it was told to drive.
+    /// bumps_cw, bumps_ccw : array of numbers, shape (n, 3) or (n, 2), optional
+    ///     The same of the extended test, driven over bumps.
+    ///
+    /// Returns
+    /// -------
+    /// Dataset
+    ///     The runs of each array are numbered from 1.
+    ///
+    /// Raises
+    /// ------
+    /// TypeError, ValueError
+    ///     If an argument has no such numbers; it names the argument.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import umbmark
+    /// >>> cw, ccw = [[-0.21, -0.19, -0.05]], [[0.02, 0.01, 0.01], [0.01, -0.02, 0.02]]
+    /// >>> data = umbmark.Dataset.from_arrays(cw, ccw, robot=umbmark.Robot.labmate(), path=umbmark.Path.umbmark())
+    /// >>> data
+    /// Dataset(TRC LabMate, square of 16.000000 m: 1 cw + 2 ccw runs, 0 with ticks)
+    #[staticmethod]
+    #[pyo3(signature = (cw=None, ccw=None, *, robot=None, path=None, bumps_cw=None, bumps_ccw=None))]
+    fn from_arrays(
+        cw: Option<&Bound<'_, PyAny>>,
+        ccw: Option<&Bound<'_, PyAny>>,
+        robot: Option<&Robot>,
+        path: Option<&Path>,
+        bumps_cw: Option<&Bound<'_, PyAny>>,
+        bumps_ccw: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Dataset> {
+        let mut runs = Vec::new();
+        for (index, (name, array)) in ARRAYS.into_iter().zip([cw, ccw, bumps_cw, bumps_ccw]).enumerate() {
+            let Some(array) = array else { continue };
+            let ((_, direction), (_, test)) = (DIRECTIONS[index % 2], TESTS[index / 2]);
+            let rows = poses(name, array)?;
+            let rows: &[[f64; 3]] = rows.as_slice()?.as_chunks().0;
+            all_finite(name, rows).map_err(refused)?;
+            for (number, row) in (1..).zip(rows) {
+                let name = format!("{name}_{number:02}");
+                let returned = Some(core::ReturnError::from(*row));
+                runs.push(core::Run { name, number, direction: Some(direction), test, log: None, returned });
+            }
+        }
+        Ok(Rest { runs, ..Rest::default() }.with(robot, path))
+    }
+
+    /// Make a dataset of logs in one frame, a row for each reading of the counters.
+    ///
+    /// Rows are read as those of ``runs/*.csv`` are: counters may roll over, poses may stand in a frame of their own, and START is
+    /// found from them; ``warnings`` say what was mended.
+    ///
+    /// Parameters
+    /// ----------
+    /// frame : pandas, polars or Arrow table, xarray.Dataset, or dict of str to array
+    ///     The columns, also of anything that hands over a stream of Arrow.
+    /// robot : Robot, optional
+    ///     The nominal robot.
+    /// path : Path, optional
+    ///     The path that it was told to drive.
+    /// run : str or None, default "run"
+    ///     The column that names the run of each row. A name such as "cw_01" or "ccw_03" tells direction and number; of other
+    ///     names, the direction follows from the counts. None where all rows are one run.
+    /// t : str, default "t_s"
+    ///     The column of times in s, or of dates.
+    /// ticks : tuple of str, default ("ticks_left", "ticks_right")
+    ///     The columns of the two counters.
+    /// pose : tuple of str or None, default ("x_ref_m", "y_ref_m", "theta_ref_rad")
+    ///     The columns of the absolute poses: x in m, y in m and, where it was measured, heading in rad; NaN where there was no
+    ///     measurement. None where there are no poses.
+    ///
+    /// Returns
+    /// -------
+    /// Dataset
+    ///
+    /// Raises
+    /// ------
+    /// TypeError, ValueError
+    ///     If a column is missing or has no such numbers, or a file with these rows would be refused; it names the column.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import umbmark
+    /// >>> frame = {"run": ["cw_01"] * 3, "t": [0, 1, 2], "left": [0, 100, 200], "right": [0, 100, 200]}
+    /// >>> umbmark.Dataset.from_frame(frame, t="t", ticks=("left", "right"), pose=None)
+    /// Dataset(unknown robot, unknown path: 1 cw + 0 ccw runs, 1 with ticks)
+    #[staticmethod]
+    #[pyo3(
+        signature = (frame, *, robot=None, path=None, run=Some("run".to_owned()), t="t_s".to_owned(), ticks=counters(), pose=Some(poses_of_files())),
+        text_signature = "(frame, *, robot=None, path=None, run='run', t='t_s', ticks=('ticks_left', 'ticks_right'), \
+                          pose=('x_ref_m', 'y_ref_m', 'theta_ref_rad'))"
+    )]
+    #[allow(clippy::too_many_arguments)]
+    fn from_frame(
+        py: Python<'_>,
+        frame: &Bound<'_, PyAny>,
+        robot: Option<&Robot>,
+        path: Option<&Path>,
+        run: Option<String>,
+        t: String,
+        ticks: (String, String),
+        pose: Option<Vec<String>>,
+    ) -> PyResult<Dataset> {
+        let columns = [t.clone(), ticks.0.clone(), ticks.1.clone()];
+        let read = py.import("umbmark._frames")?.call_method1("logs", (frame, run, t, ticks, pose))?;
+        let mut logs = Vec::new();
+        for log in read.try_iter()? {
+            let (name, time, left, right, samples, poses): Columns<'_> = log?.extract()?;
+            let reference = run::references(&samples, &poses);
+            let [time, left, right] = [time, left, right].map(|column| column.as_array().to_vec());
+            logs.push(Recorded { name, columns: columns.clone(), time, counts: [left, right], reference });
+        }
+        let (robot, path) = (robot.map(|robot| robot.0.clone()), path.map(|path| path.0.clone()));
+        detached(py, || assemble(robot, path, logs))?.map(Dataset::from).map_err(refused_data)
     }
 
     /// The nominal robot; None where a return sheet was given without one.
@@ -81,6 +225,47 @@ impl Dataset {
     #[getter]
     fn runs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, (0..self.0.runs.len()).map(|index| Run::of(&self.0, index)))
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.runs.len()
+    }
+
+    /// Give a run by its place or its name, or the dataset of a slice of the runs.
+    fn __getitem__<'py>(&self, py: Python<'py>, key: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        if let Ok(name) = key.extract::<&str>() {
+            let named = self.0.runs.iter().position(|run| run.name == name);
+            let index = named.ok_or_else(|| {
+                let names: Vec<&str> = self.0.runs.iter().map(|run| run.name.as_str()).collect();
+                PyKeyError::new_err(format!("there is no run \"{name}\"; there are {}", names.join(", ")))
+            })?;
+            return Ok(Run::of(&self.0, index).into_pyobject(py)?.into_any());
+        }
+        if let Ok(slice) = key.cast::<PySlice>() {
+            let indices = slice.indices(self.0.runs.len() as isize)?;
+            let place = |step: isize| (indices.start + step * indices.step) as usize;
+            let steps = 0..indices.slicelength as isize;
+            let runs: Vec<core::Run> = steps.map(|step| self.0.runs[place(step)].clone()).collect();
+            let names: Vec<String> = runs.iter().map(|run| run.name.clone()).collect();
+            let (clocks, topics) = (self.0.clocks.iter(), self.0.topics.iter());
+            let part = core::Dataset {
+                clocks: clocks.filter(|clock| names.contains(&clock.run)).cloned().collect(),
+                topics: topics.filter(|topics| names.contains(&topics.run)).cloned().collect(),
+                runs,
+                ..(*self.0).clone()
+            };
+            return Ok(Dataset::from(part).into_pyobject(py)?.into_any());
+        }
+        self.runs(py)?.as_any().get_item(key)
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        self.runs(py)?.try_iter()
+    }
+
+    fn __hash__(&self) -> u64 {
+        let lengths = self.0.runs.iter().map(|run| (&run.name, run.log.as_ref().map(|log| log.time.len())));
+        hash_of(&lengths.collect::<Vec<_>>())
     }
 
     /// What the reader noticed and mended, one sentence each.
@@ -191,6 +376,44 @@ impl Dataset {
         let rest: Rest = serde_json::from_slice(rest).map_err(refused)?;
         Ok(rest.with(robot, path))
     }
+}
+
+/// Columns of a log: name of the run, times, counts of the left and the right wheel, rows of poses, and poses.
+type Columns<'py> = (
+    String,
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, i64>,
+    PyReadonlyArray2<'py, f64>,
+);
+
+/// The columns of counters in a file.
+fn counters() -> (String, String) {
+    ("ticks_left".to_owned(), "ticks_right".to_owned())
+}
+
+/// The columns of absolute poses in a file.
+fn poses_of_files() -> Vec<String> {
+    ["x_ref_m", "y_ref_m", "theta_ref_rad"].map(str::to_owned).into()
+}
+
+/// Refuses runs that cannot be told apart.
+fn all_differ(runs: &[core::Run]) -> PyResult<()> {
+    for (index, run) in runs.iter().enumerate() {
+        let same = |other: &core::Run| {
+            let alike = (other.direction, other.test, other.number) == (run.direction, run.test, run.number);
+            alike || other.name == run.name
+        };
+        if let Some(first) = runs[..index].iter().position(same) {
+            let (number, name) = (run.number, &run.name);
+            let words = "must each have a number of their own within a direction and test, and a name of their own";
+            return Err(PyValueError::new_err(format!(
+                "runs {words}; runs[{first}] and runs[{index}] are both number {number} or \"{name}\""
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// Arguments that make a dataset again.

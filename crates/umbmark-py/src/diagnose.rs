@@ -10,14 +10,16 @@ use umbmark_core::evidence::FitError;
 use umbmark_core::result::{self, Comparison, TrackComparison};
 use umbmark_core::solve::{self as solving, Solution};
 use umbmark_core::{effect, evidence};
+use umbmark_io::Doubt;
 
+use crate::arguments::threads;
 use crate::dataset::Dataset;
 use crate::model::Model;
 use crate::work::{Watch, watched};
 use crate::{json, probability, refused};
 
 /// Numbers of simulated tests that a p-value may come from.
-const DRAWS: std::ops::RangeInclusive<usize> = 99..=99_999;
+const DRAWS: std::ops::RangeInclusive<i64> = 99..=99_999;
 
 /// Models beside measurements; without any, the nominal robot, and the first model fitted to the data.
 #[pyfunction]
@@ -25,9 +27,9 @@ pub fn compare(
     py: Python<'_>,
     data: &Dataset,
     models: Vec<(String, Model)>,
-    options: (f64, usize, u64),
+    options: (f64, i64, u64),
     return_poses: bool,
-    threads: usize,
+    #[pyo3(from_py_with = threads)] threads: usize,
 ) -> PyResult<String> {
     let options = options_of(options, return_poses)?;
     let shared = Arc::clone(&data.0);
@@ -50,9 +52,9 @@ pub fn diagnose(
     py: Python<'_>,
     data: &Dataset,
     model: Option<&Model>,
-    options: (f64, usize, u64),
+    options: (f64, i64, u64),
     return_poses: bool,
-    threads: usize,
+    #[pyo3(from_py_with = threads)] threads: usize,
 ) -> PyResult<(String, Model)> {
     let options = options_of(options, return_poses)?;
     let model = asked(py, data, model)?;
@@ -91,9 +93,9 @@ pub fn learn(
     py: Python<'_>,
     data: &Dataset,
     start: Option<&Model>,
-    options: (f64, usize, u64),
+    options: (f64, i64, u64),
     return_poses: bool,
-    threads: usize,
+    #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(String, Model)> {
     let options = options_of(options, return_poses)?;
@@ -103,7 +105,7 @@ pub fn learn(
         None => effect::Model::new(data.0.nominal_robot().map_err(refused)?),
     };
     let solution = solved(py, shared, start, options, threads, progress)?;
-    Ok((json(&result::Learnt::new(&solution, &options))?, with_noise(solution.learnt)))
+    Ok((json(&result::Learnt::new(&solution, &options))?, model_of(solution)))
 }
 
 /// The one answer, and the model that it rests on.
@@ -111,15 +113,15 @@ pub fn learn(
 pub fn solve(
     py: Python<'_>,
     data: &Dataset,
-    options: (f64, usize, u64),
+    options: (f64, i64, u64),
     return_poses: bool,
-    threads: usize,
+    #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(String, Model)> {
     let options = options_of(options, return_poses)?;
     let start = effect::Model::new(data.0.nominal_robot().map_err(refused)?);
     let solution = solved(py, Arc::clone(&data.0), start, options, threads, progress)?;
-    Ok((json(&result::Solution::new(&solution, &options))?, with_noise(solution.learnt)))
+    Ok((json(&result::Solution::new(&solution, &options))?, model_of(solution)))
 }
 
 fn solved(
@@ -134,9 +136,10 @@ fn solved(
     watched(py, threads, progress, work)?.map_err(refused)
 }
 
-/// A model that was learnt, with its noise.
-fn with_noise(learnt: umbmark_core::learn::Learnt) -> Model {
-    Model { noise: learnt.noise, ..learnt.model.into() }
+/// The model that was learnt, with its noise and what speaks against it.
+fn model_of(solution: Solution) -> Model {
+    let doubt = solution.doubt().map(|because| Doubt { because, alone: !solution.learnt.is_in_doubt() });
+    Model { noise: solution.learnt.noise, doubt, ..solution.learnt.model.into() }
 }
 
 /// The model that is asked about, the usual first one where none is given.
@@ -149,11 +152,11 @@ fn asked(py: Python<'_>, data: &Dataset, model: Option<&Model>) -> PyResult<effe
 }
 
 /// Size, draws and seed of tests, checked.
-pub fn options_of((size, draws, seed): (f64, usize, u64), ends_only: bool) -> PyResult<Options> {
+pub fn options_of((size, draws, seed): (f64, i64, u64), ends_only: bool) -> PyResult<Options> {
     probability("size", size)?;
     if !DRAWS.contains(&draws) {
         let (least, most) = (DRAWS.start(), DRAWS.end());
         return Err(PyValueError::new_err(format!("draws must be between {least} and {most}, got {draws}")));
     }
-    Ok(Options { size, draws, seed, ends_only, ..Options::default() })
+    Ok(Options { size, draws: draws as usize, seed, ends_only, ..Options::default() })
 }

@@ -12,6 +12,7 @@ use crate::{WORDS, choice, refused};
 
 /// A model as text for a target, and what the text does not hold.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)]
 pub fn export(
     model: &Model,
     to: &str,
@@ -20,6 +21,7 @@ pub fn export(
     urdf: Option<(String, Option<[String; 2]>)>,
     usual: [f64; 3],
     start: [f64; 3],
+    force: bool,
 ) -> PyResult<(String, Vec<String>)> {
     let targets: Vec<_> = TARGETS.iter().map(|target| (target.name, *target)).collect();
     let target = choice("to", to, &targets)?;
@@ -41,8 +43,16 @@ pub fn export(
         start: Pose2::new(x, y, heading),
         ..Export::of(&model.model)
     };
+    let doubt = model.doubt.as_ref().filter(|doubt| !(doubt.alone && target.holds_all));
+    if let Some(doubt) = doubt.filter(|_| !force) {
+        let because = &doubt.because;
+        return Err(PyValueError::new_err(format!(
+            "the model is in doubt; force=True gives it all the same. {because}"
+        )));
+    }
     let written = target.write(&export).map_err(in_words)?;
-    Ok((written.text, written.notes))
+    let doubt = doubt.map(|doubt| doubt.because.clone());
+    Ok((written.text, doubt.into_iter().chain(written.notes).collect()))
 }
 
 /// Why a file cannot be written, in Python's words.

@@ -13,6 +13,7 @@ use umbmark_plot::render::file::{DOTS_PER_INCH, Format, WIDTHS_MM};
 use umbmark_plot::render::plotly;
 use umbmark_plot::study::{Options, Study};
 
+use crate::arguments::threads;
 use crate::dataset::Dataset;
 use crate::diagnose::options_of;
 use crate::model::Model;
@@ -26,7 +27,7 @@ pub type Asked = (String, Py<Dataset>, Option<(String, Model)>);
 const TRIALS: std::ops::RangeFrom<u64> = 100..;
 
 /// How studies are made: size, draws and seed of tests, return poses alone, simulated tests.
-pub fn options((tests, return_poses, trials): ((f64, usize, u64), bool, u64)) -> PyResult<Options> {
+pub fn options((tests, return_poses, trials): ((f64, i64, u64), bool, u64)) -> PyResult<Options> {
     if !TRIALS.contains(&trials) {
         return Err(PyValueError::new_err(format!("n must be {} or more, got {trials}", TRIALS.start)));
     }
@@ -185,8 +186,8 @@ pub fn figure(
     py: Python<'_>,
     kind: &str,
     asked: Asked,
-    how: ((f64, usize, u64), bool, u64),
-    threads: usize,
+    how: ((f64, i64, u64), bool, u64),
+    #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Figure> {
     let known = || KINDS.iter().map(|kind| kind.name).collect::<Vec<_>>().join(", ");

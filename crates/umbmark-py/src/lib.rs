@@ -34,7 +34,7 @@ macro_rules! module {
 
 module! {
     apply: apply;
-    arrays;
+    arguments;
     calibrate: calibrate, calibrate_gears;
     checkpoint: merge;
     dataset: Dataset, init, inspect, load_dataset;
@@ -58,6 +58,7 @@ module! {
     simulate: simulate;
     sweep: sweep;
     tolerance: tolerance;
+    tracks: tracks;
     work;
 }
 
@@ -93,6 +94,13 @@ fn choice<T: Copy>(name: &str, word: &str, choices: &[(&str, T)]) -> PyResult<T>
         let known: Vec<&str> = choices.iter().map(|(known, _)| *known).collect();
         PyValueError::new_err(format!("{name} must be one of {}, got \"{word}\"", known.join(", ")))
     })
+}
+
+/// A hash for Python, equal for equal things.
+fn hash_of(thing: &impl std::hash::Hash) -> u64 {
+    let mut hasher = std::hash::DefaultHasher::new();
+    thing.hash(&mut hasher);
+    std::hash::Hasher::finish(&hasher)
 }
 
 /// Refuses what is no probability.

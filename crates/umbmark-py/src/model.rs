@@ -10,10 +10,10 @@ use toml::{Table, Value};
 use umbmark_core::likelihood::Noise;
 use umbmark_core::monte_carlo::Draw;
 use umbmark_core::{dataset, drive, effect, result};
-use umbmark_io::ModelFile;
+use umbmark_io::{Doubt, ModelFile};
 
 use crate::robot::Robot;
-use crate::{as_python, keys, refused};
+use crate::{as_python, hash_of, keys, refused};
 
 /// A nominal robot and the effects that make it err. Models are frozen: each change gives another one.
 ///
@@ -51,6 +51,8 @@ pub struct Model {
     pub draws: Vec<Draw>,
     /// The noise that was fitted with it.
     pub noise: Option<Noise>,
+    /// What speaks against its values.
+    pub doubt: Option<Doubt>,
 }
 
 #[pymethods]
@@ -142,6 +144,12 @@ impl Model {
         self.noise.map(sizes)
     }
 
+    /// What speaks against its values, in a sentence or more, as ``learn`` and ``solve`` found it; None without.
+    #[getter]
+    fn doubt(&self) -> Option<&str> {
+        self.doubt.as_ref().map(|doubt| doubt.because.as_str())
+    }
+
     /// The nominal robot.
     #[getter]
     fn robot(&self) -> Robot {
@@ -156,13 +164,17 @@ impl Model {
 
     /// Write it as the text of a model.toml with its robot, which reads back to the last bit.
     fn to_toml(&self) -> String {
-        let Model { model, draws, noise } = self.clone();
-        ModelFile { draws, noise, ..ModelFile::new(model) }.text()
+        let Model { model, draws, noise, doubt } = self.clone();
+        ModelFile { draws, noise, doubt, ..ModelFile::new(model) }.text()
     }
 
     /// Give its effects, as results have them.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         as_python(py, &result::Model::with_noise(&self.model, self.noise.as_ref()))
+    }
+
+    fn __hash__(&self) -> u64 {
+        hash_of(&self.to_toml())
     }
 
     fn __repr__(&self) -> String {
@@ -198,16 +210,16 @@ impl Model {
         let text = Table::from_iter([("effect".to_owned(), effects)]).to_string();
         let file = ModelFile::parse("Model", &text, Some(self.model.robot()));
         let ModelFile { model, draws, .. } = file.map_err(|error| keys::refused(&error))?;
-        Ok(Model { model, draws, noise: self.noise })
+        Ok(Model { model, draws, ..self.clone() })
     }
 
     /// What was read, with a warning of what was converted.
     fn of_file(py: Python<'_>, file: ModelFile, name: &str) -> PyResult<Model> {
-        let ModelFile { model, draws, conversion, noise, .. } = file;
+        let ModelFile { model, draws, conversion, noise, doubt } = file;
         if let Some(conversion) = conversion {
             warn(py, &format!("{name} {conversion}"))?;
         }
-        Ok(Model { model, draws, noise })
+        Ok(Model { model, draws, noise, doubt })
     }
 
     /// The effects for the robot of a dataset, with a warning of what was converted.
@@ -223,7 +235,7 @@ impl Model {
 
 impl From<effect::Model> for Model {
     fn from(model: effect::Model) -> Model {
-        Model { model, draws: Vec::new(), noise: None }
+        Model { model, draws: Vec::new(), noise: None, doubt: None }
     }
 }
 

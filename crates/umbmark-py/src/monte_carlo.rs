@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use numpy::{PyArray1, PyReadonlyArray1};
+use numpy::PyArray1;
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyFloat};
 use umbmark_core::engine::Update;
 use umbmark_core::monte_carlo::{self as core, Batch, Metric, Shard, Statistics};
 use umbmark_core::replay::check_on_path;
@@ -16,11 +16,12 @@ use umbmark_core::result::{self, MonteCarlo, NoiseFree, Told};
 use umbmark_core::simulate::{Odometry, Phase};
 use umbmark_io::checkpoint::Keeper;
 
+use crate::arguments::{column, seed, threads, whole};
 use crate::checkpoint::{CheckpointOptions, unusable};
 use crate::model::Model;
 use crate::path::Path;
 use crate::work::{Watch, detached, watched, watched_to_its_end};
-use crate::{choice, json, refused};
+use crate::{choice, hash_of, json, refused};
 
 const UPDATES: [(&str, Update); 3] = [("arc", Update::Arc), ("midpoint", Update::Midpoint), ("euler", Update::Euler)];
 const PHASES: [(&str, Phase); 2] = [("random", Phase::Random), ("edge", Phase::Edge)];
@@ -37,8 +38,9 @@ const PHASES: [(&str, Phase); 2] = [("random", Phase::Random), ("edge", Phase::E
 ///     Number of trials, each a whole test.
 /// runs : int or tuple of int, default 5
 ///     Runs in each direction, or (cw, ccw).
-/// seed : int, default 1
-///     Seed of all random numbers: the same seed gives the same bits for any number of threads, shards and machines.
+/// seed : int, numpy Generator, BitGenerator or SeedSequence, or None, default 1
+///     Seed of all random numbers: the same seed gives the same bits for any number of threads, shards and machines. None draws a
+///     fresh one; ``seed`` has it.
 /// odometry : str, default "robot"
 ///     How the robot computes its pose: "robot" (at the encoder rate where there is one, else at every tick), "ticks",
 ///     "tick_by_tick" (slow, the reference) or "continuous" (without quantisation).
@@ -68,9 +70,9 @@ impl Study {
     fn new(
         model: &Model,
         path: Option<&Path>,
-        n: u64,
+        #[pyo3(from_py_with = trials)] n: u64,
         runs: Option<&Bound<'_, PyAny>>,
-        seed: u64,
+        #[pyo3(from_py_with = seed)] seed: u64,
         odometry: &str,
         update: &str,
         phase: &str,
@@ -179,7 +181,7 @@ impl Study {
         checkpoint: Option<PathBuf>,
         resume: bool,
         replace: bool,
-        threads: usize,
+        #[pyo3(from_py_with = threads)] threads: usize,
         until_std_error_m: Option<f64>,
         keep: bool,
         progress: Option<&Bound<'py, PyAny>>,
@@ -275,18 +277,41 @@ impl Study {
     }
 }
 
+/// A number of trials.
+fn trials(given: &Bound<'_, PyAny>) -> PyResult<u64> {
+    whole("n", given, 1, core::MAX_TRIALS)
+}
+
 /// A number of runs for both directions, or one for each.
 pub fn runs_of(given: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
-    match given.extract::<usize>() {
-        Ok(runs) => Ok([runs, runs]),
-        Err(_) => given.extract::<(usize, usize)>().map(|(cw, ccw)| [cw, ccw]),
+    if let Ok(runs) = given.extract::<usize>() {
+        return Ok([runs, runs]);
     }
+    given.extract::<(usize, usize)>().map(|(cw, ccw)| [cw, ccw]).map_err(|_| {
+        let words = "runs must be a whole number, 0 or more, or two of them, (cw, ccw)";
+        PyValueError::new_err(format!("{words}, got {given}"))
+    })
+}
+
+/// What a function gives of a number, or of each of shape (k,).
+fn one_or_each<'py>(
+    name: &str,
+    given: &Bound<'py, PyAny>,
+    of: impl Fn(f64) -> PyResult<f64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = given.py();
+    if let Ok(number) = given.extract::<f64>() {
+        return Ok(PyFloat::new(py, of(number)?).into_any());
+    }
+    let numbers: PyResult<Vec<f64>> = column(name, given)?.as_array().iter().map(|number| of(*number)).collect();
+    Ok(PyArray1::from_vec(py, numbers?).into_any())
 }
 
 /// The statistics of the trials that are done: of a study, of a shard, or of shards merged. Frozen.
 ///
-/// Sums and bins are integers, so ensembles merge in any order to the same bits.
-#[pyclass(frozen, module = "umbmark")]
+/// Sums and bins are integers, so ensembles merge in any order to the same bits, and what merges to a whole study equals it.
+#[pyclass(frozen, eq, module = "umbmark")]
+#[derive(PartialEq)]
 pub struct Ensemble(pub core::Ensemble);
 
 #[pymethods]
@@ -339,26 +364,20 @@ impl Ensemble {
         self.get(metric).map(Statistics::std_error)
     }
 
-    /// Quantiles of a metric, to 5e-5 of their size: shares in [0, 1] of shape (k,) to values of shape (k,).
-    fn quantile<'py>(
-        &self,
-        py: Python<'py>,
-        metric: &str,
-        shares: PyReadonlyArray1<'_, f64>,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    /// Quantiles of a metric, to 5e-5 of their size: of a share in [0, 1], or of each of shape (k,).
+    fn quantile<'py>(&self, metric: &str, shares: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let statistics = self.get(metric)?;
-        Ok(PyArray1::from_iter(py, shares.as_array().iter().map(|share| statistics.quantile(*share))))
+        let quantile = |share: f64| match (0.0..=1.0).contains(&share) {
+            true => Ok(statistics.quantile(share)),
+            false => Err(PyValueError::new_err(format!("shares must be between 0 and 1, got {share}"))),
+        };
+        one_or_each("shares", shares, quantile)
     }
 
-    /// Shares of the trials with a metric below values of shape (k,).
-    fn share_below<'py>(
-        &self,
-        py: Python<'py>,
-        metric: &str,
-        values: PyReadonlyArray1<'_, f64>,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    /// Share of the trials with a metric below a value, or below each of shape (k,).
+    fn share_below<'py>(&self, metric: &str, values: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let statistics = self.get(metric)?;
-        Ok(PyArray1::from_iter(py, values.as_array().iter().map(|value| statistics.share_below(*value))))
+        one_or_each("values", values, |value| Ok(statistics.share_below(value)))
     }
 
     fn __repr__(&self) -> String {
@@ -366,10 +385,8 @@ impl Ensemble {
         format!("Ensemble({} trials, {missing} missing)", self.0.trials())
     }
 
-    /// Whether all that is known is the same, to the last bit.
-    fn __eq__(&self, other: &Ensemble) -> PyResult<bool> {
-        let text = |ensemble: &core::Ensemble| serde_json::to_vec(ensemble).map_err(refused);
-        Ok(text(&self.0)? == text(&other.0)?)
+    fn __hash__(&self) -> u64 {
+        hash_of(&(self.0.trials(), self.0.statistics().map(|(_, s)| s.mean().to_bits()).collect::<Vec<_>>()))
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyAny>,))> {

@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use umbmark_core::paper::{self as core, Bench, PaperError};
 use umbmark_core::result::Paper;
 
+use crate::arguments::{seed, threads};
 use crate::work::{Watch, watched};
 use crate::{choice, json, refused};
 
@@ -30,8 +31,8 @@ pub fn paper(
     py: Python<'_>,
     names: Vec<String>,
     trials: u64,
-    seed: u64,
-    threads: usize,
+    #[pyo3(from_py_with = seed)] seed: u64,
+    #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
     if !TRIALS.contains(&trials) {

@@ -7,7 +7,7 @@ use umbmark_core::path::{Direction, SHAPES};
 use umbmark_core::{drive, path, result};
 use umbmark_io::RobotFile;
 
-use crate::{as_python, choice, keys};
+use crate::{as_python, choice, hash_of, keys};
 
 /// The two directions of driving, by name.
 pub const DIRECTIONS: [(&str, Direction); 2] = [("cw", Direction::Cw), ("ccw", Direction::Ccw)];
@@ -97,6 +97,10 @@ impl Path {
     fn end(&self, direction: &str) -> PyResult<(f64, f64, f64)> {
         let end = self.0.end(choice("direction", direction, &DIRECTIONS)?);
         Ok((end.x, end.y, end.heading))
+    }
+
+    fn __hash__(&self) -> u64 {
+        hash_of(&self.file())
     }
 
     fn __repr__(&self) -> String {

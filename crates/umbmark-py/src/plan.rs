@@ -11,6 +11,7 @@ use umbmark_core::plan::{Measured, Order, PlanError, Protocol, Request, Setting,
 use umbmark_core::result;
 use umbmark_core::stats::Interval;
 
+use crate::arguments::threads;
 use crate::dataset::Dataset;
 use crate::diagnose::options_of;
 use crate::model::Model;
@@ -92,8 +93,8 @@ pub fn plan(
     power: f64,
     numbers: Vec<usize>,
     order: &str,
-    options: (f64, usize, u64),
-    threads: usize,
+    options: (f64, i64, u64),
+    #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(String, String, String)> {
     whose.check()?;
@@ -123,8 +124,8 @@ pub fn separate(
     pair: (String, String),
     whose: Whose,
     runs: usize,
-    options: (f64, usize, u64),
-    threads: usize,
+    options: (f64, i64, u64),
+    #[pyo3(from_py_with = threads)] threads: usize,
 ) -> PyResult<String> {
     whose.check()?;
     let options: Options = options_of(options, false)?;

@@ -8,6 +8,7 @@ use umbmark_io::whole_file::WholeFile;
 use umbmark_plot::page::{Origin, Provenance, change, page, said};
 use umbmark_plot::study::Study;
 
+use crate::arguments::threads;
 use crate::figure::{Asked, options, study};
 use crate::work::{Watch, watched};
 use crate::{existing, json, refused, unwritten};
@@ -17,10 +18,10 @@ use crate::{existing, json, refused, unwritten};
 pub fn report(
     py: Python<'_>,
     asked: Vec<Asked>,
-    how: ((f64, usize, u64), bool, u64),
+    how: ((f64, i64, u64), bool, u64),
     call: String,
     places: Vec<PathBuf>,
-    threads: usize,
+    #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(String, String)> {
     let options = options(how)?;

@@ -6,7 +6,7 @@ use toml::{Table, Value};
 use umbmark_core::{drive, result};
 use umbmark_io::RobotFile;
 
-use crate::{as_python, keys, refused};
+use crate::{as_python, hash_of, keys, refused};
 
 /// A nominal robot: what its odometry believes of itself.
 ///
@@ -115,6 +115,10 @@ impl Robot {
     #[getter]
     fn encoder_rate_hz(&self) -> Option<f64> {
         self.0.encoder.rate()
+    }
+
+    fn __hash__(&self) -> u64 {
+        hash_of(&self.to_toml())
     }
 
     fn __repr__(&self) -> String {

@@ -2,15 +2,17 @@
 
 use std::sync::Arc;
 
-use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, ndarray::Array2};
+use numpy::ndarray::{Array2, ArrayView1};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_core::dataset::{self as core, Dataset, ReferencePose, ReturnError, TickLog};
 use umbmark_core::effect::TestKind;
 use umbmark_core::path::Direction;
 
+use crate::arguments::{self, column, indices};
 use crate::path::DIRECTIONS;
-use crate::{choice, refused};
+use crate::{choice, hash_of, refused};
 
 /// The two tests, by name.
 pub const TESTS: [(&str, TestKind); 2] = [("systematic", TestKind::Systematic), ("bumps", TestKind::Bumps)];
@@ -29,23 +31,34 @@ pub const TESTS: [(&str, TestKind); 2] = [("systematic", TestKind::Systematic), 
 ///     "systematic", or "bumps" for the extended test.
 /// returned : tuple of float, optional
 ///     Return error (x, y) in m or (x, y, heading) in m and rad, absolute minus computed (Eq. 1), in the frame of START.
-/// time_s, ticks_left, ticks_right : ndarray of float64, shape (n,), optional
+/// time_s, ticks_left, ticks_right : array of numbers, shape (n,), optional
 ///     Times of the samples in s, and the wheels' cumulative counts.
-/// reference_sample : ndarray of int64, shape (m,), optional
+/// reference_sample : array of whole numbers, shape (m,), optional
 ///     For each absolute pose, the sample that it belongs to.
-/// reference_pose : ndarray of float64, shape (m, 3), optional
-///     The absolute poses: x in m, y in m, heading in rad (NaN where it was not measured), in the frame of START.
+/// reference_pose : array of numbers, shape (m, 3) or (m, 2), optional
+///     The absolute poses: x in m, y in m, heading in rad (NaN, or no third column, where it was not measured), in the frame of
+///     START.
 /// relative : bool, default False
 ///     Whether each pose tells only how the robot moved since the one before, as poses of visual odometry do.
 ///
+/// An array is whatever has numbers: a sequence, a NumPy array of any real type, a column of pandas, polars or Arrow.
+///
 /// Raises
 /// ------
+/// TypeError
+///     If an argument has no numbers.
 /// ValueError
 ///     If arrays do not belong together, a number is not finite, or times do not increase.
-#[pyclass(frozen, module = "umbmark")]
+#[pyclass(frozen, eq, module = "umbmark")]
 pub struct Run {
     data: Arc<Dataset>,
     index: usize,
+}
+
+impl PartialEq for Run {
+    fn eq(&self, other: &Run) -> bool {
+        self.core() == other.core()
+    }
 }
 
 #[pymethods]
@@ -60,18 +73,24 @@ impl Run {
         name: Option<String>,
         test: &str,
         returned: Option<Vec<f64>>,
-        time_s: Option<PyReadonlyArray1<'_, f64>>,
-        ticks_left: Option<PyReadonlyArray1<'_, f64>>,
-        ticks_right: Option<PyReadonlyArray1<'_, f64>>,
-        reference_sample: Option<PyReadonlyArray1<'_, i64>>,
-        reference_pose: Option<PyReadonlyArray2<'_, f64>>,
+        time_s: Option<&Bound<'_, PyAny>>,
+        ticks_left: Option<&Bound<'_, PyAny>>,
+        ticks_right: Option<&Bound<'_, PyAny>>,
+        reference_sample: Option<&Bound<'_, PyAny>>,
+        reference_pose: Option<&Bound<'_, PyAny>>,
         relative: bool,
     ) -> PyResult<Run> {
         let direction = direction.map(|word| choice("direction", word, &DIRECTIONS)).transpose()?;
         let log = match (time_s, ticks_left, ticks_right) {
             (Some(time), Some(left), Some(right)) => {
-                let [time, left, right] = [time, left, right].map(|array| array.as_array().to_vec());
-                let reference = references(reference_sample, reference_pose)?;
+                let read = |name, array| column(name, array).map(|array| array.as_array().to_vec());
+                let time = read("time_s", time)?;
+                let (left, right) = (read("ticks_left", left)?, read("ticks_right", right)?);
+                let reference = match (reference_sample, reference_pose) {
+                    (None, None) => Vec::new(),
+                    (Some(samples), Some(poses)) => given_references(samples, poses)?,
+                    _ => return Err(PyValueError::new_err("reference_sample and reference_pose go together")),
+                };
                 Some(checked(TickLog { time, left, right, reference, relative, ..TickLog::default() })?)
             }
             (None, None, None) => None,
@@ -159,6 +178,11 @@ impl Run {
         self.core().log.as_ref().map(|log| log.relative)
     }
 
+    fn __hash__(&self) -> u64 {
+        let run = self.core();
+        hash_of(&(&run.name, run.number, run.log.as_ref().map(|log| log.time.len())))
+    }
+
     fn __repr__(&self) -> String {
         let run = self.core();
         let returned = run.returned.map(|e| format!(", returned=({:.4}, {:.4}) m", e.x, e.y)).unwrap_or_default();
@@ -210,27 +234,26 @@ fn return_error(error: &[f64]) -> PyResult<ReturnError> {
     }
 }
 
-fn references(
-    samples: Option<PyReadonlyArray1<'_, i64>>,
-    poses: Option<PyReadonlyArray2<'_, f64>>,
-) -> PyResult<Vec<ReferencePose>> {
-    let (samples, poses) = match (samples, poses) {
-        (None, None) => return Ok(Vec::new()),
-        (Some(samples), Some(poses)) => (samples, poses),
-        _ => return Err(PyValueError::new_err("reference_sample and reference_pose go together")),
-    };
-    let (samples, poses) = (samples.as_array(), poses.as_array());
-    if poses.shape() != [samples.len(), 3] {
-        let (n, shape) = (samples.len(), poses.shape());
-        return Err(PyValueError::new_err(format!("reference_pose must have shape ({n}, 3), got {shape:?}")));
+/// The absolute poses of a call.
+fn given_references(samples: &Bound<'_, PyAny>, poses: &Bound<'_, PyAny>) -> PyResult<Vec<ReferencePose>> {
+    let (samples, poses) = (indices("reference_sample", samples)?, arguments::poses("reference_pose", poses)?);
+    let (count, rows) = (samples.as_array().len(), poses.as_array().nrows());
+    if count != rows {
+        return Err(PyValueError::new_err(format!("reference_pose must have shape ({count}, 3), got [{rows}, 3]")));
     }
-    let pose = |(sample, pose): (&i64, numpy::ndarray::ArrayView1<'_, f64>)| ReferencePose {
+    Ok(references(&samples, &poses))
+}
+
+/// Absolute poses, each with its sample.
+pub fn references(samples: &PyReadonlyArray1<'_, i64>, poses: &PyReadonlyArray2<'_, f64>) -> Vec<ReferencePose> {
+    let (samples, poses) = (samples.as_array(), poses.as_array());
+    let pose = |(sample, pose): (&i64, ArrayView1<'_, f64>)| ReferencePose {
         sample: usize::try_from(*sample).unwrap_or(usize::MAX),
         x: pose[0],
         y: pose[1],
         heading: Some(pose[2]).filter(|heading| !heading.is_nan()),
     };
-    Ok(samples.iter().zip(poses.rows()).map(pose).collect())
+    samples.iter().zip(poses.rows()).map(pose).collect()
 }
 
 /// Refuses a log that could not have been recorded.

@@ -7,7 +7,7 @@ use umbmark_core::dataset::ReturnError;
 use umbmark_core::result;
 use umbmark_core::score::{self as core, Convention, ScoreError};
 
-use crate::arrays::ReturnErrors;
+use crate::arguments::poses;
 use crate::dataset::Dataset;
 use crate::work::{detached, watched};
 use crate::{choice, json, refused};
@@ -15,7 +15,7 @@ use crate::{choice, json, refused};
 const CONVENTIONS: [(&str, Convention); 2] = [("mean", Convention::Mean), ("sum", Convention::Sum)];
 
 /// The names of the arrays, as in the call.
-const ARRAYS: [&str; 4] = ["cw", "ccw", "bumps_cw", "bumps_ccw"];
+pub const ARRAYS: [&str; 4] = ["cw", "ccw", "bumps_cw", "bumps_ccw"];
 
 /// The score of return errors in arrays.
 #[pyfunction]
@@ -30,9 +30,11 @@ pub fn score_arrays(
     let convention = choice("convention", convention, &CONVENTIONS)?;
     let given = ARRAYS.into_iter().zip([Some(cw), Some(ccw), bumps_cw, bumps_ccw]);
     let arrays: PyResult<Vec<_>> =
-        given.map(|(name, array)| array.map(|array| ReturnErrors::new(name, array)).transpose()).collect();
+        given.map(|(name, array)| array.map(|array| poses(name, array)).transpose()).collect();
     let arrays = arrays?;
-    let rows = |index: usize| arrays[index].as_ref().map_or(Ok(&[][..]), ReturnErrors::rows);
+    let rows = |index: usize| -> PyResult<&[[f64; 3]]> {
+        arrays[index].as_ref().map_or(Ok(&[][..]), |array| Ok(array.as_slice()?.as_chunks().0))
+    };
     let all = [rows(0)?, rows(1)?, rows(2)?, rows(3)?];
     let score = detached(cw.py(), || {
         ARRAYS.into_iter().zip(all).try_for_each(|(name, rows)| all_finite(name, rows))?;
@@ -54,7 +56,7 @@ pub fn score_dataset(py: Python<'_>, data: &Dataset, level: f64, convention: &st
 }
 
 /// Refuses a return error that is no number, its run named as Python would index it.
-fn all_finite(name: &str, rows: &[[f64; 3]]) -> Result<(), ScoreError> {
+pub fn all_finite(name: &str, rows: &[[f64; 3]]) -> Result<(), ScoreError> {
     let wrong = |[x, y, heading]: &[f64; 3]| !x.is_finite() || !y.is_finite() || heading.is_infinite();
     let Some(row) = rows.iter().position(wrong) else { return Ok(()) };
     let ReturnError { x, y, heading } = rows[row].into();

@@ -12,6 +12,7 @@ use umbmark_core::sensitivity::{
     screen, sobol_indices,
 };
 
+use crate::arguments::threads;
 use crate::monte_carlo::Study;
 use crate::work::watched;
 use crate::{choice, json, parameters, refused};
@@ -96,7 +97,7 @@ pub fn sensitivity(
     effort: u64,
     second_order: bool,
     noise_free: bool,
-    threads: usize,
+    #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
     let method = choice("method", method, &METHODS)?;

@@ -7,6 +7,7 @@ use umbmark_core::path::Path as CorePath;
 use umbmark_core::replay::check_on_path;
 use umbmark_core::simulate::{is_extended, record_test};
 
+use crate::arguments::seed;
 use crate::dataset::Dataset;
 use crate::model::Model;
 use crate::monte_carlo::runs_of;
@@ -26,8 +27,8 @@ use crate::work::watched;
 ///     Runs in each direction, or (cw, ccw).
 /// reference_rate_hz : float, default 20
 ///     How often the absolute pose is measured on the way, in Hz; 0 for the end pose alone.
-/// seed : int, default 1
-///     Seed of all random numbers.
+/// seed : int, numpy Generator, BitGenerator or SeedSequence, or None, default 1
+///     Seed of all random numbers; None draws a fresh one.
 /// trial : int, default 0
 ///     Which trial of this seed: each has random numbers of its own.
 ///
@@ -56,7 +57,7 @@ pub fn simulate(
     path: Option<&Path>,
     runs: Option<&Bound<'_, PyAny>>,
     reference_rate_hz: f64,
-    seed: u64,
+    #[pyo3(from_py_with = seed)] seed: u64,
     trial: u64,
 ) -> PyResult<Dataset> {
     let runs = runs.map_or(Ok([5, 5]), runs_of)?;

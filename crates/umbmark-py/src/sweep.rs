@@ -9,6 +9,7 @@ use umbmark_core::monte_carlo::{Axis, Quantity, Sweep};
 use umbmark_core::result;
 use umbmark_io::checkpoint::Keeper;
 
+use crate::arguments::threads;
 use crate::checkpoint::{CheckpointOptions, unusable};
 use crate::monte_carlo::Study;
 use crate::work::{Watch, watched, watched_to_its_end};
@@ -21,7 +22,7 @@ pub fn sweep(
     study: &Study,
     axes: Vec<(String, f64, f64, u64)>,
     checkpoint: Option<(PathBuf, bool, bool)>,
-    threads: usize,
+    #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
     let study = study.core();

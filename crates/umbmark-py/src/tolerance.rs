@@ -7,6 +7,7 @@ use umbmark_core::result::{self, Wanted};
 use umbmark_core::sensitivity::tolerance::{Target, Tolerances};
 use umbmark_core::sensitivity::{Noise, SensitivityError, Tests};
 
+use crate::arguments::threads;
 use crate::monte_carlo::Study;
 use crate::work::watched;
 use crate::{json, parameters, probability, refused};
@@ -23,7 +24,7 @@ pub fn tolerance(
     target: (f64, f64),
     robots: u64,
     with_noise: bool,
-    threads: usize,
+    #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(String, Vec<f64>)> {
     let (at_most, share) = target;

@@ -262,7 +262,7 @@ def test_ctrl_c_is_heard_at_once(work: object) -> None:
 @pytest.mark.parametrize(
     ("keys", "words"),
     [
-        ({"n": 10**15}, "number of trials must be between 1 and 1000000000000, got"),
+        ({"n": 10**15}, "n must be between 1 and 1000000000000, got"),
         ({"runs": (0, 0)}, "number of runs must be between 1"),
         ({"odometry": "wheels"}, "odometry must be one of robot, ticks, tick_by_tick, continuous"),
         ({"phase": "edgy"}, 'phase must be one of random, edge, got "edgy"'),

@@ -422,3 +422,54 @@ def test_tables_have_the_numbers_of_their_result(data: umbmark.Dataset) -> None:
     rows = {row["score"]: row["value"] for row in result.table()}
     assert rows["e_max_sys_m"] == result.e_max_sys_m
     assert np.isclose(rows["centroid_cw_x_m"], data.returns("cw")[:, 0].mean(), rtol=0, atol=1e-12)
+
+
+def test_results_are_equal_and_hashed_by_value_without_how_long_they_took() -> None:
+    one, two = (umbmark.monte_carlo(NOISE, n=300) for _ in range(2))
+    assert one.trials_per_s != two.trials_per_s
+    assert one == two
+    assert len({one, two}) == 1
+    assert one != umbmark.monte_carlo(NOISE, n=300, seed=2)
+    kept = [umbmark.monte_carlo(NOISE, n=300, keep=True) for _ in range(2)]
+    assert kept[0] == kept[1] != one
+    assert kept[0].trials is not None
+    kept[0].trials["sigma_m"][0] += 1.0
+    assert kept[0] != kept[1]
+
+
+def test_what_is_merged_in_any_order_equals_the_whole_study() -> None:
+    study = umbmark.Study(NOISE, n=1000)
+    parts = [study.run((index, 3))[0] for index in range(3)]
+    whole, _, _ = study.run()
+    for first, *rest in ((0, 1, 2), (2, 1, 0), (1, 2, 0)):
+        merged = parts[first].merge(*(parts[index] for index in rest))
+        assert merged == whole
+        assert hash(merged) == hash(whole)
+        assert pickle.dumps(merged) == pickle.dumps(whole)
+    assert parts[0] != whole
+
+
+def test_a_column_in_which_nothing_is_known_has_its_type(tmp_path: Path) -> None:
+    runs = [
+        umbmark.Run(way, number, returned=(0.01 * number, 0.02))
+        for way in ("cw", "ccw")
+        for number in (1, 2)
+    ]
+    without_headings = umbmark.Dataset(None, None, runs)
+    bare = [umbmark.score(without_headings), umbmark.score([[0.1, 0.2, 0.3]], [[0.1, 0.2, 0.3]])]
+    assert bare[0].return_heading_cw_rad is None
+    kinds = {str(score.to_arrow().schema.field("low").type) for score in bare}
+    assert kinds == {"double"}
+    assert bare[1].to_pandas()["low"].dtype == bare[1].to_polars()["low"].to_numpy().dtype == float
+    path = umbmark.Path(side_m=SIDE)
+    learnt = umbmark.learn(umbmark.simulate(NOISE, path, runs=3, reference_rate_hz=0), draws=99)
+    assert str(learnt.to_arrow().schema.field("heldout_rmse_m").type) == "double"
+    few = umbmark.compare(
+        umbmark.simulate(NOISE, path, runs=1, reference_rate_hz=5), umbmark.Model()
+    )
+    assert isinstance(few, umbmark.TrackComparison)
+    assert few.models[0].explains is None
+    assert str(few.to_arrow().schema.field("explains").type) == "bool"
+    assert (
+        str(Whole._of('{"seed": 1, "parts": []}').to_arrow().schema.field("seed").type) == "int64"
+    )

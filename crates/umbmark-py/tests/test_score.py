@@ -235,7 +235,7 @@ NO_HEADING = np.array([0.0, 0.0, np.inf])
         ((CW, CCW + np.inf), "return error of run ccw[0] must be finite, got (inf, inf) m"),
         ((CW * NO_Y, CCW), "return error of run cw[0] must be finite, got (-0.21, NaN) m"),
         ((CW, CCW - NO_HEADING), "return error of run ccw[0] must be finite, got (0.02, 0.01) m"),
-        ((CW, CCW[0]), "ccw must be a NumPy array of float64 with shape (n, 3) or (n, 2), got"),
+        ((CW, CCW[0]), "ccw must have shape (n, 3), or (n, 2) without heading, got"),
         ((CW, CCW[0]), "got shape (3,)"),
         ((CW[:, :1], CCW), "got shape (3, 1)"),
         ((CW[None], CCW), "got shape (1, 3, 3)"),
@@ -265,21 +265,19 @@ def test_a_run_that_is_no_number_is_named_by_its_row() -> None:
 @pytest.mark.parametrize(
     ("value", "got"),
     [
-        (CW.tolist(), "got list"),
-        (None, "got NoneType"),
-        (CW.astype(np.float32), "got dtype float32"),
-        ((1000 * CW).astype(int), "got dtype int"),
-        (CW.astype(">f8"), "got dtype >f8"),
-        (np.ma.masked_less(CW, -0.2), "got MaskedArray"),
+        (
+            None,
+            "cw must be numbers of shape (n, 3), or (n, 2) without heading, got None (NoneType)",
+        ),
+        (1.0, "got 1.0 (float)"),
+        (np.ma.masked_less(CW, -0.2), "cw must not be masked"),
     ],
 )
-def test_what_is_no_plain_float64_array_is_a_type_error_that_says_what_it_is(
+def test_what_holds_no_rows_of_numbers_is_a_type_error_that_says_what_it_is(
     value: Any, got: str
 ) -> None:
-    with pytest.raises(TypeError) as caught:
+    with pytest.raises(TypeError, match=re.escape(got)):
         umbmark.score(value, CCW)
-    assert str(caught.value).startswith("cw must be a NumPy array of float64")
-    assert got in str(caught.value)
 
 
 def test_any_memory_layout_is_read_and_left_as_it_was() -> None:

@@ -11,7 +11,7 @@ use super::{Metric, Row, Shard, Statistics, Study};
 ///
 /// It can be written down (serde) at any moment, taken up again by [`Study::resume`](super::Study::resume), and merged with
 /// others of the same study.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ensemble {
     study: String,
     shard: Shard,

@@ -1,6 +1,7 @@
 //! Statistics of a stream of numbers in constant memory, the same whatever the order.
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use sketches_ddsketch::{Config, DDSketch};
 
 /// Count, mean, standard deviation, extremes and quantiles of a stream of numbers.
@@ -20,20 +21,37 @@ pub struct Statistics {
 }
 
 /// The statistics as they stand in a file: integers of more than 64 bits as text, and no sketch of nothing, whose ends are
-/// infinite.
-#[derive(Clone, Serialize, Deserialize)]
+/// infinite. Equal statistics are written alike, whatever the order in which the numbers came.
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
 struct Written {
     count: u64,
     sum: String,
     squares: String,
-    sketch: Option<DDSketch>,
+    sketch: Option<Value>,
 }
 
 impl From<Statistics> for Written {
     fn from(s: Statistics) -> Written {
-        let sketch = (s.count > 0).then_some(s.sketch);
+        let sketch = (s.count > 0).then(|| ordered(&s.sketch, s.sum as f64 * Statistics::RESOLUTION));
         Written { count: s.count, sum: s.sum.to_string(), squares: s.squares.to_string(), sketch }
     }
+}
+
+/// A sketch without what depends on the order in which it was filled: its own sum, which is rounded after each number, and the empty
+/// bins beyond the outermost full ones.
+fn ordered(sketch: &DDSketch, sum: f64) -> Value {
+    let mut written = json!(sketch);
+    written["sum"] = json!(sum);
+    for store in ["store", "negative_store"] {
+        let store = &mut written[store];
+        let [first, last, offset] = ["min_key", "max_key", "offset"].map(|key| store[key].as_i64().unwrap_or(0));
+        if let Some(bins) = store["bins"].as_array_mut().filter(|bins| !bins.is_empty()) {
+            bins.truncate((last - offset + 1).max(0) as usize);
+            bins.drain(..((first - offset).max(0) as usize).min(bins.len()));
+            store["offset"] = json!(first);
+        }
+    }
+    written
 }
 
 impl TryFrom<Written> for Statistics {
@@ -42,11 +60,20 @@ impl TryFrom<Written> for Statistics {
     fn try_from(written: Written) -> Result<Statistics, String> {
         let whole = |text: &str| text.parse().map_err(|_| format!("a sum must be a whole number, got \"{text}\""));
         let (sum, squares) = (whole(&written.sum)?, whole(&written.squares)?);
-        let sketch = written.sketch.unwrap_or_else(|| Statistics::new().sketch);
+        let sketch: Option<DDSketch> =
+            written.sketch.map(serde_json::from_value).transpose().map_err(|e| e.to_string())?;
+        let sketch = sketch.unwrap_or_else(|| Statistics::new().sketch);
         if sketch.count() as u64 != written.count {
             return Err(format!("{} numbers in the sketch, {} in the sums", sketch.count(), written.count));
         }
         Ok(Statistics { count: written.count, sum, squares, sketch })
+    }
+}
+
+/// Whether they took the same numbers, as far as counts, sums, extremes and bins show.
+impl PartialEq for Statistics {
+    fn eq(&self, other: &Statistics) -> bool {
+        Written::from(self.clone()) == Written::from(other.clone())
     }
 }
 
@@ -208,6 +235,30 @@ mod tests {
         parts.merge(&of(&mut sample[1234..3000].iter().copied()));
         assert_eq!(bits(&forward), bits(&of(&mut sample.iter().rev().copied())));
         assert_eq!((bits(&forward), forward.count()), (bits(&parts), parts.count()));
+    }
+
+    #[test]
+    fn what_is_written_does_not_depend_on_the_order_of_numbers_and_of_parts() {
+        let sample: Vec<f64> = draws(5000).into_iter().map(|value| value - 0.3).collect();
+        let of = |values: &[f64]| {
+            let mut statistics = Statistics::new();
+            values.iter().for_each(|value| statistics.take(*value));
+            statistics
+        };
+        let whole = of(&sample);
+        let thirds: Vec<Statistics> = sample.chunks(1700).map(of).collect();
+        let text = |statistics: &Statistics| serde_json::to_string(statistics).unwrap();
+        for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0]] {
+            let mut merged = Statistics::new();
+            order.into_iter().for_each(|third: usize| merged.merge(&thirds[third]));
+            assert!(merged == whole && text(&merged) == text(&whole), "{order:?}");
+            let mut read: Statistics = serde_json::from_str(&text(&merged)).unwrap();
+            read.merge(&whole);
+            let mut twice = whole.clone();
+            twice.merge(&whole);
+            assert!(text(&read) == text(&twice) && read.quantile(0.3) == twice.quantile(0.3), "{order:?}");
+        }
+        assert!(whole != of(&sample[1..]));
     }
 
     #[test]

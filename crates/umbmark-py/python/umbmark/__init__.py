@@ -14,6 +14,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``compare``, ``diagnose``          what models explain, and what they are missing
 ``solve``                          the one answer: what to write into the robot
 ``apply``                          corrected odometry from counts and a model
+``tracks``                         measured runs beside odometry and a model: residuals as arrays
 ``fit``, ``learn``                 fit a model; add what is missing until nothing is
 ``export``                         a model for ROS 2, Nav2, URDF, C, Gazebo or MuJoCo
 ``report``, ``plot``               everything on one page; one figure of it
@@ -29,6 +30,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 """
 
 from umbmark._apply import Corrected, apply
+from umbmark._arguments import Numbers, Seed
 from umbmark._calibration import Calibration, GearCalibration, calibrate, calibrate_gears
 from umbmark._comparison import Comparison, TrackComparison, compare
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
@@ -45,6 +47,7 @@ from umbmark._sensitivity import Sensitivity, sensitivity
 from umbmark._solution import Solution, solve
 from umbmark._sweep import Sweep, sweep
 from umbmark._tolerance import Tolerance, tolerance
+from umbmark._tracks import Track, Tracks, tracks
 from umbmark._umbmark import (
     Dataset,
     Ensemble,
@@ -79,6 +82,7 @@ __all__ = [
     "Learnt",
     "Model",
     "MonteCarlo",
+    "Numbers",
     "Paper",
     "Path",
     "Plan",
@@ -86,6 +90,7 @@ __all__ = [
     "Robot",
     "Run",
     "Score",
+    "Seed",
     "Sensitivity",
     "Separation",
     "Setup",
@@ -93,7 +98,9 @@ __all__ = [
     "Study",
     "Sweep",
     "Tolerance",
+    "Track",
     "TrackComparison",
+    "Tracks",
     "__version__",
     "apply",
     "calibrate",
@@ -123,4 +130,5 @@ __all__ = [
     "solve",
     "sweep",
     "tolerance",
+    "tracks",
 ]

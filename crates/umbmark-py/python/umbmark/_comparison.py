@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import msgspec
 
 from umbmark import _documents, _umbmark
+from umbmark._arguments import Seed, options_of
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Model
@@ -38,6 +39,8 @@ HalfOpen: TypeAlias = tuple[float | None, float | None]
 
 
 class TrackComparison(_documents.TrackComparison, frozen=True):
+    _words: ClassVar[Mapping[str, str]] = {"explains": "bool"}
+
     def table(self) -> list[Row]:
         """Give the errors of each model, one dict a row."""
         return [
@@ -66,7 +69,7 @@ def compare(
     *,
     size: float = 0.05,
     draws: int = 999,
-    seed: int = 1,
+    seed: Seed = 1,
     return_poses: bool = False,
     threads: int = 0,
 ) -> Comparison | TrackComparison:
@@ -83,7 +86,7 @@ def compare(
         False-alarm rate: probability that a correct model is rejected.
     draws : int, default 999
         Simulated tests for the p-values.
-    seed : int, default 1
+    seed : int, numpy Generator, BitGenerator or SeedSequence, or None, default 1
         Seed of those.
     return_poses : bool, default False
         Whether to use return poses alone, even where the runs were observed on the way.
@@ -106,7 +109,7 @@ def compare(
         models = {"model": models}
     elif not isinstance(models, Mapping):
         models = {f"model {place}": model for place, model in enumerate(models, 1)}
-    options = (size, draws, seed)
+    options = options_of(size, draws, seed)
     document = _umbmark.compare(data_of(data), [*models.items()], options, return_poses, threads)
     if msgspec.json.decode(document)["observed"] == "tracks":
         return TrackComparison._of(document)

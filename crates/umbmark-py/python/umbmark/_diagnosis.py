@@ -3,21 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import msgspec
 
 from umbmark import _documents, _umbmark
+from umbmark._arguments import Seed, options_of
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
-from umbmark._umbmark import Model
+from umbmark._tracks import Tracks, tracks
+from umbmark._umbmark import Dataset, Model
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
 class Diagnosis(_documents.Diagnosis, frozen=True):
+    """What a model is missing, how certain that is, and what this data cannot show.
+
+    Attributes
+    ----------
+    data : Dataset
+        The measurements.
+    """
+
+    _beside: ClassVar[tuple[str, ...]] = ("data",)
+
+    data: Dataset
+
     def table(self) -> list[Row]:
         """Give the ranking, one dict a row."""
         return [
@@ -37,8 +51,24 @@ class Diagnosis(_documents.Diagnosis, frozen=True):
 
         return _plots.diagnosis(self, ax)
 
+    def tracks(self) -> Tracks:
+        """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""
+        return tracks(self.data, self.model)
+
 
 class Fitted(_documents.Fitted, frozen=True):
+    """A fit of a model: its numbers, and the model with them.
+
+    Attributes
+    ----------
+    data : Dataset
+        The measurements.
+    """
+
+    _beside: ClassVar[tuple[str, ...]] = ("data",)
+
+    data: Dataset
+
     def table(self) -> list[Row]:
         """Give the free parameters, one dict a row."""
         return [msgspec.structs.asdict(estimate) for estimate in self.fitted]
@@ -49,8 +79,24 @@ class Fitted(_documents.Fitted, frozen=True):
 
         return _plots.fitted(self, ax)
 
+    def tracks(self) -> Tracks:
+        """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""
+        return tracks(self.data, self.model)
+
 
 class Learnt(_documents.Learnt, frozen=True):
+    """What was learnt, from the nominal robot to the model.
+
+    Attributes
+    ----------
+    data : Dataset
+        The measurements.
+    """
+
+    _beside: ClassVar[tuple[str, ...]] = ("data",)
+
+    data: Dataset
+
     def table(self) -> list[Row]:
         """Give the steps, one dict a row."""
         keys = ("p_adjusted", "rmse_m", "heldout_rmse_m", "heldout_heading_rmse_rad", "aicc")
@@ -65,6 +111,10 @@ class Learnt(_documents.Learnt, frozen=True):
 
         return _plots.learnt(self, ax)
 
+    def tracks(self) -> Tracks:
+        """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""
+        return tracks(self.data, self.model)
+
 
 def diagnose(
     data: Data,
@@ -72,7 +122,7 @@ def diagnose(
     *,
     size: float = 0.05,
     draws: int = 999,
-    seed: int = 1,
+    seed: Seed = 1,
     return_poses: bool = False,
     threads: int = 0,
 ) -> Diagnosis:
@@ -89,7 +139,7 @@ def diagnose(
         False-alarm rate: probability that a complete model is rejected.
     draws : int, default 999
         Simulated tests for p-values that have no closed form.
-    seed : int, default 1
+    seed : int, numpy Generator, BitGenerator or SeedSequence, or None, default 1
         Seed of those.
     return_poses : bool, default False
         Whether to use return poses alone, even where the runs were observed on the way.
@@ -109,9 +159,10 @@ def diagnose(
     >>> umbmark.diagnose(umbmark.simulate(truth, reference_rate_hz=0)).verdict
     'missing_effect'
     """
-    options = (size, draws, seed)
-    document, fitted = _umbmark.diagnose(data_of(data), model, options, return_poses, threads)
-    return Diagnosis._of(document, model=fitted)
+    options = options_of(size, draws, seed)
+    data = data_of(data)
+    document, fitted = _umbmark.diagnose(data, model, options, return_poses, threads)
+    return Diagnosis._of(document, model=fitted, data=data)
 
 
 def fit(
@@ -136,8 +187,9 @@ def fit(
     ValueError
         If no effect is free, or the fit does not settle.
     """
-    document, fitted = _umbmark.fit(data_of(data), model, [*add], level)
-    return Fitted._of(document, model=fitted)
+    data = data_of(data)
+    document, fitted = _umbmark.fit(data, model, [*add], level)
+    return Fitted._of(document, model=fitted, data=data)
 
 
 def learn(
@@ -146,7 +198,7 @@ def learn(
     *,
     size: float = 0.05,
     draws: int = 999,
-    seed: int = 1,
+    seed: Seed = 1,
     return_poses: bool = False,
     threads: int = 0,
     progress: Progress = None,
@@ -179,9 +231,7 @@ def learn(
     >>> [step.added for step in learnt.steps], learnt.verdict
     ([None, 'wheel_diameter_ratio', 'wheelbase'], 'explained')
     """
-    options = (size, draws, seed)
+    data, options = data_of(data), options_of(size, draws, seed)
     with Bar(progress, 1000, "steps") as bar:
-        document, learnt = _umbmark.learn(
-            data_of(data), model, options, return_poses, threads, bar.at
-        )
-    return Learnt._of(document, model=learnt)
+        document, learnt = _umbmark.learn(data, model, options, return_poses, threads, bar.at)
+    return Learnt._of(document, model=learnt, data=data)

@@ -41,6 +41,7 @@ def export(
     turn_rate_rad_s: float = 0.5,
     rate_hz: float = 50.0,
     start: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    force: bool = False,
 ) -> Exported:
     """Write the numbers of a model for a program that needs them.
 
@@ -65,11 +66,14 @@ def export(
         Rate at which the robot publishes its odometry.
     start : tuple of float, default (0.0, 0.0, 0.0)
         Where the robot stands at its first reading: x and y in m, heading in rad; for "embedded".
+    force : bool, default False
+        Whether to write a model that is in doubt; ``Model.doubt`` says why it is.
 
     Raises
     ------
     ValueError
-        If the target cannot have such a robot, or something is missing; it says what to do.
+        If the target cannot have such a robot, something is missing, or the model is in doubt; it
+        says what to do.
 
     Examples
     --------
@@ -83,4 +87,4 @@ def export(
     wheels = None if joints is None else list(joints)
     edited = None if urdf is None else (os.fspath(urdf), wheels)
     usual = [speed_m_s, turn_rate_rad_s, rate_hz]
-    return Exported(*_umbmark.export(model, to, path, controller, edited, usual, start))
+    return Exported(*_umbmark.export(model, to, path, controller, edited, usual, start, force))

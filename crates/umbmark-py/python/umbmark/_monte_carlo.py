@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from umbmark import _documents, _umbmark
+from umbmark._arguments import Seed
 from umbmark._result import Row
 from umbmark._umbmark import Ensemble, Model, Path, Study
 
@@ -34,21 +35,10 @@ class MonteCarlo(_documents.MonteCarlo, frozen=True):
     """
 
     _beside: ClassVar[tuple[str, ...]] = ("ensemble", "trials")
+    _timings: ClassVar[tuple[str, ...]] = ("trials_per_s",)
 
     ensemble: Ensemble
     trials: Mapping[str, NDArray[np.float64]] | None
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, MonteCarlo):
-            return NotImplemented
-        mine, theirs = self.trials or {}, other.trials or {}
-        return (
-            (self.to_dict(), self.ensemble) == (other.to_dict(), other.ensemble)
-            and (self.trials is None, [*mine]) == (other.trials is None, [*theirs])
-            and all(np.array_equal(mine[name], theirs[name]) for name in mine)
-        )
-
-    __hash__ = None  # type: ignore[assignment]
 
     def table(self) -> list[Row]:
         """Give the statistics of each metric, one dict a row."""
@@ -71,7 +61,7 @@ def monte_carlo(
     *,
     n: int | None = None,
     runs: int | tuple[int, int] = 5,
-    seed: int = 1,
+    seed: Seed = 1,
     until_std_error_m: float | None = None,
     odometry: str = "robot",
     update: str = "arc",
@@ -96,8 +86,9 @@ def monte_carlo(
         ``until_std_error_m``.
     runs : int or tuple of int, default 5
         Runs in each direction, or (cw, ccw).
-    seed : int, default 1
+    seed : int, numpy Generator, BitGenerator or SeedSequence, or None, default 1
         Seed of all random numbers: the same seed gives the same bits for any number of threads.
+        None draws a fresh one, which the result has.
     until_std_error_m : float, optional
         Stop as soon as the standard error of the mean E_max,sys is this small, in m.
     odometry, update, phase : str
@@ -133,7 +124,8 @@ def monte_carlo(
     >>> print(f"{found.metrics['e_max_sys_m'].mean:.3f} m")
     0.306 m
     """
-    n = n or (1000 if until_std_error_m is None else MOST_UNTIL)
+    if n is None:
+        n = 1000 if until_std_error_m is None else MOST_UNTIL
     study = Study(
         model, path, n=n, runs=runs, seed=seed, odometry=odometry, update=update, phase=phase
     )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from msgspec import UNSET
 
 from umbmark import _documents, _umbmark
+from umbmark._arguments import Seed
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
 
@@ -87,7 +88,7 @@ def _value(experiment: str, what: str, quantity: str, value: float) -> Row:
 def paper(
     *experiments: str,
     n: int = 2000,
-    seed: int = 1,
+    seed: Seed = 1,
     threads: int = 0,
     progress: Progress = None,
 ) -> Paper:

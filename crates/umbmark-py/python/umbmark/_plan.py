@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from umbmark import _documents, _umbmark
+from umbmark._arguments import Seed, options_of, whole
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
@@ -108,7 +109,7 @@ def plan(
     numbers: Sequence[int] = tuple(range(3, 31)),
     order: str = "mirrored",
     draws: int = 999,
-    seed: int = 1,
+    seed: Seed = 1,
     threads: int = 0,
     progress: Progress = None,
 ) -> Plan:
@@ -163,16 +164,17 @@ def plan(
     # UMBmark test sheet: TRC LabMate
     """
     sizes = [(name, float(value)) for name, value in (see or {}).items()]
-    whose = _Whose(_read(data), model, path, sigma_m, with_heading, seed)
+    options = options_of(size, draws, seed)
+    whose = _Whose(_read(data), model, path, sigma_m, with_heading, options[2])
     with Bar(progress, 1000, "steps") as bar:
         document, markdown, html = _umbmark.plan(
             whose,
-            runs,
+            whole("runs", runs, 0, (1 << 32) - 1),
             sizes,
             power,
             [*numbers],
             order,
-            (size, draws, seed),
+            options,
             threads,
             bar.at,
         )
@@ -189,7 +191,7 @@ def separate(
     runs: int = 5,
     sigma_m: float | None = None,
     with_heading: bool = True,
-    seed: int = 1,
+    seed: Seed = 1,
     threads: int = 0,
 ) -> Separation:
     """Rank experiments by how well they tell two effects apart, per minute.
@@ -218,9 +220,13 @@ def separate(
     >>> umbmark.separate("wheelbase", "scale").next_experiments[0].sd > 3
     True
     """
-    whose = _Whose(_read(data), model, path, sigma_m, with_heading, seed)
-    options = (0.05, 999, seed)
-    return Separation._of(_umbmark.separate((first, second), whose, runs, options, threads))
+    options = options_of(0.05, 999, seed)
+    whose = _Whose(_read(data), model, path, sigma_m, with_heading, options[2])
+    return Separation._of(
+        _umbmark.separate(
+            (first, second), whose, whole("runs", runs, 0, (1 << 32) - 1), options, threads
+        )
+    )
 
 
 def _read(data: Data | None) -> Dataset | None:

@@ -9,6 +9,7 @@ from pathlib import PurePath
 from typing import ClassVar, TypeAlias
 
 from umbmark import _documents, _umbmark
+from umbmark._arguments import Seed, options_of
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
@@ -56,7 +57,7 @@ def plot(
     n: int = 1000,
     size: float = 0.05,
     draws: int = 999,
-    seed: int = 1,
+    seed: Seed = 1,
     return_poses: bool = False,
     threads: int = 0,
     progress: Progress = None,
@@ -103,7 +104,7 @@ def plot(
         data_of(data),
         None if model is None else ("the model", model),
     )
-    how = ((size, draws, seed), return_poses, n)
+    how = (options_of(size, draws, seed), return_poses, n)
     with Bar(progress, 1000, "steps") as bar:
         return _umbmark.figure(kind, asked, how, threads, bar.at)
 
@@ -127,7 +128,7 @@ def report(
     n: int = 1000,
     size: float = 0.05,
     draws: int = 999,
-    seed: int = 1,
+    seed: Seed = 1,
     return_poses: bool = False,
     threads: int = 0,
     progress: Progress = None,
@@ -168,8 +169,9 @@ def report(
     """
     asked = _studies(data, model)
     places = [place for one in _named(data).values() if (place := _place(one)) is not None]
-    how = ((size, draws, seed), return_poses, n)
-    call = f"umbmark.report({', '.join([*map(repr, places), f'seed={seed}'])})"
+    options = options_of(size, draws, seed)
+    how = (options, return_poses, n)
+    call = f"umbmark.report({', '.join([*map(repr, places), f'seed={options[2]}'])})"
     with Bar(progress, 1000, "steps") as bar:
         document, page = _umbmark.report(asked, how, call, places, threads, bar.at)
     return Report._of(document, html=page)

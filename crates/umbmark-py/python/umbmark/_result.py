@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import html
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 import msgspec
+import numpy as np
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,11 +25,16 @@ class Record(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A frozen result. Its attributes are the keys of the command's ``--json``.
 
-    Results compare by value, can be pickled, and show themselves as a table in notebooks.
+    Results compare by value, how long they took left out; they can be hashed and pickled, and show
+    themselves as a table in notebooks.
     """
 
     # Attributes that are no keys of the document.
     _beside: ClassVar[tuple[str, ...]] = ()
+    # Attributes that differ from one time to the next.
+    _timings: ClassVar[tuple[str, ...]] = ()
+    # Columns of the table that are no numbers where nothing is known of them in any row.
+    _words: ClassVar[Mapping[str, str]] = {}
 
     def __init_subclass__(cls) -> None:
         """Document the attributes of the document that a class adds to before its own."""
@@ -45,6 +52,16 @@ class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         """Make a result of a document, and of what stands beside it."""
         return msgspec.convert({**msgspec.json.decode(document), **beside}, cls)
 
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        compared = (key for key in self.__struct_fields__ if key not in self._timings)
+        return all(_same(getattr(self, key), getattr(other, key)) for key in compared)
+
+    def __hash__(self) -> int:
+        kept = {key: value for key, value in self.to_dict().items() if key not in self._timings}
+        return hash((type(self).__name__, msgspec.json.encode(kept)))
+
     def to_dict(self) -> dict[str, Any]:
         """Give it as dicts, lists and numbers, under the keys of the command's ``--json``."""
         given = [(key, value) for key, value in _fields(self) if value is not msgspec.UNSET]
@@ -55,15 +72,36 @@ class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     def table(self) -> list[Row]:
         """Give its main numbers, one dict a row: its first list of parts, or its own numbers."""
-        values = [value for _, value in _fields(self) if isinstance(value, tuple)]
-        lists = [value for value in values if value and isinstance(value[0], Record)]
-        return [_plain(row) for row in (lists[0] if lists else (self,))]
+        return [_plain(row) for row in self._parts() or (self,)]
 
     def to_arrow(self) -> pa.Table:
-        """Give its ``table`` as an Arrow table."""
+        """Give its ``table`` as an Arrow table; a column in which nothing is known has its type."""
         import pyarrow as pa
 
-        return pa.Table.from_pylist(self.table())
+        table = pa.Table.from_pylist(self.table())
+        named = {"bool": pa.bool_(), "float": pa.float64(), "int": pa.int64(), "str": pa.string()}
+        types = {name: named[word] for name, word in self._kinds().items()}
+        kinds = (
+            types.get(field.name, pa.float64()) if pa.types.is_null(field.type) else field.type
+            for field in table.schema
+        )
+        return table.cast(pa.schema([*zip(table.column_names, kinds, strict=True)]))
+
+    def _kinds(self) -> Mapping[str, str]:
+        """Give the types of the columns that may be empty, by their annotations."""
+        kinds = dict(self._words)
+        for part in (type(self), *(type(row) for row in self._parts()[:1])):
+            for field in msgspec.structs.fields(part):
+                word = str(field.type).removesuffix(" | None")
+                word = word if word in ("bool", "int", "str") else "float"
+                kinds.setdefault(field.name, word)
+        return kinds
+
+    def _parts(self) -> tuple[Record, ...]:
+        """Give its first list of parts."""
+        values = [value for _, value in _fields(self) if isinstance(value, tuple)]
+        lists = [value for value in values if value and isinstance(value[0], Record)]
+        return lists[0] if lists else ()
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         """Give its ``table`` to whatever reads Arrow: ``pyarrow.table``, polars, DuckDB."""
@@ -98,6 +136,15 @@ class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         )
         name = type(self).__name__
         return f"<table><caption>{name}</caption><tr>{head}</tr>{body}</table>"
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether values are equal, arrays element by element."""
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return [*one] == [*other] and all(_same(one[key], other[key]) for key in one)
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        return np.array_equal(one, other, equal_nan=True)
+    return bool(one == other)
 
 
 def _plain(part: Result | Record) -> Row:

@@ -5,10 +5,8 @@ from __future__ import annotations
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
-import numpy as np
-from numpy.typing import NDArray
-
 from umbmark import _documents
+from umbmark._arguments import Numbers
 from umbmark._result import Row
 from umbmark._umbmark import Dataset, load_dataset, score_arrays, score_dataset
 
@@ -73,11 +71,11 @@ def score(data: Data, /, *, level: float = 0.95, convention: str = "mean") -> Sc
 
 @overload
 def score(
-    cw: NDArray[np.float64],
-    ccw: NDArray[np.float64],
+    cw: Numbers,
+    ccw: Numbers,
     *,
-    bumps_cw: NDArray[np.float64] | None = None,
-    bumps_ccw: NDArray[np.float64] | None = None,
+    bumps_cw: Numbers | None = None,
+    bumps_ccw: Numbers | None = None,
     level: float = 0.95,
     convention: str = "mean",
 ) -> Score: ...
@@ -87,8 +85,8 @@ def score(
     cw: Any,
     ccw: Any = None,
     *,
-    bumps_cw: NDArray[np.float64] | None = None,
-    bumps_ccw: NDArray[np.float64] | None = None,
+    bumps_cw: Numbers | None = None,
+    bumps_ccw: Numbers | None = None,
     level: float = 0.95,
     convention: str = "mean",
 ) -> Score:
@@ -100,15 +98,16 @@ def score(
 
     Parameters
     ----------
-    cw : Dataset, path-like, or ndarray of float64, shape (n, 3) or (n, 2)
+    cw : Dataset, path-like, or array of numbers, shape (n, 3) or (n, 2)
         A dataset or its place. Or the return errors of the clockwise runs, one row per run: x in
         m, y in m, heading in rad, each absolute minus computed (Eq. 1), in the frame of START,
         headings counter-clockwise positive. A heading that is NaN, or a missing third column, was
         not measured. Without any run of a direction, shape (0, 3), the other direction's centroid
-        is still given.
-    ccw : ndarray of float64, shape (n, 3) or (n, 2)
+        is still given. Sequences, NumPy arrays of any real type, and frames of pandas, polars and
+        Arrow with these columns are such arrays; C-contiguous float64 is read where it lies.
+    ccw : array of numbers, shape (n, 3) or (n, 2)
         The same of the counter-clockwise runs, where ``cw`` is an array.
-    bumps_cw, bumps_ccw : ndarray of float64, shape (n, 3) or (n, 2), optional
+    bumps_cw, bumps_ccw : array of numbers, shape (n, 3) or (n, 2), optional
         The same of the extended test, driven over bumps.
     level : float, default 0.95
         Probability with which each interval holds the true value.
@@ -124,7 +123,7 @@ def score(
     Raises
     ------
     TypeError
-        If an argument is no plain NumPy array of float64.
+        If an argument has no numbers, or is masked.
     ValueError
         If an array has another shape, a position is not finite, a heading is infinite, the level
         does not lie between 0 and 1, there is no run at all, or a file cannot be read.

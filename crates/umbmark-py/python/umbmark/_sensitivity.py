@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from umbmark import _documents, _umbmark
+from umbmark._arguments import Seed
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._parameters import Correlations, Parameters, keys_of
 from umbmark._result import Row
@@ -52,7 +53,7 @@ def sensitivity(
     runs: int | tuple[int, int] = 5,
     parameters: Parameters | None = None,
     correlations: Correlations | None = None,
-    seed: int = 1,
+    seed: Seed = 1,
     odometry: str = "robot",
     update: str = "arc",
     phase: str = "random",
@@ -100,12 +101,12 @@ def sensitivity(
     >>> found.metrics["return_heading_cw_rad"].first["wheelbase.e_b"].value > 0.9
     True
     """
-    if method in EFFORT:
-        effort = effort or EFFORT[method]
+    if effort is None:
+        effort = EFFORT.get(method, 1)
     study = Study(
         model,
         path,
-        n=effort or 1,
+        n=effort,
         runs=runs,
         seed=seed,
         odometry=odometry,
@@ -115,6 +116,6 @@ def sensitivity(
     keys = None if parameters is None else keys_of(parameters, correlations)
     with Bar(progress, 1000, "steps") as bar:
         document = _umbmark.sensitivity(
-            study, keys, method, effort or 1, second_order, noise_free, threads, bar.at
+            study, keys, method, effort, second_order, noise_free, threads, bar.at
         )
     return Sensitivity._of(document)

@@ -2,13 +2,30 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from umbmark import _documents, _umbmark
+from umbmark._arguments import Seed, options_of
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
+from umbmark._tracks import Tracks, tracks
+from umbmark._umbmark import Dataset
 
 
 class Solution(_documents.Solution, frozen=True):
+    """The one answer about a measured robot: what to write into it, what remains, what to do next.
+
+    Attributes
+    ----------
+    data : Dataset
+        The measurements.
+    """
+
+    _beside: ClassVar[tuple[str, ...]] = ("data",)
+
+    data: Dataset
+
     def table(self) -> list[Row]:
         """Give the new numbers of the robot, one dict a row."""
         keys = ("old", "new", "low", "high", "worth_m")
@@ -17,13 +34,17 @@ class Solution(_documents.Solution, frozen=True):
             for name, change in self.correction.items()
         ]
 
+    def tracks(self) -> Tracks:
+        """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""
+        return tracks(self.data, self.model)
+
 
 def solve(
     data: Data,
     *,
     size: float = 0.05,
     draws: int = 999,
-    seed: int = 1,
+    seed: Seed = 1,
     return_poses: bool = False,
     threads: int = 0,
     progress: Progress = None,
@@ -59,7 +80,7 @@ def solve(
     >>> answer.needed, f"{answer.correction['wheelbase_m'].new:.3f}"
     (True, '0.343')
     """
-    options = (size, draws, seed)
+    data, options = data_of(data), options_of(size, draws, seed)
     with Bar(progress, 1000, "steps") as bar:
-        document, model = _umbmark.solve(data_of(data), options, return_poses, threads, bar.at)
-    return Solution._of(document, model=model)
+        document, model = _umbmark.solve(data, options, return_poses, threads, bar.at)
+    return Solution._of(document, model=model, data=data)

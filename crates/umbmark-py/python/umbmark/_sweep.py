@@ -8,6 +8,7 @@ from os import PathLike
 from typing import TYPE_CHECKING
 
 from umbmark import _documents, _umbmark
+from umbmark._arguments import Seed
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
 from umbmark._umbmark import Model, Path, Study
@@ -42,7 +43,7 @@ def sweep(
     *,
     n: int = 1000,
     runs: int | tuple[int, int] = 5,
-    seed: int = 1,
+    seed: Seed = 1,
     odometry: str = "robot",
     update: str = "arc",
     phase: str = "random",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from umbmark import _documents, _umbmark
+from umbmark._arguments import Seed
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._parameters import Correlations, Parameters, keys_of
 from umbmark._result import Row
@@ -75,7 +76,7 @@ def tolerance(
     with_noise: bool = False,
     correlations: Correlations | None = None,
     runs: int | tuple[int, int] = 5,
-    seed: int = 1,
+    seed: Seed = 1,
     odometry: str = "robot",
     update: str = "arc",
     phase: str = "random",

@@ -1,12 +1,13 @@
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path as PathlibPath
-from typing import Any, Self, TypeAlias, final
+from typing import Any, Self, SupportsIndex, TypeAlias, final, overload
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
+from umbmark._arguments import Numbers, Seed
 from umbmark._documents import Effect
 
 __all__ = [
@@ -48,6 +49,7 @@ __all__ = [
     "solve",
     "sweep",
     "tolerance",
+    "tracks",
     "write",
 ]
 
@@ -85,7 +87,7 @@ class Robot:
     def ticks_per_revolution(self) -> float: ...
     @property
     def encoder_rate_hz(self) -> float | None: ...
-    __hash__: None  # type: ignore[assignment]
+    def __hash__(self) -> int: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
@@ -102,7 +104,7 @@ class Path:
     @property
     def length_m(self) -> float: ...
     def end(self, direction: str) -> tuple[float, float, float]: ...
-    __hash__: None  # type: ignore[assignment]
+    def __hash__(self) -> int: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     @staticmethod
@@ -121,12 +123,14 @@ class Model:
     @property
     def noise(self) -> dict[str, float] | None: ...
     @property
+    def doubt(self) -> str | None: ...
+    @property
     def robot(self) -> Robot: ...
     @property
     def effects(self) -> list[str]: ...
     def to_toml(self) -> str: ...
     def to_dict(self) -> dict[str, Any]: ...
-    __hash__: None  # type: ignore[assignment]
+    def __hash__(self) -> int: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
@@ -140,11 +144,11 @@ class Run:
         name: str | None = None,
         test: str = "systematic",
         returned: Sequence[float] | None = None,
-        time_s: Floats | None = None,
-        ticks_left: Floats | None = None,
-        ticks_right: Floats | None = None,
-        reference_sample: NDArray[np.int64] | None = None,
-        reference_pose: Floats | None = None,
+        time_s: Numbers | None = None,
+        ticks_left: Numbers | None = None,
+        ticks_right: Numbers | None = None,
+        reference_sample: Numbers | None = None,
+        reference_pose: Numbers | None = None,
         relative: bool = False,
     ) -> Self: ...
     @property
@@ -169,6 +173,8 @@ class Run:
     def reference_pose(self) -> Floats | None: ...
     @property
     def relative(self) -> bool | None: ...
+    def __hash__(self) -> int: ...
+    def __eq__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     @staticmethod
     def _from_json(text: str) -> Run: ...
@@ -178,6 +184,27 @@ class Dataset:
     def __new__(
         cls, robot: Robot | None = None, path: Path | None = None, runs: Sequence[Run] = ...
     ) -> Self: ...
+    @staticmethod
+    def from_arrays(
+        cw: Numbers | None = None,
+        ccw: Numbers | None = None,
+        *,
+        robot: Robot | None = None,
+        path: Path | None = None,
+        bumps_cw: Numbers | None = None,
+        bumps_ccw: Numbers | None = None,
+    ) -> Dataset: ...
+    @staticmethod
+    def from_frame(
+        frame: Any,
+        *,
+        robot: Robot | None = None,
+        path: Path | None = None,
+        run: str | None = "run",
+        t: str = "t_s",
+        ticks: tuple[str, str] = ("ticks_left", "ticks_right"),
+        pose: Sequence[str] | None = ("x_ref_m", "y_ref_m", "theta_ref_rad"),
+    ) -> Dataset: ...
     @property
     def robot(self) -> Robot | None: ...
     @property
@@ -186,6 +213,14 @@ class Dataset:
     def runs(self) -> tuple[Run, ...]: ...
     @property
     def warnings(self) -> tuple[str, ...]: ...
+    def __len__(self) -> int: ...
+    @overload
+    def __getitem__(self, key: SupportsIndex | str, /) -> Run: ...
+    @overload
+    def __getitem__(self, key: slice, /) -> Dataset: ...
+    def __iter__(self) -> Iterator[Run]: ...
+    def __hash__(self) -> int: ...
+    def __eq__(self, other: object, /) -> bool: ...
     def returns(self, direction: str, test: str = "systematic") -> Floats: ...
     def save(
         self, place: Place, *, layout: str | None = None, replace: bool = False
@@ -204,7 +239,7 @@ class Study:
         *,
         n: int = 1000,
         runs: int | tuple[int, int] | None = None,
-        seed: int = 1,
+        seed: Seed = 1,
         odometry: str = "robot",
         update: str = "arc",
         phase: str = "random",
@@ -247,9 +282,15 @@ class Ensemble:
     def mean(self, metric: str) -> float: ...
     def std_dev(self, metric: str) -> float: ...
     def std_error(self, metric: str) -> float: ...
-    def quantile(self, metric: str, shares: Floats) -> Floats: ...
-    def share_below(self, metric: str, values: Floats) -> Floats: ...
-    __hash__: None  # type: ignore[assignment]
+    @overload
+    def quantile(self, metric: str, shares: float) -> float: ...
+    @overload
+    def quantile(self, metric: str, shares: Numbers) -> Floats: ...
+    @overload
+    def share_below(self, metric: str, values: float) -> float: ...
+    @overload
+    def share_below(self, metric: str, values: Numbers) -> Floats: ...
+    def __hash__(self) -> int: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     @staticmethod
@@ -296,7 +337,7 @@ def merge(files: Sequence[Place], output: Place | None, replace: bool) -> tuple[
 def paper(
     names: Sequence[str],
     trials: int,
-    seed: int,
+    seed: Seed,
     threads: int,
     progress: Callable[[int], object] | None,
 ) -> str: ...
@@ -325,10 +366,10 @@ def effects() -> dict[str, Effect]: ...
 def formula_variables() -> list[str]: ...
 def presets() -> dict[str, tuple[Model, Path]]: ...
 def score_arrays(
-    cw: Floats,
-    ccw: Floats,
-    bumps_cw: Floats | None,
-    bumps_ccw: Floats | None,
+    cw: Numbers,
+    ccw: Numbers,
+    bumps_cw: Numbers | None,
+    bumps_ccw: Numbers | None,
     level: float,
     convention: str,
 ) -> str: ...
@@ -406,6 +447,7 @@ def export(
     urdf: tuple[str, list[str] | None] | None,
     usual: list[float],
     start: tuple[float, float, float],
+    force: bool,
 ) -> tuple[str, list[str]]: ...
 def compare(
     data: Dataset,
@@ -442,12 +484,15 @@ def solve(
 def apply(
     data: Dataset, model: Model, start: tuple[float, float, float]
 ) -> list[tuple[str, Floats, Floats, Floats | None]]: ...
+def tracks(
+    data: Dataset, model: Model
+) -> list[tuple[str, str | None, Floats, list[Floats], Floats | None]]: ...
 def simulate(
     model: Model,
     path: Path | None = None,
     *,
     runs: int | tuple[int, int] | None = None,
     reference_rate_hz: float = 20.0,
-    seed: int = 1,
+    seed: Seed = 1,
     trial: int = 0,
 ) -> Dataset: ...

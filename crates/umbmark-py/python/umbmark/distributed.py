@@ -20,6 +20,7 @@ import numpy as np
 from distributed import as_completed
 from numpy.typing import NDArray
 
+from umbmark._arguments import Seed, seed_of
 from umbmark._diagnosis import diagnose, learn
 from umbmark._monte_carlo import Bar, MonteCarlo, Progress, is_precise, result_of
 from umbmark._parameters import Correlations, Parameters, keys_of
@@ -215,7 +216,7 @@ def verdicts(
     reference_rate_hz: float = 0.0,
     size: float = 0.05,
     draws: int = 999,
-    seed: int = 1,
+    seed: Seed = 1,
     chunk: int = 16,
     progress: Progress = None,
 ) -> Verdicts:
@@ -240,7 +241,7 @@ def verdicts(
         As of ``umbmark.simulate``; 0 Hz for return poses alone.
     size, draws
         As of ``umbmark.diagnose``.
-    seed : int, default 1
+    seed : int, numpy Generator, BitGenerator or SeedSequence, or None, default 1
         Seed of all random numbers.
     chunk : int, default 16
         Tests of a chunk; no number depends on it.
@@ -256,6 +257,7 @@ def verdicts(
         raise ValueError(f'ask must be one of diagnose, learn, got "{ask}"')
     if n < 1 or chunk < 1:
         raise ValueError(f"n and chunk must be 1 or more, got {n} and {chunk}")
+    seed = seed_of(seed)
     both = (runs, runs) if isinstance(runs, int) else runs
 
     work = functools.partial(

@@ -18,7 +18,7 @@ const ENOUGH: f64 = 0.5;
 pub struct Suggestion {
     /// A model that holds it alone, free and with start values.
     pub model: Model,
-    /// Share of the smooth's drop that it explains.
+    /// Share of the smooth's drop that it explains, at most 1.
     pub share: f64,
 }
 
@@ -53,7 +53,7 @@ pub fn suggestion(exam: &Examination, finding: &Finding, covariate: &Covariate, 
             model.set(NAME, name, rounded).ok()?;
         }
         if best.as_ref().is_none_or(|(most, _)| worth > *most) {
-            best = Some((worth, Suggestion { model, share: drop / finding.answer.drop }));
+            best = Some((worth, Suggestion { model, share: (drop / finding.answer.drop).min(1.0) }));
         }
     }
     best.map(|(_, suggestion)| suggestion).filter(|suggestion| suggestion.share >= ENOUGH)
