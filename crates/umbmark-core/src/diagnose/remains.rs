@@ -326,23 +326,26 @@ fn rms(trails: &[Trail], which: usize) -> f64 {
 
 /// The root of the mean of products, with the interval of the mean by the jackknife over the runs of each path.
 fn repeating(paths: &[Vec<Pair>], which: usize, confidence: f64) -> Option<Repeating> {
-    let sums = |path: &[Pair], without: Option<usize>| {
-        let kept = path.iter().filter(|pair| without.is_none_or(|run| !pair.runs.contains(&run)));
-        kept.fold((0.0, 0.0), |(sum, count), pair| (sum + pair.sums[which], count + pair.counts[which]))
-    };
-    let all: Vec<(f64, f64)> = paths.iter().map(|path| sums(path, None)).collect();
+    let add = |(sum, count): (f64, f64), pair: &Pair| (sum + pair.sums[which], count + pair.counts[which]);
+    let all: Vec<(f64, f64)> = paths.iter().map(|path| path.iter().fold((0.0, 0.0), add)).collect();
     let count: f64 = all.iter().map(|(_, count)| count).sum();
     if count <= 0.0 {
         return None;
     }
     let square = all.iter().map(|(sum, _)| sum).sum::<f64>() / count;
     let (mut variance, mut freedom) = (0.0, 0.0);
-    for (path, (_, weight)) in paths.iter().zip(&all) {
+    for (path, (sum, weight)) in paths.iter().zip(&all) {
         let runs = runs_of(path);
         let n = runs.len() as f64;
-        let without: Vec<f64> = runs
+        let mut own = vec![(0.0, 0.0); runs.len()];
+        for (pair, run) in path.iter().flat_map(|pair| pair.runs.map(|run| (pair, run))) {
+            if let Ok(place) = runs.binary_search(&run) {
+                own[place] = add(own[place], pair);
+            }
+        }
+        let without: Vec<f64> = own
             .iter()
-            .map(|run| sums(path, Some(*run)))
+            .map(|(own, count)| (sum - own, weight - count))
             .filter(|(_, count)| *count > 0.0)
             .map(|(s, c)| s / c)
             .collect();

@@ -5,7 +5,7 @@ use crate::diagnose::ends::{self, Moments};
 use crate::diagnose::{Diagnosis, Options, Suspect};
 use crate::drive::Robot;
 use crate::effect::{Model, Part};
-use crate::evidence::ends::Fitted;
+use crate::evidence::ends::{End, Fitted};
 use crate::evidence::{Ends, Evidence, FitError};
 use crate::watch::Watch;
 use nalgebra::DVector;
@@ -56,7 +56,10 @@ pub(super) fn learn(ends: &Ends, start: &Model, options: &Options, watch: &Watch
     Ok(Learnt { steps, verdict, model, noise: None, diagnosis, remarks, partial })
 }
 
-/// A model as it grows, on all runs and without each of them.
+/// At most so many folds: with more runs than these, each fold leaves out several.
+const MOST_FOLDS: usize = 60;
+
+/// A model as it grows, on all runs and without those of each fold: one run, where there are not more than [`MOST_FOLDS`].
 pub(super) struct Story<'a> {
     ends: &'a Ends,
     folds: Arc<Vec<Ends>>,
@@ -68,7 +71,8 @@ pub(super) struct Story<'a> {
 impl<'a> Story<'a> {
     pub fn new(ends: &'a Ends) -> Story<'a> {
         let nominal = Model::new(&ends.robot);
-        let folds: Vec<Ends> = (0..ends.runs.len()).map(|run| without(ends, run)).collect();
+        let count = ends.runs.len().min(MOST_FOLDS);
+        let folds: Vec<Ends> = (0..count).map(|fold| without(ends, fold, count)).collect();
         let fold_models = vec![nominal.clone(); folds.len()];
         let folds = Arc::new(folds);
         let mut story = Story { ends, folds, model: nominal, fold_models, steps: Vec::new() };
@@ -129,17 +133,20 @@ impl<'a> Story<'a> {
     }
 
     fn tell(&mut self, added: Option<&'static str>, class: Vec<&'static str>, p_adjusted: Option<f64>) {
-        let total = |squares: &dyn Fn(usize) -> Squares| {
-            (0..self.ends.runs.len()).map(squares).fold(Squares::default(), Squares::add).error()
-        };
+        let folds = self.folds.len();
+        let held_out = self
+            .fold_models
+            .iter()
+            .enumerate()
+            .map(|(fold, model)| squares(self.ends, model, |run| run % folds == fold));
         let criteria = criteria(self.ends, &self.model);
         self.steps.push(Step {
             added,
             class,
             p_adjusted,
             law: None,
-            error: total(&|run| squares(self.ends, &self.model, run)),
-            held_out: total(&|run| squares(self.ends, &self.fold_models[run], run)),
+            error: squares(self.ends, &self.model, |_| true).error(),
+            held_out: held_out.fold(Squares::default(), Squares::add).error(),
             aicc: criteria.map(|c| c[0]),
             bic: criteria.map(|c| c[1]),
         });
@@ -195,25 +202,29 @@ impl Squares {
     }
 }
 
-/// The same return poses without one run.
-fn without(ends: &Ends, run: usize) -> Ends {
+/// The same return poses without those of one of some folds.
+fn without(ends: &Ends, fold: usize, folds: usize) -> Ends {
     let mut rest = ends.clone();
-    rest.runs.remove(run);
+    let mut run = 0;
+    rest.runs.retain(|_| {
+        run += 1;
+        (run - 1) % folds != fold
+    });
     rest
 }
 
-/// Errors of one run.
-fn squares(ends: &Ends, model: &Model, run: usize) -> Squares {
-    let residual = ends.residuals(model)[run];
-    let weighted = ends.runs[run].weight * residual;
-    Squares {
+/// Errors of some runs.
+fn squares(ends: &Ends, model: &Model, of: impl Fn(usize) -> bool) -> Squares {
+    let runs = ends.runs.iter().zip(ends.residuals(model)).enumerate().filter(|(run, _)| of(*run));
+    let of_run = |(_, (run, residual)): (usize, (&End, nalgebra::Vector3<f64>))| Squares {
         positions: 1,
         position: residual.xy().norm_squared(),
         headings: usize::from(ends.with_heading),
         heading: residual.z * residual.z,
-        weighted: weighted.rows(0, ends.coordinates()).norm_squared(),
+        weighted: (run.weight * residual).rows(0, ends.coordinates()).norm_squared(),
         weights: ends.coordinates(),
-    }
+    };
+    runs.map(of_run).fold(Squares::default(), Squares::add)
 }
 
 /// AICc and BIC, if there are enough runs. From the normal likelihood of N runs with one unknown covariance: N ln |Σ̂| and 2k or k ln N for

@@ -333,9 +333,9 @@ fn odd_ones(runs: &[Run], groups: &[Group], coordinate: Coordinate, level: f64) 
         if own.len() < FEWEST {
             continue;
         }
-        // Headings are unwrapped about the one that is nearest to all.
-        let spread = |from: f64| own.iter().map(|(_, value)| wrap(value - from).abs()).sum::<f64>();
-        let middle = own.iter().map(|own| own.1).min_by(|a, b| spread(*a).total_cmp(&spread(*b))).unwrap_or(0.0);
+        // Headings are unwrapped about their mean direction.
+        let (sine, cosine) = own.iter().fold((0.0, 0.0), |(s, c), (_, v)| (s + libm::sin(*v), c + libm::cos(*v)));
+        let middle = libm::atan2(sine, cosine);
         let mut own: Vec<(usize, f64)> =
             own.iter().map(|(run, value)| (*run, near(*value, middle, coordinate))).collect();
         own.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -376,12 +376,22 @@ fn subset(groups: &[Vec<(usize, f64)>], least: f64, level: f64) -> Option<(Vec<s
     let all: usize = groups.iter().map(Vec::len).sum();
     let possible: usize = groups.iter().map(|own| (own.len() - 1) / 2).sum();
     let most = possible.min(2.max((MAX_WRONG_SHARE * all as f64) as usize));
+    // Of all, how many subsets of each size there are. Where that is beyond every number, no p is small enough.
+    let subsets: Vec<f64> = (1..=most)
+        .scan(1.0, |subsets, out| {
+            *subsets *= (all + 1 - out) as f64 / out as f64;
+            Some(*subsets)
+        })
+        .take_while(|subsets| subsets.is_finite())
+        .collect();
+    let (sizes, most) = (most as f64, subsets.len());
     // By the number of values left out in the groups so far: the least sum of squares, and what is kept for it.
     let mut best: Vec<Option<(f64, Vec<std::ops::Range<usize>>)>> = vec![None; most + 1];
     best[0] = Some((0.0, Vec::new()));
     for own in groups {
+        let sums = Sums::of(own);
         let windows: Vec<(f64, std::ops::Range<usize>)> =
-            (0..=((own.len() - 1) / 2).min(most)).map(|out| narrowest(own, own.len() - out)).collect();
+            (0..=((own.len() - 1) / 2).min(most)).map(|out| sums.narrowest(own.len() - out)).collect();
         let so_far = std::mem::replace(&mut best, vec![None; most + 1]);
         for (before, told) in so_far.iter().enumerate().filter_map(|(i, told)| Some((i, told.as_ref()?))) {
             for (out, (squares, range)) in windows.iter().enumerate().take(most + 1 - before) {
@@ -393,16 +403,15 @@ fn subset(groups: &[Vec<(usize, f64)>], least: f64, level: f64) -> Option<(Vec<s
         }
     }
     let whole = best[0].as_ref()?.0;
-    let (mut subsets, mut found, mut smallest) = (1.0, None, level);
-    for (out, told) in best.into_iter().enumerate().skip(1) {
-        subsets *= (all + 1 - out) as f64 / out as f64;
+    let (mut found, mut smallest) = (None, level);
+    for ((out, told), subsets) in best.into_iter().enumerate().skip(1).zip(subsets) {
         let (Some((squares, kept)), freedom) = (told, all as f64 - (groups.len() + out) as f64) else { continue };
         if freedom < 1.0 {
             continue;
         }
         let variance = squares / freedom + least * least;
         let f = (whole - squares) / out as f64 / variance;
-        let p = f_upper_tail(f, [out as f64, freedom]) * subsets * most as f64;
+        let p = f_upper_tail(f, [out as f64, freedom]) * subsets * sizes;
         if p < smallest {
             (smallest, found) = (p, Some((kept, variance.sqrt(), freedom)));
         }
@@ -410,15 +419,31 @@ fn subset(groups: &[Vec<(usize, f64)>], least: f64, level: f64) -> Option<(Vec<s
     found
 }
 
-/// The `count` neighbouring values that scatter least: their sum of squares about their mean, and their range.
-fn narrowest(own: &[(usize, f64)], count: usize) -> (f64, std::ops::Range<usize>) {
-    let squares = |range: &std::ops::Range<usize>| {
-        let middle = mean(&own[range.clone()]);
-        own[range.clone()].iter().map(|(_, value)| (value - middle).powi(2)).sum::<f64>()
-    };
-    let windows = (0..=own.len() - count).map(|first| first..first + count);
-    let all = windows.map(|range| (squares(&range), range));
-    all.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0..own.len()))
+/// Sums of the first values of a sorted group, and of their squares, about the middle one.
+struct Sums {
+    sums: Vec<[f64; 2]>,
+}
+
+impl Sums {
+    fn of(own: &[(usize, f64)]) -> Sums {
+        let middle = own.get(own.len() / 2).map_or(0.0, |own| own.1);
+        let after = own.iter().scan([0.0; 2], |sums, (_, value)| {
+            let off = value - middle;
+            *sums = [sums[0] + off, sums[1] + off * off];
+            Some(*sums)
+        });
+        Sums { sums: std::iter::once([0.0; 2]).chain(after).collect() }
+    }
+
+    /// The `count` neighbouring values that scatter least: their sum of squares about their mean, and their range.
+    fn narrowest(&self, count: usize) -> (f64, std::ops::Range<usize>) {
+        let squares = |first: usize| {
+            let [[from, from_squares], [to, to_squares]] = [self.sums[first], self.sums[first + count]];
+            (to_squares - from_squares - (to - from).powi(2) / count.max(1) as f64).max(0.0)
+        };
+        let all = (0..self.sums.len() - count).map(|first| (squares(first), first..first + count));
+        all.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0..count))
+    }
 }
 
 #[cfg(test)]
