@@ -26,11 +26,14 @@ class Diagnosis(_documents.Diagnosis, frozen=True):
     ----------
     data : Dataset
         The measurements.
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
     """
 
-    _beside: ClassVar[tuple[str, ...]] = ("data",)
+    _beside: ClassVar[tuple[str, ...]] = ("data", "text")
 
     data: Dataset
+    text: str
 
     def table(self) -> list[Row]:
         """Give the ranking, one dict a row."""
@@ -63,11 +66,14 @@ class Fitted(_documents.Fitted, frozen=True):
     ----------
     data : Dataset
         The measurements.
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
     """
 
-    _beside: ClassVar[tuple[str, ...]] = ("data",)
+    _beside: ClassVar[tuple[str, ...]] = ("data", "text")
 
     data: Dataset
+    text: str
 
     def table(self) -> list[Row]:
         """Give the free parameters, one dict a row."""
@@ -91,11 +97,14 @@ class Learnt(_documents.Learnt, frozen=True):
     ----------
     data : Dataset
         The measurements.
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
     """
 
-    _beside: ClassVar[tuple[str, ...]] = ("data",)
+    _beside: ClassVar[tuple[str, ...]] = ("data", "text")
 
     data: Dataset
+    text: str
 
     def table(self) -> list[Row]:
         """Give the steps, one dict a row."""
@@ -161,8 +170,8 @@ def diagnose(
     """
     options = options_of(size, draws, seed)
     data = data_of(data)
-    document, fitted = _umbmark.diagnose(data, model, options, return_poses, threads)
-    return Diagnosis._of(document, model=fitted, data=data)
+    document, text, fitted = _umbmark.diagnose(data, model, options, return_poses, threads)
+    return Diagnosis._of(document, model=fitted, data=data, text=text)
 
 
 def fit(
@@ -188,8 +197,8 @@ def fit(
         If no effect is free, or the fit does not settle.
     """
     data = data_of(data)
-    document, fitted = _umbmark.fit(data, model, [*add], level)
-    return Fitted._of(document, model=fitted, data=data)
+    document, text, fitted = _umbmark.fit(data, model, [*add], level)
+    return Fitted._of(document, model=fitted, data=data, text=text)
 
 
 def learn(
@@ -233,5 +242,5 @@ def learn(
     """
     data, options = data_of(data), options_of(size, draws, seed)
     with Bar(progress, 1000, "steps") as bar:
-        document, learnt = _umbmark.learn(data, model, options, return_poses, threads, bar.at)
-    return Learnt._of(document, model=learnt, data=data)
+        document, text, learnt = _umbmark.learn(data, model, options, return_poses, threads, bar.at)
+    return Learnt._of(document, model=learnt, data=data, text=text)

@@ -35,7 +35,7 @@ class MonteCarlo(_documents.MonteCarlo, frozen=True):
     """
 
     _beside: ClassVar[tuple[str, ...]] = ("ensemble", "trials")
-    _timings: ClassVar[tuple[str, ...]] = ("trials_per_s",)
+    _uncompared: ClassVar[tuple[str, ...]] = ("trials_per_s",)
 
     ensemble: Ensemble
     trials: Mapping[str, NDArray[np.float64]] | None

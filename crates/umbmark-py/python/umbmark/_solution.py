@@ -20,11 +20,14 @@ class Solution(_documents.Solution, frozen=True):
     ----------
     data : Dataset
         The measurements.
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
     """
 
-    _beside: ClassVar[tuple[str, ...]] = ("data",)
+    _beside: ClassVar[tuple[str, ...]] = ("data", "text")
 
     data: Dataset
+    text: str
 
     def table(self) -> list[Row]:
         """Give the new numbers of the robot, one dict a row."""
@@ -82,5 +85,5 @@ def solve(
     """
     data, options = data_of(data), options_of(size, draws, seed)
     with Bar(progress, 1000, "steps") as bar:
-        document, model = _umbmark.solve(data, options, return_poses, threads, bar.at)
-    return Solution._of(document, model=model, data=data)
+        document, text, model = _umbmark.solve(data, options, return_poses, threads, bar.at)
+    return Solution._of(document, model=model, data=data, text=text)
