@@ -25,10 +25,12 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``paper``                          the experiments of the paper, beside its numbers
 ``plan``, ``separate``             how many runs, and which experiment, before any is driven
 ``Robot``, ``Path``, ``Model``     what all of it is about; ``effects`` lists what there is
+``umbmark.results``                the classes of the parts of results, for annotations
 ``umbmark.distributed``            Monte Carlo and sensitivity past one machine, on Dask
 =================================  ===========================================================
 """
 
+from umbmark import results
 from umbmark._apply import Corrected, apply
 from umbmark._arguments import Numbers, Seed
 from umbmark._calibration import Calibration, GearCalibration, calibrate, calibrate_gears
@@ -123,6 +125,7 @@ __all__ = [
     "plot",
     "presets",
     "report",
+    "results",
     "score",
     "sensitivity",
     "separate",
