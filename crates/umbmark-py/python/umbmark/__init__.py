@@ -40,6 +40,16 @@ from umbmark._documents import Correction, Effect, Setup
 from umbmark._export import Exported, export
 from umbmark._formula import formula_of
 from umbmark._inspection import Inspection, inspect
+from umbmark._keys import (
+    ActsOn,
+    Drawn,
+    Drive,
+    EffectKeys,
+    EffectName,
+    PathKeys,
+    RobotKeys,
+    Shape,
+)
 from umbmark._monte_carlo import MonteCarlo, merge, monte_carlo
 from umbmark._paper import Paper, paper
 from umbmark._plan import Plan, Separation, plan, separate
@@ -68,13 +78,18 @@ from umbmark._umbmark import (
 )
 
 __all__ = [
+    "ActsOn",
     "Calibration",
     "Comparison",
     "Corrected",
     "Correction",
     "Dataset",
     "Diagnosis",
+    "Drawn",
+    "Drive",
     "Effect",
+    "EffectKeys",
+    "EffectName",
     "Ensemble",
     "Exported",
     "Figure",
@@ -87,15 +102,18 @@ __all__ = [
     "Numbers",
     "Paper",
     "Path",
+    "PathKeys",
     "Plan",
     "Report",
     "Robot",
+    "RobotKeys",
     "Run",
     "Score",
     "Seed",
     "Sensitivity",
     "Separation",
     "Setup",
+    "Shape",
     "Solution",
     "Study",
     "Sweep",

@@ -1,14 +1,15 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path as PathlibPath
-from typing import Any, Self, SupportsIndex, TypeAlias, final, overload
+from typing import Any, Self, SupportsIndex, TypeAlias, Unpack, final, overload
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from umbmark._arguments import Numbers, Seed
 from umbmark._documents import Effect
+from umbmark._keys import EffectKeys, EffectName, PathKeys, RobotKeys, Shape
 
 __all__ = [
     "Dataset",
@@ -56,15 +57,11 @@ __all__ = [
 __version__: str
 
 Place: TypeAlias = str | PathLike[str]
-# A number, a word, a distribution, a formula.
-Key: TypeAlias = (
-    float | str | bool | Mapping[str, float] | Callable[..., Any] | Sequence[Sequence[float]] | None
-)
 Floats: TypeAlias = NDArray[np.float64]
 
 @final
 class Robot:
-    def __new__(cls, **keys: float | str | None) -> Self: ...
+    def __new__(cls, **keys: Unpack[RobotKeys]) -> Self: ...
     @staticmethod
     def labmate() -> Robot: ...
     @staticmethod
@@ -93,7 +90,7 @@ class Robot:
 
 @final
 class Path:
-    def __new__(cls, shape: str = "square", **keys: float | ArrayLike | None) -> Self: ...
+    def __new__(cls, shape: Shape = "square", **keys: Unpack[PathKeys]) -> Self: ...
     @staticmethod
     def umbmark() -> Path: ...
     @staticmethod
@@ -117,7 +114,7 @@ class Model:
     def from_toml(text: str, robot: Robot | None = None) -> Model: ...
     @staticmethod
     def read(file: Place, robot: Robot | None = None) -> Model: ...
-    def add(self, name: str, **keys: Key) -> Model: ...
+    def add(self, name: EffectName | str, **keys: Unpack[EffectKeys]) -> Model: ...
     def remove(self, name: str) -> Model: ...
     def get(self, effect: str, parameter: str) -> float | None: ...
     @property
