@@ -33,8 +33,8 @@ STEP = 0.02
 # ## A robot in NumPy
 #
 # It drives legs and turns on the spot by its own odometry. Its right wheel is 0.1 % larger than the
-# left one, and its wheelbase 0.5 % larger than it believes. `hidden` is what else is wrong: it takes
-# the motion of a step and gives another one.
+# left one, and its wheelbase 0.5 % larger than its odometry says. `hidden` is what else is wrong:
+# it takes the motion of a step and gives another one.
 
 
 # %%
@@ -62,7 +62,7 @@ def drive(rng, legs, speed, sense, hidden):
         ahead, aside, turn = hidden((left + right) / 2, (right - left) / (1.005 * 0.4), pose)
         middle = pose[2] + turn / 2
         c, s = np.cos(middle), np.sin(middle)
-        pose = pose + [c * ahead - s * aside, s * ahead + c * aside, turn]
+        pose = pose + np.array([c * ahead - s * aside, s * ahead + c * aside, turn])
         poses.append(pose)
     counts = np.round(np.cumsum(np.vstack([[0, 0], believed]), axis=0) / TICK)
     return STEP * np.arange(len(poses)), counts, np.array(poses)
@@ -175,9 +175,9 @@ assert abs(law.parameters["a"] / PULL - 1) < 0.02
 assert abs(law.parameters["b"]) < 0.02 * PULL
 
 # %% [markdown]
-# Compared on another day, again without a fit. The law removes nearly all of the error. Its size was
-# estimated from one day and is not exact, so `compare` may find that a part of the small rest is the
-# same in every run.
+# Compared on another day, again without a fit. The law removes nearly all of the error. Its size
+# was estimated from one day and is not exact, so `compare` may find that a part of the small rest is
+# the same in every run.
 
 # %%
 known = umbmark.fit(data).model

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 import umbmark
@@ -524,3 +525,32 @@ def test_notebooks_show_verdict_sentence_and_a_table_in_millimetres_and_degrees(
     assert "<td>drift_x</td>" in rates
     found = umbmark.monte_carlo(NOISE, n=100)
     assert str(found) == repr(found)
+
+
+def test_a_sweep_is_a_grid_of_xarray() -> None:
+    found = umbmark.sweep(NOISE, {"eb": (0.99, 1.01, 3), "ed": (1.0, 1.002, 2)}, n=40, runs=2)
+    grid = found.to_xarray()
+    assert dict(grid.sizes) == {"eb": 3, "ed": 2, "share": 5}
+    for point in found.points:
+        eb, ed = point.values
+        here = grid.sel(eb=eb, ed=ed, method="nearest")
+        assert (float(here.eb), float(here.ed)) == pytest.approx(point.values)
+        of = point.metrics["sigma_m"]
+        assert float(here.sigma_m) == of.mean
+        assert float(here.sigma_m_std_error) == of.std_error
+        assert float(here.sigma_m_std_dev) == of.std_dev
+        assert float(here.sigma_m_quantile.sel(share=0.95)) == of.quantiles["0.95"]
+    stopped = msgspec.structs.replace(found, points=found.points[:4], partial=True).to_xarray()
+    assert int(stopped.e_max_sys_m.isnull().sum()) == 2
+    assert stopped.attrs["seed"] == found.seed
+
+
+def test_the_trials_of_a_study_are_a_dataset_of_xarray() -> None:
+    found = umbmark.monte_carlo(NOISE, n=30, keep=True)
+    assert found.trials is not None
+    trials = found.to_xarray()
+    assert dict(trials.sizes) == {"trial": 30}
+    assert set(trials) == set(found.trials)
+    np.testing.assert_array_equal(trials.sigma_m, found.trials["sigma_m"])
+    with pytest.raises(ValueError, match="say keep=True"):
+        umbmark.monte_carlo(NOISE, n=3).to_xarray()
