@@ -176,8 +176,8 @@ assert abs(law.parameters["b"]) < 0.02 * PULL
 
 # %% [markdown]
 # Compared on another day, again without a fit. The law removes nearly all of the error. Its size
-# was estimated from one day and is not exact, so `compare` may find that a part of the small rest is
-# the same in every run.
+# was estimated from one day and is not exact, so `compare` may find that a part of the small rest
+# is the same in every run.
 
 # %%
 known = umbmark.fit(data).model
