@@ -9,17 +9,17 @@ import msgspec
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
+from umbmark._explained import Explained
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
-from umbmark._tracks import Tracks, tracks
 from umbmark._umbmark import Dataset, Model
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Diagnosis(_documents.Diagnosis, frozen=True):
+class Diagnosis(_documents.Diagnosis, Explained, frozen=True):
     """What a model is missing, how certain that is, and what this data cannot show.
 
     Attributes
@@ -54,12 +54,8 @@ class Diagnosis(_documents.Diagnosis, frozen=True):
 
         return _plots.diagnosis(self, ax)
 
-    def tracks(self) -> Tracks:
-        """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""
-        return tracks(self.data, self.model)
 
-
-class Fitted(_documents.Fitted, frozen=True):
+class Fitted(_documents.Fitted, Explained, frozen=True):
     """A fit of a model: its numbers, and the model with them.
 
     Attributes
@@ -85,12 +81,8 @@ class Fitted(_documents.Fitted, frozen=True):
 
         return _plots.fitted(self, ax)
 
-    def tracks(self) -> Tracks:
-        """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""
-        return tracks(self.data, self.model)
 
-
-class Learnt(_documents.Learnt, frozen=True):
+class Learnt(_documents.Learnt, Explained, frozen=True):
     """What was learnt, from the nominal robot to the model.
 
     Attributes
@@ -119,10 +111,6 @@ class Learnt(_documents.Learnt, frozen=True):
         from umbmark import _plots
 
         return _plots.learnt(self, ax)
-
-    def tracks(self) -> Tracks:
-        """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""
-        return tracks(self.data, self.model)
 
 
 def diagnose(

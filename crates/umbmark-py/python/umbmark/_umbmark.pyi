@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from umbmark._arguments import Numbers, Seed
-from umbmark._documents import Effect
+from umbmark._documents import Effect, Repeated, Suggestion, UnlistedLaw
 from umbmark._keys import EffectKeys, EffectName, PathKeys, RobotKeys, Shape
 
 __all__ = [
@@ -114,7 +114,11 @@ class Model:
     def from_toml(text: str, robot: Robot | None = None) -> Model: ...
     @staticmethod
     def read(file: Place, robot: Robot | None = None) -> Model: ...
-    def add(self, name: EffectName | str, **keys: Unpack[EffectKeys]) -> Model: ...
+    def add(
+        self,
+        name: EffectName | str | Suggestion | Repeated | UnlistedLaw,
+        **keys: Unpack[EffectKeys],
+    ) -> Model: ...
     def remove(self, name: str) -> Model: ...
     def get(self, effect: str, parameter: str) -> float | None: ...
     @property
