@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ffi::CString;
 
-use pyo3::exceptions::{PyUserWarning, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use toml::{Table, Value};
@@ -73,7 +73,7 @@ impl Model {
 
     /// Read a model.toml, for a robot, or for the one it names, or the paper's LabMate.
     ///
-    /// A file that names another robot than the given one is converted, with a warning that says what changed.
+    /// A file that names another robot than the given one is converted, with a ``ConversionWarning`` that says what changed.
     #[staticmethod]
     #[pyo3(signature = (file, robot=None))]
     fn read(py: Python<'_>, file: std::path::PathBuf, robot: Option<&Robot>) -> PyResult<Model> {
@@ -269,7 +269,7 @@ fn laws_of(given: &Bound<'_, PyAny>) -> PyResult<Option<Vec<Table>>> {
 
 fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
     let text = CString::new(text).map_err(refused)?;
-    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)
+    PyErr::warn(py, &py.import("umbmark._warnings")?.getattr("ConversionWarning")?, &text, 1)
 }
 
 fn nominal(robot: Option<&Robot>) -> drive::Robot {

@@ -109,9 +109,9 @@ def test_a_model_of_another_robot_is_converted_with_a_warning(tmp_path: Path) ->
     assert umbmark.Model.from_toml(text).robot == wide
     labmate = umbmark.Robot.labmate()
     words = r"model\.toml was made for a robot with wheelbase_m = 0\.68, which is 0\.34 here"
-    with pytest.warns(UserWarning, match=words):
+    with pytest.warns(umbmark.ConversionWarning, match=words):
         of_text = umbmark.Model.from_toml(text, labmate)
-    with pytest.warns(UserWarning, match=words):
+    with pytest.warns(umbmark.ConversionWarning, match=words):
         of_file = umbmark.Model.read(tmp_path / "model.toml", labmate)
     for model in (of_text, of_file):
         assert model.robot == labmate

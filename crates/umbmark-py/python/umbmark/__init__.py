@@ -76,11 +76,13 @@ from umbmark._umbmark import (
     presets,
     simulate,
 )
+from umbmark._warnings import ConversionWarning
 
 __all__ = [
     "ActsOn",
     "Calibration",
     "Comparison",
+    "ConversionWarning",
     "Corrected",
     "Correction",
     "Dataset",
