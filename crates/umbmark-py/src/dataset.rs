@@ -399,7 +399,7 @@ fn poses_of_files() -> Vec<String> {
     ["x_ref_m", "y_ref_m", "theta_ref_rad"].map(str::to_owned).into()
 }
 
-/// Refuses runs that cannot be told apart.
+/// Refuses runs that have the same number or name.
 fn all_differ(runs: &[core::Run]) -> PyResult<()> {
     for (index, run) in runs.iter().enumerate() {
         let same = |other: &core::Run| {
