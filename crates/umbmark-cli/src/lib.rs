@@ -57,7 +57,7 @@ pub use verb::Verb;
     version,
     propagate_version = true,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done; 1 the data or the arguments are unusable; 2 wrong usage; 3 with --check: the model does not explain the data."
+    after_help = "Exit codes: 0 done; 1 the data or the arguments are unusable; 2 wrong usage; 3 with --check: the model does not explain the data; 130 stopped by Ctrl-C or SIGTERM, what was done until then is told and marked partial."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -85,6 +85,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let mut session = Session::new(cli.session);
     let outcome = cli.verb.run(&mut session).and_then(|code| Ok(session.flush().map(|()| code)?));
     match outcome {
+        Ok(_) if session.was_interrupted() => ExitCode::from(session::INTERRUPTED),
         Ok(code) => code,
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {

@@ -12,6 +12,9 @@ use umbmark_plot::render::terminal::Look;
 
 use crate::files;
 
+/// Exit code of work that was stopped: what was done until then is told, marked partial.
+pub const INTERRUPTED: u8 = 130;
+
 /// Steps of the bar of work that tells a share.
 const STEPS: f64 = 100.0;
 
@@ -45,6 +48,7 @@ pub struct Options {
 pub struct Session {
     options: Options,
     out: Output,
+    interrupted: Arc<AtomicBool>,
 }
 
 /// Standard output, buffered; standard error as soon as a file goes to standard output. Names of files and topics may hold anything: nothing
@@ -66,7 +70,7 @@ impl Write for Output {
 
 impl Session {
     pub(crate) fn new(options: Options) -> Session {
-        Session { options, out: Output(BufWriter::new(io::stdout())) }
+        Session { options, out: Output(BufWriter::new(io::stdout())), interrupted: Arc::default() }
     }
 
     /// Whether a JSON document is wanted.
@@ -150,15 +154,19 @@ impl Session {
 
     /// A flag that Ctrl-C sets from now on, instead of killing; a second one kills.
     pub fn catch_interrupt(&self) -> anyhow::Result<Arc<AtomicBool>> {
-        let interrupted = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&interrupted);
+        let flag = Arc::clone(&self.interrupted);
         ctrlc::set_handler(move || {
             if flag.swap(true, Ordering::SeqCst) {
-                std::process::exit(130);
+                std::process::exit(INTERRUPTED.into());
             }
         })
         .context("cannot catch Ctrl-C")?;
-        Ok(interrupted)
+        Ok(Arc::clone(&self.interrupted))
+    }
+
+    /// Whether somebody wished it to stop.
+    pub fn was_interrupted(&self) -> bool {
+        self.interrupted.load(Ordering::SeqCst)
     }
 
     /// A progress bar on stderr for `total` steps of `unit`; it shows itself only where people look and after a second.

@@ -94,9 +94,9 @@ pub fn run(
 ) -> anyhow::Result<ExitCode> {
     let (sweep, metric) = (flags.resolve(study)?, flags.metric()?);
     let output = flags.output.as_deref().map(|file| Pending::create(file, files.force)).transpose()?;
+    let mut keeper = Keeper::of(files.checkpoint)?;
     let begin = |checkpoint: &Checkpoint| checkpoint.begin_sweep(&sweep).map_err(with_remedy);
     let mut points = files.checkpoint.map(begin).transpose()?.unwrap_or_default();
-    let mut keeper = Keeper::of(files.checkpoint);
     let mut progress = session.progress(sweep.points(), "points");
     let stop = session.catch_interrupt()?;
     let mut failure = None;

@@ -42,7 +42,7 @@ pub fn text(comparison: &TrackComparison, options: &Options, look: Look) -> Stri
     );
     text += "\n\n";
     let legend = "along, end: root mean square error of all measured poses, and of the last pose of each run. p: smallest of all tests \
-                  of a model, Bonferroni-corrected.";
+                  of a model that would lower the error of runs left out by 2 % or more, Bonferroni-corrected.";
     text += &hanging("", 0, legend);
     text += &(faults_text(&comparison.setup) + &disturbances_text(&comparison.setup));
     for judged in &comparison.models {
@@ -148,7 +148,7 @@ fn rates_text(judged: &TracksJudged, terminal: bool, size: f64) -> String {
         let (scale, unit) = o.rate.display();
         let half = half_width(&o.mean).map_or("-".into(), |half| format!("{:.3}", scale * half));
         let value = format!("{:.3}", scale * o.mean.value);
-        vec![o.rate.name().to_owned(), value, half, unit.to_owned(), o.p.map_or("-".into(), p_text)]
+        vec![o.rate.name().to_owned(), value, half, unit.to_owned(), o.test.map_or("-".into(), |test| p_text(test.p))]
     };
     let mut text = table(&["over all", "error", "±", "", "p"], judged.overall.iter().map(row));
     text += "\n\nwhat the error depends on: bins of each variable, and p of no dependence\n\n";
@@ -175,12 +175,12 @@ fn rates_text(judged: &TracksJudged, terminal: bool, size: f64) -> String {
 }
 
 fn cell(against: Option<&Against>, terminal: bool) -> String {
-    let Some(against) = against.filter(|a| a.p.is_some()) else { return String::new() };
+    let Some((against, p)) = against.and_then(|a| Some((a, a.test?.p))) else { return String::new() };
     let half_widths = |bin: &umbmark_core::compare::tracks::Bin| {
         let mean = bin.mean?;
         Some(mean.value / half_width(&mean).filter(|half| *half > 0.0)?)
     };
     let values: Vec<Option<f64>> = against.bins.iter().map(half_widths).collect();
-    let p = against.p.map_or(String::new(), |p| if p < 0.001 { "<.001".into() } else { format!("{p:.3}") });
+    let p = if p < 0.001 { "<.001".into() } else { format!("{p:.3}") };
     format!("{:<8} {p}", marks(&values, terminal))
 }

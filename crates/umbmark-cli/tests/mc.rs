@@ -356,7 +356,7 @@ fn an_interrupt_ends_with_what_is_done_marked_as_partial() {
     std::thread::sleep(std::time::Duration::from_millis(1500));
     std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     let output = child.wait_with_output().unwrap();
-    assert!(output.status.success(), "{output:?}");
+    assert_eq!(output.status.code(), Some(130), "{output:?}");
     let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(document["partial"], true);
     let n = document["n"].as_u64().unwrap();

@@ -7,6 +7,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::Existing;
+use crate::lock::Lock;
 use crate::whole_file::{FileError, WholeFile, in_words};
 use umbmark_core::monte_carlo::{Ensemble, MergeError, Shard, Study, Sweep, SweepPoint};
 use umbmark_core::result;
@@ -61,6 +62,18 @@ pub enum CheckpointError {
     /// It is a device, a pipe or a folder, from which nothing can be gone on with.
     #[error("{} is not a regular file, and a checkpoint is read again; name another", .0.display())]
     NotRegular(PathBuf),
+    /// Another process writes it.
+    #[error(
+        "{} is written by {} at this moment; wait for it, or name another file",
+        file.display(),
+        process.map_or("another process".to_owned(), |process| format!("process {process}"))
+    )]
+    InUse {
+        /// The file.
+        file: PathBuf,
+        /// The number of the process, if it is known.
+        process: Option<u32>,
+    },
     /// It cannot be read.
     #[error("cannot read {}: {}", file.display(), in_words(error, "there is no such file"))]
     Read {
@@ -68,6 +81,17 @@ pub enum CheckpointError {
         file: PathBuf,
         /// Why.
         error: std::io::Error,
+    },
+    /// It was changed or cut off after it was written.
+    #[error(
+        "{} is damaged: {damage}; give another copy of it, or begin the study anew",
+        file.display()
+    )]
+    Damaged {
+        /// The file.
+        file: PathBuf,
+        /// What differs from what its first line announces.
+        damage: Damage,
     },
     /// Something else stands in it.
     #[error("{} is no checkpoint of a {what} by this version of umbmark: {error}", file.display())]
@@ -103,6 +127,67 @@ pub enum CheckpointError {
     File(#[from] FileError),
 }
 
+/// How the content of a checkpoint differs from what its first line announces.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Damage {
+    /// Its format is of a later version.
+    #[error("it has format {0}, and this version of umbmark reads formats up to {FORMAT}")]
+    Format(u64),
+    /// It was cut off, or something was added.
+    #[error("it has {there} bytes after its first line, which announces {announced}")]
+    Length {
+        /// Bytes that are there.
+        there: u64,
+        /// Bytes that were written.
+        announced: u64,
+    },
+    /// It was changed.
+    #[error("its checksum is {there:08x}, its first line announces {announced:08x}")]
+    Checksum {
+        /// Of what is there.
+        there: u32,
+        /// Of what was written.
+        announced: u32,
+    },
+}
+
+/// The format of checkpoints. The first had no line before its content.
+const FORMAT: u64 = 2;
+
+/// The first line of a checkpoint.
+#[derive(Serialize, Deserialize)]
+struct Announced {
+    umbmark_checkpoint: u64,
+    bytes: u64,
+    crc32: u32,
+}
+
+/// Content with the line before it that says how long it is and what its checksum is.
+fn framed(content: &impl Serialize) -> Result<String, serde_json::Error> {
+    let content = serde_json::to_string(content)? + "\n";
+    let crc32 = crc32fast::hash(content.as_bytes());
+    let line = Announced { umbmark_checkpoint: FORMAT, bytes: content.len() as u64, crc32 };
+    Ok(serde_json::to_string(&line)? + "\n" + &content)
+}
+
+/// The content that a first line announces; all of a file of the first format, which has none.
+fn content(text: &[u8]) -> Result<&[u8], Damage> {
+    let end = text.iter().position(|byte| *byte == b'\n').map_or(text.len(), |end| end + 1);
+    let (line, content) = text.split_at(end);
+    let Ok(Announced { umbmark_checkpoint, bytes, crc32 }) = serde_json::from_slice(line) else { return Ok(text) };
+    if umbmark_checkpoint > FORMAT {
+        return Err(Damage::Format(umbmark_checkpoint));
+    }
+    if bytes != content.len() as u64 {
+        return Err(Damage::Length { there: content.len() as u64, announced: bytes });
+    }
+    match crc32fast::hash(content) {
+        there if there == crc32 => Ok(content),
+        there => Err(Damage::Checksum { there, announced: crc32 }),
+    }
+}
+
 impl Written {
     /// Reads a checkpoint.
     pub fn load(file: &Path) -> Result<Written, CheckpointError> {
@@ -123,7 +208,7 @@ impl Written {
 
     /// As the text of a file.
     pub fn text(&self) -> Result<String, serde_json::Error> {
-        Ok(serde_json::to_string(self)? + "\n")
+        framed(self)
     }
 }
 
@@ -165,17 +250,25 @@ impl Checkpoint {
     }
 }
 
-/// Writes down what is done of a study while it runs; without a checkpoint, nothing.
+/// Writes down what is done of a study while it runs; without a checkpoint, nothing. No other process writes the file as long as it lives.
 #[derive(Debug)]
-pub struct Keeper<'a> {
-    checkpoint: Option<&'a Checkpoint>,
+pub struct Keeper {
+    checkpoint: Option<Checkpoint>,
+    _lock: Option<Lock>,
     saved: Instant,
 }
 
-impl<'a> Keeper<'a> {
-    /// Begins to count the time.
-    pub fn of(checkpoint: Option<&'a Checkpoint>) -> Keeper<'a> {
-        Keeper { checkpoint, saved: Instant::now() }
+impl Keeper {
+    /// Takes the file for this process, before anything of it is read, and begins to count the time.
+    pub fn of(checkpoint: Option<&Checkpoint>) -> Result<Keeper, CheckpointError> {
+        let lock = checkpoint.map(|checkpoint| {
+            let in_use = |held: crate::lock::Held| CheckpointError::InUse {
+                file: checkpoint.file.clone(),
+                process: held.process,
+            };
+            Lock::of(&checkpoint.file).map_err(in_use)
+        });
+        Ok(Keeper { checkpoint: checkpoint.cloned(), _lock: lock.transpose()?.flatten(), saved: Instant::now() })
     }
 
     /// Writes a study down where it is time.
@@ -210,11 +303,11 @@ impl<'a> Keeper<'a> {
     }
 
     fn is_due(&self) -> bool {
-        self.checkpoint.is_some_and(|checkpoint| self.saved.elapsed() >= checkpoint.every)
+        self.checkpoint.as_ref().is_some_and(|checkpoint| self.saved.elapsed() >= checkpoint.every)
     }
 
     fn write(&mut self, content: &impl Serialize) -> Result<(), CheckpointError> {
-        let Some(checkpoint) = self.checkpoint else { return Ok(()) };
+        let Some(checkpoint) = &self.checkpoint else { return Ok(()) };
         write(&checkpoint.file, content)?;
         self.saved = Instant::now();
         Ok(())
@@ -222,15 +315,15 @@ impl<'a> Keeper<'a> {
 }
 
 fn read<T: DeserializeOwned>(file: &Path, what: &'static str) -> Result<T, CheckpointError> {
-    let text = std::fs::read_to_string(file);
+    let text = std::fs::read(file);
     let text = text.map_err(|error| CheckpointError::Read { file: file.to_owned(), error })?;
-    serde_json::from_str(&text).map_err(|error| CheckpointError::Other { file: file.to_owned(), what, error })
+    let content = content(&text).map_err(|damage| CheckpointError::Damaged { file: file.to_owned(), damage })?;
+    serde_json::from_slice(content).map_err(|error| CheckpointError::Other { file: file.to_owned(), what, error })
 }
 
 fn write(file: &Path, content: &impl Serialize) -> Result<(), CheckpointError> {
     let failed = |error: serde_json::Error| FileError::Write { file: file.to_owned(), error: error.into() };
-    let text = serde_json::to_string(content).map_err(failed)?;
-    Ok(WholeFile::write(file, Existing::Replace, (text + "\n").as_bytes())?)
+    Ok(WholeFile::write(file, Existing::Replace, framed(content).map_err(failed)?.as_bytes())?)
 }
 
 #[cfg(test)]
@@ -263,8 +356,9 @@ mod tests {
         let study = study(3);
         let told = told(&study);
         let (anew, resumed) = (checkpoint(&folder, Found::Refuse), checkpoint(&folder, Found::Resume));
+        let mut keeper = Keeper::of(Some(&anew)).unwrap();
+        assert!(matches!(Keeper::of(Some(&resumed)), Err(CheckpointError::InUse { process: Some(_), .. })));
         let mut known = anew.begin(&study, Shard::WHOLE, &told).unwrap();
-        let mut keeper = Keeper::of(Some(&anew));
         let stop = AtomicBool::new(false);
         let first = |batch: &umbmark_core::monte_carlo::Batch| {
             keeper.look(study.seed, &told, batch.ensemble).unwrap();
@@ -309,8 +403,39 @@ mod tests {
             ControlFlow::Break(())
         };
         sweep.run(0, &stop, some).unwrap();
-        Keeper::of(Some(&at)).keep_points(&sweep, &points).unwrap();
+        Keeper::of(Some(&at)).unwrap().keep_points(&sweep, &points).unwrap();
         assert_eq!(at.begin_sweep(&sweep).unwrap(), points);
         assert!(matches!(at.begin_sweep(&axis(6)), Err(CheckpointError::Foreign { what: "sweep", .. })));
+    }
+
+    /// Every byte of the content changed by itself, the file cut at every place, a later format, and a file of the first format.
+    #[test]
+    fn a_checkpoint_that_was_changed_or_cut_off_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("study.json");
+        let of = |text: &[u8]| {
+            std::fs::write(&file, text).unwrap();
+            Written::load(&file)
+        };
+        let written = Written { seed: 3, study: told(&study(3)), ensemble: Ensemble::new(&study(3), Shard::WHOLE) };
+        let good = written.text().unwrap().into_bytes();
+        let line = good.iter().position(|byte| *byte == b'\n').unwrap() + 1;
+        assert_eq!(of(&good).unwrap().text().unwrap().into_bytes(), good);
+        assert!(of(&good[line..]).is_ok(), "the first format has no first line");
+        for at in line..good.len() {
+            let mut changed = good.clone();
+            changed[at] ^= 1;
+            let damage = of(&changed).map(|_| ()).unwrap_err();
+            assert!(
+                matches!(damage, CheckpointError::Damaged { damage: Damage::Checksum { .. }, .. }),
+                "{at}: {damage}"
+            );
+        }
+        for end in 0..good.len() {
+            assert!(of(&good[..end]).is_err(), "{end}");
+        }
+        let later = String::from_utf8(good).unwrap().replacen("checkpoint\":2", "checkpoint\":3", 1);
+        let error = of(later.as_bytes()).map(|_| ()).unwrap_err();
+        assert!(matches!(error, CheckpointError::Damaged { damage: Damage::Format(3), .. }), "{error}");
     }
 }

@@ -27,6 +27,7 @@ pub mod export;
 mod label;
 mod layout;
 mod lines;
+mod lock;
 mod model_file;
 mod model_text;
 #[cfg(test)]

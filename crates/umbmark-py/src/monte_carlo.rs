@@ -192,6 +192,7 @@ impl Study {
             return Err(PyValueError::new_err("what is known stands in the checkpoint: leave known, or keep, out"));
         }
         let told = self.told();
+        let mut keeper = Keeper::of(checkpoint.as_ref()).map_err(unusable)?;
         let mut ensemble = match (known, &checkpoint) {
             (None, None) => core::Ensemble::new(&self.study, shard),
             (None, Some(checkpoint)) => checkpoint.begin(&self.study, shard, &told).map_err(unusable)?.ensemble,
@@ -205,7 +206,6 @@ impl Study {
         let outcome = watched(py, threads, progress, move |watch: &Watch| -> PyResult<_> {
             let (began, before) = (Instant::now(), ensemble.trials());
             let mut kept: Vec<Vec<f64>> = vec![Vec::new(); if keep { columns.len() } else { 0 }];
-            let mut keeper = Keeper::of(checkpoint.as_ref());
             let mut failure = None;
             let done = study.resume(&mut ensemble, &watch.stop, |batch: &Batch| {
                 for (values, column) in kept.iter_mut().zip(&columns) {

@@ -33,11 +33,11 @@ pub fn sweep(
     let axes = axes.iter().map(axis).collect::<PyResult<Vec<Axis>>>()?;
     let sweep = Sweep::new(study, &axes).map_err(refused)?;
     let checkpoint = checkpoint.map(|(file, resume, replace)| CheckpointOptions { file, resume, replace }.checkpoint());
+    let mut keeper = Keeper::of(checkpoint.as_ref()).map_err(unusable)?;
     let known = checkpoint.as_ref().map(|checkpoint| checkpoint.begin_sweep(&sweep)).transpose();
     let mut points = known.map_err(unusable)?.unwrap_or_default();
     let watched = if checkpoint.is_some() { watched_to_its_end } else { watched };
     watched(py, threads, progress, move |told: &Watch| {
-        let mut keeper = Keeper::of(checkpoint.as_ref());
         let mut failure = None;
         let done = sweep.run(points.len() as u64, &told.stop, |more| {
             points.extend(more);

@@ -83,6 +83,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         return sweep::run(&arguments.sweep, &study, &known.assumed, &files, session);
     }
     let told = describe(&study, &known)?;
+    let mut keeper = Keeper::of(checkpoint.as_ref())?;
     let mut written = match &checkpoint {
         Some(checkpoint) => checkpoint.begin(&study, arguments.shard, &told).map_err(with_remedy)?,
         None => Written { seed: study.seed, study: told, ensemble: Ensemble::new(&study, arguments.shard) },
@@ -97,7 +98,6 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let mut precise = false;
     let mut failure = None;
     let Written { seed, study: told, ensemble } = &mut written;
-    let mut keeper = Keeper::of(checkpoint.as_ref());
     session.on_threads(|| {
         study.resume(ensemble, &stop, |batch| {
             progress.at(batch.ensemble.trials());

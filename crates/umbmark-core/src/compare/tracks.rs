@@ -13,6 +13,7 @@ mod rates;
 mod sentences;
 #[cfg(test)]
 mod tests;
+mod worth;
 
 use crate::dataset::Dataset;
 use crate::diagnose::tracks::doubts_as_written;
@@ -31,6 +32,7 @@ pub use covariate::{COVARIATES, Covariate, Rate, Span};
 pub use mean::Mean;
 pub use parts::{By, Part, Share};
 pub use rates::{Against, Bin, Overall};
+pub use worth::Test;
 
 /// Root mean square errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -71,9 +73,10 @@ pub struct TracksJudged {
     pub overall: Vec<Overall>,
     /// What they depend on.
     pub against: Vec<Against>,
-    /// Number of p-values among these.
+    /// Number of tests among these.
     pub tests: usize,
-    /// p of the whole model: the smallest of them times their number (Bonferroni); `None` where the runs are too few for any.
+    /// p of the whole model: the smallest of those that [matter](Test::matters), times the number of all (Bonferroni); `None` where the
+    /// runs are too few for any.
     pub p: Option<f64>,
     /// Where the error is made.
     pub parts: Vec<Part>,
@@ -200,14 +203,14 @@ fn tested(name: &str, observed: &Observed, runs: &[Followed], options: &Options)
     let confidence = 1.0 - options.size;
     let overall = rates::overall(runs, &observed.robot, confidence);
     let against = rates::against(runs, &overall, &observed.robot, confidence);
-    let tests: Vec<f64> = overall.iter().map(|o| o.p).chain(against.iter().map(|a| a.p)).flatten().collect();
-    let smallest = tests.iter().copied().reduce(f64::min);
+    let tests: Vec<Test> = overall.iter().map(|o| o.test).chain(against.iter().map(|a| a.test)).flatten().collect();
+    let smallest = tests.iter().filter(|test| test.matters()).fold(1.0, |least, test| test.p.min(least));
     TracksJudged {
         name: name.to_owned(),
         along: rms(runs, |_| 0),
         end: rms(runs, |run| run.places.len() - 1),
         tests: tests.len(),
-        p: smallest.map(|p| (p * tests.len() as f64).min(1.0)),
+        p: (!tests.is_empty()).then(|| (smallest * tests.len() as f64).min(1.0)),
         overall,
         against,
         parts: Vec::new(),

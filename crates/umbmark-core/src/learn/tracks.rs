@@ -199,9 +199,9 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
             reasons.push(Reason::Repeats(repeated));
         }
         remains = left.unwrap_or(remains);
-        reasons.extend(against_as_written(&written.observed, &written.model, options));
         reasons.extend(tracks::of_usual_noise(&written.observed, &written.noise));
     }
+    reasons.extend(against_as_written(&written.observed, &written.model, options));
     reasons.extend(misfits(&steps, runs, written.observed.setup.noise.position, is_nominal(&last.fitted)));
     let verdict = match (&left.smooth, more) {
         _ if verdict == Verdict::NotEnoughData => verdict,

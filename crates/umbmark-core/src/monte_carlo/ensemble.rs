@@ -12,6 +12,7 @@ use super::{Metric, Row, Shard, Statistics, Study};
 /// It can be written down (serde) at any moment, taken up again by [`Study::resume`](super::Study::resume), and merged with
 /// others of the same study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Written")]
 pub struct Ensemble {
     study: String,
     shard: Shard,
@@ -19,6 +20,45 @@ pub struct Ensemble {
     /// Ranges of trials that are done, in order, without overlap or touch.
     done: Vec<Range<u64>>,
     metrics: Vec<(String, Statistics)>,
+}
+
+/// An ensemble as it stands in a file, before anything of it is believed.
+#[derive(Deserialize)]
+struct Written {
+    study: String,
+    shard: Shard,
+    all: u64,
+    done: Vec<Range<u64>>,
+    metrics: Vec<(String, Statistics)>,
+}
+
+impl TryFrom<Written> for Ensemble {
+    type Error = String;
+
+    fn try_from(Written { study, shard, all, done, metrics }: Written) -> Result<Ensemble, String> {
+        let shard = Shard::new(shard.index(), shard.count()).map_err(|error| error.to_string())?;
+        let own = shard.trials(all);
+        let mut from = own.start;
+        for Range { start, end } in &done {
+            if !(from <= *start && start < end && *end <= own.end) {
+                return Err(format!(
+                    "trials {start} to {end} are no part of trials {from} to {} of shard {shard} that are not done before",
+                    own.end
+                ));
+            }
+            from = end.saturating_add(1);
+        }
+        let trials: u64 = done.iter().map(|range| range.end - range.start).sum();
+        for (place, (name, statistics)) in metrics.iter().enumerate() {
+            if Metric::named(name).is_err() || metrics[..place].iter().any(|(before, _)| before == name) {
+                return Err(format!("\"{name}\" is no metric, or is there twice"));
+            }
+            if statistics.count() != trials {
+                return Err(format!("{trials} trials are done, {} have {name}", statistics.count()));
+            }
+        }
+        Ok(Ensemble { study, shard, all, done, metrics })
+    }
 }
 
 /// Ensembles that do not belong together.
@@ -146,5 +186,42 @@ impl Ensemble {
     /// The statistics of one metric, if the study has it.
     pub fn get(&self, metric: Metric) -> Option<&Statistics> {
         self.statistics().find(|(m, _)| *m == metric).map(|(_, s)| s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::Robot;
+    use crate::effect::Model;
+    use std::ops::ControlFlow;
+
+    #[test]
+    fn an_ensemble_that_cannot_be_true_is_refused() {
+        let mut model = Model::new(&Robot::labmate());
+        model.set("wheel_noise", "k_sqrt_m", 1e-3).unwrap();
+        let study = Study { runs: [1, 1], ..Study::new(model, 50, 3) };
+        let good = serde_json::to_value(study.run(|_| ControlFlow::Continue(())).unwrap()).unwrap();
+        assert!(serde_json::from_value::<Ensemble>(good.clone()).is_ok());
+        let range = |start: u64, end: u64| serde_json::json!({ "start": start, "end": end });
+        let forged = [
+            ("/done", serde_json::json!([])),
+            ("/done", serde_json::json!([range(0, 25), range(0, 25)])),
+            ("/done", serde_json::json!([range(25, 50), range(0, 25)])),
+            ("/done", serde_json::json!([range(0, 60)])),
+            ("/done", serde_json::json!([range(50, 0)])),
+            ("/done", serde_json::json!([range(0, u64::MAX)])),
+            ("/all", serde_json::json!(10)),
+            ("/shard/index", serde_json::json!(7)),
+            ("/shard/count", serde_json::json!(0)),
+            ("/metrics/0/0", serde_json::json!("speed")),
+            ("/metrics/0/0", good["metrics"][1][0].clone()),
+            ("/metrics/0/1", serde_json::to_value(Statistics::new()).unwrap()),
+        ];
+        for (key, value) in forged {
+            let mut changed = good.clone();
+            *changed.pointer_mut(key).unwrap() = value.clone();
+            assert!(serde_json::from_value::<Ensemble>(changed).is_err(), "{key} {value}");
+        }
     }
 }

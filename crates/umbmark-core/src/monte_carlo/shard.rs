@@ -46,12 +46,22 @@ impl Shard {
         }
     }
 
+    /// Which it is, from 0.
+    pub(super) fn index(&self) -> u64 {
+        self.index
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> u64 {
+        self.count
+    }
+
     /// Its trials of a study of `all` trials: whole chunks, as equal as they can be.
     pub fn trials(&self, all: u64) -> Range<u64> {
         let chunks = all.div_ceil(CHUNK);
         let edge = |i: u64| {
             let chunk = (u128::from(chunks) * u128::from(i) / u128::from(self.count)) as u64;
-            (chunk * CHUNK).min(all)
+            chunk.saturating_mul(CHUNK).min(all)
         };
         edge(self.index)..edge(self.index + 1)
     }

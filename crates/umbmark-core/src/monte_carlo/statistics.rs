@@ -1,8 +1,11 @@
 //! Statistics of a stream of numbers in constant memory, the same whatever the order.
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
 use sketches_ddsketch::{Config, DDSketch};
+
+mod written;
+
+use written::Written;
 
 /// Count, mean, standard deviation, extremes and quantiles of a stream of numbers.
 ///
@@ -20,60 +23,16 @@ pub struct Statistics {
     sketch: DDSketch,
 }
 
-/// The statistics as they stand in a file: integers of more than 64 bits as text, and no sketch of nothing, whose ends are
-/// infinite. Equal statistics are written alike, whatever the order in which the numbers came.
-#[derive(Clone, PartialEq, Serialize, Deserialize)]
-struct Written {
-    count: u64,
-    sum: String,
-    squares: String,
-    sketch: Option<Value>,
-}
-
-impl From<Statistics> for Written {
-    fn from(s: Statistics) -> Written {
-        let sketch = (s.count > 0).then(|| ordered(&s.sketch, s.sum as f64 * Statistics::RESOLUTION));
-        Written { count: s.count, sum: s.sum.to_string(), squares: s.squares.to_string(), sketch }
-    }
-}
-
-/// A sketch without what depends on the order in which it was filled: its own sum, which is rounded after each number, and the empty
-/// bins beyond the outermost full ones.
-fn ordered(sketch: &DDSketch, sum: f64) -> Value {
-    let mut written = json!(sketch);
-    written["sum"] = json!(sum);
-    for store in ["store", "negative_store"] {
-        let store = &mut written[store];
-        let [first, last, offset] = ["min_key", "max_key", "offset"].map(|key| store[key].as_i64().unwrap_or(0));
-        if let Some(bins) = store["bins"].as_array_mut().filter(|bins| !bins.is_empty()) {
-            bins.truncate((last - offset + 1).max(0) as usize);
-            bins.drain(..((first - offset).max(0) as usize).min(bins.len()));
-            store["offset"] = json!(first);
-        }
-    }
-    written
-}
-
-impl TryFrom<Written> for Statistics {
-    type Error = String;
-
-    fn try_from(written: Written) -> Result<Statistics, String> {
-        let whole = |text: &str| text.parse().map_err(|_| format!("a sum must be a whole number, got \"{text}\""));
-        let (sum, squares) = (whole(&written.sum)?, whole(&written.squares)?);
-        let sketch: Option<DDSketch> =
-            written.sketch.map(serde_json::from_value).transpose().map_err(|e| e.to_string())?;
-        let sketch = sketch.unwrap_or_else(|| Statistics::new().sketch);
-        if sketch.count() as u64 != written.count {
-            return Err(format!("{} numbers in the sketch, {} in the sums", sketch.count(), written.count));
-        }
-        Ok(Statistics { count: written.count, sum, squares, sketch })
-    }
-}
-
 /// Whether they took the same numbers, as far as counts, sums, extremes and bins show.
 impl PartialEq for Statistics {
     fn eq(&self, other: &Statistics) -> bool {
-        Written::from(self.clone()) == Written::from(other.clone())
+        Written::from(self) == Written::from(other)
+    }
+}
+
+impl From<Statistics> for Written {
+    fn from(statistics: Statistics) -> Written {
+        Written::from(&statistics)
     }
 }
 
@@ -107,10 +66,16 @@ impl Statistics {
     const MAX_BINS: u32 = 1 << 18;
     const SMALLEST: f64 = 1e-6;
 
+    /// Sums of squares beyond this \[m²\] are cut off; the half of 2^127 units.
+    const MOST_SQUARES: f64 = (1u128 << 126) as f64 * Self::RESOLUTION * Self::RESOLUTION;
+
     /// Nothing counted yet.
     pub fn new() -> Statistics {
-        let config = Config::new(Self::QUANTILE_ERROR, Self::MAX_BINS, Self::SMALLEST);
-        Statistics { count: 0, sum: 0, squares: 0, sketch: DDSketch::new(config) }
+        Statistics { count: 0, sum: 0, squares: 0, sketch: DDSketch::new(Self::config()) }
+    }
+
+    fn config() -> Config {
+        Config::new(Self::QUANTILE_ERROR, Self::MAX_BINS, Self::SMALLEST)
     }
 
     /// Takes one more number.
@@ -259,6 +224,59 @@ mod tests {
             assert!(text(&read) == text(&twice) && read.quantile(0.3) == twice.quantile(0.3), "{order:?}");
         }
         assert!(whole != of(&sample[1..]));
+    }
+
+    /// Each number of a file changed by itself, and the whole taken from a larger file.
+    #[test]
+    fn statistics_that_cannot_be_true_are_refused() {
+        let mut statistics = Statistics::new();
+        draws(3000).iter().for_each(|value| statistics.take(value - 0.3));
+        let good = serde_json::to_value(&statistics).unwrap();
+        assert!(serde_json::from_value::<Statistics>(good.clone()).is_ok());
+        let first = good["sketch"]["store"]["bins"].as_array().unwrap()[0].as_u64().unwrap();
+        let sum: i128 = good["sum"].as_str().unwrap().parse().unwrap();
+        let squares: i128 = good["squares"].as_str().unwrap().parse().unwrap();
+        let forged = [
+            ("/count", serde_json::json!(3001)),
+            ("/sum", serde_json::json!((sum + (3000_i128 << 25)).to_string())),
+            ("/sum", serde_json::json!(i128::MAX.to_string())),
+            ("/sum", serde_json::json!("1e3")),
+            ("/squares", serde_json::json!((squares + squares / 1000).to_string())),
+            ("/squares", serde_json::json!((-squares).to_string())),
+            ("/sketch", serde_json::Value::Null),
+            ("/sketch/config/gamma", serde_json::json!(1.5)),
+            ("/sketch/config/gamma", serde_json::json!(0.5)),
+            ("/sketch/config/max_num_bins", serde_json::json!(7)),
+            ("/sketch/store/bins/0", serde_json::json!(first + 1)),
+            ("/sketch/store/bins", serde_json::json!([])),
+            ("/sketch/store/bins", serde_json::json!([u64::MAX, u64::MAX])),
+            ("/sketch/store/min_key", serde_json::json!(i32::MIN)),
+            ("/sketch/store/max_key", serde_json::json!(i32::MAX)),
+            ("/sketch/store/offset", serde_json::json!(i32::MAX)),
+            ("/sketch/store/bin_limit", serde_json::json!(0)),
+            ("/sketch/negative_store/count", serde_json::json!(u64::MAX)),
+            ("/sketch/zero_count", serde_json::json!(u64::MAX)),
+            ("/sketch/min", serde_json::json!(1e300)),
+            ("/sketch/max", serde_json::json!(-1e300)),
+        ];
+        for (key, value) in forged {
+            let mut changed = good.clone();
+            *changed.pointer_mut(key).unwrap() = value;
+            assert!(serde_json::from_value::<Statistics>(changed).is_err(), "{key}");
+        }
+        let empty = serde_json::to_value(Statistics::new()).unwrap();
+        assert_eq!(serde_json::from_value::<Statistics>(empty).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn numbers_beyond_every_size_are_written_and_read() {
+        for sample in [vec![f64::MAX; 3], vec![-1e30, 1e30], vec![0.0; 5], vec![1e-7, -1e-7, 0.0], vec![1e-6, 2e-6]] {
+            let mut statistics = Statistics::new();
+            sample.iter().for_each(|value| statistics.take(*value));
+            let text = serde_json::to_string(&statistics).unwrap();
+            let read: Statistics = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{sample:?}: {error}"));
+            assert!(read == statistics);
+        }
     }
 
     #[test]

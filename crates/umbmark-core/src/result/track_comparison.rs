@@ -107,12 +107,20 @@ pub struct Overall {
     pub runs: usize,
     /// p of a rate of zero; null if it was not tested.
     pub p: Option<f64>,
+    /// Share by which the error of runs left out falls if the mean rate is taken off; null if it was not tested.
+    pub gain: Option<f64>,
 }
 
 impl From<&tracks::Overall> for Overall {
     fn from(overall: &tracks::Overall) -> Self {
         let mean = &overall.mean;
-        Overall { mean: finite(mean.value), interval: mean.interval.map(half_open), runs: mean.runs, p: overall.p }
+        Overall {
+            mean: finite(mean.value),
+            interval: mean.interval.map(half_open),
+            runs: mean.runs,
+            p: overall.test.map(|test| test.p),
+            gain: overall.test.map(|test| test.gain),
+        }
     }
 }
 
@@ -161,6 +169,8 @@ pub struct Against {
     pub unit: &'static str,
     /// p of no dependence; null if it was not tested.
     pub p: Option<f64>,
+    /// Share by which the error of runs left out falls if the dependence is taken off; null if it was not tested.
+    pub gain: Option<f64>,
     /// The rate in each span of the quantity.
     pub bins: Vec<Bin>,
 }
@@ -171,7 +181,8 @@ impl From<&tracks::Against> for Against {
             rate: against.rate.key(),
             covariate: against.covariate.name,
             unit: against.covariate.units[usize::from(against.rate.of_turns())],
-            p: against.p,
+            p: against.test.map(|test| test.p),
+            gain: against.test.map(|test| test.gain),
             bins: against.bins.iter().map(Bin::from).collect(),
         }
     }
@@ -184,7 +195,7 @@ pub struct JudgedAlong {
     pub name: String,
     /// Whether it explains the tracks; null if nothing was tested.
     pub explains: Option<bool>,
-    /// p of all tests together; null if nothing was tested.
+    /// p of all tests together: the smallest of those with a gain of at least 0.02, times the number of all; null if nothing was tested.
     pub p: Option<f64>,
     /// Number of these tests.
     pub tests: usize,

@@ -28,7 +28,7 @@ pub(super) fn by(
     rates: &[Rate],
 ) -> Result<Figure, Absent> {
     let (nominal, model) = models(study)?;
-    let wanted = |a: &&Against| covariates.contains(&a.covariate.name) && rates.contains(&a.rate) && a.p.is_some();
+    let wanted = |a: &&Against| covariates.contains(&a.covariate.name) && rates.contains(&a.rate) && a.test.is_some();
     let pairs: Vec<(&Against, &Against)> = model
         .against
         .iter()
@@ -62,7 +62,7 @@ pub(super) fn by(
 }
 
 fn says(title: &str, pairs: &[(&Against, &Against)], tests: usize, size: f64) -> String {
-    let p_of = |a: &Against| a.p.unwrap_or(1.0);
+    let p_of = |a: &Against| a.test.map_or(1.0, |test| test.p);
     let all = |a: &Against| (p_of(a) * tests as f64).min(1.0);
     let depending: Vec<String> = pairs
         .iter()

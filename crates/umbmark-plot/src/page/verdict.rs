@@ -17,7 +17,11 @@ pub fn said(study: &Study) -> Said {
 pub(super) enum Outcome {
     /// The model accounts for the error.
     Explained,
-    /// Effects were found, but something remains, or it is not certain which they are.
+    /// The model accounts for the error, but the runs do not say which of several effects is in it.
+    BySeveral,
+    /// The model accounts for the error with a law that is fitted and belongs to no known effect.
+    ByLaw,
+    /// Effects were found, but something remains.
     Partly,
     /// No model accounts for the error.
     NotExplained,
@@ -38,8 +42,10 @@ impl Outcome {
         let has_law = diagnosis.model.parts().iter().any(|part| part.free && part.effect.formula().is_some());
         match diagnosis.verdict {
             _ if diagnosis.reasons.iter().any(Reason::is_of_data) => Outcome::NotExplained,
-            Verdict::Explained if is_unsure || has_law => Outcome::Partly,
+            Verdict::Explained if has_law => Outcome::ByLaw,
+            Verdict::Explained if is_unsure => Outcome::BySeveral,
             Verdict::Explained => Outcome::Explained,
+            Verdict::UnlistedEffect if has_law => Outcome::ByLaw,
             Verdict::MissingEffect | Verdict::SeveralMissing | Verdict::UnlistedEffect => Outcome::Partly,
             Verdict::NotExplained => Outcome::NotExplained,
             Verdict::NotEnoughData => Outcome::NotEnoughData,
@@ -50,7 +56,7 @@ impl Outcome {
     fn name(self) -> &'static str {
         match self {
             Outcome::Explained => "explained",
-            Outcome::Partly => "partly",
+            Outcome::BySeveral | Outcome::ByLaw | Outcome::Partly => "partly",
             Outcome::NotExplained => "not_explained",
             Outcome::Fault => "fault",
             Outcome::NotEnoughData => "not_enough_data",
@@ -61,6 +67,8 @@ impl Outcome {
     pub(super) fn words(self) -> &'static str {
         match self {
             Outcome::Explained => "Explained",
+            Outcome::BySeveral => "Explained, by one effect or another",
+            Outcome::ByLaw => "Explained, by a law without a name",
             Outcome::Partly => "Explained in part",
             Outcome::NotExplained => "Not explained",
             Outcome::Fault => "The data have a fault",

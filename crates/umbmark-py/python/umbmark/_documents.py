@@ -3315,7 +3315,8 @@ class JudgedAlong(Record, frozen=True):
     explains : bool or None
         Whether it explains the tracks; None if nothing was tested.
     p : float or None
-        p of all tests together; None if nothing was tested.
+        p of all tests together: the smallest of those with a gain of at least 0.02, times the
+        number of all; None if nothing was tested.
     tests : int
         Number of these tests.
     along : RootMeanSquare
@@ -3457,12 +3458,16 @@ class Overall(Record, frozen=True):
         Number of runs.
     p : float or None
         p of a rate of zero; None if it was not tested.
+    gain : float or None
+        Share by which the error of runs left out falls if the mean rate is taken off; None if it
+        was not tested.
     """
 
     mean: float | None
     interval: tuple[float | None, float | None] | None
     runs: int
     p: float | None
+    gain: float | None
 
 
 class Against(Record, frozen=True):
@@ -3478,6 +3483,9 @@ class Against(Record, frozen=True):
         Unit of the quantity.
     p : float or None
         p of no dependence; None if it was not tested.
+    gain : float or None
+        Share by which the error of runs left out falls if the dependence is taken off; None if it
+        was not tested.
     bins : tuple[Bin, ...]
         The rate in each span of the quantity.
     """
@@ -3486,6 +3494,7 @@ class Against(Record, frozen=True):
     covariate: str
     unit: str
     p: float | None
+    gain: float | None
     bins: tuple[Bin, ...]
 
 

@@ -2,7 +2,11 @@
 
 use super::followed::{Conditions, ErrorIncrement};
 use crate::drive::Robot;
-use std::f64::consts::TAU;
+use std::f64::consts::{SQRT_2, TAU};
+use umbmark_odometry::pace::HALF_WINDOW;
+
+/// Bins are told apart if the ticks blur a value by less than this share of a bin.
+const BLUR: f64 = 0.25;
 
 /// An error, in proportion to what was driven.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,6 +96,19 @@ impl Rate {
         };
         (step.turning == self.of_turns() && amount != 0.0).then_some([error, amount.abs()])
     }
+
+    /// The error of a step \[m, m, rad\] at a value of this rate, if the step counts for it.
+    pub(super) fn made(self, step: &ErrorIncrement, value: f64) -> Option<[f64; 3]> {
+        let [_, amount] = self.of(step)?;
+        let ([way, rotation], error) = (step.motion, value * amount);
+        Some(match self {
+            Rate::Forward => [error * way.signum(), 0.0, 0.0],
+            Rate::Sideways | Rate::TurnSideways => [0.0, error, 0.0],
+            Rate::Yaw => [0.0, 0.0, error],
+            Rate::Turn => [0.0, 0.0, error * rotation.signum()],
+            Rate::TurnForward => [error, 0.0, 0.0],
+        })
+    }
 }
 
 /// How the range of a covariate is cut.
@@ -129,6 +146,17 @@ pub struct Covariate {
     split: Option<Value>,
     /// Whether runs may differ in it.
     pub between_runs: bool,
+    /// How it follows from the counts, where it is a derivative of them.
+    derived: Option<Derived>,
+}
+
+/// A derivative of the counts with respect to time.
+#[derive(Clone, Copy, Debug)]
+struct Derived {
+    /// 1 for a speed, 2 for an acceleration.
+    order: i32,
+    /// The rates of the same unit in straights and arcs, and in turns.
+    of: [Rate; 2],
 }
 
 const PLAIN: Covariate = Covariate {
@@ -140,6 +168,7 @@ const PLAIN: Covariate = Covariate {
     cut: Cut::Around(2),
     split: None,
     between_runs: false,
+    derived: None,
 };
 
 /// All that is tested.
@@ -151,6 +180,7 @@ pub static COVARIATES: [Covariate; 11] = [
         going: Some(|at| at.speed.abs()),
         cut: Cut::FromZero(6),
         between_runs: true,
+        derived: Some(Derived { order: 1, of: [Rate::Forward; 2] }),
         ..PLAIN
     },
     Covariate {
@@ -161,6 +191,7 @@ pub static COVARIATES: [Covariate; 11] = [
         turning: Some(|at| at.turn_rate.abs()),
         cut: Cut::Around(7),
         between_runs: true,
+        derived: Some(Derived { order: 1, of: [Rate::Yaw; 2] }),
         ..PLAIN
     },
     Covariate {
@@ -170,6 +201,7 @@ pub static COVARIATES: [Covariate; 11] = [
         going: Some(|at| at.acceleration),
         turning: Some(|at| at.turn_acceleration),
         cut: Cut::Around(5),
+        derived: Some(Derived { order: 2, of: [Rate::Forward, Rate::Turn] }),
         ..PLAIN
     },
     Covariate {
@@ -277,6 +309,27 @@ impl Covariate {
     /// Its value for steps that count for a rate.
     pub(super) fn value(&self, rate: Rate) -> Option<Value> {
         if rate.of_turns() { self.turning } else { self.going }
+    }
+
+    /// Whether the counters resolve its bins in these steps.
+    ///
+    /// A step whose counts are too few by chance appears to be slower than it is and to have an error ahead: where ticks blur the bins,
+    /// every error depends on the speed.
+    pub(super) fn tells<'a>(
+        &self,
+        rate: Rate,
+        spans: &[Span],
+        robot: &Robot,
+        steps: impl Iterator<Item = &'a ErrorIncrement>,
+    ) -> bool {
+        let (Some(Derived { order, of }), Some(span)) = (self.derived, spans.first()) else { return true };
+        let resolution = of[usize::from(rate.of_turns())].resolution(robot);
+        let blur = |step: &ErrorIncrement| {
+            let window = step.seconds.max(2.0 * HALF_WINDOW);
+            resolution * (SQRT_2 / window).powi(order)
+        };
+        let (squares, count) = steps.fold((0.0, 0.0), |(sum, n), step| (sum + blur(step).powi(2), n + 1.0));
+        (squares / f64::max(count, 1.0)).sqrt() < BLUR * (span.high - span.low)
     }
 
     /// Cuts its range in some steps into bins.

@@ -47,6 +47,10 @@ pub(super) struct ErrorIncrement {
     /// Whether the robot turns about a point within a wheelbase of its axle's centre.
     pub turning: bool,
     pub at: Conditions,
+    /// Its time \[s\].
+    pub seconds: f64,
+    /// Index of the place where it ends.
+    pub ends: usize,
 }
 
 /// How the robot drives in a step: rates are means over its time, other values are those at its middle.
@@ -76,7 +80,7 @@ impl<'a> Followed<'a> {
     pub fn new(observed: &'a ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Followed<'a> {
         let places = places(observed, chain, noise);
         let short = |step: &ErrorIncrement| step.motion[0].abs() <= LONGEST.0 && step.motion[1].abs() <= LONGEST.1;
-        let steps = places.windows(2).filter_map(|pair| step(&observed.track, pair)).filter(short).collect();
+        let steps = (1..places.len()).filter_map(|ends| step(&observed.track, &places, ends)).filter(short).collect();
         let with_heading = observed.blocks.iter().any(|block| block.headings > 0);
         Followed { observed, direction: observed.direction, places, steps, with_heading }
     }
@@ -120,8 +124,9 @@ pub(super) fn rolled(track: &Track) -> Vec<f64> {
     std::iter::once(0.0).chain(after).collect()
 }
 
-fn step(track: &Track, pair: &[MeasuredBlock]) -> Option<ErrorIncrement> {
-    let (a, b) = (&pair[0], &pair[1]);
+/// The step to the place that `ends` it, from that before.
+fn step(track: &Track, places: &[MeasuredBlock], ends: usize) -> Option<ErrorIncrement> {
+    let (a, b) = (&places[ends - 1], &places[ends]);
     // Steps across a jump do not count.
     if b.starts {
         return None;
@@ -129,12 +134,19 @@ fn step(track: &Track, pair: &[MeasuredBlock]) -> Option<ErrorIncrement> {
     let predicted = a.predicted.between(&b.predicted);
     let own = predicted.between(&a.measured.between(&b.measured));
     let forward = predicted.log().forward;
-    let (at, turning) = conditions(track, a.made..b.made, 0.5 * (a.predicted.heading + b.predicted.heading))?;
-    Some(ErrorIncrement { own: [own.x, own.y, own.heading], motion: [forward, predicted.heading], turning, at })
+    let (at, turning, seconds) = conditions(track, a.made..b.made, 0.5 * (a.predicted.heading + b.predicted.heading))?;
+    Some(ErrorIncrement {
+        own: [own.x, own.y, own.heading],
+        motion: [forward, predicted.heading],
+        turning,
+        at,
+        seconds,
+        ends,
+    })
 }
 
-/// Driving conditions of some pieces, and whether most of their wheel travel is turning; `None` if nothing moves.
-fn conditions(track: &Track, pieces: Range<usize>, heading: f64) -> Option<(Conditions, bool)> {
+/// Driving conditions of some pieces, whether most of their wheel travel is turning, and their time \[s\]; `None` if nothing moves.
+fn conditions(track: &Track, pieces: Range<usize>, heading: f64) -> Option<(Conditions, bool, f64)> {
     let own = &track.contexts()[pieces.clone()];
     let middle = own.get(own.len() / 2)?;
     let seconds: f64 = own.iter().map(|at| at.duration).sum();
@@ -168,5 +180,5 @@ fn conditions(track: &Track, pieces: Range<usize>, heading: f64) -> Option<(Cond
         direction: middle.direction,
         run: middle.run,
     };
-    Some((at, apart > way))
+    Some((at, apart > way, seconds))
 }

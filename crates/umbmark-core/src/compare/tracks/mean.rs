@@ -68,14 +68,18 @@ pub(super) fn p_of_zero(values: &[f64], shared: f64) -> Option<f64> {
     p_of(mean, variance / n + shared, n - 1.0).filter(|_| values.len() >= FEWEST)
 }
 
-/// p of a slope of zero of values against positions, by Student's t; `None` below four values, or where all positions are one.
+/// p of a slope of zero of values against positions, by Student's t; `None` below four values, or where all positions are one. Each value
+/// counts by its weight: the amount of driving that it is the mean of.
 ///
 /// Values at each of two ends may share an error of variance `shared`.
-pub(super) fn p_of_slope(points: &[[f64; 2]], shared: f64) -> Option<f64> {
+pub(super) fn p_of_slope(points: &[[f64; 2]], weights: &[f64], shared: f64) -> Option<f64> {
     let n = points.len() as f64;
-    let mean = |k: usize| points.iter().map(|p| p[k]).sum::<f64>() / n;
+    let all: f64 = weights.iter().sum();
+    let weighted = || points.iter().zip(weights.iter().map(|weight| weight * n / all));
+    let mean = |k: usize| weighted().map(|(p, w)| w * p[k]).sum::<f64>() / n;
     let (x, y) = (mean(0), mean(1));
-    let product = |i: usize, j: usize| points.iter().map(|p| (p[i] - [x, y][i]) * (p[j] - [x, y][j])).sum::<f64>();
+    let product =
+        |i: usize, j: usize| weighted().map(|(p, w)| w * (p[i] - [x, y][i]) * (p[j] - [x, y][j])).sum::<f64>();
     let across = product(0, 0);
     let slope = product(0, 1) / across;
     let rest = (product(1, 1) - slope * product(0, 1)).max(0.0);
@@ -97,9 +101,13 @@ mod tests {
     fn tests_are_students() {
         let p = p_of_zero(&[0.3, -0.1, 0.4, 0.2, 0.5], 0.0).unwrap();
         assert!((p - 0.064_985_9).abs() < 1e-6, "{p}");
-        let p = p_of_slope(&[[0.0, 1.0], [1.0, 1.5], [2.0, 1.2], [3.0, 2.1], [4.0, 2.0]], 0.0).unwrap();
+        let p = p_of_slope(&[[0.0, 1.0], [1.0, 1.5], [2.0, 1.2], [3.0, 2.1], [4.0, 2.0]], &[3.0; 5], 0.0).unwrap();
         assert!((p - 0.067_038_0).abs() < 1e-6, "{p}");
-        assert!(p_of_zero(&[1.0, 2.0], 0.0).is_none() && p_of_slope(&[[1.0, 2.0]; 5], 0.0).is_none());
+        // Oracle: weighted least squares by the normal equations, in Python. The last value is far off and counts for little.
+        let points = [[0.0, 1.0], [1.0, 1.5], [2.0, 1.2], [3.0, 2.1], [9.0, -4.0]];
+        let p = p_of_slope(&points, &[3.0, 3.0, 3.0, 3.0, 0.01], 0.0).unwrap();
+        assert!((p - 0.211997697).abs() < 1e-6, "{p}");
+        assert!(p_of_zero(&[1.0, 2.0], 0.0).is_none() && p_of_slope(&[[1.0, 2.0]; 5], &[1.0; 5], 0.0).is_none());
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::covariate::{COVARIATES, Covariate, Rate, Span, Value};
 use super::followed::{ErrorIncrement, Followed};
 use super::mean::{Mean, Sum, p_of_slope, p_of_zero, shared};
+use super::worth::{self, Test};
 use crate::drive::Robot;
 
 /// Runs differ in a covariate if their means scatter by more than this share of its range.
@@ -15,8 +16,8 @@ pub struct Overall {
     pub rate: Rate,
     /// Mean over the runs.
     pub mean: Mean,
-    /// p of a rate of zero, by Student's t over runs; `None` for fewer than three runs.
-    pub p: Option<f64>,
+    /// Of a rate of zero, by Student's t over runs; `None` for fewer than three runs.
+    pub test: Option<Test>,
 }
 
 /// A rate as a function of a covariate.
@@ -28,8 +29,8 @@ pub struct Against {
     pub covariate: &'static Covariate,
     /// The rate in each bin.
     pub bins: Vec<Bin>,
-    /// p of a rate that does not depend on it; `None` if the runs are too few, or the covariate does not vary in them.
-    pub p: Option<f64>,
+    /// Of a rate that does not depend on it; `None` if the runs are too few, or the covariate does not vary in them.
+    pub test: Option<Test>,
 }
 
 /// A rate in one bin.
@@ -52,7 +53,8 @@ pub(super) fn overall(runs: &[Followed], robot: &Robot, confidence: f64) -> Vec<
         let resolution = rate.resolution(robot);
         let mean = Mean::rate(&sums, resolution, confidence).filter(|_| shown)?;
         let rates: Vec<f64> = sums.iter().map(|sum| sum.error / sum.amount).collect();
-        Some(Overall { rate, mean, p: p_of_zero(&rates, shared_rate(&sums, resolution)) })
+        let p = p_of_zero(&rates, shared_rate(&sums, resolution));
+        Some(Overall { rate, mean, test: p.map(|p| Test { p, gain: worth::of_level(runs, rate) }) })
     };
     Rate::ALL.into_iter().filter_map(of).collect()
 }
@@ -111,14 +113,17 @@ fn ask(
         let amount = own.iter().map(|sum| sum.amount).sum();
         Bin { span, amount, mean: Mean::rate(&own, resolution, confidence) }
     };
-    let told: Vec<Bin> = spans.into_iter().enumerate().map(of_bin).collect();
+    let told: Vec<Bin> = spans.iter().copied().enumerate().map(of_bin).collect();
     let range = told.iter().filter(|bin| bin.mean.is_some()).count() > 1;
     let value = covariate.value(rate)?;
     let between = covariate.between_runs.then(|| between(runs, rate, value, &told, resolution)).flatten();
-    let tests: Vec<f64> = [within(&by_run, resolution), between].into_iter().flatten().collect();
+    let within = covariate.tells(rate, &spans, robot, counted()).then(|| within(&by_run, resolution)).flatten();
+    let tests: Vec<f64> = [within, between].into_iter().flatten().collect();
     let smallest = tests.iter().copied().reduce(f64::min);
     let p = smallest.filter(|_| range).map(|p| (p * tests.len() as f64).min(1.0));
-    Some(Against { rate, covariate, bins: told, p })
+    let between = covariate.between_runs.then_some(value);
+    let test = p.map(|p| Test { p, gain: worth::of_dependence(runs, rate, &bins, between) });
+    Some(Against { rate, covariate, bins: told, test })
 }
 
 /// p of the bin whose rate differs most from that of the whole run, run by run: Student's t, Bonferroni over the bins.
@@ -146,10 +151,11 @@ fn between(runs: &[Followed], rate: Rate, value: Value, bins: &[Bin], resolution
         (sum.amount > 0.0).then(|| ([at / sum.amount, sum.error / sum.amount], sum))
     };
     let (means, sums): (Vec<[f64; 2]>, Vec<Sum>) = runs.iter().filter_map(of_run).unzip();
+    let amounts: Vec<f64> = sums.iter().map(|sum| sum.amount).collect();
     let ends = bins.iter().flat_map(|bin| [bin.span.low, bin.span.high]).filter(|end| end.is_finite());
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), end| (l.min(end), h.max(end)));
     let n = means.len() as f64;
     let centre = means.iter().map(|m| m[0]).sum::<f64>() / n;
     let scatter = (means.iter().map(|m| (m[0] - centre).powi(2)).sum::<f64>() / n).sqrt();
-    p_of_slope(&means, shared_rate(&sums, resolution)).filter(|_| scatter > DIFFER * (high - low))
+    p_of_slope(&means, &amounts, shared_rate(&sums, resolution)).filter(|_| scatter > DIFFER * (high - low))
 }

@@ -1,6 +1,6 @@
 //! What a model explains of tracks and what it does not, in plain sentences.
 
-use super::{Against, By, Mean, Part, TracksJudged};
+use super::{Against, By, Mean, Part, Test, TracksJudged};
 
 /// A part is named if it has this share of the error.
 const MUCH: f64 = 0.2;
@@ -17,8 +17,9 @@ pub(super) fn of(judged: &TracksJudged, size: f64) -> Vec<String> {
     sentences.extend(levels(judged, least));
     sentences.extend(dependences(judged, least));
     if judged.tests > 0 && sentences.is_empty() {
-        sentences.push(format!("Explained: none of {} tests shows a repeating error.", judged.tests));
+        sentences.push(format!("Explained: none of {} tests shows a repeating error that matters.", judged.tests));
     }
+    sentences.extend(too_small(judged, least));
     sentences.extend(seen_to(judged));
     sentences.extend(where_made(&judged.parts));
     sentences
@@ -32,7 +33,7 @@ pub(super) fn accused(judged: &TracksJudged, size: f64) -> Vec<String> {
 }
 
 fn levels(judged: &TracksJudged, least: f64) -> Vec<String> {
-    let accused = judged.overall.iter().filter(|o| o.p.is_some_and(|p| p < least));
+    let accused = judged.overall.iter().filter(|o| o.test.is_some_and(|test| test.shows(least) && test.matters()));
     let told = accused.map(|o| {
         let (scale, unit) = o.rate.display();
         let value = with_interval(&o.mean, scale);
@@ -44,8 +45,9 @@ fn levels(judged: &TracksJudged, least: f64) -> Vec<String> {
 fn dependences(judged: &TracksJudged, least: f64) -> Vec<String> {
     let mut sentences = Vec::new();
     for rate in super::Rate::DEPENDING {
-        let accused = judged.against.iter().filter(|a| a.rate == rate && a.p.is_some_and(|p| p < least));
-        let mut accused: Vec<(f64, &Against)> = accused.map(|a| (a.p.unwrap_or(1.0), a)).collect();
+        let of_rate = judged.against.iter().filter(|a| a.rate == rate).filter_map(|a| Some((a.test?, a)));
+        let accused = of_rate.filter(|(test, _)| test.shows(least) && test.matters());
+        let mut accused: Vec<(f64, &Against)> = accused.map(|(test, a)| (test.p, a)).collect();
         accused.sort_by(|a, b| a.0.total_cmp(&b.0));
         if accused.is_empty() {
             continue;
@@ -58,6 +60,21 @@ fn dependences(judged: &TracksJudged, least: f64) -> Vec<String> {
         sentences.push(format!("Not explained: {} depends on {}{further}.", rate.name(), names.join("; on ")));
     }
     sentences
+}
+
+/// Errors that are shown to repeat and would lower the error of other runs by too little.
+fn too_small(judged: &TracksJudged, least: f64) -> Option<String> {
+    let small = |test: &Option<Test>| test.filter(|test| test.shows(least) && !test.matters()).map(|test| test.gain);
+    let levels = judged.overall.iter().filter_map(|o| Some((format!("{} overall", o.rate.name()), small(&o.test)?)));
+    let dependences = judged
+        .against
+        .iter()
+        .filter_map(|a| Some((format!("{} by {}", a.rate.name(), a.covariate.title), small(&a.test)?)));
+    let told: Vec<(String, f64)> = levels.chain(dependences).collect();
+    let most = told.iter().map(|(_, gain)| *gain).reduce(f64::max)?;
+    let names: Vec<&str> = told.iter().map(|(name, _)| name.as_str()).collect();
+    let worth = if most > 0.0 { format!("by at most {:.1} %", 100.0 * most) } else { "by nothing".to_owned() };
+    Some(format!("Repeats, but lowers the error of runs left out {worth}: {}.", names.join("; ")))
 }
 
 /// The smallest overall error that would have been detected.

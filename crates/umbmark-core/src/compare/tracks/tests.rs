@@ -4,7 +4,7 @@ use super::*;
 use crate::dataset::ReferencePose;
 use crate::diagnose::first_model;
 use crate::diagnose::tests::{margin, trials};
-use crate::drive::Robot;
+use crate::drive::{Encoder, Robot};
 use crate::effect::{Formula, Target};
 use crate::likelihood::watched::{watched, watched_on};
 use crate::path::{CIRCLE, Path, SQUARE, SpeedProfile};
@@ -13,7 +13,11 @@ use std::io::Write;
 
 /// A robot with usual errors of wheels and reference, plus further effects.
 fn robot_with(effects: &[(&str, &str, f64)]) -> Model {
-    let mut model = Model::new(&Robot::labmate());
+    of_robot(&Robot::labmate(), effects)
+}
+
+fn of_robot(robot: &Robot, effects: &[(&str, &str, f64)]) -> Model {
+    let mut model = Model::new(robot);
     let usual = [
         ("wheel_diameter_ratio", "e_d", 1.0012),
         ("wheelbase", "e_b", 0.993),
@@ -38,7 +42,7 @@ fn asked<'a>(judged: &'a TracksJudged, rate: Rate, covariate: &str) -> &'a Again
 }
 
 fn p_adjusted(judged: &TracksJudged, rate: Rate, covariate: &str) -> f64 {
-    asked(judged, rate, covariate).p.unwrap() * judged.tests as f64
+    asked(judged, rate, covariate).test.unwrap().p * judged.tests as f64
 }
 
 /// Seed 5, 5 + 5 runs of a robot with one effect that its model lacks.
@@ -218,6 +222,42 @@ fn offset_and_rate_of_the_clock_are_taken_together_though_neither_helps_alone() 
     assert!(judged.along.position < 0.03, "{:?}", judged.along);
 }
 
+/// A robot that creeps ahead by 0.3 mm for each radian of a turn: it is shown, and it makes nothing worse that matters.
+#[test]
+fn an_error_that_repeats_but_is_worth_nothing_does_not_accuse() {
+    let mut truth = robot_with(&[]);
+    let creep = Formula::new("own", Target::ForwardPerRadian, "a", &["a"]).unwrap();
+    truth.add_formula(creep, &[3e-4]).unwrap();
+    let judged = judged(&watched(&truth, 10, 5), &robot_with(&[]));
+    assert_eq!(judged.taken, []);
+    let of = |rate: Rate| judged.overall.iter().find(|o| o.rate == rate).and_then(|o| o.test).unwrap();
+    let (small, tests) = (of(Rate::TurnForward), judged.tests as f64);
+    assert!(small.p * tests < 0.01 && !small.matters(), "{small:?}");
+    assert_eq!(judged.explains(0.05), Some(true), "{:?}", judged.sentences);
+    let said = judged
+        .sentences
+        .iter()
+        .find(|said| said.starts_with("Repeats, but lowers the error of runs left out by"))
+        .unwrap();
+    assert!(said.contains("forward in turns overall"), "{said}");
+}
+
+/// The counters make a turn of 7 degrees one tick: steps that are counted short appear slow and have an error ahead.
+#[test]
+fn speeds_that_the_ticks_blur_are_not_asked() {
+    let mut coarse = Robot::labmate();
+    coarse.encoder = Encoder::new(100.0, None, None).unwrap();
+    let truth = of_robot(&coarse, &[]);
+    let told = judged(&watched(&truth, 5, 7), &truth);
+    let asked = |judged: &TracksJudged, covariate: &str| {
+        judged.against.iter().filter(|a| a.covariate.name == covariate && a.test.is_some()).count()
+    };
+    assert_eq!(asked(&told, "turn_rate"), 0, "{:?}", told.sentences);
+    assert!(asked(&told, "heading") > 0 && told.explains(0.05) == Some(true), "{:?}", told.sentences);
+    let fine = judged(&watched(&robot_with(&[]), 5, 7), &robot_with(&[]));
+    assert!(asked(&fine, "turn_rate") > 0);
+}
+
 /// Seeds 100 on. p of each test and of all together, for the true model and for one fitted to the same runs; on squares and on
 /// circles.
 #[test]
@@ -240,7 +280,8 @@ fn a_right_model_is_accused_no_more_often_than_is_asked() {
                     truth.clone()
                 };
                 let judged = judged(&data, &model);
-                let p = judged.overall.iter().map(|o| o.p).chain(judged.against.iter().map(|a| a.p)).flatten();
+                let tests = judged.overall.iter().map(|o| o.test).chain(judged.against.iter().map(|a| a.test));
+                let p = tests.flatten().map(|test| test.p);
                 (judged.explains(0.05) == Some(false), p.filter(|p| *p < 0.05).count(), judged.tests)
             })
             .collect();

@@ -1,0 +1,117 @@
+//! What a repeating error is worth: by how much the errors of a run fall along its way if it is corrected as the other runs tell.
+//!
+//! Many steps show errors that are too small to matter. A dependence speaks against a model only if it is worth something.
+
+use super::covariate::{Bins, Rate, Value};
+use super::followed::{ErrorIncrement, Followed};
+use crate::evidence::tracks::LEAST_GAIN;
+use crate::geometry::Pose2;
+
+/// A test of a repeating error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Test {
+    /// p of no such error.
+    pub p: f64,
+    /// Share by which the root mean square error of a run along its way falls, in position or heading, whichever falls more, if it is
+    /// corrected as the other runs tell; negative if both rise.
+    pub gain: f64,
+}
+
+impl Test {
+    /// Whether the error is large enough to speak against a model: by 2 %, as for effects that are added.
+    pub fn matters(&self) -> bool {
+        self.gain >= LEAST_GAIN
+    }
+
+    /// Whether the error is shown at this size of the test.
+    pub(super) fn shows(&self, size: f64) -> bool {
+        self.p < size
+    }
+}
+
+/// What the mean rate of the other runs is worth.
+pub(super) fn of_level(runs: &[Followed], rate: Rate) -> f64 {
+    let totals: Vec<[f64; 2]> = runs.iter().map(|run| total(&run.steps, rate)).collect();
+    gain(runs, rate, |run, _| Some(without(&totals, run)))
+}
+
+/// What the dependence on a covariate is worth: by the means of its bins, or by the line through the means of whole runs, whichever is
+/// worth more; both relative to the mean rate.
+pub(super) fn of_dependence(runs: &[Followed], rate: Rate, bins: &Bins, between: Option<Value>) -> f64 {
+    let spans = bins.spans().len();
+    let of_run = |run: &Followed| {
+        let of_bin = |bin| total(run.steps.iter().filter(|step| bins.index(step) == Some(bin)), rate);
+        (0..spans).map(of_bin).collect::<Vec<[f64; 2]>>()
+    };
+    let by_run: Vec<Vec<[f64; 2]>> = runs.iter().map(of_run).collect();
+    let totals: Vec<[f64; 2]> = runs.iter().map(|run| total(&run.steps, rate)).collect();
+    let of_others = |run: usize| {
+        let level = without(&totals, run);
+        let bin = |bin: usize| {
+            let own: Vec<[f64; 2]> = by_run.iter().map(|run| run[bin]).collect();
+            own.iter().enumerate().any(|(other, sum)| other != run && sum[1] > 0.0).then(|| without(&own, run) - level)
+        };
+        (0..spans).map(bin).collect::<Vec<Option<f64>>>()
+    };
+    let means: Vec<Vec<Option<f64>>> = (0..runs.len()).map(of_others).collect();
+    let of_bins = gain(runs, rate, |run, step| bins.index(step).and_then(|bin| means[run][bin]));
+    let of_line = between.map(|value| {
+        let lines: Vec<Option<[f64; 2]>> = (0..runs.len()).map(|run| line(runs, &totals, rate, value, run)).collect();
+        gain(runs, rate, |run, step| lines[run].map(|[slope, centre]| slope * (value(&step.at) - centre)))
+    });
+    of_line.map_or(of_bins, |of_line| of_bins.max(of_line))
+}
+
+/// Errors and amount of driving of steps.
+fn total<'a>(steps: impl IntoIterator<Item = &'a ErrorIncrement>, rate: Rate) -> [f64; 2] {
+    steps.into_iter().filter_map(|step| rate.of(step)).fold([0.0; 2], |[e, a], [error, amount]| [e + error, a + amount])
+}
+
+/// The mean rate of all sums but one; 0 if nothing is driven in them.
+fn without(sums: &[[f64; 2]], one: usize) -> f64 {
+    let others = sums.iter().enumerate().filter(|(run, _)| *run != one);
+    let [error, amount] = others.fold([0.0; 2], |[e, a], (_, own)| [e + own[0], a + own[1]]);
+    if amount > 0.0 { error / amount } else { 0.0 }
+}
+
+/// Slope and centre of the line through the rates of all runs but one against their means of a covariate.
+fn line(runs: &[Followed], totals: &[[f64; 2]], rate: Rate, value: Value, one: usize) -> Option<[f64; 2]> {
+    let others = runs.iter().zip(totals).enumerate().filter(|(run, (_, [_, amount]))| *run != one && *amount > 0.0);
+    let point = |(_, (run, [error, amount])): (usize, (&Followed, &[f64; 2]))| {
+        let at: f64 = run.steps.iter().filter_map(|step| Some(rate.of(step)?[1] * value(&step.at))).sum();
+        [at / amount, error / amount]
+    };
+    let points: Vec<[f64; 2]> = others.map(point).collect();
+    let n = points.len() as f64;
+    let centre = points.iter().map(|p| p[0]).sum::<f64>() / n;
+    let across: f64 = points.iter().map(|p| (p[0] - centre).powi(2)).sum();
+    let along: f64 = points.iter().map(|p| (p[0] - centre) * p[1]).sum();
+    (across > 0.0).then(|| [along / across, centre])
+}
+
+/// Share by which the errors fall if each step is corrected by a rate, given for the run and the step.
+fn gain(runs: &[Followed], rate: Rate, of: impl Fn(usize, &ErrorIncrement) -> Option<f64>) -> f64 {
+    let mut squares = [[0.0; 2]; 2];
+    for (index, run) in runs.iter().enumerate() {
+        let mut steps = run.steps.iter().peekable();
+        let mut corrected = Pose2::IDENTITY;
+        for (at, place) in run.places.iter().enumerate() {
+            let step = steps.next_if(|step| step.ends == at);
+            if place.starts || at == 0 {
+                corrected = place.predicted;
+                continue;
+            }
+            corrected = corrected.compose(&run.places[at - 1].predicted.between(&place.predicted));
+            let made = step.and_then(|step| Some((step, of(index, step)?)));
+            if let Some([x, y, heading]) = made.and_then(|(step, value)| rate.made(step, value)) {
+                corrected = corrected.compose(&Pose2::new(x, y, heading));
+            }
+            for (squares, pose) in squares.iter_mut().zip([&place.predicted, &corrected]) {
+                squares[0] += (place.measured.x - pose.x).powi(2) + (place.measured.y - pose.y).powi(2);
+                squares[1] += (place.measured.heading - pose.heading).powi(2);
+            }
+        }
+    }
+    let fall = |k: usize| if squares[0][k] > 0.0 { 1.0 - (squares[1][k] / squares[0][k]).sqrt() } else { 0.0 };
+    fall(0).max(fall(1))
+}
