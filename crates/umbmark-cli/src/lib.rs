@@ -31,6 +31,7 @@ mod sweep;
 mod table;
 mod terminal;
 mod test_arguments;
+pub mod told;
 mod tracks_report;
 mod unlisted;
 mod vary;

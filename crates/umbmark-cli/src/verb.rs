@@ -7,7 +7,7 @@ use crate::Session;
 /// Each verb by its help, its name and its file, which has `Arguments` and `run`.
 macro_rules! verbs {
     ($($(#[$help:meta])* $verb:ident($file:ident),)*) => {
-        $(mod $file;)*
+        $(pub(crate) mod $file;)*
 
         /// What the command can do.
         #[derive(Debug, clap::Subcommand)]

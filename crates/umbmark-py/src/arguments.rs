@@ -29,15 +29,15 @@ pub fn whole(name: &str, given: &Bound<'_, PyAny>, least: u64, most: u64) -> PyR
 
 /// Numbers of any real type, shape (n,).
 pub fn column<'py>(name: &str, given: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray1<'py, f64>> {
-    Ok(read("column", (name, given), given.py())?.extract()?)
+    read("column", (name, given), given.py())?.extract()
 }
 
 /// Whole numbers of any type, shape (n,).
 pub fn indices<'py>(name: &str, given: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray1<'py, i64>> {
-    Ok(read("indices", (name, given), given.py())?.extract()?)
+    read("indices", (name, given), given.py())?.extract()
 }
 
 /// Rows of x, y and heading of any real type, C-contiguous, shape (n, 3); NaN for a heading that was not measured.
 pub fn poses<'py>(name: &str, given: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray2<'py, f64>> {
-    Ok(read("poses", (name, given), given.py())?.extract()?)
+    read("poses", (name, given), given.py())?.extract()
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use umbmark_cli::told;
 use umbmark_core::calibrate::{Options, RadiusWheelbase};
 use umbmark_core::{diagnose, learn, result, solve};
 
@@ -16,7 +17,7 @@ use crate::{choice, json, probability, refused};
 const WHEELBASES: [(&str, RadiusWheelbase); 2] =
     [("nominal", RadiusWheelbase::Nominal), ("corrected", RadiusWheelbase::Corrected)];
 
-/// A calibration by every method that the data allows.
+/// A calibration by every method that the data allows, as a document and in words.
 #[pyfunction]
 pub fn calibrate(
     py: Python<'_>,
@@ -24,7 +25,7 @@ pub fn calibrate(
     level: f64,
     heading_arm_m: Option<f64>,
     radius_wheelbase: &str,
-) -> PyResult<String> {
+) -> PyResult<(String, String)> {
     probability("level", level)?;
     let options = Options {
         heading_arm: heading_arm_m,
@@ -46,7 +47,8 @@ pub fn calibrate(
     }
     let noticed = calibration.setup.notices().len();
     calibration.warnings.splice(noticed..noticed, data.0.warnings.iter().cloned());
-    json(&result::Calibration::new(robot, &calibration, answer.as_ref(), level))
+    let text = told::calibration(robot, &calibration, answer.as_ref(), level, testing.size);
+    Ok((json(&result::Calibration::new(robot, &calibration, answer.as_ref(), level))?, text))
 }
 
 /// A calibration of any drive by its first effects: the document, the model, and the corrected robot.

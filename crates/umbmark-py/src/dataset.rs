@@ -8,6 +8,7 @@ use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyIterator, PySlice, PyTuple};
 use serde::{Deserialize, Serialize};
+use umbmark_cli::told;
 use umbmark_core::dataset::{self as core, RunClock, RunTopics};
 use umbmark_core::result;
 use umbmark_io::export::{ExportError, UrdfFile};
@@ -398,7 +399,7 @@ fn poses_of_files() -> Vec<String> {
     ["x_ref_m", "y_ref_m", "theta_ref_rad"].map(str::to_owned).into()
 }
 
-/// Refuses runs that cannot be told apart.
+/// Refuses runs that have the same number or name.
 fn all_differ(runs: &[core::Run]) -> PyResult<()> {
     for (index, run) in runs.iter().enumerate() {
         let same = |other: &core::Run| {
@@ -464,13 +465,14 @@ pub fn load_dataset(
 
 /// What a dataset holds, whether it is any good, and what it can determine.
 #[pyfunction]
-pub fn inspect(py: Python<'_>, data: &Dataset, place: &str) -> PyResult<String> {
+pub fn inspect(py: Python<'_>, data: &Dataset, place: &str) -> PyResult<(String, String)> {
     if data.0.runs.is_empty() {
         return Err(PyValueError::new_err("there are no runs to inspect"));
     }
     let shared = Arc::clone(&data.0);
     let found = watched(py, 1, None, move |_| shared.inspect())?;
-    json(&result::Inspection::new(place, &data.0, &found, &[]))
+    let text = told::inspection(&data.0, &found);
+    Ok((json(&result::Inspection::new(place, &data.0, &found, &[]))?, text))
 }
 
 /// Write a robot.toml and a returns.csv to fill in, or propose a robot.toml from logs.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use umbmark_cli::told;
 use umbmark_core::compare::{self as comparing, Compared};
 use umbmark_core::diagnose::{self as core, Options, first_model};
 use umbmark_core::evidence::FitError;
@@ -30,7 +31,7 @@ pub fn compare(
     options: (f64, i64, u64),
     return_poses: bool,
     #[pyo3(from_py_with = threads)] threads: usize,
-) -> PyResult<String> {
+) -> PyResult<(String, String)> {
     let options = options_of(options, return_poses)?;
     let shared = Arc::clone(&data.0);
     shared.nominal_robot().map_err(refused)?;
@@ -38,10 +39,13 @@ pub fn compare(
     let given: Vec<_> = given.collect::<PyResult<_>>()?;
     let found = watched(py, threads, None, move |_| -> Result<_, FitError> {
         let models = if given.is_empty() { comparing::usual_models(&shared, &options)? } else { given };
-        Ok(match comparing::compare(&shared, &models, &options)? {
+        let compared = comparing::compare(&shared, &models, &options)?;
+        let text = told::comparison(&compared, &options);
+        let document = match compared {
             Compared::Ends(comparison) => json(&Comparison::new(&comparison, &options)),
             Compared::Tracks(comparison) => json(&TrackComparison::new(&comparison, &options)),
-        })
+        };
+        Ok(document.map(|document| (document, text)))
     })?;
     found.map_err(refused)?
 }
@@ -55,12 +59,13 @@ pub fn diagnose(
     options: (f64, i64, u64),
     return_poses: bool,
     #[pyo3(from_py_with = threads)] threads: usize,
-) -> PyResult<(String, Model)> {
+) -> PyResult<(String, String, Model)> {
     let options = options_of(options, return_poses)?;
     let model = asked(py, data, model)?;
     let shared = Arc::clone(&data.0);
     let diagnosis = watched(py, threads, None, move |_| core::diagnose(&shared, &model, &options))?.map_err(refused)?;
-    Ok((json(&result::Diagnosis::new(&diagnosis, &options))?, diagnosis.model.into()))
+    let text = told::diagnosis(&data.0, &diagnosis, &options);
+    Ok((json(&result::Diagnosis::new(&diagnosis, &options))?, text, diagnosis.model.into()))
 }
 
 /// A model with its free effects fitted, those of `add` too.
@@ -71,7 +76,7 @@ pub fn fit(
     model: Option<&Model>,
     add: Vec<String>,
     level: f64,
-) -> PyResult<(String, Model)> {
+) -> PyResult<(String, String, Model)> {
     probability("level", level)?;
     let mut model = asked(py, data, model)?;
     for effect in &add {
@@ -84,7 +89,8 @@ pub fn fit(
     }
     let shared = Arc::clone(&data.0);
     let fitted = watched(py, 1, None, move |_| evidence::fit(&shared, &model))?.map_err(refused)?;
-    Ok((json(&result::Fitted::new(&fitted, level))?, Model { noise: fitted.noise, ..fitted.model.into() }))
+    let (document, text) = (json(&result::Fitted::new(&fitted, level))?, told::fit(&fitted, level));
+    Ok((document, text, Model { noise: fitted.noise, ..fitted.model.into() }))
 }
 
 /// The whole loop, from a model where one is given, and the model that was learnt.
@@ -97,7 +103,7 @@ pub fn learn(
     return_poses: bool,
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(String, Model)> {
+) -> PyResult<(String, String, Model)> {
     let options = options_of(options, return_poses)?;
     let shared = Arc::clone(&data.0);
     let start = match start {
@@ -105,7 +111,8 @@ pub fn learn(
         None => effect::Model::new(data.0.nominal_robot().map_err(refused)?),
     };
     let solution = solved(py, shared, start, options, threads, progress)?;
-    Ok((json(&result::Learnt::new(&solution, &options))?, model_of(solution)))
+    let text = told::learnt(&data.0, &solution, &options);
+    Ok((json(&result::Learnt::new(&solution, &options))?, text, model_of(solution)))
 }
 
 /// The one answer, and the model that it rests on.
@@ -117,11 +124,12 @@ pub fn solve(
     return_poses: bool,
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(String, Model)> {
+) -> PyResult<(String, String, Model)> {
     let options = options_of(options, return_poses)?;
     let start = effect::Model::new(data.0.nominal_robot().map_err(refused)?);
     let solution = solved(py, Arc::clone(&data.0), start, options, threads, progress)?;
-    Ok((json(&result::Solution::new(&solution, &options))?, model_of(solution)))
+    let text = told::solution(&solution, &options);
+    Ok((json(&result::Solution::new(&solution, &options))?, text, model_of(solution)))
 }
 
 fn solved(

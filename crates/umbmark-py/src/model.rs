@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::ffi::CString;
 
-use pyo3::exceptions::{PyUserWarning, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyString};
 use toml::{Table, Value};
 use umbmark_core::likelihood::Noise;
 use umbmark_core::monte_carlo::Draw;
@@ -73,7 +73,7 @@ impl Model {
 
     /// Read a model.toml, for a robot, or for the one it names, or the paper's LabMate.
     ///
-    /// A file that names another robot than the given one is converted, with a warning that says what changed.
+    /// A file that names another robot than the given one is converted, with a ``ConversionWarning`` that says what changed.
     #[staticmethod]
     #[pyo3(signature = (file, robot=None))]
     fn read(py: Python<'_>, file: std::path::PathBuf, robot: Option<&Robot>) -> PyResult<Model> {
@@ -85,8 +85,9 @@ impl Model {
     ///
     /// Parameters
     /// ----------
-    /// name : str
-    ///     Name of the effect; ``umbmark.effects()`` has the catalogue.
+    /// name : str, or a law of a result
+    ///     Name of the effect; ``umbmark.effects()`` has the catalogue. Or a law that ``learn`` or ``diagnose`` found: the
+    ///     ``suggestion`` of ``unlisted``, ``repeats``, the ``law`` of a step, or one of its ``others``.
     /// **keys
     ///     The keys of ``[[effect]]`` in a model.toml: the effect's parameters (a number, a word where it takes words,
     ///     ``{"mean": .., "sd": ..}`` or ``{"min": .., "max": ..}`` for one that is drawn), and ``free=True`` for
@@ -105,7 +106,14 @@ impl Model {
     /// TypeError
     ///     If a function cannot be written as a formula.
     #[pyo3(signature = (name, **keys))]
-    fn add(&self, py: Python<'_>, name: &str, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Model> {
+    fn add(&self, py: Python<'_>, name: &Bound<'_, PyAny>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Model> {
+        if let Some(laws) = laws_of(name)? {
+            let mut effects = self.tables()?;
+            effects.retain(|table| laws.iter().all(|law| law.get("name") != table.get("name")));
+            effects.extend(laws);
+            return self.with(effects)?.changed(py, keys);
+        }
+        let name: &str = &name.extract::<String>()?;
         let keys = match keys {
             Some(keys) => py.import("umbmark._formula")?.call_method1("as_text", (keys,))?.cast_into::<PyDict>()?,
             None => PyDict::new(py),
@@ -197,6 +205,15 @@ impl Model {
         Ok(model)
     }
 
+    /// The same, with keys of its last effect changed.
+    fn changed(self, py: Python<'_>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Model> {
+        let last = self.model.parts().last().map(|part| part.effect.name());
+        match (keys.filter(|keys| !keys.is_empty()), last) {
+            (Some(keys), Some(last)) => self.add(py, PyString::new(py, last).as_any(), Some(keys)),
+            _ => Ok(self),
+        }
+    }
+
     /// Its effects as in a file.
     fn tables(&self) -> PyResult<Vec<Table>> {
         let file: Table = self.to_toml().parse().map_err(|error: toml::de::Error| refused(error))?;
@@ -239,9 +256,20 @@ impl From<effect::Model> for Model {
     }
 }
 
+/// The effects of a law that a result holds as the text of a model file; nothing for a name.
+fn laws_of(given: &Bound<'_, PyAny>) -> PyResult<Option<Vec<Table>>> {
+    let Some(text) = given.getattr_opt("toml")? else { return Ok(None) };
+    if text.is_none() {
+        return Err(PyValueError::new_err("this law has no formula that a model could hold"));
+    }
+    let file: Table = text.extract::<String>()?.parse().map_err(|error: toml::de::Error| refused(error))?;
+    let effects = file.get("effect").and_then(Value::as_array);
+    Ok(Some(effects.into_iter().flatten().filter_map(|effect| effect.as_table().cloned()).collect()))
+}
+
 fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
     let text = CString::new(text).map_err(refused)?;
-    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)
+    PyErr::warn(py, &py.import("umbmark._warnings")?.getattr("ConversionWarning")?, &text, 1)
 }
 
 fn nominal(robot: Option<&Robot>) -> drive::Robot {

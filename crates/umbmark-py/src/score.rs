@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
+use umbmark_cli::told;
 use umbmark_core::dataset::ReturnError;
 use umbmark_core::result;
 use umbmark_core::score::{self as core, Convention, ScoreError};
@@ -17,7 +18,7 @@ const CONVENTIONS: [(&str, Convention); 2] = [("mean", Convention::Mean), ("sum"
 /// The names of the arrays, as in the call.
 pub const ARRAYS: [&str; 4] = ["cw", "ccw", "bumps_cw", "bumps_ccw"];
 
-/// The score of return errors in arrays.
+/// The score of return errors in arrays, as a document and in words.
 #[pyfunction]
 pub fn score_arrays(
     cw: &Bound<'_, PyAny>,
@@ -26,7 +27,7 @@ pub fn score_arrays(
     bumps_ccw: Option<&Bound<'_, PyAny>>,
     level: f64,
     convention: &str,
-) -> PyResult<String> {
+) -> PyResult<(String, String)> {
     let convention = choice("convention", convention, &CONVENTIONS)?;
     let given = ARRAYS.into_iter().zip([Some(cw), Some(ccw), bumps_cw, bumps_ccw]);
     let arrays: PyResult<Vec<_>> =
@@ -41,18 +42,19 @@ pub fn score_arrays(
         let [cw, ccw, bumps_cw, bumps_ccw] = all;
         core::score_returns([cw, ccw], [bumps_cw, bumps_ccw], level)
     })?;
-    json(&result::Score::new(&score.map_err(refused)?, convention))
+    let score = score.map_err(refused)?;
+    Ok((json(&result::Score::new(&score, convention))?, told::score(None, &score, convention)))
 }
 
-/// The score of a dataset.
+/// The score of a dataset, as a document and in words.
 #[pyfunction]
-pub fn score_dataset(py: Python<'_>, data: &Dataset, level: f64, convention: &str) -> PyResult<String> {
+pub fn score_dataset(py: Python<'_>, data: &Dataset, level: f64, convention: &str) -> PyResult<(String, String)> {
     let convention = choice("convention", convention, &CONVENTIONS)?;
     let shared = Arc::clone(&data.0);
     let mut score = watched(py, 1, None, move |_| core::score_dataset(&shared, level))?.map_err(refused)?;
     let noticed = score.setup.notices().len();
     score.warnings.splice(noticed..noticed, data.0.warnings.iter().cloned());
-    json(&result::Score::new(&score, convention))
+    Ok((json(&result::Score::new(&score, convention))?, told::score(Some(&data.0), &score, convention)))
 }
 
 /// Refuses a return error that is no number, its run named as Python would index it.

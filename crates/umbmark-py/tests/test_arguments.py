@@ -260,7 +260,7 @@ def test_datasets_and_runs_are_equal_and_hashed_by_what_they_hold() -> None:
     assert len({path, umbmark.Path(side_m=0.5), NOISE, umbmark.Model()}) == 3
 
 
-def test_runs_that_cannot_be_told_apart_are_refused() -> None:
+def test_runs_with_the_same_number_or_name_are_refused() -> None:
     def run(number: int, name: str | None = None, test: str = "systematic") -> umbmark.Run:
         return umbmark.Run("cw", number, name=name, test=test, returned=(0.1, 0.2))
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 import umbmark
@@ -208,3 +209,42 @@ def test_parallel_trials_take_a_function() -> None:
     one, two = (umbmark.monte_carlo(model, n=8, runs=1, threads=n) for n in (1, 2))
     assert one.metrics == two.metrics
     assert (one.metrics["e_max_sys_m"].mean or 0) > 0.01
+
+
+@pytest.fixture(scope="module")
+def with_a_law() -> umbmark.Learnt:
+    """Return what is learnt of a robot that a law of its place turns."""
+    truth = umbmark.Model().add("wheel_noise", k_sqrt_m=1e-4)
+    truth = truth.add("reference_noise", position_sd_m=5e-4, heading_sd_rad=5e-4)
+    truth = truth.add("cable", acts_on="heading_per_metre", formula="k * x", parameters={"k": 0.03})
+    data = umbmark.simulate(truth, umbmark.Path(side_m=1.5), runs=5, reference_rate_hz=4)
+    return umbmark.learn(data, draws=99)
+
+
+def test_a_law_of_a_result_is_added_to_a_model(with_a_law: umbmark.Learnt) -> None:
+    law = next(step.law for step in with_a_law.steps if step.law)
+    start = umbmark.fit(with_a_law.data).model
+    fitted = umbmark.fit(with_a_law.data, start.add(law))
+    assert fitted.model.effects == with_a_law.model.effects
+    assert fitted.tracks().rms_m < 0.2 * umbmark.tracks(with_a_law.data, start).rms_m
+    fixed = start.add(law, free=False)
+    assert fixed.effects == [*start.effects, fixed.effects[-1]]
+    assert "free = true" not in fixed.to_toml().split("[[effect]]")[-1].split("[noise]")[0]
+    twice = start.add(law).add(law)
+    assert twice == start.add(law)
+    other = next(one for one in law.others if one.toml)
+    assert len(start.add(other).effects) == len(start.effects) + 1
+
+
+def test_a_law_without_a_formula_is_refused(with_a_law: umbmark.Learnt) -> None:
+    law = next(step.law for step in with_a_law.steps if step.law)
+    with pytest.raises(ValueError, match="this law has no formula that a model could hold"):
+        umbmark.Model().add(msgspec.structs.replace(law, toml=None))
+
+
+def test_a_figure_of_a_result_is_that_of_its_data_and_model(with_a_law: umbmark.Learnt) -> None:
+    figure = with_a_law.figure("parameters")
+    assert figure == umbmark.plot("parameters", with_a_law.data, with_a_law.model)
+    assert figure.to_plotly()["data"]
+    with pytest.raises(ValueError, match='there is no figure "portrait"; there are'):
+        with_a_law.figure("portrait")

@@ -166,7 +166,11 @@ def test_a_sweep_goes_on_where_its_checkpoint_ends(tmp_path: Path) -> None:
 
 
 def test_sampled_odometry_is_asked_for_everywhere() -> None:
-    sizes = {"wheelbase_m": 0.34, "wheel_diameter_m": 0.15, "ticks_per_revolution": 2000}
+    sizes: dict[str, Any] = {
+        "wheelbase_m": 0.34,
+        "wheel_diameter_m": 0.15,
+        "ticks_per_revolution": 2000,
+    }
     fast = umbmark.Model(umbmark.Robot(**sizes, encoder_rate_hz=20.0)).add("wheelbase", e_b=1.01)
     how: dict[str, Any] = {"runs": 1, "update": "euler", "phase": "edge"}
     one = umbmark.monte_carlo(fast, n=1, **how).metrics["e_max_sys_m"].mean

@@ -2,14 +2,20 @@
 
 import pickle
 import re
+from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar, get_args
 
+import mypy.api
 import numpy as np
 import pytest
 import umbmark
 
-LABMATE = {"wheelbase_m": 0.34, "wheel_diameter_m": 0.15, "ticks_per_revolution": 2000}
+LABMATE: dict[str, Any] = {
+    "wheelbase_m": 0.34,
+    "wheel_diameter_m": 0.15,
+    "ticks_per_revolution": 2000,
+}
 
 
 Thing = TypeVar("Thing")
@@ -44,7 +50,7 @@ def test_a_robot_has_the_keys_of_its_file_and_reads_back() -> None:
     ],
 )
 def test_an_impossible_robot_is_refused_in_the_words_of_its_file(
-    keys: dict[str, float | str], words: str
+    keys: dict[str, Any], words: str
 ) -> None:
     with pytest.raises(ValueError, match=re.escape(words)):
         umbmark.Robot(**{**LABMATE, **keys})
@@ -72,9 +78,9 @@ def test_the_words_for_drives_and_shapes_are_listed_with_what_they_are() -> None
     assert next(iter(shapes)) == "square"
     assert all([*drives.values(), *shapes.values()])
     with pytest.raises(ValueError, match=f"one of {', '.join(map(re.escape, shapes))}"):
-        umbmark.Path("sqare")
+        umbmark.Path("sqare")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=f"one of {', '.join(map(re.escape, drives))}"):
-        umbmark.Robot(drive="diferential", **LABMATE)
+        umbmark.Robot(drive="diferential", **LABMATE)  # type: ignore[arg-type]
 
 
 def test_models_are_changed_by_making_others() -> None:
@@ -103,9 +109,9 @@ def test_a_model_of_another_robot_is_converted_with_a_warning(tmp_path: Path) ->
     assert umbmark.Model.from_toml(text).robot == wide
     labmate = umbmark.Robot.labmate()
     words = r"model\.toml was made for a robot with wheelbase_m = 0\.68, which is 0\.34 here"
-    with pytest.warns(UserWarning, match=words):
+    with pytest.warns(umbmark.ConversionWarning, match=words):
         of_text = umbmark.Model.from_toml(text, labmate)
-    with pytest.warns(UserWarning, match=words):
+    with pytest.warns(umbmark.ConversionWarning, match=words):
         of_file = umbmark.Model.read(tmp_path / "model.toml", labmate)
     for model in (of_text, of_file):
         assert model.robot == labmate
@@ -123,7 +129,7 @@ def test_a_model_of_another_robot_is_converted_with_a_warning(tmp_path: Path) ->
     ],
 )
 def test_an_impossible_effect_is_refused_in_the_words_of_its_file(
-    name: str, keys: dict[str, float], words: str
+    name: str, keys: dict[str, Any], words: str
 ) -> None:
     with pytest.raises(ValueError, match=re.escape(words)):
         umbmark.Model().add(name, **keys)
@@ -239,3 +245,64 @@ def test_a_run_that_cannot_have_been_is_refused(keys: dict[str, object], words: 
     umbmark.Run(**good)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=re.escape(words)):
         umbmark.Run(**{**good, **keys})  # type: ignore[arg-type]
+
+
+def keys_taken(make: Callable[..., object], *words: str, **keys: Any) -> set[str]:
+    """Give the keys that a refusal of an unknown one lists."""
+    with pytest.raises(ValueError, match=r"it takes (.*)$") as caught:
+        make(*words, **keys, qqqqqqqqqqqqqqqqqqqq=1)
+    return set(re.split(r", | and ", str(caught.value).split("it takes ")[1]))
+
+
+def test_the_keys_that_are_checked_statically_are_those_that_are_taken() -> None:
+    robots = (keys_taken(umbmark.Robot, drive=drive) for drive in umbmark.Robot.drives())
+    assert set().union(*robots) == set(umbmark.RobotKeys.__annotations__)
+    paths = (keys_taken(umbmark.Path, shape) for shape in umbmark.Path.shapes())
+    assert set().union(*paths) - {"shape"} == set(umbmark.PathKeys.__annotations__)
+    add = umbmark.Model().add
+    effects = (keys_taken(add, effect) for effect in umbmark.effects())
+    own = keys_taken(add, "own", acts_on="forward_scale", formula="k", parameters={"k": 1})
+    assert set().union(own, *effects) - {"name"} == set(umbmark.EffectKeys.__annotations__)
+
+
+def test_the_words_that_are_checked_statically_are_those_that_are_taken() -> None:
+    assert get_args(umbmark.Drive) == tuple(umbmark.Robot.drives())
+    assert get_args(umbmark.Shape) == tuple(umbmark.Path.shapes())
+    assert get_args(umbmark.EffectName) == tuple(umbmark.effects())
+    with pytest.raises(ValueError, match="acts_on must be one of") as caught:
+        umbmark.Model().add("own", acts_on="nothing", formula="k", parameters={"k": 1})  # type: ignore[arg-type]
+    for word in get_args(umbmark.ActsOn):
+        assert word in str(caught.value)
+
+
+def test_misspelt_keys_and_words_are_found_by_a_type_checker(tmp_path: Path) -> None:
+    """A user's script in strict mode: clean as it is, and an error in each line that is wrong."""
+    good = """
+import umbmark
+
+robot = umbmark.Robot(wheelbase_m=0.34, wheel_diameter_m=0.15, ticks_per_revolution=2000)
+path = umbmark.Path("rectangle", length_m=7, width_m=4)
+model = umbmark.Model(robot).add("wheelbase", e_b={"mean": 1.0, "sd": 1e-3}, free=True)
+model = model.add("carpet", acts_on="heading_per_metre", formula="k", parameters={"k": 0.1})
+data = umbmark.Dataset.from_arrays([[0.1, 0.2, 0.0]], [(0.1, 0.2, None)], robot=robot, path=path)
+errors: list[umbmark.results.Step] = list(umbmark.learn(data, seed=None).steps)
+residual = umbmark.fit(umbmark.simulate(model, path)).tracks()[0].residual.mean(axis=0)
+quantile: float = umbmark.monte_carlo(model, path, n=10).ensemble.quantile("sigma_m", 0.5)
+"""
+    wrong = """
+umbmark.Robot(wheelbse_m=0.34)
+umbmark.Path("sqare")
+umbmark.Path(sid_m=4)
+model.add("wheelbase", e_bb=1.01)
+model.add("carpet", acts_on="heading_per_meter")
+data[0].wheelbase
+"""
+    place = tmp_path / "script.py"
+    place.write_text(good)
+    report, _, status = mypy.api.run(["--strict", "--no-incremental", str(place)])
+    assert (status, report) == (0, "Success: no issues found in 1 source file\n")
+    place.write_text(good + wrong)
+    report, _, status = mypy.api.run(["--strict", "--no-incremental", str(place)])
+    found = {int(line.split(":")[1]) for line in report.splitlines() if ": error:" in line}
+    first = len(good.splitlines()) + 2
+    assert found == set(range(first, first + len(wrong.splitlines()) - 1)), report

@@ -11,6 +11,8 @@ import typing
 
 import numpy as np
 import umbmark
+from umbmark import _documents
+from umbmark._result import Record
 
 
 def test_the_version_is_the_same_everywhere() -> None:
@@ -30,6 +32,18 @@ def test_everything_public_has_a_docstring() -> None:
             for attribute in vars(thing):
                 if not attribute.startswith("_") and attribute not in described:
                     assert getattr(thing, attribute).__doc__, attribute
+
+
+def test_every_part_of_a_result_can_be_named_in_an_annotation() -> None:
+    parts = {
+        name: thing
+        for name, thing in vars(_documents).items()
+        if inspect.isclass(thing) and issubclass(thing, Record) and thing is not Record
+    }
+    assert len(parts) > 50
+    assert sorted([*parts, "Record", "Result"]) == sorted(umbmark.results.__all__)
+    for name, thing in parts.items():
+        assert getattr(umbmark.results, name) is thing
 
 
 def test_the_examples_in_the_docstrings_run() -> None:

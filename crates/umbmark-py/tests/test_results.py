@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 import umbmark
@@ -201,7 +202,7 @@ def has_all(result: Any) -> None:
     assert len(rows) > 0
     assert list(result.to_pandas().columns) == list(rows[0]) == result.to_polars().columns
     assert len(result.to_pandas()) == len(rows)
-    assert result._repr_html_().startswith(f"<table><caption>{type(result).__name__}")
+    assert f"<table><caption>{type(result).__name__}" in result._repr_html_()
     assert repr(result).startswith(f"{type(result).__name__}(\n")
     assert pickle.loads(pickle.dumps(result)) == result
     axes = result.plot()
@@ -473,3 +474,83 @@ def test_a_column_in_which_nothing_is_known_has_its_type(tmp_path: Path) -> None
     assert (
         str(Whole._of('{"seed": 1, "parts": []}').to_arrow().schema.field("seed").type) == "int64"
     )
+
+
+# Results that are told as the command tells them, and the words of the command.
+TOLD = {name: CALLS[name] for name in CALLS if name not in ("plan", "separate")} | {
+    "solve": (lambda place: umbmark.solve(place, draws=99), ("solve", "--draws", "99"))
+}
+
+
+@pytest.mark.parametrize("verb", TOLD)
+@pytest.mark.parametrize("observed", ["folder", "tracks"])
+def test_a_result_is_printed_as_the_command_prints_it(
+    verb: str, observed: str, command: Path, request: pytest.FixtureRequest
+) -> None:
+    place: Path = request.getfixturevalue(observed)
+    call, (word, *flags) = TOLD[verb]
+    run = subprocess.run([command, word, place, *flags], check=True, capture_output=True, text=True)
+    assert len(run.stdout) > 200
+    assert f"{call(place)}\n" == run.stdout
+
+
+def test_a_score_of_arrays_is_printed_without_a_figure(data: umbmark.Dataset) -> None:
+    whole = str(umbmark.score(data))
+    alone = str(umbmark.score(data.returns("cw"), data.returns("ccw")))
+    assert whole.startswith(alone)
+    assert alone.startswith("UMBmark score of 6 cw + 6 ccw runs\n")
+    assert len(whole) > len(alone)
+
+
+def test_notebooks_show_verdict_sentence_and_a_table_in_millimetres_and_degrees(
+    data: umbmark.Dataset,
+) -> None:
+    learnt = umbmark.learn(data, draws=99)
+    html = learnt._repr_html_()
+    assert html.startswith(f"<p><b>{learnt.verdict}</b></p><p>The robot comes back ")
+    assert "<th>added</th><th>p adjusted</th><th>rmse [mm]</th>" in html
+    assert "<th>heldout heading rmse [deg]</th>" in html
+    last = learnt.steps[-1]
+    assert last.rmse_m is not None
+    assert f"<td>{1e3 * last.rmse_m:.5g}</td>" in html
+    assert f"<td>{last.added}</td>" in html
+    solved = umbmark.solve(data, draws=99)._repr_html_()
+    new = 1e3 * umbmark.solve(data, draws=99).correction["wheelbase_m"].new
+    assert f"<td>wheelbase [mm]</td><td>340</td><td>{new:.5g}</td>" in solved
+    heading = umbmark.score(data).return_heading_cw_rad
+    assert heading is not None
+    shown = umbmark.score(data)._repr_html_()
+    assert f"<td>return heading cw [deg]</td><td>{np.degrees(heading):.5g}</td>" in shown
+    rates = umbmark.fit(data, add=["floor_slope"])._repr_html_()
+    assert "<td>drift_x</td>" in rates
+    found = umbmark.monte_carlo(NOISE, n=100)
+    assert str(found) == repr(found)
+
+
+def test_a_sweep_is_a_grid_of_xarray() -> None:
+    found = umbmark.sweep(NOISE, {"eb": (0.99, 1.01, 3), "ed": (1.0, 1.002, 2)}, n=40, runs=2)
+    grid = found.to_xarray()
+    assert dict(grid.sizes) == {"eb": 3, "ed": 2, "share": 5}
+    for point in found.points:
+        eb, ed = point.values
+        here = grid.sel(eb=eb, ed=ed, method="nearest")
+        assert (float(here.eb), float(here.ed)) == pytest.approx(point.values)
+        of = point.metrics["sigma_m"]
+        assert float(here.sigma_m) == of.mean
+        assert float(here.sigma_m_std_error) == of.std_error
+        assert float(here.sigma_m_std_dev) == of.std_dev
+        assert float(here.sigma_m_quantile.sel(share=0.95)) == of.quantiles["0.95"]
+    stopped = msgspec.structs.replace(found, points=found.points[:4], partial=True).to_xarray()
+    assert int(stopped.e_max_sys_m.isnull().sum()) == 2
+    assert stopped.attrs["seed"] == found.seed
+
+
+def test_the_trials_of_a_study_are_a_dataset_of_xarray() -> None:
+    found = umbmark.monte_carlo(NOISE, n=30, keep=True)
+    assert found.trials is not None
+    trials = found.to_xarray()
+    assert dict(trials.sizes) == {"trial": 30}
+    assert set(trials) == set(found.trials)
+    np.testing.assert_array_equal(trials.sigma_m, found.trials["sigma_m"])
+    with pytest.raises(ValueError, match="say keep=True"):
+        umbmark.monte_carlo(NOISE, n=3).to_xarray()

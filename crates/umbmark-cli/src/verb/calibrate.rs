@@ -141,11 +141,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     for warning in &calibration.warnings {
         session.message("warning", warning);
     }
-    let mut text = text(robot, &calibration, arguments.intervals.level);
-    if let Some(answer) = &answer {
-        text += &format!("\n{}", answer_text(answer, 1.0 - testing.size));
-    }
-    write!(session.out(), "{text}")?;
+    let told = told(robot, &calibration, answer.as_ref(), arguments.intervals.level, testing.size);
+    write!(session.out(), "{told}")?;
     for file in written {
         writeln!(session.out(), "wrote {file}")?;
     }
@@ -220,6 +217,12 @@ fn title(method: Method) -> &'static str {
         "model" => "learnt model",
         _ => "exact fit",
     }
+}
+
+/// The calibration, and the answer beside it.
+pub fn told(robot: &Robot, calibration: &Calibration, answer: Option<&Solution>, level: f64, size: f64) -> String {
+    let answer = answer.map(|answer| format!("\n{}", answer_text(answer, 1.0 - size)));
+    text(robot, calibration, level) + &answer.unwrap_or_default()
 }
 
 fn text(robot: &Robot, calibration: &Calibration, level: f64) -> String {

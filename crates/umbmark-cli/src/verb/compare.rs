@@ -92,7 +92,8 @@ fn models(
     arguments.model.iter().map(read).collect()
 }
 
-fn text(comparison: &Comparison, options: &Options, verbose: bool) -> String {
+/// What each model explains of return poses, with the tables behind it where they are wanted.
+pub fn text(comparison: &Comparison, options: &Options, verbose: bool) -> String {
     let [cw, ccw] = comparison.runs;
     let mut text = format!(
         "Comparison of {} with {cw} cw + {ccw} ccw return poses\n\n",

@@ -79,7 +79,7 @@ pub(super) fn in_words(verdict: Verdict) -> &'static str {
 }
 
 /// The verdict, what to do, what is left and the fitted values; the tables of the tests behind that where they are wanted.
-fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, (terminal, verbose): (bool, bool)) -> String {
+pub fn text(data: &Dataset, diagnosis: &Diagnosis, options: &Options, (terminal, verbose): (bool, bool)) -> String {
     let robot = data.robot.as_ref().map_or("", |robot| robot.name.as_str());
     let from = match diagnosis.level {
         Level::Ends => "return poses",

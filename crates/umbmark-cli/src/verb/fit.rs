@@ -51,7 +51,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         anyhow::bail!("no effect of the model is free: write free = true in its file, or use --add EFFECT");
     }
     let fitted = session.on_threads(|| fit(&data, &model))??;
-    let Fit { model, estimates, noise, outliers, usual_noise, setup, taken } = &fitted;
+    let Fit { model, estimates, noise, .. } = &fitted;
     if let Some(file) = &arguments.output {
         write_model(model, *noise, file, arguments.force)?;
     }
@@ -66,14 +66,18 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         let why = "this data cannot separate it from the rest of the model; it keeps its values";
         session.message("warning", &format!("{effect} was not fitted: {why}"));
     }
-    writeln!(session.out(), "{}", estimates_table(estimates, arguments.intervals.level))?;
-    let disturbed = doubts_text(setup) + &disturbances_text(setup) + &outliers_text(outliers, setup);
-    write!(session.out(), "{}{}{disturbed}", meaning_text(estimates, model), taken_text(taken))?;
-    if *usual_noise {
-        write!(session.out(), "{}", hanging("note", 10, USUAL_NOISE))?;
-    }
+    write!(session.out(), "{}", told(&fitted, arguments.intervals.level))?;
     if let Some(file) = &arguments.output {
         writeln!(session.out(), "\nwrote {}", file.display())?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The fitted values, what they mean, and what was left out of the fit.
+pub fn told(fitted: &Fit, level: f64) -> String {
+    let Fit { model, estimates, outliers, usual_noise, setup, taken, .. } = fitted;
+    let disturbed = doubts_text(setup) + &disturbances_text(setup) + &outliers_text(outliers, setup);
+    let meant = meaning_text(estimates, model) + &taken_text(taken) + &disturbed;
+    let note = if *usual_noise { hanging("note", 10, USUAL_NOISE) } else { String::new() };
+    format!("{}\n{meant}{note}", estimates_table(estimates, level))
 }

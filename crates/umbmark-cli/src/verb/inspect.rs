@@ -87,7 +87,8 @@ fn direction_name(direction: Option<Direction>) -> &'static str {
     direction.map_or("none", Direction::name)
 }
 
-fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
+/// What the dataset holds, whether it is any good, and what it can determine.
+pub fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
     // What has to be mended first stands first.
     let mut text = inspection
         .setup

@@ -73,9 +73,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         for warning in &data.warnings {
             session.message("warning", warning);
         }
-        let mut text = text(&data, learnt, &options, session.on_terminal());
-        text += &format!("\n{}", answer_text(&solution, 1.0 - options.size));
-        write!(session.out(), "{text}")?;
+        let told = told(&data, &solution, &options, session.on_terminal());
+        write!(session.out(), "{told}")?;
     }
     match &arguments.output {
         Some(file) if withheld => anyhow::bail!(
@@ -86,6 +85,12 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         _ => {}
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The steps, what speaks for the model and against it, and the answer that it gives.
+pub fn told(data: &Dataset, solution: &Solution, options: &Options, terminal: bool) -> String {
+    let answer = answer_text(solution, 1.0 - options.size);
+    format!("{}\n{answer}", text(data, &solution.learnt, options, terminal))
 }
 
 fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> String {

@@ -3,11 +3,12 @@
 use std::io::Write;
 use std::process::ExitCode;
 
+use umbmark_core::dataset::Dataset;
 use umbmark_core::result;
 use umbmark_core::score::{Cluster, Convention, Score, score_dataset};
 use umbmark_core::stats::Interval;
 use umbmark_plot::kind::of_score;
-use umbmark_plot::render::terminal::plan;
+use umbmark_plot::render::terminal::{Look, plan};
 
 use crate::Session;
 use crate::data_arguments::DataArguments;
@@ -57,10 +58,20 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     for warning in &score.warnings {
         session.message("warning", warning);
     }
-    let figure = of_score(&data, &score, [None, None]);
-    let drawn: String = figure.panels.iter().map(|panel| plan(panel, session.look(), WIDE, HIGH)).collect();
-    write!(session.out(), "{}\n{drawn}", text(&score, convention))?;
+    let look = session.look();
+    write!(session.out(), "{}", told(Some(&data), &score, convention, look))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The scores, and, where the runs are known, their return errors drawn.
+pub fn told(data: Option<&Dataset>, score: &Score, convention: Convention, look: Look) -> String {
+    let mut told = text(score, convention);
+    if let Some(data) = data {
+        told += "\n";
+        let figure = of_score(data, score, [None, None]);
+        figure.panels.iter().for_each(|panel| told += &plan(panel, look, WIDE, HIGH));
+    }
+    told
 }
 
 fn text(score: &Score, convention: Convention) -> String {

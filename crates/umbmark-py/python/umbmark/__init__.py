@@ -25,10 +25,12 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``paper``                          the experiments of the paper, beside its numbers
 ``plan``, ``separate``             how many runs, and which experiment, before any is driven
 ``Robot``, ``Path``, ``Model``     what all of it is about; ``effects`` lists what there is
+``umbmark.results``                the classes of the parts of results, for annotations
 ``umbmark.distributed``            Monte Carlo and sensitivity past one machine, on Dask
 =================================  ===========================================================
 """
 
+from umbmark import results
 from umbmark._apply import Corrected, apply
 from umbmark._arguments import Numbers, Seed
 from umbmark._calibration import Calibration, GearCalibration, calibrate, calibrate_gears
@@ -38,6 +40,16 @@ from umbmark._documents import Correction, Effect, Setup
 from umbmark._export import Exported, export
 from umbmark._formula import formula_of
 from umbmark._inspection import Inspection, inspect
+from umbmark._keys import (
+    ActsOn,
+    Drawn,
+    Drive,
+    EffectKeys,
+    EffectName,
+    PathKeys,
+    RobotKeys,
+    Shape,
+)
 from umbmark._monte_carlo import MonteCarlo, merge, monte_carlo
 from umbmark._paper import Paper, paper
 from umbmark._plan import Plan, Separation, plan, separate
@@ -64,15 +76,22 @@ from umbmark._umbmark import (
     presets,
     simulate,
 )
+from umbmark._warnings import ConversionWarning
 
 __all__ = [
+    "ActsOn",
     "Calibration",
     "Comparison",
+    "ConversionWarning",
     "Corrected",
     "Correction",
     "Dataset",
     "Diagnosis",
+    "Drawn",
+    "Drive",
     "Effect",
+    "EffectKeys",
+    "EffectName",
     "Ensemble",
     "Exported",
     "Figure",
@@ -85,15 +104,18 @@ __all__ = [
     "Numbers",
     "Paper",
     "Path",
+    "PathKeys",
     "Plan",
     "Report",
     "Robot",
+    "RobotKeys",
     "Run",
     "Score",
     "Seed",
     "Sensitivity",
     "Separation",
     "Setup",
+    "Shape",
     "Solution",
     "Study",
     "Sweep",
@@ -123,6 +145,7 @@ __all__ = [
     "plot",
     "presets",
     "report",
+    "results",
     "score",
     "sensitivity",
     "separate",

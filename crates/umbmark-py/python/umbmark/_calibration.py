@@ -28,12 +28,15 @@ class Calibration(_documents.Calibration, frozen=True):
         The nominal robot.
     path : Path or None
         The path; None where it is not known.
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
     """
 
-    _beside: ClassVar[tuple[str, ...]] = ("robot", "path")
+    _beside: ClassVar[tuple[str, ...]] = ("robot", "path", "text")
 
     robot: Robot
     path: Path | None
+    text: str
 
     @property
     def exact(self) -> Correction:
@@ -147,8 +150,8 @@ def calibrate(
     1.0020 0.992
     """
     data = data_of(data)
-    document = _calibrate(data, level, heading_arm_m, radius_wheelbase)
-    return Calibration._of(document, robot=data.robot, path=data.path)
+    document, text = _calibrate(data, level, heading_arm_m, radius_wheelbase)
+    return Calibration._of(document, robot=data.robot, path=data.path, text=text)
 
 
 class GearCalibration(_documents.GearCalibration, frozen=True):

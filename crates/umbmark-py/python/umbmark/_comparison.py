@@ -18,6 +18,18 @@ if TYPE_CHECKING:
 
 
 class Comparison(_documents.Comparison, frozen=True):
+    """Models compared with measurements: which explain them, and where the others fail.
+
+    Attributes
+    ----------
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
+    """
+
+    _beside: ClassVar[tuple[str, ...]] = ("text",)
+
+    text: str
+
     def table(self) -> list[Row]:
         """Give every statistic of every model, one dict a row."""
         return [
@@ -39,6 +51,17 @@ HalfOpen: TypeAlias = tuple[float | None, float | None]
 
 
 class TrackComparison(_documents.TrackComparison, frozen=True):
+    """Models compared with tracks: where along the path the error arises, and what it depends on.
+
+    Attributes
+    ----------
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
+    """
+
+    _beside: ClassVar[tuple[str, ...]] = ("text",)
+
+    text: str
     _words: ClassVar[Mapping[str, str]] = {"explains": "bool"}
 
     def table(self) -> list[Row]:
@@ -110,7 +133,9 @@ def compare(
     elif not isinstance(models, Mapping):
         models = {f"model {place}": model for place, model in enumerate(models, 1)}
     options = options_of(size, draws, seed)
-    document = _umbmark.compare(data_of(data), [*models.items()], options, return_poses, threads)
+    document, text = _umbmark.compare(
+        data_of(data), [*models.items()], options, return_poses, threads
+    )
     if msgspec.json.decode(document)["observed"] == "tracks":
-        return TrackComparison._of(document)
-    return Comparison._of(document)
+        return TrackComparison._of(document, text=text)
+    return Comparison._of(document, text=text)

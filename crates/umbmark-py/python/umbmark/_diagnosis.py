@@ -9,28 +9,31 @@ import msgspec
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
+from umbmark._explained import Explained
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
-from umbmark._tracks import Tracks, tracks
 from umbmark._umbmark import Dataset, Model
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Diagnosis(_documents.Diagnosis, frozen=True):
+class Diagnosis(_documents.Diagnosis, Explained, frozen=True):
     """What a model is missing, how certain that is, and what this data cannot show.
 
     Attributes
     ----------
     data : Dataset
         The measurements.
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
     """
 
-    _beside: ClassVar[tuple[str, ...]] = ("data",)
+    _beside: ClassVar[tuple[str, ...]] = ("data", "text")
 
     data: Dataset
+    text: str
 
     def table(self) -> list[Row]:
         """Give the ranking, one dict a row."""
@@ -51,23 +54,22 @@ class Diagnosis(_documents.Diagnosis, frozen=True):
 
         return _plots.diagnosis(self, ax)
 
-    def tracks(self) -> Tracks:
-        """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""
-        return tracks(self.data, self.model)
 
-
-class Fitted(_documents.Fitted, frozen=True):
+class Fitted(_documents.Fitted, Explained, frozen=True):
     """A fit of a model: its numbers, and the model with them.
 
     Attributes
     ----------
     data : Dataset
         The measurements.
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
     """
 
-    _beside: ClassVar[tuple[str, ...]] = ("data",)
+    _beside: ClassVar[tuple[str, ...]] = ("data", "text")
 
     data: Dataset
+    text: str
 
     def table(self) -> list[Row]:
         """Give the free parameters, one dict a row."""
@@ -79,23 +81,22 @@ class Fitted(_documents.Fitted, frozen=True):
 
         return _plots.fitted(self, ax)
 
-    def tracks(self) -> Tracks:
-        """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""
-        return tracks(self.data, self.model)
 
-
-class Learnt(_documents.Learnt, frozen=True):
+class Learnt(_documents.Learnt, Explained, frozen=True):
     """What was learnt, from the nominal robot to the model.
 
     Attributes
     ----------
     data : Dataset
         The measurements.
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
     """
 
-    _beside: ClassVar[tuple[str, ...]] = ("data",)
+    _beside: ClassVar[tuple[str, ...]] = ("data", "text")
 
     data: Dataset
+    text: str
 
     def table(self) -> list[Row]:
         """Give the steps, one dict a row."""
@@ -110,10 +111,6 @@ class Learnt(_documents.Learnt, frozen=True):
         from umbmark import _plots
 
         return _plots.learnt(self, ax)
-
-    def tracks(self) -> Tracks:
-        """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""
-        return tracks(self.data, self.model)
 
 
 def diagnose(
@@ -161,8 +158,8 @@ def diagnose(
     """
     options = options_of(size, draws, seed)
     data = data_of(data)
-    document, fitted = _umbmark.diagnose(data, model, options, return_poses, threads)
-    return Diagnosis._of(document, model=fitted, data=data)
+    document, text, fitted = _umbmark.diagnose(data, model, options, return_poses, threads)
+    return Diagnosis._of(document, model=fitted, data=data, text=text)
 
 
 def fit(
@@ -188,8 +185,8 @@ def fit(
         If no effect is free, or the fit does not settle.
     """
     data = data_of(data)
-    document, fitted = _umbmark.fit(data, model, [*add], level)
-    return Fitted._of(document, model=fitted, data=data)
+    document, text, fitted = _umbmark.fit(data, model, [*add], level)
+    return Fitted._of(document, model=fitted, data=data, text=text)
 
 
 def learn(
@@ -233,5 +230,5 @@ def learn(
     """
     data, options = data_of(data), options_of(size, draws, seed)
     with Bar(progress, 1000, "steps") as bar:
-        document, learnt = _umbmark.learn(data, model, options, return_poses, threads, bar.at)
-    return Learnt._of(document, model=learnt, data=data)
+        document, text, learnt = _umbmark.learn(data, model, options, return_poses, threads, bar.at)
+    return Learnt._of(document, model=learnt, data=data, text=text)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from os import fspath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from umbmark import _documents, _umbmark
 from umbmark._result import Row
@@ -15,6 +15,18 @@ if TYPE_CHECKING:
 
 
 class Inspection(_documents.Inspection, frozen=True):
+    """The findings on a dataset.
+
+    Attributes
+    ----------
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
+    """
+
+    _beside: ClassVar[tuple[str, ...]] = ("text",)
+
+    text: str
+
     def table(self) -> list[Row]:
         """Give the checks, one dict a row."""
         return [
@@ -43,4 +55,5 @@ def inspect(data: Data) -> Inspection:
         If it cannot be read, or holds no runs.
     """
     place = "memory" if isinstance(data, Dataset) else fspath(data)
-    return Inspection._of(_umbmark.inspect(data_of(data), place))
+    document, text = _umbmark.inspect(data_of(data), place)
+    return Inspection._of(document, text=text)

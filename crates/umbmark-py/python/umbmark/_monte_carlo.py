@@ -15,6 +15,7 @@ from umbmark._result import Row
 from umbmark._umbmark import Ensemble, Model, Path, Study
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.axes import Axes
 
 # The most trials of a study that stops by precision.
@@ -35,7 +36,7 @@ class MonteCarlo(_documents.MonteCarlo, frozen=True):
     """
 
     _beside: ClassVar[tuple[str, ...]] = ("ensemble", "trials")
-    _timings: ClassVar[tuple[str, ...]] = ("trials_per_s",)
+    _uncompared: ClassVar[tuple[str, ...]] = ("trials_per_s",)
 
     ensemble: Ensemble
     trials: Mapping[str, NDArray[np.float64]] | None
@@ -47,6 +48,21 @@ class MonteCarlo(_documents.MonteCarlo, frozen=True):
             | {f"q{share}": value for share, value in m.quantiles.items()}
             for name, m in self.metrics.items()
         ]
+
+    def to_xarray(self) -> xr.Dataset:
+        """Give the metrics of every trial as an xarray Dataset along ``trial``.
+
+        Raises
+        ------
+        ValueError
+            If they were not kept: say ``keep=True``.
+        """
+        import xarray as xr
+
+        if self.trials is None:
+            raise ValueError("the metrics of single trials were not kept; say keep=True")
+        variables = {name: ("trial", values) for name, values in self.trials.items()}
+        return xr.Dataset(variables, attrs={"seed": self.seed})
 
     def plot(self, ax: Axes | None = None, *, metric: str = "e_max_sys_m") -> Axes:
         """Draw the distribution of a metric over the trials, on new axes or ``ax``."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import html
+import math
+import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
@@ -25,14 +27,14 @@ class Record(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A frozen result. Its attributes are the keys of the command's ``--json``.
 
-    Results compare by value, how long they took left out; they can be hashed and pickled, and show
-    themselves as a table in notebooks.
+    Results compare by value, how long they took left out; they can be hashed and pickled. ``print``
+    gives what the command prints, and notebooks show verdict, sentence and table.
     """
 
     # Attributes that are no keys of the document.
     _beside: ClassVar[tuple[str, ...]] = ()
-    # Attributes that differ from one time to the next.
-    _timings: ClassVar[tuple[str, ...]] = ()
+    # Attributes that do not count where results are compared: how long it took, and words.
+    _uncompared: ClassVar[tuple[str, ...]] = ("text",)
     # Columns of the table that are no numbers where nothing is known of them in any row.
     _words: ClassVar[Mapping[str, str]] = {}
 
@@ -55,11 +57,11 @@ class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        compared = (key for key in self.__struct_fields__ if key not in self._timings)
+        compared = (key for key in self.__struct_fields__ if key not in self._uncompared)
         return all(_same(getattr(self, key), getattr(other, key)) for key in compared)
 
     def __hash__(self) -> int:
-        kept = {key: value for key, value in self.to_dict().items() if key not in self._timings}
+        kept = {key: value for key, value in self.to_dict().items() if key not in self._uncompared}
         return hash((type(self).__name__, msgspec.json.encode(kept)))
 
     def to_dict(self) -> dict[str, Any]:
@@ -118,24 +120,33 @@ class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
         return pl.DataFrame(self.to_arrow())
 
+    def __str__(self) -> str:
+        text = getattr(self, "text", None)
+        return text.rstrip("\n") if isinstance(text, str) else repr(self)
+
     def __repr__(self) -> str:
         shown = [
             (key, _shown(value))
             for key, value in _fields(self)
-            if value not in (None, (), msgspec.UNSET)
+            if key != "text" and value not in (None, (), msgspec.UNSET)
         ]
         lines = "".join(f"    {key}={text},\n" for key, text in shown)
         return f"{type(self).__name__}(\n{lines})"
 
     def _repr_html_(self) -> str:
+        """Give its verdict and its sentence, and its table with lengths in mm and angles in deg."""
+        said = [getattr(self, key, None) for key in ("verdict", "sentence")]
+        words = [html.escape(word) for word in said if isinstance(word, str)]
+        verdict = [f"<p><b>{words[0].replace('_', ' ')}</b></p>"] if said[0] else []
+        sentences = [f"<p>{word}</p>" for word in words[len(verdict) :]]
         rows = self.table()
-        head = "".join(f"<th>{html.escape(key)}</th>" for key in (rows[0] if rows else ()))
+        head = "".join(f"<th>{html.escape(_title(key))}</th>" for key in (rows[0] if rows else ()))
         body = "".join(
-            "<tr>" + "".join(f"<td>{html.escape(_shown(v))}</td>" for v in row.values()) + "</tr>"
+            "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in _cells(row)) + "</tr>"
             for row in rows
         )
-        name = type(self).__name__
-        return f"<table><caption>{name}</caption><tr>{head}</tr>{body}</table>"
+        table = f"<table><caption>{type(self).__name__}</caption><tr>{head}</tr>{body}</table>"
+        return "".join([*verdict, *sentences, table])
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -154,6 +165,46 @@ def _plain(part: Result | Record) -> Row:
         for key, value in _fields(part)
         if value is None or isinstance(value, str | int | float)
     }
+
+
+# What lengths and angles are shown in, by the end of their names; a rate has no such end.
+_UNITS = {
+    re.compile(r"(?<!_per)(?<!_sqrt)_m$"): (" [mm]", 1e3),
+    re.compile(r"(?<!_per)(?<!_sqrt)_rad$"): (" [deg]", 180 / math.pi),
+}
+
+
+def _unit(name: str) -> tuple[str, str, float | None]:
+    """Give a name without its unit, the unit that it is shown in, and the factor to that."""
+    for end, (unit, factor) in _UNITS.items():
+        if end.search(name):
+            return end.sub("", name), unit, factor
+    return name, "", None
+
+
+def _title(name: str) -> str:
+    bare, unit, _ = _unit(name)
+    return bare.replace("_", " ") + unit
+
+
+def _cells(row: Row) -> list[str]:
+    """Give the cells of a row as people read them.
+
+    A number is in the unit that its column names, or else the words of its row.
+    """
+    named = (_unit(cell)[2] for cell in row.values() if isinstance(cell, str))
+    of_row = next((factor for factor in named if factor is not None), 1.0)
+    return [_cell(value, _unit(key)[2] or of_row) for key, value in row.items()]
+
+
+def _cell(value: Any, factor: float) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{factor * value:.5g}"
+    if isinstance(value, str):
+        return _title(value) if _unit(value)[2] else value
+    return "-" if value is None else _shown(value)
 
 
 def _fields(result: Result | Record) -> list[tuple[str, Any]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, overload
 
 from umbmark import _documents
 from umbmark._arguments import Numbers
@@ -22,6 +22,18 @@ def data_of(data: Data) -> Dataset:
 
 
 class Score(_documents.Score, frozen=True):
+    """The scores of a UMBmark test, with intervals that hold with probability ``level``.
+
+    Attributes
+    ----------
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
+    """
+
+    _beside: ClassVar[tuple[str, ...]] = ("text",)
+
+    text: str
+
     def table(self) -> list[Row]:
         """Give each score with the ends of its interval, one dict a row."""
         rows = [
@@ -142,5 +154,7 @@ def score(
     by the runs' scatter alone it would stay below 0.023 m
     """
     if isinstance(cw, Dataset | str | PathLike):
-        return Score._of(score_dataset(data_of(cw), level, convention))
-    return Score._of(score_arrays(cw, ccw, bumps_cw, bumps_ccw, level, convention))
+        document, text = score_dataset(data_of(cw), level, convention)
+    else:
+        document, text = score_arrays(cw, ccw, bumps_cw, bumps_ccw, level, convention)
+    return Score._of(document, text=text)

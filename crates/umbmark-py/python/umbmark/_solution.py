@@ -6,25 +6,28 @@ from typing import ClassVar
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
+from umbmark._explained import Explained
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
-from umbmark._tracks import Tracks, tracks
 from umbmark._umbmark import Dataset
 
 
-class Solution(_documents.Solution, frozen=True):
+class Solution(_documents.Solution, Explained, frozen=True):
     """The one answer about a measured robot: what to write into it, what remains, what to do next.
 
     Attributes
     ----------
     data : Dataset
         The measurements.
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
     """
 
-    _beside: ClassVar[tuple[str, ...]] = ("data",)
+    _beside: ClassVar[tuple[str, ...]] = ("data", "text")
 
     data: Dataset
+    text: str
 
     def table(self) -> list[Row]:
         """Give the new numbers of the robot, one dict a row."""
@@ -33,10 +36,6 @@ class Solution(_documents.Solution, frozen=True):
             {"number": name} | {key: getattr(change, key) for key in keys}
             for name, change in self.correction.items()
         ]
-
-    def tracks(self) -> Tracks:
-        """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""
-        return tracks(self.data, self.model)
 
 
 def solve(
@@ -82,5 +81,5 @@ def solve(
     """
     data, options = data_of(data), options_of(size, draws, seed)
     with Bar(progress, 1000, "steps") as bar:
-        document, model = _umbmark.solve(data, options, return_poses, threads, bar.at)
-    return Solution._of(document, model=model, data=data)
+        document, text, model = _umbmark.solve(data, options, return_poses, threads, bar.at)
+    return Solution._of(document, model=model, data=data, text=text)

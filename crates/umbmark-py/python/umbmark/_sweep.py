@@ -7,6 +7,9 @@ from collections.abc import Mapping
 from os import PathLike
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
 from umbmark._monte_carlo import Bar, Progress
@@ -14,6 +17,7 @@ from umbmark._result import Row
 from umbmark._umbmark import Model, Path, Study
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.axes import Axes
 
 
@@ -28,6 +32,34 @@ class Sweep(_documents.Sweep, frozen=True):
             for point in self.points
             for metric, s in point.metrics.items()
         ]
+
+    def to_xarray(self) -> xr.Dataset:
+        """Give the grid as an xarray Dataset: a dimension for each axis.
+
+        Each metric is its mean; METRIC_std_error, METRIC_std_dev and METRIC_quantile (along
+        ``share``) stand beside it. Points that were not reached are NaN.
+        """
+        import xarray as xr
+
+        names = [axis.flag for axis in self.axes]
+        shape = [axis.count for axis in self.axes]
+        metrics = self.points[0].metrics if self.points else {}
+        shares = [*next(iter(metrics.values())).quantiles] if metrics else []
+        variables: dict[str, tuple[list[str], NDArray[np.float64]]] = {}
+        for metric in metrics:
+            rows = [
+                [s.mean, s.std_error, s.std_dev, *(s.quantiles[share] for share in shares)]
+                for s in (point.metrics[metric] for point in self.points)
+            ]
+            told = np.full((math.prod(shape), 3 + len(shares)), np.nan)
+            told[: len(rows)] = np.array(rows, np.float64)
+            told = told.reshape(*shape, -1)
+            for place, name in enumerate(("", "_std_error", "_std_dev")):
+                variables[metric + name] = (names, told[..., place])
+            variables[f"{metric}_quantile"] = ([*names, "share"], told[..., 3:])
+        values = {axis.flag: np.linspace(axis.first, axis.last, axis.count) for axis in self.axes}
+        shown = {"share": [float(share) for share in shares]}
+        return xr.Dataset(variables, coords={**values, **shown}, attrs={"seed": self.seed})
 
     def plot(self, ax: Axes | None = None, *, metric: str = "e_max_sys_m") -> Axes:
         """Draw the mean of a metric over one axis, or as a map over two, on new axes or ``ax``."""

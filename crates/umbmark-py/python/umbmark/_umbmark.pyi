@@ -1,14 +1,15 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path as PathlibPath
-from typing import Any, Self, SupportsIndex, TypeAlias, final, overload
+from typing import Any, Self, SupportsIndex, TypeAlias, Unpack, final, overload
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from umbmark._arguments import Numbers, Seed
-from umbmark._documents import Effect
+from umbmark._documents import Effect, Repeated, Suggestion, UnlistedLaw
+from umbmark._keys import EffectKeys, EffectName, PathKeys, RobotKeys, Shape
 
 __all__ = [
     "Dataset",
@@ -56,15 +57,11 @@ __all__ = [
 __version__: str
 
 Place: TypeAlias = str | PathLike[str]
-# A number, a word, a distribution, a formula.
-Key: TypeAlias = (
-    float | str | bool | Mapping[str, float] | Callable[..., Any] | Sequence[Sequence[float]] | None
-)
 Floats: TypeAlias = NDArray[np.float64]
 
 @final
 class Robot:
-    def __new__(cls, **keys: float | str | None) -> Self: ...
+    def __new__(cls, **keys: Unpack[RobotKeys]) -> Self: ...
     @staticmethod
     def labmate() -> Robot: ...
     @staticmethod
@@ -93,7 +90,7 @@ class Robot:
 
 @final
 class Path:
-    def __new__(cls, shape: str = "square", **keys: float | ArrayLike | None) -> Self: ...
+    def __new__(cls, shape: Shape = "square", **keys: Unpack[PathKeys]) -> Self: ...
     @staticmethod
     def umbmark() -> Path: ...
     @staticmethod
@@ -117,7 +114,11 @@ class Model:
     def from_toml(text: str, robot: Robot | None = None) -> Model: ...
     @staticmethod
     def read(file: Place, robot: Robot | None = None) -> Model: ...
-    def add(self, name: str, **keys: Key) -> Model: ...
+    def add(
+        self,
+        name: EffectName | str | Suggestion | Repeated | UnlistedLaw,
+        **keys: Unpack[EffectKeys],
+    ) -> Model: ...
     def remove(self, name: str) -> Model: ...
     def get(self, effect: str, parameter: str) -> float | None: ...
     @property
@@ -361,7 +362,7 @@ def write(place: Place, bytes: bytes, replace: bool) -> None: ...
 def load_dataset(
     place: Place, *, ticks: str | None = None, reference: str | None = None
 ) -> Dataset: ...
-def inspect(data: Dataset, place: str) -> str: ...
+def inspect(data: Dataset, place: str) -> tuple[str, str]: ...
 def effects() -> dict[str, Effect]: ...
 def formula_variables() -> list[str]: ...
 def presets() -> dict[str, tuple[Model, Path]]: ...
@@ -372,8 +373,8 @@ def score_arrays(
     bumps_ccw: Numbers | None,
     level: float,
     convention: str,
-) -> str: ...
-def score_dataset(data: Dataset, level: float, convention: str) -> str: ...
+) -> tuple[str, str]: ...
+def score_dataset(data: Dataset, level: float, convention: str) -> tuple[str, str]: ...
 def sensitivity(
     study: Study,
     parameters: str | Mapping[str, Any] | None,
@@ -438,7 +439,7 @@ def separate(
 def calibrate_gears(data: Dataset, level: float) -> tuple[str, Model, Robot]: ...
 def calibrate(
     data: Dataset, level: float, heading_arm_m: float | None, radius_wheelbase: str
-) -> str: ...
+) -> tuple[str, str]: ...
 def export(
     model: Model,
     to: str,
@@ -455,17 +456,17 @@ def compare(
     options: tuple[float, int, int],
     return_poses: bool,
     threads: int,
-) -> str: ...
+) -> tuple[str, str]: ...
 def diagnose(
     data: Dataset,
     model: Model | None,
     options: tuple[float, int, int],
     return_poses: bool,
     threads: int,
-) -> tuple[str, Model]: ...
+) -> tuple[str, str, Model]: ...
 def fit(
     data: Dataset, model: Model | None, add: Sequence[str], level: float
-) -> tuple[str, Model]: ...
+) -> tuple[str, str, Model]: ...
 def learn(
     data: Dataset,
     start: Model | None,
@@ -473,14 +474,14 @@ def learn(
     return_poses: bool,
     threads: int,
     progress: Callable[[int], object] | None,
-) -> tuple[str, Model]: ...
+) -> tuple[str, str, Model]: ...
 def solve(
     data: Dataset,
     options: tuple[float, int, int],
     return_poses: bool,
     threads: int,
     progress: Callable[[int], object] | None,
-) -> tuple[str, Model]: ...
+) -> tuple[str, str, Model]: ...
 def apply(
     data: Dataset, model: Model, start: tuple[float, float, float]
 ) -> list[tuple[str, Floats, Floats, Floats | None]]: ...

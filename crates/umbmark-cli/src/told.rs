@@ -1,0 +1,61 @@
+//! What verbs print on a standard output that is no terminal, for programs that have the results themselves.
+
+use umbmark_core::calibrate::Calibration;
+use umbmark_core::compare::Compared;
+use umbmark_core::dataset::Dataset;
+use umbmark_core::diagnose::{Diagnosis, Options};
+use umbmark_core::drive::Robot;
+use umbmark_core::evidence::Fit;
+use umbmark_core::score::{Convention, Score};
+use umbmark_core::solve::Solution;
+use umbmark_plot::render::terminal::Look;
+
+use crate::answer::answer_text;
+use crate::tracks_report;
+use crate::verb::{calibrate as calibrating, compare as comparing, diagnose as diagnosing, fit as fitting};
+use crate::verb::{inspect as inspecting, learn as learning, score as scoring};
+
+/// Of `score`; without a dataset, the return errors are not drawn.
+pub fn score(data: Option<&Dataset>, score: &Score, convention: Convention) -> String {
+    scoring::told(data, score, convention, Look::default())
+}
+
+/// Of `calibrate`, beside what `solve` would answer to tests of this size.
+pub fn calibration(robot: &Robot, found: &Calibration, answer: Option<&Solution>, level: f64, size: f64) -> String {
+    calibrating::told(robot, found, answer, level, size)
+}
+
+/// Of `compare`.
+pub fn comparison(compared: &Compared, options: &Options) -> String {
+    match compared {
+        Compared::Ends(comparison) => comparing::text(comparison, options, false),
+        Compared::Tracks(comparison) => {
+            tracks_report::text(comparison, options, tracks_report::Look { terminal: false, verbose: false })
+        }
+    }
+}
+
+/// Of `diagnose`.
+pub fn diagnosis(data: &Dataset, diagnosis: &Diagnosis, options: &Options) -> String {
+    diagnosing::text(data, diagnosis, options, (false, false))
+}
+
+/// Of `fit`, with intervals that hold with probability `level`.
+pub fn fit(fit: &Fit, level: f64) -> String {
+    fitting::told(fit, level)
+}
+
+/// Of `learn`.
+pub fn learnt(data: &Dataset, solution: &Solution, options: &Options) -> String {
+    learning::told(data, solution, options, false)
+}
+
+/// Of `solve`.
+pub fn solution(solution: &Solution, options: &Options) -> String {
+    answer_text(solution, 1.0 - options.size)
+}
+
+/// Of `inspect` where the robot of all logs is known.
+pub fn inspection(data: &Dataset, inspection: &umbmark_core::inspect::Inspection) -> String {
+    inspecting::text(data, inspection, false)
+}
