@@ -4,7 +4,7 @@ mod ziggurat;
 
 use rand::rand_core::{Infallible, TryRng};
 use rand::{Rng, RngExt};
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::{ChiSquared, Distribution, StandardNormal};
 
 /// A counter-based random stream: Philox4x64-10.
 ///
@@ -46,6 +46,11 @@ impl Stream {
     #[inline(never)]
     pub fn normal(&mut self) -> f64 {
         StandardNormal.sample(self)
+    }
+
+    /// A draw from the χ² distribution with this many degrees of freedom, which must be positive; NaN otherwise.
+    pub fn chi_squared(&mut self, freedom: f64) -> f64 {
+        ChiSquared::new(freedom).map_or(f64::NAN, |distribution| distribution.sample(self))
     }
 
     /// As many draws of [`Stream::normal`] as there are places, the same bits as one by one.

@@ -5,7 +5,7 @@ use crate::drive::Robot;
 use std::f64::consts::{SQRT_2, TAU};
 use umbmark_odometry::pace::HALF_WINDOW;
 
-/// Bins are told apart if the ticks blur a value by less than this share of a bin.
+/// Bins are separate if the ticks blur a value by less than this share of a bin.
 const BLUR: f64 = 0.25;
 
 /// An error, in proportion to what was driven.

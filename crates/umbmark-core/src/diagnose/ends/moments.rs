@@ -79,8 +79,20 @@ fn normal(size: usize, stream: &mut Stream) -> DVector<f64> {
     DVector::from_fn(size, |_, _| stream.normal())
 }
 
-/// Σ z zᵀ over as many standard normal vectors as there are degrees of freedom.
+/// With more degrees of freedom than these, a matrix is drawn by its factor.
+const DRAWN_ONE_BY_ONE: usize = 200;
+
+/// Σ z zᵀ over as many standard normal vectors as there are degrees of freedom; of many, by the factor of Bartlett (1933): normals below the
+/// diagonal, roots of χ² with ν, ν - 1, ... degrees of freedom on it.
 fn wishart(freedom: usize, size: usize, stream: &mut Stream) -> DMatrix<f64> {
+    if freedom > DRAWN_ONE_BY_ONE.max(size) {
+        let mut factor = DMatrix::zeros(size, size);
+        for row in 0..size {
+            (0..row).for_each(|column| factor[(row, column)] = stream.normal());
+            factor[(row, row)] = stream.chi_squared((freedom - row) as f64).sqrt();
+        }
+        return &factor * factor.transpose();
+    }
     (0..freedom).fold(DMatrix::zeros(size, size), |mut sum, _| {
         let z = normal(size, stream);
         sum.ger(1.0, &z, &z, 1.0);
@@ -141,4 +153,30 @@ fn span(columns: &DMatrix<f64>) -> DMatrix<f64> {
     let Some(u) = svd.u else { return DMatrix::zeros(columns.nrows(), 0) };
     let kept: Vec<_> = (0..u.ncols()).filter(|i| svd.singular_values[*i] > limit).map(|i| u.column(i)).collect();
     if kept.is_empty() { DMatrix::zeros(columns.nrows(), 0) } else { DMatrix::from_columns(&kept) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seed 3, 2 000 draws of each: mean ν I, variance 2ν on the diagonal and ν beside it, each within 5 standard errors.
+    #[test]
+    fn a_wishart_matrix_has_its_moments_however_it_is_drawn() {
+        for freedom in [DRAWN_ONE_BY_ONE, DRAWN_ONE_BY_ONE + 1] {
+            let mut stream = Stream::new(3, 0, 0);
+            let (n, nu) = (2000.0, freedom as f64);
+            let draws: Vec<DMatrix<f64>> = (0..2000).map(|_| wishart(freedom, 3, &mut stream)).collect();
+            for (row, column) in [(0, 0), (1, 1), (2, 2), (1, 0), (2, 0), (2, 1)] {
+                let values: Vec<f64> = draws.iter().map(|draw| draw[(row, column)]).collect();
+                let mean = values.iter().sum::<f64>() / n;
+                let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
+                let (expected, spread) = if row == column { (nu, 2.0 * nu) } else { (0.0, nu) };
+                assert!((mean - expected).abs() < 5.0 * (spread / n).sqrt(), "{freedom} {row} {column}: {mean}");
+                assert!(
+                    (variance / spread - 1.0).abs() < 5.0 * (2.0 / n).sqrt(),
+                    "{freedom} {row} {column}: {variance}"
+                );
+            }
+        }
+    }
 }
