@@ -16,6 +16,7 @@
 
 mod numbers;
 mod off;
+mod others;
 mod words;
 
 pub use numbers::Change;
@@ -37,6 +38,9 @@ use off::Meter;
 pub struct Solution {
     /// The model, and how it was learnt.
     pub learnt: Learnt,
+    /// The model with another effect of a class in place of the one that was added: these runs cannot separate them. The numbers of the robot
+    /// may be those of any of them, which their intervals allow for.
+    pub others: Vec<Model>,
     /// Numbers of the robot that these runs show, with their new values.
     pub changes: Vec<Change>,
     /// Whether the new values differ from the old ones by more than chance.
@@ -105,15 +109,23 @@ impl Solution {
             robot.drive.first_effects().into_iter().filter(|effect| !has(effect)).collect()
         };
         if learnt.diagnosis.setup.all_faults().next().is_some() {
-            return Ok(Solution { learnt, changes: Vec::new(), needed: false, off: None, not_shown });
+            return Ok(Solution {
+                learnt,
+                others: Vec::new(),
+                changes: Vec::new(),
+                needed: false,
+                off: None,
+                not_shown,
+            });
         }
         let evidence = AnyEvidence::of(data, options.level(data))?;
         let off = Meter::new(data, &evidence).map(|meter| Off::of(&meter, &learnt));
-        let (mut changes, needed) = numbers::of(&learnt, options.size);
+        let others = others::of(data, &learnt);
+        let (mut changes, needed) = numbers::of(&learnt, &others, options.size);
         if let Some(off) = &off {
             numbers::share(&mut changes, off, &learnt.model);
         }
-        Ok(Solution { learnt, changes, needed, off, not_shown })
+        Ok(Solution { learnt, others, changes, needed, off, not_shown })
     }
 
     /// A number of the robot, by its key in robot.toml.
@@ -172,7 +184,7 @@ impl Solution {
     /// E_d, E_b and E_s of the model, as far as it shows them; `None` of a drive that has others, or where nothing was fitted.
     pub fn estimate(&self) -> Option<Estimate> {
         let has_wheels = self.learnt.model.robot().drive.kind().has_axle_wheels();
-        has_wheels.then(|| numbers::estimate(&self.learnt)).flatten()
+        has_wheels.then(|| numbers::estimate(&self.learnt, &self.others)).flatten()
     }
 
     /// The correction of the robot's odometry.

@@ -28,14 +28,14 @@ pub struct Change {
 
 /// The numbers that a model changes, with intervals that hold with probability 1 - `size`, and whether all of them together differ
 /// from the old ones by more than chance (an F test of that size).
-pub(super) fn of(learnt: &Learnt, size: f64) -> (Vec<Change>, bool) {
+pub(super) fn of(learnt: &Learnt, others: &[Model], size: f64) -> (Vec<Change>, bool) {
     let model = &learnt.model;
     let drive = &model.robot().drive;
     let values = Correction::of(model).values();
     let Ok(corrected) = drive.corrected(values) else { return (Vec::new(), false) };
     let shown = shown(learnt);
     let slopes: Vec<Vec<f64>> = shown.iter().map(|(which, _)| slope(model, values, *which)).collect();
-    let covariance = covariance(learnt, &shown);
+    let covariance = covariance(learnt, others, &shown);
     let freedom = shown.first().map_or(0.0, |(_, estimate)| estimate.degrees_of_freedom);
     let t = student_t_quantile(1.0 - 0.5 * size, freedom.max(1.0));
     let keys = drive.kind().parameters().iter().map(|parameter| parameter.name);
@@ -57,10 +57,10 @@ pub(super) fn of(learnt: &Learnt, size: f64) -> (Vec<Change>, bool) {
 }
 
 /// The three ratios of a differential drive as one more estimate; `None` where none was fitted.
-pub(super) fn estimate(learnt: &Learnt) -> Option<calibrate::Estimate> {
+pub(super) fn estimate(learnt: &Learnt, others: &[Model]) -> Option<calibrate::Estimate> {
     let shown = shown(learnt);
     let (_, first) = shown.first()?;
-    let covariance = covariance(learnt, &shown).map(|covariance| {
+    let covariance = covariance(learnt, others, &shown).map(|covariance| {
         let mut all = Matrix3::zeros();
         for (i, (row, _)) in shown.iter().enumerate() {
             for (j, (column, _)) in shown.iter().enumerate() {
@@ -86,7 +86,11 @@ fn shown(learnt: &Learnt) -> Vec<(usize, &Estimate)> {
 }
 
 /// Covariance of those; `None` where some standard error is not known.
-fn covariance(learnt: &Learnt, shown: &[(usize, &Estimate)]) -> Option<DMatrix<f64>> {
+///
+/// Where another model would do, the distance d of its values is one more error, d dᵀ: nobody knows which is true.
+///
+/// Source: Buckland, Burnham & Augustin (1997), Biometrics 53, 603: the variance of an estimate after a model was selected.
+fn covariance(learnt: &Learnt, others: &[Model], shown: &[(usize, &Estimate)]) -> Option<DMatrix<f64>> {
     let (fitted, correlations) = (&learnt.diagnosis.fitted, &learnt.diagnosis.correlations);
     let place = |estimate: &Estimate| fitted.iter().position(|own| own == estimate);
     let places: Vec<usize> = shown.iter().map(|(_, estimate)| place(estimate)).collect::<Option<_>>()?;
@@ -98,7 +102,12 @@ fn covariance(learnt: &Learnt, shown: &[(usize, &Estimate)]) -> Option<DMatrix<f
         let [i, j] = [places[i], places[j]];
         correlation(i, j) * fitted[i].standard_error * fitted[j].standard_error
     };
-    let covariance = DMatrix::from_fn(places.len(), places.len(), of);
+    let mut covariance = DMatrix::from_fn(places.len(), places.len(), of);
+    let values = Correction::of(&learnt.model).values();
+    for other in others.iter().map(|other| Correction::of(other).values()) {
+        let off = DVector::from_iterator(shown.len(), shown.iter().map(|(which, _)| other[*which] - values[*which]));
+        covariance.ger(1.0, &off, &off, 1.0);
+    }
     covariance.iter().all(|value| value.is_finite()).then_some(covariance)
 }
 

@@ -5,7 +5,7 @@ use super::*;
 use crate::calibrate::Method;
 use crate::diagnose::tests::{robot_with, simulated};
 use crate::likelihood::watched::{watched, watched_on};
-use crate::path::{Path, STRAIGHT, SpeedProfile};
+use crate::path::{Path, SQUARE, STRAIGHT, SpeedProfile};
 
 fn answer(data: &Dataset) -> Solution {
     let start = Model::new(data.nominal_robot().unwrap());
@@ -109,4 +109,37 @@ fn exchanged_wheels_come_first_and_no_number_is_given() {
     assert!(answer.changes.is_empty() && !answer.is_trusted());
     assert!(answer.sentence().contains("write wheels_exchanged = true"), "{}", answer.sentence());
     assert!(answer.next()[0].starts_with("Write wheels_exchanged = true"), "{:?}", answer.next());
+}
+
+/// A slip that grows with speed from rest on looks like counts that are missed above 0.05 m/s, and the two give the wheels another size: the
+/// intervals allow for both.
+#[test]
+fn numbers_allow_for_every_effect_of_a_class() {
+    let truth = [
+        ("wheel_diameter_ratio", "e_d", 1.001),
+        ("wheelbase", "e_b", 0.995),
+        ("scale", "e_s", 0.998),
+        ("speed_slip", "s_per_m", 0.05),
+    ];
+    let at = |speed: f64, seed: u64| {
+        let [_, acceleration, pause] = SpeedProfile::default().values();
+        let path = Path::new(&SQUARE, &[2.0], SpeedProfile::new(speed, acceleration, pause).unwrap()).unwrap();
+        watched_on(&path, &robot(&truth), 3, seed)
+    };
+    let mut data = at(0.2, 5);
+    let faster = at(0.5, 6);
+    data.runs
+        .extend(faster.runs.into_iter().map(|run| crate::dataset::Run { name: format!("fast_{}", run.name), ..run }));
+    let answer = answer(&data);
+    assert!(!answer.others.is_empty(), "{:?}", answer.learnt.steps);
+    let sizes = [0.998 * 2.0 / 2.001, 0.998 * 2.002 / 2.001];
+    for (key, ratio) in ["wheel_diameter_left_m", "wheel_diameter_right_m"].into_iter().zip(sizes) {
+        let change = answer.change(key).unwrap();
+        assert!(change.interval.unwrap().contains(change.old * ratio), "{change:?} {}", change.old * ratio);
+        for other in &answer.others {
+            let corrected = Correction::of(other).apply(other.robot()).unwrap();
+            let value = corrected.drive.values()[1 + usize::from(key.contains("right"))];
+            assert!(change.interval.unwrap().contains(value), "{change:?} {value}");
+        }
+    }
 }
