@@ -120,7 +120,7 @@ impl Solution {
         }
         let evidence = AnyEvidence::of(data, options.level(data))?;
         let off = Meter::new(data, &evidence).map(|meter| Off::of(&meter, &learnt));
-        let others = others::of(data, &learnt);
+        let others = others::of(&*evidence, &learnt);
         let (mut changes, needed) = numbers::of(&learnt, &others, options.size);
         if let Some(off) = &off {
             numbers::share(&mut changes, off, &learnt.model);

@@ -60,6 +60,13 @@ impl Measured {
     }
 }
 
+/// The median, between the two middle ones where there are even many; `None` for no values.
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    (n > 0).then(|| 0.5 * (values[(n - 1) / 2] + values[n / 2]))
+}
+
 /// The value that Student's t with `degrees_of_freedom` stays below with `probability`.
 ///
 /// NaN for a probability outside (0, 1) or degrees of freedom that are not positive.
@@ -103,6 +110,28 @@ pub fn f_upper_tail(f: f64, degrees_of_freedom: [f64; 2]) -> f64 {
         Ok(distribution) if !f.is_nan() => distribution.sf(f),
         _ => f64::NAN,
     }
+}
+
+/// Natural logarithm of [`f_upper_tail`], also where that is below every number.
+///
+/// There the tail is I_x(ν/2, n/2) with x = ν/(ν + n f), by its series x^a (1 - x)^b Σ ((a + b)_k/(a + 1)_k) x^k / (a B(a, b)).
+///
+/// Source: Abramowitz & Stegun, 26.5.4 and 26.6.2.
+pub(crate) fn ln_f_upper_tail(f: f64, degrees_of_freedom: [f64; 2]) -> f64 {
+    let tail = f_upper_tail(f, degrees_of_freedom);
+    if tail > f64::MIN_POSITIVE || !f.is_finite() {
+        return libm::log(tail);
+    }
+    let [n, nu] = degrees_of_freedom;
+    let (a, b, x) = (0.5 * nu, 0.5 * n, nu / (nu + n * f));
+    let (mut term, mut sum, mut k) = (1.0, 1.0, 0.0);
+    while term > f64::EPSILON * sum {
+        term *= (a + b + k) / (a + 1.0 + k) * x;
+        sum += term;
+        k += 1.0;
+    }
+    let ln_beta = libm::lgamma(a) + libm::lgamma(b) - libm::lgamma(a + b);
+    a * libm::log(x) + b * libm::log1p(-x) + libm::log(sum) - libm::log(a) - ln_beta
 }
 
 /// The probability that F with these degrees of freedom \[a, b\] and this non-centrality λ exceeds `f`: the power of a test.
@@ -173,6 +202,26 @@ mod tests {
     use super::*;
 
     /// Oracle: printed tables of the distributions.
+    /// With two degrees of freedom the tail is (ν/(ν + 2 f))^(ν/2); with others, the series meets the tail where both are known.
+    #[test]
+    fn the_logarithm_of_a_tail_goes_on_below_every_number() {
+        for (f, nu) in [(3.0, 20.0), (4500.0, 6000.0), (1e6, 1e5)] {
+            let exact = 0.5 * nu * libm::log(nu / (nu + 2.0 * f));
+            let found = ln_f_upper_tail(f, [2.0, nu]);
+            assert!((found / exact - 1.0).abs() < 1e-11, "{f} {nu}: {found} {exact}");
+        }
+        // Between the last f whose tail is a number and the first whose tail is none.
+        for n in [1.0, 3.0, 40.0] {
+            let at = |f: f64| ln_f_upper_tail(f, [n, 4000.0]);
+            let edge = (0..200).fold([1.0, 1e6], |[low, high], _| {
+                let middle = 0.5 * (low + high);
+                if f_upper_tail(middle, [n, 4000.0]) > f64::MIN_POSITIVE { [middle, high] } else { [low, middle] }
+            });
+            let [above, below] = [at(edge[0] * (1.0 - 1e-9)), at(edge[1] * (1.0 + 1e-9))];
+            assert!((above - below).abs() < 1e-3 && above > below, "{n}: {above} {below}");
+        }
+    }
+
     #[test]
     fn quantiles_are_those_of_the_tables() {
         for (p, df, t) in

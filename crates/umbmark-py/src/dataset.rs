@@ -1,5 +1,6 @@
 //! Measured (or simulated) robots.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -401,12 +402,11 @@ fn poses_of_files() -> Vec<String> {
 
 /// Refuses runs that have the same number or name.
 fn all_differ(runs: &[core::Run]) -> PyResult<()> {
+    let (mut names, mut numbers) = (HashMap::new(), HashMap::new());
     for (index, run) in runs.iter().enumerate() {
-        let same = |other: &core::Run| {
-            let alike = (other.direction, other.test, other.number) == (run.direction, run.test, run.number);
-            alike || other.name == run.name
-        };
-        if let Some(first) = runs[..index].iter().position(same) {
+        let named = names.insert(&run.name, index);
+        let numbered = numbers.insert((run.direction, run.test, run.number), index);
+        if let Some(first) = named.or(numbered) {
             let (number, name) = (run.number, &run.name);
             let words = "must each have a number of their own within a direction and test, and a name of their own";
             return Err(PyValueError::new_err(format!(

@@ -1,6 +1,5 @@
 //! Return headings that follow from the return positions.
 
-use super::returns::median;
 use crate::drive::Robot;
 use crate::effect::{Evaluate, Model};
 use crate::fit::{Options, Problem, RANK_TOLERANCE, least_squares, null_directions};
@@ -8,6 +7,7 @@ use crate::geometry::{Dual, Pose2, seeded, wrap};
 use crate::path::{Direction, Path};
 use crate::replay::Track;
 use crate::run::ReturnError;
+use crate::stats::median;
 use nalgebra::{DMatrix, DVector};
 
 /// Return headings \[rad\], clockwise and counter-clockwise, of a robot whose E_d and E_b explain the median return positions; `None` if

@@ -18,7 +18,7 @@ use crate::effect::TestKind;
 use crate::geometry::wrap;
 use crate::path::{Direction, Path};
 use crate::run::{ReturnError, Run, TickLog};
-use crate::stats::{f_upper_tail, t_two_sided};
+use crate::stats::{ln_f_upper_tail, median, t_two_sided};
 
 /// Share of data sets with normal scatter in which a run is named.
 const FALSE_ALARMS: f64 = 1e-3;
@@ -26,6 +26,8 @@ const FALSE_ALARMS: f64 = 1e-3;
 const FEWEST: usize = 3;
 /// At most this share of all runs is taken as wrong, beyond the first two.
 const MAX_WRONG_SHARE: f64 = 0.25;
+/// At most so many runs are taken as wrong.
+const MOST_WRONG: usize = 300;
 /// Scatter is never smaller than the reading of a tape \[m\] and of a protractor \[rad\].
 const READING: [f64; 3] = [5e-4, 5e-4, 9e-4];
 /// Values closer than this are equal: they differ by rounding only.
@@ -181,12 +183,6 @@ pub(super) fn way(log: &TickLog, robot: &Robot) -> Option<f64> {
         })
         .sum();
     (way > 0.0 && way.is_finite()).then_some(way)
-}
-
-pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    (n > 0).then(|| 0.5 * (values[(n - 1) / 2] + values[n / 2]))
 }
 
 /// Return errors larger than the distance driven.
@@ -375,16 +371,7 @@ fn mean(own: &[(usize, f64)]) -> f64 {
 fn subset(groups: &[Vec<(usize, f64)>], least: f64, level: f64) -> Option<(Vec<std::ops::Range<usize>>, f64, f64)> {
     let all: usize = groups.iter().map(Vec::len).sum();
     let possible: usize = groups.iter().map(|own| (own.len() - 1) / 2).sum();
-    let most = possible.min(2.max((MAX_WRONG_SHARE * all as f64) as usize));
-    // Of all, how many subsets of each size there are. Where that is beyond every number, no p is small enough.
-    let subsets: Vec<f64> = (1..=most)
-        .scan(1.0, |subsets, out| {
-            *subsets *= (all + 1 - out) as f64 / out as f64;
-            Some(*subsets)
-        })
-        .take_while(|subsets| subsets.is_finite())
-        .collect();
-    let (sizes, most) = (most as f64, subsets.len());
+    let most = possible.min(2.max((MAX_WRONG_SHARE * all as f64) as usize)).min(MOST_WRONG);
     // By the number of values left out in the groups so far: the least sum of squares, and what is kept for it.
     let mut best: Vec<Option<(f64, Vec<std::ops::Range<usize>>)>> = vec![None; most + 1];
     best[0] = Some((0.0, Vec::new()));
@@ -403,15 +390,17 @@ fn subset(groups: &[Vec<(usize, f64)>], least: f64, level: f64) -> Option<(Vec<s
         }
     }
     let whole = best[0].as_ref()?.0;
-    let (mut found, mut smallest) = (None, level);
-    for ((out, told), subsets) in best.into_iter().enumerate().skip(1).zip(subsets) {
+    // Logarithms: of thousands of runs there are more subsets than a number holds, and tails below every number.
+    let (mut found, mut smallest, mut subsets) = (None, libm::log(level), 0.0);
+    for (out, told) in best.into_iter().enumerate().skip(1) {
+        subsets += libm::log((all + 1 - out) as f64 / out as f64);
         let (Some((squares, kept)), freedom) = (told, all as f64 - (groups.len() + out) as f64) else { continue };
         if freedom < 1.0 {
             continue;
         }
         let variance = squares / freedom + least * least;
         let f = (whole - squares) / out as f64 / variance;
-        let p = f_upper_tail(f, [out as f64, freedom]) * subsets * sizes;
+        let p = ln_f_upper_tail(f, [out as f64, freedom]) + subsets + libm::log(most as f64);
         if p < smallest {
             (smallest, found) = (p, Some((kept, variance.sqrt(), freedom)));
         }

@@ -311,25 +311,25 @@ impl Covariate {
         if rate.of_turns() { self.turning } else { self.going }
     }
 
-    /// Whether the counters resolve its bins in these steps.
+    /// Whether one tick blurs its bins in these steps.
     ///
     /// A step whose counts are too few by chance appears to be slower than it is and to have an error ahead: where ticks blur the bins,
     /// every error depends on the speed.
-    pub(super) fn tells<'a>(
+    pub(super) fn blurred<'a>(
         &self,
         rate: Rate,
         spans: &[Span],
         robot: &Robot,
         steps: impl Iterator<Item = &'a ErrorIncrement>,
     ) -> bool {
-        let (Some(Derived { order, of }), Some(span)) = (self.derived, spans.first()) else { return true };
+        let (Some(Derived { order, of }), Some(span)) = (self.derived, spans.first()) else { return false };
         let resolution = of[usize::from(rate.of_turns())].resolution(robot);
         let blur = |step: &ErrorIncrement| {
             let window = step.seconds.max(2.0 * HALF_WINDOW);
             resolution * (SQRT_2 / window).powi(order)
         };
         let (squares, count) = steps.fold((0.0, 0.0), |(sum, n), step| (sum + blur(step).powi(2), n + 1.0));
-        (squares / f64::max(count, 1.0)).sqrt() < BLUR * (span.high - span.low)
+        (squares / f64::max(count, 1.0)).sqrt() >= BLUR * (span.high - span.low)
     }
 
     /// Cuts its range in some steps into bins.

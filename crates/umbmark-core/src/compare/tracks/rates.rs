@@ -29,6 +29,8 @@ pub struct Against {
     pub covariate: &'static Covariate,
     /// The rate in each bin.
     pub bins: Vec<Bin>,
+    /// Whether one tick blurs the bins, so that they are not compared with each other.
+    pub blurred: bool,
     /// Of a rate that does not depend on it; `None` if the runs are too few, or the covariate does not vary in them.
     pub test: Option<Test>,
 }
@@ -117,13 +119,14 @@ fn ask(
     let range = told.iter().filter(|bin| bin.mean.is_some()).count() > 1;
     let value = covariate.value(rate)?;
     let between = covariate.between_runs.then(|| between(runs, rate, value, &told, resolution)).flatten();
-    let within = covariate.tells(rate, &spans, robot, counted()).then(|| within(&by_run, resolution)).flatten();
+    let blurred = covariate.blurred(rate, &spans, robot, counted());
+    let within = if blurred { None } else { within(&by_run, resolution) };
     let tests: Vec<f64> = [within, between].into_iter().flatten().collect();
     let smallest = tests.iter().copied().reduce(f64::min);
     let p = smallest.filter(|_| range).map(|p| (p * tests.len() as f64).min(1.0));
     let between = covariate.between_runs.then_some(value);
     let test = p.map(|p| Test { p, gain: worth::of_dependence(runs, rate, &bins, between) });
-    Some(Against { rate, covariate, bins: told, test })
+    Some(Against { rate, covariate, bins: told, blurred, test })
 }
 
 /// p of the bin whose rate differs most from that of the whole run, run by run: Student's t, Bonferroni over the bins.

@@ -20,6 +20,7 @@ pub(super) fn of(judged: &TracksJudged, size: f64) -> Vec<String> {
         sentences.push(format!("Explained: none of {} tests shows a repeating error that matters.", judged.tests));
     }
     sentences.extend(too_small(judged, least));
+    sentences.extend(not_asked(judged));
     sentences.extend(seen_to(judged));
     sentences.extend(where_made(&judged.parts));
     sentences
@@ -75,6 +76,14 @@ fn too_small(judged: &TracksJudged, least: f64) -> Option<String> {
     let names: Vec<&str> = told.iter().map(|(name, _)| name.as_str()).collect();
     let worth = if most > 0.0 { format!("by at most {:.1} %", 100.0 * most) } else { "by nothing".to_owned() };
     Some(format!("Repeats, but lowers the error of runs left out {worth}: {}.", names.join("; ")))
+}
+
+/// What the counters are too coarse for.
+fn not_asked(judged: &TracksJudged) -> Option<String> {
+    let blurred = judged.against.iter().filter(|against| against.blurred);
+    let told: Vec<String> = blurred.map(|a| format!("{} by {}", a.rate.name(), a.covariate.title)).collect();
+    (!told.is_empty())
+        .then(|| format!("Not tested within runs, because one tick is too coarse for it: {}.", told.join("; ")))
 }
 
 /// The smallest overall error that would have been detected.

@@ -253,9 +253,11 @@ fn speeds_that_the_ticks_blur_are_not_asked() {
         judged.against.iter().filter(|a| a.covariate.name == covariate && a.test.is_some()).count()
     };
     assert_eq!(asked(&told, "turn_rate"), 0, "{:?}", told.sentences);
+    let said = told.sentences.iter().find(|said| said.starts_with("Not tested within runs")).unwrap();
+    assert!(said.contains("rotation in turns by the turn rate"), "{said}");
     assert!(asked(&told, "heading") > 0 && told.explains(0.05) == Some(true), "{:?}", told.sentences);
     let fine = judged(&watched(&robot_with(&[]), 5, 7), &robot_with(&[]));
-    assert!(asked(&fine, "turn_rate") > 0);
+    assert!(asked(&fine, "turn_rate") > 0 && fine.sentences.iter().all(|said| !said.starts_with("Not tested")));
 }
 
 /// Seeds 100 on. p of each test and of all together, for the true model and for one fitted to the same runs; on squares and on

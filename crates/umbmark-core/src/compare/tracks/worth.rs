@@ -6,14 +6,15 @@ use super::covariate::{Bins, Rate, Value};
 use super::followed::{ErrorIncrement, Followed};
 use crate::evidence::tracks::LEAST_GAIN;
 use crate::geometry::Pose2;
+use crate::stats::median;
 
 /// A test of a repeating error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Test {
     /// p of no such error.
     pub p: f64,
-    /// Share by which the root mean square error of a run along its way falls, in position or heading, whichever falls more, if it is
-    /// corrected as the other runs tell; negative if both rise.
+    /// Share by which the root mean square error along the way falls if each run is corrected as the other runs tell: of all runs together
+    /// or, where that is more, of the median run, in position or heading, whichever falls more. One run that is far off hides nothing.
     pub gain: f64,
 }
 
@@ -91,27 +92,37 @@ fn line(runs: &[Followed], totals: &[[f64; 2]], rate: Rate, value: Value, one: u
 
 /// Share by which the errors fall if each step is corrected by a rate, given for the run and the step.
 fn gain(runs: &[Followed], rate: Rate, of: impl Fn(usize, &ErrorIncrement) -> Option<f64>) -> f64 {
+    let squares: Vec<[[f64; 2]; 2]> =
+        runs.iter().enumerate().map(|(index, run)| corrected(run, rate, |step| of(index, step))).collect();
+    let fall = |[before, after]: [f64; 2]| if before > 0.0 { 1.0 - (after / before).sqrt() } else { 0.0 };
+    let of_component = |k: usize| {
+        let all = squares.iter().fold([0.0; 2], |sums, own| [0, 1].map(|i| sums[i] + own[k][i]));
+        let median = median(squares.iter().map(|own| fall(own[k])).collect()).unwrap_or(0.0);
+        fall(all).max(median)
+    };
+    of_component(0).max(of_component(1))
+}
+
+/// Sums of the squared errors of a run, of positions and of headings, each as predicted and with its steps corrected.
+fn corrected(run: &Followed, rate: Rate, of: impl Fn(&ErrorIncrement) -> Option<f64>) -> [[f64; 2]; 2] {
     let mut squares = [[0.0; 2]; 2];
-    for (index, run) in runs.iter().enumerate() {
-        let mut steps = run.steps.iter().peekable();
-        let mut corrected = Pose2::IDENTITY;
-        for (at, place) in run.places.iter().enumerate() {
-            let step = steps.next_if(|step| step.ends == at);
-            if place.starts || at == 0 {
-                corrected = place.predicted;
-                continue;
-            }
-            corrected = corrected.compose(&run.places[at - 1].predicted.between(&place.predicted));
-            let made = step.and_then(|step| Some((step, of(index, step)?)));
-            if let Some([x, y, heading]) = made.and_then(|(step, value)| rate.made(step, value)) {
-                corrected = corrected.compose(&Pose2::new(x, y, heading));
-            }
-            for (squares, pose) in squares.iter_mut().zip([&place.predicted, &corrected]) {
-                squares[0] += (place.measured.x - pose.x).powi(2) + (place.measured.y - pose.y).powi(2);
-                squares[1] += (place.measured.heading - pose.heading).powi(2);
-            }
+    let mut steps = run.steps.iter().peekable();
+    let mut corrected = Pose2::IDENTITY;
+    for (at, place) in run.places.iter().enumerate() {
+        let step = steps.next_if(|step| step.ends == at);
+        if place.starts || at == 0 {
+            corrected = place.predicted;
+            continue;
+        }
+        corrected = corrected.compose(&run.places[at - 1].predicted.between(&place.predicted));
+        let made = step.and_then(|step| rate.made(step, of(step)?));
+        if let Some([x, y, heading]) = made {
+            corrected = corrected.compose(&Pose2::new(x, y, heading));
+        }
+        for (which, pose) in [&place.predicted, &corrected].into_iter().enumerate() {
+            squares[0][which] += (place.measured.x - pose.x).powi(2) + (place.measured.y - pose.y).powi(2);
+            squares[1][which] += (place.measured.heading - pose.heading).powi(2);
         }
     }
-    let fall = |k: usize| if squares[0][k] > 0.0 { 1.0 - (squares[1][k] / squares[0][k]).sqrt() } else { 0.0 };
-    fall(0).max(fall(1))
+    squares
 }

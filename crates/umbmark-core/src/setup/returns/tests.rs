@@ -82,6 +82,18 @@ fn one_and_two_typing_errors_of_ten_are_named_and_no_other_run() {
     assert!(right as f64 > 0.99 * sets as f64, "{right} of {sets}");
 }
 
+/// Seed 19. More subsets than a number holds, and tails below every number.
+#[test]
+fn typing_errors_among_thousands_are_named() {
+    let mut runs = normal([3000, 3000], &mut Stream::new(19, 0, 0));
+    for place in [7, 2999, 3000] {
+        runs[place].returned.as_mut().unwrap().y *= 10.0;
+    }
+    assert_eq!(named(&runs), ["cw_8", "cw_3000", "ccw_1"]);
+    (0..200).for_each(|place| runs[29 * place + 5].returned.as_mut().unwrap().x -= 0.5);
+    assert_eq!(named(&runs).len(), 203);
+}
+
 #[test]
 fn a_run_is_told_with_its_distance_and_with_what_stands_out() {
     let mut runs = normal([5, 5], &mut Stream::new(14, 0, 0));
