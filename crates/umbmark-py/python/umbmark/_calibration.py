@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import msgspec
 
 from umbmark import _documents
 from umbmark._documents import Correction
 from umbmark._export import export
-from umbmark._result import Row
+from umbmark._result import Printed, Row
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Model, Path, Robot
 from umbmark._umbmark import calibrate as _calibrate
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Calibration(_documents.Calibration, frozen=True):
+class Calibration(_documents.Calibration, Printed, frozen=True):
     """A calibration by every method that the data allows.
 
     Attributes
@@ -28,11 +28,7 @@ class Calibration(_documents.Calibration, frozen=True):
         The nominal robot.
     path : Path or None
         The path; None where it is not known.
-    text : str
-        What the command prints of it; ``print`` and ``str`` give this.
     """
-
-    _beside: ClassVar[tuple[str, ...]] = ("robot", "path", "text")
 
     robot: Robot
     path: Path | None
@@ -164,8 +160,6 @@ class GearCalibration(_documents.GearCalibration, frozen=True):
     robot : Robot
         The robot with its odometry corrected.
     """
-
-    _beside: ClassVar[tuple[str, ...]] = ("model", "robot")
 
     model: Model
     robot: Robot

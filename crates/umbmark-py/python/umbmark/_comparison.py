@@ -9,7 +9,7 @@ import msgspec
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
-from umbmark._result import Row
+from umbmark._result import Printed, Row
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Model
 
@@ -17,16 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Comparison(_documents.Comparison, frozen=True):
-    """Models compared with measurements: which explain them, and where the others fail.
-
-    Attributes
-    ----------
-    text : str
-        What the command prints of it; ``print`` and ``str`` give this.
-    """
-
-    _beside: ClassVar[tuple[str, ...]] = ("text",)
+class Comparison(_documents.Comparison, Printed, frozen=True):
+    """Models compared with measurements: which explain them, and where the others fail."""
 
     text: str
 
@@ -50,16 +42,8 @@ class Comparison(_documents.Comparison, frozen=True):
 HalfOpen: TypeAlias = tuple[float | None, float | None]
 
 
-class TrackComparison(_documents.TrackComparison, frozen=True):
-    """Models compared with tracks: where along the path the error arises, and what it depends on.
-
-    Attributes
-    ----------
-    text : str
-        What the command prints of it; ``print`` and ``str`` give this.
-    """
-
-    _beside: ClassVar[tuple[str, ...]] = ("text",)
+class TrackComparison(_documents.TrackComparison, Printed, frozen=True):
+    """Models compared with tracks: where on the way the error arises, and what it depends on."""
 
     text: str
     _words: ClassVar[Mapping[str, str]] = {"explains": "bool"}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -20,17 +20,7 @@ if TYPE_CHECKING:
 
 
 class Diagnosis(_documents.Diagnosis, Explained, frozen=True):
-    """What a model is missing, how certain that is, and what this data cannot show.
-
-    Attributes
-    ----------
-    data : Dataset
-        The measurements.
-    text : str
-        What the command prints of it; ``print`` and ``str`` give this.
-    """
-
-    _beside: ClassVar[tuple[str, ...]] = ("data", "text")
+    """What a model is missing, how certain that is, and what this data cannot show."""
 
     data: Dataset
     text: str
@@ -56,17 +46,7 @@ class Diagnosis(_documents.Diagnosis, Explained, frozen=True):
 
 
 class Fitted(_documents.Fitted, Explained, frozen=True):
-    """A fit of a model: its numbers, and the model with them.
-
-    Attributes
-    ----------
-    data : Dataset
-        The measurements.
-    text : str
-        What the command prints of it; ``print`` and ``str`` give this.
-    """
-
-    _beside: ClassVar[tuple[str, ...]] = ("data", "text")
+    """A fit of a model: its numbers, and the model with them."""
 
     data: Dataset
     text: str
@@ -83,17 +63,7 @@ class Fitted(_documents.Fitted, Explained, frozen=True):
 
 
 class Learnt(_documents.Learnt, Explained, frozen=True):
-    """What was learnt, from the nominal robot to the model.
-
-    Attributes
-    ----------
-    data : Dataset
-        The measurements.
-    text : str
-        What the command prints of it; ``print`` and ``str`` give this.
-    """
-
-    _beside: ClassVar[tuple[str, ...]] = ("data", "text")
+    """What was learnt, from the nominal robot to the model."""
 
     data: Dataset
     text: str

@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from umbmark._monte_carlo import Progress
 from umbmark._report import plot
+from umbmark._result import Printed
 from umbmark._tracks import Tracks, tracks
 from umbmark._umbmark import Dataset, Figure, Model
 
 
-class Explained:
-    """A result with a model and the measured runs that it explains."""
+class Explained(Printed):
+    """A result with a model and the measured runs that it explains.
+
+    Attributes
+    ----------
+    data : Dataset
+        The measurements.
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
+    """
 
     __slots__ = ()
 

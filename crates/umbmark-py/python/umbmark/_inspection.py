@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from os import fspath
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from umbmark import _documents, _umbmark
-from umbmark._result import Row
+from umbmark._result import Printed, Row
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Dataset
 
@@ -14,16 +14,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Inspection(_documents.Inspection, frozen=True):
-    """The findings on a dataset.
-
-    Attributes
-    ----------
-    text : str
-        What the command prints of it; ``print`` and ``str`` give this.
-    """
-
-    _beside: ClassVar[tuple[str, ...]] = ("text",)
+class Inspection(_documents.Inspection, Printed, frozen=True):
+    """The findings on a dataset."""
 
     text: str
 

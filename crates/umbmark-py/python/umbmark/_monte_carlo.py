@@ -35,7 +35,6 @@ class MonteCarlo(_documents.MonteCarlo, frozen=True):
         The metrics of every trial, where they were kept.
     """
 
-    _beside: ClassVar[tuple[str, ...]] = ("ensemble", "trials")
     _uncompared: ClassVar[tuple[str, ...]] = ("trials_per_s",)
 
     ensemble: Ensemble

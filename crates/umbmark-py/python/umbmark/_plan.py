@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of, whole
@@ -25,8 +25,6 @@ class Plan(_documents.Plan, frozen=True):
     sheets : dict[str, str]
         The sheet to drive by, as "md" and as "html".
     """
-
-    _beside: ClassVar[tuple[str, ...]] = ("sheets",)
 
     sheets: dict[str, str]
 

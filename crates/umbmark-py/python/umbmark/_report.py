@@ -6,7 +6,7 @@ import html
 from collections.abc import Mapping
 from os import PathLike, fspath
 from pathlib import PurePath
-from typing import ClassVar, TypeAlias
+from typing import TypeAlias
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
@@ -27,8 +27,6 @@ class Report(_documents.Report, frozen=True):
     html : str
         The page.
     """
-
-    _beside: ClassVar[tuple[str, ...]] = ("html",)
 
     html: str
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import inspect
 import math
 import re
 from collections.abc import Mapping
@@ -20,18 +21,55 @@ Interval: TypeAlias = tuple[float, float]
 Row: TypeAlias = dict[str, Any]
 
 
+class Frame:
+    """A table that is handed to whatever reads Arrow, and to pandas and polars."""
+
+    __slots__ = ()
+
+    def to_arrow(self) -> pa.Table:
+        """Give it as an Arrow table."""
+        raise NotImplementedError
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """Give its rows to whatever reads Arrow: ``pyarrow.table``, polars, DuckDB."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Give its rows as a pandas DataFrame, through Arrow."""
+        frame: pd.DataFrame = self.to_arrow().to_pandas()
+        return frame
+
+    def to_polars(self) -> pl.DataFrame:
+        """Give its rows as a polars DataFrame, through Arrow."""
+        import polars as pl
+
+        return pl.DataFrame(self.to_arrow())
+
+
+class Printed:
+    """A result that the command prints.
+
+    Attributes
+    ----------
+    text : str
+        What the command prints of it; ``print`` and ``str`` give this.
+    """
+
+    __slots__ = ()
+
+
 class Record(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A part of a result: attributes under the keys of the command's ``--json``."""
 
 
-class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
     """A frozen result. Its attributes are the keys of the command's ``--json``.
 
     Results compare by value, how long they took left out; they can be hashed and pickled. ``print``
     gives what the command prints, and notebooks show verdict, sentence and table.
     """
 
-    # Attributes that are no keys of the document.
+    # Attributes that are no keys of the document: those that a class adds to the document's.
     _beside: ClassVar[tuple[str, ...]] = ()
     # Attributes that do not count where results are compared: how long it took, and words.
     _uncompared: ClassVar[tuple[str, ...]] = ("text",)
@@ -39,15 +77,18 @@ class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     _words: ClassVar[Mapping[str, str]] = {}
 
     def __init_subclass__(cls) -> None:
-        """Document the attributes of the document that a class adds to before its own."""
+        """Note which attributes a class adds, and document those of its bases before them."""
         super().__init_subclass__()
-        rule = "    ----------\n"
-        document, own = cls.__mro__[1].__doc__ or "", cls.__doc__
-        if own is None:
-            cls.__doc__ = document
-        elif rule in document:
-            (*_, inherited), (about, _, added) = document.partition(rule), own.partition(rule)
-            cls.__doc__ = f"{about}{rule}{inherited.rstrip()}\n{added}"
+        if cls.__module__ != "umbmark._documents":
+            declared = [name for name in inspect.get_annotations(cls) if name[0] != "_"]
+            cls._beside = (*cls._beside, *declared)
+        rule = "\n    Attributes\n    ----------\n"
+        inherited = [(base.__doc__ or "").partition(rule)[2].rstrip() for base in cls.__bases__]
+        own = cls.__doc__ if "__doc__" in vars(cls) else cls.__bases__[0].__doc__
+        about, _, added = (own or "").partition(rule)
+        attributes = [text for text in [*inherited, added.rstrip()] if text]
+        if attributes:
+            cls.__doc__ = f"{about.rstrip()}\n{rule}" + "\n".join(attributes) + "\n"
 
     @classmethod
     def _of(cls, document: str, **beside: object) -> Self:
@@ -104,21 +145,6 @@ class Result(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         values = [value for _, value in _fields(self) if isinstance(value, tuple)]
         lists = [value for value in values if value and isinstance(value[0], Record)]
         return lists[0] if lists else ()
-
-    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """Give its ``table`` to whatever reads Arrow: ``pyarrow.table``, polars, DuckDB."""
-        return self.to_arrow().__arrow_c_stream__(requested_schema)
-
-    def to_pandas(self) -> pd.DataFrame:
-        """Give its ``table`` as a pandas DataFrame, through Arrow."""
-        frame: pd.DataFrame = self.to_arrow().to_pandas()
-        return frame
-
-    def to_polars(self) -> pl.DataFrame:
-        """Give its ``table`` as a polars DataFrame, through Arrow."""
-        import polars as pl
-
-        return pl.DataFrame(self.to_arrow())
 
     def __str__(self) -> str:
         text = getattr(self, "text", None)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
 from umbmark import _documents
 from umbmark._arguments import Numbers
-from umbmark._result import Row
+from umbmark._result import Printed, Row
 from umbmark._umbmark import Dataset, load_dataset, score_arrays, score_dataset
 
 if TYPE_CHECKING:
@@ -21,16 +21,8 @@ def data_of(data: Data) -> Dataset:
     return data if isinstance(data, Dataset) else load_dataset(fspath(data))
 
 
-class Score(_documents.Score, frozen=True):
-    """The scores of a UMBmark test, with intervals that hold with probability ``level``.
-
-    Attributes
-    ----------
-    text : str
-        What the command prints of it; ``print`` and ``str`` give this.
-    """
-
-    _beside: ClassVar[tuple[str, ...]] = ("text",)
+class Score(_documents.Score, Printed, frozen=True):
+    """The scores of a UMBmark test, with intervals that hold with probability ``level``."""
 
     text: str
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
 from umbmark._explained import Explained
@@ -14,17 +12,7 @@ from umbmark._umbmark import Dataset
 
 
 class Solution(_documents.Solution, Explained, frozen=True):
-    """The one answer about a measured robot: what to write into it, what remains, what to do next.
-
-    Attributes
-    ----------
-    data : Dataset
-        The measurements.
-    text : str
-        What the command prints of it; ``print`` and ``str`` give this.
-    """
-
-    _beside: ClassVar[tuple[str, ...]] = ("data", "text")
+    """The one answer about a measured robot: what to write, what remains, what to do next."""
 
     data: Dataset
     text: str

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
@@ -23,8 +23,6 @@ class Tolerance(_documents.Tolerance, frozen=True):
     sizes : tuple[float, ...]
         The metric of the robots as they are now, in order.
     """
-
-    _beside: ClassVar[tuple[str, ...]] = ("sizes",)
 
     sizes: tuple[float, ...]
 

@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from umbmark import _umbmark
+from umbmark._result import Frame
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Model
 
 if TYPE_CHECKING:
-    import pandas as pd
-    import polars as pl
     import pyarrow as pa
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -70,7 +69,7 @@ class Track:
     whitened: Floats | None
 
 
-class Tracks(Sequence[Track]):
+class Tracks(Sequence[Track], Frame):
     """Measured runs beside their odometry and a model: a sequence of ``Track``, and one frame.
 
     It hands its frame, one row a pose, to whatever reads Arrow.
@@ -143,21 +142,6 @@ class Tracks(Sequence[Track]):
             if name != "whitened" or self.chi2 is not None:
                 columns |= dict(zip(titles, self._all(name).T, strict=True))
         return pa.table(columns)
-
-    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """Give all poses to whatever reads Arrow: ``pyarrow.table``, polars, DuckDB."""
-        return self.to_arrow().__arrow_c_stream__(requested_schema)
-
-    def to_pandas(self) -> pd.DataFrame:
-        """Give all poses as a pandas DataFrame, one row a pose."""
-        frame: pd.DataFrame = self.to_arrow().to_pandas()
-        return frame
-
-    def to_polars(self) -> pl.DataFrame:
-        """Give all poses as a polars DataFrame, one row a pose."""
-        import polars as pl
-
-        return pl.DataFrame(self.to_arrow())
 
     def __repr__(self) -> str:
         poses = sum(len(track.time_s) for track in self)
