@@ -11,6 +11,7 @@ mod misfits;
 mod story;
 mod tracks;
 
+pub(crate) use ends::criteria as criteria_of_ends;
 pub use gears::{GearCalibration, GearError, calibrate_gears};
 pub use story::{Error, Learnt, Step};
 

@@ -21,6 +21,7 @@ mod words;
 
 pub use numbers::Change;
 pub use off::{Measure, Off, Part};
+pub use others::Other;
 
 use crate::calibrate::{self, CalibrateError, Calibration, Correction, Estimate};
 use crate::dataset::Dataset;
@@ -38,9 +39,8 @@ use off::Meter;
 pub struct Solution {
     /// The model, and how it was learnt.
     pub learnt: Learnt,
-    /// The model with another effect of a class in place of the one that was added: these runs cannot separate them. The numbers of the robot
-    /// may be those of any of them, which their intervals allow for.
-    pub others: Vec<Model>,
+    /// Effects with which these runs are about as likely, and the numbers of the robot are others: the intervals of these allow for them.
+    pub others: Vec<Other>,
     /// Numbers of the robot that these runs show, with their new values.
     pub changes: Vec<Change>,
     /// Whether the new values differ from the old ones by more than chance.
@@ -120,7 +120,7 @@ impl Solution {
         }
         let evidence = AnyEvidence::of(data, options.level(data))?;
         let off = Meter::new(data, &evidence).map(|meter| Off::of(&meter, &learnt));
-        let others = others::of(&*evidence, &learnt);
+        let others = others::of(&evidence, &learnt, options.size);
         let (mut changes, needed) = numbers::of(&learnt, &others, options.size);
         if let Some(off) = &off {
             numbers::share(&mut changes, off, &learnt.model);

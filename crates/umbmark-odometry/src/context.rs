@@ -56,6 +56,8 @@ pub struct Context<T = f64> {
     pub wheel_angle: [f64; 2],
     /// Rotation of each wheel during the piece \[rad\].
     pub wheel_rotation: [f64; 2],
+    /// Travel of each wheel during the piece \[m\], as the odometry believes it.
+    pub wheel_travel: [f64; 2],
     /// +1 or -1 if the left or the right wheel has just reversed to forward or backward.
     pub reversed: [f64; 2],
     /// Path length driven in this run \[m\].
@@ -101,6 +103,7 @@ impl Context {
             turn_rate_change: self.turn_rate_change,
             wheel_angle: self.wheel_angle,
             wheel_rotation: self.wheel_rotation,
+            wheel_travel: self.wheel_travel,
             reversed: self.reversed,
             distance: self.distance,
             time: self.time,
@@ -206,6 +209,7 @@ impl Progress {
         now.wheel_speed = mean;
         now.speed_change = [to[0] - from[0], to[1] - from[1]];
         now.turn_rate_change = (now.speed_change[1] - now.speed_change[0]) / self.wheelbase;
+        now.wheel_travel = wheels;
         now.wheel_rotation = [0, 1].map(|w| wheels[w] / self.radius[w]);
         // Counters that oscillate about zero, as in a turn on the spot, add no path length.
         now.length = if now.speed == 0.0 { forward.abs() } else { forward * now.speed.signum() };

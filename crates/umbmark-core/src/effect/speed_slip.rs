@@ -18,7 +18,7 @@ impl Effect for SpeedSlip {
             meaning: "share of its travel that each wheel loses per m/s of its speed",
             ..PER_SPEED
         }],
-        equation: "s_w ← (1 - k |v_w|) s_w  for both wheels",
+        equation: "s_w ← (1 - k |v_w|) s_w  for both wheels, v_w the speed of its rim",
         physics: CREEP,
         signature: "Legs and turns fall short by the share k v. At a single speed this is E_s, so on a square it looks like E_b.",
         confused_with: &["scale", "wheelbase", "turn_slip", "turn_slip_rate"],
@@ -66,6 +66,17 @@ mod tests {
             }
         }
     }
+
+    /// Wheels that are 5 % larger roll 5 % faster than they count.
+    #[test]
+    fn the_speed_is_that_of_the_rim() {
+        for (direction, _) in ccw_and_cw() {
+            let stops = stops_with(&[("scale", "e_s", 1.05), ("speed_slip", "s_per_m", 0.01)], direction);
+            let lost = 0.01 * 1.05 * 1.05 * SQUARED;
+            assert!((4.2 - stops[0].x - lost).abs() < 1e-3 * lost, "{:?}", stops[0]);
+        }
+    }
+
     #[test]
     fn each_wheel_slips_at_its_own_speed_on_a_circle() {
         // The outer wheel goes 2.17 m times a full turn at 0.2 m/s with ramps of 1 s.

@@ -18,7 +18,7 @@ impl Effect for SpeedSlipLeft {
             meaning: "share of its travel that the left wheel loses per m/s of its speed",
             ..PER_SPEED
         }],
-        equation: "s_L ← (1 - k |v_L|) s_L",
+        equation: "s_L ← (1 - k |v_L|) s_L,  v_L the speed of its rim",
         physics: CREEP,
         signature: "Legs curve to the left by k v/b per metre, and turns lose half the share. On legs of a single speed it looks like \
                     E_d.",

@@ -18,7 +18,7 @@ impl Effect for SpeedSlipRight {
             meaning: "share of its travel that the right wheel loses per m/s of its speed",
             ..PER_SPEED
         }],
-        equation: "s_R ← (1 - k |v_R|) s_R",
+        equation: "s_R ← (1 - k |v_R|) s_R,  v_R the speed of its rim",
         physics: CREEP,
         signature: "Legs curve to the right by k v/b per metre, and turns lose half the share. On legs of a single speed it looks like \
                     E_d.",

@@ -340,6 +340,7 @@ fn contexts() -> [Context; 2] {
         turn_rate_change: 0.1,
         wheel_angle: [2.0, 3.0],
         wheel_rotation: [0.1, 0.2],
+        wheel_travel: [0.01, 0.02],
         reversed: [1.0, -1.0],
         distance: 3.0,
         time: 20.0,

@@ -229,7 +229,7 @@ fn squares(ends: &Ends, model: &Model, of: impl Fn(usize) -> bool) -> Squares {
 
 /// AICc and BIC, if there are enough runs. From the normal likelihood of N runs with one unknown covariance: N ln |Σ̂| and 2k or k ln N for
 /// k parameters.
-fn criteria(ends: &Ends, model: &Model) -> Option<[f64; 2]> {
+pub(crate) fn criteria(ends: &Ends, model: &Model) -> Option<[f64; 2]> {
     let d = ends.coordinates();
     let fitted = Fitted::new(ends, model).ok()?;
     let of_run = |r: &nalgebra::Vector3<f64>| DVector::from_column_slice(&r.as_slice()[..d]);

@@ -79,7 +79,13 @@ impl Way {
 
     /// This moment of the way, of no length and no duration.
     pub(super) fn moment(&self) -> Context {
-        Context { length: 0.0, duration: 0.0, wheel_rotation: [0.0; 2], ..self.at.at_pose(&self.pose) }
+        Context {
+            length: 0.0,
+            duration: 0.0,
+            wheel_rotation: [0.0; 2],
+            wheel_travel: [0.0; 2],
+            ..self.at.at_pose(&self.pose)
+        }
     }
 
     /// Applies a true motion of the robot.

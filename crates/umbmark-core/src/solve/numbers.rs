@@ -1,6 +1,7 @@
 //! From the values of a model to the numbers of a robot.
 
 use super::off::Off;
+use super::others::Other;
 use crate::calibrate::{self, Correction, Method};
 use crate::effect::Model;
 use crate::evidence::Estimate;
@@ -28,7 +29,7 @@ pub struct Change {
 
 /// The numbers that a model changes, with intervals that hold with probability 1 - `size`, and whether all of them together differ
 /// from the old ones by more than chance (an F test of that size).
-pub(super) fn of(learnt: &Learnt, others: &[Model], size: f64) -> (Vec<Change>, bool) {
+pub(super) fn of(learnt: &Learnt, others: &[Other], size: f64) -> (Vec<Change>, bool) {
     let model = &learnt.model;
     let drive = &model.robot().drive;
     let values = Correction::of(model).values();
@@ -57,7 +58,7 @@ pub(super) fn of(learnt: &Learnt, others: &[Model], size: f64) -> (Vec<Change>, 
 }
 
 /// The three ratios of a differential drive as one more estimate; `None` where none was fitted.
-pub(super) fn estimate(learnt: &Learnt, others: &[Model]) -> Option<calibrate::Estimate> {
+pub(super) fn estimate(learnt: &Learnt, others: &[Other]) -> Option<calibrate::Estimate> {
     let shown = shown(learnt);
     let (_, first) = shown.first()?;
     let covariance = covariance(learnt, others, &shown).map(|covariance| {
@@ -87,10 +88,10 @@ fn shown(learnt: &Learnt) -> Vec<(usize, &Estimate)> {
 
 /// Covariance of those; `None` where some standard error is not known.
 ///
-/// Where another model would do, the distance d of its values is one more error, d dᵀ: nobody knows which is true.
+/// Where another effect would do, the distance d of its values is one more error, L d dᵀ, with L its likelihood beside the one that was added.
 ///
 /// Source: Buckland, Burnham & Augustin (1997), Biometrics 53, 603: the variance of an estimate after a model was selected.
-fn covariance(learnt: &Learnt, others: &[Model], shown: &[(usize, &Estimate)]) -> Option<DMatrix<f64>> {
+fn covariance(learnt: &Learnt, others: &[Other], shown: &[(usize, &Estimate)]) -> Option<DMatrix<f64>> {
     let (fitted, correlations) = (&learnt.diagnosis.fitted, &learnt.diagnosis.correlations);
     let place = |estimate: &Estimate| fitted.iter().position(|own| own == estimate);
     let places: Vec<usize> = shown.iter().map(|(_, estimate)| place(estimate)).collect::<Option<_>>()?;
@@ -103,10 +104,9 @@ fn covariance(learnt: &Learnt, others: &[Model], shown: &[(usize, &Estimate)]) -
         correlation(i, j) * fitted[i].standard_error * fitted[j].standard_error
     };
     let mut covariance = DMatrix::from_fn(places.len(), places.len(), of);
-    let values = Correction::of(&learnt.model).values();
-    for other in others.iter().map(|other| Correction::of(other).values()) {
-        let off = DVector::from_iterator(shown.len(), shown.iter().map(|(which, _)| other[*which] - values[*which]));
-        covariance.ger(1.0, &off, &off, 1.0);
+    for other in others {
+        let off = DVector::from_iterator(shown.len(), shown.iter().map(|(which, _)| other.off[*which]));
+        covariance.ger(other.likelihood, &off, &off, 1.0);
     }
     covariance.iter().all(|value| value.is_finite()).then_some(covariance)
 }

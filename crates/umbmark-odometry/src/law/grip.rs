@@ -28,44 +28,50 @@ pub(super) fn turn_course<T: Real>(motion: &mut Displacement2<T>, angle: T) {
 
 /// The share of travel that each wheel loses per speed.
 ///
-/// `s_w ← (1 - k |v_w|) s_w  for both wheels`
+/// `s_w ← (1 - k |v_w|) s_w  for both wheels, v_w the speed of its rim`
 pub struct SpeedSlip;
 
 impl WheelLaw for SpeedSlip {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        travel.left *= kept(p[0], at.wheel_speed[0]);
-        travel.right *= kept(p[0], at.wheel_speed[1]);
+        slip(&mut travel.left, p[0], at, 0);
+        slip(&mut travel.right, p[0], at, 1);
     }
 }
 
-/// The share of a wheel's travel that is left at its speed \[m/s\].
+/// What a wheel of this size rolls is at most twice, and at least half of what it counts; where it is not, play or a late reading makes
+/// most of a small travel.
+const SIZES: core::ops::Range<f64> = 0.5..2.0;
+
+/// Takes k |v| of what a wheel rolls. v is the speed of its own rim: that of its counts, times what it rolls for each metre it counts.
 #[inline(always)]
-pub(super) fn kept<T: Real>(s_per_m: T, speed: f64) -> T {
-    -s_per_m * speed.abs() + 1.0
+fn slip<T: Real>(rolled: &mut T, k: T, at: &Context<T>, wheel: usize) {
+    let size = *rolled / at.wheel_travel[wheel];
+    let size = if SIZES.contains(&size.value()) { size } else { T::from(1.0) };
+    *rolled *= -k * size * at.wheel_speed[wheel].abs() + 1.0;
 }
 
 /// The share of travel that the left wheel loses per speed.
 ///
-/// `s_L ← (1 - k |v_L|) s_L`
+/// `s_L ← (1 - k |v_L|) s_L,  v_L the speed of its rim`
 pub struct SpeedSlipLeft;
 
 impl WheelLaw for SpeedSlipLeft {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        travel.left *= kept(p[0], at.wheel_speed[0]);
+        slip(&mut travel.left, p[0], at, 0);
     }
 }
 
 /// The share of travel that the right wheel loses per speed.
 ///
-/// `s_R ← (1 - k |v_R|) s_R`
+/// `s_R ← (1 - k |v_R|) s_R,  v_R the speed of its rim`
 pub struct SpeedSlipRight;
 
 impl WheelLaw for SpeedSlipRight {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        travel.right *= kept(p[0], at.wheel_speed[1]);
+        slip(&mut travel.right, p[0], at, 1);
     }
 }
 

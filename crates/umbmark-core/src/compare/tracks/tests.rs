@@ -6,6 +6,7 @@ use crate::diagnose::first_model;
 use crate::diagnose::tests::{margin, trials};
 use crate::drive::{Encoder, Robot};
 use crate::effect::{Formula, Target};
+use crate::geometry::Pose2;
 use crate::likelihood::watched::{watched, watched_on};
 use crate::path::{CIRCLE, Path, SQUARE, SpeedProfile};
 use rayon::prelude::*;
@@ -240,6 +241,24 @@ fn an_error_that_repeats_but_is_worth_nothing_does_not_accuse() {
         .find(|said| said.starts_with("Repeats, but lowers the error of runs left out by"))
         .unwrap();
     assert!(said.contains("forward in turns overall"), "{said}");
+}
+
+/// The reference of one run turns by half a radian along its way: the kicks that all runs share still matter.
+#[test]
+fn one_run_that_is_far_off_hides_no_error_of_all() {
+    let mut data = watched(&robot_with(&[("caster_kick", "kick_rad", 0.005)]), 5, 5);
+    let kicks = |data: &Dataset| asked(&judged(data, &robot_with(&[])), Rate::Yaw, "since_turn").test.unwrap();
+    let before = kicks(&data);
+    assert!(before.matters(), "{before:?}");
+    let reference = &mut data.runs[0].log.as_mut().unwrap().reference;
+    let last = reference.len() as f64;
+    for (index, pose) in reference.iter_mut().enumerate() {
+        let turned = Pose2::new(0.0, 0.0, 0.5 * index as f64 / last);
+        let seen = turned.compose(&Pose2::new(pose.x, pose.y, pose.heading.unwrap()));
+        (pose.x, pose.y, pose.heading) = (seen.x, seen.y, Some(seen.heading));
+    }
+    let after = kicks(&data);
+    assert!(after.matters(), "{before:?} {after:?}");
 }
 
 /// The counters make a turn of 7 degrees one tick: steps that are counted short appear slow and have an error ahead.

@@ -6,7 +6,6 @@ use super::covariate::{Bins, Rate, Value};
 use super::followed::{ErrorIncrement, Followed};
 use crate::evidence::tracks::LEAST_GAIN;
 use crate::geometry::Pose2;
-use crate::stats::median;
 
 /// A test of a repeating error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +13,8 @@ pub struct Test {
     /// p of no such error.
     pub p: f64,
     /// Share by which the root mean square error along the way falls if each run is corrected as the other runs tell: of all runs together
-    /// or, where that is more, of the median run, in position or heading, whichever falls more. One run that is far off hides nothing.
+    /// or, where that is more, of all but the one that is farthest off, in position or heading, whichever falls more. One run that is far
+    /// off hides nothing.
     pub gain: f64,
 }
 
@@ -32,15 +32,36 @@ impl Test {
 
 /// What the mean rate of the other runs is worth.
 pub(super) fn of_level(runs: &[Followed], rate: Rate) -> f64 {
-    let totals: Vec<[f64; 2]> = runs.iter().map(|run| total(&run.steps, rate)).collect();
-    gain(runs, rate, |run, _| Some(without(&totals, run)))
+    whatever_one_run_does(runs, |runs| {
+        let totals: Vec<[f64; 2]> = runs.iter().map(|run| total(&run.steps, rate)).collect();
+        gain(runs, rate, |run, _| Some(without(&totals, run)))
+    })
 }
 
 /// What the dependence on a covariate is worth: by the means of its bins, or by the line through the means of whole runs, whichever is
 /// worth more; both relative to the mean rate.
 pub(super) fn of_dependence(runs: &[Followed], rate: Rate, bins: &Bins, between: Option<Value>) -> f64 {
+    whatever_one_run_does(runs, |runs| dependence(runs, rate, bins, between))
+}
+
+/// The worth by all runs or, where that is more, without the run that is farthest off in position or in heading.
+fn whatever_one_run_does(runs: &[Followed], worth: impl Fn(&[&Followed]) -> f64) -> f64 {
+    let all: Vec<&Followed> = runs.iter().collect();
+    let squares: Vec<[f64; 2]> = runs.iter().map(off).collect();
+    let farthest = |k: usize| (0..runs.len()).max_by(|a, b| squares[*a][k].total_cmp(&squares[*b][k]));
+    let (in_position, in_heading) = (farthest(0), farthest(1));
+    let without = |far: usize| {
+        let nearer: Vec<&Followed> =
+            all.iter().enumerate().filter(|(run, _)| *run != far).map(|(_, run)| *run).collect();
+        worth(&nearer)
+    };
+    let nearer = [in_position, in_heading.filter(|far| Some(*far) != in_position)].into_iter().flatten().map(without);
+    nearer.fold(worth(&all), f64::max)
+}
+
+fn dependence(runs: &[&Followed], rate: Rate, bins: &Bins, between: Option<Value>) -> f64 {
     let spans = bins.spans().len();
-    let of_run = |run: &Followed| {
+    let of_run = |run: &&Followed| {
         let of_bin = |bin| total(run.steps.iter().filter(|step| bins.index(step) == Some(bin)), rate);
         (0..spans).map(of_bin).collect::<Vec<[f64; 2]>>()
     };
@@ -76,9 +97,9 @@ fn without(sums: &[[f64; 2]], one: usize) -> f64 {
 }
 
 /// Slope and centre of the line through the rates of all runs but one against their means of a covariate.
-fn line(runs: &[Followed], totals: &[[f64; 2]], rate: Rate, value: Value, one: usize) -> Option<[f64; 2]> {
+fn line(runs: &[&Followed], totals: &[[f64; 2]], rate: Rate, value: Value, one: usize) -> Option<[f64; 2]> {
     let others = runs.iter().zip(totals).enumerate().filter(|(run, (_, [_, amount]))| *run != one && *amount > 0.0);
-    let point = |(_, (run, [error, amount])): (usize, (&Followed, &[f64; 2]))| {
+    let point = |(_, (run, [error, amount])): (usize, (&&Followed, &[f64; 2]))| {
         let at: f64 = run.steps.iter().filter_map(|step| Some(rate.of(step)?[1] * value(&step.at))).sum();
         [at / amount, error / amount]
     };
@@ -91,20 +112,23 @@ fn line(runs: &[Followed], totals: &[[f64; 2]], rate: Rate, value: Value, one: u
 }
 
 /// Share by which the errors fall if each step is corrected by a rate, given for the run and the step.
-fn gain(runs: &[Followed], rate: Rate, of: impl Fn(usize, &ErrorIncrement) -> Option<f64>) -> f64 {
-    let squares: Vec<[[f64; 2]; 2]> =
-        runs.iter().enumerate().map(|(index, run)| corrected(run, rate, |step| of(index, step))).collect();
+fn gain(runs: &[&Followed], rate: Rate, of: impl Fn(usize, &ErrorIncrement) -> Option<f64>) -> f64 {
+    let mut squares = [[0.0; 2]; 2];
+    for (index, run) in runs.iter().enumerate() {
+        let own = corrected(run, |step| rate.made(step, of(index, step)?));
+        squares = [0, 1].map(|k| [0, 1].map(|i| squares[k][i] + own[k][i]));
+    }
     let fall = |[before, after]: [f64; 2]| if before > 0.0 { 1.0 - (after / before).sqrt() } else { 0.0 };
-    let of_component = |k: usize| {
-        let all = squares.iter().fold([0.0; 2], |sums, own| [0, 1].map(|i| sums[i] + own[k][i]));
-        let median = median(squares.iter().map(|own| fall(own[k])).collect()).unwrap_or(0.0);
-        fall(all).max(median)
-    };
-    of_component(0).max(of_component(1))
+    fall(squares[0]).max(fall(squares[1]))
 }
 
-/// Sums of the squared errors of a run, of positions and of headings, each as predicted and with its steps corrected.
-fn corrected(run: &Followed, rate: Rate, of: impl Fn(&ErrorIncrement) -> Option<f64>) -> [[f64; 2]; 2] {
+/// Sums of the squared errors of a run, of positions and of headings.
+fn off(run: &Followed) -> [f64; 2] {
+    corrected(run, |_| None).map(|[before, _]| before)
+}
+
+/// The same, each as predicted and with its steps corrected by these motions.
+fn corrected(run: &Followed, of: impl Fn(&ErrorIncrement) -> Option<[f64; 3]>) -> [[f64; 2]; 2] {
     let mut squares = [[0.0; 2]; 2];
     let mut steps = run.steps.iter().peekable();
     let mut corrected = Pose2::IDENTITY;
@@ -115,8 +139,7 @@ fn corrected(run: &Followed, rate: Rate, of: impl Fn(&ErrorIncrement) -> Option<
             continue;
         }
         corrected = corrected.compose(&run.places[at - 1].predicted.between(&place.predicted));
-        let made = step.and_then(|step| rate.made(step, of(step)?));
-        if let Some([x, y, heading]) = made {
+        if let Some([x, y, heading]) = step.and_then(&of) {
             corrected = corrected.compose(&Pose2::new(x, y, heading));
         }
         for (which, pose) in [&place.predicted, &corrected].into_iter().enumerate() {
