@@ -9,9 +9,10 @@ use umbmark_io::{DatasetError, Topics};
 /// Where the measurements are.
 #[derive(Debug, clap::Args)]
 pub struct DataArguments {
-    /// A dataset folder, an OptiOdom folder, or one file of either (returns.csv, a log in CSV or MCAP, a bag of ROS 1 or 2)
-    #[arg(value_name = "DATA")]
-    pub data: PathBuf,
+    /// A dataset folder, an OptiOdom folder, or one file of either (returns.csv, a log in CSV or MCAP, a bag of ROS 1 or 2);
+    /// several of one robot are read as one
+    #[arg(value_name = "DATA", required = true)]
+    pub places: Vec<PathBuf>,
 
     #[command(flatten)]
     topics: TopicArguments,
@@ -38,12 +39,17 @@ impl DataArguments {
 
     /// Reads them.
     pub fn load(&self) -> Result<Dataset, DatasetError> {
-        self.topics.load(&self.data)
+        umbmark_io::load_together(&self.places, &self.topics())
     }
 
     /// Reads logs that are of a robot, where no other stands beside them.
     pub fn load_of(&self, robot: &Robot) -> Result<Dataset, DatasetError> {
-        umbmark_io::load_of(&self.data, &self.topics.topics(), robot)
+        umbmark_io::load_together_of(&self.places, &self.topics(), robot)
+    }
+
+    /// The places, for people.
+    pub fn named(&self) -> String {
+        self.places.iter().map(|place| place.display().to_string()).collect::<Vec<_>>().join(", ")
     }
 }
 

@@ -26,3 +26,4 @@ mod simulate;
 mod solve;
 mod streams;
 mod terminal;
+mod together;

@@ -11,7 +11,7 @@ fn data() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data")
 }
 
-fn examples() -> PathBuf {
+pub(crate) fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
 }
 
@@ -20,7 +20,7 @@ fn umbmark(folder: &Path, arguments: &[&str]) -> Output {
 }
 
 /// Standard output of a command that ends with `code`.
-fn said(folder: &Path, arguments: &[&str], code: i32) -> String {
+pub(crate) fn said(folder: &Path, arguments: &[&str], code: i32) -> String {
     let output = umbmark(folder, arguments);
     assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).unwrap();
@@ -30,12 +30,12 @@ fn said(folder: &Path, arguments: &[&str], code: i32) -> String {
     text
 }
 
-fn document(folder: &Path, arguments: &[&str]) -> Value {
+pub(crate) fn document(folder: &Path, arguments: &[&str]) -> Value {
     serde_json::from_str(&said(folder, &[arguments, &["--json"]].concat(), 0)).unwrap()
 }
 
 /// Text without its breaks.
-fn flowing(text: &str) -> String {
+pub(crate) fn flowing(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 

@@ -36,6 +36,15 @@ pub struct RunTopics {
     pub reference: Option<String>,
 }
 
+/// Runs that were driven one after the other.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Session {
+    /// Its name.
+    pub name: String,
+    /// Its first run, by its place among all runs; it lasts until the next session begins.
+    pub first: usize,
+}
+
 /// A robot and its runs.
 #[derive(Clone, Debug, Default)]
 pub struct Dataset {
@@ -47,6 +56,8 @@ pub struct Dataset {
     pub reference_frame: ReferenceFrame,
     /// Its runs.
     pub runs: Vec<Run>,
+    /// The sessions of its runs, in order; empty for a single one.
+    pub sessions: Vec<Session>,
     /// The clocks that were set while reading: one for each log whose poses came from a track with its own clock.
     pub clocks: Vec<RunClock>,
     /// The topics that were read: those of each MCAP file and bag.
@@ -67,6 +78,11 @@ impl Dataset {
     /// The nominal robot, for questions that need one.
     pub fn nominal_robot(&self) -> Result<&Robot, NoRobot> {
         self.robot.as_ref().ok_or(NoRobot)
+    }
+
+    /// Whether a session begins with the run at this place.
+    pub fn begins_session(&self, run: usize) -> bool {
+        run == 0 || self.sessions.iter().any(|session| session.first == run)
     }
 
     /// The known return errors of one test and direction, in the order of the runs.

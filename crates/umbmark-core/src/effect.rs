@@ -36,6 +36,7 @@ pub use bumps::extra_travel;
 pub use chain::Chain;
 pub use changes::Changes;
 pub use context::{Context, Progress, RunContext, Sight};
+pub(crate) use conversion::differences;
 pub use conversion::{CONVERTED, Conversion};
 pub use entry::{Entry, Evaluate, MeanLaws, RandomLaws};
 pub use formula::{Formula, FormulaError, FormulaVariable, Target};

@@ -23,6 +23,7 @@ pub mod evidence;
 pub mod fit;
 pub mod geometry;
 pub mod inspect;
+pub mod joined;
 pub mod learn;
 pub mod likelihood;
 pub mod monte_carlo;

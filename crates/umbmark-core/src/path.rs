@@ -188,6 +188,13 @@ pub struct Path {
     pub speed: SpeedProfile,
 }
 
+/// The same way at the same speed.
+impl PartialEq for Path {
+    fn eq(&self, other: &Path) -> bool {
+        std::ptr::eq(self.shape, other.shape) && self.values == other.values && self.speed == other.speed
+    }
+}
+
 impl Path {
     /// A path of a given shape with its numbers in the order of [`Shape::parameters`].
     pub fn new(shape: &'static Shape, values: &[f64], speed: SpeedProfile) -> Result<Path, PathError> {

@@ -101,6 +101,15 @@ pub enum DatasetError {
         /// Why, and what to do.
         reason: String,
     },
+    /// A place that is given more than once.
+    #[error("{file}: is given twice; its runs would count twice")]
+    Twice {
+        /// The place.
+        file: String,
+    },
+    /// Datasets that cannot be read as one.
+    #[error(transparent)]
+    Joined(#[from] umbmark_core::joined::JoinError),
     /// A second track of a log.
     #[error("{file}: is a track of the same log as {first}; keep one of them")]
     TwoTracks {

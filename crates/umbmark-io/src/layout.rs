@@ -137,7 +137,11 @@ impl Layout {
             file: file(),
             reason: format!("files of the layout {} are read and not written; write NAME.mcap or a folder", self.name),
         })?;
-        write(data, folder.as_ref(), existing)
+        let mut lost = write(data, folder.as_ref(), existing)?;
+        if !data.sessions.is_empty() {
+            lost.push("which runs are of which session: read back, they are of one".into());
+        }
+        Ok(lost)
     }
 }
 

@@ -48,6 +48,7 @@ mod spool;
 mod stale;
 mod start_frame;
 mod template;
+mod together;
 
 mod track_rows;
 mod wheel_names;
@@ -69,6 +70,7 @@ pub use remedy::{Argument, Remedy, Words};
 pub use robot_file::RobotFile;
 pub use save::Existing;
 pub use template::{template, write_template};
+pub use together::{load_together, load_together_of};
 
 use std::path::Path;
 use umbmark_core::dataset::Dataset;

@@ -70,6 +70,7 @@ impl From<core::Dataset> for Dataset {
 struct Rest {
     reference_frame: core::ReferenceFrame,
     runs: Vec<core::Run>,
+    sessions: Vec<core::Session>,
     clocks: Vec<RunClock>,
     topics: Vec<RunTopics>,
     warnings: Vec<String>,
@@ -365,6 +366,7 @@ impl Dataset {
         let rest = Rest {
             reference_frame: data.reference_frame,
             runs: data.runs.clone(),
+            sessions: data.sessions.clone(),
             clocks: data.clocks.clone(),
             topics: data.topics.clone(),
             warnings: data.warnings.clone(),
@@ -422,9 +424,25 @@ type Pickled<'py> = (Option<Robot>, Option<Path>, Bound<'py, PyBytes>);
 
 impl Rest {
     fn with(self, robot: Option<&Robot>, path: Option<&Path>) -> Dataset {
-        let Rest { reference_frame, runs, clocks, topics, warnings } = self;
+        let Rest { reference_frame, runs, sessions, clocks, topics, warnings } = self;
         let (robot, path) = (robot.map(|robot| robot.0.clone()), path.map(|path| path.0.clone()));
-        Dataset::from(core::Dataset { robot, path, reference_frame, runs, clocks, topics, warnings })
+        Dataset::from(core::Dataset { robot, path, reference_frame, runs, sessions, clocks, topics, warnings })
+    }
+}
+
+/// One place, or several.
+#[derive(FromPyObject)]
+pub enum Places {
+    One(PathBuf),
+    Many(Vec<PathBuf>),
+}
+
+impl Places {
+    fn all(self) -> Vec<PathBuf> {
+        match self {
+            Places::One(place) => vec![place],
+            Places::Many(places) => places,
+        }
     }
 }
 
@@ -432,9 +450,9 @@ impl Rest {
 ///
 /// Parameters
 /// ----------
-/// place : path-like
+/// place : path-like or sequence of path-like
 ///     A folder with robot.toml and returns.csv, and logs in runs; a folder of OptiOdom; a return sheet; a log in CSV or MCAP;
-///     a bag of ROS 1 (.bag) or ROS 2 (.db3, or its folder).
+///     a bag of ROS 1 (.bag) or ROS 2 (.db3, or its folder). Several of one robot are read as one; each is a session.
 /// ticks : str, optional
 ///     Topic of the wheels in MCAP files and bags, where it is not found by type; ":LEFT,RIGHT" behind it names the joints,
 ///     ":left,right" or ":right,left" the order in a list of counts.
@@ -454,12 +472,13 @@ impl Rest {
 #[pyo3(signature = (place, *, ticks=None, reference=None))]
 pub fn load_dataset(
     py: Python<'_>,
-    place: PathBuf,
+    place: Places,
     ticks: Option<String>,
     reference: Option<String>,
 ) -> PyResult<Dataset> {
     let topics = Topics { ticks, reference };
-    let read = watched(py, 0, None, move |_| umbmark_io::load_with(&place, &topics))?;
+    let places = place.all();
+    let read = watched(py, 0, None, move |_| umbmark_io::load_together(&places, &topics))?;
     read.map(Dataset::from).map_err(refused_data)
 }
 

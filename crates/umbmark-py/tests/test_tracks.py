@@ -1,5 +1,6 @@
 """Residuals as arrays, held against odometry computed elsewhere and against chance."""
 
+import pathlib
 import pickle
 
 import numpy as np
@@ -149,3 +150,16 @@ def test_return_poses_alone_have_no_tracks() -> None:
         umbmark.tracks(data)
     with pytest.raises(ValueError, match="the nominal robot is not known"):
         umbmark.tracks(umbmark.Dataset.from_arrays([[0.1, 0.2]], [[0.1, 0.2]]), umbmark.Model())
+
+
+def test_two_places_are_read_as_one(tmp_path: pathlib.Path) -> None:
+    places = [tmp_path / "monday", tmp_path / "tuesday"]
+    for seed, place in enumerate(places):
+        umbmark.simulate(TRUTH, PATH, runs=2, reference_rate_hz=2, seed=seed).save(place)
+    joined = umbmark.load_dataset(places)
+    assert [run.name.split("/")[0] for run in joined] == 4 * ["monday"] + 4 * ["tuesday"]
+    assert umbmark.fit(joined) == umbmark.fit(places) != umbmark.fit(places[0])
+    again = pickle.loads(pickle.dumps(joined))
+    assert again == joined and again.warnings == joined.warnings
+    with pytest.raises(ValueError, match="given twice"):
+        umbmark.load_dataset([places[0], places[0]])

@@ -116,7 +116,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     }
     let corrected = apply_to_all(&data, &model, noise.as_ref(), arguments.start)?;
     if corrected.is_empty() {
-        anyhow::bail!("{}: no run has wheel counts, and odometry is made of them", arguments.data.data.display());
+        anyhow::bail!("{}: no run has wheel counts, and odometry is made of them", arguments.data.named());
     }
     let runs: Vec<&Run> = corrected.iter().map(|(run, _)| *run).collect();
     let (format, files) = arguments.files(&runs)?;

@@ -1,7 +1,7 @@
 //! `umbmark inspect`: what a dataset holds, whether it is any good, and what it can determine.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use umbmark_core::dataset::{Dataset, RunTopics};
@@ -34,9 +34,8 @@ pub struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
-    let place = &arguments.data.data;
     let read = arguments.data.load();
-    let contents = contents(place, &arguments.data.topics(), &read)?;
+    let contents = contents(&arguments.data, &read)?;
     // Logs alone do not make a dataset before their robot is known.
     let (data, problem) = match read {
         Ok(data) => (data, None),
@@ -45,39 +44,42 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     };
     let inspection = data.inspect();
     if session.json() {
-        let place = place.display().to_string();
+        let place = arguments.data.named();
         session.print_json(&result::Inspection::new(&place, &data, &inspection, &contents))?;
         return Ok(ExitCode::SUCCESS);
     }
     let of_dataset = problem.is_none().then(|| text(&data, &inspection, session.on_terminal()));
-    let parts = [contents_text(&contents), of_dataset.unwrap_or_default(), next_text(place, &contents)?];
+    let parts =
+        [contents_text(&contents), of_dataset.unwrap_or_default(), next_text(&arguments.data.places, &contents)?];
     let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
     write!(session.out(), "{}", parts.join("\n"))?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// What the logs of a place hold whose robot is not known; nothing for return sheets.
-fn contents(
-    place: &Path,
-    topics: &Topics,
-    read: &Result<Dataset, DatasetError>,
-) -> Result<Vec<LogContents>, DatasetError> {
+fn contents(data: &DataArguments, read: &Result<Dataset, DatasetError>) -> Result<Vec<LogContents>, DatasetError> {
+    let topics = data.topics();
+    let of_all = || {
+        let all = data.places.iter().map(|place| umbmark_io::contents(place, &topics, &WORDS));
+        Ok(all.collect::<Result<Vec<_>, DatasetError>>()?.concat())
+    };
     match read {
         Ok(data) if data.robot.is_some() || data.runs.iter().all(|run| run.log.is_none()) => Ok(Vec::new()),
-        Ok(_) => umbmark_io::contents(place, topics, &WORDS),
+        Ok(_) => of_all(),
         // A topic that was named and is not there is a mistake of the command.
-        Err(DatasetError::Messages { .. }) if *topics != Topics::default() => Ok(Vec::new()),
+        Err(DatasetError::Messages { .. }) if topics != Topics::default() => Ok(Vec::new()),
         // What the reader of the dataset says is nearer to the data than what that of its contents says.
-        Err(_) => Ok(umbmark_io::contents(place, topics, &WORDS).unwrap_or_default()),
+        Err(_) => Ok(of_all().unwrap_or_default()),
     }
 }
 
 /// How to go on from logs whose robot is not known.
-fn next_text(place: &Path, contents: &[LogContents]) -> anyhow::Result<String> {
+fn next_text(places: &[PathBuf], contents: &[LogContents]) -> anyhow::Result<String> {
     if contents.iter().all(|log| log.wheels.is_err()) {
         return Ok(String::new());
     }
-    let place = place.to_string_lossy();
+    // A robot.toml is proposed from one place, and holds for the others.
+    let place = places.first().map_or_else(Default::default, |place| place.to_string_lossy());
     let place = shlex::try_quote(&place)?;
     Ok(format!("next\n  umbmark init my_robot --logs {place}\n")
         + &hanging("", 6, "proposes a robot.toml for these logs; without one they say nothing in metres"))
@@ -103,6 +105,9 @@ pub fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
     }
     match &data.path {
         Some(path) => text += &hanging("path", 8, &path_line(path)),
+        None if !data.sessions.is_empty() => {
+            text += &hanging("path", 8, "not one: the datasets drive different paths");
+        }
         None => text += &hanging("path", 8, "not known: no [path] in robot.toml"),
     }
     text += "\n";

@@ -84,7 +84,7 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     for warning in data.warnings.iter().filter(|_| !session.json()) {
         session.message("warning", warning);
     }
-    let name = arguments.data.data.display().to_string();
+    let name = arguments.data.named();
     let study = arguments.study.study(&name, data, arguments.model.as_deref(), session)?;
     let kind = arguments.kind;
     let figure = session

@@ -105,7 +105,7 @@ impl Model {
 }
 
 /// The nominal numbers that differ, by key; `None` where the drives are of different kinds.
-fn differences(own: &Robot, other: &Robot) -> Option<Vec<(&'static str, f64, f64)>> {
+pub(crate) fn differences(own: &Robot, other: &Robot) -> Option<Vec<(&'static str, f64, f64)>> {
     let kind = own.drive.kind();
     if kind != other.drive.kind() {
         return None;

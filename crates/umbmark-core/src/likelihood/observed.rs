@@ -149,9 +149,15 @@ impl Observed {
     pub fn new(data: &Dataset, robot: &Robot) -> Result<Observed, ReplayError> {
         let setup = Setup::of(&data.runs, robot, data.path.as_ref());
         let mut runs = Vec::new();
-        let (mut session_distance, mut first_start) = (0.0, None);
-        for run in data.runs.iter().filter(|run| run.test == TestKind::Systematic) {
-            let place = RunContext { run: runs.len(), session_distance, direction: run.direction };
+        let (mut session_distance, mut before, mut first_start) = (0.0, 0, None);
+        for (index, run) in data.runs.iter().enumerate() {
+            if data.begins_session(index) {
+                (session_distance, before) = (0.0, runs.len());
+            }
+            if run.test != TestKind::Systematic {
+                continue;
+            }
+            let place = RunContext { run: runs.len() - before, session_distance, direction: run.direction };
             let origin = run.log.as_ref().map_or(Pose2::IDENTITY, |log| match log.start.known {
                 StartKnown::Given => Pose2::IDENTITY,
                 _ => in_one_room(first_start.get_or_insert(log.start.pose()), &log.start.pose()),

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from os import fspath
 from typing import TYPE_CHECKING
 
 from umbmark import _documents, _umbmark
 from umbmark._result import Printed, Row
-from umbmark._scores import Data, data_of
-from umbmark._umbmark import Dataset
+from umbmark._scores import Data, data_of, places_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,6 +44,6 @@ def inspect(data: Data) -> Inspection:
     ValueError
         If it cannot be read, or holds no runs.
     """
-    place = "memory" if isinstance(data, Dataset) else fspath(data)
+    place = ", ".join(places_of(data)) or "memory"
     document, text = _umbmark.inspect(data_of(data), place)
     return Inspection._of(document, text=text)

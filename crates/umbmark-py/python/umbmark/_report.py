@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Mapping
-from os import PathLike, fspath
+from os import PathLike
 from pathlib import PurePath
 from typing import TypeAlias
 
@@ -12,7 +12,7 @@ from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
-from umbmark._scores import Data, data_of
+from umbmark._scores import Data, data_of, places_of
 from umbmark._umbmark import Dataset, Figure, Model
 
 # A study: its name, its data, and the model with its name.
@@ -96,9 +96,8 @@ def plot(
     >>> figure.title, figure.to_svg()[:4]
     ('Return errors', '<svg')
     """
-    place = _place(data)
     asked = (
-        str(place or "the data"),
+        ", ".join(places_of(data)) or "the data",
         data_of(data),
         None if model is None else ("the model", model),
     )
@@ -166,7 +165,7 @@ def report(
     'the model fully accounts for the measured error, with no sign of a further effect'
     """
     asked = _studies(data, model)
-    places = [place for one in _named(data).values() if (place := _place(one)) is not None]
+    places = [place for one in _named(data).values() for place in places_of(one)]
     options = options_of(size, draws, seed)
     how = (options, return_poses, n)
     call = f"umbmark.report({', '.join([*map(repr, places), f'seed={options[2]}'])})"
@@ -199,9 +198,5 @@ def _studies(
 def _named(data: Data | Mapping[str, Data]) -> Mapping[str, Data]:
     if isinstance(data, Mapping):
         return data
-    place = _place(data)
-    return {"the data" if place is None else PurePath(place).name: data}
-
-
-def _place(data: Data) -> str | None:
-    return None if isinstance(data, Dataset) else fspath(data)
+    names = [PurePath(place).name for place in places_of(data)]
+    return {", ".join(names) or "the data": data}

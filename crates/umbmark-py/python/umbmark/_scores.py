@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
@@ -13,12 +14,19 @@ from umbmark._umbmark import Dataset, load_dataset, score_arrays, score_dataset
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Data: TypeAlias = Dataset | str | PathLike[str]
+Data: TypeAlias = Dataset | str | PathLike[str] | Sequence[str | PathLike[str]]
 
 
 def data_of(data: Data) -> Dataset:
-    """Give the dataset, read where its place is given."""
-    return data if isinstance(data, Dataset) else load_dataset(fspath(data))
+    """Give the dataset, read where its place is given; several places are read as one."""
+    return data if isinstance(data, Dataset) else load_dataset(data)
+
+
+def places_of(data: Data) -> list[str]:
+    """Give the places that data are read from: none for those in memory."""
+    if isinstance(data, Dataset):
+        return []
+    return [fspath(data)] if isinstance(data, str | PathLike) else [fspath(place) for place in data]
 
 
 class Score(_documents.Score, Printed, frozen=True):

@@ -6,6 +6,10 @@ use super::covariate::{Bins, Rate, Value};
 use super::followed::{ErrorIncrement, Followed};
 use crate::evidence::tracks::LEAST_GAIN;
 use crate::geometry::Pose2;
+use crate::stats::median;
+
+/// A run is far off whose root mean square error is so many times that of the median run.
+const FAR_OFF: f64 = 3.0;
 
 /// A test of a repeating error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,8 +17,7 @@ pub struct Test {
     /// p of no such error.
     pub p: f64,
     /// Share by which the root mean square error along the way falls if each run is corrected as the other runs tell: of all runs together
-    /// or, where that is more, of all but the one that is farthest off, in position or heading, whichever falls more. One run that is far
-    /// off hides nothing.
+    /// or, where that is more, of all but one that is far off, in position or heading, whichever falls more.
     pub gain: f64,
 }
 
@@ -44,19 +47,22 @@ pub(super) fn of_dependence(runs: &[Followed], rate: Rate, bins: &Bins, between:
     whatever_one_run_does(runs, |runs| dependence(runs, rate, bins, between))
 }
 
-/// The worth by all runs or, where that is more, without the run that is farthest off in position or in heading.
+/// The worth by all runs or, where that is more, without the run that is [far off](FAR_OFF) in position or in heading.
 fn whatever_one_run_does(runs: &[Followed], worth: impl Fn(&[&Followed]) -> f64) -> f64 {
     let all: Vec<&Followed> = runs.iter().collect();
     let squares: Vec<[f64; 2]> = runs.iter().map(off).collect();
-    let farthest = |k: usize| (0..runs.len()).max_by(|a, b| squares[*a][k].total_cmp(&squares[*b][k]));
-    let (in_position, in_heading) = (farthest(0), farthest(1));
-    let without = |far: usize| {
-        let nearer: Vec<&Followed> =
-            all.iter().enumerate().filter(|(run, _)| *run != far).map(|(_, run)| *run).collect();
-        worth(&nearer)
+    let far_off = |k: usize| {
+        let usual = median(squares.iter().map(|own| own[k]).collect())?;
+        let far = (0..runs.len()).max_by(|a, b| squares[*a][k].total_cmp(&squares[*b][k]))?;
+        (squares[far][k] > FAR_OFF * FAR_OFF * usual).then_some(far)
     };
-    let nearer = [in_position, in_heading.filter(|far| Some(*far) != in_position)].into_iter().flatten().map(without);
-    nearer.fold(worth(&all), f64::max)
+    let (in_position, in_heading) = (far_off(0), far_off(1));
+    let without = |far: usize| {
+        let nearer = all.iter().enumerate().filter(|(run, _)| *run != far);
+        worth(&nearer.map(|(_, run)| *run).collect::<Vec<&Followed>>())
+    };
+    let far = [in_position, in_heading.filter(|far| Some(*far) != in_position)];
+    far.into_iter().flatten().map(without).fold(worth(&all), f64::max)
 }
 
 fn dependence(runs: &[&Followed], rate: Rate, bins: &Bins, between: Option<Value>) -> f64 {
