@@ -109,6 +109,7 @@ register! {
     reference_clock_rate,
     marker_offset,
     marker_yaw,
+    reference_heading_drift,
     reference_noise,
 }
 

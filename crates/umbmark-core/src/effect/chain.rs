@@ -166,7 +166,7 @@ impl<T: Evaluate> Chain<T> {
         }
         for acting in self.acting(Changes::SEEN) {
             if let ActingLaws::Entry(laws) = &acting.laws {
-                (laws.seen)(&acting.values, &mut seen);
+                (laws.seen)(&acting.values, at, &mut seen);
             }
         }
         seen

@@ -1,7 +1,7 @@
 //! An effect as data.
 
 use super::laws::{BodyLaw, BumpLaw, ClockLaw, DiffusionLaw, LinkLaw, MeasurementLaw, SightLaw, StartLaw, WheelLaw};
-use super::{About, Bump, CATALOGUE, Changes, Context, Effect, MAX_PARAMETERS, Stretch, WheelVariance};
+use super::{About, Bump, CATALOGUE, Changes, Context, Effect, MAX_PARAMETERS, Sight, Stretch, WheelVariance};
 use crate::drive::{DriveKind, DriveKinds, LinkReading, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Dual, Instructions, Pose2, Real};
 use crate::random::Stream;
@@ -20,7 +20,7 @@ pub struct MeanLaws<T: Real> {
     /// See [`ClockLaw::late`].
     pub late: fn(&[T], f64, &mut T),
     /// See [`SightLaw::seen`].
-    pub seen: fn(&[T], &mut Pose2<T>),
+    pub seen: fn(&[T], &Sight, &mut Pose2<T>),
 }
 
 impl<T: Real> MeanLaws<T> {
@@ -32,7 +32,7 @@ impl<T: Real> MeanLaws<T> {
             body: |_, _, _| (),
             link: |_, _| (),
             late: |_, _, _| (),
-            seen: |_, _| (),
+            seen: |_, _, _| (),
         }
     }
 }

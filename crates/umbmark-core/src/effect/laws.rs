@@ -3,7 +3,7 @@
 //!
 //! An effect has the laws that its [`Entry`](super::Entry) lists; other laws are not called.
 
-use super::{Bump, Effect, Stretch, WheelVariance};
+use super::{Bump, Effect, Sight, Stretch, WheelVariance};
 use crate::drive::{LinkReading, WheelTravel};
 use crate::geometry::{Pose2, Real};
 use crate::random::Stream;
@@ -25,7 +25,7 @@ pub trait ClockLaw: Effect {
 /// A law of the deterministic error of a measurement.
 pub trait SightLaw: Effect {
     /// Changes the pose that a measurement shows.
-    fn seen<T: Real>(p: &[T], pose: &mut Pose2<T>);
+    fn seen<T: Real>(p: &[T], at: &Sight, pose: &mut Pose2<T>);
 }
 
 /// A law of white noise on the wheels.

@@ -1,7 +1,7 @@
 //! A marker that is not over the axle's centre.
 
 use super::words::{either, mm, side};
-use super::{About, ActsOn, Effect, Entry, SightLaw};
+use super::{About, ActsOn, Effect, Entry, Sight, SightLaw};
 use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
@@ -58,7 +58,7 @@ impl Effect for MarkerOffset {
 }
 
 impl SightLaw for MarkerOffset {
-    fn seen<T: Real>(p: &[T], pose: &mut Pose2<T>) {
+    fn seen<T: Real>(p: &[T], _at: &Sight, pose: &mut Pose2<T>) {
         let (sine, cosine) = pose.heading.sine_cosine();
         pose.x += cosine * p[0] - sine * p[1] - p[0];
         pose.y += sine * p[0] + cosine * p[1] - p[1];

@@ -1,7 +1,7 @@
 //! A marker that is mounted with a yaw error.
 
 use super::words::{deg, side};
-use super::{About, ActsOn, Effect, Entry, SightLaw};
+use super::{About, ActsOn, Effect, Entry, Sight, SightLaw};
 use crate::drive::{DriveKinds, Robot};
 use crate::geometry::{Pose2, Real};
 use crate::parameter::Parameter;
@@ -42,7 +42,7 @@ impl Effect for MarkerYaw {
 }
 
 impl SightLaw for MarkerYaw {
-    fn seen<T: Real>(p: &[T], pose: &mut Pose2<T>) {
+    fn seen<T: Real>(p: &[T], _at: &Sight, pose: &mut Pose2<T>) {
         pose.heading += p[0];
     }
 }

@@ -383,7 +383,8 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
         wheels(values, at, rolled);
         body(values, at, moved);
     }
-    seen(values, &mut shown);
+    let sight = Sight { time: 20.0, ..Sight::default() };
+    seen(values, &sight, &mut shown);
     let mut behind = 0.0;
     late(values, 30.0, &mut behind);
     let reading = LinkReading { length: 1.0, angles: [0.1, -0.2] };

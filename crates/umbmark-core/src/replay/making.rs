@@ -95,10 +95,10 @@ impl Track {
                     track.observe(sight(progress.time(), piece.to, robot));
                 }
             }
-            progress.piece(&WheelTravel::default(), path.speed.pause(), [0.0; 2], [0.0; 2]);
             if observed == Observed::AtStops || (observed == Observed::AtEnd && index + 1 == moves.len()) {
                 track.observe(Sight { time: progress.time(), ..Sight::default() });
             }
+            progress.piece(&WheelTravel::default(), path.speed.pause(), [0.0; 2], [0.0; 2]);
         }
         track
     }
