@@ -75,6 +75,7 @@ EffectName: TypeAlias = Literal[
     "reference_clock_rate",
     "marker_offset",
     "marker_yaw",
+    "reference_heading_drift",
     "reference_noise",
 ]
 ActsOn: TypeAlias = Literal[
