@@ -160,6 +160,7 @@ def test_two_places_are_read_as_one(tmp_path: pathlib.Path) -> None:
     assert [run.name.split("/")[0] for run in joined] == 4 * ["monday"] + 4 * ["tuesday"]
     assert umbmark.fit(joined) == umbmark.fit(places) != umbmark.fit(places[0])
     again = pickle.loads(pickle.dumps(joined))
-    assert again == joined and again.warnings == joined.warnings
+    assert again == joined
+    assert again.warnings == joined.warnings
     with pytest.raises(ValueError, match="given twice"):
         umbmark.load_dataset([places[0], places[0]])

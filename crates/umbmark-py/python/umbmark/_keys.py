@@ -199,3 +199,4 @@ class EffectKeys(TypedDict, total=False):
     forward_m: Drawn
     left_m: Drawn
     yaw_rad: Drawn
+    rate_rad_s: Drawn
