@@ -40,6 +40,20 @@ fn runs_are_named_by_their_set_and_a_path_that_differs_is_not_one() {
     assert_eq!(runs, of("hidden") + of("fresh_day"));
 }
 
+/// Scores are those of one path; corrected logs stand in a folder for each dataset.
+#[test]
+fn scores_of_two_paths_are_doubted_and_logs_of_two_sets_are_written_apart() {
+    let told = document(&examples(), &["score", "hidden", "fresh_day"]);
+    assert!(told["warnings"][0].as_str().unwrap().starts_with("The datasets drive different paths"), "{told}");
+    let folder = tempfile::tempdir().unwrap();
+    let [model, at] = ["model.toml", "corrected"].map(|name| folder.path().join(name).display().to_string());
+    said(&examples(), &["fit", "hidden", "-o", &model], 0);
+    said(&examples(), &["apply", "hidden", "fresh_day", "--model", &model, "-o", &at], 0);
+    let written = |set: &str| fs::read_dir(folder.path().join("corrected").join(set)).unwrap().count();
+    let of = |set: &str| fs::read_dir(examples().join(set).join("runs")).unwrap().count();
+    assert_eq!([written("hidden"), written("fresh_day")], [of("hidden"), of("fresh_day")]);
+}
+
 #[test]
 fn one_set_given_twice_and_two_robots_are_refused() {
     let told = refused(&examples(), &["score", "hidden", "./hidden"]);

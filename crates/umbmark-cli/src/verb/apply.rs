@@ -142,9 +142,9 @@ fn write_all(
     corrected: &[(&Run, Corrected)],
     files: &[PathBuf],
 ) -> anyhow::Result<()> {
-    if files.iter().any(|file| *file != arguments.output) {
-        let failed = || format!("cannot make the folder {}", arguments.output.display());
-        std::fs::create_dir_all(&arguments.output).with_context(failed)?;
+    // Runs of several datasets are called DATASET/RUN.
+    for folder in files.iter().filter(|file| **file != arguments.output).filter_map(|file| file.parent()) {
+        std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
     }
     let write = |file: &Path, corrected: &Corrected| {
         let failed = |error| FileError::Write { file: file.to_owned(), error };
