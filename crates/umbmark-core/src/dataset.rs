@@ -43,6 +43,8 @@ pub struct Session {
     pub name: String,
     /// Its first run, by its place among all runs; it lasts until the next session begins.
     pub first: usize,
+    /// Whether it is known to drive another path than the first session.
+    pub other_path: bool,
 }
 
 /// A robot and its runs.
@@ -83,6 +85,11 @@ impl Dataset {
     /// Whether a session begins with the run at this place.
     pub fn begins_session(&self, run: usize) -> bool {
         run == 0 || self.sessions.iter().any(|session| session.first == run)
+    }
+
+    /// Whether its sessions are known to drive different paths.
+    pub fn drives_other_paths(&self) -> bool {
+        self.sessions.iter().any(|session| session.other_path)
     }
 
     /// The known return errors of one test and direction, in the order of the runs.

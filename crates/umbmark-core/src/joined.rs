@@ -102,14 +102,14 @@ impl Dataset {
             return Err(error);
         }
         if let Some(robot) = &joined.robot {
-            let mounting = |data: &Dataset| Setup::of(&data.runs, robot, None).mounting;
+            let mounting = |data: &Dataset| Setup::of_tracks(&data.runs, robot).mounting;
             let of_first = mounting(&joined);
             for (set, data) in &rest {
                 warnings.extend(of_first.zip(mounting(data)).and_then(|both| apart((&first, set), both)));
             }
         }
         let mut taken = HashMap::new();
-        let mut parts = vec![(first, std::mem::take(&mut joined.runs))];
+        let mut parts = vec![(first, std::mem::take(&mut joined.runs), false)];
         named(&mut joined, &parts[0].0);
         for (set, mut data) in rest {
             named(&mut data, &set);
@@ -119,11 +119,12 @@ impl Dataset {
             if data.reference_frame != joined.reference_frame {
                 joined.reference_frame = ReferenceFrame::default();
             }
-            parts.push((set, data.runs));
+            let other_path = data.path.is_some() && joined.path.is_some() && data.path != joined.path;
+            parts.push((set, data.runs, other_path));
         }
         joined.path = joined.path.filter(|_| same_path);
-        for (name, runs) in parts {
-            joined.sessions.push(Session { first: joined.runs.len(), name: name.clone() });
+        for (name, runs, other_path) in parts {
+            joined.sessions.push(Session { first: joined.runs.len(), name: name.clone(), other_path });
             joined.runs.extend(runs.into_iter().map(|run| {
                 let number = taken.entry((run.test, run.direction)).or_insert(0);
                 *number += 1;
@@ -179,8 +180,11 @@ fn of_one_robot(
 /// Whether a run has counts as they were read; what follows from speeds or angles is no whole count.
 fn is_counted(run: &Run) -> bool {
     run.log.as_ref().is_some_and(|log| {
-        let whole = log.left.iter().zip(&log.right).filter(|(left, right)| left.fract() == 0.0 && right.fract() == 0.0);
-        100 * whole.count() > log.left.len()
+        let counts: Vec<[f64; 2]> = log.left.iter().zip(&log.right).map(|(left, right)| [*left, *right]).collect();
+        // Of a robot that stands at START, all counts are whole.
+        let changed = || counts.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| pair[1]);
+        let whole = changed().filter(|now| now.iter().all(|count| count.fract() == 0.0));
+        100 * whole.count() > changed().count()
     })
 }
 
@@ -247,7 +251,11 @@ mod tests {
             joined.sessions.iter().map(|s| (s.name.as_str(), s.first)).collect::<Vec<_>>(),
             [("a", 0), ("b", runs[0])]
         );
-        assert!(joined.path.is_none() && joined.warnings.is_empty(), "{:?}", joined.warnings);
+        assert!(
+            joined.drives_other_paths() && joined.path.is_none() && joined.warnings.is_empty(),
+            "{:?}",
+            joined.warnings
+        );
         assert!(joined.runs[0].name.starts_with("a/") && joined.runs[runs[0]].name.starts_with("b/"));
         let mut numbers: Vec<_> = joined.runs.iter().map(|run| (run.test, run.direction, run.number)).collect();
         numbers.sort();
@@ -292,7 +300,14 @@ mod tests {
         let data = watched(&truth(&[]), 1, 1);
         let mut speeds = with_wheelbase(data.clone(), 0.35);
         for log in speeds.runs.iter_mut().filter_map(|run| run.log.as_mut()) {
-            log.left.iter_mut().for_each(|count| *count += 0.25);
+            // At rest at START for half of the log, and then what follows from speeds.
+            let rest = log.time.len();
+            log.time = (0..2 * rest).map(|sample| 0.05 * sample as f64).collect();
+            for counts in [&mut log.left, &mut log.right] {
+                let driven = counts.iter().map(|count| count * 1.000_13);
+                *counts = std::iter::repeat_n(0.0, rest).chain(driven).collect();
+            }
+            log.reference.iter_mut().for_each(|pose| pose.sample += rest);
         }
         let refused = both(data.clone(), speeds.clone()).unwrap_err();
         assert!(matches!(refused, JoinError::Number { key: "wheelbase_m", here, .. } if here == 0.35), "{refused}");
@@ -314,7 +329,10 @@ mod tests {
             data
         };
         assert!(matches!(both(of(4.0), of(2.0)), Err(JoinError::Path { .. })));
-        assert_eq!(both(of(4.0), of(4.0)).unwrap().path, of(4.0).path);
+        let same = both(of(4.0), of(4.0)).unwrap();
+        assert!(same.path == of(4.0).path && !same.drives_other_paths());
+        let unknown = || Dataset { path: None, ..of(4.0) };
+        assert!(!both(unknown(), unknown()).unwrap().drives_other_paths());
     }
 
     #[test]

@@ -127,7 +127,7 @@ pub fn score_dataset(data: &Dataset, level: f64) -> Result<Score, ScoreError> {
     if let Some(robot) = &data.robot {
         scored.setup = Arc::new(Setup::of(&data.runs, robot, data.path.as_ref()));
         scored.warnings.splice(0..0, scored.setup.notices().iter().map(|notice| sentence(notice)));
-        if !data.sessions.is_empty() && data.path.is_none() {
+        if data.drives_other_paths() {
             scored.warnings.insert(0, "The datasets drive different paths: these scores are of none of them.".into());
         }
     }

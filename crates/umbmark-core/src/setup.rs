@@ -186,7 +186,8 @@ impl Setup {
         setup
     }
 
-    fn of_tracks(runs: &[Run], robot: &Robot) -> Setup {
+    /// The same of the tracks alone, without what return errors show.
+    pub(crate) fn of_tracks(runs: &[Run], robot: &Robot) -> Setup {
         let wheelbase = robot.drive.wheelbase();
         let regular = runs.iter().filter(|run| run.test == TestKind::Systematic);
         let with_poses =

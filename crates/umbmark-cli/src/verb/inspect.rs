@@ -105,7 +105,7 @@ pub fn text(data: &Dataset, inspection: &Inspection, terminal: bool) -> String {
     }
     match &data.path {
         Some(path) => text += &hanging("path", 8, &path_line(path)),
-        None if !data.sessions.is_empty() => {
+        None if data.drives_other_paths() => {
             text += &hanging("path", 8, "not one: the datasets drive different paths");
         }
         None => text += &hanging("path", 8, "not known: no [path] in robot.toml"),
