@@ -32,7 +32,7 @@ NUISANCES: dict[str, set[str]] = {
     "clock_rate": {"reference_clock_rate", "reference_delay"},
     "lever_forward_m": {"marker_offset"},
     "yaw_rad": {"marker_yaw", "crab"},
-    "counts_commands": {"reference_delay", "motor_lag", "command_lag"},
+    "counts_commands": {"wheel_lag", "reference_delay"},
 }
 """Effects that are right to add where the number is not zero."""
 LAWS: dict[str, tuple[set[str], str]] = {

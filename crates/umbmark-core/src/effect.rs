@@ -54,6 +54,7 @@ register! {
     /// small effects another order would change return poses only by products of two of them.
     pub CATALOGUE: Entry = EFFECT in
     // The encoders.
+    wheel_lag,
     missed_counts,
     encoder_skew,
     encoder_sampling,
@@ -249,6 +250,11 @@ pub trait Effect {
     /// Meaning of these values for the robot, in a sentence; empty if there is none.
     fn means(_p: &[f64], _robot: &Robot) -> String {
         String::new()
+    }
+
+    /// Whether a robot can have these values; where it cannot, something else is the cause.
+    fn is_credible(_p: &[f64]) -> bool {
+        true
     }
 
     /// Whether, with these values, it depends on the [`Context`], so that the path must be cut into small pieces.

@@ -28,6 +28,9 @@ pub struct Place {
     pub direction: f64,
 }
 
+/// Time constants of the lags of [`Context::falls_behind`] \[s\], each twice the one before.
+pub const TIME_CONSTANTS: [f64; 6] = [0.02, 0.04, 0.08, 0.16, 0.32, 0.64];
+
 /// One piece of a run, in the terms of the robot's own odometry.
 ///
 /// Cumulative quantities have their value at the beginning of the piece, rates their mean over it.
@@ -58,6 +61,9 @@ pub struct Context<T = f64> {
     pub wheel_rotation: [f64; 2],
     /// Travel of each wheel during the piece \[m\], as the odometry believes it.
     pub wheel_travel: [f64; 2],
+    /// How much further the left and the right wheel fall behind their counts during the piece \[m\], if they follow the counted speed as
+    /// first-order lags with the [`TIME_CONSTANTS`].
+    pub falls_behind: [[f64; TIME_CONSTANTS.len()]; 2],
     /// +1 or -1 if the left or the right wheel has just reversed to forward or backward.
     pub reversed: [f64; 2],
     /// Path length driven in this run \[m\].
@@ -104,6 +110,7 @@ impl Context {
             wheel_angle: self.wheel_angle,
             wheel_rotation: self.wheel_rotation,
             wheel_travel: self.wheel_travel,
+            falls_behind: self.falls_behind,
             reversed: self.reversed,
             distance: self.distance,
             time: self.time,
@@ -136,6 +143,16 @@ impl<T> Context<T> {
         (right - left).abs() > self.speed.abs()
     }
 
+    /// Whether the wheels stand throughout the piece, by their counts.
+    pub fn stands(&self) -> bool {
+        self.wheel_travel == [0.0; 2] && self.speed_change == [0.0; 2]
+    }
+
+    /// Whether wheels that follow late would still move in the piece: some by more than a micrometre.
+    pub fn follows(&self) -> bool {
+        self.falls_behind.iter().flatten().any(|behind| behind.abs() > LEAST_MOVE)
+    }
+
     /// Mean acceleration of the axle's centre \[m/s²\].
     pub fn acceleration(&self) -> f64 {
         if self.duration > 0.0 { 0.5 * (self.speed_change[0] + self.speed_change[1]) / self.duration } else { 0.0 }
@@ -147,6 +164,8 @@ impl<T> Context<T> {
     }
 }
 
+/// What wheels move at least in a piece \[m\] for it to be one.
+const LEAST_MOVE: f64 = 1e-6;
 /// A turn is rotation by more than this \[rad\] about a point within a wheelbase of the axle's centre.
 const LEAST_TURN: f64 = 0.35;
 /// A turn ends when the robot has moved this far \[m\].
@@ -167,6 +186,48 @@ pub struct Progress {
     /// Rolling direction of each wheel, and its distance behind its farthest point \[m\].
     sense: [f64; 2],
     behind: [f64; 2],
+    lag: Lag,
+}
+
+/// How far the wheels are behind their counts, if they follow them as first-order lags.
+#[derive(Clone, Copy, Debug, Default)]
+struct Lag {
+    /// How far the left and the right wheel are behind, with each of the [`TIME_CONSTANTS`] \[m\].
+    behind: [[f64; TIME_CONSTANTS.len()]; 2],
+    /// The last duration \[s\], and the share of each distance that is left after it.
+    duration: f64,
+    left: [f64; TIME_CONSTANTS.len()],
+}
+
+impl Lag {
+    /// Follows a piece of these travels \[m\] at constant speed: how much further the wheels fall behind.
+    #[inline]
+    fn follow(&mut self, travel: [f64; 2], duration: f64) -> [[f64; TIME_CONSTANTS.len()]; 2] {
+        if duration <= 0.0 {
+            // What is counted in no time is all still to be driven.
+            self.behind = [0, 1].map(|w| self.behind[w].map(|behind| behind + travel[w]));
+            return [0, 1].map(|w| [travel[w]; TIME_CONSTANTS.len()]);
+        }
+        if duration != self.duration {
+            // Half the time constant squares the share.
+            let mut left = libm::exp(-duration / TIME_CONSTANTS[TIME_CONSTANTS.len() - 1]);
+            for share in self.left.iter_mut().rev() {
+                *share = left;
+                left *= left;
+            }
+            self.duration = duration;
+        }
+        let mut further = [[0.0; TIME_CONSTANTS.len()]; 2];
+        for wheel in 0..2 {
+            let speed = travel[wheel] / duration;
+            for (k, time) in TIME_CONSTANTS.iter().enumerate() {
+                let behind = &mut self.behind[wheel][k];
+                further[wheel][k] = (1.0 - self.left[k]) * (speed * time - *behind);
+                *behind += further[wheel][k];
+            }
+        }
+        further
+    }
 }
 
 impl Progress {
@@ -190,6 +251,7 @@ impl Progress {
             gone: 0.0,
             sense: [0.0; 2],
             behind: [0.0; 2],
+            lag: Lag::default(),
         }
     }
 
@@ -215,6 +277,7 @@ impl Progress {
         now.length = if now.speed == 0.0 { forward.abs() } else { forward * now.speed.signum() };
         now.reversed =
             [0, 1].map(|w| reversal(&mut self.sense[w], &mut self.behind[w], wheels[w], self.least_reversal[w]));
+        now.falls_behind = self.lag.follow(wheels, duration);
         now.believed_heading = now.heading;
         let piece = *now;
         now.heading += rotation;
@@ -339,6 +402,36 @@ mod tests {
         let back = [(0.01, 0.01), (-4e-4, 0.01), (-4e-4, 0.01), (-0.01, 0.01), (0.01, 0.01)];
         let reversed: Vec<f64> = drive(&back).iter().map(|c| c.reversed[0]).collect();
         assert_eq!(reversed, [0.0, 0.0, -1.0, 0.0, 1.0]);
+    }
+
+    /// Oracle: 0.2 m/s for 1 s, then rest; the distance behind is v τ (1 - e^(-t/τ)), and fades.
+    #[test]
+    fn wheels_that_follow_late_are_behind_by_speed_times_time_constant_and_catch_up_at_rest() {
+        for steps in [1, 10, 137] {
+            let mut progress = Progress::new(&labmate(), &Place::default(), true);
+            let step = 1.0 / f64::from(steps);
+            let travel = WheelTravel { left: 0.2 * step, right: -0.1 * step };
+            let mut behind = [[0.0; 6]; 2];
+            let mut drive = |travel: &WheelTravel, seconds: f64| {
+                let piece = progress.piece(travel, seconds, [0.0; 2], [0.0; 2]);
+                for wheel in 0..2 {
+                    for k in 0..6 {
+                        behind[wheel][k] += piece.falls_behind[wheel][k];
+                    }
+                }
+                behind
+            };
+            let cruising = (0..steps).map(|_| drive(&travel, step)).last().unwrap();
+            let resting = drive(&WheelTravel::default(), 0.3);
+            for (wheel, speed) in [0.2, -0.1].into_iter().enumerate() {
+                for (k, time) in TIME_CONSTANTS.into_iter().enumerate() {
+                    let expected = speed * time * (1.0 - libm::exp(-1.0 / time));
+                    assert!((cruising[wheel][k] - expected).abs() < 1e-12, "{steps} {wheel} {k}");
+                    let faded = expected * libm::exp(-0.3 / time);
+                    assert!((resting[wheel][k] - faded).abs() < 1e-12, "{steps} {wheel} {k}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -10,7 +10,7 @@ mod grip;
 mod steering;
 mod wheels;
 
-pub use counts::{EncoderSampling, EncoderSkew, MissedCounts};
+pub use counts::{EncoderSampling, EncoderSkew, MissedCounts, WheelLag};
 pub use floor::{CarpetNap, FloorSlope, FloorSlopeYaw, PlacedBumps};
 pub use gears::{BaseYaw, ContactTrail, DriveScale, SteerCoupling, SteerScale};
 pub use grip::{
@@ -101,7 +101,7 @@ impl fmt::Debug for Law {
 }
 
 /// Every law that a table may hold.
-pub static LAWS: [Law; 36] = [
+pub static LAWS: [Law; 37] = [
     Law::wheels::<MissedCounts>(1, "missed_counts", 3).of_speed(),
     Law::wheels::<EncoderSkew>(2, "encoder_skew", 1).of_speed(),
     Law::body::<EncoderSampling>(3, "encoder_sampling", 1),
@@ -138,4 +138,5 @@ pub static LAWS: [Law; 36] = [
     Law::body::<FloorSlopeYaw>(34, "floor_slope_yaw", 4).of_speed(),
     Law::body::<CarpetNap>(35, "carpet_nap", 2).of_speed(),
     Law::wheels::<PlacedBumps>(36, "placed_bumps", 5).of_speed(),
+    Law::wheels::<WheelLag>(37, "wheel_lag", 2),
 ];

@@ -104,6 +104,8 @@ pub struct Entry {
     pub changes: Changes,
     /// See [`Effect::means`].
     pub means: fn(&[f64], &Robot) -> String,
+    /// See [`Effect::is_credible`].
+    pub is_credible: fn(&[f64]) -> bool,
     /// See [`Effect::varies`].
     pub varies: fn(&[f64]) -> bool,
     /// Whether it is the floor's: it stays there when the robot goes elsewhere.
@@ -138,6 +140,7 @@ impl Entry {
             drives: E::DRIVES,
             changes: Changes::NOTHING,
             means: E::means,
+            is_credible: E::is_credible,
             varies: E::varies,
             is_of_floor: false,
             values: MeanLaws::nothing(),

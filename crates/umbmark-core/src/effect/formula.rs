@@ -109,12 +109,14 @@ impl Target {
         }
     }
 
-    /// Factor of the formula for a piece: its length, its unsigned rotation, its duration, or 1 for a share.
+    /// Factor of the formula for a piece: its length, its unsigned rotation, its duration (0 where the wheels stand), or 1 for
+    /// a share.
     #[inline]
     fn exposure<T>(self, at: &Context<T>) -> f64 {
         match self {
             Target::HeadingPerMetre | Target::SidewaysPerMetre => at.length,
             Target::ForwardPerRadian | Target::SidewaysPerRadian => (at.turn_rate * at.duration).abs(),
+            Target::HeadingPerSecond | Target::ForwardPerSecond | Target::SidewaysPerSecond if at.stands() => 0.0,
             Target::HeadingPerSecond | Target::ForwardPerSecond | Target::SidewaysPerSecond => at.duration,
             Target::ForwardScale | Target::TurnScale | Target::LeftWheelScale | Target::RightWheelScale => 1.0,
         }

@@ -110,6 +110,13 @@ pub struct Part {
     pub free: bool,
 }
 
+impl Part {
+    /// See [`Effect::is_credible`](super::Effect::is_credible).
+    pub(crate) fn is_credible(&self) -> bool {
+        self.effect.entry().is_none_or(|entry| (entry.is_credible)(&self.values))
+    }
+}
+
 /// A chain of effects, in the order of the catalogue; those that are not in it come last.
 ///
 /// ```

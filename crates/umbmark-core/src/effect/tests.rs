@@ -1,6 +1,7 @@
 //! Properties that hold for every effect, and the paths for the tests of single effects.
 
 use super::*;
+use crate::dataset::{ReferencePose, TickLog};
 use crate::drive::{Drive, LinkReading, Robot};
 use crate::geometry::{Displacement2, Dual, LANES, Pose2, seeded};
 use crate::parameter::Role;
@@ -87,7 +88,33 @@ pub(super) fn circle_speeds(direction: Direction) -> [f64; 2] {
     if direction == Direction::Ccw { [inner, 0.2] } else { [0.2, inner] }
 }
 
-/// Tracks on which every deterministic effect of one axle shows: a small square and a circle, both ways.
+/// A recorded drive: 0.4 s of rest, 1.5 s ahead, 2 s of rest, an arc that becomes a turn on the spot, 2 s of rest; 20 readings a second, and
+/// poses at those between which the speed stays.
+pub(super) fn recorded_log() -> TickLog {
+    let per_tick = Robot::labmate().metres_per_tick();
+    let speeds = |time: f64| match time {
+        time if (0.4..1.9).contains(&time) => [0.2, 0.2],
+        time if (3.9..4.9).contains(&time) => [0.12, 0.21],
+        time if (4.9..5.4).contains(&time) => [-0.13, 0.13],
+        _ => [0.0; 2],
+    };
+    let (mut log, mut way) = (TickLog::default(), [0.0; 2]);
+    for reading in 0..150 {
+        log.time.push(0.05 * f64::from(reading));
+        log.left.push(way[0] / per_tick.left);
+        log.right.push(way[1] / per_tick.right);
+        let [before, after, later] = [-2.5, 0.5, 2.5].map(|on| speeds(0.05 * (f64::from(reading) + on)));
+        // Where the speed jumps, a delay of the reference has two slopes.
+        if before == after && after == later {
+            log.reference.push(ReferencePose { sample: log.left.len() - 1, x: 0.0, y: 0.0, heading: None });
+        }
+        let [left, right] = after;
+        way = [way[0] + 0.05 * left, way[1] + 0.05 * right];
+    }
+    log
+}
+
+/// Tracks on which every deterministic effect of one axle shows: a small square and a circle, both ways, and a recorded drive.
 pub(super) fn probes() -> Vec<Track> {
     let robot = Robot::labmate();
     let square = Path::new(&SQUARE, &[0.5], SpeedProfile::default()).unwrap();
@@ -96,6 +123,7 @@ pub(super) fn probes() -> Vec<Track> {
         tracks.push(Track::watched(&square, direction, &robot));
         tracks.push(Track::watched(&circle(), direction, &robot));
     }
+    tracks.push(Track::from_log(&recorded_log(), &robot).unwrap());
     tracks
 }
 
@@ -341,6 +369,7 @@ fn contexts() -> [Context; 2] {
         wheel_angle: [2.0, 3.0],
         wheel_rotation: [0.1, 0.2],
         wheel_travel: [0.01, 0.02],
+        falls_behind: [[1e-4, 2e-4, 3e-4, 4e-4, 5e-4, 6e-4], [6e-4, 5e-4, 4e-4, 3e-4, 2e-4, 1e-4]],
         reversed: [1.0, -1.0],
         distance: 3.0,
         time: 20.0,
@@ -355,7 +384,7 @@ fn contexts() -> [Context; 2] {
         direction: 1.0,
         recorded: false,
     };
-    [turn, Context { last_turn: 0.0, wheel_speed: [0.2; 2], ..turn }]
+    [turn, Context { last_turn: 0.0, wheel_speed: [0.2; 2], recorded: true, ..turn }]
 }
 
 #[test]

@@ -185,6 +185,12 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
             .iter()
             .map(|effect| format!("{effect} is significant but was not added: it raises the cross-validated error.")),
     );
+    hints.extend(search.inseparable.iter().map(|effect| {
+        format!(
+            "{effect} is significant but was not added: these runs hardly separate it from E_d, E_b and E_s, and the cross-validated \
+             error falls too little for that. Of other drives than these, the model would predict worse."
+        )
+    }));
     let (left, harmful, runs) = (search.left, search.harmful, search.exams[0].fitted.observed.runs.len());
     let Some(last) = search.exams.pop() else { return Err(FitError::NotConverged { how: "has no model" }) };
     let written = search.written.pop().map_or_else(|| last.fitted.clone(), Alone::into_fitted);
@@ -217,12 +223,13 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     let ranking = left.asked;
     let asked = ranking.first().filter(|s| s.p_adjusted <= options.size && !harmful.contains(&s.best));
     if let Some(suspect) = asked {
-        remarks.push(format!(
-            "{} is significant (p = {:.1e}) but was not added: it lowers the cross-validated error by less than {:.0} %.",
-            suspect.class.join(" or "),
-            suspect.p_adjusted,
-            100.0 * LEAST_GAIN
-        ));
+        let why = if left.inseparable.contains(&suspect.best) {
+            "these runs hardly separate it from E_d, E_b and E_s, so that it needs a smaller p".to_owned()
+        } else {
+            format!("it lowers the cross-validated error by less than {:.0} %", 100.0 * LEAST_GAIN)
+        };
+        let (class, p) = (suspect.class.join(" or "), suspect.p_adjusted);
+        remarks.push(format!("{class} is significant (p = {p:.1e}) but was not added: {why}."));
     }
     if written.usual_noise {
         remarks.push(USUAL_NOISE.to_owned());

@@ -46,7 +46,7 @@ impl Track {
     }
 
     pub(super) fn push(&mut self, travel: WheelTravel, at: Context) {
-        if travel != WheelTravel::default() || at.speed_change != [0.0; 2] {
+        if !at.stands() || at.follows() {
             self.travel.push(travel);
             self.contexts.push(at);
         }

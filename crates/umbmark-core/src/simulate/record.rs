@@ -130,6 +130,9 @@ impl Simulator {
         }
         let Some((index, share)) = moves.at(driving) else { return ([0; 2], None) };
         self.advance(truth, share, bumps);
+        if share >= 1.0 {
+            truth.rest_until(driving);
+        }
         (moves.counts(index, share), Some((index, share)))
     }
 

@@ -237,14 +237,32 @@ impl Truth {
         self.done = 1.0;
     }
 
-    /// Stands still \[s\].
+    /// Stands still \[s\], by its counts.
     pub fn rest(&mut self, duration: f64) {
-        self.way.rest(duration);
+        let at = self.way.rest(duration);
+        self.move_on_at_rest(&at);
+    }
+
+    /// Stands still after a move until some time after START, by its counts.
+    pub(super) fn rest_until(&mut self, clock: f64) {
+        if let Some(at) = self.way.rest_until(clock).filter(|_| self.varies) {
+            self.move_on_at_rest(&at);
+        }
+    }
+
+    /// What moves the robot while its counters stand.
+    fn move_on_at_rest(&mut self, at: &Context) {
+        let motion = self.chain.displacement(at, &WheelTravel::default());
+        if self.varies && motion != Displacement2::NONE {
+            self.way.advance(&motion);
+            self.pieces.push(&Piece { motion, noise: Noise::None });
+        }
     }
 
     /// Begins a stretch, commanded by a move of the course; its bumps are drawn now.
     pub fn begin(&mut self, stretch: Stretch, leg: &Leg) {
         if self.varies {
+            self.rest_until(leg.begins);
             self.way.begin(leg, &stretch.travel);
         }
         self.commanded = leg.travel;

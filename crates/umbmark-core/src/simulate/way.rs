@@ -56,15 +56,24 @@ impl Way {
         self.clock = 0.0;
     }
 
-    /// Stands still \[s\].
-    pub(super) fn rest(&mut self, duration: f64) {
-        self.progress.piece(&WheelTravel::default(), duration, [0.0; 2], [0.0; 2]);
+    /// Stands still \[s\], by its counts.
+    pub(super) fn rest(&mut self, duration: f64) -> Context {
+        self.progress.piece(&WheelTravel::default(), duration, [0.0; 2], [0.0; 2]).at_pose(&self.pose)
+    }
+
+    /// Stands still until some time after START, if it does not stand there already.
+    pub(super) fn rest_until(&mut self, clock: f64) -> Option<Context> {
+        let duration = clock - self.clock;
+        (duration > 0.0).then(|| {
+            self.clock = clock;
+            self.rest(duration)
+        })
     }
 
     /// Begins a move of the course, after the pause before it, of which the robot believes such a travel.
     #[inline(never)]
     pub(super) fn begin(&mut self, leg: &Leg, believed: &WheelTravel) {
-        self.rest(leg.begins - self.clock);
+        self.rest_until(leg.begins);
         self.clock = leg.begins + leg.profile.duration();
         self.pieces = Pieces::along(believed, leg.profile);
     }

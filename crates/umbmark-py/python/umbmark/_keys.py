@@ -26,6 +26,7 @@ Shape: TypeAlias = Literal[
 ]
 # An effect of the catalogue; those of one's own have other names.
 EffectName: TypeAlias = Literal[
+    "wheel_lag",
     "missed_counts",
     "encoder_skew",
     "encoder_sampling",
@@ -149,6 +150,8 @@ class EffectKeys(TypedDict, total=False):
     formula: str | Callable[..., Any]
     parameters: Mapping[str, Drawn]
     free: bool
+    share: Drawn
+    time_constant_s: Drawn
     left_s_per_m: Drawn
     right_s_per_m: Drawn
     threshold_m_s: Drawn
@@ -171,7 +174,6 @@ class EffectKeys(TypedDict, total=False):
     cosine_rad_per_m: Drawn
     sine_rad_per_m: Drawn
     angle_rad: Drawn
-    share: Drawn
     rad_per_m_s2: Drawn
     s_per_m: Drawn
     s_per_rad: Drawn

@@ -147,7 +147,7 @@ fn step(track: &Track, places: &[MeasuredBlock], ends: usize) -> Option<ErrorInc
 
 /// Driving conditions of some pieces, whether most of their wheel travel is turning, and their time \[s\]; `None` if nothing moves.
 fn conditions(track: &Track, pieces: Range<usize>, heading: f64) -> Option<(Conditions, bool, f64)> {
-    let own = &track.contexts()[pieces.clone()];
+    let own: Vec<&Context> = track.contexts()[pieces.clone()].iter().filter(|at| !at.stands()).collect();
     let middle = own.get(own.len() / 2)?;
     let seconds: f64 = own.iter().map(|at| at.duration).sum();
     let mean = |of: &dyn Fn(&Context) -> f64| {
@@ -155,7 +155,7 @@ fn conditions(track: &Track, pieces: Range<usize>, heading: f64) -> Option<(Cond
         if seconds > 0.0 { sum / seconds } else { of(middle) }
     };
     let rise = |of: &dyn Fn(&Context) -> f64| {
-        let sum: f64 = own.iter().map(of).sum();
+        let sum: f64 = own.iter().map(|at| of(at)).sum();
         if seconds > 0.0 { sum / seconds } else { 0.0 }
     };
     let travel = &track.travel()[pieces];

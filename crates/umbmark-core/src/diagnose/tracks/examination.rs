@@ -7,6 +7,7 @@ use crate::evidence::ends::names;
 use crate::evidence::tracks::{Errors, Misses, Projected, System};
 use crate::geometry::Pose2;
 use crate::likelihood::{ABSORBED, Column, Fitted, Noise, share_left, solver};
+use crate::parameter::Parameter;
 use nalgebra::{DMatrix, DVector};
 use std::sync::{Arc, OnceLock};
 
@@ -260,7 +261,7 @@ impl Examination {
         asked.filter_map(|(index, _)| self.answer(projected, &self.system.whole, index)).collect()
     }
 
-    /// The answer of one group, if the data determines it.
+    /// The answer of one group, if the data determines it and a robot can have it.
     pub fn answer(&self, projected: &Projected, products: &DMatrix<f64>, index: usize) -> Option<Answer> {
         let asked = &self.asked[index];
         let shown = asked.columns.iter().enumerate().filter(|(k, column)| {
@@ -276,6 +277,23 @@ impl Examination {
             return None;
         }
         let (drop, step, covariance) = projected.drop(&columns)?;
+        if !self.is_credible(asked, &columns, &step) {
+            return None;
+        }
         Some(Answer { asked: index, columns, drop, step, covariance })
+    }
+    /// Whether a robot can have an effect with these steps of its columns.
+    fn is_credible(&self, asked: &Asked, columns: &[usize], step: &DVector<f64>) -> bool {
+        let Some(entry) = asked.effect() else { return true };
+        let robot = self.fitted.model.robot();
+        let stepped = |parameter: &Parameter| {
+            let is_own = |column: &usize| self.number(*column).is_some_and(|own| own.parameter == parameter.name);
+            columns.iter().position(is_own).map_or(0.0, |place| step[place])
+        };
+        let value = |parameter: &Parameter| match asked.shape {
+            Some((shape, value)) if shape.name == parameter.name => value,
+            _ => parameter.default.resolve(robot) + stepped(parameter),
+        };
+        (entry.is_credible)(&entry.about.parameters.iter().map(value).collect::<Vec<_>>())
     }
 }

@@ -38,6 +38,11 @@ pub(crate) fn grown_by_law(exam: &Examination, law: &Model) -> Result<(Fitted, &
     Ok((fitted(exam, &model, name)?, name))
 }
 
+/// Whether a size of an effect is more than so many standard errors from zero.
+pub(super) fn stands_out(fitted: &Fitted, effect: &str, errors: f64) -> bool {
+    estimates(fitted).iter().any(|e| e.effect == effect && departs(&fitted.model, e) > errors)
+}
+
 /// A model with one more effect, fitted: first its sizes, then also its shapes if its size is significant.
 fn fitted(exam: &Examination, model: &Model, effect: &str) -> Result<Fitted, FitError> {
     let observed = &exam.fitted.observed;
@@ -45,10 +50,7 @@ fn fitted(exam: &Examination, model: &Model, effect: &str) -> Result<Fitted, Fit
     let taken = || exam.fitted.taken.clone();
     let sized = Fitted { taken: taken(), ..observed.fit(model, &Noise::default(), &shapes)? };
     let shaped = observed.free_values(&sized.model).iter().any(|value| shapes.contains(value));
-    let is_size = |e: &Estimate| model.place_of(e.effect, e.parameter).is_some_and(|place| !shapes.contains(&place));
-    let stands_out = |e: &Estimate| e.effect == effect && is_size(e) && (e.value / e.standard_error).abs() > SHOWN;
-    let clear = estimates(&sized).iter().any(stands_out);
-    if !(shaped && clear) {
+    if !(shaped && stands_out(&sized, effect, SHOWN)) {
         return Ok(sized);
     }
     let both = Fitted { taken: taken(), ..observed.fit(&sized.model, &sized.noise, &[])? };
@@ -57,12 +59,11 @@ fn fitted(exam: &Examination, model: &Model, effect: &str) -> Result<Fitted, Fit
     // If a shape can compensate a size (the distance of a bump from the path, say), neither is determined, and fitting the shape does not
     // raise the likelihood.
     let aicc = |fitted: &Fitted| Alone::new(fitted.clone()).criteria().0;
-    let sure = estimates(&both).iter().any(|e| e.effect == effect && is_size(e) && departs(&both.model, e) > SURE)
-        || aicc(&both) < aicc(&sized) - LIKELIER;
+    let sure = stands_out(&both, effect, SURE) || aicc(&both) < aicc(&sized) - LIKELIER;
     Ok(if determined && allowed && sure && keeps_signs(model, &both.model, effect) { both } else { sized })
 }
 
-/// Distance of a size from zero effect, in standard errors.
+/// Distance of a size from zero effect, in standard errors; 0 for a length, time or threshold.
 fn departs(model: &Model, e: &Estimate) -> f64 {
     let nothing = model.place_of(e.effect, e.parameter).and_then(|place| model.nothing(place));
     nothing.map_or(0.0, |nothing| ((e.value - nothing) / e.standard_error).abs())

@@ -15,7 +15,7 @@ const TRIES: usize = 4;
 /// Minimum number of runs for a certificate.
 pub(super) const FEWEST: usize = 2;
 /// Where an effect widens the standard error of E_d, E_b or E_s by more than this factor, it needs a p of at most this share of the
-/// usual level. A law outside the catalogue is then not added: these runs hardly separate it from E_d, E_b and E_s.
+/// usual level.
 pub(super) const WIDE: f64 = 2.0;
 const SURE: f64 = 0.2;
 
@@ -27,6 +27,8 @@ pub(crate) struct Missing {
     pub smooth: Option<Finding>,
     /// All effects that were tested, the likeliest first.
     pub asked: Vec<Suspect>,
+    /// Certified effects that these runs hardly separate from E_d, E_b and E_s.
+    pub inseparable: Vec<&'static str>,
 }
 
 /// Looks for missing effects that are not refused.
@@ -36,10 +38,13 @@ pub fn missing(exam: &Examination, options: &Options, refused: &[&str]) -> Missi
     let enough = exam.fitted.observed.runs.len() >= FEWEST;
     let best = if enough { first_with_gain(exam, &findings, options, refused) } else { None };
     let unexplained = smooth.filter(|smooth| !explains(exam, best, smooth) && smooth_gains(exam, smooth));
+    let unsure = findings.iter().filter(|finding| finding.certified(options) && !is_sure(exam, finding, options));
+    let name = |finding: &Finding| exam.asked[finding.answer.asked].effect().map(|effect| effect.about.name);
     Missing {
         effect: best.and_then(|finding| class::suspect(exam, finding).map(|suspect| (finding.clone(), suspect))),
         smooth: unexplained,
         asked: findings.iter().filter_map(|finding| class::suspect(exam, finding)).collect(),
+        inseparable: unsure.filter_map(name).collect(),
     }
 }
 

@@ -9,7 +9,7 @@ use super::needless::{idle, with_and_without};
 use super::repeats::{self, Repeated, UnlistedLaw};
 use crate::diagnose::options::Options;
 use crate::diagnose::suspect::Suspect;
-use crate::effect::{Law, Model};
+use crate::effect::{Law, Model, Part};
 use crate::evidence::FitError;
 use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, silent, trusted, without, without_silent_taken};
 use crate::likelihood::Fitted;
@@ -21,6 +21,12 @@ use std::borrow::Cow;
 const WORTH_A_LAW: f64 = 0.05;
 const WORTH_BY_POSES: f64 = 0.15;
 const MOST_LAWS: usize = 3;
+/// A law outside the catalogue is not added where it widens the standard error of E_d, E_b or E_s by more than this factor: of half of
+/// what the runs say of them, a law that no physics supports must not speak instead.
+const WIDE_FOR_A_LAW: f64 = 1.4;
+/// An effect that is hardly separated from E_d, E_b and E_s is there beyond doubt where its size is more than this multiple of the
+/// widening of their standard errors from zero \[standard errors\].
+const OUTSTANDING: f64 = 8.0;
 /// A law outside the catalogue is preferred to an effect that explains less than this share of what the law explains.
 const OUTDONE: f64 = 0.5;
 /// A fit with one more effect failed where its error exceeds this multiple of the error before.
@@ -51,6 +57,17 @@ struct Grown {
     written: Alone,
     /// Effects that no longer helped and were taken out.
     removed: Vec<&'static str>,
+    /// Effects that are no longer separated well enough from E_d, E_b and E_s and were taken out.
+    inseparable: Vec<&'static str>,
+}
+
+/// What came of adding an effect.
+enum Growth {
+    Stands(Box<Grown>),
+    /// A fit without approximation does not bear it out.
+    Idle,
+    /// It is hardly separated from E_d, E_b and E_s and does not pay for that.
+    Inseparable,
 }
 
 /// What may be added.
@@ -74,6 +91,8 @@ pub(crate) struct Search {
     pub removed: Vec<&'static str>,
     /// Certified effects with which held-out runs are predicted worse; they were not added.
     pub harmful: Vec<&'static str>,
+    /// Certified effects that these runs hardly separate from E_d, E_b and E_s, for too small a gain; they were not added.
+    pub inseparable: Vec<&'static str>,
     /// What the last model is missing and was not added.
     pub left: Missing,
     /// The strongest repeating pattern beside the last model, once it was looked for.
@@ -104,6 +123,7 @@ pub(crate) fn search(
         added: Vec::new(),
         removed,
         harmful: Vec::new(),
+        inseparable: Vec::new(),
         left,
         repeats: None,
         refused_laws: Vec::new(),
@@ -123,6 +143,32 @@ fn astray(exam: &Examination, before: &Examination) -> bool {
     now > ASTRAY * then
 }
 
+/// An effect among those `asked` that is hardly separated from E_d, E_b and E_s and does not pay for it, and the model as it is written
+/// without it.
+///
+/// Details alone separate it from them, such as ramps of turns that are all alike. What the model misses of these details then moves E_d,
+/// E_b and E_s, as many times as far as their standard errors are wider, and with them the predictions of every other drive. Either the
+/// errors of held-out positions or headings pay for that, by its square, or the effect is so large that no detail can be as large.
+fn too_dear(
+    exam: &Examination,
+    written: &Alone,
+    asked: impl Fn(&str) -> bool,
+) -> Result<Option<(&'static str, Alone)>, FitError> {
+    let effects: Vec<&'static str> = exam.fitted.model.parts().iter().map(|part| part.effect.name()).collect();
+    let first = exam.fitted.model.robot().drive.first_effects();
+    for effect in effects.into_iter().rev().filter(|effect| asked(effect) && !first.contains(effect)) {
+        let widening = exam.widening(&exam.columns_of(effect));
+        if widening > WIDE && !growth::stands_out(&exam.fitted, effect, OUTSTANDING * widening) {
+            let fewer = trusted(without(&exam.fitted, effect)?)?;
+            let [_, most] = written.left_out().falls(&fewer.left_out());
+            if most < LEAST_GAIN * widening.powi(2) {
+                return Ok(Some((effect, fewer)));
+            }
+        }
+    }
+    Ok(None)
+}
+
 impl Search {
     /// Adds what is certified as missing, one effect after the other.
     fn grow(
@@ -137,13 +183,18 @@ impl Search {
             let outdone = wanted == Wanted::All && self.is_outdone(options);
             if let Some((finding, suspect)) = self.left.effect.clone().filter(|_| !outdone) {
                 let exam = self.last().of_grown(growth::grown(self.last(), &suspect)?)?;
-                let Some(grown) = self.borne_out(exam, suspect.best)? else {
-                    self.removed.push(suspect.best);
-                    self.left = missing(self.last(), options, &self.passed(refused));
-                    continue;
+                let grown = match self.borne_out(exam, suspect.best)? {
+                    Growth::Stands(grown) => grown,
+                    failed => {
+                        let gone =
+                            if matches!(failed, Growth::Idle) { &mut self.removed } else { &mut self.inseparable };
+                        gone.push(suspect.best);
+                        self.left = missing(self.last(), options, &self.passed(refused));
+                        continue;
+                    }
                 };
                 if !self.left.smooth.as_ref().is_some_and(|smooth| speaks_on(&grown.exam, smooth, options)) {
-                    self.take(grown, Added { suspect, by: Found::Listed(finding) });
+                    self.take(*grown, Added { suspect, by: Found::Listed(finding) });
                     self.left = missing(self.last(), options, &self.passed(refused));
                     continue;
                 }
@@ -162,11 +213,12 @@ impl Search {
         Ok(())
     }
 
-    /// A model grown by an effect, less those that no longer help beside it, and which they are; `None` where a fit without approximation
-    /// does not bear the effect out.
-    fn borne_out(&self, mut exam: Examination, effect: &'static str) -> Result<Option<Grown>, FitError> {
-        if astray(&exam, self.last()) || idle(&exam, |asked| asked == effect).is_some() {
-            return Ok(None);
+    /// A model grown by an effect, less those that no longer help beside it, and which they are.
+    fn borne_out(&self, mut exam: Examination, effect: &'static str) -> Result<Growth, FitError> {
+        let part = exam.fitted.model.parts().iter().find(|part| part.effect.name() == effect);
+        let credible = part.is_none_or(Part::is_credible);
+        if !credible || astray(&exam, self.last()) || idle(&exam, |asked| asked == effect).is_some() {
+            return Ok(Growth::Idle);
         }
         let first = &self.exams[0].fitted;
         let taken: Vec<&str> = first.taken.iter().map(|taken| taken.effect).collect();
@@ -184,8 +236,17 @@ impl Search {
                 removed.push(effect);
             }
         }
-        let written = trusted(exam.fitted.clone())?;
-        Ok(Some(Grown { exam, written, removed }))
+        let mut written = trusted(exam.fitted.clone())?;
+        let mut inseparable = Vec::new();
+        while let Some((dear, fewer)) = too_dear(&exam, &written, |effect| !stands(effect))? {
+            if dear == effect {
+                return Ok(Growth::Inseparable);
+            }
+            exam = Examination::new(without(&exam.fitted, dear)?)?;
+            written = fewer;
+            inseparable.push(dear);
+        }
+        Ok(Growth::Stands(Box::new(Grown { exam, written, removed, inseparable })))
     }
 
     /// The model grown by the law that what repeats follows, where it counts and a fit bears it out.
@@ -206,12 +267,14 @@ impl Search {
             }
             let (fitted, name) = growth::grown_by_law(self.last(), &model)?;
             let exam = self.last().of_grown(fitted)?;
-            let is_told = exam.widening(&exam.columns_of(name)) <= WIDE;
-            let borne_out = if is_told { self.borne_out(exam, name)? } else { None };
-            if let Some(grown) = borne_out.filter(|grown| self.is_worth_a_law(grown, name)) {
+            let is_told = exam.widening(&exam.columns_of(name)) <= WIDE_FOR_A_LAW;
+            let growth = if is_told { self.borne_out(exam, name)? } else { Growth::Inseparable };
+            if let Growth::Stands(grown) = growth
+                && self.is_worth_a_law(&grown, name)
+            {
                 let suspect = repeats::suspect(&repeated, name, &grown.exam);
                 repeated.law = repeated.law.fitted(name, &grown.exam);
-                return Ok(Some((grown, Added { suspect, by: Found::Unlisted(Box::new(repeated)) })));
+                return Ok(Some((*grown, Added { suspect, by: Found::Unlisted(Box::new(repeated)) })));
             }
             self.refused_laws.push(text_of(&model));
         }
@@ -292,12 +355,11 @@ impl Search {
     }
 
     /// Goes on from a model that has grown.
-    fn take(&mut self, Grown { exam, written, removed }: Grown, added: Added) {
+    fn take(&mut self, Grown { exam, written, removed, inseparable }: Grown, added: Added) {
         let before = self.last().fitted.model.clone();
-        for effect in removed {
-            self.refuse(&before, effect);
-            self.removed.push(effect);
-        }
+        removed.iter().chain(&inseparable).for_each(|effect| self.refuse(&before, effect));
+        self.removed.extend(removed);
+        self.inseparable.extend(inseparable);
         self.written.push(written);
         self.exams.push(exam);
         self.added.push(added);
@@ -314,7 +376,7 @@ impl Search {
 
     /// Effects that are not tested again, beside those `refused` from the beginning.
     fn passed(&self, refused: &[&'static str]) -> Vec<&'static str> {
-        refused.iter().chain(&self.removed).chain(&self.harmful).copied().collect()
+        refused.iter().chain(&self.removed).chain(&self.harmful).chain(&self.inseparable).copied().collect()
     }
 
     /// Takes back the last effect by which the last model predicts runs left out worse than before it, and all that came after; whether
@@ -336,7 +398,9 @@ impl Search {
         self.exams.truncate(before + 1);
         self.written.truncate(before + 1);
         let kept = self.exams[before].fitted.model.parts();
-        self.removed.retain(|effect| kept.iter().all(|part| part.effect.name() != *effect));
+        for gone in [&mut self.removed, &mut self.inseparable] {
+            gone.retain(|effect| kept.iter().all(|part| part.effect.name() != *effect));
+        }
         true
     }
 

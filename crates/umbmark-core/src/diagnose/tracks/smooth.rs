@@ -45,9 +45,9 @@ pub enum Exposure {
     WheelWay(usize),
     /// Rotation, either way.
     Rotation,
-    /// Time.
+    /// Time in which the wheels move.
     Time,
-    /// Time, in the sense of the turn.
+    /// The same, in the sense of the turn.
     TimeInSense,
     /// Way driven and way of the wheels in turns.
     AnyWay,
@@ -69,6 +69,7 @@ impl Exposure {
             Exposure::WayInSense => p.at.length * p.at.last_turn,
             Exposure::WheelWay(wheel) => p.wheel_way[wheel],
             Exposure::Rotation => p.rotation.abs(),
+            Exposure::Time | Exposure::TimeInSense if p.at.stands() => 0.0,
             Exposure::Time => p.at.duration,
             Exposure::TimeInSense => p.at.duration * p.at.turn_rate.signum(),
             Exposure::AnyWay => p.at.length + 0.5 * p.scales.wheelbase * p.rotation.abs(),

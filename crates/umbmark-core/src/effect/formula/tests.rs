@@ -56,7 +56,7 @@ fn laws_of_the_catalogue_written_as_formulas_replay_the_same_with_the_same_deriv
 
 #[test]
 fn every_target_does_what_its_law_says() {
-    let at = Context { length: 0.5, turn_rate: -0.3, duration: 2.0, ..Context::default() };
+    let at = Context { length: 0.5, turn_rate: -0.3, duration: 2.0, wheel_travel: [0.4, 0.6], ..Context::default() };
     let believed = WheelTravel { left: 0.4, right: 0.6 };
     let plain = Model::new(&Robot::labmate()).chain().displacement(&at, &believed);
     let moved = |target| {
@@ -72,6 +72,10 @@ fn every_target_does_what_its_law_says() {
     near(moved(Target::HeadingPerSecond).1.rotation, plain.rotation + 0.01 * seconds);
     near(moved(Target::ForwardPerSecond).1.forward, plain.forward + 0.01 * seconds);
     near(moved(Target::SidewaysPerSecond).1.sideways, plain.sideways + 0.01 * seconds);
+    // Nothing is done to a robot that stands.
+    let standing = Context { wheel_travel: [0.0; 2], ..at };
+    let turned = model_of(&[(Target::HeadingPerSecond, "k", &[("k", 0.01)])]).chain();
+    assert_eq!(turned.displacement(&standing, &WheelTravel::default()).rotation, 0.0);
     near(moved(Target::TurnScale).1.rotation, 1.01 * plain.rotation);
     near(moved(Target::ForwardScale).1.forward, 1.01 * plain.forward);
     near(moved(Target::LeftWheelScale).0.left, 0.404);

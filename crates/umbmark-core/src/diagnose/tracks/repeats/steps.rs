@@ -83,11 +83,16 @@ pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<TrackStep> {
         let (mut step, mut wheels, mut change) = (TrackStep::default(), [0.0; 2], [0.0; 2]);
         let mut begin = pose;
         let pieces = made as usize..(until.ceil() as usize).min(track.travel().len());
+        let last = pieces.clone().rev().find(|piece| !track.contexts()[*piece].stands());
         for piece in pieces.clone() {
             // A block may begin or end within a piece.
             let (begun, ended) = ((made - piece as f64).max(0.0), (until - piece as f64).min(1.0));
             let share = (ended - begun).max(0.0);
             let (travel, at) = (&track.travel()[piece].scaled(share), &track.contexts()[piece]);
+            if at.stands() {
+                pose = pose.moved(&chain.displacement(&at.at_pose(&pose), travel));
+                continue;
+            }
             if step.duration == 0.0 {
                 begin = pose;
                 step = TrackStep {
@@ -111,7 +116,7 @@ pub fn steps(run: &ObservedRun, chain: &Chain<f64>) -> Vec<TrackStep> {
             wheels = [wheels[0] + travel.left, wheels[1] + travel.right];
             change = [change[0] + at.acceleration() * duration, change[1] + at.turn_acceleration() * duration];
             let full = step.way >= STEP.0 || step.rotation.abs() >= STEP.1 || step.duration >= STEP.2;
-            if (full || piece + 1 == pieces.end) && step.duration > 0.0 {
+            if (full || Some(piece) == last) && step.duration > 0.0 {
                 let TrackStep { duration, way, .. } = step;
                 let between = begin.between(&pose);
                 step.middle = begin.moved(&Displacement2 {
