@@ -25,7 +25,7 @@ extern "C" {
 #endif
 
 /* Size of an odometer. */
-#define UMBMARK_ODOMETER_BYTES 4608
+#define UMBMARK_ODOMETER_BYTES 4864
 
 /* The state of one run. A static one is zero, which is a state that has not begun. */
 typedef struct umbmark_odometer {

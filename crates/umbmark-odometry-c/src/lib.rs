@@ -14,7 +14,7 @@ use umbmark_odometry::{Estimate, Odometer, Table, TableError, UpdateError};
 const READINGS: usize = 128;
 
 /// Bytes of `umbmark_odometer` in the header.
-const BYTES: usize = 4608;
+const BYTES: usize = 4864;
 
 /// What a C program holds before it has begun is anything else.
 const BEGUN: u64 = 0x756d_626d_6f64_6f6d;

@@ -4,12 +4,13 @@ use super::words::{percent, size};
 use super::{About, ActsOn, Effect, Entry};
 use crate::drive::Robot;
 use crate::parameter::Parameter;
+use std::ops::Range;
 use umbmark_odometry::law::WheelLag;
 
 pub(super) static EFFECT: Entry = Entry::of::<WheelLag>().wheels::<WheelLag>();
 
-/// Wheels follow at least this share of what is counted late, if they do at all.
-const LEAST_SHARE: f64 = 0.25;
+/// Shares that wheels can follow late; with what is left for the error of an estimate.
+const SHARES: Range<f64> = 0.25..1.25;
 
 impl Effect for WheelLag {
     const ABOUT: About = About {
@@ -57,9 +58,9 @@ impl Effect for WheelLag {
         )
     }
 
-    /// Counts are commands or they are not: a small share stands for something else.
+    /// Counts are commands or they are not: a small share, or far more than all, stands for something else, as a delay.
     fn is_credible(p: &[f64]) -> bool {
-        p[0] > LEAST_SHARE
+        SHARES.contains(&p[0])
     }
 
     fn varies(p: &[f64]) -> bool {

@@ -9,7 +9,7 @@ use super::needless::{idle, with_and_without};
 use super::repeats::{self, Repeated, UnlistedLaw};
 use crate::diagnose::options::Options;
 use crate::diagnose::suspect::Suspect;
-use crate::effect::{Law, Model, Part};
+use crate::effect::{Law, Model};
 use crate::evidence::FitError;
 use crate::evidence::tracks::{Alone, LEAST_GAIN, Misses, silent, trusted, without, without_silent_taken};
 use crate::likelihood::Fitted;
@@ -143,6 +143,12 @@ fn astray(exam: &Examination, before: &Examination) -> bool {
     now > ASTRAY * then
 }
 
+/// An effect with values that a robot cannot have, in one of these fits.
+fn incredible(fits: [&Fitted; 2]) -> Option<&'static str> {
+    let mut parts = fits.into_iter().flat_map(|fitted| fitted.model.parts());
+    parts.find(|part| !part.is_credible()).map(|part| part.effect.name())
+}
+
 /// An effect among those `asked` that is hardly separated from E_d, E_b and E_s and does not pay for it, and the model as it is written
 /// without it.
 ///
@@ -215,9 +221,7 @@ impl Search {
 
     /// A model grown by an effect, less those that no longer help beside it, and which they are.
     fn borne_out(&self, mut exam: Examination, effect: &'static str) -> Result<Growth, FitError> {
-        let part = exam.fitted.model.parts().iter().find(|part| part.effect.name() == effect);
-        let credible = part.is_none_or(Part::is_credible);
-        if !credible || astray(&exam, self.last()) || idle(&exam, |asked| asked == effect).is_some() {
+        if astray(&exam, self.last()) || idle(&exam, |asked| asked == effect).is_some() {
             return Ok(Growth::Idle);
         }
         let first = &self.exams[0].fitted;
@@ -237,6 +241,14 @@ impl Search {
             }
         }
         let mut written = trusted(exam.fitted.clone())?;
+        while let Some(incredible) = incredible([&exam.fitted, written.fitted()]).filter(|effect| !stands(effect)) {
+            if incredible == effect {
+                return Ok(Growth::Idle);
+            }
+            exam = Examination::new(without(&exam.fitted, incredible)?)?;
+            written = trusted(exam.fitted.clone())?;
+            removed.push(incredible);
+        }
         let mut inseparable = Vec::new();
         while let Some((dear, fewer)) = too_dear(&exam, &written, |effect| !stands(effect))? {
             if dear == effect {
