@@ -111,6 +111,7 @@ register! {
     marker_offset,
     marker_yaw,
     reference_heading_drift,
+    reference_heading_scale,
     reference_noise,
 }
 

@@ -1,5 +1,6 @@
 //! Why the verdict is not "explained" although no further effect is certified.
 
+use super::tracks::OddRun;
 use super::remains::{Remains, Repeating};
 use super::tracks::repeats::Repeated;
 use crate::setup::{Fault, Suspicion};
@@ -90,6 +91,8 @@ pub enum Reason {
         /// What is off, and on what it depends, in words.
         what: String,
     },
+    /// One run is unlike the others.
+    OddRun(OddRun),
     /// The data are in doubt.
     Data(Suspicion),
 }
@@ -118,6 +121,20 @@ impl Reason {
             Reason::Data(suspicion) => suspicion.forbids_writing(),
             _ => false,
         }
+    }
+
+    /// Whether the numbers of the model are wrong where it holds, beside what a missing effect makes of them: they must not be written.
+    pub fn forbids_writing(&self) -> bool {
+        let of_model = matches!(
+            self,
+            Reason::NoiseAtLimit { .. }
+                | Reason::LargerThanNoise { .. }
+                | Reason::WorseThanSimpler { .. }
+                | Reason::FarFromTheRuns { .. }
+                | Reason::LeftOutFarWorse { .. }
+                | Reason::OddRun(_)
+        );
+        of_model || self.is_of_data()
     }
 
     /// In a sentence, without a full stop.
@@ -172,6 +189,7 @@ impl Reason {
                 1e3 * inside
             ),
             Reason::Repeats(repeated) => repeated.sentence(),
+            Reason::OddRun(odd) => odd.sentence(),
             Reason::Data(suspicion) => suspicion.sentence(),
         }
     }

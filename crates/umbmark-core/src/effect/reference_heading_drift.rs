@@ -29,7 +29,7 @@ impl Effect for ReferenceHeadingDrift {
                   Positions stay correct.",
         signature: "Headings are off by d t since the run began, also while the robot stands; the path is where it is predicted. A robot \
                     that turns by itself bends its path as well.",
-        confused_with: &["marker_yaw", "wheel_diameter_ratio"],
+        confused_with: &["marker_yaw", "wheel_diameter_ratio", "reference_heading_scale"],
         separated_by: "a minute at rest: the heading must not move",
         source: "gyros of a few euros: 0.01 to 1 degree per second before their bias is taken off; 1.7 degrees a minute are assumed",
     };

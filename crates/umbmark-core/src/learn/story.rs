@@ -60,9 +60,9 @@ pub struct Learnt {
 }
 
 impl Learnt {
-    /// Whether the model must not be used as it is: it does not explain the runs, or the data are in doubt.
+    /// Whether the model must not be used as it is: it does not explain the runs, or a reason against it forbids that.
     pub fn is_in_doubt(&self) -> bool {
-        self.verdict == Verdict::NotExplained || self.diagnosis.reasons.iter().any(Reason::is_of_data)
+        self.verdict == Verdict::NotExplained || self.diagnosis.reasons.iter().any(Reason::forbids_writing)
     }
 
     /// If columns contradict their names, nothing is learnt about the robot.

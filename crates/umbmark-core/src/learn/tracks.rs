@@ -199,7 +199,10 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         let (doubts, left) = tracks::doubts_as_written(&written.observed, &written.model, options);
         let of_laws = |reason: &Reason| matches!(reason, Reason::Repeats(_));
         // What repeats with the likeliest values is in the data, whichever values are written; by how much is told in per cent.
-        let examined = std::mem::replace(&mut reasons, doubts).into_iter().find(of_laws);
+        let (odd, examined): (Vec<Reason>, Vec<Reason>) =
+            std::mem::replace(&mut reasons, doubts).into_iter().partition(|reason| matches!(reason, Reason::OddRun(_)));
+        reasons.extend(odd);
+        let examined = examined.into_iter().find(of_laws);
         if let Some(Reason::Repeats(mut repeated)) = examined.filter(|_| !reasons.iter().any(of_laws)) {
             repeated.law.left_out = [f64::NAN; 2];
             reasons.push(Reason::Repeats(repeated));

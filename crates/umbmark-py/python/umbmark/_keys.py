@@ -77,6 +77,7 @@ EffectName: TypeAlias = Literal[
     "marker_offset",
     "marker_yaw",
     "reference_heading_drift",
+    "reference_heading_scale",
     "reference_noise",
 ]
 ActsOn: TypeAlias = Literal[

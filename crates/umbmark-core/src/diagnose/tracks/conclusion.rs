@@ -4,6 +4,7 @@ use super::dependence::{Dependence, dependence};
 use super::examination::Examination;
 use super::left::{doubts_of, reason_to_doubt, remains_of};
 use super::missing::FEWEST;
+use super::odd::odd_run;
 use super::repeats::Repeated;
 use super::responses::Question;
 use super::search::{Added, Found, Search};
@@ -57,6 +58,7 @@ impl Conclusion {
         let mut reasons = doubts_of(last, options);
         reasons.extend(reason_to_doubt(repeats.as_ref()));
         reasons.extend(Reason::of_remains(&remains, last.fitted.observed.resolution()));
+        reasons.extend(odd_run(last));
         let (mut experiments, mut hints) = (Vec::new(), Vec::new());
         for (exam, added) in search.exams.iter().zip(&search.added) {
             let (told, hint) = next_experiments(exam, added)?;

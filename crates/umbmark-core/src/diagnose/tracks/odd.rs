@@ -1,0 +1,116 @@
+//! A run that is unlike the others: of another robot, or with a reference of another scale.
+
+use super::examination::Examination;
+use crate::diagnose::reason::Reason;
+use crate::evidence::tracks::Misses;
+use crate::likelihood::solver;
+use crate::stats::chi_squared_upper_tail;
+use nalgebra::{DMatrix, DVector};
+
+/// Fewest runs of which one can be unlike the others.
+const FEWEST: usize = 3;
+/// A run is unlike the others where the first effects of it differ from those of the others with a p of at most this, over all runs, ...
+const SURE: f64 = 1e-6;
+/// ... one of them by more than this share, ...
+const LEAST_DIFFERENCE: f64 = 0.002;
+/// ... and where its errors along the way fall by this share with its own.
+const LEAST_FALL: f64 = 0.5;
+
+/// A run that is unlike the others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OddRun {
+    /// Its name.
+    pub run: String,
+    /// The first effect that differs most, as it is called.
+    pub effect: &'static str,
+    /// Its ratio by this run alone.
+    pub own: f64,
+    /// The same by the other runs.
+    pub others: f64,
+}
+
+impl OddRun {
+    /// In a sentence, without a full stop.
+    pub fn sentence(&self) -> String {
+        let OddRun { run, effect, own, others } = self;
+        format!(
+            "run {run} is unlike the others: its {effect} is {own:.5}, theirs {others:.5}. Was it this robot, with these wheels and this \
+             reference? Leave the run out, or give it as a dataset of its own"
+        )
+    }
+}
+
+/// The reason for doubt from the run that is most unlike the others, where one is.
+///
+/// Beside the other values of the model, the first effects of a run and those of all others are estimated from the products of their whitened
+/// columns. Their difference, by its covariance, is χ² distributed where the robot is the same.
+pub(super) fn odd_run(exam: &Examination) -> Option<Reason> {
+    let first = exam.fitted.model.robot().drive.first_effects();
+    let columns: Vec<usize> = exam
+        .free
+        .iter()
+        .copied()
+        .filter(|column| exam.name(*column).is_some_and(|name| first.contains(&name)))
+        .collect();
+    let runs = exam.fitted.observed.runs.len();
+    if columns.is_empty() || runs < FEWEST {
+        return None;
+    }
+    let told = (0..runs).filter_map(|run| Difference::of(exam, run, &columns));
+    let told = told.filter(|told| told.p * runs as f64 <= SURE).min_by(|a, b| a.p.total_cmp(&b.p))?;
+    let (place, off) = told.steps().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    (off.abs() > LEAST_DIFFERENCE && told.fall(exam, &columns) >= LEAST_FALL).then(|| {
+        let value = exam.fitted.model.values().nth(exam.fitted.free[columns[place]]).unwrap_or(1.0);
+        Reason::OddRun(OddRun {
+            run: exam.fitted.observed.runs[told.run].name.clone(),
+            effect: exam.name(columns[place]).unwrap_or_default(),
+            own: value + told.own[place],
+            others: value + told.others[place],
+        })
+    })
+}
+
+/// How the first effects of a run differ from those of the others.
+struct Difference {
+    run: usize,
+    /// Steps of the columns by this run alone, and by the others.
+    own: DVector<f64>,
+    others: DVector<f64>,
+    p: f64,
+}
+
+impl Difference {
+    /// `None` where the run, or the others, do not determine all of them.
+    fn of(exam: &Examination, run: usize, columns: &[usize]) -> Option<Difference> {
+        let system = &exam.system;
+        let mut products = DMatrix::zeros(system.width, system.width);
+        system.units.iter().filter(|unit| unit.run == run).for_each(|unit| products += &unit.white);
+        let rest = &system.whole - &products;
+        let estimate = |products: &DMatrix<f64>| {
+            let solver = solver(products, columns)?;
+            let right = DMatrix::from_fn(columns.len(), 1, |i, _| products[(columns[i], system.residual())]);
+            let covariance = solver.solve(&DMatrix::identity(columns.len(), columns.len()));
+            Some((solver.solve(&right).column(0).into_owned(), covariance))
+        };
+        let ((own, of_own), (others, of_others)) = (estimate(&products)?, estimate(&rest)?);
+        let difference = &own - &others;
+        let statistic = (of_own + of_others).cholesky()?.solve(&difference).dot(&difference);
+        Some(Difference { run, own, others, p: chi_squared_upper_tail(statistic, columns.len() as f64) })
+    }
+
+    fn steps(&self) -> impl Iterator<Item = f64> + '_ {
+        self.own.iter().zip(self.others.iter()).map(|(own, others)| own - others)
+    }
+
+    /// By which share the errors of this run along the way fall with its own values instead of those of the others: positions or headings.
+    fn fall(&self, exam: &Examination, columns: &[usize]) -> f64 {
+        let folds: Vec<usize> = exam.system.folds_of(self.run).collect();
+        let left = |values: &DVector<f64>| {
+            let squares = exam.errors.squares(|_| (columns.to_vec(), values.clone()));
+            let of = |k: usize| folds.iter().map(|fold| squares[*fold][k]).sum::<f64>().sqrt();
+            Misses { position: of(0), heading: Some(of(1)).filter(|heading| *heading > 0.0), white: of(2) }
+        };
+        let [_, most] = left(&self.own).falls(&left(&self.others));
+        most
+    }
+}
