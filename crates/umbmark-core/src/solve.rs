@@ -138,10 +138,17 @@ impl Solution {
         self.learnt.diagnosis.setup.all_faults().collect()
     }
 
-    /// Whether the new numbers may be written: the model explains the runs, the data are in order, and they do not
-    /// [mislead alone](Solution::misleads_alone).
+    /// Whether the new numbers may be written: the model explains the runs, the data are in order, and they neither
+    /// [mislead alone](Solution::misleads_alone) nor [make it worse](Solution::makes_worse).
     pub fn is_trusted(&self) -> bool {
-        !self.learnt.is_in_doubt() && !self.misleads_alone()
+        !self.learnt.is_in_doubt() && !self.misleads_alone() && !self.makes_worse()
+    }
+
+    /// Whether the new numbers, of a model without further effects, leave a larger error in these runs than there is.
+    pub fn makes_worse(&self) -> bool {
+        self.off.as_ref().is_some_and(|off| {
+            self.needed && off.known.is_empty() && off.with_numbers > (1.0 + words::WORSE) * off.driven
+        })
     }
 
     /// Whether the new numbers alone leave a larger error in these runs than there is, and more than chance makes. They hold only beside

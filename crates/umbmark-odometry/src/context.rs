@@ -414,10 +414,8 @@ mod tests {
             let mut behind = [[0.0; 6]; 2];
             let mut drive = |travel: &WheelTravel, seconds: f64| {
                 let piece = progress.piece(travel, seconds, [0.0; 2], [0.0; 2]);
-                for wheel in 0..2 {
-                    for k in 0..6 {
-                        behind[wheel][k] += piece.falls_behind[wheel][k];
-                    }
+                for (behind, further) in behind.iter_mut().flatten().zip(piece.falls_behind.iter().flatten()) {
+                    *behind += further;
                 }
                 behind
             };

@@ -1,7 +1,7 @@
 //! Why the verdict is not "explained" although no further effect is certified.
 
-use super::tracks::OddRun;
 use super::remains::{Remains, Repeating};
+use super::tracks::OddRun;
 use super::tracks::repeats::Repeated;
 use crate::setup::{Fault, Suspicion};
 

@@ -102,6 +102,20 @@ fn a_robot_without_errors_gets_nothing_to_write() {
 }
 
 #[test]
+fn numbers_that_make_it_worse_are_not_to_be_written() {
+    let truth = [("wheel_diameter_ratio", "e_d", 1.002), ("wheelbase", "e_b", 0.97), ("scale", "e_s", 0.99)];
+    let mut answer = answer(&watched(&robot(&truth), 3, 5));
+    assert!(answer.is_trusted() && answer.next()[0].starts_with("Write the new numbers"), "{:?}", answer.next());
+    // As if the runs had missed by less as they were driven.
+    let off = answer.off.as_mut().unwrap();
+    off.driven = 0.8 * off.with_numbers;
+    assert!(answer.makes_worse() && !answer.is_trusted());
+    assert!(answer.sentence().ends_with("as driven: do not write them."), "{}", answer.sentence());
+    assert!(answer.doubt().is_some_and(|why| why.contains("do not write them")));
+    assert!(answer.next().iter().all(|step| !step.contains("Write")), "{:?}", answer.next());
+}
+
+#[test]
 fn straight_runs_give_the_wheels_and_no_wheelbase() {
     let truth = [("wheel_diameter_ratio", "e_d", 1.002), ("wheelbase", "e_b", 0.97), ("scale", "e_s", 0.99)];
     let path = Path::new(&STRAIGHT, &[4.0], SpeedProfile::default()).unwrap();

@@ -8,6 +8,8 @@ use crate::effect::find;
 const FINE: f64 = 0.01;
 /// A part is told where it is more than this share of the whole.
 pub(super) const TOLD: f64 = 0.02;
+/// New numbers make it worse where the error that they leave exceeds that as driven by this share.
+pub(super) const WORSE: f64 = 0.1;
 
 pub(super) fn sentence(solution: &Solution) -> String {
     if let Some(fault) = solution.faults().first() {
@@ -58,6 +60,9 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
     }
     if solution.misleads_alone() {
         return vec![alone(solution, off)];
+    }
+    if solution.makes_worse() {
+        return vec![worse(off)];
     }
     let known: f64 = off.known.iter().map(|part| part.worth).sum();
     let explained = verdict == Verdict::Explained;
@@ -133,10 +138,22 @@ fn alone(solution: &Solution, off: &Off) -> String {
     )
 }
 
+/// That the new numbers leave more than there is.
+fn worse(off: &Off) -> String {
+    format!(
+        "The new numbers below would leave {}, more than the {} as driven: do not write them.",
+        mm(off.with_numbers),
+        mm(off.driven)
+    )
+}
+
 /// Why the numbers of a model are not to be written, where they are not.
 pub(super) fn doubt(solution: &Solution) -> Option<String> {
     if !solution.learnt.is_in_doubt() && solution.misleads_alone() {
         return solution.off.as_ref().map(|off| alone(solution, off));
+    }
+    if !solution.learnt.is_in_doubt() && solution.makes_worse() {
+        return solution.off.as_ref().map(worse);
     }
     let reasons = solution.learnt.diagnosis.reasons.iter().map(|reason| reason.sentence());
     let told = reasons.collect::<Vec<_>>().join("; ");
@@ -180,6 +197,8 @@ pub(super) fn next(solution: &Solution) -> Vec<String> {
              `umbmark export plain.toml --to ros2_control -o robot.yaml`. They are not the robot's true lengths."
                 .into(),
         );
+    } else if solution.makes_worse() {
+        next.push("Drive more runs, with straights and turns both ways: these do not show numbers that help.".into());
     } else if solution.needed && !solution.changes.is_empty() {
         next.push(
             "Write the new numbers: `umbmark solve DATA -o model.toml`, then `umbmark export model.toml --to ros2_control -o \

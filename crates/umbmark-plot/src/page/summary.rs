@@ -226,6 +226,9 @@ fn to_write(solution: &Solution) -> Tile {
         (_, false, _) if solution.misleads_alone() => {
             ("nothing alone", "Alone, these numbers would make it worse: see the sentence above.".to_owned())
         }
+        (_, false, _) if solution.makes_worse() => {
+            ("nothing yet", "With these numbers, the error would be larger than as driven.".to_owned())
+        }
         (_, false, _) => ("nothing yet", "The runs are not explained, so these numbers are not to be trusted.".into()),
         (_, true, false) => ("nothing", "The numbers of the robot are right as far as these runs can show.".into()),
         (count, true, true) => {

@@ -114,3 +114,39 @@ impl Difference {
         most
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::tests::robot_with;
+    use crate::diagnose::tracks::diagnose;
+    use crate::diagnose::{Options, Verdict, first_model};
+    use crate::drive::Robot;
+    use crate::likelihood::Observed;
+    use crate::likelihood::watched::watched;
+
+    /// The runs that are called unlike the others where the fifth of six is of a robot with another wheelbase.
+    fn odd(e_b: f64) -> (Verdict, Vec<OddRun>) {
+        let mut data = watched(&robot_with(&[]), 3, 5);
+        let others = watched(&robot_with(&[("wheelbase", "e_b", e_b)]), 3, 5);
+        data.runs[4] = others.runs[4].clone();
+        let observed = Observed::new(&data, &Robot::labmate()).unwrap();
+        let diagnosis = diagnose(&observed, &first_model(&data).unwrap(), &Options::default()).unwrap();
+        let told = diagnosis.reasons.iter().filter_map(|reason| match reason {
+            Reason::OddRun(odd) => Some(odd.clone()),
+            _ => None,
+        });
+        (diagnosis.verdict, told.collect())
+    }
+
+    #[test]
+    fn a_run_of_another_robot_is_named_with_what_differs_and_one_of_the_same_robot_is_not() {
+        let own = robot_with(&[]).get("wheelbase", "e_b").unwrap();
+        let (verdict, told) = odd(1.01 * own);
+        let [told] = &told[..] else { panic!("{told:?}") };
+        assert_eq!((verdict, &*told.run, told.effect), (Verdict::NotExplained, "ccw_1", "wheelbase"));
+        assert!((told.own / (1.01 * own) - 1.0).abs() < 1e-3 && (told.others / own - 1.0).abs() < 1e-3, "{told:?}");
+        assert!(Reason::OddRun(told.clone()).forbids_writing());
+        assert_eq!(odd(own).1, []);
+    }
+}
