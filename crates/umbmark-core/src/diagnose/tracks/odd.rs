@@ -13,6 +13,8 @@ const FEWEST: usize = 3;
 const SURE: f64 = 1e-6;
 /// ... one of them by more than this share, ...
 const LEAST_DIFFERENCE: f64 = 0.002;
+/// but neither is this far from the model's, where a linear step says nothing, ...
+const FAR: f64 = 0.1;
 /// ... and where its errors along the way fall by this share with its own.
 const LEAST_FALL: f64 = 0.5;
 
@@ -57,7 +59,7 @@ pub(super) fn odd_run(exam: &Examination) -> Option<Reason> {
         return None;
     }
     let told = (0..runs).filter_map(|run| Difference::of(exam, run, &columns));
-    let told = told.filter(|told| told.p * runs as f64 <= SURE).min_by(|a, b| a.p.total_cmp(&b.p))?;
+    let told = told.filter(|told| told.p * runs as f64 <= SURE && told.is_near()).min_by(|a, b| a.p.total_cmp(&b.p))?;
     let (place, off) = told.steps().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     (off.abs() > LEAST_DIFFERENCE && told.fall(exam, &columns) >= LEAST_FALL).then(|| {
         let value = exam.fitted.model.values().nth(exam.fitted.free[columns[place]]).unwrap_or(1.0);
@@ -96,6 +98,11 @@ impl Difference {
         let difference = &own - &others;
         let statistic = (of_own + of_others).cholesky()?.solve(&difference).dot(&difference);
         Some(Difference { run, own, others, p: chi_squared_upper_tail(statistic, columns.len() as f64) })
+    }
+
+    /// Whether both are near the model's values.
+    fn is_near(&self) -> bool {
+        self.own.iter().chain(self.others.iter()).all(|step| step.abs() < FAR)
     }
 
     fn steps(&self) -> impl Iterator<Item = f64> + '_ {

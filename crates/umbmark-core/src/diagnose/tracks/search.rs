@@ -26,7 +26,9 @@ const MOST_LAWS: usize = 3;
 const WIDE_FOR_A_LAW: f64 = 1.4;
 /// An effect that is hardly separated from E_d, E_b and E_s is there beyond doubt where its size is more than this multiple of the
 /// widening of their standard errors from zero \[standard errors\].
-const OUTSTANDING: f64 = 8.0;
+const OUTSTANDING: f64 = 4.0;
+/// No effect that is hardly separated from E_d, E_b and E_s needs a greater gain than this.
+const GAIN_ENOUGH: f64 = 0.1;
 /// A law outside the catalogue is preferred to an effect that explains less than this share of what the law explains.
 const OUTDONE: f64 = 0.5;
 /// A fit with one more effect failed where its error exceeds this multiple of the error before.
@@ -167,7 +169,7 @@ fn too_dear(
         if widening > WIDE && !growth::stands_out(&exam.fitted, effect, OUTSTANDING * widening) {
             let fewer = trusted(without(&exam.fitted, effect)?)?;
             let [_, most] = written.left_out().falls(&fewer.left_out());
-            if most < LEAST_GAIN * widening.powi(2) {
+            if most < (LEAST_GAIN * widening.powi(2)).min(GAIN_ENOUGH) {
                 return Ok(Some((effect, fewer)));
             }
         }
