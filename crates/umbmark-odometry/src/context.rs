@@ -148,9 +148,9 @@ impl<T> Context<T> {
         self.wheel_travel == [0.0; 2] && self.speed_change == [0.0; 2]
     }
 
-    /// Whether wheels that follow late would still move in the piece: some by more than a micrometre.
-    pub fn follows(&self) -> bool {
-        self.falls_behind.iter().flatten().any(|behind| behind.abs() > LEAST_MOVE)
+    /// Whether something may move the robot in the piece: its counts, or wheels that follow them late.
+    pub fn moves(&self) -> bool {
+        !self.stands() || self.falls_behind != [[0.0; TIME_CONSTANTS.len()]; 2]
     }
 
     /// Mean acceleration of the axle's centre \[m/s²\].
@@ -164,7 +164,7 @@ impl<T> Context<T> {
     }
 }
 
-/// What wheels move at least in a piece \[m\] for it to be one.
+/// Wheels that follow late do not move while their counters stand where none would move further than this in a piece \[m\].
 const LEAST_MOVE: f64 = 1e-6;
 /// A turn is rotation by more than this \[rad\] about a point within a wheelbase of the axle's centre.
 const LEAST_TURN: f64 = 0.35;
@@ -277,7 +277,9 @@ impl Progress {
         now.length = if now.speed == 0.0 { forward.abs() } else { forward * now.speed.signum() };
         now.reversed =
             [0, 1].map(|w| reversal(&mut self.sense[w], &mut self.behind[w], wheels[w], self.least_reversal[w]));
-        now.falls_behind = self.lag.follow(wheels, duration);
+        let further = self.lag.follow(wheels, duration);
+        let moves = wheels != [0.0; 2] || further.iter().flatten().any(|further| further.abs() > LEAST_MOVE);
+        now.falls_behind = if moves { further } else { [[0.0; TIME_CONSTANTS.len()]; 2] };
         now.believed_heading = now.heading;
         let piece = *now;
         now.heading += rotation;

@@ -220,7 +220,7 @@ impl<const READINGS: usize> Log<'_, READINGS> {
                 right: (now.ticks[1] - before.ticks[1]) * per_tick.right,
             };
             let piece = at.progress.piece(&travel, now.time - before.time, from, speeds);
-            if travel != WheelTravel::default() || piece.speed_change != [0.0; 2] {
+            if piece.moves() {
                 let from = at.pose;
                 let motion = self.displacement(&piece.at_pose(&from), travel);
                 at.pose.advance(&motion);

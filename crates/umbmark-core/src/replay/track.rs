@@ -46,7 +46,7 @@ impl Track {
     }
 
     pub(super) fn push(&mut self, travel: WheelTravel, at: Context) {
-        if !at.stands() || at.follows() {
+        if at.moves() {
             self.travel.push(travel);
             self.contexts.push(at);
         }
