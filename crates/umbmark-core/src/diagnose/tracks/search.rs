@@ -21,9 +21,9 @@ use std::borrow::Cow;
 const WORTH_A_LAW: f64 = 0.05;
 const WORTH_BY_POSES: f64 = 0.15;
 const MOST_LAWS: usize = 3;
-/// A law outside the catalogue is not added where it widens the standard error of E_d, E_b or E_s by more than this factor: of half of
-/// what the runs say of them, a law that no physics supports must not speak instead.
-const WIDE_FOR_A_LAW: f64 = 1.4;
+/// Where a law outside the catalogue widens the standard error of E_d, E_b or E_s by more than the first number, it speaks for half of what
+/// the runs say of them. No physics supports it, so the errors of positions or headings must then fall by the second.
+const WIDE_FOR_A_LAW: (f64, f64) = (1.4, 0.25);
 /// An effect that is hardly separated from E_d, E_b and E_s is there beyond doubt where its size is more than this multiple of the
 /// widening of their standard errors from zero \[standard errors\].
 const OUTSTANDING: f64 = 4.0;
@@ -281,7 +281,7 @@ impl Search {
             }
             let (fitted, name) = growth::grown_by_law(self.last(), &model)?;
             let exam = self.last().of_grown(fitted)?;
-            let is_told = exam.widening(&exam.columns_of(name)) <= WIDE_FOR_A_LAW;
+            let is_told = exam.widening(&exam.columns_of(name)) <= WIDE;
             let growth = if is_told { self.borne_out(exam, name)? } else { Growth::Inseparable };
             if let Growth::Stands(grown) = growth
                 && self.is_worth_a_law(&grown, name)
@@ -303,6 +303,9 @@ impl Search {
         let [least, most] = grown.written.left_out().falls(&before);
         let [with, without] = with_and_without(&grown.exam, name);
         let harmless = least.min(with.falls(&without)[0]) >= -LEAST_GAIN;
+        if grown.exam.widening(&grown.exam.columns_of(name)) > WIDE_FOR_A_LAW.0 {
+            return harmless && most >= WIDE_FOR_A_LAW.1;
+        }
         harmless && (most >= WORTH_A_LAW || with.white_fall(&without) >= WORTH_BY_POSES)
     }
 
