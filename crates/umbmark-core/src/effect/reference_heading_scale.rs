@@ -26,7 +26,7 @@ impl Effect for ReferenceHeadingScale {
         )],
         equation: "θ ← (1 + g) θ,  θ the heading since START",
         physics: "Positions come from a satellite receiver or from radio beacons, and the heading from a gyro: the scale of its rate is \
-                  off by some per mille. Positions stay correct.",
+                  off by 0.1 to 3 %. Positions stay correct.",
         signature: "Headings are off by a share of all that the robot has turned since START; the path is where it is predicted. With a \
                     wrong wheelbase the path is turned as well.",
         confused_with: &["reference_heading_drift"],
