@@ -62,7 +62,7 @@ pub struct Context<T = f64> {
     /// Travel of each wheel during the piece \[m\], as the odometry believes it.
     pub wheel_travel: [f64; 2],
     /// How much further the left and the right wheel fall behind their counts during the piece \[m\], if they follow the counted speed as
-    /// first-order lags with the [`TIME_CONSTANTS`].
+    /// first-order lags with the [`TIME_CONSTANTS`]; 0 in a run that is not [recorded](Context::recorded).
     pub falls_behind: [[f64; TIME_CONSTANTS.len()]; 2],
     /// +1 or -1 if the left or the right wheel has just reversed to forward or backward.
     pub reversed: [f64; 2],
@@ -277,9 +277,11 @@ impl Progress {
         now.length = if now.speed == 0.0 { forward.abs() } else { forward * now.speed.signum() };
         now.reversed =
             [0, 1].map(|w| reversal(&mut self.sense[w], &mut self.behind[w], wheels[w], self.least_reversal[w]));
-        let further = self.lag.follow(wheels, duration);
-        let moves = wheels != [0.0; 2] || further.iter().flatten().any(|further| further.abs() > LEAST_MOVE);
-        now.falls_behind = if moves { further } else { [[0.0; TIME_CONSTANTS.len()]; 2] };
+        if now.recorded {
+            let further = self.lag.follow(wheels, duration);
+            let moves = wheels != [0.0; 2] || further.iter().flatten().any(|further| further.abs() > LEAST_MOVE);
+            now.falls_behind = if moves { further } else { [[0.0; TIME_CONSTANTS.len()]; 2] };
+        }
         now.believed_heading = now.heading;
         let piece = *now;
         now.heading += rotation;
