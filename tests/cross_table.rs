@@ -209,9 +209,9 @@ fn better_than_published(rows: &[(&str, &str, [Ends; 3])]) {
     }
 }
 
-/// Further effects that `learn` adds cost little on other paths: where it is worse than three values fitted to tracks, this is within the
-/// 95 % interval of the difference over the sets that were learnt from, or on circles and over all at most 2.5 mm and half a degree. Squares do not show
-/// what circles tell of the wheelbase, and the backlash that squares show moves it by a thousandth.
+/// Further effects that `learn` adds cost little on other paths: on average over the sets that were learnt from, it is worse than three values
+/// fitted to tracks by at most 2 mm and 0.4 degrees. Squares do not show what circles tell of the wheelbase, and the backlash that squares
+/// show moves it by a thousandth.
 fn no_worse_than_three_numbers(by_set: &[(&str, Vec<[Ends; 3]>)]) {
     let errors = |name: &str| &by_set.iter().find(|(way, _)| *way == name).unwrap().1;
     for (kind, what) in ["other squares", "circles", "straights and spins", "all"].iter().enumerate() {
@@ -225,8 +225,7 @@ fn no_worse_than_three_numbers(by_set: &[(&str, Vec<[Ends; 3]>)]) {
             deg[0],
             deg[1]
         );
-        let [least_mm, least_deg] = if kind % 2 == 1 { [2.5, 0.5] } else { [0.0; 2] };
-        assert!(mm[0] <= mm[1].max(least_mm) && deg[0] <= deg[1].max(least_deg), "{what}");
+        assert!(mm[0] <= 2.0 && deg[0] <= 0.4, "{what}");
     }
 }
 

@@ -54,6 +54,16 @@ def test_wheels_that_follow_commands_late_are_found_with_their_lag_and_sizes() -
     assert all(abs(one["standard_errors"]) < 4 for one in said["ratios"].values()), said["ratios"]
 
 
+def test_a_lag_longer_than_the_catalogue_has_is_not_explained_by_noise_that_grows(
+    tmp_path: File,
+) -> None:
+    write(make("command", 12002, ["motor_lag_s=1.2"]), tmp_path)
+    words = [str(COMMAND), "learn", str(tmp_path), "--json"]
+    said = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
+    assert said["verdict"] == "not_explained"
+    assert "absorbed something that the model lacks" in said["reasons"][-1]
+
+
 def test_a_law_that_no_catalogue_lists_is_added_with_its_period(tmp_path: File) -> None:
     made = make("time_wave", 3, [*SMALL, "wave_period_s=7.3", "wave_rad_s=0.02"])
     write(made, tmp_path)

@@ -26,12 +26,12 @@ impl Effect for ReferenceHeadingScale {
         )],
         equation: "θ ← (1 + g) θ,  θ the heading since START",
         physics: "Positions come from a satellite receiver or from radio beacons, and the heading from a gyro: the scale of its rate is \
-                  off by 0.1 to 3 %. Positions stay correct.",
+                  off. Positions stay correct.",
         signature: "Headings are off by a share of all that the robot has turned since START; the path is where it is predicted. With a \
                     wrong wheelbase the path is turned as well.",
         confused_with: &["reference_heading_drift"],
-        separated_by: "ten turns on the spot: the heading must come back; as many the other way",
-        source: "gyros of a few euros: 0.1 to 3 %",
+        separated_by: "ten turns on the spot, stopped by a mark on the floor: the heading must be what it was",
+        source: "a gyro's scale factor; 0.5 % is assumed",
     };
 
     const DRIVES: DriveKinds = DriveKinds::ALL;

@@ -42,7 +42,7 @@ impl Effect for WheelLag {
                     leaves the counted path, and does not come back to it. Return poses of a drive with stops hardly show it.",
         confused_with: &["reference_delay"],
         separated_by: "quick changes of speed: a delay moves all of the motion, a lag rounds its corners; counts of encoders",
-        source: "first-order response of a speed control loop; 0.05 to 0.3 s are usual for small motors",
+        source: "first-order response of a speed control loop; 0.15 s is assumed",
     };
 
     fn means(p: &[f64], _robot: &Robot) -> String {

@@ -188,10 +188,11 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     hints.extend(search.inseparable.iter().map(|effect| {
         format!(
             "{effect} is significant but was not added: these runs hardly separate it from E_d, E_b and E_s, and the cross-validated \
-             error falls too little for that. Of other drives than these, the model would predict worse."
+             error falls too little for that. Other drives may be predicted worse with it."
         )
     }));
-    let (left, harmful, runs) = (search.left, search.harmful, search.exams[0].fitted.observed.runs.len());
+    let told: Vec<&str> = search.harmful.iter().chain(&search.inseparable).copied().collect();
+    let (left, runs) = (search.left, search.exams[0].fitted.observed.runs.len());
     let Some(last) = search.exams.pop() else { return Err(FitError::NotConverged { how: "has no model" }) };
     let written = search.written.pop().map_or_else(|| last.fitted.clone(), Alone::into_fitted);
     if written.usual_noise {
@@ -199,9 +200,8 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
         let (doubts, left) = tracks::doubts_as_written(&written.observed, &written.model, options);
         let of_laws = |reason: &Reason| matches!(reason, Reason::Repeats(_));
         // What repeats with the likeliest values is in the data, whichever values are written; by how much is told in per cent.
-        let (odd, examined): (Vec<Reason>, Vec<Reason>) =
-            std::mem::replace(&mut reasons, doubts).into_iter().partition(|reason| matches!(reason, Reason::OddRun(_)));
-        reasons.extend(odd);
+        let examined = std::mem::replace(&mut reasons, doubts);
+        reasons.extend(examined.iter().filter(|reason| matches!(reason, Reason::OddRun(_))).cloned());
         let examined = examined.into_iter().find(of_laws);
         if let Some(Reason::Repeats(mut repeated)) = examined.filter(|_| !reasons.iter().any(of_laws)) {
             repeated.law.left_out = [f64::NAN; 2];
@@ -224,7 +224,7 @@ fn finish(mut search: Search, steps: Vec<Step>, options: &Options) -> Result<Lea
     hints.extend(tracks::uncertified(&left.asked, options));
     let mut remarks = [diagnosis.remarks.clone(), hints].concat();
     let ranking = left.asked;
-    let asked = ranking.first().filter(|s| s.p_adjusted <= options.size && !harmful.contains(&s.best));
+    let asked = ranking.first().filter(|s| s.p_adjusted <= options.size && !told.contains(&s.best));
     if let Some(suspect) = asked {
         let why = if left.inseparable.contains(&suspect.best) {
             "these runs hardly separate it from E_d, E_b and E_s, so that it needs a smaller p".to_owned()

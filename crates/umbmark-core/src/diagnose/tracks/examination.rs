@@ -282,6 +282,7 @@ impl Examination {
         }
         Some(Answer { asked: index, columns, drop, step, covariance })
     }
+
     /// Whether a robot can have an effect with these steps of its columns.
     fn is_credible(&self, asked: &Asked, columns: &[usize], step: &DVector<f64>) -> bool {
         let Some(entry) = asked.effect() else { return true };

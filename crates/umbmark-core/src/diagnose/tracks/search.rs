@@ -145,10 +145,10 @@ fn astray(exam: &Examination, before: &Examination) -> bool {
     now > ASTRAY * then
 }
 
-/// An effect with values that a robot cannot have, in one of these fits.
-fn incredible(fits: [&Fitted; 2]) -> Option<&'static str> {
+/// An effect among those `asked` with values that a robot cannot have, in one of these fits.
+fn incredible(fits: [&Fitted; 2], asked: impl Fn(&str) -> bool) -> Option<&'static str> {
     let mut parts = fits.into_iter().flat_map(|fitted| fitted.model.parts());
-    parts.find(|part| !part.is_credible()).map(|part| part.effect.name())
+    parts.find(|part| asked(part.effect.name()) && !part.is_credible()).map(|part| part.effect.name())
 }
 
 /// An effect among those `asked` that is hardly separated from E_d, E_b and E_s and does not pay for it, and the model as it is written
@@ -243,7 +243,7 @@ impl Search {
             }
         }
         let mut written = trusted(exam.fitted.clone())?;
-        while let Some(incredible) = incredible([&exam.fitted, written.fitted()]).filter(|effect| !stands(effect)) {
+        while let Some(incredible) = incredible([&exam.fitted, written.fitted()], |effect| !stands(effect)) {
             if incredible == effect {
                 return Ok(Growth::Idle);
             }
