@@ -6,7 +6,7 @@ use umbmark_core::dataset::Dataset;
 use umbmark_core::drive::Robot;
 use umbmark_core::effect::{Model, TestKind};
 use umbmark_core::evidence::{Estimate, Fit, fit};
-use umbmark_core::geometry::Pose2;
+use umbmark_core::geometry::{Pose2, wrap};
 use umbmark_core::path::{self, SQUARE, SpeedProfile};
 use umbmark_core::random::Stream;
 use umbmark_core::run::TickLog;
@@ -26,8 +26,13 @@ fn squares() -> Vec<Dataset> {
 
 /// `runs` squares of 2 m each way of a robot of this model, watched at 20 Hz.
 fn watched(model: &Model, runs: usize, seed: u64) -> Dataset {
+    watched_at(model, runs, seed, 20.0)
+}
+
+/// The same, watched at another rate \[Hz\].
+fn watched_at(model: &Model, runs: usize, seed: u64, rate: f64) -> Dataset {
     let path = path::Path::new(&SQUARE, &[2.0], SpeedProfile::default()).unwrap();
-    record_test(model, &path, &[TestKind::Systematic], [runs, runs], 20.0, [seed, 0]).unwrap()
+    record_test(model, &path, &[TestKind::Systematic], [runs, runs], rate, [seed, 0]).unwrap()
 }
 
 fn logs(data: &mut Dataset) -> impl Iterator<Item = &mut TickLog> {
@@ -82,6 +87,26 @@ fn positions(data: &Dataset, mut next_room: impl FnMut() -> Pose2) -> Dataset {
             let at = room.compose(&Pose2::new(pose.x, pose.y, 0.0));
             format!("{},{}", at.x, at.y)
         })
+    })
+}
+
+/// The dataset with nothing but a gyro that has this noise of its heading \[deg/√s\], a rate of its own of 0.5 deg/s that is another one in
+/// each run by so much \[deg/s\], and that grows by 0.05 deg/s in a minute.
+fn gyro(data: &Dataset, (noise, apart): (f64, f64), seed: u64) -> Dataset {
+    let mut stream = Stream::new(seed, 1, 0);
+    let mut own = 0.0;
+    rewritten(data, None, "gyro_deg_s", |log, sample| {
+        let poses = &log.reference;
+        let Ok(found) = poses.binary_search_by_key(&sample, |pose| pose.sample) else { return String::new() };
+        if found == 0 {
+            own = 0.5 + apart * stream.normal();
+        }
+        // Halfway to the neighbours, as an instrument that averages: trapezoids then add up to the headings.
+        let (before, after) = (poses[found.saturating_sub(1)], poses[(found + 1).min(poses.len() - 1)]);
+        let seconds = log.time[after.sample] - log.time[before.sample];
+        let turned = wrap(after.heading.unwrap() - before.heading.unwrap()).to_degrees();
+        let drift = 0.05 * log.time[sample] / 60.0;
+        format!("{:.5}", turned / seconds + own + drift + noise * stream.normal() / (0.5 * seconds).sqrt())
     })
 }
 
@@ -305,5 +330,78 @@ fn positions_of_turns_on_the_spot_accuse_no_wheel_and_give_what_poses_give() {
         let both = libm::hypot(part.standard_error, whole.standard_error);
         assert!((part.value - whole.value).abs() < 2.5 * both, "{parameter}: {part:?} {whole:?}");
         assert!(part.standard_error < 2.0 * whole.standard_error, "{parameter}: {part:?} {whole:?}");
+    }
+}
+
+/// By headings, E_b is that for E_s = 1: what poses say of E_b over what they say of E_s.
+#[test]
+fn a_gyro_with_a_rate_of_its_own_and_drift_gives_the_ratios_of_whole_poses_on_real_squares() {
+    for poses in squares() {
+        let robot = poses.robot.as_ref().unwrap();
+        let gyro = gyro(&poses, (0.02, 0.02), 5);
+        let logs = || gyro.runs.iter().flat_map(|run| &run.log);
+        assert!(logs().all(|log| log.headings_only && log.relative && log.reference.len() > 100));
+        let mut turns = Model::new(robot);
+        ["wheel_diameter_ratio", "wheelbase"].iter().for_each(|effect| turns.add(effect).unwrap().free = true);
+        let (whole, part) = (fit(&poses, &asked(robot, &[])).unwrap(), fit(&gyro, &turns).unwrap());
+        let expected = of(&whole, "e_b").value / of(&whole, "e_s").value;
+        let (e_b, e_d) = (of(&part, "e_b"), of(&part, "e_d"));
+        assert!((e_b.value / expected - 1.0).abs() < 2e-3, "{e_b:?} {expected}");
+        let apart = |part: &Estimate, value: f64, whole: &Estimate| {
+            (part.value - value).abs() / libm::hypot(part.standard_error, whole.standard_error)
+        };
+        assert!(apart(e_b, expected, of(&whole, "e_b")) < 3.0, "{e_b:?} {expected}");
+        assert!(apart(e_d, of(&whole, "e_d").value, of(&whole, "e_d")) < 3.0, "{e_d:?} {:?}", of(&whole, "e_d"));
+    }
+}
+
+/// 40 sets of 3 + 3 squares, seeds 0 to 39: of 80 intervals of two standard errors, 12 or more miss the truth with a probability below 0.1 %
+/// if these are right (binomial).
+#[test]
+fn a_gyro_gives_ratios_in_intervals_that_hold() {
+    let robot = Robot::labmate();
+    let mut model = Model::new(&robot);
+    let truth = [("wheel_diameter_ratio", "e_d", 1.002), ("wheelbase", "e_b", 0.99)];
+    for (effect, parameter, value) in truth.iter().chain(&[("wheel_noise", "k_sqrt_m", 6e-4)]) {
+        model.set(effect, parameter, *value).unwrap();
+    }
+    let mut turns = Model::new(&robot);
+    truth.iter().for_each(|(effect, ..)| turns.add(effect).unwrap().free = true);
+    let mut beyond = Vec::new();
+    for seed in 0..40 {
+        let found = fit(
+            &gyro(&watched_at(&model, 3, seed, 100.0), (0.1, if seed % 2 == 0 { 0.02 } else { 0.5 }), seed),
+            &turns,
+        )
+        .unwrap();
+        let is_beyond = |(_, parameter, value): &&Number| {
+            let own = of(&found, parameter);
+            (own.value - value).abs() > 1.96 * own.standard_error
+        };
+        beyond.extend(truth.iter().filter(is_beyond).map(|(_, parameter, _)| (seed, *parameter)));
+    }
+    assert!(beyond.len() < 12, "{beyond:?}");
+}
+
+/// A heading that turns against the counts may be the gyro's fault or the wheels'.
+#[test]
+fn a_gyro_that_turns_against_the_counts_accuses_nobody_and_says_what_may_be() {
+    let mut data = gyro(&watched(&rough(&[]), 3, 2), (0.1, 0.1), 2);
+    logs(&mut data).for_each(|log| std::mem::swap(&mut log.left, &mut log.right));
+    let error = fit(&data, &asked(&Robot::labmate(), &[])).unwrap_err().to_string();
+    assert!(error.contains("turns opposite to the counts") && error.contains("heading_clockwise"), "{error}");
+    assert!(error.contains("wheels_exchanged"), "{error}");
+}
+
+#[test]
+fn a_gyro_is_written_as_headings_that_drift_and_read_back_as_it_was() {
+    let data = gyro(&watched(&rough(&[]), 2, 3), (0.1, 0.1), 3);
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("data");
+    umbmark_io::save(&data, &place, Existing::Keep).unwrap();
+    let read = umbmark_io::load(&place).unwrap();
+    for (a, b) in data.runs.iter().zip(&read.runs) {
+        let (a, b) = (a.log.as_ref().unwrap(), b.log.as_ref().unwrap());
+        assert!(a.reference == b.reference && b.headings_only && b.relative);
     }
 }

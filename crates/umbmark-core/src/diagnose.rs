@@ -36,14 +36,23 @@ pub use suspect::Suspect;
 pub use tracks::{Curve, CurvePoint, Dependence, Repeated, Suggestion, UnlistedLaw, what_repeats};
 pub use unseen::{Detectable, Unseen, Why};
 
-/// The usual first model: E_d and E_b, and with tracks E_s, all free.
+/// The usual first model: E_d and E_b and, with tracks that show distances, E_s, all free.
 pub fn first_model(data: &Dataset) -> Result<Model, FitError> {
     let robot = robot_of(data)?;
     let mut model = base_model(robot)?;
-    if Level::of(data) == Level::Tracks {
+    if Level::of(data) == Level::Tracks && !headings_only(data) {
         model.add(robot.drive.first_effects()[2])?.free = true;
     }
     Ok(model)
+}
+
+/// Whether all that was measured on the way is headings, which do not show E_s.
+fn headings_only(data: &Dataset) -> bool {
+    data.runs
+        .iter()
+        .filter_map(|run| run.log.as_ref())
+        .filter(|log| !log.reference.is_empty())
+        .all(|log| log.headings_only)
 }
 
 /// The model of the paper: E_d and E_b, both free; for other drives, the two effects with the same result on a square.

@@ -12,7 +12,9 @@ register! {
     pub KINDS: Kind = KIND in
     pose,
     position,
+    heading,
     motion,
+    gyro,
     mark,
 }
 
@@ -45,6 +47,11 @@ pub struct Kind {
 }
 
 impl Kind {
+    /// Whether only turns are told.
+    pub fn is_headings_only(&self) -> bool {
+        self.position == Told::Nothing
+    }
+
     /// Whether nothing is told of the way, only of where it ended.
     pub fn is_at_ends(&self) -> bool {
         self.position == Told::AtEnds
@@ -55,6 +62,9 @@ impl Kind {
         let log = run.log.as_ref();
         let poses = log.map(|log| &log.reference[..]).filter(|poses| !poses.is_empty());
         let (position, heading) = match (poses, run.returned) {
+            (Some(_), _) if log.is_some_and(|log| log.headings_only) => {
+                (Told::Nothing, if log.is_some_and(|log| log.relative) { Told::Steps } else { Told::InRoom })
+            }
             (Some(_), _) if log.is_some_and(|log| log.relative) => (Told::Steps, Told::Steps),
             (Some(poses), _) if poses.iter().any(|pose| pose.heading.is_some()) => (Told::InRoom, Told::InRoom),
             (Some(_), _) => (Told::InRoom, Told::Nothing),
@@ -94,6 +104,10 @@ mod tests {
         let mut steps = run(&[Some(0.0)], false);
         steps.log.as_mut().unwrap().relative = true;
         assert_eq!(name(&steps), Some("motion"));
+        steps.log.as_mut().unwrap().headings_only = true;
+        assert_eq!(name(&steps), Some("gyro"));
+        steps.log.as_mut().unwrap().relative = false;
+        assert_eq!(name(&steps), Some("heading"));
     }
 
     #[test]

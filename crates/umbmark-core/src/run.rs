@@ -1,10 +1,12 @@
 //! One drive of a robot: its wheel counts, the absolute poses measured on the way, and its return error.
 
 pub mod dead_reckoning;
+mod gyro;
 mod place;
 mod reference_track;
 pub mod resolution;
 
+pub use gyro::{Bias, headings_of};
 pub use place::{PoseRow, place};
 pub use reference_track::ReferenceTrack;
 
@@ -59,6 +61,9 @@ pub struct TickLog {
     /// up.
     #[serde(default)]
     pub relative: bool,
+    /// Whether these poses tell headings only; their positions are then those of the counted way along the headings.
+    #[serde(default)]
+    pub headings_only: bool,
     /// Defects that were corrected while it was read.
     pub mended: Mended,
     /// The recorder's clock at time 0 \[ns\], where that is of a calendar; else 0.

@@ -20,7 +20,7 @@ mod disturbances;
 mod edges;
 mod faults;
 mod returns;
-mod robust;
+pub(crate) mod robust;
 mod shared;
 mod stretches;
 mod suspicion;
@@ -466,13 +466,18 @@ fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting>
             drive_to(sample);
         }
         let (pose, [way, turned]) = drive_to(taken);
+        let expected = pose.compose(&body);
         Sighting {
             time: stamp,
             way,
             turned,
             rolled: way + 0.5 * wheelbase * turned,
-            expected: pose.compose(&body),
-            measured: (reference.x, reference.y, reference.heading),
+            expected,
+            measured: if seen.log.headings_only {
+                (expected.x, expected.y, reference.heading)
+            } else {
+                (reference.x, reference.y, reference.heading)
+            },
         }
     };
     seen.log.reference.iter().map(of).collect()
@@ -502,6 +507,7 @@ fn agreed(windows: &[Beside], reading: Reading, wheelbase: f64, courses: bool) -
 /// The values on which all runs agree, each with the scatter between parts of the data.
 fn mounting(seen: &[Seen], agreement: &Agreement, agreed: impl Fn(&[Beside]) -> Agreement) -> Mounting {
     let with_heading = has_headings(seen);
+    let with_position = !seen.iter().any(|seen| seen.log.headings_only);
     let parts = parts(seen, agreed);
     let [way, turns] = agreement.shown;
     let by_parts = |is_shown: bool, value: f64, of: &dyn Fn(&Agreement) -> f64| {
@@ -511,8 +517,8 @@ fn mounting(seen: &[Seen], agreement: &Agreement, agreed: impl Fn(&[Beside]) -> 
         let square = others.iter().map(|other| (other - value).powi(2)).sum::<f64>() / (n * (n - 1.0));
         (is_shown && others.len() > 2).then(|| Measured::of_parts(value, square.sqrt(), others.len()))
     };
-    let lever =
-        |k: usize| by_parts(turns && with_heading, agreement.lever_on_robot()[k], &|part| part.lever_on_robot()[k]);
+    let both = with_heading && with_position;
+    let lever = |k: usize| by_parts(turns && both, agreement.lever_on_robot()[k], &|part| part.lever_on_robot()[k]);
     let yaw = agreement.yaw();
     Mounting {
         middle: seen.iter().map(|seen| seen.late.middle - seen.log.time[0]).sum::<f64>() / seen.len().max(1) as f64,
@@ -524,8 +530,8 @@ fn mounting(seen: &[Seen], agreement: &Agreement, agreed: impl Fn(&[Beside]) -> 
         rate: of_runs(seen, |late| (late.rate, late.covariance[2])),
         ahead: lever(0),
         left: lever(1),
-        yaw: by_parts(way && with_heading, yaw, &|part| yaw + wrap(part.yaw() - yaw)),
-        scale: by_parts(way, agreement.scale(), &Agreement::scale),
+        yaw: by_parts(way && both, yaw, &|part| yaw + wrap(part.yaw() - yaw)),
+        scale: by_parts(way && with_position, agreement.scale(), &Agreement::scale),
         gain: by_parts(turns, agreement.turn[0], &|part| part.turn[0]),
         drift: by_parts(way, agreement.turn[1], &|part| part.turn[1]),
     }

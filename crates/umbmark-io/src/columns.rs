@@ -11,6 +11,7 @@ pub(super) enum Quantity {
     Length,
     Angle,
     Time,
+    TurnRate,
     /// Numbers and words, whose names have no unit.
     Bare,
 }
@@ -34,7 +35,9 @@ impl Quantity {
         const LENGTHS: [Unit; 3] = [unit("m", 1.0, 1e6), unit("mm", 1e3, 1e9), unit("cm", 1e2, 1e8)];
         const ANGLES: [Unit; 2] = [unit("rad", 1.0, 1e6), unit("deg", 180.0 / std::f64::consts::PI, 1e8)];
         const TIMES: [Unit; 1] = [unit("s", 1.0, 1e12)];
+        const TURN_RATES: [Unit; 2] = [unit("rad_s", 1.0, 1e4), unit("deg_s", 180.0 / std::f64::consts::PI, 1e6)];
         match self {
+            Quantity::TurnRate => &TURN_RATES,
             Quantity::Length => &LENGTHS,
             Quantity::Angle => &ANGLES,
             Quantity::Time => &TIMES,
@@ -47,6 +50,7 @@ impl Quantity {
             Quantity::Length => "length",
             Quantity::Angle => "angle",
             Quantity::Time => "time",
+            Quantity::TurnRate => "turn rate",
             Quantity::Bare => "number",
         }
     }

@@ -7,6 +7,7 @@ use super::lines::Lines;
 use umbmark_core::dataset::{Mended, ReferencePose, TickLog};
 use umbmark_core::drive::{Robot, roll_over};
 use umbmark_core::prose::counted;
+use umbmark_core::run::headings_of;
 
 /// No wheel of a robot rolls faster \[m/s\].
 const FASTEST: f64 = 100.0;
@@ -37,6 +38,10 @@ pub(super) struct Recording {
     pub reference: Vec<ReferencePose>,
     /// Whether these poses are sums of the steps of a reference that tells motion only.
     pub relative: bool,
+    /// Whether they tell headings only.
+    pub headings_only: bool,
+    /// Whether their headings are the rates of a gyro, not yet added up.
+    pub rates: bool,
     /// Rows at which the robot stood on a mark, and its name.
     pub marked: Vec<(usize, String)>,
 }
@@ -52,6 +57,7 @@ impl Recording {
     ) -> Result<(TickLog, Vec<(usize, String)>), DatasetError> {
         let mut mended = Mended::default();
         order::put_in_order(&mut self, &mut mended, warnings)?;
+        self.add_up_rates();
         if self.per_cycle {
             self.add_up();
         }
@@ -78,9 +84,19 @@ impl Recording {
             Some(robot) => robot.axle_ticks(robot.encoder.wiring().counters(ticks)),
             None => ticks,
         };
-        let (reference, relative) = (self.reference, self.relative);
-        let log = TickLog { time: self.time, left, right, reference, relative, mended, ..TickLog::default() };
+        let (time, reference, relative, headings_only) = (self.time, self.reference, self.relative, self.headings_only);
+        let log = TickLog { time, left, right, reference, relative, headings_only, mended, ..TickLog::default() };
         Ok((log, self.marked))
+    }
+
+    /// Makes headings of the rates of a gyro.
+    fn add_up_rates(&mut self) {
+        if self.rates {
+            let time: Vec<f64> = self.reference.iter().map(|pose| self.time[pose.sample]).collect();
+            let rates: Vec<f64> = self.reference.iter().map(|pose| pose.heading.unwrap_or(0.0)).collect();
+            let headings = headings_of(&time, &rates);
+            self.reference.iter_mut().zip(headings).for_each(|(pose, heading)| pose.heading = Some(heading));
+        }
     }
 
     fn add_up(&mut self) {

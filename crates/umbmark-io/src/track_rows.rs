@@ -5,7 +5,7 @@ use super::lines::Lines;
 use super::recording::time_error;
 use std::f64::consts::TAU;
 use umbmark_core::prose::counted;
-use umbmark_core::run::{PoseRow, ReferenceTrack};
+use umbmark_core::run::{PoseRow, ReferenceTrack, headings_of};
 
 /// The rows of a track.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +18,8 @@ pub(super) struct TrackRows {
     pub poses: Vec<PoseRow>,
     /// Rows where the body was not seen.
     pub lost: usize,
+    /// Whether the headings are the rates of a gyro, and nothing else was measured.
+    pub rates: bool,
 }
 
 /// More late rows than this share are no accident.
@@ -61,8 +63,14 @@ impl TrackRows {
         Ok(())
     }
 
-    /// Counts full turns of the headings.
+    /// Counts full turns of the headings; adds up the rates of a gyro.
     pub fn count_turns(&mut self) {
+        if self.rates {
+            let rates: Vec<f64> = self.poses.iter().map(|pose| pose.2.unwrap_or(0.0)).collect();
+            let headings = headings_of(&self.time, &rates);
+            self.poses.iter_mut().zip(headings).for_each(|(pose, heading)| pose.2 = Some(heading));
+            return;
+        }
         count_turns(self.poses.iter_mut().filter_map(|pose| pose.2.as_mut()));
     }
 

@@ -99,11 +99,13 @@ fn text(data: &Dataset, learnt: &Learnt, options: &Options, terminal: bool) -> S
     let header = ["added", "p", "error [mm]", "left out [mm]", "[deg]", "AICc"];
     text += &table(&header, learnt.steps.iter().map(row));
     text += "\n\n";
+    let logs = || data.runs.iter().filter_map(|run| run.log.as_ref());
     let of = match learnt.diagnosis.level {
         Level::Ends => "end poses",
-        Level::Tracks if data.runs.iter().filter_map(|run| run.log.as_ref()).all(|log| log.relative) => {
-            "all measured steps"
+        Level::Tracks if logs().all(|log| log.headings_only) => {
+            "all poses on the counted way along the measured headings"
         }
+        Level::Tracks if logs().all(|log| log.relative) => "all measured steps",
         Level::Tracks => "all measured poses",
     };
     let legend = format!(

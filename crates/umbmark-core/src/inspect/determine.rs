@@ -51,6 +51,8 @@ const SMALL: f64 = 0.5;
 const AT_FIRST: f64 = 1.0;
 /// Standard errors beyond this say that the data show nothing.
 const NOT_SHOWN: f64 = 0.5;
+/// Standard deviation of a gyro's own rate that some rest has shown \[rad/s\].
+const OWN_RATE: f64 = 1e-3;
 /// Standard deviations of a START that nobody measured \[m, rad\].
 const START_UNKNOWN: (f64, f64) = (1.0, 0.5);
 
@@ -75,6 +77,10 @@ pub(super) fn determine(
         let because = match (yes, column) {
             _ if seen.measured == 0 => NOTHING,
             _ if seen.poses == 0 => NO_MOTION,
+            (true, _) if seen.headings_only => "measured headings show it",
+            (false, 2) if seen.headings_only => {
+                "headings do not show distances; measure a straight leg by tape, or a pose on the way"
+            }
             (true, 2) if seen.stepwise => "measured steps are distances, as far as the sensor's own scale is right",
             (true, _) if seen.stepwise => "measured steps show it",
             (true, 2) if seen.tracked => "absolute poses on the way measure distances",
@@ -103,6 +109,7 @@ pub(super) fn determine(
 }
 
 /// The motion of a piece, and where it ends.
+#[derive(Clone, Copy)]
 struct Piece {
     /// The believed pose at its end.
     pose: Pose2,
@@ -128,20 +135,22 @@ impl Piece {
 
 /// Everything that was measured so far.
 ///
-/// The state is (q, θ) of the pose error δp = q + θ J p, which stay constant while nothing is added, and the departures of the three
-/// quantities.
+/// The state is (q, θ) of the pose error δp = q + θ J p, which stay constant while nothing is added, the departures of the three
+/// quantities, and the rate of a gyro by itself.
 struct Seen<'a> {
     robot: &'a Robot,
     path: Option<&'a Path>,
     chain: Chain<Dual>,
     noise: Noise,
-    covariance: SMatrix<f64, 6, 6>,
+    covariance: SMatrix<f64, 7, 7>,
     /// Poses and returns that there are, and those of them whose driving is known.
     measured: usize,
     poses: usize,
     /// Whether there are poses on the way, and whether these tell steps only.
     tracked: bool,
     stepwise: bool,
+    /// Whether they tell headings only.
+    headings_only: bool,
     /// Senses of driving of the runs.
     directions: Vec<Option<Direction>>,
 }
@@ -164,8 +173,8 @@ impl<'a> Seen<'a> {
         let mut covariance = SMatrix::zeros();
         (3..6).for_each(|k| covariance[(k, k)] = AT_FIRST * AT_FIRST);
         let (measured, poses, directions) = (0, 0, Vec::new());
-        let (tracked, stepwise) = (false, false);
-        Seen { robot, path, chain, noise, covariance, measured, poses, tracked, stepwise, directions }
+        let (tracked, stepwise, headings_only) = (false, false, false);
+        Seen { robot, path, chain, noise, covariance, measured, poses, tracked, stepwise, headings_only, directions }
     }
 
     /// What a run adds.
@@ -233,6 +242,9 @@ impl<'a> Seen<'a> {
             StartKnown::AtRest => reference,
             StartKnown::OnTheWay => START_UNKNOWN,
         });
+        self.headings_only |= log.headings_only;
+        self.drift_anew();
+        let mut before = log.time[log.reference[0].sample];
         let mut seen = poses.iter().peekable();
         let (mut from, mut moved) = (Pose2::IDENTITY, 0);
         let mut last: Option<(Pose2, [Pose2; 3])> = None;
@@ -241,8 +253,19 @@ impl<'a> Seen<'a> {
         for (end, piece) in ends[1..].iter().zip(&pieces) {
             self.roll(&from, piece);
             (from, gone) = (piece.pose, gone + piece.way);
-            while let Some((_, heading)) = seen.next_if(|(sample, _)| sample <= end) {
-                if log.relative {
+            while let Some((sample, heading)) = seen.next_if(|(sample, _)| sample <= end) {
+                let seconds = log.time[*sample] - std::mem::replace(&mut before, log.time[*sample]);
+                if log.headings_only {
+                    let before = last.replace((piece.pose, piece.slopes));
+                    match before.filter(|_| log.relative) {
+                        Some(before) => self.see_heading(&piece.since(&before), reference.1, seconds),
+                        None if log.relative => {}
+                        None => self.see_heading(piece, reference.1, 0.0),
+                    }
+                    if log.relative {
+                        self.begin((0.0, 0.0));
+                    }
+                } else if log.relative {
                     let step = last.replace((piece.pose, piece.slopes)).map(|before| piece.since(&before));
                     if let Some(step) = step {
                         self.see(&step, *heading, reference);
@@ -326,15 +349,29 @@ impl<'a> Seen<'a> {
     fn see(&mut self, at: &Piece, heading: bool, (position, angle): (f64, f64)) {
         self.poses += 1;
         let [a, b, c] = &at.slopes;
-        self.update([1.0, 0.0, -at.pose.y, a.x, b.x, c.x], position);
-        self.update([0.0, 1.0, at.pose.x, a.y, b.y, c.y], position);
+        self.update([1.0, 0.0, -at.pose.y, a.x, b.x, c.x, 0.0], position);
+        self.update([0.0, 1.0, at.pose.x, a.y, b.y, c.y, 0.0], position);
         if heading {
-            self.update([0.0, 0.0, 1.0, a.heading, b.heading, c.heading], angle);
+            self.update([0.0, 0.0, 1.0, a.heading, b.heading, c.heading, 0.0], angle);
         }
     }
 
-    fn update(&mut self, row: [f64; 6], std_dev: f64) {
-        let row = SVector::<f64, 6>::from(row);
+    /// A heading is measured at the end of a piece, by a gyro so many seconds after the one before.
+    fn see_heading(&mut self, at: &Piece, angle: f64, seconds: f64) {
+        self.poses += 1;
+        let [a, b, c] = at.slopes.each_ref().map(|slope| slope.heading);
+        self.update([0.0, 0.0, 1.0, a, b, c, seconds], angle);
+    }
+
+    /// A gyro's own rate is unknown when a run begins.
+    fn drift_anew(&mut self) {
+        self.covariance.fill_row(6, 0.0);
+        self.covariance.fill_column(6, 0.0);
+        self.covariance[(6, 6)] = OWN_RATE * OWN_RATE;
+    }
+
+    fn update(&mut self, row: [f64; 7], std_dev: f64) {
+        let row = SVector::<f64, 7>::from(row);
         let gain = self.covariance * row;
         let variance = row.dot(&gain) + std_dev * std_dev;
         if variance.is_finite() && variance > 0.0 {

@@ -157,10 +157,12 @@ impl ReferenceFacts {
                 rate: if last > first { reference.len() as f64 / (last - first) } else { 0.0 },
                 coverage,
                 longest_gap,
-                noise: scatter(&groups, |pose, mean| vec![pose.x - mean.x, pose.y - mean.y]),
+                noise: scatter(&groups, |pose, mean| vec![pose.x - mean.x, pose.y - mean.y])
+                    .filter(|_| !log.headings_only),
                 heading_noise: scatter(&groups, |pose, mean| {
                     pose.heading.zip(mean.heading).map(|(a, b)| wrap(a - b)).into_iter().collect()
-                }),
+                })
+                .filter(|_| !(log.headings_only && log.relative)),
             }
         })
     }

@@ -306,6 +306,9 @@ impl<T: Scalar> Noise<T> {
         for (k, sum) in turned.iter_mut().enumerate() {
             *sum = metre * T::from(growth.heading_per_metre[k]) + radian * T::from(growth.heading_per_radian[k]);
         }
+        if growth.heading_by_gyro[5] > 0.0 {
+            turned.iter_mut().zip(growth.heading_by_gyro).for_each(|(sum, own)| *sum += T::from(own));
+        }
         let [xx, xy, yy, x, y, own] = turned;
         let [forward_xx, forward_xy, forward_yy] = growth.forward;
         let across = sideways * T::from(growth.rolled);

@@ -2,6 +2,7 @@
 
 mod blocks;
 mod columns;
+mod drifts;
 mod laid;
 mod pieces;
 mod readings;
@@ -19,6 +20,7 @@ use crate::path::{Direction, Path};
 use crate::replay::{Moment, ReplayError, Track};
 use crate::run::{Run, StartKnown};
 use crate::setup::{RunSetup, Setup};
+pub use drifts::Gyro;
 pub use starts::Stretch;
 
 use blocks::blocks;
@@ -47,6 +49,8 @@ pub struct Growth {
     pub heading_per_metre: [f64; 6],
     /// Σ |dθ| g gᵀ over the pieces \[rad\].
     pub heading_per_radian: [f64; 6],
+    /// Of a gyro, the variance that its own noise adds to the heading, times g gᵀ \[rad²\].
+    pub heading_by_gyro: [f64; 6],
     /// Σ dr f fᵀ over the pieces, f the direction of the heading: xx, xy, yy.
     pub forward: [f64; 3],
     /// Way driven \[m\].
@@ -62,12 +66,18 @@ pub struct Block {
     pub first: usize,
     /// How many there are.
     pub count: usize,
+    /// How many of them have a position.
+    pub positions: usize,
     /// How many of them have a heading.
     pub headings: usize,
     /// Mean predicted position of the tracked point, and mean predicted heading of the robot.
     pub place: Pose2,
     /// Mean rate of change of the predicted pose of what is tracked \[m/s, m/s, rad/s\].
     pub velocity: [f64; 3],
+    /// How a gyro's heading moves here for what it adds in the run, see [`Gyro`]; else zero.
+    pub drifts: [[f64; 3]; 2],
+    /// Variance that a gyro's own noise adds to the heading since the block before \[rad²\].
+    pub wander: f64,
     /// How the error grows from the last observation of the previous block to the last of this one.
     pub growth: Growth,
     /// The same, each piece weighted by the share of the block's observations that see it: the covariance of what is added to the error
@@ -121,6 +131,10 @@ pub struct ObservedRun {
     /// Whether the reference tells only the motion from each block to the next. Residuals and derivatives are then those of this motion,
     /// turned into the frame of the room, and zero in the first block and where the run restarts.
     pub relative: bool,
+    /// Whether the reference tells headings only. Residuals and derivatives of positions are then zero.
+    pub headings_only: bool,
+    /// Of a gyro, what is known of it before the fit.
+    pub gyro: Option<Gyro>,
     /// How far the left and the right wheel roll in one count \[m\]; 0 where readings are not whole counts.
     pub counts: [f64; 2],
     /// Nominal distance of the wheels \[m\].
@@ -212,6 +226,8 @@ struct Seen<'a> {
     start_seen: bool,
     /// Of a reference that tells motion only, how many of its steps are added up to each measurement; empty of others.
     added: Vec<f64>,
+    headings_only: bool,
+    gyro: Option<Gyro>,
     counts: [f64; 2],
     readings: Arc<[f64]>,
 }
@@ -230,7 +246,8 @@ impl ObservedRun {
         let uneven = readings::between_readings(log, robot, late);
         let is_lost = |pose: usize| uneven[pose] || found.is_some_and(|found| found.is_lost(pose));
         let mut kept: Vec<usize> = (0..log.reference.len()).filter(|pose| !is_lost(*pose)).collect();
-        if log.relative {
+        let relative = log.relative && !log.headings_only;
+        if relative {
             kept = steps::apart(log, robot, &kept);
         }
         let samples = kept.iter().map(|pose| log.reference[*pose].sample);
@@ -248,19 +265,23 @@ impl ObservedRun {
         let jumps: Vec<usize> = jumps.map(|jump| kept.partition_point(|pose| *pose < jump.pose)).collect();
         let at_start = track.seen_after().first().is_some_and(|made| track.way_before(*made) < AT_START);
         let start_seen = at_start || log.start.known == StartKnown::OnTheWay;
-        let added: Vec<f64> = if log.relative { steps::added_up(&kept) } else { Vec::new() };
+        let added: Vec<f64> = if relative { steps::added_up(&kept) } else { Vec::new() };
         let readings = (0..log.time.len()).filter(|sample| !log.is_put_in(*sample));
         let readings = readings.map(|sample| log.time[sample] - log.time[0]).collect();
-        let seen = Seen { measured, jumps: &jumps, start_seen, added, counts: log.count_lengths(robot), readings };
+        let (counts, headings_only, gyro) = (log.count_lengths(robot), log.headings_only, Gyro::of(log));
+        let seen = Seen { measured, jumps: &jumps, start_seen, added, headings_only, gyro, counts, readings };
         let observed = ObservedRun::laid(&run.name, run.direction, track, seen, &Model::new(robot));
         Ok((observed.blocks.len() >= FEWEST).then_some(observed))
     }
 
-    /// A run yet to be driven, as a model predicts it; `headings` says whether they will be measured.
-    pub fn planned(track: Track, direction: Direction, headings: bool, model: &Model) -> ObservedRun {
+    /// A run yet to be driven, as a model predicts it; it will be measured as another one was.
+    pub fn planned(track: Track, direction: Direction, like: &ObservedRun, model: &Model) -> ObservedRun {
+        let headings = like.blocks.iter().any(|block| block.headings > 0);
         let measured = track.sights().iter().map(|_| (0.0, 0.0, headings.then_some(0.0))).collect();
-        let seen =
-            Seen { measured, jumps: &[], start_seen: true, added: Vec::new(), counts: [0.0; 2], readings: [].into() };
+        let added = if like.relative { vec![1.0; track.sights().len()] } else { Vec::new() };
+        let ObservedRun { headings_only, gyro, .. } = *like;
+        let (counts, readings) = ([0.0; 2], [].into());
+        let seen = Seen { measured, jumps: &[], start_seen: true, added, headings_only, gyro, counts, readings };
         ObservedRun::laid("", Some(direction), track, seen, model)
     }
 
@@ -269,13 +290,14 @@ impl ObservedRun {
         name: &str,
         direction: Option<Direction>,
         track: Track,
-        Seen { measured, jumps, start_seen, added, counts, readings }: Seen,
+        Seen { measured, jumps, start_seen, added, headings_only, gyro, counts, readings }: Seen,
         model: &Model,
     ) -> ObservedRun {
         let chain = model.chain();
         let relative = !added.is_empty();
         let mut blocks = blocks(&track, &measured, jumps, (&chain, relative));
         blocks.iter_mut().zip(&added).for_each(|(block, steps)| block.steps = *steps);
+        blocks.iter_mut().filter(|_| headings_only).for_each(|block| block.positions = 0);
         let (name, log, track, seen) = (name.to_owned(), name.to_owned(), Arc::new(track), Arc::clone(&measured));
         let (moments, places) = ([].into(), [].into());
         let mut observed = ObservedRun {
@@ -291,11 +313,14 @@ impl ObservedRun {
             linear: false,
             start_seen,
             relative,
+            headings_only,
+            gyro,
             counts,
             wheelbase: model.robot().drive.wheelbase(),
             readings,
         };
         observed.resolve();
+        observed.let_drift();
         observed.lay_along(&chain);
         observed
     }

@@ -8,11 +8,12 @@ use super::noise::Noise;
 use super::observed::{Block, ObservedRun};
 use crate::geometry::{Eight, Scalar};
 use crate::geometry::{Instructions, by_width};
+use std::ops::Range;
 
 /// Standard deviation of a START that is not trusted \[m, rad\]: larger than any misplacement, so it uses up one pose.
 const FREE_START: f64 = 1.0;
 
-/// Standard deviation of a heading that was not measured \[rad\].
+/// Standard deviation of a position or heading that was not measured \[m, rad\].
 const NOT_MEASURED: f64 = 1e6;
 
 /// Columns of a run in which noise is independent with unit variance: two or three rows a block.
@@ -77,20 +78,23 @@ impl Noise {
     #[inline(always)]
     fn whiten_plainly(&self, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> Whitened {
         let mut out = Whitened {
-            columns: columns.len() + 1,
-            values: Vec::with_capacity(3 * (columns.len() + 1) * run.blocks.len()),
+            columns: columns.len() + 1 + run.drifts().len(),
+            values: Vec::with_capacity(3 * (columns.len() + 1 + run.drifts().len()) * run.blocks.len()),
             block: Vec::with_capacity(3 * run.blocks.len()),
             log_scale: 0.0,
         };
         let mut filter = Filter::new(self, run, columns);
         for index in 0..run.blocks.len() {
             let rows = filter.take_in(index);
-            for row in &filter.states.new[..rows] {
+            for row in &filter.states.new[rows.clone()] {
                 out.values.extend_from_slice(row);
             }
-            out.block.extend(std::iter::repeat_n(index, rows));
+            out.block.extend(std::iter::repeat_n(index, rows.len()));
         }
         out.log_scale = filter.log_scale();
+        for sd in run.drifts().iter().rev() {
+            out.less_a_common(*sd);
+        }
         out.less_a_common(self.reference_delay);
         out
     }
@@ -108,29 +112,48 @@ impl Noise<Eight> {
 
     #[inline(always)]
     fn products_plainly(&self, run: &ObservedRun, columns: &[&[[f64; 3]]]) -> (Vec<Eight>, Eight) {
-        let width = columns.len() + 1;
+        let width = columns.len() + 1 + run.drifts().len();
         let pairs: Vec<(usize, usize)> = (0..width).flat_map(|i| (0..=i).map(move |j| (i, j))).collect();
         let mut sums = vec![Eight::from(0.0); pairs.len()];
         let mut filter = Filter::new(self, run, columns);
         for index in 0..run.blocks.len() {
             let rows = filter.take_in(index);
-            if rows == 0 {
+            if rows.is_empty() {
                 continue;
             }
             let [first, second, third] = filter.states.new.each_ref().map(|row| &row[..width]);
             for (sum, (i, j)) in sums.iter_mut().zip(&pairs) {
-                let plane = first[*i] * first[*j] + second[*i] * second[*j];
-                *sum += if rows == 3 { plane + third[*i] * third[*j] } else { plane };
+                let plane = || first[*i] * first[*j] + second[*i] * second[*j];
+                *sum += match (rows.start, rows.end) {
+                    (0, 3) => plane() + third[*i] * third[*j],
+                    (0, _) => plane(),
+                    _ => third[*i] * third[*j],
+                };
             }
         }
-        // Whitening for the delay that the whole run shares; its column is the last.
+        let mut log_scale = filter.log_scale();
+        // Whitening for what the whole run shares, the last column first; the delay remains.
+        for (k, sd) in run.drifts().iter().enumerate().rev() {
+            let (last, variance) = (columns.len() + 1 + k, sd * sd);
+            let at = |i: usize, j: usize| i.max(j) * (i.max(j) + 1) / 2 + i.min(j);
+            let grown = Eight::from(1.0) + Eight::from(variance) * sums[at(last, last)];
+            let share = Eight::from(variance) / grown;
+            for i in 0..last {
+                for j in 0..=i {
+                    let less = share * sums[at(i, last)] * sums[at(j, last)];
+                    sums[at(i, j)] = sums[at(i, j)] - less;
+                }
+            }
+            log_scale += Eight::from(0.5) * grown.logarithm();
+        }
+        let width = columns.len() + 1;
         let sum = |i: usize, j: usize| sums[i.max(j) * (i.max(j) + 1) / 2 + i.min(j)];
         let variance = self.reference_delay * self.reference_delay;
         let grown = Eight::from(1.0) + variance * sum(width - 1, width - 1);
         let share = variance / grown;
         let less = |i: usize, j: usize| sum(i, j) - share * sum(i, width - 1) * sum(j, width - 1);
         let products = (0..width - 1).flat_map(|i| (0..width - 1).map(move |j| (i, j))).map(|(i, j)| less(i, j));
-        (products.collect(), filter.log_scale() + Eight::from(0.5) * grown.logarithm())
+        (products.collect(), log_scale + Eight::from(0.5) * grown.logarithm())
     }
 }
 
@@ -148,20 +171,20 @@ struct Filter<'a, T> {
 }
 
 impl<'a, T: Scalar> Filter<'a, T> {
-    /// At START. Behind the columns there is one more, the velocities of the blocks.
+    /// At START. Behind the columns there are the velocities of the blocks and, of a gyro, how it drifts.
     #[inline(always)]
     fn new(noise: &'a Noise<T>, run: &'a ObservedRun, columns: &'a [&'a [[f64; 3]]]) -> Filter<'a, T> {
-        let (states, p) = (States::new(columns.len() + 1), noise.start(run.start_seen));
+        let (states, p) = (States::new(columns.len() + 1 + run.drifts().len()), noise.start(run.start_seen));
         Filter { noise, run, columns, states, p, scale: T::from(1.0), log_scale: T::from(0.0) }
     }
 
-    /// Processes the next block; returns the number of new rows.
+    /// Processes the next block; returns which rows are new.
     #[inline(always)]
-    fn take_in(&mut self, index: usize) -> usize {
+    fn take_in(&mut self, index: usize) -> Range<usize> {
         let (block, noise) = (&self.run.blocks[index], self.noise);
         if self.run.relative {
             if !self.run.has_step(index) {
-                return 0;
+                return 0..0;
             }
             // A step begins where the last one ended, exactly.
             self.p = diagonal([T::from(0.0); 3]);
@@ -170,10 +193,11 @@ impl<'a, T: Scalar> Filter<'a, T> {
         if block.afresh {
             add(&mut self.p, &noise.start(true));
         }
-        let Some(stage) = Stage::new(block, &mut self.p, noise) else { return 0 };
-        let rows = if block.headings > 0 { 3 } else { 2 };
-        self.states.take_in(&stage, self.columns.iter().map(|column| &column[index]).chain([&block.velocity]));
-        for diagonal in &stage.diagonal[..rows] {
+        let Some(stage) = Stage::new(block, &mut self.p, noise) else { return 0..0 };
+        let rows = block.rows();
+        let shared = [&block.velocity].into_iter().chain(&block.drifts[..self.run.drifts().len()]);
+        self.states.take_in(&stage, self.columns.iter().map(|column| &column[index]).chain(shared));
+        for diagonal in &stage.diagonal[rows.clone()] {
             self.scale *= *diagonal;
         }
         // One logarithm of many factors.
@@ -205,7 +229,10 @@ impl<T: Scalar> Noise<T> {
         let (shared, within) = (self.reference_position, self.within_position);
         let steps = T::from(block.steps);
         let [in_position, in_heading] = block.resolution.map(T::from);
-        let position = shared * shared * steps + within * within / T::from(block.count as f64) + in_position;
+        let position = match block.positions {
+            0 => T::from(NOT_MEASURED * NOT_MEASURED),
+            count => shared * shared * steps + within * within / T::from(count as f64) + in_position,
+        };
         let (shared, within) = (self.reference_heading, self.within_heading);
         let heading = match block.headings {
             0 => T::from(NOT_MEASURED * NOT_MEASURED),
@@ -219,6 +246,15 @@ impl<T: Scalar> Noise<T> {
             [y * x, position + y * y, y * turn],
             [turn * x, turn * y, heading + turn * turn],
         ]
+    }
+}
+
+impl Block {
+    /// Which of x, y and heading were measured.
+    #[inline(always)]
+    fn rows(&self) -> Range<usize> {
+        let begin = if self.positions > 0 { 0 } else { 2 };
+        begin..if self.headings > 0 { 3 } else { 2 }
     }
 }
 
@@ -377,6 +413,7 @@ mod tests {
         Growth {
             heading_per_metre: growth.heading_per_metre.map(|sum| share * sum),
             heading_per_radian: growth.heading_per_radian.map(|sum| share * sum),
+            heading_by_gyro: [0.0; 6],
             forward: growth.forward.map(|sum| share * sum),
             way: share * growth.way,
             rolled: share * growth.rolled,
@@ -403,9 +440,12 @@ mod tests {
                 Block {
                     first: 2 * i,
                     count: 2,
+                    positions: 2,
                     headings,
                     place: Pose2::new(*x, *y, 0.0),
                     velocity: [0.3 * i as f64, 0.1, 0.5],
+                    drifts: [[0.0; 3]; 2],
+                    wander: 0.0,
                     growth,
                     growth_seen: shared(&growth, 0.6),
                     growth_of_mean: shared(&growth, 0.45),
@@ -431,6 +471,8 @@ mod tests {
             linear: false,
             start_seen,
             relative: false,
+            headings_only: false,
+            gyro: None,
             counts: [0.0; 2],
             wheelbase: 0.34,
             readings: [].into(),

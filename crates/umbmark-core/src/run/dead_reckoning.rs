@@ -36,7 +36,7 @@ pub fn computed_end(log: &TickLog, robot: &Robot) -> (Option<Pose2>, f64) {
 }
 
 #[inline]
-fn for_each_pose(log: &TickLog, robot: &Robot, mut visit: impl FnMut(&Pose2)) {
+pub(super) fn for_each_pose(log: &TickLog, robot: &Robot, mut visit: impl FnMut(&Pose2)) {
     let (per_tick, drive) = (robot.metres_per_tick(), &robot.drive);
     let (mut pose, mut left, mut right) = (Pose2::IDENTITY, 0.0, 0.0);
     for (l, r) in log.left.iter().zip(&log.right) {

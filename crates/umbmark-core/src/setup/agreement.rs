@@ -89,18 +89,26 @@ impl Reading {
         let [x, y] = window.moved;
         let [left, right] = rolled.travel;
         let (left, area) = if self.opposed { (-left, -rolled.area) } else { (left, rolled.area) };
-        Told {
+        let told = Told {
             moved: [cosine * x + sine * y, cosine * y - sine * x],
             turned: sign * window.turned,
             way: 0.5 * (left + right),
             turn: (right - left) / wheelbase,
-            area: if window.with_heading { area / wheelbase } else { 0.0 },
+            area: if window.with_heading && !window.headings_only { area / wheelbase } else { 0.0 },
             with_heading: window.with_heading,
-        }
+        };
+        if window.headings_only { told.along_headings() } else { told }
     }
 }
 
 impl Told {
+    /// Where nothing but headings was measured, the body moves as the wheels do along them: neither agrees nor disagrees.
+    fn along_headings(self) -> Told {
+        let (sinc, half) = (0.5 * self.turned).sinc_cos();
+        let ahead = self.way * sinc;
+        Told { moved: [ahead * half, ahead * 0.5 * self.turned * sinc], ..self }
+    }
+
     /// Where only the course is known, it points back in a window that is driven against most others.
     fn along(self, ahead: f64) -> Told {
         let against = !self.with_heading && self.way * ahead < 0.0;
@@ -279,8 +287,15 @@ mod tests {
                 let moved = [after.x - before.x, after.y - before.y];
                 let turned = after.heading - before.heading;
                 let heading = before.heading;
-                let window =
-                    Window { from: 0.0, to: 0.4, moved, heading, turned, raw_turn: turned, with_heading: true };
+                let window = Window {
+                    moved,
+                    heading,
+                    turned,
+                    raw_turn: turned,
+                    with_heading: true,
+                    to: 0.4,
+                    ..Window::default()
+                };
                 (window, Rolling { travel: [way - 0.2 * turn, way + 0.2 * turn], area: 0.0 })
             })
             .collect()

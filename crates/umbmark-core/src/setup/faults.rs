@@ -40,6 +40,8 @@ pub enum Fault {
     },
     /// Measured headings grow clockwise.
     HeadingClockwise,
+    /// Headings, which are all that was measured, turn opposite to the counts.
+    TurnsOpposite,
     /// x and y are of a left-handed frame, and headings are not.
     PositionsMirrored,
     /// x and y are exchanged.
@@ -117,6 +119,10 @@ impl Fault {
             Fault::HeadingClockwise => {
                 "the measured heading grows clockwise: it turns opposite to the robot and its track".into()
             }
+            Fault::TurnsOpposite => {
+                "the measured heading turns opposite to the counts: left and right are exchanged, both count backward, or it grows clockwise, as \
+                 that of a gyro upside down; headings alone do not say which".into()
+            }
             Fault::PositionsMirrored => {
                 "the measured track is mirrored: x and y are of a left-handed frame, the headings are not".into()
             }
@@ -171,9 +177,14 @@ impl Fault {
                 format!("write {} under [robot] in robot.toml", lines.join(" and "))
             }
             Fault::HeadingClockwise => "write heading_clockwise = true under [reference] in robot.toml".into(),
+            Fault::TurnsOpposite => {
+                "look, and write heading_clockwise = true under [reference] in robot.toml, or wheels_exchanged = true, or \
+                 left_counts_backward = true and right_counts_backward = true, under [robot]"
+                    .into()
+            }
             Fault::PositionsMirrored => "write y_mirrored = true under [reference] in robot.toml".into(),
             Fault::PositionsExchanged => "exchange the columns x_ref and y_ref, or their names".into(),
-            Fault::HeadingInDegrees => "call the column theta_ref_deg".into(),
+            Fault::HeadingInDegrees => "call the column theta_ref_deg (of a gyro, gyro_deg_s)".into(),
             Fault::LengthsIn { unit: unit @ ("mm" | "cm"), .. } => format!("call the columns x_ref_{unit} and y_ref_{unit}"),
             Fault::LengthsIn { .. } => "convert the columns to metres".into(),
             Fault::OtherScale { .. } => "check the unit of the positions and [robot] in robot.toml".into(),
@@ -216,6 +227,9 @@ impl Fault {
                 changes.join(" and ")
             }
             Fault::HeadingClockwise => "change the sign of the measured heading".into(),
+            Fault::TurnsOpposite => {
+                "change the sign of the measured heading, or exchange the columns of the two wheels".into()
+            }
             Fault::PositionsMirrored => "change the sign of y".into(),
             Fault::PositionsExchanged => "exchange the columns of x and y".into(),
             Fault::HeadingInDegrees => "write the measured heading in radians".into(),
@@ -343,7 +357,18 @@ pub(super) fn look(windows: &[Beside], robot: &Robot) -> (Vec<Fault>, Reading) {
     if degrees {
         faults.push(Fault::HeadingInDegrees);
     }
-    faults.extend(turned(&best, reading, robot.drive.kind()));
+    let turned = turned(&best, reading, robot.drive.kind());
+    let headings_only = windows.iter().all(|(window, _)| window.headings_only);
+    let opposite = |fault: &Fault| match fault {
+        Fault::Exchanged | Fault::HeadingClockwise | Fault::PositionsMirrored | Fault::PositionsExchanged => true,
+        Fault::Backward { counters, .. } => *counters == [true; 2],
+        _ => false,
+    };
+    if headings_only && turned.iter().any(opposite) {
+        faults.push(Fault::TurnsOpposite);
+    } else {
+        faults.extend(turned);
+    }
     (faults, reading)
 }
 

@@ -16,7 +16,7 @@ pub(super) const DEVIATION: f64 = 1.482_602_218_505_602;
 
 /// y ≈ x · values.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Line<const K: usize> {
+pub(crate) struct Line<const K: usize> {
     pub values: [f64; K],
     /// Standard deviation of the residuals, from their median size, where most observations are 0 over the others.
     pub scale: f64,
@@ -26,7 +26,7 @@ pub(super) struct Line<const K: usize> {
 ///
 /// If observations are rounded to steps, one of exactly 0 only says that it is smaller than a step. Where most are 0, such rows are fitted
 /// too, but the scatter is not measured by them: it would vanish.
-pub(super) fn fit<const K: usize>(rows: &[([f64; K], f64)]) -> Line<K> {
+pub(crate) fn fit<const K: usize>(rows: &[([f64; K], f64)]) -> Line<K> {
     let mut values = SVector::<f64, K>::zeros();
     let most_are_zero = 2 * rows.iter().filter(|(_, y)| *y == 0.0).count() > rows.len();
     let moved = || rows.iter().filter(|(_, y)| !most_are_zero || *y != 0.0);

@@ -14,7 +14,7 @@ const OVERLAP: f64 = 2.0;
 const MAX_WINDOWS: usize = 600;
 
 /// The motion that the reference measured between two of its poses.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Window {
     /// Time stamps of the two \[s\].
     pub from: f64,
@@ -28,6 +28,8 @@ pub(super) struct Window {
     pub raw_turn: f64,
     /// Whether headings were measured; otherwise they follow from the direction of motion.
     pub with_heading: bool,
+    /// Whether nothing but headings was measured.
+    pub headings_only: bool,
 }
 
 impl Window {
@@ -63,7 +65,8 @@ pub(super) fn windows(log: &TickLog) -> Vec<Window> {
             (Some(from), Some(to)) if with_heading => (from + log.start.heading, to - from),
             _ => (0.0, 0.0),
         };
-        windows.push(Window { from: *from, to: *to, moved, heading, turned: wrap(raw_turn), raw_turn, with_heading });
+        let (turned, headings_only) = (wrap(raw_turn), log.headings_only);
+        windows.push(Window { from: *from, to: *to, moved, heading, turned, raw_turn, with_heading, headings_only });
     }
     if with_heading { windows } else { by_course(windows) }
 }

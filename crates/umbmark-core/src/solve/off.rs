@@ -172,7 +172,7 @@ impl Meter<'_> {
                 Some(Meter { measure: Measure::Returns, runs: Runs::Ends(Box::new(ends)) })
             }
             (_, AnyEvidence::Tracks(observed)) => {
-                let steps = observed.runs.iter().all(|run| run.relative);
+                let steps = observed.runs.iter().all(|run| run.relative && !run.headings_only);
                 let measure = if steps { Measure::Steps } else { Measure::Along };
                 Some(Meter { measure, runs: Runs::Along(observed) })
             }

@@ -201,7 +201,8 @@ const CSV: LogFormat = LogFormat { ending: "csv", bytes: csv, same: same_record 
 
 /// Whether two logs hold the same samples and poses, whatever had to be mended in either.
 fn same_record(a: &TickLog, b: &TickLog) -> bool {
-    (&a.time, &a.left, &a.right, &a.reference, a.relative) == (&b.time, &b.left, &b.right, &b.reference, b.relative)
+    let sense = |log: &TickLog| (log.relative, log.headings_only);
+    (&a.time, &a.left, &a.right, &a.reference, sense(a)) == (&b.time, &b.left, &b.right, &b.reference, sense(b))
 }
 
 fn csv(data: &Dataset, _: &Run, log: &TickLog) -> Result<Vec<u8>, DatasetError> {

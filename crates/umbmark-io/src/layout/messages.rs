@@ -130,6 +130,9 @@ impl Reading {
                 "{file}: {dropped} of {poses} poses fall into gaps of the wheels, or outside of them, and were left out"
             ));
         }
+        if self.track.rates && !log.reference.is_empty() {
+            (log.relative, log.headings_only) = (true, true);
+        }
         Ok(log)
     }
 }
@@ -197,6 +200,7 @@ impl Survey {
             return Err(refuse(self.without_wheels(&topics[0], &wheels, damage)));
         }
         warnings.extend(self.lost(damage, &topics, messages));
+        let rates = track.as_ref().is_some_and(Track::tells_rates);
         let rows = match (track, &reference) {
             (Some(track), Some(reference)) => {
                 let mut said = Vec::new();
@@ -206,8 +210,14 @@ impl Survey {
             }
             _ => Vec::new(),
         };
+        // What was taken for a reference is the robot's own odometry: a gyro is one.
+        let gyro = topics::gyro(&self.topics).filter(|_| rows.is_empty() && wish.reference.is_none() && !rates);
+        if let Some(gyro) = gyro {
+            let wish = Topics { reference: Some(gyro.name.clone()), ..wish.clone() };
+            return self.gather(&wish, of_use, warnings);
+        }
         let clock = Clock::of(wheels.times.iter(), rows.iter().map(|(times, _)| times));
-        let track = track::timed(rows, &clock, &file, &topics[1]);
+        let track = TrackRows { rates, ..track::timed(rows, &clock, &file, &topics[1]) };
         Ok(Gathered { wheels, clock, track, topics })
     }
 

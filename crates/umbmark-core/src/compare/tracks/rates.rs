@@ -51,7 +51,11 @@ pub(super) fn overall(runs: &[Followed], robot: &Robot, confidence: f64) -> Vec<
     let of = |rate: Rate| {
         let total = |run: &Followed| sums(&run.steps, rate, 1, |_| Some(0)).remove(0);
         let sums: Vec<Sum> = runs.iter().map(total).filter(|sum| sum.amount > 0.0).collect();
-        let shown = rate == Rate::Forward || runs.iter().all(|run| run.with_heading);
+        let shown = match rate {
+            Rate::Yaw | Rate::Turn => runs.iter().all(|run| run.with_heading),
+            Rate::Forward => runs.iter().all(|run| !run.observed.headings_only),
+            _ => runs.iter().all(|run| run.with_heading && !run.observed.headings_only),
+        };
         let resolution = rate.resolution(robot);
         let mean = Mean::rate(&sums, resolution, confidence).filter(|_| shown)?;
         let rates: Vec<f64> = sums.iter().map(|sum| sum.error / sum.amount).collect();

@@ -253,9 +253,9 @@ impl Drive {
         track: Track,
         direction: Direction,
     ) -> Result<DMatrix<f64>, ModelError> {
-        let headings = exam.fitted.observed.runs.iter().any(|run| run.blocks.iter().any(|block| block.headings > 0));
+        let Some(like) = exam.fitted.observed.runs.first() else { return Ok(DMatrix::zeros(0, 0)) };
         let model = self.at_start(basis.model)?;
-        let run = ObservedRun::planned(track, direction, headings, &model);
+        let run = ObservedRun::planned(track, direction, like, &model);
         let noise: &Noise = &exam.fitted.noise;
         let made = run.columns_of(&model.derived(&basis.numbers)?, basis.numbers.len());
         let white = noise.whiten(&run, &made.iter().map(Vec::as_slice).collect::<Vec<_>>());

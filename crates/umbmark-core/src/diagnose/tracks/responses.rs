@@ -197,6 +197,7 @@ mod tests {
     fn responses_hold_no_longer_where_a_heading_or_a_place_has_moved() {
         let robot = Robot::labmate();
         let track = || Track::with_stops(&Path::umbmark(), Direction::Ccw, &robot);
+        let watched = Observed::new(&watched(&Model::new(&robot), 1, 3), &robot).unwrap();
         let model = |e_b: f64, e_s: f64| {
             let mut model = Model::new(&robot);
             model.set("wheelbase", "e_b", e_b).unwrap();
@@ -204,7 +205,7 @@ mod tests {
             model
         };
         let of = |model: &Model| {
-            let run = crate::likelihood::ObservedRun::planned(track(), Direction::Ccw, true, model);
+            let run = crate::likelihood::ObservedRun::planned(track(), Direction::Ccw, &watched.runs[0], model);
             Observed { robot: robot.clone(), runs: vec![run], path: None, setup: Default::default() }
         };
         let along = places(&of(&model(1.0, 1.0)));

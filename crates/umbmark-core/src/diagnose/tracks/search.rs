@@ -31,6 +31,11 @@ const OUTSTANDING: f64 = 4.0;
 const GAIN_ENOUGH: f64 = 0.1;
 /// A law outside the catalogue is preferred to an effect that explains less than this share of what the law explains.
 const OUTDONE: f64 = 0.5;
+/// Wheels that follow late, and a reference that is late by a constant time; they cancel each other to this share of the lag where they only
+/// smooth the counts.
+const LAG: &str = "wheel_lag";
+const DELAY: &str = "reference_delay";
+const SMOOTH: f64 = 0.25;
 /// A fit with one more effect failed where its error exceeds this multiple of the error before.
 const ASTRAY: f64 = 2.0;
 
@@ -146,9 +151,24 @@ fn astray(exam: &Examination, before: &Examination) -> bool {
 }
 
 /// An effect among those `asked` with values that a robot cannot have, in one of these fits.
-fn incredible(fits: [&Fitted; 2], asked: impl Fn(&str) -> bool) -> Option<&'static str> {
+fn incredible(fits: [&Fitted; 2], asked: impl Fn(&str) -> bool) -> Result<Option<&'static str>, FitError> {
     let mut parts = fits.into_iter().flat_map(|fitted| fitted.model.parts());
-    parts.find(|part| asked(part.effect.name()) && !part.is_credible()).map(|part| part.effect.name())
+    let found = parts.find(|part| asked(part.effect.name()) && !part.is_credible()).map(|part| part.effect.name());
+    let smooths = found.is_none() && asked(LAG) && only_smooths(fits[0])?;
+    Ok(if smooths { Some(LAG) } else { found })
+}
+
+/// Whether wheels are said to follow late, and the reference to be early by as much: together they only smooth the counts, and with them
+/// what whole counts hide.
+fn only_smooths(fitted: &Fitted) -> Result<bool, FitError> {
+    let late = |model: &Model| Some(model.get(LAG, "share")? * model.get(LAG, "time_constant_s")?);
+    if late(&fitted.model).is_none() {
+        return Ok(false);
+    }
+    let mut with = fitted.model.clone();
+    with.add(DELAY)?.free = true;
+    let with = fitted.observed.fit(&with, &fitted.noise, &[])?.model;
+    Ok(late(&with).zip(with.get(DELAY, "delay_s")).is_some_and(|(late, delay)| (late + delay).abs() < SMOOTH * late))
 }
 
 /// An effect among those `asked` that is hardly separated from E_d, E_b and E_s and does not pay for it, and the model as it is written
@@ -243,7 +263,7 @@ impl Search {
             }
         }
         let mut written = trusted(exam.fitted.clone())?;
-        while let Some(incredible) = incredible([&exam.fitted, written.fitted()], |effect| !stands(effect)) {
+        while let Some(incredible) = incredible([&exam.fitted, written.fitted()], |effect| !stands(effect))? {
             if incredible == effect {
                 return Ok(Growth::Idle);
             }

@@ -36,9 +36,12 @@ pub(super) fn blocks(
         blocks.push(Block {
             first,
             count,
+            positions: count,
             headings,
             place: Pose2::IDENTITY,
             velocity: [0.0; 3],
+            drifts: [[0.0; 3]; 2],
+            wander: 0.0,
             growth: Growth::default(),
             growth_seen: Growth::default(),
             growth_of_mean: Growth::default(),

@@ -68,8 +68,11 @@ impl ObservedRun {
         let (mut position, mut heading) = ((0.0, 0), (0.0, 0));
         for block in &self.blocks {
             for (index, pair) in (block.first..).zip(raw[block.first..block.first + block.count].windows(2)) {
-                let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
-                let counted = self.hidden(self.have_turned(index).map(f64::from));
+                let (mut dx, mut dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
+                let mut counted = self.hidden(self.have_turned(index).map(f64::from));
+                if block.positions == 0 {
+                    (dx, dy, counted[0]) = (0.0, 0.0, 0.0);
+                }
                 position = (position.0 + 0.25 * (dx * dx + dy * dy) - counted[0], position.1 + 1);
                 if let (Some(a), Some(b)) = (pair[0].2, pair[1].2) {
                     heading = (heading.0 + 0.5 * (b - a) * (b - a) - counted[1], heading.1 + 1);
@@ -115,12 +118,16 @@ impl<'a, const N: usize> Sums<'a, N> {
 impl Sums<'_, 1> {
     fn add_residual(&mut self, observation: usize, pose: &Pose2) {
         let (x, y, heading) = self.run.seen[observation];
+        if self.run.headings_only {
+            return self.add(observation, [[0.0]; 2], heading.map(|h| [wrap(h - pose.heading)]));
+        }
         self.add(observation, [[x - pose.x], [y - pose.y]], heading.map(|h| [wrap(h - pose.heading)]));
     }
 }
 
 impl Sums<'_, LANES> {
     fn add_slope(&mut self, observation: usize, pose: &Pose2<Dual>) {
-        self.add(observation, [pose.x.eps, pose.y.eps], self.run.seen[observation].2.map(|_| pose.heading.eps));
+        let plane = if self.run.headings_only { [[0.0; LANES]; 2] } else { [pose.x.eps, pose.y.eps] };
+        self.add(observation, plane, self.run.seen[observation].2.map(|_| pose.heading.eps));
     }
 }

@@ -37,6 +37,16 @@ impl ObservedRun {
                 walk.growths(before, moments.iter().map(Moment::reached));
             before = moments.last().map_or(before, Moment::reached).max(before);
         }
+        if self.gyro.is_some() {
+            let from = self.blocks.iter().map(|block| block.place);
+            let from: Vec<Pose2> = self.blocks.first().map(|first| first.place).into_iter().chain(from).collect();
+            for (block, before) in self.blocks.iter_mut().zip(from) {
+                let wander = block.wandering(&before);
+                [&mut block.growth, &mut block.growth_seen, &mut block.growth_of_mean]
+                    .into_iter()
+                    .for_each(|growth| growth.heading_by_gyro = wander);
+            }
+        }
         if self.relative {
             let velocities: Vec<[f64; 3]> = self.blocks.iter().map(|block| block.velocity).collect();
             let of = |k: usize| self.slope_step(k, &velocities[k], k.checked_sub(1).map(|k| &velocities[k]));

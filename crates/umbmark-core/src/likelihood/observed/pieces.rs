@@ -92,6 +92,8 @@ fn piece(run: &ObservedRun, own: Range<usize>, robot: &Robot) -> Option<Observed
         jumps: &jumps,
         start_seen,
         added,
+        headings_only: run.headings_only,
+        gyro: run.gyro,
         counts: run.counts,
         readings: Arc::clone(&run.readings),
     };

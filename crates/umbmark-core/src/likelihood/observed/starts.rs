@@ -3,6 +3,7 @@
 //! The heading noise of a single pose would rotate everything after it: ten metres further on, that is some centimetres. So START is fitted
 //! to the first poses of a section, each weighted by its own noise and by the usual noise of the wheels until then.
 
+use super::drifts::Drifts;
 use super::{Block, ObservedRun};
 use crate::likelihood::{Column, Noise};
 use nalgebra::{Matrix3, Vector3};
@@ -13,7 +14,7 @@ const LEAST: f64 = 1e-4;
 /// The first block alone determines START if the standard deviation of its mean is below this \[m, rad\].
 const ENOUGH: (f64, f64) = (1e-3, 5e-4);
 
-/// A stretch of a run in which nothing but START is fitted.
+/// A stretch of a run in which nothing but START is fitted and, of a gyro, its own rate.
 #[derive(Clone, Debug)]
 pub struct Stretch {
     /// Its blocks.
@@ -22,6 +23,10 @@ pub struct Stretch {
     start: Option<Start>,
     /// Whether its blocks tell motion only, the first one none.
     relative: bool,
+    /// Whether they tell headings only.
+    headings_only: bool,
+    /// How the own rate of a gyro is fitted.
+    drifts: Option<Drifts>,
 }
 
 /// How START is fitted.
@@ -42,8 +47,15 @@ impl ObservedRun {
         let stretch = |(begin, end): (&usize, usize)| {
             let blocks = *begin..end;
             let is_fitted = !self.relative && (*begin > 0 || self.start_seen);
-            let relative = self.relative;
-            Stretch { relative, start: is_fitted.then(|| self.start_of(blocks.clone(), noise)), blocks }
+            let (relative, headings_only) = (self.relative, self.headings_only);
+            let drifts = self.drifts_of(*begin..end, noise[1]);
+            Stretch {
+                relative,
+                headings_only,
+                drifts,
+                start: is_fitted.then(|| self.start_of(blocks.clone(), noise)),
+                blocks,
+            }
         };
         begins.iter().zip(ends).map(stretch).collect()
     }
@@ -119,8 +131,32 @@ fn of_first(values: &[(Option<f64>, f64)]) -> Vec<f64> {
 }
 
 impl Stretch {
-    /// Residual of a column in the stretch after START is fitted: (x, y, heading) per block.
+    /// Residual of a column in the stretch after START, and the own rate of a gyro, are fitted: (x, y, heading) per block. Where headings only
+    /// were measured, positions are those to which they lead.
     pub fn less_start(&self, run: &ObservedRun, column: &Column) -> Vec<[f64; 3]> {
+        let Some(drifts) = &self.drifts else { return self.followed(run, self.less_start_alone(run, column)) };
+        self.followed(run, self.less_start_alone(run, &drifts.less(run, column)))
+    }
+
+    /// Where headings only were measured, the positions to which they lead.
+    fn followed(&self, run: &ObservedRun, mut left: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
+        if self.headings_only {
+            let own = &run.blocks[self.blocks.clone()];
+            let [mut x, mut y, mut turned] = [0.0; 3];
+            for k in 0..left.len() {
+                let before = turned;
+                turned = left[k][2];
+                if k > 0 {
+                    let (from, to, half) = (&own[k - 1].place, &own[k].place, 0.5 * (before + turned));
+                    (x, y) = (x - half * (to.y - from.y), y + half * (to.x - from.x));
+                }
+                left[k] = [x, y, turned];
+            }
+        }
+        left
+    }
+
+    fn less_start_alone(&self, run: &ObservedRun, column: &Column) -> Vec<[f64; 3]> {
         let own = &run.blocks[self.blocks.clone()];
         let values = &column[self.blocks.clone()];
         let away = |block: &Block| run.away(&self.blocks, block);

@@ -113,7 +113,7 @@ fn role(recording: &Recording, name: &str) -> Option<&'static str> {
     if wheels.iter().any(|wheel| wheel == name) {
         return Some("wheels");
     }
-    let is_pose = ["x_ref_", "y_ref_", "theta_ref_"].iter().any(|base| name.starts_with(base));
+    let is_pose = ["x_ref_", "y_ref_", "theta_ref_", "gyro_"].iter().any(|base| name.starts_with(base));
     (is_pose && !recording.reference.is_empty()).then_some("reference")
 }
 

@@ -2,11 +2,11 @@
 
 use crate::columns::{Column, Columns, Quantity};
 use crate::csv_text::CsvText;
-use crate::error::{At, DatasetError, LineProblem};
+use crate::error::{At, DatasetError, LineProblem, quoted};
 use crate::recording::Recording;
 use crate::sheet::{Row, Sheet};
 use crate::source::Source;
-use Quantity::{Angle, Bare, Length, Time};
+use Quantity::{Angle, Bare, Length, Time, TurnRate};
 use umbmark_core::dataset::{ReferencePose, TickLog};
 use umbmark_core::drive::{DriveKind, Robot};
 use umbmark_core::geometry::Pose2;
@@ -19,10 +19,11 @@ const REFERENCE: [&str; 3] = ["x_ref_m", "y_ref_m", "theta_ref_rad"];
 /// The header of messages.
 pub(crate) const HEADER: &str = "t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad";
 
-pub(crate) struct ReferenceColumns {
-    x: Column,
-    y: Column,
-    heading: Option<Column>,
+pub(crate) enum ReferenceColumns {
+    /// Positions, with headings or without.
+    Poses { x: Column, y: Column, heading: Option<Column> },
+    /// Headings alone.
+    Headings(Column),
 }
 
 /// The columns of a log.
@@ -31,6 +32,7 @@ struct LogColumns {
     counts: [Column; 2],
     reference: Option<ReferenceColumns>,
     steps: Option<[Column; 3]>,
+    gyro: Option<Column>,
     mark: Option<Column>,
     closed: Option<Column>,
 }
@@ -70,18 +72,27 @@ impl LogColumns {
         let mark = if columns.given(&["range"]) { None } else { columns.find("mark", Bare)? };
         let closed = columns.find("closed", Bare)?;
         let steps = find_steps(&mut columns)?;
+        let gyro = columns.find("gyro", TurnRate)?;
+        if let Some(gyro) = gyro.as_ref().filter(|_| reference.is_some() || steps.is_some()) {
+            let name = quoted(&gyro.name);
+            warnings.push(format!("{}: column {name} is not used beside another reference", sheet.file()));
+        }
+        let gyro = gyro.filter(|_| reference.is_none() && steps.is_none());
         if let (Some(steps), Some(poses)) = (&steps, &reference) {
-            let (first, second) = (poses.x.name.clone(), steps[0].name.clone());
+            let (first, second) = (poses.first().name.clone(), steps[0].name.clone());
             return Err(At::new(sheet.file(), sheet.header_line).refuse(LineProblem::BothReferences { first, second }));
         }
         columns.finish(warnings)?;
-        Ok(LogColumns { time, counts, reference, steps, mark, closed })
+        Ok(LogColumns { time, counts, reference, steps, gyro, mark, closed })
     }
 
     /// The recording of a file, before its first row.
     fn recording(&self, file: &str) -> Recording {
         let columns = [&self.time, &self.counts[0], &self.counts[1]].map(|column| column.name.clone());
-        Recording { file: file.to_owned(), columns, relative: self.steps.is_some(), ..Recording::default() }
+        let rates = self.gyro.is_some();
+        let headings_only = rates || matches!(self.reference, Some(ReferenceColumns::Headings(_)));
+        let relative = rates || self.steps.is_some();
+        Recording { file: file.to_owned(), columns, relative, headings_only, rates, ..Recording::default() }
     }
 
     fn read(&self, row: &Row, recording: &mut Recording) -> Result<(), DatasetError> {
@@ -94,6 +105,12 @@ impl LogColumns {
             && let Some(pose) = columns.read(row, recording.time.len() - 1)?
         {
             recording.reference.push(pose);
+        }
+        if let Some(gyro) = &self.gyro
+            && let Some(rate) = row.number_or(gyro)?
+        {
+            let sample = recording.time.len() - 1;
+            recording.reference.push(ReferencePose { sample, x: 0.0, y: 0.0, heading: Some(rate) });
         }
         if let Some(columns) = &self.steps {
             add_step(columns, row, recording)?;
@@ -155,22 +172,42 @@ impl ReferenceColumns {
         let heading = columns.find("theta_ref", Angle)?;
         let needs = "a reference needs both x_ref_m and y_ref_m";
         match (x, y) {
-            (Some(x), Some(y)) => Ok(Some(ReferenceColumns { x, y, heading })),
-            (None, None) if heading.is_none() => Ok(None),
+            (Some(x), Some(y)) => Ok(Some(ReferenceColumns::Poses { x, y, heading })),
+            (None, None) => Ok(heading.map(ReferenceColumns::Headings)),
             (None, _) => Err(columns.missing("x_ref", Length, needs)),
             (_, None) => Err(columns.missing("y_ref", Length, needs)),
         }
     }
 
+    /// The first of them.
+    fn first(&self) -> &Column {
+        match self {
+            ReferenceColumns::Poses { x, .. } => x,
+            ReferenceColumns::Headings(heading) => heading,
+        }
+    }
+
+    /// Whether they tell headings only.
+    pub fn is_headings_only(&self) -> bool {
+        matches!(self, ReferenceColumns::Headings(_))
+    }
+
     /// The pose of a row, if one was measured there.
     #[inline]
     pub fn read(&self, row: &Row, sample: usize) -> Result<Option<ReferencePose>, DatasetError> {
-        let heading = self.heading.as_ref().map(|column| row.number_or(column)).transpose()?.flatten();
-        match (row.number_or(&self.x)?, row.number_or(&self.y)?) {
+        let (x, y, heading) = match self {
+            ReferenceColumns::Poses { x, y, heading } => (x, y, heading),
+            ReferenceColumns::Headings(column) => {
+                let pose = |heading| ReferencePose { sample, x: 0.0, y: 0.0, heading: Some(heading) };
+                return Ok(row.number_or(column)?.map(pose));
+            }
+        };
+        let heading = heading.as_ref().map(|column| row.number_or(column)).transpose()?.flatten();
+        match (row.number_or(x)?, row.number_or(y)?) {
             (Some(x), Some(y)) => Ok(Some(ReferencePose { sample, x, y, heading })),
             (None, None) if heading.is_none() => Ok(None),
-            (None, _) => Err(row.wrong(&self.x, "a finite number", "fill in the pose, or leave all its cells empty")),
-            (_, None) => Err(row.wrong(&self.y, "a finite number", "fill in the pose, or leave all its cells empty")),
+            (None, _) => Err(row.wrong(x, "a finite number", "fill in the pose, or leave all its cells empty")),
+            (_, None) => Err(row.wrong(y, "a finite number", "fill in the pose, or leave all its cells empty")),
         }
     }
 }
@@ -185,7 +222,8 @@ pub(crate) fn tick_log_text(log: &TickLog, robot: &Robot) -> Vec<u8> {
     let counters = kind.counters().map(|counter| format!("ticks_{counter}"));
     let mut text = CsvText::behind("");
     let columns = ["t_s"].into_iter().chain(counters.iter().map(String::as_str));
-    text.row(columns.chain(REFERENCE.into_iter().filter(|_| referenced)));
+    let told = if log.headings_only { &REFERENCE[2..] } else { &REFERENCE[..] };
+    text.row(columns.chain(told.iter().copied().filter(|_| referenced)));
     let mut references = log.reference.iter().peekable();
     for (sample, time) in log.time.iter().enumerate() {
         text.decimal(*time);
@@ -193,8 +231,10 @@ pub(crate) fn tick_log_text(log: &TickLog, robot: &Robot) -> Vec<u8> {
         text.cell(shown(second[sample]));
         if referenced {
             let pose = references.next_if(|pose| pose.sample == sample);
-            text.decimal(pose.map(|pose| pose.x));
-            text.decimal(pose.map(|pose| pose.y));
+            if !log.headings_only {
+                text.decimal(pose.map(|pose| pose.x));
+                text.decimal(pose.map(|pose| pose.y));
+            }
             text.decimal(pose.and_then(|pose| pose.heading));
         }
         text.end();

@@ -22,6 +22,9 @@ pub(super) fn parse_columns(source: Source, warnings: &mut Vec<String>) -> Resul
     let Some(reference) = ReferenceColumns::find(&mut columns)? else {
         return Err(columns.missing("x_ref", Quantity::Length, needs));
     };
+    if reference.is_headings_only() {
+        return Err(columns.missing("x_ref", Quantity::Length, needs));
+    }
     columns.finish(warnings)?;
     let mut rows = TrackRows { file: sheet.file().to_owned(), column: time.name.clone(), ..TrackRows::default() };
     sheet.for_each(|row| {

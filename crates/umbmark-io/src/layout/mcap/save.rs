@@ -105,6 +105,11 @@ fn save_log(
 /// A log as the bytes of an MCAP file.
 fn bytes(data: &Dataset, run: &Run, log: &TickLog) -> Result<Vec<u8>, DatasetError> {
     let refuse = |reason: String| DatasetError::Unwritable { file: run.name.clone(), reason };
+    if log.headings_only {
+        return Err(refuse(
+            "its reference tells headings only, which messages of poses cannot say; write it as CSV".into(),
+        ));
+    }
     let begin = log.time.first().copied().unwrap_or(0.0).min(0.0);
     if let Some(time) = log.time.iter().find(|time| **time - begin >= f64::from(i32::MAX)) {
         return Err(refuse(format!("time {time} s cannot be written; stamps go from 0 to {} s", i32::MAX)));

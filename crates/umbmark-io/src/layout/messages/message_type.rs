@@ -21,6 +21,8 @@ pub(in crate::layout) enum MessageType {
     Transform,
     /// tf2_msgs/TFMessage
     Transforms,
+    /// sensor_msgs/Imu: its rate of turning.
+    Imu,
 }
 
 /// Types of a pose with a stamp.
@@ -82,6 +84,7 @@ impl MessageType {
             "PoseInFrame" => MessageType::Pose(PoseType::InFrame),
             "TransformStamped" => MessageType::Transform,
             "TFMessage" => MessageType::Transforms,
+            "Imu" => MessageType::Imu,
             _ if last.ends_with("MultiArray") && last.contains("Int") => MessageType::CountList,
             _ => return None,
         })
@@ -102,6 +105,7 @@ impl MessageType {
                 .pose("pose.pose.position", "pose.pose.orientation")
                 .need("twist.twist.linear.x", Slot::Number(Number::Speed))
                 .need("twist.twist.angular.z", Slot::Number(Number::TurnRate)),
+            MessageType::Imu => framed().need("angular_velocity.z", Slot::Number(Number::TurnRate)),
             MessageType::Pose(PoseType::Stamped) => framed().pose("pose.position", "pose.orientation"),
             MessageType::Pose(PoseType::WithCovariance) => framed().pose("pose.pose.position", "pose.pose.orientation"),
             MessageType::Pose(PoseType::InFrame) => Layout::default()

@@ -2,7 +2,7 @@
 //!
 //! They are found by type. Of the topics that tell how the wheels turned, the one nearest to the encoders is taken:
 //! integer counts, then joint positions, then odometry. Of those that tell where the robot was: poses, then single
-//! transforms, then odometry that is not the wheels, then /tf. Between two of the same kind the user must choose.
+//! transforms, then odometry that is not the wheels, then /tf, then gyros. Between two of the same kind the user must choose.
 
 use super::message_type::{Encoding, MessageType};
 use super::problem::{LogProblem, listed};
@@ -69,6 +69,7 @@ const REFERENCE: Role = Role {
         MessageType::Transform => Some(1),
         MessageType::Odometry => Some(2),
         MessageType::Transforms => Some(3),
+        MessageType::Imu => Some(4),
         _ => None,
     },
 };
@@ -93,6 +94,15 @@ pub(in crate::layout) fn reference(
         Some(wish) => REFERENCE.named(topics, wish).map(Some),
         None => REFERENCE.found(topics, Some(&ticks.topic)),
     }
+}
+
+/// The only gyro, where there is one.
+pub(in crate::layout) fn gyro(topics: &[Topic]) -> Option<&Topic> {
+    let is_gyro = |topic: &&Topic| {
+        topic.messages != Some(0) && topic.known.as_ref().is_some_and(|(_, kind)| *kind == MessageType::Imu)
+    };
+    let mut gyros = topics.iter().filter(is_gyro);
+    gyros.next().filter(|_| gyros.next().is_none())
 }
 
 impl Role {

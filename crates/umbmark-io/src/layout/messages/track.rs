@@ -12,6 +12,8 @@ use crate::track_rows::TrackRows;
 const MOST_FRAMES: usize = 256;
 /// Positions farther away are none \[m\].
 const FARTHEST: f64 = 1e6;
+/// Nothing on wheels turns faster \[rad/s\].
+const FASTEST: f64 = 1e4;
 
 /// A pose in the plane, without its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,9 +42,15 @@ impl Track {
         Track { kind: kind.clone(), frames: Vec::new() }
     }
 
+    /// Whether its headings are the rates of a gyro.
+    pub fn tells_rates(&self) -> bool {
+        self.kind == MessageType::Imu
+    }
+
     /// Takes a message; says what is wrong with it.
     pub fn take(&mut self, logged: u64, fields: &Fields) -> Result<(), String> {
-        let row = (Times::new(logged, fields.stamp()), place(fields)?);
+        let place = if self.tells_rates() { turn_rate(fields)? } else { place(fields)? };
+        let row = (Times::new(logged, fields.stamp()), place);
         let same = |frames: &&mut Frames| frames.frame == fields.frame && frames.child == fields.child;
         if let Some(frames) = self.frames.iter_mut().find(same) {
             frames.rows.push(row);
@@ -109,6 +117,15 @@ fn bare(frame: &str) -> &str {
     frame.trim_start_matches('/')
 }
 
+/// The rate at which a gyro turns, in place of a heading.
+fn turn_rate(fields: &Fields) -> Result<PlanarPose, String> {
+    let rate = fields.number(Number::TurnRate);
+    if !(rate.abs() <= FASTEST) {
+        return Err(format!("turns at {rate}, where a finite number in rad/s of at most {FASTEST:e} is allowed"));
+    }
+    Ok(PlanarPose { x: 0.0, y: 0.0, heading: Some(rate) })
+}
+
 /// The pose of a message, seen from above.
 pub(in crate::layout) fn place(fields: &Fields) -> Result<PlanarPose, String> {
     let [x, y] = [Number::X, Number::Y].map(|number| fields.number(number));
@@ -136,5 +153,6 @@ pub(in crate::layout) fn timed(rows: Vec<(Times, PlanarPose)>, clock: &Clock, fi
         time: rows.iter().map(|(times, _)| clock.seconds(times)).collect(),
         poses: rows.iter().map(|(_, place)| (place.x, place.y, place.heading)).collect(),
         lost: 0,
+        rates: false,
     }
 }

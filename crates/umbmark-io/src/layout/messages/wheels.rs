@@ -140,6 +140,8 @@ impl Wheels {
         Recording {
             marked: Vec::new(),
             relative: false,
+            headings_only: false,
+            rates: false,
             file: file.to_owned(),
             columns: [clock.name().to_owned(), names[0].clone(), names[1].clone()]
                 .map(|name| format!("{topic} {name}")),

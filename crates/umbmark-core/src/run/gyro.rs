@@ -1,0 +1,142 @@
+//! References that tell headings only: the constant rate of a gyro, and the way along the headings.
+
+use super::TickLog;
+use super::dead_reckoning::for_each_pose;
+use crate::drive::Robot;
+use crate::geometry::{Displacement2, Pose2, wrap};
+use crate::setup::robust;
+
+/// The wheels stand where they make no count for so long \[s\]; the body may sway so long before and after \[s\].
+const REST: f64 = 0.6;
+const SWAY: f64 = 0.2;
+/// Rests of so long in all show the rate of a gyro \[s\].
+const ENOUGH: f64 = 1.0;
+/// Noise of the heading of a gyro at least, and of a usual one \[rad/√s\]: 1 and 2 degrees per root hour. The latter counts as much as rests of
+/// the time behind it \[s\].
+const QUIET: f64 = 3e-4;
+const USUAL: f64 = 6e-4;
+const BELIEVED: f64 = 2.0;
+/// Length of the windows in which turns are compared with those of the wheels \[s\].
+const WINDOW: f64 = 0.5;
+
+/// A rate below this is none \[rad/s\]: 2 degrees an hour.
+const NONE: f64 = 1e-5;
+
+/// The headings that rates of turning add up to, from 0: by trapezoids \[rad\].
+pub fn headings_of(time: &[f64], rates: &[f64]) -> Vec<f64> {
+    let mut heading = 0.0;
+    let rest = time.windows(2).zip(rates.windows(2)).map(|(time, rates)| {
+        heading += 0.5 * (rates[0] + rates[1]) * (time[1] - time[0]);
+        heading
+    });
+    time.first().map(|_| 0.0).into_iter().chain(rest).collect()
+}
+
+/// The rate that a gyro shows of itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bias {
+    /// \[rad/s\]
+    pub rate: f64,
+    /// How long the robot rested in all \[s\]; 0 where the rate follows from the turns of the wheels.
+    pub rested: f64,
+}
+
+impl TickLog {
+    /// Takes a gyro's own constant rate out of the headings: that which it shows while the wheels stand or, where they hardly do, that by
+    /// which its turns differ from those of the wheels. What is left of it, and how it drifts, is for the fit.
+    pub fn without_bias(&mut self, robot: &Robot) -> Option<Bias> {
+        let bias = self.bias_at_rest().or_else(|| self.bias_by_wheels(robot)).filter(|bias| bias.rate.abs() >= NONE)?;
+        let began = self.time[self.reference.first()?.sample];
+        for pose in &mut self.reference {
+            let since = self.time[pose.sample] - began;
+            pose.heading = pose.heading.map(|heading| heading - bias.rate * since);
+        }
+        Some(bias)
+    }
+
+    /// The noise of a gyro's heading \[rad/√s\]: how it wanders while the wheels stand; near that of a usual one where they hardly do.
+    ///
+    /// The means of both halves of a rest of time T differ by a walk of variance q²T/3, and hardly by the noise of single readings.
+    pub fn gyro_noise(&self) -> f64 {
+        let rate = self.bias_at_rest().map_or(0.0, |bias| bias.rate);
+        let (mut squares, mut thirds) = (USUAL * USUAL * BELIEVED / 3.0, BELIEVED / 3.0);
+        for still in self.rests() {
+            let (first, second) = still.split_at(still.len() / 2);
+            let mean =
+                |half: &[(f64, f64)], of: fn(&(f64, f64)) -> f64| half.iter().map(of).sum::<f64>() / half.len() as f64;
+            let ([Some(from), Some(to)], true) = ([still.first(), still.last()], !first.is_empty()) else { continue };
+            let apart = |of: fn(&(f64, f64)) -> f64| mean(second, of) - mean(first, of);
+            squares += (apart(|row| row.1) - rate * apart(|row| row.0)).powi(2);
+            thirds += (to.0 - from.0) / 3.0;
+        }
+        (squares / thirds).sqrt().max(QUIET)
+    }
+
+    fn bias_at_rest(&self) -> Option<Bias> {
+        let (mut turned, mut rested) = (0.0, 0.0);
+        for still in self.rests() {
+            if let [first, .., last] = still[..] {
+                rested += last.0 - first.0;
+                turned += last.1 - first.1;
+            }
+        }
+        (rested >= ENOUGH).then(|| Bias { rate: turned / rested, rested })
+    }
+
+    /// Times and headings while the wheels stand, rest by rest.
+    fn rests(&self) -> impl Iterator<Item = Vec<(f64, f64)>> {
+        let counts = |sample: usize| (self.left[sample], self.right[sample]);
+        let rests = self.reference.chunk_by(move |a, b| counts(a.sample) == counts(b.sample));
+        rests.filter_map(|resting| {
+            let [from, to] = [resting[0], resting[resting.len() - 1]].map(|pose| self.time[pose.sample]);
+            let timed = resting.iter().filter_map(|pose| Some((self.time[pose.sample], pose.heading?)));
+            let still = timed.filter(|(time, _)| *time >= from + SWAY && *time <= to - SWAY);
+            (to - from >= REST).then(|| still.collect())
+        })
+    }
+
+    fn bias_by_wheels(&self, robot: &Robot) -> Option<Bias> {
+        let mut believed = Vec::with_capacity(self.time.len());
+        for_each_pose(self, robot, |pose| believed.push(pose.heading));
+        let mut rows: Vec<([f64; 2], f64)> = Vec::new();
+        let mut from = self.reference.first()?;
+        for pose in &self.reference {
+            let seconds = self.time[pose.sample] - self.time[from.sample];
+            if seconds >= WINDOW {
+                let turned = pose.heading? - from.heading?;
+                rows.push(([believed[pose.sample] - believed[from.sample], seconds], turned));
+                from = pose;
+            }
+        }
+        let [_, rate] = robust::fit(&rows).values;
+        (rows.len() > 2 && rate.is_finite()).then_some(Bias { rate, rested: 0.0 })
+    }
+
+    /// Puts each pose of a reference that tells headings only where the counted way along the measured headings leads.
+    ///
+    /// Between two headings the robot turns as its wheels do, and by a constant share of the way more.
+    pub fn follow_headings(&mut self, robot: &Robot) {
+        let mut believed = Vec::with_capacity(self.time.len());
+        for_each_pose(self, robot, |pose| believed.push(*pose));
+        let mut at: Option<(Pose2, usize)> = None;
+        for pose in &mut self.reference {
+            let Some(heading) = pose.heading else { continue };
+            let here = match at {
+                None => Pose2::new(0.0, 0.0, heading),
+                Some((before, sample)) => {
+                    let steps = believed[sample..=pose.sample].windows(2).map(|pair| pair[0].between(&pair[1]));
+                    let steps: Vec<Pose2> = steps.map(|step| Pose2::new(step.x, step.y, wrap(step.heading))).collect();
+                    let turned: f64 = steps.iter().map(|step| step.heading).sum();
+                    let more = (wrap(heading - before.heading - turned)) / steps.len().max(1) as f64;
+                    let go = |pose: Pose2, step: &Pose2| {
+                        let Displacement2 { forward, sideways, rotation } = step.log();
+                        pose.moved(&Displacement2 { forward, sideways, rotation: rotation + more })
+                    };
+                    Pose2 { heading, ..steps.iter().fold(before, go) }
+                }
+            };
+            (pose.x, pose.y) = (here.x, here.y);
+            at = Some((here, pose.sample));
+        }
+    }
+}
