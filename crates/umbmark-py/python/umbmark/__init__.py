@@ -37,6 +37,7 @@ from umbmark._calibration import Calibration, GearCalibration, calibrate, calibr
 from umbmark._comparison import Comparison, TrackComparison, compare
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
 from umbmark._documents import Correction, Effect, Setup
+from umbmark._errors import MissingDependencyError
 from umbmark._export import Exported, export
 from umbmark._formula import formula_of
 from umbmark._inspection import Inspection, inspect
@@ -76,6 +77,7 @@ from umbmark._umbmark import (
     presets,
     simulate,
 )
+from umbmark._unlisted import Unlisted
 from umbmark._warnings import ConversionWarning
 
 __all__ = [
@@ -99,6 +101,7 @@ __all__ = [
     "GearCalibration",
     "Inspection",
     "Learnt",
+    "MissingDependencyError",
     "Model",
     "MonteCarlo",
     "Numbers",
@@ -123,6 +126,7 @@ __all__ = [
     "Track",
     "TrackComparison",
     "Tracks",
+    "Unlisted",
     "__version__",
     "apply",
     "calibrate",

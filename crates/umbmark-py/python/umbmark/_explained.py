@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, overload
+
 from umbmark._monte_carlo import Progress
 from umbmark._report import plot
 from umbmark._result import Printed
 from umbmark._tracks import Tracks, tracks
 from umbmark._umbmark import Dataset, Figure, Model
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 class Explained(Printed):
@@ -28,6 +34,66 @@ class Explained(Printed):
     def tracks(self) -> Tracks:
         """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""
         return tracks(self.data, self.model)
+
+    @overload
+    def plot(self, ax: Axes | None = None) -> Axes: ...
+
+    @overload
+    def plot(
+        self,
+        ax: Axes | Sequence[Axes] | None = None,
+        *,
+        kind: str,
+        n: int = 1000,
+        progress: Progress = None,
+    ) -> list[Axes]: ...
+
+    def plot(
+        self,
+        ax: Axes | Sequence[Axes] | None = None,
+        *,
+        kind: str | None = None,
+        n: int = 1000,
+        progress: Progress = None,
+    ) -> Axes | list[Axes]:
+        """Draw it, or a figure of the report for its model and data, with matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib axes, or a sequence of them, optional
+            Where to draw, new axes where none are given. A figure of the report takes as many as
+            it has panels.
+        kind : str, optional
+            A figure of the report; ``umbmark.figures`` has the kinds. Nothing is learnt anew. The
+            result's own figure where none is given: the ranking of a diagnosis, the values of a fit
+            in standard errors, the error after each step of learning, the new numbers of a
+            solution.
+        n, progress
+            As of ``figure``.
+
+        Returns
+        -------
+        matplotlib axes, or a list of them
+            With ``kind`` a list, with axes for each panel from top to bottom.
+
+        Raises
+        ------
+        ValueError
+            If the data does not give this figure, or there are more or fewer axes than panels.
+        MissingDependencyError
+            If matplotlib is not installed.
+        """
+        if kind is not None:
+            from umbmark import _panels
+
+            return _panels.draw(self.figure(kind, n=n, progress=progress), ax)
+        if isinstance(ax, Sequence):
+            raise TypeError("ax must be one axes; a figure of the report takes several: say kind=")
+        return self._drawn(ax)
+
+    def _drawn(self, ax: Axes | None) -> Axes:
+        """Draw the result's own figure."""
+        raise NotImplementedError
 
     def figure(self, kind: str, *, n: int = 1000, progress: Progress = None) -> Figure:
         """Draw a figure of the report for this model and its data; nothing is learnt anew.

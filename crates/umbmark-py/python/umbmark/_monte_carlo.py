@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
+from umbmark._errors import needs
 from umbmark._result import Row
 from umbmark._umbmark import Ensemble, Model, Path, Study
 
@@ -56,7 +57,8 @@ class MonteCarlo(_documents.MonteCarlo, frozen=True):
         ValueError
             If they were not kept: say ``keep=True``.
         """
-        import xarray as xr
+        with needs("frames"):
+            import xarray as xr
 
         if self.trials is None:
             raise ValueError("the metrics of single trials were not kept; say keep=True")
@@ -229,7 +231,8 @@ class Bar:
         self._told = progress if callable(progress) else None
         self._bar = None
         if progress is True:
-            from tqdm.auto import tqdm
+            with needs("progress"):
+                from tqdm.auto import tqdm
 
             self._bar = tqdm(total=total, unit=f" {unit}", delay=1)
 

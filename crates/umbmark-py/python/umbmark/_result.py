@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 import msgspec
 import numpy as np
 
+from umbmark._errors import needs
+
 if TYPE_CHECKING:
     import pandas as pd
     import polars as pl
@@ -36,12 +38,14 @@ class Frame:
 
     def to_pandas(self) -> pd.DataFrame:
         """Give its rows as a pandas DataFrame, through Arrow."""
-        frame: pd.DataFrame = self.to_arrow().to_pandas()
+        with needs("frames"):
+            frame: pd.DataFrame = self.to_arrow().to_pandas()
         return frame
 
     def to_polars(self) -> pl.DataFrame:
         """Give its rows as a polars DataFrame, through Arrow."""
-        import polars as pl
+        with needs("frames"):
+            import polars as pl
 
         return pl.DataFrame(self.to_arrow())
 
@@ -80,7 +84,13 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
         """Note which attributes a class adds, and document those of its bases before them."""
         super().__init_subclass__()
         if cls.__module__ != "umbmark._documents":
-            declared = [name for name in inspect.get_annotations(cls) if name[0] != "_"]
+            documents = [base for base in cls.__mro__ if base.__module__ == "umbmark._documents"]
+            known = {key for base in documents for key in inspect.get_annotations(base)}
+            declared = [
+                name
+                for name in inspect.get_annotations(cls)
+                if name[0] != "_" and name not in known
+            ]
             cls._beside = (*cls._beside, *declared)
         rule = "\n    Attributes\n    ----------\n"
         inherited = [(base.__doc__ or "").partition(rule)[2].rstrip() for base in cls.__bases__]
@@ -119,7 +129,8 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
 
     def to_arrow(self) -> pa.Table:
         """Give its ``table`` as an Arrow table; a column in which nothing is known has its type."""
-        import pyarrow as pa
+        with needs("frames"):
+            import pyarrow as pa
 
         table = pa.Table.from_pylist(self.table())
         named = {"bool": pa.bool_(), "float": pa.float64(), "int": pa.int64(), "str": pa.string()}

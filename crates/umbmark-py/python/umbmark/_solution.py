@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
 from umbmark._explained import Explained
@@ -9,6 +11,9 @@ from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Dataset
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 class Solution(_documents.Solution, Explained, frozen=True):
@@ -24,6 +29,11 @@ class Solution(_documents.Solution, Explained, frozen=True):
             {"number": name} | {key: getattr(change, key) for key in keys}
             for name, change in self.correction.items()
         ]
+
+    def _drawn(self, ax: Axes | None) -> Axes:
+        from umbmark import _plots
+
+        return _plots.solution(self, ax)
 
 
 def solve(

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
+from umbmark._errors import needs
 from umbmark._monte_carlo import Bar, Progress
 from umbmark._result import Row
 from umbmark._umbmark import Model, Path, Study
@@ -39,7 +40,8 @@ class Sweep(_documents.Sweep, frozen=True):
         Each metric is its mean; METRIC_std_error, METRIC_std_dev and METRIC_quantile (along
         ``share``) stand beside it. Points that were not reached are NaN.
         """
-        import xarray as xr
+        with needs("frames"):
+            import xarray as xr
 
         names = [axis.flag for axis in self.axes]
         shape = [axis.count for axis in self.axes]

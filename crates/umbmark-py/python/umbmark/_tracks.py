@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from umbmark import _umbmark
+from umbmark._errors import needs
 from umbmark._result import Frame
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Model
@@ -129,7 +130,8 @@ class Tracks(Sequence[Track], Frame):
 
     def to_arrow(self) -> pa.Table:
         """Give all poses as an Arrow table: run, direction, time, and each x, y and heading."""
-        import pyarrow as pa
+        with needs("frames"):
+            import pyarrow as pa
 
         columns: dict[str, object] = {
             "run": pa.array([track.run for track in self for _ in track.time_s], pa.string()),
