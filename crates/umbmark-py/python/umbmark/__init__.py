@@ -26,7 +26,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``plan``, ``separate``             how many runs, and which experiment, before any is driven
 ``Robot``, ``Path``, ``Model``     what all of it is about; ``effects`` lists what there is
 ``umbmark.results``                the classes of the parts of results, for annotations
-``umbmark.distributed``            Monte Carlo and sensitivity past one machine, on Dask
+``umbmark.distributed``            studies on Dask, Ray, joblib or any other executor
 =================================  ===========================================================
 """
 

@@ -36,7 +36,7 @@ class Explained(Printed):
         return tracks(self.data, self.model)
 
     @overload
-    def plot(self, ax: Axes | None = None) -> Axes: ...
+    def plot(self, ax: Axes | None = None, *, kind: None = None) -> Axes: ...
 
     @overload
     def plot(
