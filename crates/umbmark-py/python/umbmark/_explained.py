@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, overload
 
+from umbmark._documents import Estimate
 from umbmark._monte_carlo import Progress
 from umbmark._report import plot
 from umbmark._result import Printed
@@ -30,10 +31,29 @@ class Explained(Printed):
 
     data: Dataset
     model: Model
+    fitted: tuple[Estimate, ...]
 
     def tracks(self) -> Tracks:
         """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""
         return tracks(self.data, self.model)
+
+    def fit_report(self) -> str:
+        """Write down the fit of its model as text: values, standard errors, rms, chi2, AICc.
+
+        The free parameters in the units of the catalogue, with intervals that hold as the result
+        says. On tracks the root mean square of the residuals in mm and deg, and chi2 of the
+        whitened ones, which is about their number if the model is right. AICc and BIC of the last
+        step of learning.
+        """
+        from umbmark._fit_report import report
+
+        try:
+            of = self.tracks()
+        except ValueError:
+            # Return poses alone.
+            of = None
+        steps = getattr(self, "steps", ())
+        return report(self.fitted, len(self.data), of, steps[-1] if steps else None)
 
     @overload
     def plot(self, ax: Axes | None = None, *, kind: None = None) -> Axes: ...

@@ -124,6 +124,16 @@ class Tracks(Sequence[Track], Frame):
             int(np.isfinite(track.whitened).sum()) for track in self if track.whitened is not None
         )
 
+    @property
+    def reduced_chi2(self) -> float | None:
+        """chi2 for each whitened residual, about 1 if the model is right; None without noise."""
+        return self.chi2 / self.whitened_count if self.chi2 and self.whitened_count else None
+
+    @property
+    def poses(self) -> int:
+        """Number of measured poses."""
+        return sum(len(track.time_s) for track in self)
+
     def _all(self, name: str) -> Floats:
         arrays = [getattr(track, name) for track in self]
         return np.concatenate(arrays) if arrays else np.empty((0, 3))
@@ -146,8 +156,7 @@ class Tracks(Sequence[Track], Frame):
         return pa.table(columns)
 
     def __repr__(self) -> str:
-        poses = sum(len(track.time_s) for track in self)
-        return f"Tracks({len(self)} runs, {poses} poses, {1e3 * self.rms_m:.2f} mm rms)"
+        return f"Tracks({len(self)} runs, {self.poses} poses, {1e3 * self.rms_m:.2f} mm rms)"
 
 
 def tracks(data: Data, model: Model | None = None) -> Tracks:
