@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import msgspec
 
@@ -48,6 +48,8 @@ class Diagnosis(_documents.Diagnosis, Explained, frozen=True):
 
 class Fitted(_documents.Fitted, Explained, frozen=True):
     """A fit of a model: its numbers, and the model with them."""
+
+    _of_row: ClassVar[tuple[str, ...]] = ("value", "standard_error", "interval")
 
     data: Dataset
     text: str

@@ -36,6 +36,7 @@ class MonteCarlo(_documents.MonteCarlo, frozen=True):
         The metrics of every trial, where they were kept.
     """
 
+    _of_row: ClassVar[tuple[str, ...]] = ("mean", "std_error", "std_dev", "q*")
     _uncompared: ClassVar[tuple[str, ...]] = ("trials_per_s",)
 
     ensemble: Ensemble

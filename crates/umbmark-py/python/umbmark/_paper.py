@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from msgspec import UNSET
 
@@ -19,6 +19,8 @@ Pose = tuple[float, float, float]
 
 
 class Paper(_documents.Paper, frozen=True):
+    _of_row: ClassVar[tuple[str, ...]] = ("value", "low", "high", "published")
+
     def table(self) -> list[Row]:
         """Give each number with what was published and where simulated tests lie, one a row."""
         rows: list[Row] = []

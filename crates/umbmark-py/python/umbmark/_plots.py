@@ -31,13 +31,15 @@ MARKS = {"cw": "o", "ccw": "s"}
 MM = 1e3
 
 
-def _axes(ax: Axes | None) -> Axes:
+def _axes(ax: Axes | None, names: int = 0) -> Axes:
+    """Give the axes, or new ones with room for so many names one above the other."""
     if ax is not None:
         return ax
     with needs("plot"):
         from matplotlib import pyplot
 
-    return pyplot.subplots(layout="constrained")[1]
+    figsize = (6.4, max(4.8, 0.2 * names))
+    return pyplot.subplots(layout="constrained", figsize=figsize)[1]
 
 
 def _seen_from_above(ax: Axes, unit: str) -> None:
@@ -120,8 +122,8 @@ def _small_p(ax: Axes, names: list[str], p: list[float], size: float) -> None:
 
 def comparison(result: Comparison, ax: Axes | None) -> Axes:
     """Draw p of every statistic of every model."""
-    ax = _axes(ax)
     rows = result.table()
+    ax = _axes(ax, len(rows))
     names = [f"{row['direction']} {row['quantity']}, {row['model']}" for row in rows]
     _small_p(ax, names, [row["p"] for row in rows], result.size)
     return ax

@@ -7,6 +7,7 @@ import inspect
 import math
 import re
 from collections.abc import Mapping
+from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 import msgspec
@@ -70,7 +71,7 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
     """A frozen result. Its attributes are the keys of the command's ``--json``.
 
     Results compare by value, how long they took left out; they can be hashed and pickled. ``print``
-    gives what the command prints, and notebooks show verdict, sentence and table.
+    gives what the command prints, and notebooks show verdict, sentence, table and figure.
     """
 
     # Attributes that are no keys of the document: those that a class adds to the document's.
@@ -79,6 +80,8 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
     _uncompared: ClassVar[tuple[str, ...]] = ("text",)
     # Columns of the table that are no numbers where nothing is known of them in any row.
     _words: ClassVar[Mapping[str, str]] = {}
+    # Columns of the table in the unit that a word of the row names, as of "sigma_m"; "q*" is all q.
+    _of_row: ClassVar[tuple[str, ...]] = ()
 
     def __init_subclass__(cls) -> None:
         """Note which attributes a class adds, and document those of its bases before them."""
@@ -151,6 +154,26 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
                 kinds.setdefault(field.name, word)
         return kinds
 
+    def _cells(self, row: Row) -> list[str]:
+        """Give the cells of a row as people read them.
+
+        A number is in the unit that its column names, or else, in some columns, the words of its
+        row.
+        """
+        named = (_unit(cell)[2] for cell in row.values() if isinstance(cell, str))
+        of_row = next((factor for factor in named if factor is not None), 1.0)
+
+        def factor(key: str) -> float:
+            is_of_row = any(fnmatchcase(key, pattern) for pattern in self._of_row)
+            return _unit(key)[2] or (of_row if is_of_row else 1.0)
+
+        def cell(key: str, value: Any) -> str:
+            if isinstance(value, str) and self._of_row and _unit(value)[2]:
+                return _title(value)
+            return _cell(value, factor(key))
+
+        return [cell(key, value) for key, value in row.items()]
+
     def _parts(self) -> tuple[Record, ...]:
         """Give its first list of parts."""
         values = [value for _, value in _fields(self) if isinstance(value, tuple)]
@@ -171,7 +194,9 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
         return f"{type(self).__name__}(\n{lines})"
 
     def _repr_html_(self) -> str:
-        """Give its verdict and its sentence, and its table with lengths in mm and angles in deg."""
+        """Give verdict, sentence, table with lengths in mm and angles in deg, and small figure."""
+        from umbmark._small import small
+
         said = [getattr(self, key, None) for key in ("verdict", "sentence")]
         words = [html.escape(word) for word in said if isinstance(word, str)]
         verdict = [f"<p><b>{words[0].replace('_', ' ')}</b></p>"] if said[0] else []
@@ -179,11 +204,11 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
         rows = self.table()
         head = "".join(f"<th>{html.escape(_title(key))}</th>" for key in (rows[0] if rows else ()))
         body = "".join(
-            "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in _cells(row)) + "</tr>"
+            "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in self._cells(row)) + "</tr>"
             for row in rows
         )
         table = f"<table><caption>{type(self).__name__}</caption><tr>{head}</tr>{body}</table>"
-        return "".join([*verdict, *sentences, table])
+        return "".join([*verdict, *sentences, table, small(self)])
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -224,23 +249,16 @@ def _title(name: str) -> str:
     return bare.replace("_", " ") + unit
 
 
-def _cells(row: Row) -> list[str]:
-    """Give the cells of a row as people read them.
-
-    A number is in the unit that its column names, or else the words of its row.
-    """
-    named = (_unit(cell)[2] for cell in row.values() if isinstance(cell, str))
-    of_row = next((factor for factor in named if factor is not None), 1.0)
-    return [_cell(value, _unit(key)[2] or of_row) for key, value in row.items()]
-
-
 def _cell(value: Any, factor: float) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
-        return f"{factor * value:.5g}"
+        # Ratios are near 1, where six digits say what five of a length do.
+        return f"{value:.6g}" if factor == 1.0 else f"{factor * value:.5g}"
+    if isinstance(value, tuple):
+        return f"({', '.join(_cell(item, factor) for item in value)})"
     if isinstance(value, str):
-        return _title(value) if _unit(value)[2] else value
+        return value
     return "-" if value is None else _shown(value)
 
 

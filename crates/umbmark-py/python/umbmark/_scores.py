@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, overload
 
 from umbmark import _documents
 from umbmark._arguments import Numbers
@@ -32,6 +32,7 @@ def places_of(data: Data) -> list[str]:
 class Score(_documents.Score, Printed, frozen=True):
     """The scores of a UMBmark test, with intervals that hold with probability ``level``."""
 
+    _of_row: ClassVar[tuple[str, ...]] = ("value", "low", "high")
     text: str
 
     def table(self) -> list[Row]:

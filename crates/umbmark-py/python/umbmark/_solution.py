@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 class Solution(_documents.Solution, Explained, frozen=True):
     """The one answer about a measured robot: what to write, what remains, what to do next."""
+
+    _of_row: ClassVar[tuple[str, ...]] = ("old", "new", "low", "high")
 
     data: Dataset
     text: str

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 
 class Sweep(_documents.Sweep, frozen=True):
+    _of_row: ClassVar[tuple[str, ...]] = ("mean", "std_error", "std_dev", "q*")
+
     def table(self) -> list[Row]:
         """Give each metric at each point, one dict a row."""
         names = [axis.flag for axis in self.axes]
