@@ -30,6 +30,8 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 =================================  ===========================================================
 """
 
+import logging
+
 from umbmark import results
 from umbmark._apply import Corrected, apply
 from umbmark._arguments import Numbers, Seed
@@ -78,7 +80,10 @@ from umbmark._umbmark import (
     simulate,
 )
 from umbmark._unlisted import Unlisted
-from umbmark._warnings import ConversionWarning
+from umbmark._warnings import ConversionWarning, UmbmarkWarning
+
+# Nothing is logged unless the program that uses this package asks for it.
+logging.getLogger("umbmark").addHandler(logging.NullHandler())
 
 __all__ = [
     "ActsOn",
@@ -126,6 +131,7 @@ __all__ = [
     "Track",
     "TrackComparison",
     "Tracks",
+    "UmbmarkWarning",
     "Unlisted",
     "__version__",
     "apply",

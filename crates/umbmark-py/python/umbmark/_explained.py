@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, overload
 
 from umbmark._documents import Estimate
-from umbmark._monte_carlo import Progress
+from umbmark._progress import Progress
 from umbmark._report import plot
 from umbmark._result import Printed
 from umbmark._tracks import Tracks, tracks

@@ -9,7 +9,7 @@ from msgspec import UNSET
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
-from umbmark._monte_carlo import Bar, Progress
+from umbmark._progress import Bar, Progress
 from umbmark._result import Row
 
 if TYPE_CHECKING:

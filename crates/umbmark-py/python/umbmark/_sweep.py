@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
 from umbmark._errors import needs
-from umbmark._monte_carlo import Bar, Progress
+from umbmark._progress import Bar, Progress
 from umbmark._result import Row
 from umbmark._umbmark import Model, Path, Study
 

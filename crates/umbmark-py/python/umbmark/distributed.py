@@ -27,8 +27,9 @@ from numpy.typing import NDArray
 
 from umbmark._arguments import Seed, seed_of, whole
 from umbmark._diagnosis import diagnose, learn
-from umbmark._monte_carlo import Bar, MonteCarlo, Progress, is_precise, result_of
+from umbmark._monte_carlo import MonteCarlo, is_precise, result_of
 from umbmark._parameters import Correlations, Parameters, keys_of
+from umbmark._progress import Bar, Progress
 from umbmark._result import Interval, Record, Row
 from umbmark._sensitivity import Sensitivity
 from umbmark._umbmark import Ensemble, Model, Path, Sobol, Study, __version__
