@@ -62,7 +62,6 @@ assert score.e_max_sys_m > score.noise_band_m, "more than chance"
 
 # %%
 found = umbmark.calibrate(data)
-found.plot()
 found
 
 # %%

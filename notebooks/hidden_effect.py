@@ -60,7 +60,6 @@ assert first.class_ == ("carpet_nap", "floor_slope")
 
 # %%
 learnt = umbmark.learn(data)
-learnt.plot()
 learnt
 
 # %%

@@ -31,7 +31,6 @@ def series(diameter_sd: float, wheelbase_sd: float) -> umbmark.Model:
 
 # %%
 found = umbmark.monte_carlo(series(5e-4, 2e-3), n=20_000)
-found.plot()
 found
 
 # %% [markdown]
