@@ -25,6 +25,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``paper``                          the experiments of the paper, beside its numbers
 ``plan``, ``separate``             how many runs, and which experiment, before any is driven
 ``Robot``, ``Path``, ``Model``     what all of it is about; ``effects`` lists what there is
+``each``                           one of these calls for many robots, in parallel
 ``umbmark.results``                the classes of the parts of results, for annotations
 ``umbmark.distributed``            studies on Dask, Ray, joblib or any other executor
 =================================  ===========================================================
@@ -39,6 +40,7 @@ from umbmark._calibration import Calibration, GearCalibration, calibrate, calibr
 from umbmark._comparison import Comparison, TrackComparison, compare
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
 from umbmark._documents import Correction, Effect, Setup
+from umbmark._each import Each, each
 from umbmark._errors import MissingDependencyError
 from umbmark._export import Exported, export
 from umbmark._formula import formula_of
@@ -96,6 +98,7 @@ __all__ = [
     "Diagnosis",
     "Drawn",
     "Drive",
+    "Each",
     "Effect",
     "EffectKeys",
     "EffectName",
@@ -139,6 +142,7 @@ __all__ = [
     "calibrate_gears",
     "compare",
     "diagnose",
+    "each",
     "effects",
     "export",
     "figures",

@@ -132,17 +132,7 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
 
     def to_arrow(self) -> pa.Table:
         """Give its ``table`` as an Arrow table; a column in which nothing is known has its type."""
-        with needs("frames"):
-            import pyarrow as pa
-
-        table = pa.Table.from_pylist(self.table())
-        named = {"bool": pa.bool_(), "float": pa.float64(), "int": pa.int64(), "str": pa.string()}
-        types = {name: named[word] for name, word in self._kinds().items()}
-        kinds = (
-            types.get(field.name, pa.float64()) if pa.types.is_null(field.type) else field.type
-            for field in table.schema
-        )
-        return table.cast(pa.schema([*zip(table.column_names, kinds, strict=True)]))
+        return arrow_of(self.table(), self._kinds())
 
     def _kinds(self) -> Mapping[str, str]:
         """Give the types of the columns that may be empty, by their annotations."""
@@ -209,6 +199,21 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
         )
         table = f"<table><caption>{type(self).__name__}</caption><tr>{head}</tr>{body}</table>"
         return "".join([*verdict, *sentences, table, small(self)])
+
+
+def arrow_of(rows: list[Row], kinds: Mapping[str, str]) -> pa.Table:
+    """Give rows as an Arrow table, with types for the columns in which nothing is known."""
+    with needs("frames"):
+        import pyarrow as pa
+
+    table = pa.Table.from_pylist(rows)
+    named = {"bool": pa.bool_(), "float": pa.float64(), "int": pa.int64(), "str": pa.string()}
+    types = {name: named[word] for name, word in kinds.items()}
+    fields = (
+        types.get(field.name, pa.float64()) if pa.types.is_null(field.type) else field.type
+        for field in table.schema
+    )
+    return table.cast(pa.schema([*zip(table.column_names, fields, strict=True)]))
 
 
 def _same(one: Any, other: Any) -> bool:

@@ -14,19 +14,15 @@ processes as there are cores.
 from __future__ import annotations
 
 import functools
-import logging
-import os
-import uuid
-from collections import Counter, deque
-from collections.abc import Callable, Generator
-from concurrent.futures import BrokenExecutor
-from typing import Any, Protocol, TypeVar
+from collections import Counter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from umbmark._arguments import Seed, seed_of, whole
+from umbmark._arguments import Seed, seed_of
 from umbmark._diagnosis import diagnose, learn
+from umbmark._executor import Executor, Future, in_order
 from umbmark._monte_carlo import MonteCarlo, is_precise, result_of
 from umbmark._parameters import Correlations, Parameters, keys_of
 from umbmark._progress import Bar, Progress
@@ -36,33 +32,6 @@ from umbmark._umbmark import Ensemble, Model, Path, Sobol, Study, __version__
 from umbmark._umbmark import simulate as _simulate
 
 __all__ = ["Executor", "Future", "Verdicts", "monte_carlo", "sensitivity", "verdicts"]
-
-log = logging.getLogger("umbmark.distributed")
-
-# Chunks that are under way or wait for one before them, for each worker.
-AHEAD = 4
-# How often a chunk is tried again where its worker fails.
-RETRIES = 3
-MOST_WORKERS = 1_000_000
-
-Part = TypeVar("Part")
-
-
-class Future(Protocol):
-    """Work that was submitted. Where it has a method ``cancel``, needless work is cancelled."""
-
-    def result(self) -> Any:
-        """Wait for what the work gives, or raise what it raised."""
-
-
-class Executor(Protocol):
-    """What runs work somewhere: in threads or processes, or on other machines.
-
-    Work and what it gives are pickled where they leave the process.
-    """
-
-    def submit(self, function: Callable[..., Any], /, *arguments: Any) -> Future:
-        """Begin ``function(*arguments)``, and return at once."""
 
 
 def monte_carlo(
@@ -107,7 +76,7 @@ def monte_carlo(
         What the executor raises where it is broken, or a chunk failed four times.
     """
     count = _chunks(study.n, chunk)
-    parts = _in_order(executor, functools.partial(_shard, study, count), count, workers)
+    parts = in_order(executor, functools.partial(_shard, study, count), range(count), workers)
     merged: Ensemble | None = None
     with Bar(progress, study.n, "trials") as bar:
         for part in parts:
@@ -173,7 +142,7 @@ def sensitivity(
     sums = []
     with Bar(progress, design.blocks, "blocks") as bar:
         work = functools.partial(_blocks, asked, design.blocks, chunk)
-        for part in _in_order(executor, work, -(-design.blocks // chunk), workers):
+        for part in in_order(executor, work, range(-(-design.blocks // chunk)), workers):
             sums.append(part)
             bar.at(min(design.blocks, chunk * len(sums)))
     return Sensitivity._of(design.document(np.concatenate(sums)))
@@ -296,7 +265,7 @@ def verdicts(
     counts: Counter[str] = Counter()
     named: Counter[str] = Counter()
     with Bar(progress, n, "tests") as bar:
-        for said, first in _in_order(executor, work, -(-n // chunk), workers):
+        for said, first in in_order(executor, work, range(-(-n // chunk)), workers):
             counts.update(said)
             named.update(first)
             bar.at(counts.total())
@@ -343,56 +312,3 @@ def _chunks(n: int, chunk: int) -> int:
         raise ValueError(f"chunk must be 1 or more, got {chunk}")
     # The most shards that a study may have.
     return max(1, min(-(-n // chunk), 1_000_000))
-
-
-def _in_order(
-    executor: Executor, work: Callable[[int], Part], count: int, workers: int | None
-) -> Generator[Part, None, None]:
-    """Give work(0), ..., work(count - 1) in this order, however they come."""
-    if workers is not None:
-        workers = whole("workers", workers, 1, MOST_WORKERS)
-    # Dask gives equal calls one result, and cancels it for all of them: no two studies are equal.
-    study = uuid.uuid4().hex
-    begin = functools.partial(executor.submit, _chunk, work, study)
-    waiting: deque[tuple[int, Future]] = deque()
-    begun = 0
-    try:
-        while begun < count or waiting:
-            ahead = AHEAD * (workers or _workers_of(executor))
-            while begun < count and len(waiting) < ahead:
-                waiting.append((begun, begin(begun, 0)))
-                begun += 1
-            part = _result(begin, *waiting[0])
-            waiting.popleft()
-            yield part
-    finally:
-        for _, future in waiting:
-            cancel = getattr(future, "cancel", None)
-            if cancel is not None:
-                cancel()
-
-
-def _chunk(work: Callable[[int], Part], study: str, index: int, retry: int) -> Part:
-    """Do the work of one chunk; a retry is another call than what failed."""
-    return work(index)
-
-
-def _result(begin: Callable[[int, int], Future], index: int, future: Future) -> Any:
-    """Give what a chunk gives; where its worker failed, try again."""
-    for retry in range(1, RETRIES + 1):
-        try:
-            return future.result()
-        except (ValueError, TypeError, BrokenExecutor):
-            # The study is wrong, or nothing can be submitted any more.
-            raise
-        except Exception as error:
-            log.warning("chunk %d failed, retry %d of %d: %r", index, retry, RETRIES, error)
-            future = begin(index, retry)
-    return future.result()
-
-
-def _workers_of(executor: Executor) -> int:
-    """Give how many chunks run at a time: Dask tells, and may grow meanwhile."""
-    threads = getattr(executor, "nthreads", None)
-    known = sum(threads().values()) if callable(threads) else os.cpu_count()
-    return max(1, known or 1)
