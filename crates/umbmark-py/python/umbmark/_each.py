@@ -37,7 +37,7 @@ class Each(Mapping[str, Found], Frame, Generic[Found]):
     def __init__(self, found: Mapping[str, Found], failed: Mapping[str, str]) -> None:
         """Keep what was found."""
         self._found = dict(found)
-        self.failed = dict(failed)
+        self.failed: dict[str, str] = dict(failed)
 
     def __getitem__(self, name: str) -> Found:
         """Give the result of a robot."""

@@ -40,6 +40,7 @@ class Executor(Protocol):
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any) -> Future:
         """Begin ``function(*arguments)``, and return at once."""
+        ...
 
 
 def in_order(
@@ -94,6 +95,6 @@ def _result(again: Callable[[int], Future], index: int, future: Future) -> Any:
 
 def _workers_of(executor: Executor) -> int:
     """Give how many run at a time: Dask tells, and may grow meanwhile."""
-    threads = getattr(executor, "nthreads", None)
-    known = sum(threads().values()) if callable(threads) else os.cpu_count()
+    threads: Any = getattr(executor, "nthreads", None)
+    known = os.cpu_count() if threads is None else sum(threads().values())
     return max(1, known or 1)

@@ -220,8 +220,9 @@ def _same(one: Any, other: Any) -> bool:
     """Whether values are equal, arrays element by element."""
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         return [*one] == [*other] and all(_same(one[key], other[key]) for key in one)
-    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
-        return np.array_equal(one, other, equal_nan=True)
+    arrays = [isinstance(value, np.ndarray) for value in (one, other)]
+    if any(arrays):
+        return all(arrays) and np.array_equal(one, other, equal_nan=True)
     return bool(one == other)
 
 
