@@ -220,9 +220,8 @@ def _same(one: Any, other: Any) -> bool:
     """Whether values are equal, arrays element by element."""
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         return [*one] == [*other] and all(_same(one[key], other[key]) for key in one)
-    arrays = [isinstance(value, np.ndarray) for value in (one, other)]
-    if any(arrays):
-        return all(arrays) and np.array_equal(one, other, equal_nan=True)
+    if isinstance(one, np.ndarray):
+        return isinstance(other, np.ndarray) and np.array_equal(one, other, equal_nan=True)
     return bool(one == other)
 
 
