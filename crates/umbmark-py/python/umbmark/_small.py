@@ -19,8 +19,8 @@ def small(result: Any) -> str:
     from matplotlib.figure import Figure
 
     written = BytesIO()
-    # With this salt, equal results give equal bytes.
-    with rc_context({"font.size": 8, "svg.hashsalt": "umbmark"}):
+    # Text stays text; with this salt, equal results give equal bytes.
+    with rc_context({"font.size": 8, "svg.fonttype": "none", "svg.hashsalt": "umbmark"}):
         # No figure of pyplot, which would be shown once more.
         figure = Figure(figsize=INCHES)
         try:
