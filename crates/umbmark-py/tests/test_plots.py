@@ -104,6 +104,17 @@ def test_intervals_reach_as_far_as_in_the_report(figures: dict[str, umbmark.Figu
     np.testing.assert_allclose([np.asarray(line)[:, 0] for line in segments], expected)
 
 
+def test_words_stand_where_the_report_has_them(figures: dict[str, umbmark.Figure]) -> None:
+    described = figures["return_errors"].to_plotly()
+    place = {"xaxis": "x", "yaxis": "y", "name": "", "meta": {"tone": "quiet"}}
+    words = {"mode": "text", "x": [1.0, 2.0], "y": [3.0, 4.0], "text": ["a &lt; b", "c"]}
+    described["data"].append({"type": "scatter", **place, **words})
+    told: Any = SimpleNamespace(kind="return_errors", to_plotly=lambda: described)
+    (ax,) = _panels.draw(told, None)
+    drawn = [(*text.get_position(), text.get_text()) for text in ax.texts]
+    assert drawn == [(1.0, 3.0, "a < b"), (2.0, 4.0, "c")]
+
+
 def test_figures_are_drawn_on_the_axes_that_are_given(learnt: umbmark.Learnt) -> None:
     figure, (left, right) = pyplot.subplots(1, 2)
     assert learnt.plot(left, kind="return_errors") == [left]

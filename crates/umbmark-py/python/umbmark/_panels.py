@@ -97,7 +97,7 @@ def _trace(ax: Axes, trace: dict[str, Any], order: float) -> Any:
         return ax.bar(x, y, trace["width"], base, color=colour, zorder=order)
     if trace["mode"] == "text":
         for at, up, word in zip(x, y, trace["text"], strict=True):
-            ax.text(at, up, _words(word), zorder=order, clip_on=True)
+            ax.text(at, up, _words(word), size="x-small", va="center", zorder=order, clip_on=True)
         return None
     if trace["mode"] == "lines":
         line = trace["line"]
