@@ -129,10 +129,7 @@ begin 'Python: notebooks'
 # Jupyter and matplotlib write into the home folder unless they are told otherwise.
 made=$(mktemp -d)
 export IPYTHONDIR=$made JUPYTER_CONFIG_DIR=$made JUPYTER_DATA_DIR=$made JUPYTER_RUNTIME_DIR=$made MPLCONFIGDIR=$made
-for notebook in notebooks/*.py; do
-    "$python" -m jupytext --quiet --to ipynb --output "$made/$(basename "$notebook" .py).ipynb" "$notebook"
-done
-"$python" -m pytest --numprocesses auto --nbmake --config-file "$package/pyproject.toml" "$made"
+"$python" .ci/render_notebooks.py --check
 rm -rf "$made"
 
 begin 'Report: in a browser'

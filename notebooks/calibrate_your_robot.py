@@ -53,6 +53,7 @@ axes = score.plot(data.plot())
 print(
     f"E_max,sys {1e3 * score.e_max_sys_m:.0f} mm; chance alone: {1e3 * score.noise_band_m:.0f} mm"
 )
+assert score.e_max_sys_m > score.noise_band_m, "more than chance"
 
 # %% [markdown]
 # ## What corrects them
@@ -61,7 +62,6 @@ print(
 
 # %%
 found = umbmark.calibrate(data)
-found.plot()
 found
 
 # %%

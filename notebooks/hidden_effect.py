@@ -60,7 +60,6 @@ assert first.class_ == ("carpet_nap", "floor_slope")
 
 # %%
 learnt = umbmark.learn(data)
-learnt.plot()
 learnt
 
 # %%
@@ -68,6 +67,23 @@ print(learnt.model.to_toml())
 assert learnt.verdict == "explained"
 assert any("floor_slope" in step.class_ for step in learnt.steps)
 assert learnt.steps[-1].heldout_rmse_m < 0.5 * learnt.steps[3].heldout_rmse_m
+
+# %% [markdown]
+# ## Where did the error come from?
+#
+# The floor drags the robot towards one side of the room: the error of the nominal robot (grey),
+# ahead and sideways, depends on the heading. That of the learnt model (green) does not.
+
+# %%
+learnt.plot(kind="residuals_by_heading")
+judged = umbmark.compare(data, {"nominal": umbmark.Model(), "learnt": learnt.model}).models
+before, after = ({(of.rate, of.covariate): of.p for of in model.against} for model in judged)
+for rate in ("forward_m_per_m", "sideways_m_per_m"):
+    print(
+        f"{rate} against heading: p = {before[rate, 'heading']:.4f}, {after[rate, 'heading']:.4f}"
+    )
+    assert before[rate, "heading"] < 0.01, "the nominal robot errs by its heading"
+    assert after[rate, "heading"] > 0.05, "the learnt model does not"
 
 # %% [markdown]
 # ## Does the learnt model explain it?
@@ -82,3 +98,4 @@ print(judged.sentences[0])
 assert judged.explains is True
 drift = next(found for found in learnt.fitted if found.parameter == "drift_x")
 assert drift.interval[0] < 0.01 < drift.interval[1]
+assert {"carpet_nap", "floor_slope"} <= {*learnt.steps[-1].class_}, "either would do it"

@@ -31,7 +31,6 @@ def series(diameter_sd: float, wheelbase_sd: float) -> umbmark.Model:
 
 # %%
 found = umbmark.monte_carlo(series(5e-4, 2e-3), n=20_000)
-found.plot()
 found
 
 # %% [markdown]
@@ -59,6 +58,14 @@ for (row, column), share in np.ndenumerate(passes):
 # %%
 assert (np.diff(passes, axis=1) <= 0.02).all(), "worse wheels, fewer that pass"
 assert (np.diff(passes, axis=0) <= 0.02).all(), "worse wheelbases, fewer that pass"
+
+# %% [markdown]
+# So 95 of 100 pass with a standard deviation of 2e-4 in the ratio of the wheel diameters and 1e-3
+# in the wheelbase, or of 1e-4 and 2e-3; with 5e-4 in the wheels no wheelbase of the grid is enough.
+
+# %%
+enough = {(d, b) for (b, d) in np.ndindex(passes.shape) if passes[b, d] >= 0.95}
+assert enough == {(0, 0), (1, 0), (0, 1)}
 
 # %% [markdown]
 # ## The same in NumPy

@@ -90,4 +90,6 @@ try:
         parameters={"k": 0.01},
     )
 except TypeError as error:
-    print(error)
+    refused = str(error)
+print(refused)
+assert "np.where" in refused

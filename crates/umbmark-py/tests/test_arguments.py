@@ -148,7 +148,7 @@ def test_a_seed_is_a_number_or_drawn_from_what_numpy_draws_from() -> None:
     def seed_of(seed: umbmark.Seed) -> int:
         return umbmark.monte_carlo(NOISE, n=1, seed=seed).seed
 
-    assert seed_of(np.int64(7)) == 7  # type: ignore[arg-type]
+    assert seed_of(np.int64(7)) == 7
     sources: list[Callable[[], umbmark.Seed]] = [
         lambda: np.random.default_rng(5),
         lambda: np.random.PCG64(5),

@@ -156,8 +156,8 @@ def test_many_robots_are_learnt_as_one_by_one(client: Client) -> None:
     fleet = [
         umbmark.simulate(MODEL, path, runs=3, reference_rate_hz=0, seed=seed) for seed in (1, 2)
     ]
-    learnt = client.gather(client.map(umbmark.learn, fleet, draws=99, threads=1, pure=False))
-    assert learnt == [umbmark.learn(data, draws=99) for data in fleet]
+    learnt = umbmark.each(umbmark.learn, fleet, executor=client, draws=99)
+    assert [*learnt.values()] == [umbmark.learn(data, draws=99) for data in fleet]
 
 
 @pytest.mark.parametrize(

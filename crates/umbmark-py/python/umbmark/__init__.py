@@ -25,10 +25,13 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``paper``                          the experiments of the paper, beside its numbers
 ``plan``, ``separate``             how many runs, and which experiment, before any is driven
 ``Robot``, ``Path``, ``Model``     what all of it is about; ``effects`` lists what there is
+``each``                           one of these calls for many robots, in parallel
 ``umbmark.results``                the classes of the parts of results, for annotations
-``umbmark.distributed``            Monte Carlo and sensitivity past one machine, on Dask
+``umbmark.distributed``            studies on Dask, Ray, joblib or any other executor
 =================================  ===========================================================
 """
+
+import logging
 
 from umbmark import results
 from umbmark._apply import Corrected, apply
@@ -37,6 +40,8 @@ from umbmark._calibration import Calibration, GearCalibration, calibrate, calibr
 from umbmark._comparison import Comparison, TrackComparison, compare
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
 from umbmark._documents import Correction, Effect, Setup
+from umbmark._each import Each, each
+from umbmark._errors import MissingDependencyError
 from umbmark._export import Exported, export
 from umbmark._formula import formula_of
 from umbmark._inspection import Inspection, inspect
@@ -76,7 +81,11 @@ from umbmark._umbmark import (
     presets,
     simulate,
 )
-from umbmark._warnings import ConversionWarning
+from umbmark._unlisted import Unlisted
+from umbmark._warnings import ConversionWarning, UmbmarkWarning
+
+# Nothing is logged unless the program that uses this package asks for it.
+logging.getLogger("umbmark").addHandler(logging.NullHandler())
 
 __all__ = [
     "ActsOn",
@@ -89,6 +98,7 @@ __all__ = [
     "Diagnosis",
     "Drawn",
     "Drive",
+    "Each",
     "Effect",
     "EffectKeys",
     "EffectName",
@@ -99,6 +109,7 @@ __all__ = [
     "GearCalibration",
     "Inspection",
     "Learnt",
+    "MissingDependencyError",
     "Model",
     "MonteCarlo",
     "Numbers",
@@ -123,12 +134,15 @@ __all__ = [
     "Track",
     "TrackComparison",
     "Tracks",
+    "UmbmarkWarning",
+    "Unlisted",
     "__version__",
     "apply",
     "calibrate",
     "calibrate_gears",
     "compare",
     "diagnose",
+    "each",
     "effects",
     "export",
     "figures",

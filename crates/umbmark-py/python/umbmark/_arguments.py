@@ -4,13 +4,22 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Sequence
-from typing import Any, Protocol, TypeAlias
+from typing import Any, Protocol, SupportsIndex, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from umbmark._errors import needs
+
 # What a call takes as a seed; None draws a fresh one.
-Seed: TypeAlias = int | np.random.Generator | np.random.BitGenerator | np.random.SeedSequence | None
+Seed: TypeAlias = (
+    int
+    | SupportsIndex
+    | np.random.Generator
+    | np.random.BitGenerator
+    | np.random.SeedSequence
+    | None
+)
 
 
 class ArrowStream(Protocol):
@@ -127,7 +136,8 @@ def _array(name: str, value: Any, wanted: str) -> NDArray[Any]:
     if np.ma.isMaskedArray(value):
         raise TypeError(f"{name} must not be masked; say {name}.filled(numpy.nan)")
     if hasattr(value, "__arrow_c_stream__") and not hasattr(value, "__array__"):
-        import pyarrow as pa
+        with needs("frames"):
+            import pyarrow as pa
 
         value = pa.table(value)
     try:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import msgspec
 
@@ -160,6 +160,8 @@ class GearCalibration(_documents.GearCalibration, frozen=True):
     robot : Robot
         The robot with its odometry corrected.
     """
+
+    _of_row: ClassVar[tuple[str, ...]] = ("value", "standard_error", "interval")
 
     model: Model
     robot: Robot

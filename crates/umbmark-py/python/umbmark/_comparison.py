@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 class Comparison(_documents.Comparison, Printed, frozen=True):
     """Models compared with measurements: which explain them, and where the others fail."""
 
+    _of_row: ClassVar[tuple[str, ...]] = ("measured", "predicted")
     text: str
 
     def table(self) -> list[Row]:

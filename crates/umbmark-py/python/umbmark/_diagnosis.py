@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import msgspec
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
 from umbmark._explained import Explained
-from umbmark._monte_carlo import Bar, Progress
+from umbmark._progress import Bar, Progress
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Dataset, Model
+from umbmark._unlisted import Unlisted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 class Diagnosis(_documents.Diagnosis, Explained, frozen=True):
     """What a model is missing, how certain that is, and what this data cannot show."""
 
+    unlisted: Unlisted | None
     data: Dataset
     text: str
 
@@ -38,8 +40,7 @@ class Diagnosis(_documents.Diagnosis, Explained, frozen=True):
             for place, suspect in enumerate(self.ranking)
         ]
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the p of the first classes of the ranking, on new axes or ``ax``."""
+    def _drawn(self, ax: Axes | None) -> Axes:
         from umbmark import _plots
 
         return _plots.diagnosis(self, ax)
@@ -48,6 +49,8 @@ class Diagnosis(_documents.Diagnosis, Explained, frozen=True):
 class Fitted(_documents.Fitted, Explained, frozen=True):
     """A fit of a model: its numbers, and the model with them."""
 
+    _of_row: ClassVar[tuple[str, ...]] = ("value", "standard_error", "interval")
+
     data: Dataset
     text: str
 
@@ -55,8 +58,7 @@ class Fitted(_documents.Fitted, Explained, frozen=True):
         """Give the free parameters, one dict a row."""
         return [msgspec.structs.asdict(estimate) for estimate in self.fitted]
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the fitted values in units of their standard errors, on new axes or ``ax``."""
+    def _drawn(self, ax: Axes | None) -> Axes:
         from umbmark import _plots
 
         return _plots.fitted(self, ax)
@@ -65,6 +67,7 @@ class Fitted(_documents.Fitted, Explained, frozen=True):
 class Learnt(_documents.Learnt, Explained, frozen=True):
     """What was learnt, from the nominal robot to the model."""
 
+    unlisted: Unlisted | None
     data: Dataset
     text: str
 
@@ -76,8 +79,7 @@ class Learnt(_documents.Learnt, Explained, frozen=True):
             for step in self.steps
         ]
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the error falling from step to step, on new axes or ``ax``."""
+    def _drawn(self, ax: Axes | None) -> Axes:
         from umbmark import _plots
 
         return _plots.learnt(self, ax)

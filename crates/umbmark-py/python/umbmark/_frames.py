@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from umbmark._arguments import column, poses
+from umbmark._errors import needs
 
 Floats: TypeAlias = NDArray[np.float64]
 # Name, times, counts of the left and the right wheel, rows of the poses, and the poses.
@@ -24,7 +25,8 @@ def logs(
 ) -> Iterator[Log]:
     """Give the columns of each run of a frame, the runs in the order of their first rows."""
     if hasattr(frame, "__arrow_c_stream__") and not hasattr(frame, "__getitem__"):
-        import pyarrow as pa
+        with needs("frames"):
+            import pyarrow as pa
 
         frame = pa.table(frame)
     time = _seconds(t, _get(frame, "t", t))

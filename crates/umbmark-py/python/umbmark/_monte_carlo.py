@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from os import PathLike
-from typing import TYPE_CHECKING, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
+from umbmark._errors import needs
+from umbmark._progress import Bar, Progress
 from umbmark._result import Row
 from umbmark._umbmark import Ensemble, Model, Path, Study
 
@@ -20,8 +22,6 @@ if TYPE_CHECKING:
 
 # The most trials of a study that stops by precision.
 MOST_UNTIL = 1_000_000_000
-
-Progress: TypeAlias = bool | Callable[[int, int], object] | None
 
 
 class MonteCarlo(_documents.MonteCarlo, frozen=True):
@@ -35,6 +35,7 @@ class MonteCarlo(_documents.MonteCarlo, frozen=True):
         The metrics of every trial, where they were kept.
     """
 
+    _of_row: ClassVar[tuple[str, ...]] = ("mean", "std_error", "std_dev", "q*")
     _uncompared: ClassVar[tuple[str, ...]] = ("trials_per_s",)
 
     ensemble: Ensemble
@@ -56,7 +57,8 @@ class MonteCarlo(_documents.MonteCarlo, frozen=True):
         ValueError
             If they were not kept: say ``keep=True``.
         """
-        import xarray as xr
+        with needs("frames"):
+            import xarray as xr
 
         if self.trials is None:
             raise ValueError("the metrics of single trials were not kept; say keep=True")
@@ -218,33 +220,3 @@ def result_of(
     """Give an ensemble of a study as a result."""
     document = study._document(ensemble, partial, trials_per_s)
     return MonteCarlo._of(document, ensemble=ensemble, trials=trials)
-
-
-class Bar:
-    """Progress as tqdm shows it, or as a function is told it."""
-
-    def __init__(self, progress: Progress, total: int, unit: str) -> None:
-        """Begin with nothing done."""
-        self._total = total
-        self._told = progress if callable(progress) else None
-        self._bar = None
-        if progress is True:
-            from tqdm.auto import tqdm
-
-            self._bar = tqdm(total=total, unit=f" {unit}", delay=1)
-
-    def at(self, done: int) -> None:
-        """Tell how many steps are done."""
-        if self._bar is not None:
-            self._bar.update(done - self._bar.n)
-        if self._told is not None:
-            self._told(done, self._total)
-
-    def __enter__(self) -> Bar:
-        """Begin."""
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """End, whatever happened."""
-        if self._bar is not None:
-            self._bar.close()

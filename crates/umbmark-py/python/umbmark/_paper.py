@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from msgspec import UNSET
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
-from umbmark._monte_carlo import Bar, Progress
+from umbmark._progress import Bar, Progress
 from umbmark._result import Row
 
 if TYPE_CHECKING:
@@ -19,6 +19,8 @@ Pose = tuple[float, float, float]
 
 
 class Paper(_documents.Paper, frozen=True):
+    _of_row: ClassVar[tuple[str, ...]] = ("value", "low", "high", "published")
+
     def table(self) -> list[Row]:
         """Give each number with what was published and where simulated tests lie, one a row."""
         rows: list[Row] = []

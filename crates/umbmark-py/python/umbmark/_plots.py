@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from umbmark._errors import needs
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -18,21 +20,26 @@ if TYPE_CHECKING:
     from umbmark._plan import Plan, Separation
     from umbmark._scores import Score
     from umbmark._sensitivity import Sensitivity
+    from umbmark._solution import Solution
     from umbmark._sweep import Sweep
     from umbmark._tolerance import Tolerance
     from umbmark._umbmark import Dataset
+    from umbmark._unlisted import Unlisted
 
 COLOURS = {"cw": "tab:blue", "ccw": "tab:orange"}
 MARKS = {"cw": "o", "ccw": "s"}
 MM = 1e3
 
 
-def _axes(ax: Axes | None) -> Axes:
+def _axes(ax: Axes | None, names: int = 0) -> Axes:
+    """Give the axes, or new ones with room for so many names one above the other."""
     if ax is not None:
         return ax
-    from matplotlib import pyplot
+    with needs("plot"):
+        from matplotlib import pyplot
 
-    return pyplot.subplots(layout="constrained")[1]
+    figsize = (6.4, max(4.8, 0.2 * names))
+    return pyplot.subplots(layout="constrained", figsize=figsize)[1]
 
 
 def _seen_from_above(ax: Axes, unit: str) -> None:
@@ -62,9 +69,9 @@ def dataset(data: Dataset, ax: Axes | None, tracks: bool) -> Axes:
 
 def score(result: Score, ax: Axes | None) -> Axes:
     """Draw centres of gravity with their ellipses, and the circle of E_max,sys, in mm."""
+    ax = _axes(ax)
     from matplotlib.patches import Circle, Ellipse
 
-    ax = _axes(ax)
     centres = {"cw": result.centroid_cw_m, "ccw": result.centroid_ccw_m}
     ellipses = {"cw": result.centroid_cw_ellipse, "ccw": result.centroid_ccw_ellipse}
     for direction, centre in centres.items():
@@ -115,8 +122,8 @@ def _small_p(ax: Axes, names: list[str], p: list[float], size: float) -> None:
 
 def comparison(result: Comparison, ax: Axes | None) -> Axes:
     """Draw p of every statistic of every model."""
-    ax = _axes(ax)
     rows = result.table()
+    ax = _axes(ax, len(rows))
     names = [f"{row['direction']} {row['quantity']}, {row['model']}" for row in rows]
     _small_p(ax, names, [row["p"] for row in rows], result.size)
     return ax
@@ -175,6 +182,39 @@ def learnt(result: Learnt, ax: Axes | None) -> Axes:
         ax.plot(names, [MM * (row[key] or np.nan) for row in rows], "o-", label=label)
     ax.set(ylabel="root mean square error [mm]", ylim=(0, None))
     ax.tick_params(axis="x", rotation=30)
+    ax.legend()
+    return ax
+
+
+def solution(result: Solution, ax: Axes | None) -> Axes:
+    """Draw by how much each number of the robot changes, in per cent, with its interval."""
+    ax = _axes(ax)
+    for place, change in enumerate(result.correction.values()):
+        new, *ends = (
+            100 * (np.nan if value is None else value / change.old - 1)
+            for value in (change.new, change.low, change.high)
+        )
+        ax.errorbar(new, place, xerr=[[new - ends[0]], [ends[1] - new]], fmt="C0o", capsize=3)
+    names = [name.rpartition("_")[0].replace("_", " ") for name in result.correction]
+    ax.set_yticks(range(len(names)), names)
+    ax.invert_yaxis()
+    ax.axvline(0, color="grey", linewidth=0.8)
+    ax.set_xlabel("new against old [%]")
+    return ax
+
+
+def unlisted(result: Unlisted, ax: Axes | None) -> Axes:
+    """Draw the curve of a missing effect with its band, over what it depends on."""
+    ax = _axes(ax)
+    points = result.curve.points
+    at = [point.at for point in points]
+    ax.plot(at, [point.value for point in points], color="tab:green", label="missing")
+    low, high = ([getattr(point, end) for point in points] for end in ("low", "high"))
+    ax.fill_between(at, low, high, color="tab:green", alpha=0.25, label="95 %")
+    ax.axhline(0, color="grey", linewidth=0.8)
+    named = ((result.depends_on, result.curve.at_unit), (result.acts_on, result.curve.unit))
+    labels = [name.replace("_", " ") + (f" [{unit}]" if unit else "") for name, unit in named]
+    ax.set(xlabel=labels[0], ylabel=labels[1])
     ax.legend()
     return ax
 

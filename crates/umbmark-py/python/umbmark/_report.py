@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
-from umbmark._monte_carlo import Bar, Progress
+from umbmark._progress import Bar, Progress
 from umbmark._result import Row
 from umbmark._scores import Data, data_of, places_of
 from umbmark._umbmark import Dataset, Figure, Model

@@ -7,10 +7,13 @@ import inspect
 import math
 import re
 from collections.abc import Mapping
+from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 import msgspec
 import numpy as np
+
+from umbmark._errors import needs
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,12 +39,14 @@ class Frame:
 
     def to_pandas(self) -> pd.DataFrame:
         """Give its rows as a pandas DataFrame, through Arrow."""
-        frame: pd.DataFrame = self.to_arrow().to_pandas()
+        with needs("frames"):
+            frame: pd.DataFrame = self.to_arrow().to_pandas()
         return frame
 
     def to_polars(self) -> pl.DataFrame:
         """Give its rows as a polars DataFrame, through Arrow."""
-        import polars as pl
+        with needs("frames"):
+            import polars as pl
 
         return pl.DataFrame(self.to_arrow())
 
@@ -66,7 +71,7 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
     """A frozen result. Its attributes are the keys of the command's ``--json``.
 
     Results compare by value, how long they took left out; they can be hashed and pickled. ``print``
-    gives what the command prints, and notebooks show verdict, sentence and table.
+    gives what the command prints, and notebooks show verdict, sentence, table and figure.
     """
 
     # Attributes that are no keys of the document: those that a class adds to the document's.
@@ -75,12 +80,20 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
     _uncompared: ClassVar[tuple[str, ...]] = ("text",)
     # Columns of the table that are no numbers where nothing is known of them in any row.
     _words: ClassVar[Mapping[str, str]] = {}
+    # Columns of the table in the unit that a word of the row names, as of "sigma_m"; "q*" is all q.
+    _of_row: ClassVar[tuple[str, ...]] = ()
 
     def __init_subclass__(cls) -> None:
         """Note which attributes a class adds, and document those of its bases before them."""
         super().__init_subclass__()
         if cls.__module__ != "umbmark._documents":
-            declared = [name for name in inspect.get_annotations(cls) if name[0] != "_"]
+            documents = [base for base in cls.__mro__ if base.__module__ == "umbmark._documents"]
+            known = {key for base in documents for key in inspect.get_annotations(base)}
+            declared = [
+                name
+                for name in inspect.get_annotations(cls)
+                if name[0] != "_" and name not in known
+            ]
             cls._beside = (*cls._beside, *declared)
         rule = "\n    Attributes\n    ----------\n"
         inherited = [(base.__doc__ or "").partition(rule)[2].rstrip() for base in cls.__bases__]
@@ -119,16 +132,7 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
 
     def to_arrow(self) -> pa.Table:
         """Give its ``table`` as an Arrow table; a column in which nothing is known has its type."""
-        import pyarrow as pa
-
-        table = pa.Table.from_pylist(self.table())
-        named = {"bool": pa.bool_(), "float": pa.float64(), "int": pa.int64(), "str": pa.string()}
-        types = {name: named[word] for name, word in self._kinds().items()}
-        kinds = (
-            types.get(field.name, pa.float64()) if pa.types.is_null(field.type) else field.type
-            for field in table.schema
-        )
-        return table.cast(pa.schema([*zip(table.column_names, kinds, strict=True)]))
+        return arrow_of(self.table(), self._kinds())
 
     def _kinds(self) -> Mapping[str, str]:
         """Give the types of the columns that may be empty, by their annotations."""
@@ -139,6 +143,26 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
                 word = word if word in ("bool", "int", "str") else "float"
                 kinds.setdefault(field.name, word)
         return kinds
+
+    def _cells(self, row: Row) -> list[str]:
+        """Give the cells of a row as people read them.
+
+        A number is in the unit that its column names, or else, in some columns, the words of its
+        row.
+        """
+        named = (_unit(cell)[2] for cell in row.values() if isinstance(cell, str))
+        of_row = next((factor for factor in named if factor is not None), 1.0)
+
+        def factor(key: str) -> float:
+            is_of_row = any(fnmatchcase(key, pattern) for pattern in self._of_row)
+            return _unit(key)[2] or (of_row if is_of_row else 1.0)
+
+        def cell(key: str, value: Any) -> str:
+            if isinstance(value, str) and self._of_row and _unit(value)[2]:
+                return _title(value)
+            return _cell(value, factor(key))
+
+        return [cell(key, value) for key, value in row.items()]
 
     def _parts(self) -> tuple[Record, ...]:
         """Give its first list of parts."""
@@ -160,7 +184,9 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
         return f"{type(self).__name__}(\n{lines})"
 
     def _repr_html_(self) -> str:
-        """Give its verdict and its sentence, and its table with lengths in mm and angles in deg."""
+        """Give verdict, sentence, table with lengths in mm and angles in deg, and small figure."""
+        from umbmark._small import small
+
         said = [getattr(self, key, None) for key in ("verdict", "sentence")]
         words = [html.escape(word) for word in said if isinstance(word, str)]
         verdict = [f"<p><b>{words[0].replace('_', ' ')}</b></p>"] if said[0] else []
@@ -168,19 +194,34 @@ class Result(msgspec.Struct, Frame, frozen=True, forbid_unknown_fields=True):
         rows = self.table()
         head = "".join(f"<th>{html.escape(_title(key))}</th>" for key in (rows[0] if rows else ()))
         body = "".join(
-            "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in _cells(row)) + "</tr>"
+            "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in self._cells(row)) + "</tr>"
             for row in rows
         )
         table = f"<table><caption>{type(self).__name__}</caption><tr>{head}</tr>{body}</table>"
-        return "".join([*verdict, *sentences, table])
+        return "".join([*verdict, *sentences, table, small(self)])
+
+
+def arrow_of(rows: list[Row], kinds: Mapping[str, str]) -> pa.Table:
+    """Give rows as an Arrow table, with types for the columns in which nothing is known."""
+    with needs("frames"):
+        import pyarrow as pa
+
+    table = pa.Table.from_pylist(rows)
+    named = {"bool": pa.bool_(), "float": pa.float64(), "int": pa.int64(), "str": pa.string()}
+    types = {name: named[word] for name, word in kinds.items()}
+    fields = (
+        types.get(field.name, pa.float64()) if pa.types.is_null(field.type) else field.type
+        for field in table.schema
+    )
+    return table.cast(pa.schema([*zip(table.column_names, fields, strict=True)]))
 
 
 def _same(one: Any, other: Any) -> bool:
     """Whether values are equal, arrays element by element."""
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         return [*one] == [*other] and all(_same(one[key], other[key]) for key in one)
-    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
-        return np.array_equal(one, other, equal_nan=True)
+    if isinstance(one, np.ndarray):
+        return isinstance(other, np.ndarray) and np.array_equal(one, other, equal_nan=True)
     return bool(one == other)
 
 
@@ -213,23 +254,16 @@ def _title(name: str) -> str:
     return bare.replace("_", " ") + unit
 
 
-def _cells(row: Row) -> list[str]:
-    """Give the cells of a row as people read them.
-
-    A number is in the unit that its column names, or else the words of its row.
-    """
-    named = (_unit(cell)[2] for cell in row.values() if isinstance(cell, str))
-    of_row = next((factor for factor in named if factor is not None), 1.0)
-    return [_cell(value, _unit(key)[2] or of_row) for key, value in row.items()]
-
-
 def _cell(value: Any, factor: float) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
-        return f"{factor * value:.5g}"
+        # Ratios are near 1, where six digits say what five of a length do.
+        return f"{value:.6g}" if factor == 1.0 else f"{factor * value:.5g}"
+    if isinstance(value, tuple):
+        return f"({', '.join(_cell(item, factor) for item in value)})"
     if isinstance(value, str):
-        return _title(value) if _unit(value)[2] else value
+        return value
     return "-" if value is None else _shown(value)
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, overload
 
 from umbmark import _documents
 from umbmark._arguments import Numbers
@@ -14,12 +15,22 @@ from umbmark._umbmark import Dataset, load_dataset, score_arrays, score_dataset
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+log = logging.getLogger("umbmark.data")
+
 Data: TypeAlias = Dataset | str | PathLike[str] | Sequence[str | PathLike[str]]
 
 
 def data_of(data: Data) -> Dataset:
-    """Give the dataset, read where its place is given; several places are read as one."""
-    return data if isinstance(data, Dataset) else load_dataset(data)
+    """Give the dataset, read where its place is given; several places are read as one.
+
+    What was mended is logged: a caller that gives a place does not see the dataset's warnings.
+    """
+    if isinstance(data, Dataset):
+        return data
+    read = load_dataset(data)
+    for warning in read.warnings:
+        log.warning("%s: %s", ", ".join(places_of(data)), warning)
+    return read
 
 
 def places_of(data: Data) -> list[str]:
@@ -32,6 +43,7 @@ def places_of(data: Data) -> list[str]:
 class Score(_documents.Score, Printed, frozen=True):
     """The scores of a UMBmark test, with intervals that hold with probability ``level``."""
 
+    _of_row: ClassVar[tuple[str, ...]] = ("value", "low", "high")
     text: str
 
     def table(self) -> list[Row]:

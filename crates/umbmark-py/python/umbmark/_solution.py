@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, ClassVar
+
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of
 from umbmark._explained import Explained
-from umbmark._monte_carlo import Bar, Progress
+from umbmark._progress import Bar, Progress
 from umbmark._result import Row
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Dataset
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 class Solution(_documents.Solution, Explained, frozen=True):
     """The one answer about a measured robot: what to write, what remains, what to do next."""
+
+    _of_row: ClassVar[tuple[str, ...]] = ("old", "new", "low", "high")
 
     data: Dataset
     text: str
@@ -24,6 +31,11 @@ class Solution(_documents.Solution, Explained, frozen=True):
             {"number": name} | {key: getattr(change, key) for key in keys}
             for name, change in self.correction.items()
         ]
+
+    def _drawn(self, ax: Axes | None) -> Axes:
+        from umbmark import _plots
+
+        return _plots.solution(self, ax)
 
 
 def solve(

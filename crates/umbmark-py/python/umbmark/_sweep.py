@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
-from umbmark._monte_carlo import Bar, Progress
+from umbmark._errors import needs
+from umbmark._progress import Bar, Progress
 from umbmark._result import Row
 from umbmark._umbmark import Model, Path, Study
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 
 class Sweep(_documents.Sweep, frozen=True):
+    _of_row: ClassVar[tuple[str, ...]] = ("mean", "std_error", "std_dev", "q*")
+
     def table(self) -> list[Row]:
         """Give each metric at each point, one dict a row."""
         names = [axis.flag for axis in self.axes]
@@ -39,7 +42,8 @@ class Sweep(_documents.Sweep, frozen=True):
         Each metric is its mean; METRIC_std_error, METRIC_std_dev and METRIC_quantile (along
         ``share``) stand beside it. Points that were not reached are NaN.
         """
-        import xarray as xr
+        with needs("frames"):
+            import xarray as xr
 
         names = [axis.flag for axis in self.axes]
         shape = [axis.count for axis in self.axes]

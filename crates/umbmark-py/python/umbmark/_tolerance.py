@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
-from umbmark._monte_carlo import Bar, Progress
 from umbmark._parameters import Correlations, Parameters, keys_of
+from umbmark._progress import Bar, Progress
 from umbmark._result import Row
 from umbmark._umbmark import Model, Path, Study
 

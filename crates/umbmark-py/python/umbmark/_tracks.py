@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from umbmark import _umbmark
+from umbmark._errors import needs
 from umbmark._result import Frame
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Model
@@ -123,13 +124,24 @@ class Tracks(Sequence[Track], Frame):
             int(np.isfinite(track.whitened).sum()) for track in self if track.whitened is not None
         )
 
+    @property
+    def reduced_chi2(self) -> float | None:
+        """chi2 for each whitened residual, about 1 if the model is right; None without noise."""
+        return self.chi2 / self.whitened_count if self.chi2 and self.whitened_count else None
+
+    @property
+    def poses(self) -> int:
+        """Number of measured poses."""
+        return sum(len(track.time_s) for track in self)
+
     def _all(self, name: str) -> Floats:
         arrays = [getattr(track, name) for track in self]
         return np.concatenate(arrays) if arrays else np.empty((0, 3))
 
     def to_arrow(self) -> pa.Table:
         """Give all poses as an Arrow table: run, direction, time, and each x, y and heading."""
-        import pyarrow as pa
+        with needs("frames"):
+            import pyarrow as pa
 
         columns: dict[str, object] = {
             "run": pa.array([track.run for track in self for _ in track.time_s], pa.string()),
@@ -144,8 +156,7 @@ class Tracks(Sequence[Track], Frame):
         return pa.table(columns)
 
     def __repr__(self) -> str:
-        poses = sum(len(track.time_s) for track in self)
-        return f"Tracks({len(self)} runs, {poses} poses, {1e3 * self.rms_m:.2f} mm rms)"
+        return f"Tracks({len(self)} runs, {self.poses} poses, {1e3 * self.rms_m:.2f} mm rms)"
 
 
 def tracks(data: Data, model: Model | None = None) -> Tracks:

@@ -1,61 +1,54 @@
-"""Studies past one machine, on Dask: ``pip install umbmark[distributed]``.
+"""Studies past one process, on any executor: Dask, Ray, joblib, ``concurrent.futures``.
 
 A study is cut into chunks by its number of trials alone, never by the workers. A chunk is the study
 (with its seed) and its place; whichever worker runs it, it gives the same bits, and results are
 taken in the order of the chunks. So the answer is that of one process, whatever the workers, their
 order, or how many of them die on the way.
 
-Give it a ``distributed.Client`` of any cluster: ``LocalCluster``, SSH, SLURM, Kubernetes
-(docs/distributed.md). Work holds one thread; start as many threads or processes as there are cores.
+Give it an ``Executor``: anything with ``submit(function, *arguments)`` that returns something with
+``result()``. A Dask client and the pools of ``concurrent.futures`` are executors;
+docs/distributed.md has recipes for Ray and joblib. Work holds one thread; start as many threads or
+processes as there are cores.
 """
 
 from __future__ import annotations
 
 import functools
 from collections import Counter
-from collections.abc import Callable, Generator
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any
 
 import numpy as np
-from distributed import as_completed
 from numpy.typing import NDArray
 
 from umbmark._arguments import Seed, seed_of
 from umbmark._diagnosis import diagnose, learn
-from umbmark._monte_carlo import Bar, MonteCarlo, Progress, is_precise, result_of
+from umbmark._executor import Executor, Future, in_order
+from umbmark._monte_carlo import MonteCarlo, is_precise, result_of
 from umbmark._parameters import Correlations, Parameters, keys_of
+from umbmark._progress import Bar, Progress
 from umbmark._result import Interval, Record, Row
 from umbmark._sensitivity import Sensitivity
 from umbmark._umbmark import Ensemble, Model, Path, Sobol, Study, __version__
 from umbmark._umbmark import simulate as _simulate
 
-if TYPE_CHECKING:
-    from distributed import Client, Future
-
-__all__ = ["Verdicts", "monte_carlo", "sensitivity", "verdicts"]
-
-# Chunks that are under way or wait for one before them, for each thread of the cluster.
-AHEAD = 4
-# How often a chunk is tried again where its worker fails.
-RETRIES = 3
-
-Part = TypeVar("Part")
+__all__ = ["Executor", "Future", "Verdicts", "monte_carlo", "sensitivity", "verdicts"]
 
 
 def monte_carlo(
-    client: Client,
+    executor: Executor,
     study: Study,
     *,
     until_std_error_m: float | None = None,
     chunk: int = 65536,
+    workers: int | None = None,
     progress: Progress = None,
 ) -> MonteCarlo:
-    """Run a study on a cluster: the bits of one process.
+    """Run a study on an executor: the bits of one process.
 
     Parameters
     ----------
-    client : distributed.Client
-        The cluster.
+    executor : Executor
+        What runs the chunks: a Dask client, a pool of ``concurrent.futures``, and the like.
     study : Study
         The study: robot, path, number of trials, seed.
     until_std_error_m : float, optional
@@ -63,6 +56,10 @@ def monte_carlo(
         in m, with all chunks before it; at ``study.n`` trials at the latest.
     chunk : int, default 65536
         Trials of a chunk, about; with ``until_std_error_m`` the number of trials depends on it.
+    workers : int, optional
+        How many chunks the executor runs at a time; four times as many are submitted ahead. The
+        threads of a Dask cluster, else the processors of this machine, where none is given. No
+        number depends on it.
     progress : bool or callable, optional
         As of ``umbmark.monte_carlo``.
 
@@ -75,11 +72,11 @@ def monte_carlo(
     ------
     ValueError
         If a number is out of range.
-    distributed.KilledWorker
-        If a chunk's worker died more often than the scheduler allows.
+    Exception
+        What the executor raises where it is broken, or a chunk failed four times.
     """
     count = _chunks(study.n, chunk)
-    parts = _in_order(client, functools.partial(_shard, study, count), count)
+    parts = in_order(executor, functools.partial(_shard, study, count), range(count), workers)
     merged: Ensemble | None = None
     with Bar(progress, study.n, "trials") as bar:
         for part in parts:
@@ -98,7 +95,7 @@ def _shard(study: Study, count: int, index: int) -> Ensemble:
 
 
 def sensitivity(
-    client: Client,
+    executor: Executor,
     study: Study,
     *,
     parameters: Parameters | None = None,
@@ -107,14 +104,15 @@ def sensitivity(
     second_order: bool = False,
     noise_free: bool = False,
     chunk: int = 8,
+    workers: int | None = None,
     progress: Progress = None,
 ) -> Sensitivity:
-    """Find Sobol indices on a cluster: the bits of ``umbmark.sensitivity``.
+    """Find Sobol indices on an executor: the bits of ``umbmark.sensitivity``.
 
     Parameters
     ----------
-    client : distributed.Client
-        The cluster.
+    executor, workers
+        As of ``monte_carlo``.
     study : Study
         The robot, its path and its runs; what varies are the parameters of the model that have a
         distribution, and ``parameters``.
@@ -144,7 +142,7 @@ def sensitivity(
     sums = []
     with Bar(progress, design.blocks, "blocks") as bar:
         work = functools.partial(_blocks, asked, design.blocks, chunk)
-        for part in _in_order(client, work, -(-design.blocks // chunk)):
+        for part in in_order(executor, work, range(-(-design.blocks // chunk)), workers):
             sums.append(part)
             bar.at(min(design.blocks, chunk * len(sums)))
     return Sensitivity._of(design.document(np.concatenate(sums)))
@@ -206,7 +204,7 @@ class Verdicts(Record, frozen=True):
 
 
 def verdicts(
-    client: Client,
+    executor: Executor,
     truth: Model,
     path: Path | None = None,
     *,
@@ -218,6 +216,7 @@ def verdicts(
     draws: int = 999,
     seed: Seed = 1,
     chunk: int = 16,
+    workers: int | None = None,
     progress: Progress = None,
 ) -> Verdicts:
     """Ask many simulated tests of one robot what is missing: false alarms, or power.
@@ -227,8 +226,8 @@ def verdicts(
 
     Parameters
     ----------
-    client : distributed.Client
-        The cluster.
+    executor, workers
+        As of ``monte_carlo``.
     truth : Model
         The robot; parameters with a distribution are drawn anew for each test.
     path : Path, optional
@@ -266,7 +265,7 @@ def verdicts(
     counts: Counter[str] = Counter()
     named: Counter[str] = Counter()
     with Bar(progress, n, "tests") as bar:
-        for said, first in _in_order(client, work, -(-n // chunk)):
+        for said, first in in_order(executor, work, range(-(-n // chunk)), workers):
             counts.update(said)
             named.update(first)
             bar.at(counts.total())
@@ -313,30 +312,3 @@ def _chunks(n: int, chunk: int) -> int:
         raise ValueError(f"chunk must be 1 or more, got {chunk}")
     # The most shards that a study may have.
     return max(1, min(-(-n // chunk), 1_000_000))
-
-
-def _in_order(
-    client: Client, work: Callable[[int], Part], count: int
-) -> Generator[Part, None, None]:
-    """Give work(0), ..., work(count - 1) in this order, however they come."""
-    places: dict[object, int] = {}
-    come: dict[int, Part] = {}
-    under_way: dict[object, Future[Part]] = {}
-    coming = as_completed(with_results=True)
-    begun = given = 0
-    try:
-        while given < count:
-            ahead = AHEAD * max(1, sum(client.nthreads().values()))
-            while begun < min(count, given + ahead):
-                future = client.submit(work, begun, pure=False, retries=RETRIES)
-                places[future.key], under_way[future.key] = begun, future
-                coming.add(future)
-                begun += 1
-            future, part = next(coming)
-            come[places.pop(future.key)] = part
-            del under_way[future.key]
-            while given in come:
-                yield come.pop(given)
-                given += 1
-    finally:
-        client.cancel([*under_way.values()])

@@ -1,0 +1,155 @@
+"""Many robots by one call: in parallel, with one frame of all."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from umbmark._arguments import whole
+from umbmark._executor import MOST_WORKERS, Executor, in_order
+from umbmark._progress import Bar, Progress
+from umbmark._result import Frame, Result, Row, arrow_of
+from umbmark._scores import Data
+from umbmark._umbmark import Dataset
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+Found = TypeVar("Found", bound=Result)
+
+
+class Each(Mapping[str, Found], Frame, Generic[Found]):
+    """What one call found for each of many robots: a mapping of their names to results.
+
+    It hands one frame of all of them to whatever reads Arrow.
+
+    Attributes
+    ----------
+    failed : dict of str to str
+        Robots for which nothing was found, by their names, and why.
+    """
+
+    def __init__(self, found: Mapping[str, Found], failed: Mapping[str, str]) -> None:
+        """Keep what was found."""
+        self._found = dict(found)
+        self.failed: dict[str, str] = dict(failed)
+
+    def __getitem__(self, name: str) -> Found:
+        """Give the result of a robot."""
+        return self._found[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._found)
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def table(self) -> list[Row]:
+        """Give the tables of all results one below the other, with the name of the robot."""
+        rows = [{"robot": name} | row for name, result in self.items() for row in result.table()]
+        names = dict.fromkeys(name for row in rows for name in row)
+        return [{name: row.get(name) for name in names} for row in rows]
+
+    def to_arrow(self) -> pa.Table:
+        """Give its ``table`` as an Arrow table."""
+        first = next(iter(self.values()), None)
+        return arrow_of(self.table(), {} if first is None else first._kinds())
+
+    def __repr__(self) -> str:
+        first = next(iter(self.values()), None)
+        kind = "nothing found" if first is None else type(first).__name__
+        return f"Each({kind}: {len(self)} robots, {len(self.failed)} failed)"
+
+
+def each(
+    call: Callable[..., Found],
+    robots: Mapping[str, Data] | Sequence[Data],
+    *,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    progress: Progress = None,
+    **keys: Any,
+) -> Each[Found]:
+    """Score, calibrate, diagnose or learn many robots, in parallel.
+
+    Parameters
+    ----------
+    call : callable
+        What is asked of each: ``umbmark.score``, ``calibrate``, ``diagnose``, ``learn``, ``solve``,
+        ``fit``, ``inspect``, or a function of your own that takes data and gives such a result.
+    robots : mapping of str to Dataset or path-like, or sequence of these
+        The measurements of each robot. In a sequence they are called "1", "2", ...
+    executor : Executor, optional
+        What runs the calls, as of ``umbmark.distributed``; threads of this process where none is
+        given.
+    workers : int, optional
+        How many calls run at a time; the processors of this machine where none is given.
+    progress : bool or callable, optional
+        True for a bar of tqdm; or a function of the robots done and of all.
+    **keys
+        Passed to each call. ``threads`` is 1 where the call takes it and nothing else is said. All
+        robots have the same ``seed``: each gets what a call of its own would give.
+
+    Returns
+    -------
+    Each
+        The results in the order of the robots. A robot whose call raises ValueError stands in
+        ``failed`` with the message; the others are not stopped.
+
+    Raises
+    ------
+    TypeError
+        If the robots are the place of a single one.
+
+    Examples
+    --------
+    >>> import umbmark
+    >>> model = umbmark.Model().add("wheel_noise", k_sqrt_m=0.001)
+    >>> robots = {f"cart {i}": umbmark.simulate(model, seed=i, runs=3) for i in (1, 2)}
+    >>> found = umbmark.each(umbmark.score, robots)
+    >>> found
+    Each(Score: 2 robots, 0 failed)
+    >>> found["cart 2"] == umbmark.score(robots["cart 2"])
+    True
+    >>> found.to_pandas()["robot"].unique().tolist()
+    ['cart 1', 'cart 2']
+    """
+    if isinstance(robots, str | Dataset) or not isinstance(robots, Mapping | Sequence):
+        got = type(robots).__name__
+        raise TypeError(f"robots must be a mapping or a sequence of data, got {got}")
+    if not isinstance(robots, Mapping):
+        robots = {str(place): data for place, data in enumerate(robots, 1)}
+    if workers is not None:
+        workers = whole("workers", workers, 1, MOST_WORKERS)
+    if "threads" in inspect.signature(call).parameters:
+        keys.setdefault("threads", 1)
+    work = functools.partial(_told, call, keys)
+    found: dict[str, Found] = {}
+    failed: dict[str, str] = {}
+    with ExitStack() as stack:
+        if executor is None:
+            executor = stack.enter_context(ThreadPoolExecutor(workers or os.cpu_count()))
+        bar = stack.enter_context(Bar(progress, len(robots), "robots"))
+        told = in_order(executor, work, [*robots.values()], workers)
+        for name, (result, why) in zip(robots, told, strict=True):
+            if result is None:
+                failed[name] = why
+            else:
+                found[name] = result
+            bar.at(len(found) + len(failed))
+    return Each(found, failed)
+
+
+def _told(
+    call: Callable[..., Found], keys: Mapping[str, Any], data: Data
+) -> tuple[Found | None, str]:
+    """Give what a call gives, or why it gives nothing."""
+    try:
+        return call(data, **keys), ""
+    except ValueError as error:
+        return None, str(error)

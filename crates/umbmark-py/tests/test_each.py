@@ -1,0 +1,109 @@
+"""Many robots by one call: what one call after the other gives, and one frame of all."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+import umbmark
+
+PATH = umbmark.Path(side_m=1.0)
+MODEL = umbmark.Model().add("wheelbase", e_b=1.01).add("wheel_noise", k_sqrt_m=3e-4)
+
+
+@pytest.fixture(scope="module")
+def robots() -> dict[str, umbmark.Dataset]:
+    """Return three robots by their return poses."""
+    return {
+        f"cart {seed}": umbmark.simulate(MODEL, PATH, runs=4, reference_rate_hz=0, seed=seed)
+        for seed in (3, 1, 2)
+    }
+
+
+CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
+    "score": (umbmark.score, {"level": 0.9}),
+    "calibrate": (umbmark.calibrate, {}),
+    "fit": (umbmark.fit, {}),
+    "diagnose": (umbmark.diagnose, {"draws": 99}),
+    "learn": (umbmark.learn, {"draws": 99}),
+    "solve": (umbmark.solve, {"draws": 99}),
+    "inspect": (umbmark.inspect, {}),
+}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_each_robot_gets_what_a_call_of_its_own_gives(
+    name: str, robots: dict[str, umbmark.Dataset]
+) -> None:
+    call, keys = CALLS[name]
+    found = umbmark.each(call, robots, workers=2, **keys)
+    alone = {robot: call(data, **keys) for robot, data in robots.items()}
+    assert dict(found) == alone
+    assert [*found] == [*robots]
+    assert found.failed == {}
+    parts = [one.to_pandas().assign(robot=robot) for robot, one in alone.items()]
+    expected = pd.concat(parts, ignore_index=True)
+    frame = found.to_pandas()
+    assert next(iter(frame.columns)) == "robot"
+    pd.testing.assert_frame_equal(frame, expected[frame.columns.to_list()])
+    assert found.to_polars().shape == frame.shape
+
+
+def test_a_robot_that_is_refused_does_not_stop_the_others(
+    robots: dict[str, umbmark.Dataset],
+) -> None:
+    empty = umbmark.Dataset(runs=[])
+    asked: dict[str, Any] = {"empty": empty, **robots, "missing": "no/such/place"}
+    found = umbmark.each(umbmark.score, asked)
+    assert [*found] == [*robots]
+    assert [*found.failed] == ["empty", "missing"]
+    for name, why in found.failed.items():
+        with pytest.raises(ValueError) as refused:  # noqa: PT011
+            umbmark.score(asked[name])
+        assert why == str(refused.value)
+    assert repr(found) == "Each(Score: 3 robots, 2 failed)"
+    none = umbmark.each(umbmark.score, [empty])
+    assert none.failed["1"]
+    assert (len(none), none.to_arrow().num_rows) == (0, 0)
+    assert repr(none) == "Each(nothing found: 0 robots, 1 failed)"
+    with pytest.raises(KeyError):
+        found["empty"]
+
+
+def test_a_sequence_is_numbered_and_arrays_become_robots() -> None:
+    rng = np.random.default_rng(1)
+    cw, ccw = rng.normal(size=(2, 5, 4, 3)) * [0.01, 0.01, 0.001]
+    made = [umbmark.Dataset.from_arrays(*both, path=PATH) for both in zip(cw, ccw, strict=True)]
+    found = umbmark.each(umbmark.score, made)
+    assert [*found] == ["1", "2", "3", "4", "5"]
+    assert found["4"].e_max_sys_m == umbmark.score(cw[3], ccw[3]).e_max_sys_m
+
+
+def test_each_call_has_one_thread_unless_more_are_asked_for(
+    robots: dict[str, umbmark.Dataset],
+) -> None:
+    heard: list[int] = []
+
+    def call(data: umbmark.Dataset, *, threads: int = 0) -> umbmark.Score:
+        heard.append(threads)
+        return umbmark.score(data)
+
+    umbmark.each(call, robots)
+    umbmark.each(call, robots, threads=3)
+    assert heard == [1, 1, 1, 3, 3, 3]
+
+
+def test_progress_counts_robots(robots: dict[str, umbmark.Dataset]) -> None:
+    heard: list[tuple[int, int]] = []
+    umbmark.each(umbmark.score, robots, progress=lambda *at: heard.append(at))
+    assert heard == [(1, 3), (2, 3), (3, 3)]
+
+
+def test_a_single_robot_is_not_many(robots: dict[str, umbmark.Dataset]) -> None:
+    single: Any
+    for single in ("my_robot", robots["cart 1"], 3):
+        with pytest.raises(TypeError, match="robots must be a mapping or a sequence of data, got"):
+            umbmark.each(umbmark.score, single)
+    with pytest.raises(ValueError, match="workers must be between 1 and"):
+        umbmark.each(umbmark.score, robots, workers=0)
