@@ -235,7 +235,7 @@ fn a_robot_that_is_put_back_on_its_mark_is_as_far_off_as_its_odometry_is_from_st
     for run in &put_back.runs {
         let (log, error) = (run.log.as_ref().unwrap(), run.returned.unwrap());
         let computed = umbmark_core::run::dead_reckoning::computed_poses(log, &Robot::labmate()).pop().unwrap();
-        let heading = umbmark_core::geometry::wrap(-computed.heading);
+        let heading = wrap(-computed.heading);
         assert!((error.x + computed.x).abs() < 1e-12 && (error.y + computed.y).abs() < 1e-12, "{error:?} {computed:?}");
         assert!((error.heading.unwrap() - heading).abs() < 1e-9 && computed.x.hypot(computed.y) < 0.2, "{error:?}");
     }
@@ -393,6 +393,22 @@ fn a_gyro_that_turns_against_the_counts_accuses_nobody_and_says_what_may_be() {
     assert!(error.contains("wheels_exchanged"), "{error}");
 }
 
+/// Counts of a decoder that counts every fourth edge: wheelbase or wheels are wrong, and headings do not say which.
+#[test]
+fn headings_that_turn_a_quarter_as_far_as_the_wheels_are_doubted() {
+    let mut data = gyro(&watched(&rough(&[]), 3, 2), (0.1, 0.1), 2);
+    let mut robot = data.robot.clone().unwrap();
+    robot.encoder = umbmark_core::drive::Encoder::new(robot.encoder.ticks_per_revolution() / 4.0, None, None).unwrap();
+    let setup = umbmark_core::setup::Setup::of(&data.runs, &robot, None);
+    assert!(
+        matches!(setup.doubts[..], [umbmark_core::setup::Suspicion::OtherTurns { ratio }] if (ratio - 0.25).abs() < 0.02)
+    );
+    assert!(setup.doubts[0].forbids_writing() && setup.doubts[0].sentence().contains("ticks_per_revolution"));
+    data.robot = Some(robot);
+    let learnt = umbmark_core::learn::learn(&data, &Default::default()).unwrap();
+    assert_eq!(learnt.diagnosis.verdict, umbmark_core::diagnose::Verdict::NotExplained);
+}
+
 #[test]
 fn a_gyro_is_written_as_headings_that_drift_and_read_back_as_it_was() {
     let data = gyro(&watched(&rough(&[]), 2, 3), (0.1, 0.1), 3);
@@ -404,4 +420,20 @@ fn a_gyro_is_written_as_headings_that_drift_and_read_back_as_it_was() {
         let (a, b) = (a.log.as_ref().unwrap(), b.log.as_ref().unwrap());
         assert!(a.reference == b.reference && b.headings_only && b.relative);
     }
+}
+
+/// Wheels that follow late, and a reference that is early by as much, smooth the counts: they fit the steps of a quiet sensor better, and are not
+/// there.
+#[test]
+fn steps_of_a_quiet_sensor_do_not_make_the_wheels_late() {
+    let mut robot = Robot::labmate();
+    robot.encoder = umbmark_core::drive::Encoder::new(300.0, None, None).unwrap();
+    let mut model = Model::new(&robot);
+    for (effect, parameter, value) in RATIOS.iter().chain(&[("wheel_noise", "k_sqrt_m", 4e-4)]) {
+        model.set(effect, parameter, *value).unwrap();
+    }
+    let mut data = watched(&model, 3, 4);
+    logs(&mut data).for_each(|log| log.relative = true);
+    let learnt = umbmark_core::learn::learn(&data, &Default::default()).unwrap();
+    assert_eq!(learnt.model.get("wheel_lag", "share"), None, "{:?}", learnt.steps);
 }

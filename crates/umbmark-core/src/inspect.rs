@@ -93,6 +93,7 @@ impl Dataset {
             checks.retain(|check| check.name != "reference");
         }
         checks.extend(kind_checks(&self.runs));
+        checks.extend(gyro_check(&self.runs));
         // Where a track was put into a log, its rows are those of two clocks.
         if !self.clocks.is_empty() {
             checks.retain(|check| check.name != "jitter");
@@ -249,6 +250,8 @@ fn shape_check(logs: &[LogFacts], path: Option<&Path>) -> Option<Check> {
     })
 }
 
+/// Least rate of a gyro \[Hz\], with room for jitter.
+const GYRO_RATE: f64 = 45.0;
 /// A delay that is not known better than this \[s\] is not told.
 const VAGUE_DELAY: f64 = 0.25;
 /// One clock: poses are late by no more than this \[s\], and their clock is fast by no more than this \[s/s\].
@@ -368,6 +371,22 @@ fn kind_checks(runs: &[Run]) -> impl Iterator<Item = Check> + '_ {
         let count = logs().filter(|run| Kind::of(run) == Some(*kind)).count();
         let found = format!("{}, in {count} of {all} logs", kind.name);
         (count > 0).then_some(Check { name: "kind of reference", found, good: kind.shows, ok: true })
+    })
+}
+
+/// How often gyros were read, the slowest of them.
+fn gyro_check(runs: &[Run]) -> Option<Check> {
+    let of_run = |run: &Run| {
+        let log = run.log.as_ref().filter(|log| log.headings_only && log.relative)?;
+        let times: Vec<f64> = log.reference.iter().map(|pose| log.time[pose.sample]).collect();
+        usual_rate(&times)
+    };
+    let rate = runs.iter().filter_map(of_run).min_by(f64::total_cmp)?;
+    Some(Check {
+        name: "rate of the gyro",
+        found: format!("{rate:.1} Hz"),
+        good: "50 Hz or more: a slower one rounds the beginnings and ends of turns, by about 0.1 % of E_b at 20 Hz",
+        ok: rate >= GYRO_RATE,
     })
 }
 

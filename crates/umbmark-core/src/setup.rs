@@ -248,7 +248,7 @@ impl Setup {
         let relative = seen.iter().any(|seen| seen.log.relative);
         let (found, noise) = disturbances::search(&sightings, relative, counted(&seen, wheelbase));
         let runs = seen.iter().zip(found).map(|(seen, found)| RunSetup { ..told(named(seen), seen, found) }).collect();
-        let doubts = doubled.map(Suspicion::Doubled).into_iter().collect();
+        let doubts = doubled.map(Suspicion::Doubled).into_iter().chain(other_turns(&seen, &agreement)).collect();
         Setup { faults, mounting: Some(mounting), runs, noise, doubts, returned: Returned::default() }
     }
 
@@ -345,6 +345,8 @@ const MOVES: f64 = 0.3;
 const STANDS: (f64, f64) = (0.1, 0.01);
 /// A heading within this of half a turn is that of a body that faces backward \[rad\].
 const HALF_TURN: f64 = 0.05;
+/// Turns by headings alone that are so many times those by the wheels, or the inverse, are not those of a wheelbase that was mismeasured.
+const OTHER_TURNS: f64 = 1.3;
 /// If more than this share of all poses jump or are wrong, these are no accidents.
 const ACCIDENTS: f64 = 0.1;
 /// Maximum number of notices of a kind that are listed.
@@ -502,6 +504,14 @@ fn agreed(windows: &[Beside], reading: Reading, wheelbase: f64, courses: bool) -
         return Agreement { turn: [1.0, 0.0], shown: [true, false], ..agreement };
     }
     agreement
+}
+
+/// The suspicion that the robot's sizes are far off, where nothing but headings could show it.
+fn other_turns(seen: &[Seen], agreement: &Agreement) -> Option<Suspicion> {
+    let ratio = agreement.turn[0];
+    let headings_only = seen.iter().all(|seen| seen.log.headings_only);
+    let within = (1.0 / OTHER_TURNS..=OTHER_TURNS).contains(&ratio);
+    (headings_only && agreement.shown[1] && !within).then_some(Suspicion::OtherTurns { ratio })
 }
 
 /// The values on which all runs agree, each with the scatter between parts of the data.

@@ -168,13 +168,6 @@ impl Assembly {
             self.set_clock(&mut log, tracked, stem)?;
         }
         log.relative |= self.reference_frame.drifting && !log.reference.is_empty();
-        if let Some(bias) =
-            self.robot.as_ref().filter(|_| log.relative && log.headings_only).and_then(|robot| log.without_bias(robot))
-        {
-            let (rate, rested) = (bias.rate.to_degrees(), bias.rested);
-            let how = if rested > 0.0 { format!("in {rested:.0} s of rest") } else { "beside the wheels".to_owned() };
-            self.warnings.push(format!("{file}: the heading turns by {rate:.3} deg/s {how}: taken out"));
-        }
         if log.relative && log.reference.iter().any(|pose| pose.heading.is_none()) {
             // Without the heading at its beginning, nobody knows where a step leads.
             let remedy = "a track that drifts (drifting = true in [reference]) needs a heading with every pose".into();
@@ -187,8 +180,10 @@ impl Assembly {
             }
             move_to_start(&file, &mut log, self.robot.as_ref(), &mut self.warnings)?;
         }
-        if let Some(robot) = self.robot.as_ref().filter(|_| log.headings_only) {
-            log.follow_headings(robot);
+        if let Some(bias) = self.robot.as_ref().and_then(|robot| log.place_headings(robot)) {
+            let (rate, rested) = (bias.rate.to_degrees(), bias.rested);
+            let how = if rested > 0.0 { format!("in {rested:.0} s of rest") } else { "beside the wheels".to_owned() };
+            self.warnings.push(format!("{file}: the heading turns by {rate:.3} deg/s {how}: taken out"));
         }
         let (computed, turned) = self.robot.as_ref().map_or((None, 0.0), |robot| computed_end(&log, robot));
         let measured = log.start.known != StartKnown::OnTheWay && !log.relative && !log.headings_only;

@@ -81,8 +81,13 @@ impl Dataset {
     #[new]
     #[pyo3(signature = (robot=None, path=None, runs=Vec::new()))]
     fn new(robot: Option<&Robot>, path: Option<&Path>, runs: Vec<Py<Run>>) -> PyResult<Dataset> {
-        let runs: Vec<core::Run> = runs.iter().map(|run| run.get().core().clone()).collect();
+        let mut runs: Vec<core::Run> = runs.iter().map(|run| run.get().core().clone()).collect();
         all_differ(&runs)?;
+        if let Some(robot) = robot {
+            for log in runs.iter_mut().filter_map(|run| run.log.as_mut()) {
+                log.place_headings(&robot.0);
+            }
+        }
         Ok(Rest { runs, ..Rest::default() }.with(robot, path))
     }
 

@@ -37,9 +37,10 @@ pub const TESTS: [(&str, TestKind); 2] = [("systematic", TestKind::Systematic), 
 ///     For each absolute pose, the sample that it belongs to.
 /// reference_pose : array of numbers, shape (m, 3) or (m, 2), optional
 ///     The absolute poses: x in m, y in m, heading in rad (NaN, or no third column, where it was not measured), in the frame of
-///     START.
+///     START. NaN for all x and y of a reference that tells headings only, such as a compass.
 /// relative : bool, default False
-///     Whether each pose tells only how the robot moved since the one before, as poses of visual odometry do.
+///     Whether each pose tells only how the robot moved since the one before, as poses of visual odometry do, and headings that a
+///     gyro added up.
 ///
 /// An array is whatever has numbers: a sequence, a NumPy array of any real type, a column of pandas, polars or Arrow.
 ///
@@ -86,12 +87,17 @@ impl Run {
                 let read = |name, array| column(name, array).map(|array| array.as_array().to_vec());
                 let time = read("time_s", time)?;
                 let (left, right) = (read("ticks_left", left)?, read("ticks_right", right)?);
-                let reference = match (reference_sample, reference_pose) {
+                let mut reference = match (reference_sample, reference_pose) {
                     (None, None) => Vec::new(),
                     (Some(samples), Some(poses)) => given_references(samples, poses)?,
                     _ => return Err(PyValueError::new_err("reference_sample and reference_pose go together")),
                 };
-                Some(checked(TickLog { time, left, right, reference, relative, ..TickLog::default() })?)
+                let headings_only = !reference.is_empty()
+                    && reference.iter().all(|pose| pose.x.is_nan() && pose.y.is_nan() && pose.heading.is_some());
+                if headings_only {
+                    reference.iter_mut().for_each(|pose| (pose.x, pose.y) = (0.0, 0.0));
+                }
+                Some(checked(TickLog { time, left, right, reference, relative, headings_only, ..TickLog::default() })?)
             }
             (None, None, None) => None,
             _ => return Err(PyValueError::new_err("time_s, ticks_left and ticks_right go together")),
@@ -163,11 +169,13 @@ impl Run {
         Some(PyArray1::from_iter(py, log.reference.iter().map(|pose| pose.sample as i64)))
     }
 
-    /// The absolute poses x, y in m and heading in rad, NaN where it was not measured, shape (m, 3); None without ticks.
+    /// The absolute poses x, y in m and heading in rad, NaN for what was not measured, shape (m, 3); None without ticks.
     #[getter]
     fn reference_pose<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let Some(log) = &self.core().log else { return Ok(None) };
-        let poses = log.reference.iter().flat_map(|p| [p.x, p.y, p.heading.unwrap_or(f64::NAN)]).collect();
+        let place = |of: f64| if log.headings_only { f64::NAN } else { of };
+        let poses =
+            log.reference.iter().flat_map(|p| [place(p.x), place(p.y), p.heading.unwrap_or(f64::NAN)]).collect();
         let array = Array2::from_shape_vec((log.reference.len(), 3), poses).map_err(refused)?;
         Ok(Some(PyArray2::from_owned_array(py, array)))
     }

@@ -44,7 +44,7 @@ pub struct Bias {
 impl TickLog {
     /// Takes a gyro's own constant rate out of the headings: that which it shows while the wheels stand or, where they hardly do, that by
     /// which its turns differ from those of the wheels. What is left of it, and how it drifts, is for the fit.
-    pub fn without_bias(&mut self, robot: &Robot) -> Option<Bias> {
+    fn without_bias(&mut self, robot: &Robot) -> Option<Bias> {
         let bias = self.bias_at_rest().or_else(|| self.bias_by_wheels(robot)).filter(|bias| bias.rate.abs() >= NONE)?;
         let began = self.time[self.reference.first()?.sample];
         for pose in &mut self.reference {
@@ -52,6 +52,17 @@ impl TickLog {
             pose.heading = pose.heading.map(|heading| heading - bias.rate * since);
         }
         Some(bias)
+    }
+
+    /// Makes headings ready, where the reference tells headings only: without the constant rate of a gyro, each where the counted way along them
+    /// leads. Says what rate was taken out.
+    pub fn place_headings(&mut self, robot: &Robot) -> Option<Bias> {
+        if !self.headings_only {
+            return None;
+        }
+        let bias = if self.relative { self.without_bias(robot) } else { None };
+        self.follow_headings(robot);
+        bias
     }
 
     /// The noise of a gyro's heading \[rad/√s\]: how it wanders while the wheels stand; near that of a usual one where they hardly do.
@@ -115,7 +126,7 @@ impl TickLog {
     /// Puts each pose of a reference that tells headings only where the counted way along the measured headings leads.
     ///
     /// Between two headings the robot turns as its wheels do, and by a constant share of the way more.
-    pub fn follow_headings(&mut self, robot: &Robot) {
+    fn follow_headings(&mut self, robot: &Robot) {
         let mut believed = Vec::with_capacity(self.time.len());
         for_each_pose(self, robot, |pose| believed.push(*pose));
         let mut at: Option<(Pose2, usize)> = None;
@@ -138,5 +149,65 @@ impl TickLog {
             (pose.x, pose.y) = (here.x, here.y);
             at = Some((here, pose.sample));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::ReferencePose;
+
+    /// A robot that rests for 3 s, turns left for 4 s and rests again, read at 50 Hz; its gyro shows 0.01 rad/s more.
+    fn log(rests: bool) -> TickLog {
+        let time: Vec<f64> = (0..500).map(|k| 0.02 * f64::from(k)).collect();
+        let angle = |t: f64| if rests { 0.5 * (t - 3.0).clamp(0.0, 4.0) } else { 0.5 * libm::sin(t) };
+        let counts = |sign: f64| time.iter().map(|t| (sign * 4000.0 * angle(*t)).round()).collect();
+        let (left, right) = (counts(-1.0), counts(1.0));
+        let robot = Robot::labmate();
+        let per_count = 2.0 * robot.metres_per_tick().left / robot.drive.wheelbase();
+        let seen = |(sample, t): (usize, &f64)| {
+            let heading = Some(4000.0 * angle(*t) * per_count + 0.01 * t);
+            ReferencePose { sample, x: 0.0, y: 0.0, heading }
+        };
+        let reference = time.iter().enumerate().map(seen).collect();
+        TickLog { time, left, right, reference, relative: true, headings_only: true, ..TickLog::default() }
+    }
+
+    #[test]
+    fn the_rate_of_a_gyro_is_taken_from_rests_or_else_from_the_turns_of_the_wheels() {
+        for rests in [true, false] {
+            let mut log = log(rests);
+            let bias = log.place_headings(&Robot::labmate()).unwrap();
+            assert!((bias.rate - 0.01).abs() < 2e-4, "{bias:?}");
+            assert!(if rests { (bias.rested - 4.9).abs() < 0.2 } else { bias.rested == 0.0 }, "{bias:?}");
+            // Taken out once, it is not there any more.
+            assert!(log.clone().without_bias(&Robot::labmate()).is_none_or(|left| left.rate.abs() < 1e-4));
+        }
+    }
+
+    #[test]
+    fn rates_add_up_by_trapezoids_and_none_to_none() {
+        assert_eq!(headings_of(&[1.0, 2.0, 4.0], &[0.0, 1.0, 3.0]), [0.0, 0.5, 4.5]);
+        assert!(headings_of(&[], &[]).is_empty());
+    }
+
+    /// A quarter of a circle of 1 m: the headings are measured, and the way is that of the counts.
+    #[test]
+    fn positions_are_those_of_the_counted_way_along_the_measured_headings() {
+        let robot = Robot::labmate();
+        let per_tick = robot.metres_per_tick();
+        let time: Vec<f64> = (0..=100).map(|k| 0.1 * f64::from(k)).collect();
+        // By its counts the robot drives straight ahead.
+        let counts = |per_tick: f64| time.iter().map(|t| 0.05 * std::f64::consts::PI * t / per_tick).collect();
+        let (left, right) = (counts(per_tick.left), counts(per_tick.right));
+        let seen = |sample: usize| {
+            let heading = Some(0.05 * std::f64::consts::PI * time[sample]);
+            ReferencePose { sample, x: 0.0, y: 0.0, heading }
+        };
+        let reference = (0..=100).step_by(5).map(seen).collect();
+        let mut log = TickLog { time: time.clone(), left, right, reference, headings_only: true, ..TickLog::default() };
+        assert_eq!(log.place_headings(&robot), None);
+        let last = log.reference.last().unwrap();
+        assert!((last.x - 1.0).abs() < 1e-9 && (last.y - 1.0).abs() < 1e-9, "{last:?}");
     }
 }

@@ -31,6 +31,11 @@ pub enum Suspicion {
     Doubled(CountsFactor),
     /// The wheels roll much farther than the commanded path is long, or much less.
     OtherWay(CountsFactor),
+    /// Headings, which are all that was measured, turn so many times as far as the wheels turn the robot.
+    OtherTurns {
+        /// So many times.
+        ratio: f64,
+    },
     /// Wheels and reference agree so little that neither delay nor mounting nor jumps can be told.
     LittleAgreement {
         /// Share of the motion that disagrees.
@@ -64,6 +69,11 @@ impl Suspicion {
                  the path is right, {}",
                 1.0 / factor.ratio,
                 factor.remedy()
+            ),
+            Suspicion::OtherTurns { ratio } => format!(
+                "the measured heading turns {ratio:.3} times as far as the wheels turn the robot: wheelbase_m, the wheel diameters or \
+                 ticks_per_revolution is wrong, and headings do not say which: measure the wheelbase, and the way of some turns of a wheel, with \
+                 a tape"
             ),
             Suspicion::LittleAgreement { misfit } => format!(
                 "the reference hardly moves as the wheels roll ({:.0} % of the motion disagrees), so that neither its delay nor wrong poses nor \
