@@ -221,7 +221,8 @@ impl<'r> Row<'r> {
     /// The error of a cell that holds no number that is believed.
     #[cold]
     fn refused(&self, name: &str, text: &str, unit: Option<Unit>) -> DatasetError {
-        let number = unit.map_or("a finite number".to_owned(), |unit| format!("a finite number in {}", unit.name));
+        let number = unit
+            .map_or("a finite number".to_owned(), |unit| format!("a finite number in {}", unit.name.replace('_', "/")));
         let wrong = |remedy| self.wrong_cell(name, text, &number, remedy);
         match text.parse::<f64>() {
             Ok(value) if value.is_finite() => {
