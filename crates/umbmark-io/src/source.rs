@@ -1,6 +1,7 @@
 //! The bytes of a file, packed or not, a block at a time.
 
 use super::error::{At, DatasetError, LineProblem};
+use super::foreign::Foreign;
 use flate2::read::MultiGzDecoder;
 use std::io::{self, Cursor, Read};
 use std::path::Path;
@@ -59,6 +60,9 @@ impl<'a> Source<'a> {
         }
         if source.head.starts_with("\u{feff}".as_bytes()) {
             source.head.drain(..3);
+        }
+        if let Some(foreign) = Foreign::of(&source.head) {
+            return Err(foreign.refused(&source.file));
         }
         source.old_mac = source.head.contains(&b'\r') && !source.head.contains(&b'\n');
         Ok(source)

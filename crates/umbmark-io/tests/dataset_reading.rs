@@ -488,18 +488,28 @@ fn what_a_folder_holds_and_was_not_read_is_said() {
         ("returns.xlsx", ""),
         ("runs/cw_01.csv", ticks),
         ("runs/cw_02.mat", ""),
+        ("runs/cw_03.mat", "MATLAB 5.0 MAT-file"),
         ("reference/cw_01.tak", ""),
         ("reference/cw_07.tum", ""),
     ];
     let data = load(&files, "").unwrap();
     assert!(data.runs[0].returned.is_some());
-    let said = data.warnings.iter().map(|said| said.strip_suffix(") and was not read").unwrap());
+    let [matlab] = data.warnings.iter().filter(|said| said.contains("MATLAB")).collect::<Vec<_>>()[..] else {
+        panic!()
+    };
+    assert!(
+        matlab.contains("cw_03.mat: is no log")
+            && matlab.contains("not read: it is a file of MATLAB; ")
+            && matlab.contains("writetable")
+    );
+    let said = data.warnings.iter().map(|said| said.split_once(") and was not read").unwrap().0);
     let said: Vec<&str> = said.map(|said| said.rsplit('/').next().unwrap().split(" (").next().unwrap()).collect();
     assert_eq!(
         said,
         [
             "cw_01.tak: is no track",
             "cw_02.mat: is no log",
+            "cw_03.mat: is no log",
             "cw_07.tum: belongs to no log of its name",
             "returns.xlsx: is no return sheet",
         ]

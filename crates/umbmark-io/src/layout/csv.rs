@@ -11,6 +11,7 @@ use super::{Layout, ReadLogs, Tracks};
 use crate::RobotFile;
 use crate::assembly::Assembly;
 use crate::error::DatasetError;
+use crate::foreign::Foreign;
 use crate::label;
 use crate::probe::{Probe, extension, name_of, names_in, stem};
 use crate::save::{Existing, put};
@@ -107,7 +108,8 @@ fn add_logs(assembly: &mut Assembly, folder: &Path, topics: &Topics) -> Result<u
             }
             None => {
                 let endings = super::log_endings().join(", .");
-                assembly.warnings.push(format!("{}: is no log (.{endings}) and was not read", file.display()));
+                let what = Foreign::of_file(&file).map_or(String::new(), |foreign| format!(": {}", foreign.told()));
+                assembly.warnings.push(format!("{}: is no log (.{endings}) and was not read{what}", file.display()));
             }
         }
     }
