@@ -101,7 +101,7 @@ fn gyro(data: &Dataset, (noise, apart): (f64, f64), seed: u64) -> Dataset {
         if found == 0 {
             own = 0.5 + apart * stream.normal();
         }
-        // Halfway to the neighbours, as an instrument that averages: trapezoids then add up to the headings.
+        // The mean rate between both neighbours, of an instrument that rounds corners.
         let (before, after) = (poses[found.saturating_sub(1)], poses[(found + 1).min(poses.len() - 1)]);
         let seconds = log.time[after.sample] - log.time[before.sample];
         let turned = wrap(after.heading.unwrap() - before.heading.unwrap()).to_degrees();

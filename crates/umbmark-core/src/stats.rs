@@ -1,5 +1,7 @@
 //! Intervals, and quantiles of the usual distributions (thin over `statrs`).
 
+pub(crate) mod robust;
+
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 use statrs::function::{beta::beta_reg, gamma::ln_gamma};
 

@@ -4,7 +4,7 @@ use super::TickLog;
 use super::dead_reckoning::for_each_pose;
 use crate::drive::Robot;
 use crate::geometry::{Displacement2, Pose2, wrap};
-use crate::setup::robust;
+use crate::stats::robust;
 
 /// The wheels stand where they make no count for so long \[s\]; the body may sway so long before and after \[s\].
 const REST: f64 = 0.6;
@@ -22,11 +22,14 @@ const WINDOW: f64 = 0.5;
 /// A rate below this is none \[rad/s\]: 2 degrees an hour.
 const NONE: f64 = 1e-5;
 
-/// The headings that rates of turning add up to, from 0: by trapezoids \[rad\].
+/// The headings that rates of turning add up to, from 0 \[rad\]: each rate holds since the reading before.
+///
+/// Of an instrument that shows means that is exact, and of another one the headings are half a period early, which is found as a delay.
+/// Trapezoids would take the mean of two readings, and round the beginnings and ends of turns.
 pub fn headings_of(time: &[f64], rates: &[f64]) -> Vec<f64> {
     let mut heading = 0.0;
-    let rest = time.windows(2).zip(rates.windows(2)).map(|(time, rates)| {
-        heading += 0.5 * (rates[0] + rates[1]) * (time[1] - time[0]);
+    let rest = time.windows(2).zip(rates.iter().skip(1)).map(|(time, rate)| {
+        heading += rate * (time[1] - time[0]);
         heading
     });
     time.first().map(|_| 0.0).into_iter().chain(rest).collect()
@@ -119,7 +122,7 @@ impl TickLog {
                 from = pose;
             }
         }
-        let [_, rate] = robust::fit(&rows).values;
+        let [_, rate] = robust::fit_above(&rows, robust::LARGE_SCATTER).values;
         (rows.len() > 2 && rate.is_finite()).then_some(Bias { rate, rested: 0.0 })
     }
 
@@ -186,8 +189,8 @@ mod tests {
     }
 
     #[test]
-    fn rates_add_up_by_trapezoids_and_none_to_none() {
-        assert_eq!(headings_of(&[1.0, 2.0, 4.0], &[0.0, 1.0, 3.0]), [0.0, 0.5, 4.5]);
+    fn each_rate_holds_since_the_reading_before_and_none_add_up_to_none() {
+        assert_eq!(headings_of(&[1.0, 2.0, 4.0], &[9.0, 1.0, 3.0]), [0.0, 1.0, 7.0]);
         assert!(headings_of(&[], &[]).is_empty());
     }
 

@@ -12,9 +12,9 @@
 //! early in it and drives late comes out beside the arc, and a lever arm would otherwise stand in for that. Rotations are fitted first;
 //! with g from there, both equations are linear in what is sought.
 
-use super::robust::{self, Line};
 use super::windows::{Rolling, Window};
 use crate::geometry::Real;
+use crate::stats::robust::{self, Line};
 
 /// Minimum total rotation \[rad\] and distance \[m\] of all windows: less determines nothing.
 const LEAST_TURN: f64 = 0.5;
@@ -160,9 +160,15 @@ impl Agreement {
         let ahead = if along < BACKWARD * ways { -1.0 } else { 1.0 };
         let told: Vec<Told> = told.into_iter().map(|told| told.along(ahead)).collect();
         let turns: Vec<([f64; 2], f64)> = told.iter().map(|told| told.turn_row(drift)).collect();
-        let turn: Line<2> = robust::fit(&turns);
+        // A robot that mostly drives straight, seen by a quiet gyro, turns by hardly anything in most windows.
+        let headings_only = windows.iter().any(|(window, _)| window.headings_only);
+        let turn: Line<2> = robust::fit_above(&turns, if headings_only { robust::LARGE_SCATTER } else { 0.0 });
         let ways: Vec<([f64; 4], f64)> = told.iter().flat_map(|told| told.way_rows(turn.values[0])).collect();
-        let way: Line<4> = robust::fit(&ways);
+        // Headings alone say nothing of the way.
+        let way: Line<4> = match headings_only {
+            true => Line { values: [1.0, 0.0, 0.0, 0.0], scale: 0.0 },
+            false => robust::fit(&ways),
+        };
         // Limits the weight of a window to the largest wheel travel in any window.
         let most = told.iter().map(|told| told.way.abs() + arm * told.turn.abs()).fold(0.0, f64::max);
         let stretch = libm::hypot(way.values[0], way.values[1]).max(1.0);

@@ -1,9 +1,9 @@
 //! Delay of the reference's time stamps, run by run.
 
 use super::agreement::{Agreement, Beside, Reading};
-use super::robust::{biweight, median};
 use super::windows::{Rolled, Window};
 use crate::stats::Measured;
+use crate::stats::robust::{biweight, median, quantile};
 
 /// Range and step of the delays that are tried \[s\], of both signs.
 const FARTHEST: f64 = 1.0;
@@ -19,8 +19,8 @@ const STEPS: [usize; 2] = [5, 9];
 const ENOUGH: f64 = 1e-6;
 /// If the reference moves this many times as far as the wheels, its unit is another one.
 const OTHER_UNIT: f64 = 5.0;
-/// Where turns alone were measured, a window with less than this share of the largest turn says nothing of the scale.
-const TURNING: f64 = 0.25;
+/// Where turns alone were measured, this quantile of their sizes in all windows is that of the wheels' turns, whatever the delay.
+const LARGE: f64 = 0.95;
 /// Half of the step of a derivative by time \[s\].
 const HALF: f64 = 0.01;
 /// The residual of a window has three coordinates; the median of its length, in standard deviations of one coordinate.
@@ -103,19 +103,20 @@ fn delay_of(windows: &[&Window], rolled: &Rolled, wheelbase: f64) -> Option<f64>
     let moved = |w: &&Window| if w.headings_only { 0.0 } else { libm::hypot(w.moved[0], w.moved[1]) };
     let way: Vec<f64> = windows.iter().map(moved).collect();
     let only = windows.iter().any(|w| w.headings_only);
-    // A robot that mostly drives straight does not turn in most windows.
-    let least = if only { TURNING } else { 0.0 };
     let rolls = |travel: [f64; 2]| if only { 0.5 * (travel[1] - travel[0]).abs() } else { faster(travel) };
     let still: Vec<f64> = windows.iter().map(|w| rolls(rolled.between(w.from, w.to).travel)).collect();
     // Positions in another unit than metres must not outweigh the rotations.
-    let unit = Some(ratio(&way, &still, 0.0)).filter(|ratio| *ratio > OTHER_UNIT).unwrap_or(1.0);
+    let unit = Some(ratio(&way, &still)).filter(|ratio| *ratio > OTHER_UNIT).unwrap_or(1.0);
     let seen: Vec<f64> =
         windows.iter().zip(&way).map(|(w, way)| way / unit + 0.5 * wheelbase * w.turned.abs()).collect();
+    // A robot that mostly drives straight does not turn in most windows: at a wrong delay, few of those in which the wheels turn show a turn.
+    let large = |sizes: &[f64]| quantile(sizes.iter().copied(), LARGE);
+    let alike = Some(large(&seen) / large(&still)).filter(|ratio| only && ratio.is_finite() && *ratio > 0.0);
     let reach = (FARTHEST / STEP).round() as i32;
     let off = |late: f64| {
         // The travel of the faster wheel is that of the body plus that of the lever arm, for all signs of the counts.
         let own: Vec<f64> = windows.iter().map(|w| rolls(rolled.between(w.from - late, w.to - late).travel)).collect();
-        let ratio = ratio(&seen, &own, least);
+        let ratio = alike.unwrap_or_else(|| ratio(&seen, &own));
         let most = 2.0 * ratio * own.iter().fold(0.0_f64, |most, v| most.max(*v));
         own.iter().zip(&seen).map(|(own, seen)| (seen - ratio * own).abs().min(most)).sum::<f64>()
     };
@@ -129,9 +130,9 @@ fn faster([left, right]: [f64; 2]) -> f64 {
     left.abs().max(right.abs())
 }
 
-/// Ratio of the motion of the reference to that of the wheels, from windows with much motion: with no less than this share of the most.
-fn ratio(seen: &[f64], own: &[f64], share: f64) -> f64 {
-    let usual = median(own.iter().copied()).max(share * own.iter().fold(0.0, |most, own| f64::max(most, *own)));
+/// Ratio of the motion of the reference to that of the wheels, from windows with much motion.
+fn ratio(seen: &[f64], own: &[f64]) -> f64 {
+    let usual = median(own.iter().copied());
     let much = own.iter().zip(seen).filter(|(own, _)| **own >= usual && **own > 0.0);
     let ratio = median(much.map(|(own, seen)| seen / own));
     if ratio > 0.0 { ratio } else { 1.0 }

@@ -3,12 +3,12 @@
 use super::agreement::Agreement;
 use super::faults::{NEAR, VAGUE};
 use super::returns::way;
-use super::robust::median;
 use super::suspicion::Suspicion;
 use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::path::{Direction, Path};
 use crate::run::Run;
+use crate::stats::robust::median;
 
 /// Factors that are usual, as powers: of two for decoders and of ten for gears and typing errors.
 const BASES: [f64; 2] = [2.0, 10.0];

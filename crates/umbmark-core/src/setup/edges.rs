@@ -1,8 +1,8 @@
 //! How far the measured motion between two poses is from that of the wheels, in standard deviations.
 
 use super::PoseNoise;
-use super::robust::{median, quantile};
 use crate::geometry::{Pose2, wrap};
+use crate::stats::robust::{median, quantile};
 
 /// A difference of more standard deviations than this is a jump.
 pub(super) const JUMP: f64 = 10.0;

@@ -5,8 +5,8 @@
 //! at the same place of other runs.
 
 use super::edges::{Edge, JUMP, LARGE, Sighting, Spread};
-use super::robust::quantile;
 use super::shared::Shared;
+use crate::stats::robust::quantile;
 
 /// Maximum duration of a stretch \[s\].
 const LONGEST: f64 = 3.0;

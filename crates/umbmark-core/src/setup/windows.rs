@@ -76,7 +76,7 @@ pub(super) fn windows(log: &TickLog) -> Vec<Window> {
 fn by_course(windows: Vec<Window>) -> Vec<Window> {
     let course = |w: &Window| libm::atan2(w.moved[1], w.moved[0]);
     let way = |w: &Window| libm::hypot(w.moved[0], w.moved[1]);
-    let usual = super::robust::median(windows.iter().map(way));
+    let usual = crate::stats::robust::median(windows.iter().map(way));
     let around = |three: &[Window]| {
         let [before, own, after] = three else { return None };
         let turned = wrap(course(after) - course(before));
@@ -92,7 +92,7 @@ fn by_course(windows: Vec<Window>) -> Vec<Window> {
 
 /// The median step \[s\].
 pub(super) fn usual_step(time: &[f64]) -> f64 {
-    super::robust::median(time.windows(2).map(|pair| pair[1] - pair[0]))
+    crate::stats::robust::median(time.windows(2).map(|pair| pair[1] - pair[0]))
 }
 
 /// How the wheels rolled between two times.

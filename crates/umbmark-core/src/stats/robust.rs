@@ -11,8 +11,10 @@ const STEPS: [usize; 2] = [12, 8];
 const BEYOND: f64 = 4.685;
 /// Directions with less than this share of the strongest one's information are not estimated.
 const SHOWN: f64 = 1e-9;
+/// Share of the largest turns of a drive by which any may scatter.
+pub(crate) const LARGE_SCATTER: f64 = 0.01;
 /// A median absolute deviation times this is the standard deviation of normal values.
-pub(super) const DEVIATION: f64 = 1.482_602_218_505_602;
+pub(crate) const DEVIATION: f64 = 1.482_602_218_505_602;
 
 /// y ≈ x · values.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +29,13 @@ pub(crate) struct Line<const K: usize> {
 /// If observations are rounded to steps, one of exactly 0 only says that it is smaller than a step. Where most are 0, such rows are fitted
 /// too, but the scatter is not measured by them: it would vanish.
 pub(crate) fn fit<const K: usize>(rows: &[([f64; K], f64)]) -> Line<K> {
+    fit_above(rows, 0.0)
+}
+
+/// The same, where no scatter is believed that is smaller than this share of the largest observation: where most of them are nearly 0, their
+/// scatter is not that of the large ones, which would all be taken for outliers.
+pub(crate) fn fit_above<const K: usize>(rows: &[([f64; K], f64)], share: f64) -> Line<K> {
+    let believed = share * rows.iter().map(|(_, y)| y.abs()).fold(0.0, f64::max);
     let mut values = SVector::<f64, K>::zeros();
     let most_are_zero = 2 * rows.iter().filter(|(_, y)| *y == 0.0).count() > rows.len();
     let moved = || rows.iter().filter(|(_, y)| !most_are_zero || *y != 0.0);
@@ -38,14 +47,14 @@ pub(crate) fn fit<const K: usize>(rows: &[([f64; K], f64)]) -> Line<K> {
     }
     let mut scale = 0.0;
     for _ in 0..STEPS[1] {
-        scale = DEVIATION * median(moved().map(|row| left(&values, row).abs()));
+        scale = (DEVIATION * median(moved().map(|row| left(&values, row).abs()))).max(believed);
         values = weighted(rows, |row| biweight(left(&values, row) / (BEYOND * scale).max(1e-12 * size)));
     }
     Line { values: values.into(), scale }
 }
 
 /// Tukey's weight of a value: 1 in the middle, 0 from 1 on.
-pub(super) fn biweight(off: f64) -> f64 {
+pub(crate) fn biweight(off: f64) -> f64 {
     if off.abs() < 1.0 { (1.0 - off * off).powi(2) } else { 0.0 }
 }
 
@@ -72,12 +81,12 @@ fn weighted<const K: usize>(rows: &[([f64; K], f64)], weight: impl Fn(&([f64; K]
 }
 
 /// The median; 0 for no values.
-pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
     quantile(values, 0.5)
 }
 
 /// The quantile of this share; 0 for no values.
-pub(super) fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+pub(crate) fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     let mut values: Vec<f64> = values.collect();
     if values.is_empty() {
         return 0.0;
@@ -90,6 +99,21 @@ pub(super) fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::random::Stream;
+
+    /// 400 values, of which 40 are large and scatter by 2 %, and the others nearly 0.
+    #[test]
+    fn few_large_values_among_many_small_ones_are_no_outliers_above_a_share() {
+        let mut stream = Stream::new(4, 0, 0);
+        let rows: Vec<([f64; 1], f64)> = (0..400)
+            .map(|k| {
+                let x = if k % 10 == 0 { 1.0 } else { 1e-3 * stream.normal() };
+                ([x], 3.0 * x * (1.0 + 0.02 * stream.normal()) + 1e-4 * stream.normal())
+            })
+            .collect();
+        let found = fit_above(&rows, 0.01);
+        assert!((found.values[0] - 3.0).abs() < 0.03 && found.scale > 0.029, "{found:?}");
+        assert!(fit(&rows).scale < 1e-3);
+    }
 
     /// 400 values of seed 3, a third of them outliers.
     #[test]
