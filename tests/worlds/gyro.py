@@ -106,12 +106,12 @@ def learn(binary: File, folder: File) -> dict[str, Any]:
 
 
 def said(answer: dict[str, Any], made: Made) -> Said:
-    """The answer against the truth: headings show E_b for E_s = 1."""
+    """The answer against the truth, where it was fitted: headings show E_b for E_s = 1."""
     robot = made.setting.robot
     true = {"e_d": robot.e_d, "e_b": robot.e_b / robot.e_s}
     fitted = {one["parameter"]: one for one in answer["fitted"]}
-    by = {name: fitted[name]["value"] - value for name, value in true.items()}
-    off = {name: by[name] / fitted[name]["standard_error"] for name in true}
+    by = {name: fitted[name]["value"] - value for name, value in true.items() if name in fitted}
+    off = {name: by[name] / fitted[name]["standard_error"] for name in by}
     added = [step["added"] for step in answer["steps"][1:]]
     return Said(answer["verdict"], added, off, by)
 
@@ -131,7 +131,7 @@ def main(words: list[str]) -> None:
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--binary", type=File, default=ROOT / "target/release/umbmark")
     chosen = parser.parse_args(words)
-    squares = {"e_d": 0.0, "e_b": 0.0}
+    squares: dict[str, list[float]] = {"e_d": [], "e_b": []}
     for k in range(chosen.sets):
         name, seed = WORLDS[k % len(WORLDS)], chosen.first_seed + k
         one = found(name, seed, chosen.binary)
@@ -140,8 +140,9 @@ def main(words: list[str]) -> None:
             for number, value in one.off.items()
         )
         print(f"{name:10} {seed} {one.verdict:16} {off} {' '.join(one.added)}", flush=True)
-        squares = {number: squares[number] + one.off[number] ** 2 for number in squares}
-    print({number: round((square / chosen.sets) ** 0.5, 2) for number, square in squares.items()})
+        for number, value in one.off.items():
+            squares[number].append(value**2)
+    print({number: round(float(np.mean(of)) ** 0.5, 2) for number, of in squares.items() if of})
 
 
 if __name__ == "__main__":
