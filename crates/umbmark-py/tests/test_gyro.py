@@ -21,11 +21,12 @@ OWN = 0.006
 
 
 def with_rates(log: list[Row]) -> list[tuple[Row, float]]:
-    """Return the rows with a pose, each with the rate that a gyro shows around it."""
+    """Return the rows with a pose, each with the mean rate since the one before."""
     seen = [row for row in log if row.pose]
     headings = np.unwrap([row.pose[2] for row in seen if row.pose])
     times = np.array([row.stamp for row in seen], dtype=np.int64)
-    rates = np.gradient(headings, (times - times[0]) / 1e9) + OWN
+    rates = np.diff(headings) / (np.diff(times) / 1e9) + OWN
+    rates = np.concatenate([rates[:1], rates])
     return [(row, float(rate)) for row, rate in zip(seen, rates, strict=True)]
 
 
