@@ -437,3 +437,15 @@ fn steps_of_a_quiet_sensor_do_not_make_the_wheels_late() {
     let learnt = umbmark_core::learn::learn(&data, &Default::default()).unwrap();
     assert_eq!(learnt.model.get("wheel_lag", "share"), None, "{:?}", learnt.steps);
 }
+
+/// The positions of a compass follow from the counts, so no fit of positions is offered.
+#[test]
+fn a_compass_gives_no_fit_of_positions_that_follow_from_counts() {
+    let data = rewritten(&watched(&rough(&[]), 3, 2), None, "theta_ref_rad", |log, sample| {
+        let found = log.reference.binary_search_by_key(&sample, |pose| pose.sample);
+        found.map_or(String::new(), |pose| log.reference[pose].heading.unwrap().to_string())
+    });
+    assert!(data.runs.iter().all(|run| run.log.as_ref().is_some_and(|log| log.headings_only && !log.relative)));
+    let calibration = umbmark_core::calibrate::calibrate(&data, &Default::default());
+    assert!(calibration.is_err(), "{:?}", calibration.map(|found| found.estimates));
+}

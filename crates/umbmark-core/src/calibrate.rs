@@ -164,8 +164,8 @@ pub fn calibrate_beside(
 }
 
 /// Why there is one estimate only.
-const STEPS: &str = "The reference tells how the robot moved from step to step. The closed forms and the exact fit need poses, so only the model is \
-                     fitted.";
+const STEPS: &str = "The reference tells steps or headings, and no poses in the room. The closed forms and the exact fit need poses, so only the \
+                     model is fitted.";
 
 /// Doubts about the data: counts that are a factor off; for return errors, outlying runs; for tracks, very many jumps, and headings that
 /// two different robots would have.

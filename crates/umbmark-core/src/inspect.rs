@@ -385,7 +385,7 @@ fn gyro_check(runs: &[Run]) -> Option<Check> {
     Some(Check {
         name: "rate of the gyro",
         found: format!("{rate:.1} Hz"),
-        good: "50 Hz or more: a slower one rounds the beginnings and ends of turns, by about 0.1 % of E_b at 20 Hz",
+        good: "50 Hz or more: a slower one may miss how turns begin and end",
         ok: rate >= GYRO_RATE,
     })
 }

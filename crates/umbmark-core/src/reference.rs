@@ -47,11 +47,6 @@ pub struct Kind {
 }
 
 impl Kind {
-    /// Whether only turns are told.
-    pub fn is_headings_only(&self) -> bool {
-        self.position == Told::Nothing
-    }
-
     /// Whether nothing is told of the way, only of where it ended.
     pub fn is_at_ends(&self) -> bool {
         self.position == Told::AtEnds

@@ -28,6 +28,7 @@ macro_rules! in_python {
     };
 }
 
+const PICKLE: &str = in_python!("pandas.DataFrame(pandas.read_pickle(FILE)).to_csv('log.csv', index=False)");
 const UNPACK: &str = "unpack it";
 const ARCHIVE: &str =
     "unpack it; of a sheet of Excel or LibreOffice, save it as CSV; of arrays of NumPy (.npz), write them as CSV";
@@ -35,36 +36,21 @@ const MATLAB: &str = "write its columns as a CSV that begins with t_s,ticks_left
                       `writetable(table(t_s, ticks_left, ticks_right), 'log.csv')`, or in Python `scipy.io.loadmat(FILE)` (of version 7.3, h5py)";
 
 /// All of them; the first that fits is meant.
-const FOREIGN: [Foreign; 20] = [
-    is(b"MATLAB ", "a file of MATLAB", MATLAB),
+const FOREIGN: [Foreign; 21] = [
+    is(b"MATLAB 5.0 MAT-file", "a file of MATLAB", MATLAB),
+    is(b"MATLAB 7.3 MAT-file", "a file of MATLAB", MATLAB),
     is(b"\x89HDF\r\n\x1a\n", "HDF5", in_python!("pandas.read_hdf(FILE).to_csv('log.csv', index=False)")),
-    is(b"PAR1", "Parquet", in_python!("pandas.read_parquet(FILE).to_csv('log.csv', index=False)")),
+    is(b"PAR1\x15", "Parquet", in_python!("pandas.read_parquet(FILE).to_csv('log.csv', index=False)")),
     is(b"ARROW1", "Arrow", in_python!("pandas.read_feather(FILE).to_csv('log.csv', index=False)")),
     is(
         b"\x93NUMPY",
         "an array of NumPy",
         in_python!("pandas.DataFrame(numpy.load(FILE)).to_csv('log.csv', index=False)"),
     ),
-    is(
-        b"\x80\x02",
-        "a pickle of Python",
-        in_python!("pandas.DataFrame(pandas.read_pickle(FILE)).to_csv('log.csv', index=False)"),
-    ),
-    is(
-        b"\x80\x03",
-        "a pickle of Python",
-        in_python!("pandas.DataFrame(pandas.read_pickle(FILE)).to_csv('log.csv', index=False)"),
-    ),
-    is(
-        b"\x80\x04",
-        "a pickle of Python",
-        in_python!("pandas.DataFrame(pandas.read_pickle(FILE)).to_csv('log.csv', index=False)"),
-    ),
-    is(
-        b"\x80\x05",
-        "a pickle of Python",
-        in_python!("pandas.DataFrame(pandas.read_pickle(FILE)).to_csv('log.csv', index=False)"),
-    ),
+    is(b"\x80\x02", "a pickle of Python", PICKLE),
+    is(b"\x80\x03", "a pickle of Python", PICKLE),
+    is(b"\x80\x04", "a pickle of Python", PICKLE),
+    is(b"\x80\x05", "a pickle of Python", PICKLE),
     is(
         b"ULog\x01\x12\x35",
         "a log of PX4",
@@ -84,7 +70,7 @@ const FOREIGN: [Foreign; 20] = [
     is(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "a file of Office before 2007", "save its sheet as CSV"),
     is(b"7z\xbc\xaf\x27\x1c", "a 7-Zip archive", UNPACK),
     is(b"\xfd7zXZ\0", "packed with xz", UNPACK),
-    is(b"BZh", "packed with bzip2", UNPACK),
+    Foreign { begins: (4, b"1AY&SY"), ..is(b"", "packed with bzip2", UNPACK) },
     is(b"\x28\xb5\x2f\xfd", "packed with zstd", UNPACK),
     Foreign { begins: (257, b"ustar"), ..is(b"", "a tar archive", UNPACK) },
     is(b"%PDF", "a PDF", "a log is a CSV, an MCAP file or a bag"),
@@ -139,9 +125,16 @@ mod tests {
             assert_eq!(Foreign::of(&head).map(|found| found.what), Some(foreign.what));
             assert!(!begins.is_empty() && !foreign.remedy.ends_with('.'));
         }
-        for text in
-            ["", "t_s,ticks_left,ticks_right\n0,0,0\n", "direction,run\n", "# comment\n", "PA", "Bz", "{\"a\": 1}"]
-        {
+        for text in [
+            "",
+            "t_s,ticks_left,ticks_right\n0,0,0\n",
+            "direction,run\n",
+            "# comment\n",
+            "PAR1,PAR2\n0,0\n",
+            "BZh,x\n",
+            "MATLAB export\n",
+            "{\"a\": 1}",
+        ] {
             assert_eq!(Foreign::of(text.as_bytes()), None, "{text}");
         }
     }

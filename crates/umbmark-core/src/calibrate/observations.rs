@@ -5,6 +5,7 @@ use crate::drive::Robot;
 use crate::effect::TestKind;
 use crate::evidence::{Drive, FitError, Level, end_poses, is_possible, tracked};
 use crate::likelihood::{FAR, Taken, of_reference, ratios};
+use crate::run::TickLog;
 use crate::setup::{Mounting, RunSetup, Setup};
 use nalgebra::Matrix3;
 use std::borrow::Cow;
@@ -54,10 +55,11 @@ impl Observations {
         Ok(Observations { level, drives, heading_arm: arm, scale_shows, taken: Vec::new(), by_motion: None })
     }
 
-    /// Whether the reference of every regular run tells motion only, which is nothing that is offered here.
+    /// Whether the reference of every regular run tells motion or headings only, which is nothing that is offered here.
     pub(super) fn are_steps(data: &Dataset) -> bool {
         let mut runs = data.runs.iter().filter(|run| run.test == TestKind::Systematic).peekable();
-        let steps = |run: &Run| run.returned.is_none() && run.log.as_ref().is_some_and(|log| log.relative);
+        let tells_less = |log: &TickLog| log.relative || log.headings_only;
+        let steps = |run: &Run| run.returned.is_none() && run.log.as_ref().is_some_and(tells_less);
         runs.peek().is_some() && runs.all(steps)
     }
 

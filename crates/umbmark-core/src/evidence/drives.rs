@@ -62,7 +62,7 @@ fn check_path(data: &Dataset, robot: &Robot) -> Result<(), FitError> {
 
 /// A run with its recorded track, if it has one.
 pub(crate) fn tracked(run: &Run, robot: &Robot) -> Result<Option<Drive>, FitError> {
-    let in_room = |log: &&crate::run::TickLog| !log.reference.is_empty() && !log.relative;
+    let in_room = |log: &&crate::run::TickLog| !log.reference.is_empty() && !log.relative && !log.headings_only;
     let Some(log) = run.log.as_ref().filter(in_room) else { return Ok(None) };
     let track = track_of(run, robot)?;
     let seen = log.reference.iter().map(|r| Seen { x: r.x, y: r.y, heading: r.heading }).collect();

@@ -253,7 +253,9 @@ impl Drive {
         track: Track,
         direction: Direction,
     ) -> Result<DMatrix<f64>, ModelError> {
-        let Some(like) = exam.fitted.observed.runs.first() else { return Ok(DMatrix::zeros(0, 0)) };
+        let Some(like) = exam.fitted.observed.runs.first() else {
+            return Ok(DMatrix::zeros(basis.numbers.len(), basis.numbers.len()));
+        };
         let model = self.at_start(basis.model)?;
         let run = ObservedRun::planned(track, direction, like, &model);
         let noise: &Noise = &exam.fitted.noise;

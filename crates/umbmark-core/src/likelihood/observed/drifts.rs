@@ -17,6 +17,7 @@ const LEAST: f64 = 1e-4;
 const RATE: f64 = 1e-2;
 const GROWTH: f64 = 3e-3;
 const MINUTE: f64 = 60.0;
+
 /// What is known of a gyro before a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gyro {
