@@ -7,7 +7,7 @@ use crate::model_report::unit_of;
 use crate::prose::hanging;
 use crate::table::table;
 
-/// Numbers of runs that are printed.
+/// Numbers of runs that are printed where there are more.
 pub const PRINTED: [usize; 7] = [3, 4, 5, 7, 10, 20, 30];
 /// Those of them that least sizes are printed for.
 const LEAST_AT: [usize; 5] = [3, 5, 10, 20, 30];
@@ -167,7 +167,9 @@ fn intervals(report: &Report) -> String {
         ]
     };
     let header = ["runs", "min", "E_max,sys reads [mm]", "interval ± [mm]", "covers [%]", "chance alone [mm]"];
-    format!("\n{}\n", table(&header, report.findings.by_runs.iter().map(row)))
+    let rows = &report.findings.by_runs;
+    let shown = |of: &&OfRuns| rows.len() <= PRINTED.len() || PRINTED.contains(&of.interval.runs);
+    format!("\n{}\n", table(&header, rows.iter().filter(shown).map(row)))
 }
 
 fn least(report: &Report) -> String {

@@ -1,14 +1,13 @@
 //! What is said of sensitivities.
 
-use umbmark_core::monte_carlo::{Metric, Study};
+use umbmark_core::monte_carlo::{Distribution, Metric, Quantity, Study};
 use umbmark_core::result::{Asked, Found, Sensitivity};
-use umbmark_core::sensitivity::{Derivative, Estimate, OutputIndices, Screened};
+use umbmark_core::sensitivity::{Correlation, Derivative, Estimate, OutputIndices, Screened};
 
 use crate::distribution_text::distribution_words;
 use crate::ensemble_report::{title, unit};
 use crate::table::{table, with_precision_of};
 use crate::terminal::bar;
-use crate::vary::Varied;
 
 /// What was asked and found.
 #[derive(Debug)]
@@ -16,7 +15,9 @@ pub struct SensitivityReport<'a> {
     /// What was found.
     pub found: &'a Found,
     /// The parameters.
-    pub varied: &'a Varied,
+    pub parameters: &'a [(Quantity, Distribution)],
+    /// Correlations of two of them.
+    pub correlations: &'a [Correlation],
     /// The metrics, in the order of the outputs.
     pub metrics: &'a [Metric],
     /// The one that people see in full.
@@ -34,7 +35,7 @@ pub struct SensitivityReport<'a> {
 impl SensitivityReport<'_> {
     /// Names of the inputs for people, the noise last where it is one.
     fn names(&self) -> Vec<&'static str> {
-        let names = self.varied.parameters.iter().map(|(quantity, _)| quantity.parameter().flag);
+        let names = self.parameters.iter().map(|(quantity, _)| quantity.parameter().flag);
         names.chain(self.noisy.then_some("noise")).collect()
     }
 
@@ -48,8 +49,8 @@ impl SensitivityReport<'_> {
         Sensitivity::new(
             self.found,
             &Asked {
-                varied: &self.varied.parameters,
-                correlations: &self.varied.correlations,
+                varied: self.parameters,
+                correlations: self.correlations,
                 metrics: self.metrics,
                 study: self.study,
                 noisy: self.noisy,
@@ -68,13 +69,13 @@ impl SensitivityReport<'_> {
         let kind = if self.noisy { "whole tests with noise" } else { "exact kinematics, without noise" };
         let mut text = format!("{asked} ({kind})\n{}, {}\n", self.study.robot().name, self.study.path.shape().name);
         let wide = self.names().iter().map(|name| name.len()).max().unwrap_or(0);
-        for (quantity, distribution) in &self.varied.parameters {
+        for (quantity, distribution) in self.parameters {
             let parameter = quantity.parameter();
             let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
             text += &format!("  {:<wide$}  {}{unit}\n", parameter.flag, distribution_words(distribution));
         }
-        for correlation in &self.varied.correlations {
-            let [one, two] = correlation.of.map(|place| self.varied.parameters[place].0.parameter().flag);
+        for correlation in self.correlations {
+            let [one, two] = correlation.of.map(|place| self.parameters[place].0.parameter().flag);
             text += &format!("  correlation of {one} and {two}: {}\n", correlation.value);
         }
         self.assumed.iter().for_each(|assumption| text += &format!("  assumed: {assumption}\n"));
@@ -116,9 +117,9 @@ impl SensitivityReport<'_> {
         });
         text += &table(&["share of the variance", "alone, S", "with others, T", ""], rows);
         text.push('\n');
-        if self.varied.correlations.is_empty() && output.interactions().is_finite() {
+        if self.correlations.is_empty() && output.interactions().is_finite() {
             text += &format!("share of interactions: {:.3}\n", output.interactions());
-        } else if !self.varied.correlations.is_empty() {
+        } else if !self.correlations.is_empty() {
             text += "correlated: S includes the share of correlated parameters, T only the own share\n";
         }
         if !output.second.is_empty() {
@@ -153,7 +154,7 @@ impl SensitivityReport<'_> {
         let most = sizes.iter().map(|size| size.value).fold(f64::MIN_POSITIVE, f64::max);
         let rows = by_size(&sizes).into_iter().map(|i| {
             let Derivative { per_unit, per_spread } = &derivatives[i];
-            let of = self.varied.parameters[i].0.parameter().unit;
+            let of = self.parameters[i].0.parameter().unit;
             let per = if of.is_empty() { unit.to_owned() } else { format!("{unit} per {of}") };
             let slope = format!("{} {per}", with_half_width(per_unit, factor));
             vec![names[i].to_owned(), with_half_width(per_spread, factor), slope, self.bars(sizes[i].value / most)]
@@ -175,7 +176,7 @@ impl SensitivityReport<'_> {
             Found::Sobol(_) => ("T of every metric", self.names()),
             Found::Morris(_) => ("mu* of every metric", self.names()),
             Found::Local(_) => {
-                ("per spread, every metric", self.varied.parameters.iter().map(|(q, _)| q.parameter().flag).collect())
+                ("per spread, every metric", self.parameters.iter().map(|(q, _)| q.parameter().flag).collect())
             }
         };
         let header: Vec<&str> = std::iter::once(what).chain(names.iter().copied()).collect();

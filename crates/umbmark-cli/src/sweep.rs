@@ -154,18 +154,25 @@ fn csv(sweep: &Sweep, points: &[SweepPoint]) -> anyhow::Result<Vec<u8>> {
     Ok(writer.into_inner()?)
 }
 
-struct SweepReport<'a> {
-    sweep: &'a Sweep,
-    points: &'a [SweepPoint],
-    metric: Metric,
-    assumed: &'a [String],
+/// What was asked and found.
+#[derive(Debug)]
+pub struct SweepReport<'a> {
+    /// The grid.
+    pub sweep: &'a Sweep,
+    /// Its points that are done.
+    pub points: &'a [SweepPoint],
+    /// The metric that people see.
+    pub metric: Metric,
+    /// What was assumed.
+    pub assumed: &'a [String],
 }
 
 /// The most rows of a table for people.
 const ROWS: usize = 60;
 
 impl SweepReport<'_> {
-    fn text(&self, terminal: bool) -> String {
+    /// A table of few points, a map over two axes.
+    pub fn text(&self, terminal: bool) -> String {
         let (axes, study) = (self.sweep.axes(), self.sweep.study());
         let count = self.points.len();
         let mut text = format!(

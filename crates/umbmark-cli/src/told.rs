@@ -6,11 +6,20 @@ use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Diagnosis, Options};
 use umbmark_core::drive::Robot;
 use umbmark_core::evidence::Fit;
+use umbmark_core::monte_carlo::{Ensemble, Metric, Sweep, SweepPoint};
+use umbmark_core::result::Study;
 use umbmark_core::score::{Convention, Score};
 use umbmark_core::solve::Solution;
 use umbmark_plot::render::terminal::Look;
 
+pub use crate::plan_report::{Known, Report as Plan, Separation};
+pub use crate::sensitivity_report::SensitivityReport as Sensitivity;
+pub use crate::verb::tolerance::Report as Tolerance;
+
 use crate::answer::answer_text;
+use crate::ensemble_report::Report;
+use crate::plan_report;
+use crate::sweep::SweepReport;
 use crate::tracks_report;
 use crate::verb::{calibrate as calibrating, compare as comparing, diagnose as diagnosing, fit as fitting};
 use crate::verb::{inspect as inspecting, learn as learning, score as scoring};
@@ -53,6 +62,21 @@ pub fn learnt(data: &Dataset, solution: &Solution, options: &Options) -> String 
 /// Of `solve`.
 pub fn solution(solution: &Solution, options: &Options) -> String {
     answer_text(solution, 1.0 - options.size)
+}
+
+/// Of `mc` and `merge`; `took` is how long it took \[s\], and for how many trials.
+pub fn ensemble(study: &Study, seed: u64, ensemble: &Ensemble, partial: bool, took: Option<(f64, u64)>) -> String {
+    Report { study, seed, ensemble, partial, took }.text(false)
+}
+
+/// Of `mc --sweep`.
+pub fn sweep(sweep: &Sweep, points: &[SweepPoint], metric: Metric) -> String {
+    SweepReport { sweep, points, metric, assumed: &[] }.text(false)
+}
+
+/// Of `plan`.
+pub fn plan(plan: &Plan) -> String {
+    plan_report::text(plan)
 }
 
 /// Of `inspect` where the robot of all logs is known.

@@ -24,6 +24,7 @@ use std::sync::Arc;
 pub(crate) use drives::{Drive, end_poses, tracked};
 pub(crate) use ends::Ends;
 pub use error::FitError;
+pub(crate) use fitted::correlations;
 pub use fitted::{Estimate, Fit, fit, fit_to_returns};
 pub(crate) use ratio::{FAR_FIT, STARTS, is_possible};
 

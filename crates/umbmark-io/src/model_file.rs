@@ -12,7 +12,7 @@ use umbmark_core::monte_carlo::{Distribution, Draw};
 use umbmark_core::parameter::Parameter;
 
 /// Keys of an effect of the user's own, those first that no other has.
-const OWN: [&str; 5] = ["acts_on", "formula", "parameters", "name", "free"];
+const OWN: [&str; 6] = ["acts_on", "formula", "parameters", "name", "free", "fixed"];
 
 /// What is missing in a model of nobody.
 const WHOSE: &str =
@@ -147,7 +147,7 @@ fn find(name: &Entry) -> Result<&'static Effect, DatasetError> {
 
 fn add(model: &mut Model, draws: &mut Vec<Draw>, effect: &Effect, table: &Table) -> Result<(), DatasetError> {
     let about = &effect.about;
-    let mut keys = vec!["name", "free"];
+    let mut keys = vec!["name", "free", "fixed"];
     keys.extend(about.parameters.iter().map(|p| p.name));
     table.only(&keys)?;
     let mut values = Vec::new();
@@ -163,7 +163,18 @@ fn add(model: &mut Model, draws: &mut Vec<Draw>, effect: &Effect, table: &Table)
     let free = table.get("free").map_or(Ok(false), |entry| entry.flag())?;
     let impossible = |error: umbmark_core::effect::ModelError| table.missing("possible values", &error.to_string());
     model.add(about.name).map_err(impossible)?.free = free;
-    values.into_iter().try_for_each(|(name, value)| model.set(about.name, name, value)).map_err(impossible)
+    values.into_iter().try_for_each(|(name, value)| model.set(about.name, name, value)).map_err(impossible)?;
+    fix(model, about.name, table)
+}
+
+/// Fixes the parameters that an effect names.
+fn fix(model: &mut Model, effect: &str, table: &Table) -> Result<(), DatasetError> {
+    let Some(entry) = table.get("fixed") else { return Ok(()) };
+    let allowed = "a list of parameters that fits do not change, e.g. [\"drift_y\"]";
+    entry.list(allowed)?.iter().try_for_each(|name| {
+        let fixed = model.fix(effect, name.word(allowed)?);
+        fixed.map_err(|error| name.wrong("a parameter of the effect", &error.to_string()))
+    })
 }
 
 /// Adds an effect of the user's own.
@@ -190,8 +201,9 @@ fn add_own(model: &mut Model, name: &Entry, table: &Table) -> Result<(), Dataset
     })?;
     let free = table.get("free").map_or(Ok(false), |entry| entry.flag())?;
     let impossible = |error: umbmark_core::effect::ModelError| table.missing("possible values", &error.to_string());
+    let effect = formula.name();
     model.add_formula(formula, &values).map_err(impossible)?.free = free;
-    Ok(())
+    fix(model, effect, table)
 }
 
 fn read_target(entry: &Entry) -> Result<Target, DatasetError> {
@@ -295,6 +307,31 @@ mod tests {
         assert!(draws.is_empty());
         assert_eq!(model.parts().iter().map(|part| part.free).collect::<Vec<_>>(), [true, false]);
         assert!(read("# nothing\n").unwrap().0.parts().is_empty());
+    }
+
+    #[test]
+    fn parameters_that_are_fixed_are_named_and_written_again() {
+        let text = "[[effect]]\nname = \"floor_slope\"\ndrift_x = 0.001\nfree = true\nfixed = [\"drift_y\"]\n\n\
+                    [[effect]]\nname = \"own\"\nacts_on = \"heading_per_metre\"\nformula = \"k * sin(heading - h0)\"\n\
+                    parameters = { k = 0.25, h0 = 2 }\nfree = true\nfixed = [\"h0\", \"h0\"]\n";
+        let (model, _) = read(text).unwrap();
+        assert_eq!(model.parts().iter().map(|part| part.fixed.clone()).collect::<Vec<_>>(), [["drift_y"], ["h0"]]);
+        let place = |effect, parameter| model.place_of(effect, parameter).unwrap();
+        let fixed = [place("floor_slope", "drift_y"), place("own", "h0")];
+        let free = (0..model.values().count()).filter(|place| !fixed.contains(place));
+        assert_eq!(model.free_places(), free.collect::<Vec<_>>());
+        assert_eq!(read(&umbmark_core::effect::effects_text(&model)).unwrap().0, model);
+        for (line, said) in [
+            (
+                "fixed = \"e_b\"",
+                "3: fixed must be a list of parameters that fits do not change, e.g. [\"drift_y\"], got \"e_b\"",
+            ),
+            ("fixed = [\"e_d\"]", "wheelbase has no parameter \"e_d\"; did you mean \"e_b\"?"),
+            ("fixed = [1]", "got 1"),
+        ] {
+            let error = read(&format!("[[effect]]\nname = \"wheelbase\"\n{line}\n")).unwrap_err().to_string();
+            assert!(error.contains(said), "{error}");
+        }
     }
 
     #[test]

@@ -323,7 +323,8 @@ fn the_model_in_the_documents_is_one() {
     let robot = umbmark_core::drive::Robot::labmate();
     let umbmark_io::ModelFile { model, draws, noise, .. } =
         umbmark_io::ModelFile::parse("files.md", &format!("{effects}\n{noise}"), Some(&robot)).unwrap();
-    assert_eq!((model.parts().len(), draws.len()), (3, 2));
+    assert_eq!((model.parts().len(), draws.len()), (4, 2));
+    assert_eq!(model.parts()[3].fixed, ["drift_y"]);
     assert_eq!(noise, Some(umbmark_core::likelihood::Noise::default()));
 }
 

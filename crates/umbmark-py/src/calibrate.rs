@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_cli::told;
-use umbmark_core::calibrate::{Options, RadiusWheelbase};
+use umbmark_core::calibrate::{self as core, Options, RadiusWheelbase};
 use umbmark_core::{diagnose, learn, result, solve};
 
 use crate::dataset::Dataset;
+use crate::exception::DataError;
 use crate::model::Model;
 use crate::robot::Robot;
 use crate::work::{Watch, watched};
@@ -17,7 +17,10 @@ use crate::{choice, json, probability, refused};
 const WHEELBASES: [(&str, RadiusWheelbase); 2] =
     [("nominal", RadiusWheelbase::Nominal), ("corrected", RadiusWheelbase::Corrected)];
 
-/// A calibration by every method that the data allows, as a document and in words.
+/// A doubt about numbers that no learnt model stands behind.
+const NOT_LEARNT: &str = "Whether another effect spoils these numbers was not asked: learn=False was said.";
+
+/// A calibration by every method that the data allows, that of the learnt model only where it is asked for, as a document and in words.
 #[pyfunction]
 pub fn calibrate(
     py: Python<'_>,
@@ -25,6 +28,7 @@ pub fn calibrate(
     level: f64,
     heading_arm_m: Option<f64>,
     radius_wheelbase: &str,
+    learn: bool,
 ) -> PyResult<(String, String)> {
     probability("level", level)?;
     let options = Options {
@@ -35,15 +39,21 @@ pub fn calibrate(
     if !robot.drive.kind().has_axle_wheels() {
         let kind = robot.drive.kind().name();
         let words = format!("this calibrates differential drives, got drive = \"{kind}\"; use calibrate_gears");
-        return Err(PyValueError::new_err(words));
+        return Err(DataError::new_err(words));
     }
     let shared = Arc::clone(&data.0);
     let testing = diagnose::Options::default();
-    let work = move |told: &Watch| told.work(|watch| solve::calibrate_beside(&shared, &options, &testing, watch));
+    let work = move |watch: &Watch| match learn {
+        true => watch.work(|watch| solve::calibrate_beside(&shared, &options, &testing, watch)),
+        false => core::calibrate(&shared, &options).map(|found| (found, None)),
+    };
     let (mut calibration, answer) = watched(py, 0, None, work)?.map_err(refused)?;
     if calibration.estimates.is_empty() {
         let why = calibration.warnings.join("\n");
-        return Err(PyValueError::new_err(format!("nothing can be calibrated from these runs\n{why}")));
+        return Err(DataError::new_err(format!("nothing can be calibrated from these runs\n{why}")));
+    }
+    if !learn {
+        calibration.doubts.push(NOT_LEARNT.to_owned());
     }
     let noticed = calibration.setup.notices().len();
     calibration.warnings.splice(noticed..noticed, data.0.warnings.iter().cloned());
@@ -59,7 +69,7 @@ pub fn calibrate_gears(py: Python<'_>, data: &Dataset, level: f64) -> PyResult<(
     let shared = Arc::clone(&data.0);
     let found = watched(py, 1, None, move |_| learn::calibrate_gears(&shared))?.map_err(refused)?;
     if found.estimates.is_empty() {
-        return Err(PyValueError::new_err(
+        return Err(DataError::new_err(
             "nothing can be calibrated from these runs: drive a closed path in both directions, or measure poses on the way",
         ));
     }

@@ -3,15 +3,14 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use umbmark_core::result::MonteCarlo;
 use umbmark_io::checkpoint::{Checkpoint, CheckpointError, Found, Written};
 use umbmark_io::whole_file::WholeFile;
 
-use crate::monte_carlo::Ensemble;
+use crate::exception::DataError;
+use crate::monte_carlo::{Ensemble, document};
 use crate::work::watched;
-use crate::{existing, json, refused, unwritten};
+use crate::{existing, refused, unwritten};
 
 /// Time between two writes \[s\].
 const EVERY: Duration = Duration::from_secs(2);
@@ -42,20 +41,20 @@ impl CheckpointOptions {
 pub fn unusable(error: CheckpointError) -> PyErr {
     match error {
         CheckpointError::Exists(_) => {
-            PyValueError::new_err(format!("{error}; resume=True goes on with it, replace=True begins anew"))
+            DataError::new_err(format!("{error}; resume=True goes on with it, replace=True begins anew"))
         }
         error => refused(error),
     }
 }
 
-/// Shards or checkpoints of one study: the document of what they know together, and the ensemble.
+/// Shards or checkpoints of one study: the document of what they know together, its words, and the ensemble.
 #[pyfunction]
 pub fn merge(
     py: Python<'_>,
     files: Vec<PathBuf>,
     output: Option<PathBuf>,
     replace: bool,
-) -> PyResult<(String, Ensemble)> {
+) -> PyResult<(String, String, Ensemble)> {
     let merged = watched(py, 1, None, move |_| Written::merged(&files))?.map_err(unusable)?;
     if let Some(file) = output {
         let text = merged.text().map_err(refused)?;
@@ -63,6 +62,6 @@ pub fn merge(
     }
     let Written { seed, study, ensemble } = merged;
     let partial = !ensemble.missing().is_empty();
-    let document = json(&MonteCarlo::new(&ensemble, seed, partial, None, &study))?;
-    Ok((document, Ensemble(ensemble)))
+    let (document, text) = document(&ensemble, seed, partial, None, &study)?;
+    Ok((document, text, Ensemble(ensemble)))
 }

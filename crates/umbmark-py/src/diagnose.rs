@@ -68,13 +68,14 @@ pub fn diagnose(
     Ok((json(&result::Diagnosis::new(&diagnosis, &options))?, text, diagnosis.model.into()))
 }
 
-/// A model with its free effects fitted, those of `add` too.
+/// A model with its free effects fitted, those of `add` too, but for the parameters of `fix`, at their values or others.
 #[pyfunction]
 pub fn fit(
     py: Python<'_>,
     data: &Dataset,
     model: Option<&Model>,
     add: Vec<String>,
+    fix: Vec<(String, Option<f64>)>,
     level: f64,
 ) -> PyResult<(String, String, Model)> {
     probability("level", level)?;
@@ -82,7 +83,14 @@ pub fn fit(
     for effect in &add {
         model.add(effect).map_err(refused)?.free = true;
     }
-    if model.parts().iter().all(|part| !part.free) {
+    for (name, value) in &fix {
+        let (effect, parameter) = name
+            .split_once('.')
+            .ok_or_else(|| PyValueError::new_err(format!("fix must name EFFECT.PARAMETER, got \"{name}\"")))?;
+        value.map_or(Ok(()), |value| model.set(effect, parameter, value)).map_err(refused)?;
+        model.fix(effect, parameter).map_err(refused)?;
+    }
+    if !model.is_free() {
         return Err(PyValueError::new_err(
             "no effect of the model is free: say free=True in the model, or add an effect",
         ));

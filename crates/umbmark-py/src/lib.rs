@@ -11,6 +11,8 @@ use pyo3::types::IntoPyDict;
 use umbmark_io::whole_file::FileError;
 use umbmark_io::{DatasetError, Existing, Words};
 
+use exception::{DataError, UmbmarkError, refused};
+
 /// Each file of the module, with the functions and classes of it that Python has.
 macro_rules! module {
     ($($file:ident $(: $($item:ident),+)?;)*) => {
@@ -26,6 +28,7 @@ macro_rules! module {
 
             #[pymodule_init]
             fn add_version(module: &Bound<'_, PyModule>) -> PyResult<()> {
+                super::exception::add(module)?;
                 module.add("__version__", umbmark_core::VERSION)
             }
         }
@@ -40,6 +43,7 @@ module! {
     dataset: Dataset, init, inspect, load_dataset;
     diagnose: compare, diagnose, fit, learn, solve;
     effect: effects, formula_variables;
+    exception;
     export: export;
     figure: Figure, figure, kinds;
     keys;
@@ -62,22 +66,17 @@ module! {
     work;
 }
 
-/// What the core refuses, in its own words.
-fn refused(error: impl std::error::Error) -> PyErr {
-    PyValueError::new_err(error.to_string())
-}
-
 /// How Python names its arguments in messages.
 const WORDS: Words = Words { replace: "say replace=True", before: "", between: "=" };
 
 /// What is wrong with a file of a data set, or why one is not written, in Python's words.
 fn refused_data(error: DatasetError) -> PyErr {
-    PyValueError::new_err(error.worded(&WORDS))
+    DataError::new_err(error.worded(&WORDS))
 }
 
 /// Why a file is not written, in Python's words.
 fn unwritten(error: FileError) -> PyErr {
-    PyValueError::new_err(match error {
+    UmbmarkError::new_err(match error {
         FileError::Exists(_) => format!("{error}; replace=True replaces it"),
         error => error.to_string(),
     })

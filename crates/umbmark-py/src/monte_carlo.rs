@@ -9,6 +9,7 @@ use numpy::PyArray1;
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyFloat};
+use umbmark_cli::told;
 use umbmark_core::engine::Update;
 use umbmark_core::monte_carlo::{self as core, Batch, Metric, Shard, Statistics};
 use umbmark_core::replay::check_on_path;
@@ -232,9 +233,9 @@ impl Study {
         Ok((Ensemble(ensemble), trials, trials_per_s))
     }
 
-    /// The document of an ensemble of this study.
-    fn _document(&self, ensemble: &Ensemble, partial: bool, trials_per_s: Option<f64>) -> PyResult<String> {
-        json(&MonteCarlo::new(&ensemble.0, self.study.seed, partial, trials_per_s, &self.told()))
+    /// The document of an ensemble of this study, and its words.
+    fn _document(&self, ensemble: &Ensemble, partial: bool, trials_per_s: Option<f64>) -> PyResult<(String, String)> {
+        document(&ensemble.0, self.study.seed, partial, trials_per_s, &self.told())
     }
 
     fn __repr__(&self) -> String {
@@ -275,6 +276,18 @@ impl Study {
     pub fn core(&self) -> &core::Study {
         &self.study
     }
+}
+
+/// The document of an ensemble, and what the command prints of it but for the speed.
+pub fn document(
+    ensemble: &core::Ensemble,
+    seed: u64,
+    partial: bool,
+    trials_per_s: Option<f64>,
+    study: &result::Study,
+) -> PyResult<(String, String)> {
+    let text = told::ensemble(study, seed, ensemble, partial, None);
+    Ok((json(&MonteCarlo::new(ensemble, seed, partial, trials_per_s, study))?, text))
 }
 
 /// A number of trials.

@@ -70,6 +70,15 @@ impl Path {
         Path(path::Path::umbmark())
     }
 
+    /// A square with sides of this length in m; the other keys as of ``Path``.
+    #[staticmethod]
+    #[pyo3(signature = (side_m, **keys))]
+    fn square(py: Python<'_>, side_m: &Bound<'_, PyAny>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Path> {
+        let keys = keys.map_or_else(|| Ok(PyDict::new(py)), |keys| keys.copy())?;
+        keys.set_item("side_m", side_m)?;
+        Path::new("square", Some(&keys))
+    }
+
     /// Give the names of all shapes, each with what it is.
     #[staticmethod]
     fn shapes(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use umbmark_cli::told;
 use umbmark_core::dataset::Dataset as CoreDataset;
 use umbmark_core::diagnose::{Options, first_model, separating};
 use umbmark_core::path::Path as CorePath;
@@ -37,7 +38,7 @@ pub struct Whose {
 struct Known {
     setting: Setting,
     sigma_interval: Option<Interval>,
-    assumed: Vec<String>,
+    told: told::Known,
 }
 
 impl Whose {
@@ -63,7 +64,10 @@ impl Whose {
         Ok(Known {
             setting: setting.with_heading(headings && self.with_heading),
             sigma_interval: interval,
-            assumed: assumed.into_iter().map(str::to_owned).collect(),
+            told: told::Known {
+                assumed: assumed.into_iter().map(str::to_owned).collect(),
+                from_data: measured.is_some(),
+            },
         })
     }
 
@@ -82,7 +86,7 @@ impl Whose {
     }
 }
 
-/// What a test would show: its document, and the sheet to drive it by as Markdown and as HTML.
+/// What a test would show: its document, its words, and the sheet to drive it by as Markdown and as HTML.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn plan(
@@ -96,25 +100,32 @@ pub fn plan(
     options: (f64, i64, u64),
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(String, String, String)> {
+) -> PyResult<(String, String, String, String)> {
     whose.check()?;
     let (order, options) = (choice("order", order, &ORDERS)?, options_of(options, false)?);
     probability("power", power)?;
     if power <= options.size {
         return Err(PyValueError::new_err(format!("power must be greater than size, {}, got {power}", options.size)));
     }
-    let work = move |told: &Watch| -> Result<_, PlanError> {
-        let Known { setting, sigma_interval, assumed } = whose.known()?;
+    let work = move |watch: &Watch| -> Result<_, PlanError> {
+        let Known { setting, sigma_interval, told: known } = whose.known()?;
         let sought = |(name, value): &(String, f64)| Ok((Sought::named(name, *value, setting.robot())?, *value));
         let see = see.iter().map(sought).collect::<Result<Vec<_>, PlanError>>()?;
         let request = Request { runs, see: &see, power, numbers: &numbers, sigma_interval, options };
-        let findings = told.work(|watch| request.findings(&setting, watch))?;
+        let findings = watch.work(|watch| request.findings(&setting, watch))?;
         let sheet = Protocol::new(&setting, runs, order, setting.bumps());
-        let found = result::Plan::new(&setting, &request, &findings, &assumed);
-        Ok((found, sheet))
+        let found = result::Plan::new(&setting, &request, &findings, &known.assumed);
+        let text = told::plan(&told::Plan {
+            summary: &sheet.summary,
+            setting: &setting,
+            known: &known,
+            request: &request,
+            findings: &findings,
+        });
+        Ok((found, text, sheet))
     };
-    let (found, sheet) = watched(py, threads, progress, work)?.map_err(refused)?;
-    Ok((json(&found)?, sheet.markdown(), sheet.html()))
+    let (found, text, sheet) = watched(py, threads, progress, work)?.map_err(refused)?;
+    Ok((json(&found)?, text, sheet.markdown(), sheet.html()))
 }
 
 /// Experiments that tell two effects apart, together with the data or a planned test.
@@ -126,7 +137,7 @@ pub fn separate(
     runs: usize,
     options: (f64, i64, u64),
     #[pyo3(from_py_with = threads)] threads: usize,
-) -> PyResult<String> {
+) -> PyResult<(String, String)> {
     whose.check()?;
     let options: Options = options_of(options, false)?;
     if pair.0 == pair.1 {
@@ -141,8 +152,10 @@ pub fn separate(
                 (Arc::new(planned), format!("a test of {runs} + {runs} runs"))
             }
         };
-        let ranked = separating(&data, &first_model(&data)?, names)?;
-        Ok(result::Separation::new(names, &beside, &ranked, &options))
+        let experiments = separating(&data, &first_model(&data)?, names)?;
+        let found = result::Separation::new(names, &beside, &experiments, &options);
+        Ok((found, told::Separation { pair: names.map(str::to_owned), after: beside, experiments }.text()))
     };
-    json(&watched(py, threads, None, work)?.map_err(refused)?)
+    let (found, text) = watched(py, threads, None, work)?.map_err(refused)?;
+    Ok((json(&found)?, text))
 }

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use umbmark_core::monte_carlo::{Distribution, Quantity};
-use umbmark_core::result::{Asked, Found, Sensitivity};
+use umbmark_cli::told;
+use umbmark_core::monte_carlo::{Distribution, Metric, Quantity};
+use umbmark_core::result::Found;
 use umbmark_core::sensitivity::{
     Correlation, Inputs, Noise, SensitivityError, SobolDesign, SobolOptions, SobolSums, Tests, local_derivatives,
     screen, sobol_indices,
@@ -73,16 +74,26 @@ impl Varied {
         Ok(Varied { tests, parameters: varied, correlations, inputs, noise, seed: study.seed })
     }
 
-    fn result(&self, found: &Found) -> Sensitivity {
-        let asked = Asked {
-            varied: &self.parameters,
+    /// The document, and what the command prints.
+    fn document(&self, found: &Found) -> PyResult<(String, String)> {
+        let report = told::Sensitivity {
+            found,
+            parameters: &self.parameters,
             correlations: &self.correlations,
             metrics: self.tests.metrics(),
+            metric: self.shown(),
             study: self.tests.study(),
             noisy: self.noise == Noise::Simulated,
             assumed: &[],
+            unicode: false,
         };
-        Sensitivity::new(found, &asked)
+        Ok((json(&report.result())?, report.text()))
+    }
+
+    /// The metric that words are about: E_max,sys where both directions are driven.
+    fn shown(&self) -> Metric {
+        let metrics = self.tests.metrics();
+        metrics.iter().copied().find(|metric| *metric == Metric::EMaxSys).unwrap_or(metrics[0])
     }
 }
 
@@ -99,12 +110,12 @@ pub fn sensitivity(
     noise_free: bool,
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<String> {
+) -> PyResult<(String, String)> {
     let method = choice("method", method, &METHODS)?;
     let varied = Varied::new(study, parameters, noise_free)?;
-    let found = watched(py, threads, progress, move |told| -> Result<_, SensitivityError> {
+    let found = watched(py, threads, progress, move |watch| -> Result<_, SensitivityError> {
         let Varied { tests, inputs, seed, .. } = &varied;
-        let found = told.work(|watch| match method {
+        let found = watch.work(|watch| match method {
             Method::Sobol => {
                 let options = SobolOptions { base_points: effort, second_order, seed: *seed };
                 sobol_indices(tests, inputs, &options, watch).map(Found::Sobol)
@@ -112,9 +123,9 @@ pub fn sensitivity(
             Method::Morris => screen(tests, inputs, effort, *seed, watch).map(Found::Morris),
             Method::Local => local_derivatives(tests, inputs, effort, watch).map(Found::Local),
         })?;
-        Ok(varied.result(&found))
+        Ok(varied.document(&found))
     })?;
-    json(&found.map_err(refused)?)
+    found.map_err(refused)?
 }
 
 /// Sobol indices in blocks that can be done anywhere.
@@ -158,11 +169,11 @@ impl Sobol {
         Ok(PyArray1::from_vec(py, sums.map_err(refused)?))
     }
 
-    /// The document of all blocks, in their order.
-    fn document(&self, numbers: PyReadonlyArray1<'_, f64>) -> PyResult<String> {
+    /// The document of all blocks, in their order, and its words.
+    fn document(&self, numbers: PyReadonlyArray1<'_, f64>) -> PyResult<(String, String)> {
         let Varied { tests, inputs, .. } = &*self.varied;
         let design = SobolDesign::new(tests, inputs, &self.options).map_err(refused)?;
         let sums = SobolSums::from_numbers(&design, numbers.as_slice()?);
-        json(&self.varied.result(&Found::Sobol(design.indices(&sums).map_err(refused)?)))
+        self.varied.document(&Found::Sobol(design.indices(&sums).map_err(refused)?))
     }
 }

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use pyo3::prelude::*;
-use umbmark_core::monte_carlo::{Axis, Quantity, Sweep};
+use umbmark_cli::told;
+use umbmark_core::monte_carlo::{Axis, Metric, Quantity, Sweep};
 use umbmark_core::result;
 use umbmark_io::checkpoint::Keeper;
 
@@ -15,7 +16,7 @@ use crate::monte_carlo::Study;
 use crate::work::{Watch, watched, watched_to_its_end};
 use crate::{json, refused};
 
-/// A study on every point of a grid; axes are (name, first, last, count), a checkpoint (file, resume, replace).
+/// A study on every point of a grid, as a document and in words; axes are (name, first, last, count), a checkpoint (file, resume, replace).
 #[pyfunction]
 pub fn sweep(
     py: Python<'_>,
@@ -24,7 +25,7 @@ pub fn sweep(
     checkpoint: Option<(PathBuf, bool, bool)>,
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<String> {
+) -> PyResult<(String, String)> {
     let study = study.core();
     let axis = |(name, first, last, count): &(String, f64, f64, u64)| {
         let quantity = Quantity::find(name, study).map_err(refused)?;
@@ -37,16 +38,16 @@ pub fn sweep(
     let known = checkpoint.as_ref().map(|checkpoint| checkpoint.begin_sweep(&sweep)).transpose();
     let mut points = known.map_err(unusable)?.unwrap_or_default();
     let watched = if checkpoint.is_some() { watched_to_its_end } else { watched };
-    watched(py, threads, progress, move |told: &Watch| {
+    watched(py, threads, progress, move |watch: &Watch| {
         let mut failure = None;
-        let done = sweep.run(points.len() as u64, &told.stop, |more| {
+        let done = sweep.run(points.len() as u64, &watch.stop, |more| {
             points.extend(more);
-            told.done.store(points.len() as u64, Ordering::Relaxed);
+            watch.done.store(points.len() as u64, Ordering::Relaxed);
             failure = keeper.look_at(&sweep, &points).err();
             if failure.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         done.map_err(refused)?;
         failure.map_or_else(|| keeper.keep_points(&sweep, &points), Err).map_err(unusable)?;
-        json(&result::Sweep::new(&sweep, &points, &[]))
+        Ok((json(&result::Sweep::new(&sweep, &points, &[]))?, told::sweep(&sweep, &points, Metric::EMaxSys)))
     })?
 }

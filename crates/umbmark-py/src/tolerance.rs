@@ -2,6 +2,7 @@
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use umbmark_cli::told;
 use umbmark_core::monte_carlo::Metric;
 use umbmark_core::result::{self, Wanted};
 use umbmark_core::sensitivity::tolerance::{Target, Tolerances};
@@ -12,7 +13,7 @@ use crate::monte_carlo::Study;
 use crate::work::watched;
 use crate::{json, parameters, probability, refused};
 
-/// How many robots keep a target, and the cheapest grades that make it enough: the document, and the sizes of the robots as
+/// How many robots keep a target, and the cheapest grades that make it enough: the document, its words, and the sizes of the robots as
 /// they are now, in order.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
@@ -26,7 +27,7 @@ pub fn tolerance(
     with_noise: bool,
     #[pyo3(from_py_with = threads)] threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(String, Vec<f64>)> {
+) -> PyResult<(String, String, Vec<f64>)> {
     let (at_most, share) = target;
     probability("share", share)?;
     if !(at_most > 0.0 && at_most.is_finite()) {
@@ -42,14 +43,24 @@ pub fn tolerance(
         return Err(PyValueError::new_err(format!("{} is not a metric of these tests", metric.name())));
     };
     let target = Target { output, at_most, share };
-    let found = watched(py, threads, progress, move |told| -> Result<_, SensitivityError> {
+    let found = watched(py, threads, progress, move |watch| -> Result<_, SensitivityError> {
         let correlations = parameters::correlations(&file);
         let (parameters, seed) = (file.parameters.as_slice(), study.seed);
         let tolerances = Tolerances { tests: &tests, parameters, correlations: &correlations, robots, seed };
-        let findings = told.work(|watch| tolerances.search(&target, watch))?;
+        let findings = watch.work(|watch| tolerances.search(&target, watch))?;
         let wanted = Wanted { parameters, metric, target: &target, noise, seed, assumed: &[] };
-        Ok((result::Tolerance::new(&findings, &wanted), findings.now.robots.sizes().to_vec()))
+        let report = told::Tolerance {
+            findings: &findings,
+            parameters,
+            target: &target,
+            metric,
+            assumed: &[],
+            with_noise,
+            seed,
+        };
+        let found = result::Tolerance::new(&findings, &wanted);
+        Ok((found, report.text(false), findings.now.robots.sizes().to_vec()))
     })?;
-    let (found, sizes) = found.map_err(refused)?;
-    Ok((json(&found)?, sizes))
+    let (found, text, sizes) = found.map_err(refused)?;
+    Ok((json(&found)?, text, sizes))
 }

@@ -32,6 +32,37 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
 }
 
 
+def test_a_fleet_is_what_its_robots_are_alone() -> None:
+    cw = np.random.default_rng(1).normal([-0.20, -0.21, -0.05], 0.01, (4, 5, 3))
+    ccw = np.random.default_rng(2).normal([0.01, 0.00, 0.01], 0.01, (4, 6, 3))
+    cw[2, 3] = np.nan
+    fleet = umbmark.fleet(cw, ccw, path=PATH, names=["a", "b", "c", "d"])
+    alone = umbmark.Dataset.from_arrays(cw[2, [0, 1, 2, 4]], ccw[2], path=PATH)
+    assert [*fleet] == ["a", "b", "c", "d"]
+    assert fleet["c"] == alone
+    scores = umbmark.each(umbmark.score, fleet)
+    assert scores["b"] == umbmark.score(cw[1], ccw[1])
+    for wrong, words in (
+        ({"cw": cw[0]}, r"cw must have shape \(robots, runs, 3\)"),
+        ({"ccw": ccw[:3]}, "cw has 4 robots and ccw 3"),
+        ({"names": ["a", "b", "b", "d"]}, "4 different names"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            umbmark.fleet(**{"cw": cw, "ccw": ccw, **wrong})
+
+
+def test_a_calibration_without_learning_is_the_same_but_stands_in_doubt() -> None:
+    data = umbmark.simulate(MODEL, PATH, runs=4, reference_rate_hz=0)
+    learnt, quick = umbmark.calibrate(data), umbmark.calibrate(data, learn=False)
+    assert quick.methods["model"] is None
+    assert learnt.methods["model"] is not None
+    for method in ("closed_form_mean", "heading", "exact"):
+        assert quick.methods[method] == learnt.methods[method]
+    with pytest.raises(ValueError, match="learn=False was said"):
+        quick.export("ros2_control")
+    assert "wheel_separation_multiplier" in quick.export("ros2_control", force=True)
+
+
 @pytest.mark.parametrize("name", CALLS)
 def test_each_robot_gets_what_a_call_of_its_own_gives(
     name: str, robots: dict[str, umbmark.Dataset]

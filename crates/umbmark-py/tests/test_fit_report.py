@@ -37,6 +37,64 @@ def test_a_report_of_a_fit_has_its_parameters_in_the_units_of_the_catalogue(
         assert unit == [known[estimate.parameter]] * bool(known[estimate.parameter])
 
 
+def test_the_covariance_has_the_standard_errors_and_the_correlations(
+    watched: umbmark.Dataset,
+) -> None:
+    for result in (
+        umbmark.fit(watched, add=["floor_slope"]),
+        umbmark.diagnose(watched, draws=99),
+        umbmark.learn(watched, draws=99),
+        umbmark.solve(watched, draws=99),
+    ):
+        errors = [estimate.standard_error for estimate in result.fitted]
+        count = len(errors)
+        assert result.covariance.shape == (count, count)
+        assert np.sqrt(np.diag(result.covariance)) == pytest.approx(errors)
+        assert (np.linalg.eigvalsh(np.array(result.correlations)) > 0).all()
+
+
+def test_a_covariance_that_the_data_do_not_show_is_nan() -> None:
+    once = umbmark.fit(umbmark.simulate(TRUTH, PATH, runs=1, reference_rate_hz=0))
+    assert np.isnan(once.covariance).all()
+
+
+def test_a_parameter_that_is_fixed_keeps_its_value_and_the_others_make_up_for_it(
+    watched: umbmark.Dataset,
+) -> None:
+    free = umbmark.fit(watched, add=["floor_slope"])
+    model = free.model
+    held = umbmark.fit(watched, model, fix=["floor_slope.drift_y"])
+    assert held.model.get("floor_slope", "drift_y") == model.get("floor_slope", "drift_y")
+    names = [estimate.parameter for estimate in free.fitted]
+    assert [e.parameter for e in held.fitted] == [n for n in names if n != "drift_y"]
+    # The conditional standard error is no greater than the marginal one.
+    by_name = {e.parameter: e.standard_error for e in free.fitted}
+    for estimate in held.fitted:
+        assert estimate.standard_error is not None
+        assert estimate.standard_error <= 1.02 * (by_name[estimate.parameter] or 0)
+    off = umbmark.fit(watched, model, fix={"floor_slope.drift_x": 0.0, "scale.e_s": 1.01})
+    assert off.model.get("floor_slope", "drift_x") == 0.0
+    assert off.model.get("scale", "e_s") == 1.01
+    assert umbmark.Model.from_toml(off.model.to_toml()) == off.model
+    assert 'fixed = ["e_s"]' in off.model.to_toml()
+    # What is fixed in a model stays fixed.
+    again = umbmark.fit(watched, off.model)
+    assert [e.parameter for e in again.fitted] == [e.parameter for e in off.fitted]
+
+
+def test_what_cannot_be_fixed_is_refused(watched: umbmark.Dataset) -> None:
+    for name, words in (
+        ("drift_x", 'EFFECT.PARAMETER, got "drift_x"'),
+        ("wheelbase.e_d", 'no parameter "e_d"'),
+        ("no_effect.k", 'there is no effect "no_effect"'),
+    ):
+        with pytest.raises(ValueError, match=words):
+            umbmark.fit(watched, fix=[name])
+    every = ["wheel_diameter_ratio.e_d", "wheelbase.e_b", "scale.e_s"]
+    with pytest.raises(ValueError, match="no effect of the model is free"):
+        umbmark.fit(watched, fix=every)
+
+
 def test_a_report_of_a_fit_tells_its_residuals(watched: umbmark.Dataset) -> None:
     fitted = umbmark.fit(watched)
     text, frame = fitted.fit_report(), fitted.tracks().to_pandas()

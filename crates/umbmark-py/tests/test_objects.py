@@ -254,6 +254,14 @@ def keys_taken(make: Callable[..., object], *words: str, **keys: Any) -> set[str
     return set(re.split(r", | and ", str(caught.value).split("it takes ")[1]))
 
 
+def test_a_square_is_a_path_with_sides_of_a_length() -> None:
+    assert umbmark.Path.square(4.0) == umbmark.Path(side_m=4.0) == umbmark.Path.square(side_m=4)
+    slow = umbmark.Path.square(2, speed_m_s=0.1)
+    assert slow == umbmark.Path(side_m=2.0, speed_m_s=0.1)
+    with pytest.raises(ValueError, match="side_m"):
+        umbmark.Path.square(-1.0)
+
+
 def test_the_keys_that_are_checked_statically_are_those_that_are_taken() -> None:
     robots = (keys_taken(umbmark.Robot, drive=drive) for drive in umbmark.Robot.drives())
     assert set().union(*robots) == set(umbmark.RobotKeys.__annotations__)

@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import re
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -183,6 +184,50 @@ def test_a_study_is_the_document_of_the_command(name: str, command: Path, grades
     # What the command assumes, Python is told.
     assumed = {"assumed": expected["assumed"]} if "assumed" in expected else {}
     assert call(grades).to_dict() | assumed == expected
+
+
+def printed(command: Path, *arguments: str | Path) -> str:
+    """Return what the command prints, without what it assumed."""
+    run = [command, *arguments]
+    text = subprocess.run(run, check=True, capture_output=True, text=True).stdout
+    return re.sub(r"^  assumed: .*\n(?:    .*\n)*", "", text, flags=re.MULTILINE)
+
+
+@pytest.mark.parametrize("name", [name for name in STUDIES if "paper" not in name])
+def test_a_study_is_printed_as_by_the_command(name: str, command: Path, grades: Path) -> None:
+    call, words = STUDIES[name]
+    assert f"{call(grades)}\n" == printed(command, *words.format(grades).split())
+
+
+def test_trials_are_printed_as_by_the_command_but_for_their_speed(
+    command: Path, tmp_path: Path
+) -> None:
+    words = ("mc", "--ed", "1.002", "--wheel-noise", "0.001", "-n", "100")
+    expected = re.sub(r", \d+ trials/s", "", printed(command, *words))
+    model = umbmark.Model().add("wheel_diameter_ratio", e_d=1.002)
+    study = umbmark.Study(model.add("wheel_noise", k_sqrt_m=0.001), n=100)
+    found = umbmark.monte_carlo(study.model, n=100)
+    assert f"{found}\n" == expected
+    for shard in range(2):
+        study.run((shard, 2), checkpoint=tmp_path / f"{shard}.json")
+    merged = umbmark.merge(tmp_path / "0.json", tmp_path / "1.json")
+    assert f"{merged}\n" == expected
+
+
+@pytest.mark.parametrize("runs", [(1, 0), (2, 0), (1, 1), (2, 1), (2, 2)])
+@pytest.mark.parametrize("error", [(0.0, 0.0, 0.0), (0.1, 0.02, 0.01), (0.1, 0.02, np.nan)])
+def test_few_runs_are_not_enough_data_whatever_is_asked(
+    runs: tuple[int, int], error: tuple[float, float, float]
+) -> None:
+    robot, path = umbmark.Model().robot, umbmark.Path.square(1.0)
+    cw, ccw = ([error] * count if count else np.empty((0, 3)) for count in runs)
+    data = umbmark.Dataset.from_arrays(cw, ccw, robot=robot, path=path)
+    assert umbmark.score(data).n_cw == runs[0]
+    assert umbmark.diagnose(data, draws=99).verdict == "not_enough_data"
+    assert umbmark.learn(data, draws=99).verdict == "not_enough_data"
+    assert umbmark.solve(data, draws=99).correction is not None
+    assert len(umbmark.compare(data, draws=99).table()) > 0
+    assert umbmark.inspect(data).text
 
 
 @pytest.mark.parametrize("name", STUDIES)

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use anyhow::Context;
 use umbmark_core::evidence::{Fit, fit};
 use umbmark_core::likelihood::USUAL_NOISE;
 use umbmark_core::result;
@@ -12,6 +13,7 @@ use crate::Session;
 use crate::data_arguments::DataArguments;
 use crate::level_argument::LevelArgument;
 use crate::model_report::{estimates_table, meaning_text, model_of, outliers_text, write_model};
+use crate::numbers::number;
 use crate::prose::hanging;
 use crate::setup_report::{disturbances_text, doubts_text, taken_text};
 
@@ -29,6 +31,10 @@ pub struct Arguments {
     #[arg(long, value_name = "EFFECT")]
     add: Vec<String>,
 
+    /// Keep a parameter of a free effect at its value, or at VALUE; may be given more than once
+    #[arg(long, value_name = "EFFECT.PARAMETER[=VALUE]", value_parser = fixed)]
+    fix: Vec<Fixed>,
+
     /// Write the fitted model
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -41,13 +47,33 @@ pub struct Arguments {
     force: bool,
 }
 
+/// A parameter that is not fitted.
+#[derive(Clone, Debug)]
+struct Fixed {
+    effect: String,
+    parameter: String,
+    value: Option<f64>,
+}
+
+fn fixed(text: &str) -> Result<Fixed, String> {
+    let (name, value) = text.split_once('=').map_or((text, None), |(name, value)| (name, Some(value)));
+    let (effect, parameter) =
+        name.trim().split_once('.').ok_or("write EFFECT.PARAMETER or EFFECT.PARAMETER=VALUE, as in scale.e_s=1")?;
+    let value = value.map(|value| number(value.trim())).transpose()?;
+    Ok(Fixed { effect: effect.to_owned(), parameter: parameter.to_owned(), value })
+}
+
 pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result<ExitCode> {
     let data = arguments.data.load()?;
     let mut model = model_of(arguments.model.as_deref(), &data, session)?;
     for effect in &arguments.add {
         model.add(effect)?.free = true;
     }
-    if model.parts().iter().all(|part| !part.free) {
+    for Fixed { effect, parameter, value } in &arguments.fix {
+        value.map_or(Ok(()), |value| model.set(effect, parameter, value)).context("--fix")?;
+        model.fix(effect, parameter).context("--fix")?;
+    }
+    if !model.is_free() {
         anyhow::bail!("no effect of the model is free: write free = true in its file, or use --add EFFECT");
     }
     let fitted = session.on_threads(|| fit(&data, &model))??;

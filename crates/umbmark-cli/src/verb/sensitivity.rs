@@ -72,7 +72,8 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     let found = find(&arguments, &tests, &inputs, session)?;
     let report = SensitivityReport {
         found: &found,
-        varied: &varied,
+        parameters: &varied.parameters,
+        correlations: &varied.correlations,
         metrics: tests.metrics(),
         metric,
         study: tests.study(),

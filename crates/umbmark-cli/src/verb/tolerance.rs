@@ -6,9 +6,9 @@ use std::process::ExitCode;
 
 use umbmark_core::monte_carlo::Metric;
 use umbmark_core::result::{self, Wanted};
-use umbmark_core::sensitivity::tolerance::{Choice, Findings, Target, Tolerances};
+use umbmark_core::sensitivity::tolerance::{Choice, Findings, Target, Tolerances, Varied};
 use umbmark_core::sensitivity::{Correlation, Noise, Tests};
-use umbmark_io::{ParameterFile, read_parameters};
+use umbmark_io::read_parameters;
 
 use crate::Session;
 use crate::distribution_text::distribution_words;
@@ -80,7 +80,15 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
     };
     let findings = session.watched("% of all choices", |watch| tolerances.search(&target, watch))??;
     let assumed = if arguments.with_noise { known.assumed } else { Vec::new() };
-    let report = Report { findings: &findings, file: &file, target: &target, metric, assumed: &assumed };
+    let report = Report {
+        findings: &findings,
+        parameters: &file.parameters,
+        target: &target,
+        metric,
+        assumed: &assumed,
+        with_noise: arguments.with_noise,
+        seed: session.seed(),
+    };
     if findings.partial {
         session.message("partial", "stopped before all choices were tested");
     }
@@ -95,26 +103,37 @@ pub(super) fn run(arguments: Arguments, session: &mut Session) -> anyhow::Result
         };
         session.print_json(&result::Tolerance::new(&findings, &wanted))?;
     } else {
-        let text = report.text(arguments.with_noise, session.on_terminal())
-            + &format!("\nseed {}, umbmark {}\n", session.seed(), umbmark_core::VERSION);
+        let text = report.text(session.on_terminal());
         write!(session.out(), "{text}")?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-struct Report<'a> {
-    findings: &'a Findings,
-    file: &'a ParameterFile,
-    target: &'a Target,
-    metric: Metric,
-    assumed: &'a [String],
+/// What was asked and found.
+#[derive(Debug)]
+pub struct Report<'a> {
+    /// What was found.
+    pub findings: &'a Findings,
+    /// The parameters with their grades.
+    pub parameters: &'a [Varied],
+    /// What is to be kept.
+    pub target: &'a Target,
+    /// Its metric.
+    pub metric: Metric,
+    /// What was assumed.
+    pub assumed: &'a [String],
+    /// Whether whole tests with their noise are judged.
+    pub with_noise: bool,
+    /// Seed of the robots.
+    pub seed: u64,
 }
 
 impl Report<'_> {
-    fn text(&self, with_noise: bool, unicode: bool) -> String {
+    /// The robots' histogram, the table of choices, and what to buy; in characters beyond ASCII where they are shown.
+    pub fn text(&self, unicode: bool) -> String {
         let (unit, factor) = unit(self.metric);
         let now = &self.findings.now;
-        let kind = if with_noise { "in whole tests with their noise" } else { "the robots' own, without noise" };
+        let kind = if self.with_noise { "in whole tests with their noise" } else { "the robots' own, without noise" };
         let mut text = format!("{} of {} robots, {kind}\n", self.metric.name(), now.robots.sizes().len());
         self.assumed.iter().for_each(|assumption| text += &format!("  assumed: {assumption}\n"));
         let sizes = now.robots.sizes();
@@ -149,12 +168,13 @@ impl Report<'_> {
              either. Cheapest enough: the cheapest choice that keeps the target."
         );
         text += &format!("\n\n{}\n", hanging("", 0, &legend));
-        text + &wrapped(&self.verdict())
+        text += &wrapped(&self.verdict());
+        text + &format!("\nseed {}, umbmark {}\n", self.seed, umbmark_core::VERSION)
     }
 
     /// What a choice has that is not so now.
     fn changes(&self, choice: &Choice) -> String {
-        let changed = self.file.parameters.iter().zip(&choice.grades).zip(&self.findings.now.grades);
+        let changed = self.parameters.iter().zip(&choice.grades).zip(&self.findings.now.grades);
         let words = changed.filter(|((_, grade), now)| grade != now).map(|((one, grade), _)| {
             format!("{} {}", one.quantity.parameter().flag, distribution_words(&one.grades[*grade].distribution))
         });

@@ -32,13 +32,6 @@ impl Likeness {
     }
 }
 
-/// Correlations from a covariance; none where it is not known.
-pub(super) fn correlations(covariance: Option<&DMatrix<f64>>) -> Vec<Vec<f64>> {
-    let Some(c) = covariance.filter(|c| (0..c.nrows()).all(|i| c[(i, i)] > 0.0)) else { return Vec::new() };
-    let of = |i: usize, j: usize| (c[(i, j)] / (c[(i, i)] * c[(j, j)]).sqrt()).clamp(-1.0, 1.0);
-    (0..c.nrows()).map(|i| (0..c.nrows()).map(|j| of(i, j)).collect()).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -56,13 +49,5 @@ mod tests {
         let likeness = Likeness::new(&["a", "a", "b", "absorbed"], &products);
         assert_eq!(likeness.effects, ["a", "b"]);
         assert!((likeness.values[0][1] - 0.5f64.sqrt()).abs() < 1e-12 && likeness.values[1][1] == 1.0);
-    }
-
-    #[test]
-    fn correlations_have_ones_on_the_diagonal_and_need_a_covariance() {
-        let covariance = DMatrix::from_row_slice(2, 2, &[4.0, -1.0, -1.0, 1.0]);
-        assert_eq!(correlations(Some(&covariance)), [[1.0, -0.5], [-0.5, 1.0]]);
-        assert!(correlations(None).is_empty());
-        assert!(correlations(Some(&DMatrix::from_element(1, 1, f64::NAN))).is_empty());
     }
 }

@@ -108,6 +108,8 @@ pub struct Part {
     pub values: Vec<f64>,
     /// Whether a fit may change it.
     pub free: bool,
+    /// Names of the parameters that a fit does not change all the same.
+    pub fixed: Vec<&'static str>,
 }
 
 impl Part {
@@ -214,6 +216,7 @@ impl Model {
         let own = self.place(part.effect.clone());
         own.values.clone_from(&part.values);
         own.free = part.free;
+        own.fixed.clone_from(&part.fixed);
     }
 
     /// The law that a name stands for in this model: that of a part, or one of the catalogue.
@@ -228,7 +231,7 @@ impl Model {
         let place = known.unwrap_or_else(|| {
             let place = self.parts.partition_point(|part| part.effect.order() <= law.order());
             let values = law.parameters().iter().map(|p| p.default.resolve(&self.robot)).collect();
-            self.parts.insert(place, Part { effect: law, values, free: false });
+            self.parts.insert(place, Part { effect: law, values, free: false, fixed: Vec::new() });
             place
         });
         &mut self.parts[place]
@@ -237,14 +240,39 @@ impl Model {
     /// Sets a parameter of an effect, and adds the effect if it is missing.
     pub fn set(&mut self, effect: &str, parameter: &str, value: f64) -> Result<(), ModelError> {
         let law = self.law(effect)?;
-        let (effect, parameters) = (law.name(), law.parameters());
-        let index = parameters.iter().position(|p| p.name == parameter).ok_or_else(|| {
-            let nearest = nearest(parameter, parameters.iter().map(|p| p.name));
-            ModelError::UnknownParameter { effect, name: parameter.to_owned(), nearest }
-        })?;
-        let value = parameters[index].check(value).map_err(|problem| ModelError::Value { effect, problem })?;
-        self.place(law).values[index] = value;
+        let known = parameter_of(&law, parameter)?;
+        let value = known.check(value).map_err(|problem| ModelError::Value { effect: law.name(), problem })?;
+        let index = law.parameters().iter().position(|p| p.name == parameter);
+        let part = self.place(law);
+        index.into_iter().for_each(|index| part.values[index] = value);
         Ok(())
+    }
+
+    /// Keeps a parameter of an effect as it is in fits, though its effect is free.
+    pub fn fix(&mut self, effect: &str, parameter: &str) -> Result<(), ModelError> {
+        let law = self.law(effect)?;
+        let name = parameter_of(&law, parameter)?.name;
+        let part = self.place(law);
+        if !part.fixed.contains(&name) {
+            part.fixed.push(name);
+        }
+        Ok(())
+    }
+
+    /// Whether a fit may change some of its values.
+    pub fn is_free(&self) -> bool {
+        !self.free_places().is_empty()
+    }
+
+    /// Places, among the [values](Model::values), of those that a fit may change.
+    pub fn free_places(&self) -> Vec<usize> {
+        let of_part = |part: &'_ Part| {
+            let names =
+                part.effect.parameters().iter().map(|parameter| part.free && !part.fixed.contains(&parameter.name));
+            names.collect::<Vec<bool>>()
+        };
+        let flags = self.parts.iter().flat_map(of_part);
+        flags.enumerate().filter_map(|(place, free)| free.then_some(place)).collect()
     }
 
     /// The model with only one of its effects.
@@ -395,6 +423,16 @@ impl Model {
         chain.set_values(values);
         chain
     }
+}
+
+/// A parameter of a law, by its name.
+fn parameter_of<'a>(law: &'a Law, name: &str) -> Result<&'a Parameter, ModelError> {
+    let parameters = law.parameters();
+    parameters.iter().find(|parameter| parameter.name == name).ok_or_else(|| ModelError::UnknownParameter {
+        effect: law.name(),
+        name: name.to_owned(),
+        nearest: nearest(name, parameters.iter().map(|p| p.name)),
+    })
 }
 
 #[cfg(test)]

@@ -23,6 +23,10 @@ pub fn effects_text_with(model: &Model, other: impl Fn(&Part, &Parameter) -> Opt
         if part.free {
             text.push_str("free = true\n");
         }
+        if !part.fixed.is_empty() {
+            let names: Vec<String> = part.fixed.iter().map(|name| format!("\"{name}\"")).collect();
+            let _ = writeln!(text, "fixed = [{}]", names.join(", "));
+        }
     }
     text
 }

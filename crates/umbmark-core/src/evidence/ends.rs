@@ -5,7 +5,7 @@
 
 mod fitted;
 
-use super::{Drive, Evidence, Fit, FitError, Level, end_poses, noise_shape, robot_of};
+use super::{Drive, Evidence, Fit, FitError, Level, correlations, end_poses, noise_shape, robot_of};
 use crate::dataset::Dataset;
 use crate::drive::Robot;
 use crate::effect::{Evaluate, Model, ModelError};
@@ -209,9 +209,19 @@ impl Evidence for Ends {
 
     fn fit(&self, model: &Model) -> Result<Fit, FitError> {
         self.check_columns()?;
-        let Fitted { model, estimates, .. } = Fitted::new(self, model)?;
+        let Fitted { model, estimates, covariance, .. } = Fitted::new(self, model)?;
+        let correlations = correlations(covariance.as_ref());
         let setup = Arc::clone(&self.setup);
-        Ok(Fit { model, estimates, noise: None, outliers: Vec::new(), usual_noise: false, setup, taken: Vec::new() })
+        Ok(Fit {
+            model,
+            estimates,
+            correlations,
+            noise: None,
+            outliers: Vec::new(),
+            usual_noise: false,
+            setup,
+            taken: Vec::new(),
+        })
     }
 }
 

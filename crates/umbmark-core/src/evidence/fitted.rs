@@ -6,6 +6,7 @@ use crate::effect::Model;
 use crate::likelihood::{Noise, Outlier, Taken};
 use crate::setup::Setup;
 use crate::stats::{Interval, student_t_quantile};
+use nalgebra::DMatrix;
 use std::sync::Arc;
 
 /// A number of an effect with its uncertainty.
@@ -38,6 +39,8 @@ pub struct Fit {
     pub model: Model,
     /// What was fitted.
     pub estimates: Vec<Estimate>,
+    /// Their correlations, a row each; empty where the data does not determine them.
+    pub correlations: Vec<Vec<f64>>,
     /// The sizes of the noise under which the runs are likeliest; from tracks only.
     pub noise: Option<Noise>,
     /// Where runs were disturbed; the fit leaves these places out. From tracks only.
@@ -50,6 +53,13 @@ pub struct Fit {
     pub taken: Vec<Taken>,
 }
 
+/// Correlations from a covariance; none where it is not known.
+pub(crate) fn correlations(covariance: Option<&DMatrix<f64>>) -> Vec<Vec<f64>> {
+    let Some(c) = covariance.filter(|c| (0..c.nrows()).all(|i| c[(i, i)] > 0.0)) else { return Vec::new() };
+    let of = |i: usize, j: usize| (c[(i, j)] / (c[(i, i)] * c[(j, j)]).sqrt()).clamp(-1.0, 1.0);
+    (0..c.nrows()).map(|i| (0..c.nrows()).map(|j| of(i, j)).collect()).collect()
+}
+
 /// Fits a model's free parameters to a dataset.
 pub fn fit(data: &Dataset, model: &Model) -> Result<Fit, FitError> {
     model.check_robot(robot_of(data)?)?;
@@ -60,4 +70,17 @@ pub fn fit(data: &Dataset, model: &Model) -> Result<Fit, FitError> {
 pub fn fit_to_returns(data: &Dataset, model: &Model) -> Result<(Model, Vec<Estimate>), FitError> {
     let fit = Ends::new(data)?.fit(model)?;
     Ok((fit.model, fit.estimates))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn correlations_have_ones_on_the_diagonal_and_need_a_covariance() {
+        let covariance = DMatrix::from_row_slice(2, 2, &[4.0, -1.0, -1.0, 1.0]);
+        assert_eq!(correlations(Some(&covariance)), [[1.0, -0.5], [-0.5, 1.0]]);
+        assert!(correlations(None).is_empty());
+        assert!(correlations(Some(&DMatrix::from_element(1, 1, f64::NAN))).is_empty());
+    }
 }

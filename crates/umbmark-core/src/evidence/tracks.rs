@@ -5,7 +5,7 @@ mod errors;
 mod silent;
 mod system;
 
-use super::{Estimate, Evidence, Fit, FitError, Level, robot_of};
+use super::{Estimate, Evidence, Fit, FitError, Level, correlations, robot_of};
 use crate::dataset::Dataset;
 use crate::drive::Robot;
 use crate::effect::{Model, ModelError};
@@ -47,9 +47,10 @@ impl Evidence for Observed {
     fn fit(&self, model: &Model) -> Result<Fit, FitError> {
         let (fitted, _) = without_silent_taken(fit(self, model)?)?;
         let fitted = trusted(fitted)?.into_fitted();
-        let estimates = estimates(&fitted);
+        let (estimates, correlations) = (estimates(&fitted), correlations(fitted.covariance.as_ref()));
         let Fitted { model, noise, outliers, usual_noise, taken, observed, .. } = fitted;
-        Ok(Fit { model, estimates, noise: Some(noise), outliers, usual_noise, setup: observed.setup, taken })
+        let (noise, setup) = (Some(noise), observed.setup);
+        Ok(Fit { model, estimates, correlations, noise, outliers, usual_noise, setup, taken })
     }
 }
 

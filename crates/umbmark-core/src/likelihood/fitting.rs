@@ -74,8 +74,7 @@ impl Observed {
 
     /// The same values, and how they move the poses.
     fn moving(&self, model: &Model) -> Slopes {
-        let parts = model.parts().iter().flat_map(|part| part.values.iter().map(|_| part.free));
-        let free: Vec<usize> = parts.enumerate().filter_map(|(i, free)| free.then_some(i)).collect();
+        let free = model.free_places();
         let mut columns = self.columns(model, &free);
         let moves = |k: &usize| columns.iter().any(|run| run[*k].iter().any(|c| *c != [0.0; 3]));
         let moving: Vec<usize> = (0..free.len()).filter(moves).collect();

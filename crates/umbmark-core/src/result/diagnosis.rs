@@ -254,6 +254,8 @@ pub struct Diagnosis {
     pub observed: &'static str,
     /// The free parameters of the model.
     pub fitted: Vec<Estimate>,
+    /// Their correlations, a row each; empty where the data does not determine them.
+    pub correlations: Vec<Vec<f64>>,
     /// Tests of the whole model.
     pub goodness_of_fit: Vec<GoodnessOfFit>,
     /// Classes of effects that were tested; the first `certified` of them are missing.
@@ -309,6 +311,7 @@ impl Diagnosis {
             verdict: diagnosis.verdict.name(),
             observed: diagnosis.level.name(),
             fitted: estimates(&diagnosis.fitted, 1.0 - options.size),
+            correlations: diagnosis.correlations.clone(),
             goodness_of_fit: diagnosis.goodness_of_fit.iter().map(GoodnessOfFit::from).collect(),
             ranking: diagnosis.ranking.iter().map(|s| Suspect::new(s, diagnosis.model.robot())).collect(),
             certified: diagnosis.certified,

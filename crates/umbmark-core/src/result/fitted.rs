@@ -65,6 +65,8 @@ impl From<&likelihood::Outlier> for Outlier {
 pub struct Fitted {
     /// The free parameters.
     pub fitted: Vec<Estimate>,
+    /// Their correlations, a row each; empty where the data does not determine them.
+    pub correlations: Vec<Vec<f64>>,
     /// Free effects that this data cannot separate from the rest; they keep their values.
     pub not_shown: Vec<&'static str>,
     /// Meaning of each fitted effect for the robot, a sentence each.
@@ -91,6 +93,7 @@ impl Fitted {
     pub fn new(fit: &evidence::Fit, level: f64) -> Fitted {
         Fitted {
             fitted: estimates(&fit.estimates, level),
+            correlations: fit.correlations.clone(),
             not_shown: not_shown(&fit.model, &fit.estimates),
             meaning: meaning(&fit.estimates, &fit.model),
             outliers: fit.outliers.iter().map(Outlier::from).collect(),
@@ -117,6 +120,7 @@ pub fn meaning(estimates: &[evidence::Estimate], model: &effect::Model) -> Keyed
 
 /// The free effects that were not fitted, because this data cannot separate them from the rest of the model.
 pub fn not_shown(model: &effect::Model, fitted: &[evidence::Estimate]) -> Vec<&'static str> {
-    let free = model.parts().iter().filter(|part| part.free).map(|part| part.effect.name());
+    let is_free = |part: &&effect::Part| part.free && part.fixed.len() < part.values.len();
+    let free = model.parts().iter().filter(is_free).map(|part| part.effect.name());
     free.filter(|name| fitted.iter().all(|e| e.effect != *name)).collect()
 }

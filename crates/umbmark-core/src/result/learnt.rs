@@ -69,6 +69,8 @@ pub struct Learnt {
     pub model: Model,
     /// Its free parameters.
     pub fitted: Vec<Estimate>,
+    /// Their correlations, a row each; empty where the data does not determine them.
+    pub correlations: Vec<Vec<f64>>,
     /// Findings about the model and the data.
     #[serde(flatten)]
     pub findings: Findings,
@@ -105,6 +107,7 @@ impl Learnt {
             next_experiments: experiments(&diagnosis.next_experiments),
             model: Model::with_noise(&learnt.model, learnt.noise.as_ref()),
             fitted: estimates(&diagnosis.fitted, 1.0 - options.size),
+            correlations: diagnosis.correlations.clone(),
             findings: diagnosis.into(),
             correction: changes(&solution.changes),
             sentence: solution.sentence(),

@@ -12,7 +12,7 @@ use crate::parameter::Parameter;
 /// A model, as in `model.toml`.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Model {
-    /// Its effects in the order in which they act: each with its name, its parameters and whether it is free.
+    /// Its effects in the order in which they act: each with its name, its parameters, whether it is free, and which parameters are fixed all the same.
     pub effect: Vec<Map<String, Value>>,
     /// The sizes of the noise, where it was fitted to tracks.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -49,5 +49,8 @@ fn part(part: &effect::Part) -> Map<String, Value> {
         None => effect.append(&mut numbers),
     }
     effect.insert("free".to_owned(), json!(part.free));
+    if !part.fixed.is_empty() {
+        effect.insert("fixed".to_owned(), json!(part.fixed));
+    }
     effect
 }

@@ -99,6 +99,8 @@ pub struct Solution {
     pub model: Model,
     /// Its free parameters.
     pub fitted: Vec<Estimate>,
+    /// Their correlations, a row each; empty where the data does not determine them.
+    pub correlations: Vec<Vec<f64>>,
     /// Meaning of each fitted effect for the robot, a sentence each.
     pub meaning: Keyed<String>,
     /// Findings about the data before any fit: faults, clock and mounting of the reference, jumps, wrong poses, outlying runs.
@@ -136,6 +138,7 @@ impl Solution {
             reasons: reasons(&diagnosis.reasons),
             model: Model::with_noise(&learnt.model, learnt.noise.as_ref()),
             fitted: estimates(&diagnosis.fitted, 1.0 - options.size),
+            correlations: diagnosis.correlations.clone(),
             meaning: meaning(&diagnosis.fitted, &learnt.model),
             setup: diagnosis.setup.as_ref().into(),
             partial: learnt.partial,

@@ -25,7 +25,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``paper``                          the experiments of the paper, beside its numbers
 ``plan``, ``separate``             how many runs, and which experiment, before any is driven
 ``Robot``, ``Path``, ``Model``     what all of it is about; ``effects`` lists what there is
-``each``                           one of these calls for many robots, in parallel
+``each``, ``fleet``                one of these calls for many robots, in parallel
 ``umbmark.results``                the classes of the parts of results, for annotations
 ``umbmark.distributed``            studies on Dask, Ray, joblib or any other executor
 =================================  ===========================================================
@@ -40,7 +40,7 @@ from umbmark._calibration import Calibration, GearCalibration, calibrate, calibr
 from umbmark._comparison import Comparison, TrackComparison, compare
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
 from umbmark._documents import Correction, Effect, Setup
-from umbmark._each import Each, each
+from umbmark._each import Each, each, fleet
 from umbmark._errors import MissingDependencyError
 from umbmark._export import Exported, export
 from umbmark._formula import formula_of
@@ -66,14 +66,18 @@ from umbmark._sweep import Sweep, sweep
 from umbmark._tolerance import Tolerance, tolerance
 from umbmark._tracks import Track, Tracks, tracks
 from umbmark._umbmark import (
+    DataError,
     Dataset,
     Ensemble,
     Figure,
+    FitError,
     Model,
+    ModelError,
     Path,
     Robot,
     Run,
     Study,
+    UmbmarkError,
     __version__,
     effects,
     init,
@@ -94,6 +98,7 @@ __all__ = [
     "ConversionWarning",
     "Corrected",
     "Correction",
+    "DataError",
     "Dataset",
     "Diagnosis",
     "Drawn",
@@ -105,12 +110,14 @@ __all__ = [
     "Ensemble",
     "Exported",
     "Figure",
+    "FitError",
     "Fitted",
     "GearCalibration",
     "Inspection",
     "Learnt",
     "MissingDependencyError",
     "Model",
+    "ModelError",
     "MonteCarlo",
     "Numbers",
     "Paper",
@@ -134,6 +141,7 @@ __all__ = [
     "Track",
     "TrackComparison",
     "Tracks",
+    "UmbmarkError",
     "UmbmarkWarning",
     "Unlisted",
     "__version__",
@@ -147,6 +155,7 @@ __all__ = [
     "export",
     "figures",
     "fit",
+    "fleet",
     "formula_of",
     "init",
     "inspect",

@@ -111,6 +111,7 @@ def calibrate(
     level: float = 0.95,
     heading_arm_m: float | None = None,
     radius_wheelbase: str = "nominal",
+    learn: bool = True,
 ) -> Calibration:
     """Calibrate a differential drive: E_d, E_b, and E_s where the data shows it.
 
@@ -129,6 +130,10 @@ def calibrate(
     radius_wheelbase : str, default "nominal"
         Wheelbase in the closed forms' formula for E_d: "nominal", as the paper's companion has it,
         or "corrected".
+    learn : bool, default True
+        Whether to learn a model too, whose numbers are exported. Without it the others come
+        hundreds of times as fast, for fleets, and stand in doubt: nobody asked whether another
+        effect spoils them.
 
     Raises
     ------
@@ -146,7 +151,7 @@ def calibrate(
     1.0020 0.992
     """
     data = data_of(data)
-    document, text = _calibrate(data, level, heading_arm_m, radius_wheelbase)
+    document, text = _calibrate(data, level, heading_arm_m, radius_wheelbase, learn)
     return Calibration._of(document, robot=data.robot, path=data.path, text=text)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 import msgspec
@@ -135,7 +135,12 @@ def diagnose(
 
 
 def fit(
-    data: Data, model: Model | None = None, *, add: Sequence[str] = (), level: float = 0.95
+    data: Data,
+    model: Model | None = None,
+    *,
+    add: Sequence[str] = (),
+    fix: Sequence[str] | Mapping[str, float] = (),
+    level: float = 0.95,
 ) -> Fitted:
     """Fit the free effects of a model to measured runs.
 
@@ -148,16 +153,29 @@ def fit(
         given.
     add : sequence of str
         Effects to add and fit too.
+    fix : sequence of str, or mapping of str to float
+        Parameters of free effects that are not fitted, "floor_slope.drift_y", at the values of the
+        model or at those given. The model that is returned keeps them fixed.
     level : float, default 0.95
         Probability with which the intervals hold.
 
     Raises
     ------
     ValueError
-        If no effect is free, or the fit does not settle.
+        If no parameter is free, there is none of that name, or the fit does not settle.
+
+    Examples
+    --------
+    >>> import umbmark
+    >>> truth = umbmark.Model().add("wheelbase", e_b=1.01).add("wheel_noise", k_sqrt_m=0.0003)
+    >>> data = umbmark.simulate(truth, reference_rate_hz=0)
+    >>> fitted = umbmark.fit(data, fix={"wheel_diameter_ratio.e_d": 1.0})
+    >>> [estimate.parameter for estimate in fitted.fitted]
+    ['e_b']
     """
     data = data_of(data)
-    document, text, fitted = _umbmark.fit(data, model, [*add], level)
+    held = [*fix.items()] if isinstance(fix, Mapping) else [(name, None) for name in fix]
+    document, text, fitted = _umbmark.fit(data, model, [*add], held, level)
     return Fitted._of(document, model=fitted, data=data, text=text)
 
 

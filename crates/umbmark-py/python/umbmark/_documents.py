@@ -675,6 +675,8 @@ class Diagnosis(Result, frozen=True):
         "end_poses" or "tracks".
     fitted : tuple[Estimate, ...]
         The free parameters of the model.
+    correlations : tuple[tuple[float, ...], ...]
+        Their correlations, a row each; empty where the data does not determine them.
     goodness_of_fit : tuple[GoodnessOfFit, ...]
         Tests of the whole model.
     ranking : tuple[Suspect, ...]
@@ -737,6 +739,7 @@ class Diagnosis(Result, frozen=True):
     verdict: str
     observed: str
     fitted: tuple[Estimate, ...]
+    correlations: tuple[tuple[float, ...], ...]
     goodness_of_fit: tuple[GoodnessOfFit, ...]
     ranking: tuple[Suspect, ...]
     certified: int
@@ -1035,8 +1038,8 @@ class Suggestion(Record, frozen=True, kw_only=True):
     Attributes
     ----------
     effect : tuple[dict[str, Any], ...]
-        Its effects in the order in which they act: each with its name, its parameters and whether
-        it is free.
+        Its effects in the order in which they act: each with its name, its parameters, whether it
+        is free, and which parameters are fixed all the same.
     noise : dict[str, float] or UnsetType
         The sizes of the noise, where it was fitted to tracks.
     share : float
@@ -1225,6 +1228,8 @@ class Fitted(Result, frozen=True):
     ----------
     fitted : tuple[Estimate, ...]
         The free parameters.
+    correlations : tuple[tuple[float, ...], ...]
+        Their correlations, a row each; empty where the data does not determine them.
     not_shown : tuple[str, ...]
         Free effects that this data cannot separate from the rest; they keep their values.
     meaning : dict[str, str]
@@ -1248,6 +1253,7 @@ class Fitted(Result, frozen=True):
     """
 
     fitted: tuple[Estimate, ...]
+    correlations: tuple[tuple[float, ...], ...]
     not_shown: tuple[str, ...]
     meaning: dict[str, str]
     outliers: tuple[Outlier, ...]
@@ -1830,6 +1836,8 @@ class Learnt(Result, frozen=True):
         The model that was learnt.
     fitted : tuple[Estimate, ...]
         Its free parameters.
+    correlations : tuple[tuple[float, ...], ...]
+        Their correlations, a row each; empty where the data does not determine them.
     meaning : dict[str, str]
         Meaning of each fitted effect for the robot, a sentence each.
     outliers : tuple[Outlier, ...]
@@ -1876,6 +1884,7 @@ class Learnt(Result, frozen=True):
     next_experiments: tuple[Experiment, ...]
     model: Model
     fitted: tuple[Estimate, ...]
+    correlations: tuple[tuple[float, ...], ...]
     meaning: dict[str, str]
     outliers: tuple[Outlier, ...]
     setup: Setup
@@ -2851,6 +2860,8 @@ class Solution(Result, frozen=True):
         The model that was learnt.
     fitted : tuple[Estimate, ...]
         Its free parameters.
+    correlations : tuple[tuple[float, ...], ...]
+        Their correlations, a row each; empty where the data does not determine them.
     meaning : dict[str, str]
         Meaning of each fitted effect for the robot, a sentence each.
     setup : Setup
@@ -2887,6 +2898,7 @@ class Solution(Result, frozen=True):
     reasons: tuple[str, ...]
     model: Model
     fitted: tuple[Estimate, ...]
+    correlations: tuple[tuple[float, ...], ...]
     meaning: dict[str, str]
     setup: Setup
     partial: bool

@@ -10,17 +10,79 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from umbmark._arguments import whole
+import numpy as np
+from numpy.typing import NDArray
+
+from umbmark._arguments import Numbers, whole
 from umbmark._executor import MOST_WORKERS, Executor, in_order
 from umbmark._progress import Bar, Progress
 from umbmark._result import Frame, Result, Row, arrow_of
 from umbmark._scores import Data
-from umbmark._umbmark import Dataset
+from umbmark._umbmark import Dataset, Path, Robot
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
 Found = TypeVar("Found", bound=Result)
+
+
+def fleet(
+    cw: Numbers,
+    ccw: Numbers,
+    *,
+    robot: Robot | None = None,
+    path: Path | None = None,
+    names: Sequence[str] | None = None,
+) -> dict[str, Dataset]:
+    """Give the return errors of many robots of one kind as a dataset each, for ``each``.
+
+    Parameters
+    ----------
+    cw, ccw : array of numbers, shape (robots, runs, 3) or (robots, runs, 2)
+        The return errors of each robot's runs, as ``score`` takes those of one. A run that was not
+        driven is a row of NaN.
+    robot, path, optional
+        As of ``Dataset.from_arrays``, of all of them.
+    names : sequence of str, optional
+        Names of the robots; "1", "2", ... where none are given.
+
+    Raises
+    ------
+    ValueError
+        If the arrays have other shapes or tell of different numbers of robots, or two names are
+        the same.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import umbmark
+    >>> cw = np.random.default_rng(1).normal([-0.20, -0.21, -0.05], 0.01, (100, 5, 3))
+    >>> ccw = np.random.default_rng(2).normal([0.01, 0.00, 0.01], 0.01, (100, 5, 3))
+    >>> umbmark.each(umbmark.calibrate, umbmark.fleet(cw, ccw), learn=False)
+    Each(Calibration: 100 robots, 0 failed)
+    """
+    arrays = [_of_robots("cw", cw), _of_robots("ccw", ccw)]
+    counts = [len(array) for array in arrays]
+    if counts[0] != counts[1]:
+        raise ValueError(f"cw has {counts[0]} robots and ccw {counts[1]}: they must be the same")
+    names = [str(place) for place in range(1, counts[0] + 1)] if names is None else [*names]
+    if len(names) != counts[0] or len(set(names)) != counts[0]:
+        raise ValueError(f"names must be {counts[0]} different names, one for each robot")
+    driven = ([rows[~np.isnan(rows).all(axis=1)] for rows in array] for array in arrays)
+    of_robots = zip(names, *driven, strict=True)
+    return {
+        name: Dataset.from_arrays(one, other, robot=robot, path=path)
+        for name, one, other in of_robots
+    }
+
+
+def _of_robots(name: str, value: Numbers) -> NDArray[np.float64]:
+    array = np.asarray(value, np.float64)
+    if array.ndim != 3 or array.shape[2] not in (2, 3):
+        raise ValueError(
+            f"{name} must have shape (robots, runs, 3) or (robots, runs, 2), got {array.shape}"
+        )
+    return array
 
 
 class Each(Mapping[str, Found], Frame, Generic[Found]):

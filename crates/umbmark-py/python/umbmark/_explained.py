@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, overload
 
+import numpy as np
+from numpy.typing import NDArray
+
 from umbmark._documents import Estimate
 from umbmark._progress import Progress
 from umbmark._report import plot
@@ -32,6 +35,19 @@ class Explained(Printed):
     data: Dataset
     model: Model
     fitted: tuple[Estimate, ...]
+    correlations: tuple[tuple[float, ...], ...]
+
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """Covariance of the parameters in ``fitted``, shape (n, n), in products of their units.
+
+        NaN where the data does not determine them. ``correlations`` has it without units.
+        """
+        errors = np.array([estimate.standard_error for estimate in self.fitted], np.float64)
+        if not self.correlations:
+            return np.full((errors.size, errors.size), np.nan)
+        covariance: NDArray[np.float64] = np.outer(errors, errors) * np.array(self.correlations)
+        return covariance
 
     def tracks(self) -> Tracks:
         """Give the measured runs beside odometry and the model, as of ``umbmark.tracks``."""

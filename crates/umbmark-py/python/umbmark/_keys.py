@@ -129,13 +129,18 @@ class RobotKeys(TypedDict, total=False):
     steering_zero_rad: float | None
 
 
-class PathKeys(TypedDict, total=False):
-    """Keys of ``[path]`` in a robot.toml; which of them a path has depends on its shape."""
+class MotionKeys(TypedDict, total=False):
+    """Keys of ``[path]`` in a robot.toml that every path has: how it is driven."""
 
-    side_m: float | None
     speed_m_s: float | None
     acceleration_m_s2: float | None
     pause_s: float | None
+
+
+class PathKeys(MotionKeys, total=False):
+    """Keys of ``[path]`` in a robot.toml; which of them a path has depends on its shape."""
+
+    side_m: float | None
     length_m: float | None
     width_m: float | None
     corner_radius_m: float | None
@@ -151,6 +156,7 @@ class EffectKeys(TypedDict, total=False):
     formula: str | Callable[..., Any]
     parameters: Mapping[str, Drawn]
     free: bool
+    fixed: Sequence[str]
     share: Drawn
     time_constant_s: Drawn
     left_s_per_m: Drawn

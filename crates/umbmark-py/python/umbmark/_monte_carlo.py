@@ -13,7 +13,7 @@ from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
 from umbmark._errors import needs
 from umbmark._progress import Bar, Progress
-from umbmark._result import Row
+from umbmark._result import Printed, Row
 from umbmark._umbmark import Ensemble, Model, Path, Study
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 MOST_UNTIL = 1_000_000_000
 
 
-class MonteCarlo(_documents.MonteCarlo, frozen=True):
+class MonteCarlo(_documents.MonteCarlo, Printed, frozen=True):
     """What a study found.
 
     Attributes
@@ -36,10 +36,11 @@ class MonteCarlo(_documents.MonteCarlo, frozen=True):
     """
 
     _of_row: ClassVar[tuple[str, ...]] = ("mean", "std_error", "std_dev", "q*")
-    _uncompared: ClassVar[tuple[str, ...]] = ("trials_per_s",)
+    _uncompared: ClassVar[tuple[str, ...]] = ("trials_per_s", "text")
 
     ensemble: Ensemble
     trials: Mapping[str, NDArray[np.float64]] | None
+    text: str
 
     def table(self) -> list[Row]:
         """Give the statistics of each metric, one dict a row."""
@@ -200,8 +201,8 @@ def merge(
     >>> merged.n, merged.partial, merged.metrics == umbmark.monte_carlo(model, n=1000).metrics
     (1000, False, True)
     """
-    document, ensemble = _umbmark.merge([*files], output, replace)
-    return MonteCarlo._of(document, ensemble=ensemble, trials=None)
+    document, text, ensemble = _umbmark.merge([*files], output, replace)
+    return MonteCarlo._of(document, ensemble=ensemble, trials=None, text=text)
 
 
 def is_precise(ensemble: Ensemble, until_std_error_m: float | None) -> bool:
@@ -218,5 +219,5 @@ def result_of(
     trials: Mapping[str, NDArray[np.float64]] | None = None,
 ) -> MonteCarlo:
     """Give an ensemble of a study as a result."""
-    document = study._document(ensemble, partial, trials_per_s)
-    return MonteCarlo._of(document, ensemble=ensemble, trials=trials)
+    document, text = study._document(ensemble, partial, trials_per_s)
+    return MonteCarlo._of(document, ensemble=ensemble, trials=trials, text=text)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed, options_of, whole
 from umbmark._progress import Bar, Progress
-from umbmark._result import Row
+from umbmark._result import Printed, Row
 from umbmark._scores import Data, data_of
 from umbmark._umbmark import Dataset, Model, Path
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Plan(_documents.Plan, frozen=True):
+class Plan(_documents.Plan, Printed, frozen=True):
     """What a test would show before it is driven.
 
     Attributes
@@ -27,6 +27,7 @@ class Plan(_documents.Plan, frozen=True):
     """
 
     sheets: dict[str, str]
+    text: str
 
     def sheet(self, format: str = "md") -> str:
         """Give the sheet to drive by, steps and the table to fill in, as "md" or "html"."""
@@ -61,7 +62,9 @@ def _first(row: _documents.OfRuns) -> tuple[_documents.LeastSize, ...]:
     return row.minimum_detectable[:2]
 
 
-class Separation(_documents.Separation, frozen=True):
+class Separation(_documents.Separation, Printed, frozen=True):
+    text: str
+
     def table(self) -> list[Row]:
         """Give the experiments, one dict a row."""
         return [
@@ -165,7 +168,7 @@ def plan(
     options = options_of(size, draws, seed)
     whose = _Whose(_read(data), model, path, sigma_m, with_heading, options[2])
     with Bar(progress, 1000, "steps") as bar:
-        document, markdown, html = _umbmark.plan(
+        document, text, markdown, html = _umbmark.plan(
             whose,
             whole("runs", runs, 0, (1 << 32) - 1),
             sizes,
@@ -176,7 +179,7 @@ def plan(
             threads,
             bar.at,
         )
-    return Plan._of(document, sheets={"md": markdown, "html": html})
+    return Plan._of(document, sheets={"md": markdown, "html": html}, text=text)
 
 
 def separate(
@@ -220,11 +223,10 @@ def separate(
     """
     options = options_of(0.05, 999, seed)
     whose = _Whose(_read(data), model, path, sigma_m, with_heading, options[2])
-    return Separation._of(
-        _umbmark.separate(
-            (first, second), whose, whole("runs", runs, 0, (1 << 32) - 1), options, threads
-        )
+    document, text = _umbmark.separate(
+        (first, second), whose, whole("runs", runs, 0, (1 << 32) - 1), options, threads
     )
+    return Separation._of(document, text=text)
 
 
 def _read(data: Data | None) -> Dataset | None:

@@ -8,7 +8,7 @@ from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
 from umbmark._parameters import Correlations, Parameters, keys_of
 from umbmark._progress import Bar, Progress
-from umbmark._result import Row
+from umbmark._result import Printed, Row
 from umbmark._umbmark import Model, Path, Study
 
 if TYPE_CHECKING:
@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 EFFORT = {"sobol": 4096, "morris": 100, "local": 1000}
 
 
-class Sensitivity(_documents.Sensitivity, frozen=True):
+class Sensitivity(_documents.Sensitivity, Printed, frozen=True):
+    text: str
+
     def table(self) -> list[Row]:
         """Give every sensitivity of every metric, one dict a row."""
         rows: list[Row] = []
@@ -115,7 +117,7 @@ def sensitivity(
     )
     keys = None if parameters is None else keys_of(parameters, correlations)
     with Bar(progress, 1000, "steps") as bar:
-        document = _umbmark.sensitivity(
+        document, text = _umbmark.sensitivity(
             study, keys, method, effort, second_order, noise_free, threads, bar.at
         )
-    return Sensitivity._of(document)
+    return Sensitivity._of(document, text=text)

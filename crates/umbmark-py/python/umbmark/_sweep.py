@@ -14,7 +14,7 @@ from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
 from umbmark._errors import needs
 from umbmark._progress import Bar, Progress
-from umbmark._result import Row
+from umbmark._result import Printed, Row
 from umbmark._umbmark import Model, Path, Study
 
 if TYPE_CHECKING:
@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Sweep(_documents.Sweep, frozen=True):
+class Sweep(_documents.Sweep, Printed, frozen=True):
     _of_row: ClassVar[tuple[str, ...]] = ("mean", "std_error", "std_dev", "q*")
+    text: str
 
     def table(self) -> list[Row]:
         """Give each metric at each point, one dict a row."""
@@ -131,5 +132,5 @@ def sweep(
     points = math.prod(count for *_, count in given)
     with Bar(progress, points, "points") as bar:
         written = None if checkpoint is None else (checkpoint, resume, replace)
-        document = _umbmark.sweep(study, given, written, threads, bar.at)
-    return Sweep._of(document)
+        document, text = _umbmark.sweep(study, given, written, threads, bar.at)
+    return Sweep._of(document, text=text)

@@ -8,14 +8,14 @@ from umbmark import _documents, _umbmark
 from umbmark._arguments import Seed
 from umbmark._parameters import Correlations, Parameters, keys_of
 from umbmark._progress import Bar, Progress
-from umbmark._result import Row
+from umbmark._result import Printed, Row
 from umbmark._umbmark import Model, Path, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Tolerance(_documents.Tolerance, frozen=True):
+class Tolerance(_documents.Tolerance, Printed, frozen=True):
     """How many robots keep a target, and the cheapest tolerances with which enough do.
 
     Attributes
@@ -25,6 +25,7 @@ class Tolerance(_documents.Tolerance, frozen=True):
     """
 
     sizes: tuple[float, ...]
+    text: str
 
     def table(self) -> list[Row]:
         """Give the choices with their costs and intervals, one dict a row."""
@@ -137,7 +138,7 @@ def tolerance(
     )
     keys = keys_of(parameters, correlations)
     with Bar(progress, 1000, "steps") as bar:
-        document, sizes = _umbmark.tolerance(
+        document, text, sizes = _umbmark.tolerance(
             study, keys, metric, (target, share), robots, with_noise, threads, bar.at
         )
-    return Tolerance._of(document, sizes=sizes)
+    return Tolerance._of(document, sizes=sizes, text=text)

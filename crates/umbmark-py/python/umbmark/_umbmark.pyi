@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from umbmark._arguments import Numbers, Seed
 from umbmark._documents import Effect, Repeated, Suggestion, UnlistedLaw
-from umbmark._keys import EffectKeys, EffectName, PathKeys, RobotKeys, Shape
+from umbmark._keys import EffectKeys, EffectName, MotionKeys, PathKeys, RobotKeys, Shape
 
 __all__ = [
     "Dataset",
@@ -88,11 +88,18 @@ class Robot:
     def __eq__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
+class UmbmarkError(ValueError): ...
+class DataError(UmbmarkError): ...
+class ModelError(UmbmarkError): ...
+class FitError(UmbmarkError): ...
+
 @final
 class Path:
     def __new__(cls, shape: Shape = "square", **keys: Unpack[PathKeys]) -> Self: ...
     @staticmethod
     def umbmark() -> Path: ...
+    @staticmethod
+    def square(side_m: float, **keys: Unpack[MotionKeys]) -> Path: ...
     @staticmethod
     def shapes() -> dict[str, str]: ...
     def to_dict(self) -> dict[str, Any]: ...
@@ -268,7 +275,9 @@ class Study:
         keep: bool = False,
         progress: Callable[[int], object] | None = None,
     ) -> tuple[Ensemble, dict[str, Floats] | None, float]: ...
-    def _document(self, ensemble: Ensemble, partial: bool, trials_per_s: float | None) -> str: ...
+    def _document(
+        self, ensemble: Ensemble, partial: bool, trials_per_s: float | None
+    ) -> tuple[str, str]: ...
     def __getnewargs_ex__(self) -> tuple[tuple[Model, Path], dict[str, Any]]: ...
 
 @final
@@ -334,7 +343,9 @@ def init(
     reference: str | None = None,
     replace: bool = False,
 ) -> tuple[PathlibPath, ...]: ...
-def merge(files: Sequence[Place], output: Place | None, replace: bool) -> tuple[str, Ensemble]: ...
+def merge(
+    files: Sequence[Place], output: Place | None, replace: bool
+) -> tuple[str, str, Ensemble]: ...
 def paper(
     names: Sequence[str],
     trials: int,
@@ -384,7 +395,7 @@ def sensitivity(
     noise_free: bool,
     threads: int,
     progress: Callable[[int], object] | None,
-) -> str: ...
+) -> tuple[str, str]: ...
 
 @final
 class Sobol:
@@ -399,7 +410,7 @@ class Sobol:
     @property
     def blocks(self) -> int: ...
     def sums(self, first: int, end: int) -> Floats: ...
-    def document(self, numbers: Floats) -> str: ...
+    def document(self, numbers: Floats) -> tuple[str, str]: ...
 
 def sweep(
     study: Study,
@@ -407,7 +418,7 @@ def sweep(
     checkpoint: tuple[Place, bool, bool] | None,
     threads: int,
     progress: Callable[[int], object] | None,
-) -> str: ...
+) -> tuple[str, str]: ...
 def tolerance(
     study: Study,
     parameters: str | Mapping[str, Any],
@@ -417,7 +428,7 @@ def tolerance(
     with_noise: bool,
     threads: int,
     progress: Callable[[int], object] | None,
-) -> tuple[str, list[float]]: ...
+) -> tuple[str, str, list[float]]: ...
 def plan(
     whose: object,
     runs: int,
@@ -428,17 +439,17 @@ def plan(
     options: tuple[float, int, int],
     threads: int,
     progress: Callable[[int], object] | None,
-) -> tuple[str, str, str]: ...
+) -> tuple[str, str, str, str]: ...
 def separate(
     pair: tuple[str, str],
     whose: object,
     runs: int,
     options: tuple[float, int, int],
     threads: int,
-) -> str: ...
+) -> tuple[str, str]: ...
 def calibrate_gears(data: Dataset, level: float) -> tuple[str, Model, Robot]: ...
 def calibrate(
-    data: Dataset, level: float, heading_arm_m: float | None, radius_wheelbase: str
+    data: Dataset, level: float, heading_arm_m: float | None, radius_wheelbase: str, learn: bool
 ) -> tuple[str, str]: ...
 def export(
     model: Model,
@@ -465,7 +476,11 @@ def diagnose(
     threads: int,
 ) -> tuple[str, str, Model]: ...
 def fit(
-    data: Dataset, model: Model | None, add: Sequence[str], level: float
+    data: Dataset,
+    model: Model | None,
+    add: Sequence[str],
+    fix: Sequence[tuple[str, float | None]],
+    level: float,
 ) -> tuple[str, str, Model]: ...
 def learn(
     data: Dataset,

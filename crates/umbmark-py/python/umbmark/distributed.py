@@ -145,7 +145,8 @@ def sensitivity(
         for part in in_order(executor, work, range(-(-design.blocks // chunk)), workers):
             sums.append(part)
             bar.at(min(design.blocks, chunk * len(sums)))
-    return Sensitivity._of(design.document(np.concatenate(sums)))
+    document, text = design.document(np.concatenate(sums))
+    return Sensitivity._of(document, text=text)
 
 
 def _blocks(

@@ -39,7 +39,7 @@ impl Moments {
     /// Their covariance is drawn too, with the uncertainty that the observed runs leave: the inverse of a Wishart matrix. Exact tests do
     /// not depend on the covariance; other tests would have too many false alarms if the estimate were used as the true covariance.
     pub fn draw(counts: [usize; 2], size: usize, stream: &mut Stream) -> Moments {
-        let freedom = counts[0] + counts[1] - 2;
+        let freedom = freedom_of(counts);
         let precision = wishart(freedom, size, stream) / freedom as f64;
         let root = precision.cholesky().and_then(|c| c.l().transpose().try_inverse());
         let root = root.unwrap_or_else(|| DMatrix::identity(size, size));
@@ -55,13 +55,13 @@ impl Moments {
         for (mean, count) in means.iter_mut().zip(counts) {
             *mean += root * normal(size, stream) / f64::from(count as u32).sqrt();
         }
-        let scatter = root * wishart(counts[0] + counts[1] - 2, size, stream) * root.transpose();
+        let scatter = root * wishart(freedom_of(counts), size, stream) * root.transpose();
         Moments { counts, means, scatter }
     }
 
     /// Degrees of freedom of the scatter.
     pub fn freedom(&self) -> f64 {
-        f64::from((self.counts[0] + self.counts[1] - 2) as u32)
+        freedom_of(self.counts) as f64
     }
 
     /// Number of coordinates.
@@ -73,6 +73,11 @@ impl Moments {
     pub fn count(&self, group: usize) -> f64 {
         f64::from(self.counts[group] as u32)
     }
+}
+
+/// Degrees of freedom of the scatter of so many runs about the means of their directions; 0 for a single run.
+fn freedom_of(counts: [usize; 2]) -> usize {
+    (counts[0] + counts[1]).saturating_sub(2)
 }
 
 fn normal(size: usize, stream: &mut Stream) -> DVector<f64> {

@@ -165,11 +165,10 @@ fn vector(pose: &Pose2) -> Vector3<f64> {
 /// Values that the data determines, and those that it does not. E_d and E_b are tested first, then the others one at a time. All tests use
 /// derivatives at the nominal robot: elsewhere, second-order terms seem to separate effects that no measurement could.
 fn what_shows(ends: &Ends, model: &Model) -> (Vec<usize>, Vec<usize>) {
-    let flags = model.parts().iter().flat_map(|part| part.values.iter().map(|_| part.free));
     let names = names(model);
     let nominal = model.at_rest();
     let start: Vec<f64> = nominal.values().collect();
-    let free: Vec<usize> = flags.enumerate().filter(|(_, free)| *free).map(|(i, _)| i).collect();
+    let free = model.free_places();
     // The value of a length, threshold, scatter or choice moves no pose as long as the size of its effect is zero.
     let moves = |poses: &Vec<Vector3<f64>>| poses.iter().any(|pose| *pose != Vector3::zeros());
     let slopes = ends.slopes(&nominal, &start, &free);
