@@ -7,6 +7,7 @@ use umbmark_cli::told;
 use umbmark_core::calibrate::{self as core, Options, RadiusWheelbase};
 use umbmark_core::{diagnose, learn, result, solve};
 
+use crate::arguments::threads;
 use crate::dataset::Dataset;
 use crate::exception::DataError;
 use crate::model::Model;
@@ -29,6 +30,7 @@ pub fn calibrate(
     heading_arm_m: Option<f64>,
     radius_wheelbase: &str,
     learn: bool,
+    #[pyo3(from_py_with = threads)] threads: usize,
 ) -> PyResult<(String, String)> {
     probability("level", level)?;
     let options = Options {
@@ -47,7 +49,7 @@ pub fn calibrate(
         true => watch.work(|watch| solve::calibrate_beside(&shared, &options, &testing, watch)),
         false => core::calibrate(&shared, &options).map(|found| (found, None)),
     };
-    let (mut calibration, answer) = watched(py, 0, None, work)?.map_err(refused)?;
+    let (mut calibration, answer) = watched(py, threads, None, work)?.map_err(refused)?;
     if calibration.estimates.is_empty() {
         let why = calibration.warnings.join("\n");
         return Err(DataError::new_err(format!("nothing can be calibrated from these runs\n{why}")));

@@ -77,7 +77,10 @@ def test_a_parameter_that_is_fixed_keeps_its_value_and_the_others_make_up_for_it
     assert off.model.get("scale", "e_s") == 1.01
     assert umbmark.Model.from_toml(off.model.to_toml()) == off.model
     assert 'fixed = ["e_s"]' in off.model.to_toml()
-    # What is fixed in a model stays fixed.
+    # What is fixed in a model stays fixed; learning fits the numbers of the robot all the same.
+    learnt = umbmark.learn(watched, off.model, draws=99).model
+    assert learnt.get("floor_slope", "drift_x") == 0.0
+    assert learnt.get("scale", "e_s") != 1.01
     again = umbmark.fit(watched, off.model)
     assert [e.parameter for e in again.fitted] == [e.parameter for e in off.fitted]
 

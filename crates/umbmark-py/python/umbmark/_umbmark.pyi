@@ -12,15 +12,19 @@ from umbmark._documents import Effect, Repeated, Suggestion, UnlistedLaw
 from umbmark._keys import EffectKeys, EffectName, MotionKeys, PathKeys, RobotKeys, Shape
 
 __all__ = [
+    "DataError",
     "Dataset",
     "Ensemble",
     "Figure",
+    "FitError",
     "Model",
+    "ModelError",
     "Path",
     "Robot",
     "Run",
     "Sobol",
     "Study",
+    "UmbmarkError",
     "__version__",
     "apply",
     "calibrate",
@@ -449,7 +453,12 @@ def separate(
 ) -> tuple[str, str]: ...
 def calibrate_gears(data: Dataset, level: float) -> tuple[str, Model, Robot]: ...
 def calibrate(
-    data: Dataset, level: float, heading_arm_m: float | None, radius_wheelbase: str, learn: bool
+    data: Dataset,
+    level: float,
+    heading_arm_m: float | None,
+    radius_wheelbase: str,
+    learn: bool,
+    threads: int,
 ) -> tuple[str, str]: ...
 def export(
     model: Model,
