@@ -393,6 +393,23 @@ fn a_gyro_that_turns_against_the_counts_accuses_nobody_and_says_what_may_be() {
     assert!(error.contains("wheels_exchanged"), "{error}");
 }
 
+/// A decoder that counts every second edge of one wheel: a robot with such wheels fits the log, and none is built.
+#[test]
+fn one_wheel_with_half_its_counts_is_doubted() {
+    let mut data = watched(&rough(&[]), 3, 2);
+    assert!(umbmark_core::setup::Setup::of(&data.runs, &Robot::labmate(), None).doubts.is_empty());
+    logs(&mut data).for_each(|log| log.right.iter_mut().for_each(|count| *count = (0.5 * *count).floor()));
+    let setup = umbmark_core::setup::Setup::of(&data.runs, &Robot::labmate(), None);
+    assert!(
+        matches!(setup.doubts[..], [umbmark_core::setup::Suspicion::UnequalWheels { ratio }] if (ratio - 2.0).abs() < 0.1),
+        "{:?}",
+        setup.doubts
+    );
+    assert!(setup.doubts[0].forbids_writing() && setup.doubts[0].sentence().contains("wheel_diameter_left_m"));
+    let learnt = umbmark_core::learn::learn(&data, &Default::default()).unwrap();
+    assert_eq!(learnt.diagnosis.verdict, umbmark_core::diagnose::Verdict::NotExplained);
+}
+
 /// Counts of a decoder that counts every fourth edge: wheelbase or wheels are wrong, and headings do not say which.
 #[test]
 fn headings_that_turn_a_quarter_as_far_as_the_wheels_are_doubted() {

@@ -248,7 +248,8 @@ impl Setup {
         let relative = seen.iter().any(|seen| seen.log.relative);
         let (found, noise) = disturbances::search(&sightings, relative, counted(&seen, wheelbase));
         let runs = seen.iter().zip(found).map(|(seen, found)| RunSetup { ..told(named(seen), seen, found) }).collect();
-        let doubts = doubled.map(Suspicion::Doubled).into_iter().chain(other_turns(&seen, &agreement)).collect();
+        let sizes = other_turns(&seen, &agreement).or_else(|| unequal_wheels(robot, &agreement));
+        let doubts = doubled.map(Suspicion::Doubled).into_iter().chain(sizes).collect();
         Setup { faults, mounting: Some(mounting), runs, noise, doubts, returned: Returned::default() }
     }
 
@@ -347,6 +348,8 @@ const STANDS: (f64, f64) = (0.1, 0.01);
 const HALF_TURN: f64 = 0.05;
 /// Turns by headings alone that are so many times those by the wheels, or the inverse, are not those of a wheelbase that was mismeasured.
 const OTHER_TURNS: f64 = 1.3;
+/// Wheels of one robot do not differ by this factor, or the inverse, from what its maker says.
+const OTHER_WHEELS: f64 = 1.5;
 /// If more than this share of all poses jump or are wrong, these are no accidents.
 const ACCIDENTS: f64 = 0.1;
 /// Maximum number of notices of a kind that are listed.
@@ -512,6 +515,17 @@ fn other_turns(seen: &[Seen], agreement: &Agreement) -> Option<Suspicion> {
     let headings_only = seen.iter().all(|seen| seen.log.headings_only);
     let within = (1.0 / OTHER_TURNS..=OTHER_TURNS).contains(&ratio);
     (headings_only && agreement.shown[1] && !within).then_some(Suspicion::OtherTurns { ratio })
+}
+
+/// The suspicion that the wheels are counted differently: E_d by the rotation that goes with the way, far from 1.
+fn unequal_wheels(robot: &Robot, agreement: &Agreement) -> Option<Suspicion> {
+    let [turns, by_way] = agreement.turn;
+    // The wheels' way differs by 2 q of its mean; E_b cancels.
+    let q = 0.5 * by_way * robot.drive.wheelbase() / turns;
+    let ratio = (1.0 + q) / (1.0 - q);
+    let within = (1.0 / OTHER_WHEELS..=OTHER_WHEELS).contains(&ratio);
+    let told = robot.drive.kind().has_axle_wheels() && agreement.shown == [true, true] && ratio > 0.0;
+    (told && !within).then_some(Suspicion::UnequalWheels { ratio })
 }
 
 /// The values on which all runs agree, each with the scatter between parts of the data.

@@ -360,6 +360,18 @@ fn a_time_stamp_coarser_than_the_rate_keeps_the_last_of_its_rows() {
     assert!(said.contains("1 rows that repeat a time stamp were left out"), "{said}");
 }
 
+/// The pose of a moment belongs to the counts of that moment, not to those of another row with its stamp.
+#[test]
+fn counts_and_pose_of_one_stamp_are_of_one_row() {
+    let (data, _) = warnings_of(
+        "t_s,ticks_left,ticks_right,x_ref_m,y_ref_m\n0,0,0,0,0\n0.1,1,1,0.1,0\n0.1,2,2,0.2,0\n0.1,3,3,0.3,0\n\
+         0.2,4,4,0.4,0\n0.2,5,5,,\n0.3,6,6,,\n0.3,7,7,,\n",
+    );
+    assert_eq!(counts(&data).1, [0.0, 3.0, 4.0, 7.0]);
+    let reference = &data.runs[0].log.as_ref().unwrap().reference;
+    assert_eq!(reference.iter().map(|pose| (pose.sample, pose.x)).collect::<Vec<_>>(), [(0, 0.0), (1, 0.3), (2, 0.4)]);
+}
+
 #[test]
 fn a_counter_that_was_set_back_goes_on_and_one_that_rolled_over_is_another_thing() {
     let rows = |counts: &[(i64, i64)]| {

@@ -185,14 +185,16 @@ pub(super) fn way(log: &TickLog, robot: &Robot) -> Option<f64> {
     (way > 0.0 && way.is_finite()).then_some(way)
 }
 
-/// Return errors larger than the distance driven.
+/// Return errors larger than any error can be: on a path back to START than the path, else than twice the way, since the robot and where it believes to be
+/// are both within the way of START.
 fn too_far(runs: &[Run], ways: &[Option<f64>], path: Option<&Path>) -> Option<Fault> {
     let distances = runs.iter().filter_map(|run| run.returned).map(|e| libm::hypot(e.x, e.y));
     let distance = median(distances.filter(|d| d.is_finite()).collect())?;
     let by_path = path.map(Path::length).filter(|length| *length > 0.0);
-    let way = by_path.or_else(|| median(ways.iter().flatten().copied().collect()))?;
+    let by_logs = || median(ways.iter().flatten().copied().collect());
+    let (way, most) = by_path.map(|path| (path, path)).or_else(|| by_logs().map(|way| (way, 2.0 * way)))?;
     let unit = if distance / 100.0 > BELIEVED * way { "mm" } else { "mm or cm" };
-    (distance > way).then_some(Fault::ReturnsIn { unit, distance, way })
+    (distance > most).then_some(Fault::ReturnsIn { unit, distance, way })
 }
 
 /// Headings that agree with the positions as degrees but not as radians.

@@ -36,6 +36,11 @@ pub enum Suspicion {
         /// So many times.
         ratio: f64,
     },
+    /// One wheel rolls so many times as far as the other for the same counts.
+    UnequalWheels {
+        /// The right wheel over the left one.
+        ratio: f64,
+    },
     /// Wheels and reference agree so little that neither delay nor mounting nor jumps can be told.
     LittleAgreement {
         /// Share of the motion that disagrees.
@@ -74,6 +79,11 @@ impl Suspicion {
                 "the measured heading turns {ratio:.3} times as far as the wheels turn the robot: wheelbase_m, the wheel diameters or \
                  ticks_per_revolution is wrong, and headings do not say which: measure the wheelbase, and the way of some turns of a wheel, with \
                  a tape"
+            ),
+            Suspicion::UnequalWheels { ratio } => format!(
+                "by the reference the right wheel rolls {ratio:.3} times as far as the left one for the same counts, beside the nominal diameters: \
+                 check that both counters count the same edges and have the same gear; if the wheels do differ, write wheel_diameter_left_m \
+                 and wheel_diameter_right_m as measured with a tape"
             ),
             Suspicion::LittleAgreement { misfit } => format!(
                 "the reference hardly moves as the wheels roll ({:.0} % of the motion disagrees), so that neither its delay nor wrong poses nor \

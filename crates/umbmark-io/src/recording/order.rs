@@ -72,7 +72,7 @@ fn way(recording: &Recording, order: &[usize]) -> f64 {
     counts.map(|counts| order.windows(2).map(|pair| (counts[pair[1]] - counts[pair[0]]).abs()).sum::<f64>()).sum()
 }
 
-/// One row for each time stamp: the last one.
+/// One row for each time stamp: the last one with a pose, or the last one, so that counts and pose are of one moment.
 fn without_repeats(recording: &Recording, order: Vec<usize>) -> Result<Vec<usize>, DatasetError> {
     let time = &recording.time;
     let apart = |a: usize, b: usize| {
@@ -81,6 +81,8 @@ fn without_repeats(recording: &Recording, order: Vec<usize>) -> Result<Vec<usize
     };
     let steps = order.windows(2).filter(|pair| time[pair[0]] < time[pair[1]]);
     let largest = steps.map(|pair| apart(pair[0], pair[1])).fold(0.0, f64::max);
+    let mut seen = vec![false; time.len()];
+    recording.reference.iter().for_each(|pose| seen[pose.sample] = true);
     let mut kept: Vec<usize> = Vec::with_capacity(order.len());
     for row in order {
         match kept.last_mut() {
@@ -89,7 +91,9 @@ fn without_repeats(recording: &Recording, order: Vec<usize>) -> Result<Vec<usize
                 if apart(*last, row) > limit {
                     return Err(refused(recording, row, CLASH));
                 }
-                *last = row;
+                if seen[row] || !seen[*last] {
+                    *last = row;
+                }
             }
             _ => kept.push(row),
         }
@@ -106,6 +110,8 @@ fn rearrange(recording: &mut Recording, order: &[usize]) {
     let mut references: Vec<_> = std::mem::take(&mut recording.reference);
     let stamps: Vec<f64> = order.iter().map(|row| recording.time[*row]).collect();
     let place = |time: f64| stamps.partition_point(|stamp| *stamp < time);
+    let own = |row: usize| order.get(place(recording.time[row])) == Some(&row);
+    references.sort_by_key(|pose| !own(pose.sample));
     for pose in &mut references {
         pose.sample = place(recording.time[pose.sample]);
     }

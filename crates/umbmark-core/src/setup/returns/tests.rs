@@ -3,6 +3,7 @@
 use super::*;
 use crate::calibrate::{Correction, drive_again};
 use crate::diagnose::tests::{robot_with, simulated, trials};
+use crate::likelihood::watched::watched;
 use crate::random::Stream;
 use crate::run::ReturnError;
 use rayon::prelude::*;
@@ -168,6 +169,19 @@ fn large_errors_of_a_robot_are_no_fault_and_the_same_in_millimetres_or_degrees_i
     }
     let _ = writeln!(std::io::stderr(), "of {honest} robots: mm {}, deg {}", told[0], told[1]);
     assert_eq!(told[0], 200);
+}
+
+/// Odometry that turns around while the robot drives straight ends nearly twice the way from it; no error is larger.
+#[test]
+fn errors_of_logs_are_in_another_unit_only_beyond_twice_the_way() {
+    let robot = Robot::labmate();
+    let mut run = watched(&robot_with(&[]), 1, 3).runs[0].clone();
+    let way = way(run.log.as_ref().unwrap(), &robot).unwrap();
+    for (times, wrong) in [(0.9, false), (1.9, false), (2.1, true)] {
+        run.returned = Some(ReturnError { x: times * way, y: 0.0, heading: None });
+        let faults = Returned::of(std::slice::from_ref(&run), &robot, None).faults;
+        assert_eq!(matches!(faults[..], [Fault::ReturnsIn { .. }]), wrong, "{times}: {faults:?}");
+    }
 }
 
 /// Seeds 18: the paper's robot and 5 + 5 runs.
