@@ -58,7 +58,9 @@ def fleet(
     >>> import umbmark
     >>> cw = np.random.default_rng(1).normal([-0.20, -0.21, -0.05], 0.01, (100, 5, 3))
     >>> ccw = np.random.default_rng(2).normal([0.01, 0.00, 0.01], 0.01, (100, 5, 3))
-    >>> umbmark.each(umbmark.calibrate, umbmark.fleet(cw, ccw), learn=False)
+    >>> robot, path = umbmark.Model().robot, umbmark.Path.umbmark()
+    >>> fleet = umbmark.fleet(cw, ccw, robot=robot, path=path)
+    >>> umbmark.each(umbmark.calibrate, fleet, learn=False)
     Each(Calibration: 100 robots, 0 failed)
     """
     arrays = [_of_robots("cw", cw), _of_robots("ccw", ccw)]
