@@ -22,15 +22,8 @@ def no_effect() -> object:
     return umbmark.fit(data, add=["wheelbas"])
 
 
-def another_robot() -> object:
-    robot = umbmark.Robot(
-        drive="synchro",
-        wheel_circle_m=0.5,
-        wheel_diameter_m=0.15,
-        ticks_per_revolution=2000,
-        steering_ticks_per_revolution=10_000,
-    )
-    return umbmark.calibrate(umbmark.simulate(umbmark.Model(robot), runs=2))
+def no_robot() -> object:
+    return umbmark.calibrate(umbmark.Dataset.from_arrays([[0.1, 0.0, 0.0]] * 2))
 
 
 def a_path_in_millimetres() -> object:
@@ -43,7 +36,7 @@ CASES: list[tuple[Callable[[], object], type[ValueError]]] = [
     (no_dataset, umbmark.DataError),
     (no_runs, umbmark.DataError),
     (no_effect, umbmark.ModelError),
-    (another_robot, umbmark.DataError),
+    (no_robot, umbmark.DataError),
     (a_path_in_millimetres, umbmark.FitError),
 ]
 
