@@ -248,7 +248,7 @@ impl Setup {
         let relative = seen.iter().any(|seen| seen.log.relative);
         let (found, noise) = disturbances::search(&sightings, relative, counted(&seen, wheelbase));
         let runs = seen.iter().zip(found).map(|(seen, found)| RunSetup { ..told(named(seen), seen, found) }).collect();
-        let sizes = other_turns(&seen, &agreement).or_else(|| unequal_wheels(robot, &agreement));
+        let sizes = other_turns(&seen, &agreement).or_else(|| unequal_wheels(robot, &mounting));
         let doubts = doubled.map(Suspicion::Doubled).into_iter().chain(sizes).collect();
         Setup { faults, mounting: Some(mounting), runs, noise, doubts, returned: Returned::default() }
     }
@@ -350,6 +350,8 @@ const HALF_TURN: f64 = 0.05;
 const OTHER_TURNS: f64 = 1.3;
 /// Wheels of one robot do not differ by this factor, or the inverse, from what its maker says.
 const OTHER_WHEELS: f64 = 1.5;
+/// Standard errors beyond which it is no chance.
+const SURELY: f64 = 4.0;
 /// If more than this share of all poses jump or are wrong, these are no accidents.
 const ACCIDENTS: f64 = 0.1;
 /// Maximum number of notices of a kind that are listed.
@@ -517,15 +519,21 @@ fn other_turns(seen: &[Seen], agreement: &Agreement) -> Option<Suspicion> {
     (headings_only && agreement.shown[1] && !within).then_some(Suspicion::OtherTurns { ratio })
 }
 
-/// The suspicion that the wheels are counted differently: E_d by the rotation that goes with the way, far from 1.
-fn unequal_wheels(robot: &Robot, agreement: &Agreement) -> Option<Suspicion> {
-    let [turns, by_way] = agreement.turn;
-    // The wheels' way differs by 2 q of its mean; E_b cancels.
-    let q = 0.5 * by_way * robot.drive.wheelbase() / turns;
-    let ratio = (1.0 + q) / (1.0 - q);
-    let within = (1.0 / OTHER_WHEELS..=OTHER_WHEELS).contains(&ratio);
-    let told = robot.drive.kind().has_axle_wheels() && agreement.shown == [true, true] && ratio > 0.0;
-    (told && !within).then_some(Suspicion::UnequalWheels { ratio })
+/// The suspicion that the wheels are counted differently: E_d by the rotation that goes with the way, far from 1 by more than chance. On arcs
+/// of one curvature it is not told from E_b, and its parts scatter.
+fn unequal_wheels(robot: &Robot, mounting: &Mounting) -> Option<Suspicion> {
+    let (gain, drift) = mounting.gain.zip(mounting.drift)?;
+    let ratio = |turns: f64, by_way: f64| {
+        // The wheels' way differs by 2 q of its mean; E_b cancels.
+        let q = 0.5 * by_way * robot.drive.wheelbase() / turns;
+        (1.0 + q) / (1.0 - q)
+    };
+    let ends = |of: Measured| [-SURELY, SURELY].map(|times| of.value + times * of.std_error);
+    let corners = ends(gain).map(|turns| ends(drift).map(|by_way| ratio(turns, by_way)));
+    let all = |is: &dyn Fn(f64) -> bool| corners.iter().flatten().all(|corner| *corner > 0.0 && is(*corner));
+    let beyond = all(&|corner| corner > OTHER_WHEELS) || all(&|corner| corner < 1.0 / OTHER_WHEELS);
+    let told = robot.drive.kind().has_axle_wheels() && beyond;
+    told.then(|| Suspicion::UnequalWheels { ratio: ratio(gain.value, drift.value) })
 }
 
 /// The values on which all runs agree, each with the scatter between parts of the data.

@@ -164,3 +164,12 @@ def test_two_places_are_read_as_one(tmp_path: pathlib.Path) -> None:
     assert again.warnings == joined.warnings
     with pytest.raises(ValueError, match="given twice"):
         umbmark.load_dataset([places[0], places[0]])
+
+
+def test_circles_driven_one_way_do_not_tell_the_wheels_and_accuse_none() -> None:
+    noisy = umbmark.Model().add("wheel_noise", k_sqrt_m=3e-4).add("wheelbase", e_b=1.02)
+    noisy = noisy.add("reference_noise", position_sd_m=5e-3, heading_sd_rad=5e-3)
+    path = umbmark.Path("circle", radius_m=0.5, turns=2.0)
+    for seed in range(1, 9):
+        data = umbmark.simulate(noisy, path, runs=(3, 0), reference_rate_hz=10, seed=seed)
+        assert umbmark.inspect(data).setup.doubts == ()
