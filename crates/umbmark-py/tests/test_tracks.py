@@ -172,4 +172,6 @@ def test_circles_driven_one_way_do_not_tell_the_wheels_and_accuse_none() -> None
     path = umbmark.Path("circle", radius_m=0.5, turns=2.0)
     for seed in range(1, 9):
         data = umbmark.simulate(noisy, path, runs=(3, 0), reference_rate_hz=10, seed=seed)
-        assert umbmark.inspect(data).setup.doubts == ()
+        setup = umbmark.inspect(data).setup
+        assert setup is not None
+        assert setup.doubts == ()
