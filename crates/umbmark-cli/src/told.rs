@@ -1,6 +1,7 @@
 //! What verbs print on a standard output that is no terminal, for programs that have the results themselves.
 
 use umbmark_core::calibrate::Calibration;
+use umbmark_core::changed::Changed;
 use umbmark_core::compare::Compared;
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Diagnosis, Options};
@@ -21,7 +22,9 @@ use crate::ensemble_report::Report;
 use crate::plan_report;
 use crate::sweep::SweepReport;
 use crate::tracks_report;
-use crate::verb::{calibrate as calibrating, compare as comparing, diagnose as diagnosing, fit as fitting};
+use crate::verb::{
+    calibrate as calibrating, changed as changing, compare as comparing, diagnose as diagnosing, fit as fitting,
+};
 use crate::verb::{inspect as inspecting, learn as learning, score as scoring};
 
 /// Of `score`; without a dataset, the return errors are not drawn.
@@ -62,6 +65,11 @@ pub fn learnt(data: &Dataset, solution: &Solution, options: &Options) -> String 
 /// Of `solve`.
 pub fn solution(solution: &Solution, options: &Options) -> String {
     answer_text(solution, 1.0 - options.size)
+}
+
+/// Of `changed`.
+pub fn changed(found: &Changed) -> String {
+    changing::told(found)
 }
 
 /// Of `mc` and `merge`; `took` is how long it took \[s\], and for how many trials.

@@ -42,6 +42,8 @@ verbs! {
     Calibrate(calibrate),
     /// Compare the predictions of models with a measured robot: where is the error made?
     Compare(compare),
+    /// Find what changed of a robot between two tests
+    Changed(changed),
     /// Correct the odometry of a log by a model, with its covariance; no reference is needed
     Apply(apply),
     /// Find which class of effects a model is missing, and what to measure next

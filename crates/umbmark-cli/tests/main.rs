@@ -6,6 +6,7 @@ mod apply;
 mod bad_flags;
 mod begin;
 mod book;
+mod changed;
 mod data;
 mod embedded;
 mod export;

@@ -13,6 +13,7 @@
 
 pub mod apply;
 pub mod calibrate;
+pub mod changed;
 pub mod compare;
 pub mod dataset;
 pub mod diagnose;

@@ -25,6 +25,7 @@ macro_rules! results {
 results! {
     applied;
     calibration: Calibration;
+    changed: Changed;
     clock;
     closure;
     comparison: Comparison;

@@ -20,6 +20,8 @@ mod others;
 mod words;
 
 pub use numbers::Change;
+pub(crate) use numbers::slope;
+pub(crate) use off::Meter;
 pub use off::{Measure, Off, Part};
 pub use others::Other;
 
@@ -32,7 +34,6 @@ use crate::evidence::{AnyEvidence, FitError, robot_of};
 use crate::learn::{Learnt, learn_from};
 use crate::setup::Fault;
 use crate::watch::Watch;
-use off::Meter;
 
 /// The one answer about a measured robot.
 #[derive(Clone, Debug)]

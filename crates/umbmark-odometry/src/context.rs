@@ -83,6 +83,8 @@ pub struct Context<T = f64> {
     pub believed_heading: f64,
     /// Which of two trucks: 0 for the front one, whose pose is measured, and for a robot with a single body; 1 for the rear one.
     pub truck: f64,
+    /// Distance of the axle's wheels \[m\].
+    pub wheelbase: f64,
     /// Distance of the steered wheel from the axle \[m\]; see [`Nominal::axle_distance`].
     pub axle_distance: f64,
     /// Number of the run in the session, from 0.
@@ -120,6 +122,7 @@ impl Context {
             last_turn: self.last_turn,
             believed_heading: self.believed_heading,
             truck: self.truck,
+            wheelbase: self.wheelbase,
             axle_distance: self.axle_distance,
             run: self.run,
             direction: self.direction,
@@ -177,7 +180,6 @@ const LEAST_REVERSAL: f64 = 0.5e-3;
 #[derive(Clone, Debug)]
 pub struct Progress {
     now: Context,
-    wheelbase: f64,
     radius: [f64; 2],
     least_reversal: [f64; 2],
     /// Rotation of the present turn \[rad\], and distance since the last rotation \[m\].
@@ -239,12 +241,12 @@ impl Progress {
             run: place.run,
             direction: place.direction,
             recorded,
+            wheelbase: nominal.wheelbase,
             axle_distance: nominal.axle_distance,
             ..Context::default()
         };
         Progress {
             now,
-            wheelbase: nominal.wheelbase,
             radius: nominal.wheel_radius,
             least_reversal: [per_tick.left, per_tick.right].map(|tick| LEAST_REVERSAL.max(2.0 * tick)),
             turned: 0.0,
@@ -261,16 +263,16 @@ impl Progress {
     pub fn piece(&mut self, travel: &WheelTravel, duration: f64, from: [f64; 2], to: [f64; 2]) -> Context {
         let wheels = [travel.left, travel.right];
         let forward = 0.5 * (travel.left + travel.right);
-        let rotation = (travel.right - travel.left) / self.wheelbase;
+        let rotation = (travel.right - travel.left) / self.now.wheelbase;
         self.follow_turn(forward, rotation);
         let mean = [0, 1].map(|w| 0.5 * (from[w] + to[w]));
         let now = &mut self.now;
         now.duration = duration;
         now.speed = 0.5 * (mean[0] + mean[1]);
-        now.turn_rate = (mean[1] - mean[0]) / self.wheelbase;
+        now.turn_rate = (mean[1] - mean[0]) / now.wheelbase;
         now.wheel_speed = mean;
         now.speed_change = [to[0] - from[0], to[1] - from[1]];
-        now.turn_rate_change = (now.speed_change[1] - now.speed_change[0]) / self.wheelbase;
+        now.turn_rate_change = (now.speed_change[1] - now.speed_change[0]) / now.wheelbase;
         now.wheel_travel = wheels;
         now.wheel_rotation = [0, 1].map(|w| wheels[w] / self.radius[w]);
         // Counters that oscillate about zero, as in a turn on the spot, add no path length.
@@ -307,7 +309,7 @@ impl Progress {
 
     #[inline]
     fn follow_turn(&mut self, forward: f64, rotation: f64) {
-        if rotation.abs() * self.wheelbase > forward.abs() {
+        if rotation.abs() * self.now.wheelbase > forward.abs() {
             self.turned += rotation;
             self.gone = 0.0;
         } else {

@@ -40,6 +40,17 @@ pub trait BodyLaw {
     fn body<T: Real>(p: &[T], at: &Context<T>, motion: &mut Displacement2<T>);
 }
 
+/// What a wheel rolls is at most twice, and at least half of what it counts; where it is not, play or a late reading makes most of a small
+/// travel.
+const SIZES: core::ops::Range<f64> = 0.5..2.0;
+
+/// What a wheel rolled for each metre that it counted: the speed of its rim is so many times that of its counts.
+#[inline(always)]
+fn size<T: Real>(rolled: T, at: &Context<T>, wheel: usize) -> T {
+    let size = rolled / at.wheel_travel[wheel];
+    if SIZES.contains(&size.value()) { size } else { T::from(1.0) }
+}
+
 /// What a law changes.
 #[derive(Clone, Copy)]
 pub enum Acts {

@@ -1,10 +1,11 @@
-//! `compare`, `diagnose`, `fit` and `learn`.
+//! `compare`, `diagnose`, `fit`, `learn`, `solve` and `changed`.
 
 use std::sync::Arc;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_cli::told;
+use umbmark_core::changed::changed as compared;
 use umbmark_core::compare::{self as comparing, Compared};
 use umbmark_core::diagnose::{self as core, Options, first_model};
 use umbmark_core::evidence::FitError;
@@ -138,6 +139,30 @@ pub fn solve(
     let solution = solved(py, Arc::clone(&data.0), start, options, threads, progress)?;
     let text = told::solution(&solution, &options);
     Ok((json(&result::Solution::new(&solution, &options))?, text, model_of(solution)))
+}
+
+/// What changed of a robot between two tests.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "one for each of the function in Python")]
+pub fn changed(
+    py: Python<'_>,
+    before: &Dataset,
+    after: &Dataset,
+    start: Option<&Model>,
+    options: (f64, i64, u64),
+    return_poses: bool,
+    #[pyo3(from_py_with = threads)] threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(String, String)> {
+    let options = options_of(options, return_poses)?;
+    let [first, second] = [before, after].map(|data| Arc::clone(&data.0));
+    let start = match start {
+        Some(start) => start.of_data(py, &first)?,
+        None => effect::Model::new(first.nominal_robot().map_err(refused)?),
+    };
+    let work = move |told: &Watch| told.work(|watch| compared(&first, &second, &start, &options, watch));
+    let found = watched(py, threads, progress, work)?.map_err(refused)?;
+    Ok((json(&result::Changed::new(&found, &options))?, told::changed(&found)))
 }
 
 fn solved(

@@ -5,6 +5,7 @@ use std::any::Any;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use umbmark_core::calibrate::CalibrateError;
+use umbmark_core::changed::ChangeError;
 use umbmark_core::dataset::NoRobot;
 use umbmark_core::effect::{FormulaError, ModelError as CoreModelError};
 use umbmark_core::evidence::FitError as CoreFitError;
@@ -47,5 +48,5 @@ exceptions! {
     ) = DatasetError, JoinError, NoRobot, ScoreError, CalibrateError, CheckpointError;
     ModelError(UmbmarkError, "A model with an effect, a parameter, a value or a formula that there is not.")
         = CoreModelError, FormulaError;
-    FitError(UmbmarkError, "A model that cannot be fitted to these measurements.") = CoreFitError, GearError;
+    FitError(UmbmarkError, "A model that cannot be fitted to these measurements.") = CoreFitError, GearError, ChangeError;
 }

@@ -183,14 +183,16 @@ fn with_reference(observed: &Observed, model: &Model) -> Result<(Model, Vec<Take
 /// Sum of the squared errors of position that single steps add \[m²\].
 fn step_errors(observed: &Observed, model: &Model) -> f64 {
     let (observed, chain) = (observed.along(model), model.chain());
-    let followed = observed.runs.iter().map(|run| Followed::new(run, &chain, observed.setup.noise));
-    followed.flat_map(|run| run.steps).map(|step| step.own[0].powi(2) + step.own[1].powi(2)).sum()
+    followed::all(&observed, &chain)
+        .into_iter()
+        .flat_map(|run| run.steps)
+        .map(|step| step.own[0].powi(2) + step.own[1].powi(2))
+        .sum()
 }
 
 fn judge(name: &str, data: &Dataset, observed: &Observed, model: &Model, options: &Options) -> TracksJudged {
     let chain = model.chain();
-    let runs: Vec<Followed> =
-        observed.runs.iter().map(|run| Followed::new(run, &chain, observed.setup.noise)).collect();
+    let runs = followed::all(observed, &chain);
     let (reasons, remains) = doubts_as_written(observed, model, options);
     let parts = parts(data, observed, &runs, 1.0 - options.size);
     let mut judged = TracksJudged { reasons, remains, parts, ..tested(name, observed, &runs, options) };
@@ -225,8 +227,7 @@ fn tested(name: &str, observed: &Observed, runs: &[Followed], options: &Options)
 /// What the tests of `compare` have against a model as it is written: p of all of them, and what repeats, in words.
 pub(crate) fn against_as_written(observed: &Observed, model: &Model, options: &Options) -> Option<Reason> {
     let (observed, chain) = (observed.along(model), model.chain());
-    let runs: Vec<Followed> =
-        observed.runs.iter().map(|run| Followed::new(run, &chain, observed.setup.noise)).collect();
+    let runs = followed::all(&observed, &chain);
     let judged = tested("", &observed, &runs, options);
     let p = judged.p.filter(|p| *p < options.size)?;
     let what = sentences::accused(&judged, options.size);
@@ -236,9 +237,14 @@ pub(crate) fn against_as_written(observed: &Observed, model: &Model, options: &O
 /// Root mean square error \[m\] of the positions along the way that a model leaves as it is, START fitted.
 pub(crate) fn error_along(observed: &Observed, model: &Model) -> f64 {
     let (observed, chain) = (observed.along(model), model.chain());
-    let runs: Vec<Followed> =
-        observed.runs.iter().map(|run| Followed::new(run, &chain, observed.setup.noise)).collect();
+    let runs = followed::all(&observed, &chain);
     rms(&runs, |_| 0).position
+}
+
+/// The same of each run.
+pub(crate) fn errors_along(observed: &Observed, model: &Model) -> Vec<f64> {
+    let (observed, chain) = (observed.along(model), model.chain());
+    followed::all(&observed, &chain).chunks(1).map(|run| rms(run, |_| 0).position).collect()
 }
 
 /// The logs of a dataset whose runs are observed, in the order of these.

@@ -379,6 +379,7 @@ fn contexts() -> [Context; 2] {
         last_turn: -1.0,
         believed_heading: 0.9,
         truck: 1.0,
+        wheelbase: 0.34,
         axle_distance: 0.5,
         run: 2.0,
         direction: 1.0,

@@ -112,7 +112,7 @@ fn covariance(learnt: &Learnt, others: &[Other], shown: &[(usize, &Estimate)]) -
 }
 
 /// Derivatives of the drive's numbers by the value of a first effect; zero where the drive cannot have them.
-fn slope(model: &Model, values: [f64; 3], which: usize) -> Vec<f64> {
+pub(crate) fn slope(model: &Model, values: [f64; 3], which: usize) -> Vec<f64> {
     let drive = &model.robot().drive;
     let at = |step: f64| {
         let mut moved = values;

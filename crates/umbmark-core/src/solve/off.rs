@@ -146,7 +146,7 @@ fn shares(effects: &[&'static str], error: impl Fn(&[&'static str]) -> f64 + Syn
 }
 
 /// Measures the error of a model in recorded runs.
-pub(super) struct Meter<'a> {
+pub(crate) struct Meter<'a> {
     pub measure: Measure,
     runs: Runs<'a>,
 }
@@ -157,7 +157,8 @@ enum Runs<'a> {
 }
 
 impl Meter<'_> {
-    /// Returns of both directions where there are some; else poses along the way, or the ends.
+    /// Returns of both directions where there are some, of logs with a known path only: what others end at was not asked of them. Else poses along
+    /// the way, or the ends.
     pub fn new<'a>(data: &Dataset, evidence: &'a AnyEvidence) -> Option<Meter<'a>> {
         let ends = match evidence {
             AnyEvidence::Ends(ends) => Some(ends.clone()),
@@ -167,8 +168,12 @@ impl Meter<'_> {
             let driven = |direction| data.runs.iter().any(|run| run.direction == Some(direction));
             Direction::BOTH.into_iter().all(driven) && ends.counts().iter().all(|n| *n > 0)
         };
+        let is_told = |ends: &Ends| match evidence {
+            AnyEvidence::Ends(_) => ends.come_back(),
+            AnyEvidence::Tracks(_) => data.path.is_some(),
+        };
         match (ends, evidence) {
-            (Some(ends), _) if both(&ends) && ends.come_back() => {
+            (Some(ends), _) if both(&ends) && is_told(&ends) => {
                 Some(Meter { measure: Measure::Returns, runs: Runs::Ends(Box::new(ends)) })
             }
             (_, AnyEvidence::Tracks(observed)) => {
@@ -182,7 +187,7 @@ impl Meter<'_> {
     }
 
     /// The error that a model leaves \[m\].
-    fn off(&self, model: &Model) -> f64 {
+    pub fn off(&self, model: &Model) -> f64 {
         match &self.runs {
             Runs::Along(observed) => error_along(observed, model),
             Runs::Ends(ends) => {

@@ -1,6 +1,6 @@
 //! Laws of the contact with the floor.
 
-use super::{BodyLaw, WheelLaw};
+use super::{BodyLaw, WheelLaw, size};
 use crate::context::Context;
 use crate::geometry::{Displacement2, Real};
 use crate::travel::WheelTravel;
@@ -39,16 +39,10 @@ impl WheelLaw for SpeedSlip {
     }
 }
 
-/// What a wheel of this size rolls is at most twice, and at least half of what it counts; where it is not, play or a late reading makes
-/// most of a small travel.
-const SIZES: core::ops::Range<f64> = 0.5..2.0;
-
-/// Takes k |v| of what a wheel rolls. v is the speed of its own rim: that of its counts, times what it rolls for each metre it counts.
+/// Takes k |v| of what a wheel rolls, v the speed of its rim.
 #[inline(always)]
 fn slip<T: Real>(rolled: &mut T, k: T, at: &Context<T>, wheel: usize) {
-    let size = *rolled / at.wheel_travel[wheel];
-    let size = if SIZES.contains(&size.value()) { size } else { T::from(1.0) };
-    *rolled *= -k * size * at.wheel_speed[wheel].abs() + 1.0;
+    *rolled *= -k * size(*rolled, at, wheel) * at.wheel_speed[wheel].abs() + 1.0;
 }
 
 /// The share of travel that the left wheel loses per speed.

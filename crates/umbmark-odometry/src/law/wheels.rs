@@ -1,6 +1,6 @@
 //! Laws of the wheels' shape, and their play.
 
-use super::{BodyLaw, WheelLaw};
+use super::{BodyLaw, WheelLaw, size};
 use crate::context::Context;
 use crate::geometry::{Displacement2, Real};
 use crate::travel::WheelTravel;
@@ -93,13 +93,19 @@ impl WheelLaw for DiameterDrift {
 
 /// A difference of the wheel radii that grows with centripetal acceleration.
 ///
-/// `s_R ← (1 - c v ω/2) s_R,  s_L ← (1 + c v ω/2) s_L`
+/// `s_R ← (1 - c v ω/2) s_R,  s_L ← (1 + c v ω/2) s_L,  v and ω by the speeds of the rims`
 pub struct CentripetalLoad;
 
 impl WheelLaw for CentripetalLoad {
     #[inline(always)]
     fn wheels<T: Real>(p: &[T], at: &Context<T>, travel: &mut WheelTravel<T>) {
-        let half = p[0] * (0.5 * at.speed * at.turn_rate);
+        // What knows no speed knows no wheelbase either.
+        if at.wheel_speed == [0.0; 2] {
+            return;
+        }
+        let left = size(travel.left, at, 0) * at.wheel_speed[0];
+        let right = size(travel.right, at, 1) * at.wheel_speed[1];
+        let half = p[0] * (left + right) * (right - left) * (0.25 / at.wheelbase);
         travel.left *= half + 1.0;
         travel.right *= -half + 1.0;
     }

@@ -13,6 +13,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``calibrate_gears``                the same for drives other than the differential one
 ``compare``, ``diagnose``          what models explain, and what they are missing
 ``solve``                          the one answer: what to write into the robot
+``changed``                        what changed of a robot between two tests
 ``apply``                          corrected odometry from counts and a model
 ``tracks``                         measured runs beside odometry and a model: residuals as arrays
 ``fit``, ``learn``                 fit a model; add what is missing until nothing is
@@ -37,6 +38,7 @@ from umbmark import results
 from umbmark._apply import Corrected, apply
 from umbmark._arguments import Numbers, Seed
 from umbmark._calibration import Calibration, GearCalibration, calibrate, calibrate_gears
+from umbmark._changed import Changed, changed
 from umbmark._comparison import Comparison, TrackComparison, compare
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
 from umbmark._documents import Correction, Effect, Setup
@@ -94,6 +96,7 @@ logging.getLogger("umbmark").addHandler(logging.NullHandler())
 __all__ = [
     "ActsOn",
     "Calibration",
+    "Changed",
     "Comparison",
     "ConversionWarning",
     "Corrected",
@@ -148,6 +151,7 @@ __all__ = [
     "apply",
     "calibrate",
     "calibrate_gears",
+    "changed",
     "compare",
     "diagnose",
     "each",

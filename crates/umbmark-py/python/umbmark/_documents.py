@@ -383,6 +383,185 @@ class Taken(Record, frozen=True):
     p: float
 
 
+class Changed(Result, frozen=True):
+    """What changed of a robot between two tests.
+
+    Attributes
+    ----------
+    changed : bool
+        Whether something of the robot changed by more than chance.
+    as_before : bool
+        Whether nothing changed by more than chance, and the test after is explained if the one
+        before is.
+    sentence : str
+        The answer in words.
+    robot : tuple[Moved, ...]
+        Numbers of the robot and of its effects, and the scatter of its runs.
+    reference : tuple[Moved, ...]
+        Clock and mounting of the reference: not the robot's.
+    alone : tuple[Alone, ...]
+        Where return poses show ratios only, and these changed: each length that accounts for it by
+        itself.
+    assumed : tuple[str, ...]
+        Effects that one of the tests does not show; they are taken to be in it as in the other.
+    with_before_m : float or None
+        Error of the second test with the robot's numbers of before, in m; None where it is not
+        known.
+    with_after_m : float or None
+        Error of the second test with its own numbers, in m; None where it is not known.
+    doubts : tuple[str, ...]
+        Why the answer is in doubt, a sentence each.
+    before : TestBeside
+        The first test.
+    after : TestBeside
+        The second test.
+    size : float
+        Probability with which something is said to have changed of a robot that did not; intervals
+        hold with the rest.
+    draws : int
+        Simulated tests for p-values that have no closed form.
+    seed : int
+        Seed of those.
+    version : str
+        Version of umbmark.
+    """
+
+    changed: bool
+    as_before: bool
+    sentence: str
+    robot: tuple[Moved, ...]
+    reference: tuple[Moved, ...]
+    alone: tuple[Alone, ...]
+    assumed: tuple[str, ...]
+    with_before_m: float | None
+    with_after_m: float | None
+    doubts: tuple[str, ...]
+    before: TestBeside
+    after: TestBeside
+    size: float
+    draws: int
+    seed: int
+    version: str
+
+
+class Moved(Record, frozen=True):
+    """A number before and after.
+
+    Attributes
+    ----------
+    key : str
+        Its key: of robot.toml, with its unit; EFFECT.PARAMETER in the unit that the catalogue
+        states; "wheel_diameter_ratio" (right over left) and "wheelbase_over_diameter" where the
+        mean diameter is not shown; "scatter", the root mean square error that the median run
+        leaves, in m.
+    meaning : str
+        What it is, in words.
+    of : str
+        What it belongs to: "robot", "effect", "scatter" or "reference".
+    before : float
+        Its value before.
+    before_standard_error : float
+        Standard error of that; of the scatter, of its logarithm.
+    after : float
+        Its value after.
+    after_standard_error : float
+        Standard error of that; of the scatter, of its logarithm.
+    change : float
+        After less before; of the scatter, after over before.
+    interval : Interval or None
+        Interval of the change.
+    p : float
+        p of no change.
+    p_adjusted : float
+        p adjusted for all numbers of its table (Holm).
+    changed : bool
+        Whether it changed by more than chance.
+    seen : float or None
+        The smallest change that 80 % of such pairs of tests show; of the scatter, the smallest
+        factor above 1.
+    """
+
+    key: str
+    meaning: str
+    of: str
+    before: float
+    before_standard_error: float
+    after: float
+    after_standard_error: float
+    change: float
+    interval: Interval | None
+    p: float
+    p_adjusted: float
+    changed: bool
+    seen: float | None
+
+
+class Alone(Record, frozen=True):
+    """A length that accounts for a change of ratios by itself.
+
+    Attributes
+    ----------
+    key : str
+        Its key in robot.toml.
+    share : float
+        Change of it as a share of itself.
+    standard_error : float or None
+        Standard error of that.
+    p : float
+        p of what it leaves of the change.
+    """
+
+    key: str
+    share: float
+    standard_error: float | None
+    p: float
+
+
+class TestBeside(Record, frozen=True):
+    """What one of the two tests says by itself.
+
+    Attributes
+    ----------
+    verdict : str
+        The verdict of its own model, in the words of ``Diagnosis``.
+    doubt : str or None
+        Why that model must not be used as it is; None where nothing speaks against it.
+    runs : int
+        Number of runs.
+    fitted : tuple[Estimate, ...]
+        All that was fitted to it.
+    """
+
+    verdict: str
+    doubt: str | None
+    runs: int
+    fitted: tuple[Estimate, ...]
+
+
+class Estimate(Record, frozen=True):
+    """A parameter that was fitted.
+
+    Attributes
+    ----------
+    effect : str
+        The effect that has it.
+    parameter : str
+        Its name.
+    value : float
+        Its value, in the unit that the catalogue states.
+    standard_error : float or None
+        Its standard error; None if the data does not determine it.
+    interval : Interval or None
+        Its interval; None if the data does not determine it.
+    """
+
+    effect: str
+    parameter: str
+    value: float
+    standard_error: float | None
+    interval: Interval | None
+
+
 class Comparison(Result, frozen=True):
     """Models compared with measurements: which explain them, and where the others fail.
 
@@ -767,30 +946,6 @@ class Diagnosis(Result, frozen=True):
     left_m: float | None
     repeats_m: Repeats | None
     remains: Remains | None
-
-
-class Estimate(Record, frozen=True):
-    """A parameter that was fitted.
-
-    Attributes
-    ----------
-    effect : str
-        The effect that has it.
-    parameter : str
-        Its name.
-    value : float
-        Its value, in the unit that the catalogue states.
-    standard_error : float or None
-        Its standard error; None if the data does not determine it.
-    interval : Interval or None
-        Its interval; None if the data does not determine it.
-    """
-
-    effect: str
-    parameter: str
-    value: float
-    standard_error: float | None
-    interval: Interval | None
 
 
 class GoodnessOfFit(Record, frozen=True):

@@ -29,6 +29,7 @@ __all__ = [
     "apply",
     "calibrate",
     "calibrate_gears",
+    "changed",
     "compare",
     "diagnose",
     "effects",
@@ -506,6 +507,15 @@ def solve(
     threads: int,
     progress: Callable[[int], object] | None,
 ) -> tuple[str, str, Model]: ...
+def changed(
+    before: Dataset,
+    after: Dataset,
+    start: Model | None,
+    options: tuple[float, int, int],
+    return_poses: bool,
+    threads: int,
+    progress: Callable[[int], object] | None,
+) -> tuple[str, str]: ...
 def apply(
     data: Dataset, model: Model, start: tuple[float, float, float]
 ) -> list[tuple[str, Floats, Floats, Floats | None]]: ...

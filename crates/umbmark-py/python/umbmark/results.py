@@ -5,6 +5,7 @@ The results themselves are classes of the package, as ``umbmark.Learnt``.
 
 from umbmark._documents import (
     Against,
+    Alone,
     Alternative,
     Axis,
     Bin,
@@ -54,6 +55,7 @@ from umbmark._documents import (
     Mended,
     MetricStatistics,
     Mounting,
+    Moved,
     Moves,
     Nearest,
     NoiseFree,
@@ -98,6 +100,7 @@ from umbmark._documents import (
     TableTwo,
     Taken,
     Target,
+    TestBeside,
     Topics,
     Unlisted,
     UnlistedLaw,
@@ -111,6 +114,7 @@ from umbmark._result import Record, Result
 
 __all__ = [
     "Against",
+    "Alone",
     "Alternative",
     "Axis",
     "Bin",
@@ -160,6 +164,7 @@ __all__ = [
     "Mended",
     "MetricStatistics",
     "Mounting",
+    "Moved",
     "Moves",
     "Nearest",
     "NoiseFree",
@@ -206,6 +211,7 @@ __all__ = [
     "TableTwo",
     "Taken",
     "Target",
+    "TestBeside",
     "Topics",
     "Unlisted",
     "UnlistedLaw",

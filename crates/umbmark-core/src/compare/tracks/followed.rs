@@ -2,7 +2,7 @@
 
 use crate::effect::{Chain, Context};
 use crate::geometry::Pose2;
-use crate::likelihood::ObservedRun;
+use crate::likelihood::{Observed, ObservedRun};
 use crate::path::Direction;
 use crate::replay::Track;
 use crate::setup::PoseNoise;
@@ -76,14 +76,18 @@ pub(super) struct Conditions {
 }
 
 impl<'a> Followed<'a> {
-    /// `observed` must lie along the model of `chain`.
-    pub fn new(observed: &'a ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Followed<'a> {
+    fn new(observed: &'a ObservedRun, chain: &Chain<f64>, noise: PoseNoise) -> Followed<'a> {
         let places = places(observed, chain, noise);
         let short = |step: &ErrorIncrement| step.motion[0].abs() <= LONGEST.0 && step.motion[1].abs() <= LONGEST.1;
         let steps = (1..places.len()).filter_map(|ends| step(&observed.track, &places, ends)).filter(short).collect();
         let with_heading = observed.blocks.iter().any(|block| block.headings > 0);
         Followed { observed, direction: observed.direction, places, steps, with_heading }
     }
+}
+
+/// All runs, followed along a model; `observed` must lie along it.
+pub(super) fn all<'a>(observed: &'a Observed, chain: &Chain<f64>) -> Vec<Followed<'a>> {
+    observed.runs.iter().map(|run| Followed::new(run, chain, observed.setup.noise)).collect()
 }
 
 /// Measured poses are moved so that they agree with the model at START, which is fitted to the first of them where it was measured, and

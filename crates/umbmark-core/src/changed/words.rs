@@ -1,0 +1,122 @@
+//! What changed, in words.
+
+use super::quantities::Of;
+use super::{Changed, Moved};
+
+/// Lengths are told in millimetres, and changes of ratios in per cent.
+pub(super) fn sentence(changed: &Changed) -> String {
+    let mut said = Vec::new();
+    let doubts = changed.doubts();
+    if !doubts.is_empty() {
+        said.extend(doubts);
+        said.push("What follows is of models that are not right.".into());
+    }
+    let moved: Vec<&Moved> = changed.moved().collect();
+    said.extend(moved.iter().map(|moved| of(moved)));
+    said.extend(by_itself(changed));
+    let still: Vec<&Moved> = changed.robot.iter().filter(|moved| !moved.is_shown(changed.size)).collect();
+    let rest = if moved.is_empty() { "These tests show no change" } else { "No change is shown" };
+    if !still.is_empty() {
+        let names: Vec<String> = still.iter().map(|moved| format!("the {} ({})", name(moved), seen(moved))).collect();
+        said.push(format!("{rest} of {}; in brackets what 80 % of such tests would have shown.", names.join(", ")));
+    }
+    if let Some([old, new]) = changed.costs.filter(|_| !moved.is_empty()) {
+        let mm = |error: f64| format!("{:.1} mm", 1e3 * error);
+        said.push(format!(
+            "With the numbers of before, the runs after miss by {}; with their own, by {}.",
+            mm(old),
+            mm(new)
+        ));
+    }
+    let references: Vec<String> = changed
+        .reference
+        .iter()
+        .filter(|moved| moved.is_shown(changed.size))
+        .map(|moved| name(moved).to_owned())
+        .collect();
+    if !references.is_empty() {
+        said.push(format!("Of the reference, which is not the robot's, changed: {}.", references.join(", ")));
+    }
+    if !changed.assumed.is_empty() {
+        said.push(format!(
+            "Taken to be the same in both, because one of them does not show it: {}.",
+            changed.assumed.join(", ")
+        ));
+    }
+    said.join(" ")
+}
+
+/// The lengths that account for the change by themselves.
+fn by_itself(changed: &Changed) -> Option<String> {
+    let told: Vec<String> = changed
+        .alone
+        .iter()
+        .map(|alone| {
+            let word = if alone.share > 0.0 { "larger" } else { "smaller" };
+            format!("the {} alone, {:.3} % {word}", alone.meaning, 100.0 * alone.share.abs())
+        })
+        .collect();
+    match told.as_slice() {
+        [] => None,
+        [one] => Some(format!("One length accounts for it: {one}.")),
+        several => Some(format!("Each of these accounts for it: {}.", several.join("; or "))),
+    }
+}
+
+/// What a number is called; of the robot's own, without an article.
+fn name(moved: &Moved) -> &str {
+    match moved.quantity.of {
+        Of::Scatter => "scatter of the runs",
+        _ => &moved.quantity.meaning,
+    }
+}
+
+fn of(moved: &Moved) -> String {
+    let p = if moved.p_adjusted < 1e-3 { "p < 0.001".to_owned() } else { format!("p = {:.3}", moved.p_adjusted) };
+    if moved.quantity.of == Of::Scatter {
+        let verb = if moved.change > 1.0 { "rose" } else { "fell" };
+        let (low, high) = (moved.interval.low, moved.interval.high);
+        return format!(
+            "The scatter of the runs {verb} to {:.2} times what it was ({low:.2} to {high:.2}, {p}).",
+            moved.change
+        );
+    }
+    let verb = if moved.change > 0.0 { "rose" } else { "fell" };
+    let half = 0.5 * (moved.interval.high - moved.interval.low);
+    format!(
+        "The {} {verb} by {} ± {}{} ({p}).",
+        name(moved),
+        sized(moved, moved.change.abs()),
+        sized(moved, half),
+        share(moved)
+    )
+}
+
+/// A change as a share of the number, of one that is never near zero.
+fn share(moved: &Moved) -> String {
+    match moved.quantity.of {
+        Of::Robot if moved.quantity.key.ends_with("_m") => {
+            format!(", {:.3} %", 100.0 * (moved.change / moved.before.value).abs())
+        }
+        _ => String::new(),
+    }
+}
+
+fn seen(moved: &Moved) -> String {
+    match moved.quantity.of {
+        Of::Scatter => format!("{:.1} times as much", moved.seen),
+        _ => sized(moved, moved.seen),
+    }
+}
+
+/// A difference in the unit in which people think of it.
+fn sized(moved: &Moved, size: f64) -> String {
+    let key = &moved.quantity.key;
+    if key.ends_with("_m") && !key.ends_with("_per_m") {
+        return format!("{:.3} mm", 1e3 * size);
+    }
+    if moved.quantity.of == Of::Robot && moved.before.value != 0.0 && !key.contains("_rad") {
+        return format!("{:.3} %", 100.0 * (size / moved.before.value).abs());
+    }
+    format!("{size:.2e}")
+}
