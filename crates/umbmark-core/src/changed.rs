@@ -23,7 +23,7 @@ mod tests;
 
 use crate::dataset::Dataset;
 use crate::diagnose::{Options, Verdict};
-use crate::effect::{Model, ModelError};
+use crate::effect::Model;
 use crate::evidence::{self, AnyEvidence, FitError, Level, robot_of};
 use crate::learn::learn_from;
 use crate::setup::Fault;
@@ -121,7 +121,7 @@ pub struct Changed {
     pub reference: Vec<Moved>,
     /// Where return poses show ratios only, and these changed: each length that accounts for it by itself.
     pub alone: Vec<Alone>,
-    /// Effects that one of the tests does not show; they are taken to be in it as in the other.
+    /// Effects that one of the tests does not show, or with which it cannot be fitted; they are taken to be in it as in the other.
     pub assumed: Vec<&'static str>,
     /// Error of the second test with the robot's numbers of before, and with those of after \[m\]; `None` where it is not known.
     pub costs: Option<[f64; 2]>,
@@ -317,11 +317,5 @@ impl Changed {
     /// What changed, in words.
     pub fn sentence(&self) -> String {
         words::sentence(self)
-    }
-}
-
-impl From<ModelError> for ChangeError {
-    fn from(error: ModelError) -> Self {
-        ChangeError::Fit { test: "after", source: error.into() }
     }
 }

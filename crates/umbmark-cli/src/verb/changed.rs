@@ -82,18 +82,20 @@ fn row(moved: &Moved) -> Vec<String> {
         false => (key.clone(), 1.0),
     };
     let half = 0.5 * (moved.interval.high - moved.interval.low);
-    let (change, scatter) = match moved.quantity.of {
-        Of::Scatter => (1.0, Some(0.1 * moved.before.value)),
-        _ => (scale, None),
+    let number = |value: f64, error: f64| with_precision_of(scale * value, scale * error);
+    let (error, change, interval) = match moved.quantity.of {
+        Of::Scatter => {
+            let ends = format!("{:.2} to {:.2}", moved.interval.low, moved.interval.high);
+            (0.1 * moved.before.value, format!("times {:.2}", moved.change), ends)
+        }
+        _ => (half, number(moved.change, half), format!("± {}", number(half, half))),
     };
-    let number = |value: f64| with_precision_of(scale * value, scale * scatter.unwrap_or(half));
-    let sign = if moved.quantity.of == Of::Scatter { "times " } else { "" };
     vec![
         name.replace('_', " "),
-        number(moved.before.value),
-        number(moved.after.value),
-        format!("{sign}{}", with_precision_of(change * moved.change, change * half)),
-        format!("± {}", with_precision_of(change * half, change * half)),
+        number(moved.before.value, error),
+        number(moved.after.value, error),
+        change,
+        interval,
         p_text(moved.p_adjusted),
     ]
 }

@@ -17,7 +17,7 @@ pub(super) fn fitted(tests: &[Learned; 2]) -> Result<([Fit; 2], Vec<&'static str
         let mut model = tests[k].model.clone();
         let other = tests[1 - k].model.parts().iter().filter(|part| !is_of_test(part));
         for part in other {
-            if model.parts().iter().all(|own| own.effect.name() != part.effect.name()) {
+            if lacks(&model, part) {
                 model.adopt(part);
             }
         }
@@ -27,8 +27,24 @@ pub(super) fn fitted(tests: &[Learned; 2]) -> Result<([Fit; 2], Vec<&'static str
         let test = ["before", "after"][k];
         tests[k].evidence.fit(model).map_err(|source: FitError| ChangeError::Fit { test, source })
     };
-    let mut fits = [fit(0, &models[0])?, fit(1, &models[1])?];
     let mut assumed = Vec::new();
+    // Effects of the other test may have no place in this one: its fit leaves their bounds.
+    let mut fit_or_assume = |k: usize| {
+        fit(k, &models[k]).or_else(|error| {
+            let mut held = tests[k].model.clone();
+            let theirs = models[k].parts().iter().filter(|part| lacks(&tests[k].model, part));
+            let theirs: Vec<&Part> = theirs.filter(|part| part.free).collect();
+            if theirs.is_empty() {
+                return Err(error);
+            }
+            for part in theirs {
+                held.adopt(&Part { free: false, ..part.clone() });
+                assumed.push(part.effect.name());
+            }
+            fit(k, &held)
+        })
+    };
+    let mut fits = [fit_or_assume(0)?, fit_or_assume(1)?];
     for k in [0, 1] {
         let silent = not_shown(&fits[k]);
         let known: Vec<&Part> = fits[1 - k]
@@ -49,6 +65,11 @@ pub(super) fn fitted(tests: &[Learned; 2]) -> Result<([Fit; 2], Vec<&'static str
         fits[k] = fit(k, &model)?;
     }
     Ok((fits, assumed))
+}
+
+/// Whether a model does not have the effect of a part.
+fn lacks(model: &Model, part: &Part) -> bool {
+    model.parts().iter().all(|own| own.effect.name() != part.effect.name())
 }
 
 /// Free effects that were not fitted, because the runs do not determine them.

@@ -73,7 +73,7 @@ pub(super) fn of(fits: &[Fit; 2]) -> Vec<(Quantity, [Value; 2])> {
 
 /// A key of the robot as it stands in tables, without its unit.
 fn in_words(key: &str) -> String {
-    key.trim_end_matches("_m").replace('_', " ")
+    key.strip_suffix("_m").unwrap_or(key).replace('_', " ")
 }
 
 fn same(a: &Estimate, b: &Estimate) -> bool {

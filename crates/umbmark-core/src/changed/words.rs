@@ -39,7 +39,7 @@ pub(super) fn sentence(changed: &Changed) -> String {
     }
     if !changed.assumed.is_empty() {
         said.push(format!(
-            "Taken to be the same in both, because one of them does not show it: {}.",
+            "Taken to be the same in both, because one of them does not show them: {}.",
             changed.assumed.join(", ")
         ));
     }

@@ -6,7 +6,8 @@ use crate::drive::Robot;
 use crate::parameter::Parameter;
 use umbmark_odometry::law::CentripetalLoad;
 
-pub(super) static EFFECT: Entry = Entry::of::<CentripetalLoad>().wheels::<CentripetalLoad>();
+/// On a leg, the robot turns as far as its wheels differ.
+pub(super) static EFFECT: Entry = Entry::of::<CentripetalLoad>().wheels::<CentripetalLoad>().resting_on_others();
 
 impl Effect for CentripetalLoad {
     const ABOUT: About = About {

@@ -110,6 +110,8 @@ pub struct Entry {
     pub varies: fn(&[f64]) -> bool,
     /// Whether it is the floor's: it stays there when the robot goes elsewhere.
     pub is_of_floor: bool,
+    /// Whether its signature is in proportion to what other effects do: it is computed anew when these are fitted anew.
+    pub(crate) rests_on_others: bool,
     pub(crate) values: MeanLaws<f64>,
     /// For each of the [`Instructions`], in their order.
     pub(super) duals: [MeanLaws<Dual>; 3],
@@ -143,6 +145,7 @@ impl Entry {
             is_credible: E::is_credible,
             varies: E::varies,
             is_of_floor: false,
+            rests_on_others: false,
             values: MeanLaws::nothing(),
             duals: [MeanLaws::nothing(), MeanLaws::nothing(), MeanLaws::nothing()],
             scatter: RandomLaws::NOTHING,
@@ -201,6 +204,11 @@ impl Entry {
     /// Says that it is the floor's.
     pub const fn of_floor(self) -> Entry {
         Entry { is_of_floor: true, ..self }
+    }
+
+    /// Says that its signature is in proportion to what other effects do.
+    pub const fn resting_on_others(self) -> Entry {
+        Entry { rests_on_others: true, ..self }
     }
 
     /// Lists its law of bumps.

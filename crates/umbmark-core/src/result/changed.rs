@@ -81,7 +81,7 @@ pub struct Changed {
     pub reference: Vec<Moved>,
     /// Where return poses show ratios only, and these changed: each length that accounts for it by itself.
     pub alone: Vec<Alone>,
-    /// Effects that one of the tests does not show; they are taken to be in it as in the other.
+    /// Effects that one of the tests does not show, or with which it cannot be fitted; they are taken to be in it as in the other.
     pub assumed: Vec<&'static str>,
     /// Error of the second test with the robot's numbers of before, in m; null where it is not known.
     pub with_before_m: Option<f64>,

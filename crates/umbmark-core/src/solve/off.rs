@@ -157,8 +157,8 @@ enum Runs<'a> {
 }
 
 impl Meter<'_> {
-    /// Returns of both directions where there are some, of logs with a known path only: what others end at was not asked of them. Else poses along
-    /// the way, or the ends.
+    /// Returns of both directions where there are some; of logs, only with a known path, because other drives may end anywhere. Else poses
+    /// along the way, or the ends.
     pub fn new<'a>(data: &Dataset, evidence: &'a AnyEvidence) -> Option<Meter<'a>> {
         let ends = match evidence {
             AnyEvidence::Ends(ends) => Some(ends.clone()),

@@ -403,7 +403,8 @@ class Changed(Result, frozen=True):
         Where return poses show ratios only, and these changed: each length that accounts for it by
         itself.
     assumed : tuple[str, ...]
-        Effects that one of the tests does not show; they are taken to be in it as in the other.
+        Effects that one of the tests does not show, or with which it cannot be fitted; they are
+        taken to be in it as in the other.
     with_before_m : float or None
         Error of the second test with the robot's numbers of before, in m; None where it is not
         known.

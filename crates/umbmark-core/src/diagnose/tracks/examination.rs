@@ -2,7 +2,7 @@
 
 use super::finding::{Answer, Finding, worth};
 use super::responses::{self, Asked, Question, Responses};
-use crate::effect::{Changes, Entry, Law, Model, ModelError, Number};
+use crate::effect::{Changes, Entry, Law, ModelError, Number};
 use crate::evidence::ends::names;
 use crate::evidence::tracks::{Errors, Misses, Projected, System};
 use crate::geometry::Pose2;
@@ -54,12 +54,13 @@ impl Examination {
         let sees_alike =
             effects.all(|effect| known(effect) || !effect.changes().include(Changes::SEEN.and(Changes::CLOCK)));
         let hold = sees_alike && responses::hold(&self.along, &fitted.observed);
-        let responses = if hold { self.lacked_by(&fitted.model) } else { Responses::new(&fitted)? };
+        let responses = if hold { self.lacked_by(&fitted)? } else { Responses::new(&fitted)? };
         Ok(Examination::by(fitted, responses))
     }
 
     /// The tested effects that a grown model still lacks.
-    fn lacked_by(&self, model: &Model) -> Responses {
+    fn lacked_by(&self, fitted: &Fitted) -> Result<Responses, ModelError> {
+        let model = &fitted.model;
         let known = |effect: &Entry| model.parts().iter().any(|part| part.effect == *effect);
         let (mut asked, mut kept) = (Vec::new(), Vec::new());
         for group in self.asked.iter().filter(|group| !group.effect().is_some_and(known)) {
@@ -67,8 +68,15 @@ impl Examination {
             kept.extend(&group.columns);
             asked.push(Asked { columns: (first..kept.len()).collect(), ..group.clone() });
         }
-        let numbers = kept.iter().filter_map(|column| self.number(*column)).collect();
-        Responses { asked, numbers, columns: self.some_columns(&kept), along: self.along.clone() }
+        let numbers: Vec<Number> = kept.iter().filter_map(|column| self.number(*column)).collect();
+        let mut columns = self.some_columns(&kept);
+        let moved = asked.iter().filter(|group| group.effect().is_some_and(|effect| effect.rests_on_others));
+        let moved: Vec<usize> = moved.flat_map(|group| group.columns.iter().copied()).collect();
+        let of_moved: Vec<Number> = moved.iter().map(|column| numbers[*column]).collect();
+        for (run, anew) in columns.iter_mut().zip(fitted.observed.columns_of(model, &of_moved)?) {
+            moved.iter().zip(anew).for_each(|(column, anew)| run[*column] = anew);
+        }
+        Ok(Responses { asked, numbers, columns, along: self.along.clone() })
     }
 
     fn by(fitted: Fitted, responses: Responses) -> Examination {

@@ -148,7 +148,6 @@ mod tests {
     use super::*;
     use crate::diagnose::{Options, first_model};
     use crate::drive::Robot;
-    use crate::effect::find;
     use crate::likelihood::watched::watched;
     use crate::path::{Direction, Path};
     use crate::replay::Track;
@@ -190,17 +189,7 @@ mod tests {
                     whole = anew.iter().fold(whole, length);
                 }
             }
-            // On a square, wheels of nearly equal size hardly show the load of curves: its response is that of E_d - 1, which moves.
-            let typical =
-                |number: Number| find(number.effect).ok()?.about.parameters.iter().find(|p| p.name == number.parameter);
-            let size = kept.number(column).and_then(typical).map_or(f64::INFINITY, |parameter| parameter.typical);
-            let shows = size * whole.sqrt();
-            assert!(
-                off <= (STILL * STILL) * whole || shows < 5e-4,
-                "{:?}: {} of {shows}",
-                kept.number(column),
-                (off / whole).sqrt()
-            );
+            assert!(off <= (STILL * STILL) * whole, "{:?}: {}", kept.number(column), (off / whole).sqrt());
         }
     }
 
