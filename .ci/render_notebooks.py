@@ -13,10 +13,12 @@ import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import jupytext
 from nbclient import NotebookClient
+from traitlets.config import Config
 
 TOP = Path(__file__).resolve().parent.parent
 SOURCES = sorted((TOP / "notebooks").glob("*.py"))
@@ -39,7 +41,15 @@ def rendered(source: Path) -> Files:
     notebook: Any = jupytext.read(source)
     begin: Any = jupytext.reads(f"# %%\n{BEGIN}\n", fmt="py:percent").cells
     notebook.cells = begin + notebook.cells
-    NotebookClient(notebook, timeout=600, kernel_name="python3").execute()
+    # Kernels that begin together may choose the same port; files of their own cannot be taken.
+    with TemporaryDirectory() as folder:
+        own = {
+            "transport": "ipc",
+            "ip": f"{folder}/kernel",
+            "connection_file": f"{folder}/kernel.json",
+        }
+        config = Config({"KernelManager": own})
+        NotebookClient(notebook, timeout=600, kernel_name="python3", config=config).execute()
     files: Files = {}
     names = (f"{source.stem}_{number}" for number in itertools.count(1))
     parts = [f"<!-- Made of notebooks/{source.name} by .ci/render_notebooks.py. -->"]
