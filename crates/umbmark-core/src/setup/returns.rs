@@ -185,8 +185,8 @@ pub(super) fn way(log: &TickLog, robot: &Robot) -> Option<f64> {
     (way > 0.0 && way.is_finite()).then_some(way)
 }
 
-/// Return errors larger than any error can be: on a path back to START than the path, else than twice the way, since the robot and where it believes to be
-/// are both within the way of START.
+/// Return errors that are larger than any can be. With a path that leads back to START, the limit is the length of the path. Otherwise it is
+/// twice the way driven: neither the robot nor the place where its odometry says it is can be farther from START than that way.
 fn too_far(runs: &[Run], ways: &[Option<f64>], path: Option<&Path>) -> Option<Fault> {
     let distances = runs.iter().filter_map(|run| run.returned).map(|e| libm::hypot(e.x, e.y));
     let distance = median(distances.filter(|d| d.is_finite()).collect())?;
