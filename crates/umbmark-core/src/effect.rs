@@ -28,7 +28,7 @@ mod text;
 mod words;
 
 use crate::drive::{DriveKind, DriveKinds, Robot, Wheel, WheelTravel};
-use crate::parameter::{Parameter, nearest};
+use crate::parameter::{Parameter, Role, nearest};
 use crate::path::Direction;
 use crate::register;
 
@@ -43,7 +43,7 @@ pub use formula::{Formula, FormulaError, FormulaVariable, Target};
 pub use law::Law;
 pub use laws::{BodyLaw, BumpLaw, ClockLaw, DiffusionLaw, LinkLaw, MeasurementLaw, SightLaw, StartLaw, WheelLaw};
 pub use model::{Model, ModelError, Part};
-pub use number::{Derived, Number};
+pub use number::{Derived, MAX_SHAPES, Number, Shapes};
 pub use text::{effects_text, effects_text_with};
 
 register! {
@@ -112,6 +112,7 @@ register! {
     marker_yaw,
     reference_heading_drift,
     reference_heading_scale,
+    reference_lens,
     reference_noise,
 }
 
@@ -262,6 +263,33 @@ pub trait Effect {
     fn varies(_p: &[f64]) -> bool {
         false
     }
+
+    /// Values of its shapes at which it is tested whether it is missing, [`MAX_SHAPES`] at most; those that are not named keep their usual
+    /// values. By default the first shape is tried at its usual value and at multiples of it.
+    fn tried(shown: &Shown) -> Vec<Tried> {
+        match Self::ABOUT.parameters.iter().find(|parameter| parameter.role == Role::Shape) {
+            Some(shape) => {
+                let usual = shape.default.resolve(shown.robot);
+                MULTIPLES.iter().map(|factor| vec![(shape.name, factor * usual)]).collect()
+            }
+            None => vec![Vec::new()],
+        }
+    }
+}
+
+/// A shape is tried at these multiples of its usual value.
+const MULTIPLES: [f64; 7] = [1.0, 0.5, 0.7, 1.4, 2.0, 2.8, 4.0];
+
+/// Names and values of shapes that are tried together.
+pub type Tried = Vec<(&'static str, f64)>;
+
+/// What is known of runs before it is tested what moved their poses.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown<'a> {
+    /// The robot, as it is entered.
+    pub robot: &'a Robot,
+    /// Smallest and largest x and y of what the reference measured, in its own frame \[m\]; `None` without positions.
+    pub extent: Option<[[f64; 2]; 2]>,
 }
 
 /// Whether an effect whose numbers are all sizes is active.

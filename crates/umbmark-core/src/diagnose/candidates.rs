@@ -52,7 +52,7 @@ pub(crate) fn of_tracks<'a>(
         let number = |(effect, parameter): &(&'static Entry, &'static Parameter)| Number {
             effect: effect.about.name,
             parameter: parameter.name,
-            shape: None,
+            shapes: Default::default(),
         };
         let derived = model.derived(&asked.iter().map(number).collect::<Vec<_>>())?;
         let columns: Vec<_> = derived.par_iter().map(|d| slopes(&d.chain, d.numbers.len(), &tracks)).collect();

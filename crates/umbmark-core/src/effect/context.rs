@@ -1,6 +1,7 @@
 //! Where a run stands in its session, and the moment of a measurement.
 
 use crate::drive::Robot;
+use crate::geometry::Pose2;
 use crate::path::Direction;
 
 use umbmark_odometry::context::Place;
@@ -44,4 +45,7 @@ pub struct Sight {
     pub speed: f64,
     /// The same \[rad/s\].
     pub turn_rate: f64,
+    /// The frame of the predicted pose, in the frame of the poses that the reference measures; `None` of a measurement by tape at the end
+    /// of a drive.
+    pub room: Option<Pose2>,
 }

@@ -1,7 +1,9 @@
 //! An effect as data.
 
 use super::laws::{BodyLaw, BumpLaw, ClockLaw, DiffusionLaw, LinkLaw, MeasurementLaw, SightLaw, StartLaw, WheelLaw};
-use super::{About, Bump, CATALOGUE, Changes, Context, Effect, MAX_PARAMETERS, Sight, Stretch, WheelVariance};
+use super::{
+    About, Bump, CATALOGUE, Changes, Context, Effect, MAX_PARAMETERS, Shown, Sight, Stretch, Tried, WheelVariance,
+};
 use crate::drive::{DriveKind, DriveKinds, LinkReading, Robot, WheelTravel};
 use crate::geometry::{Displacement2, Dual, Instructions, Pose2, Real};
 use crate::random::Stream;
@@ -108,6 +110,8 @@ pub struct Entry {
     pub is_credible: fn(&[f64]) -> bool,
     /// See [`Effect::varies`].
     pub varies: fn(&[f64]) -> bool,
+    /// See [`Effect::tried`].
+    pub tried: fn(&Shown) -> Vec<Tried>,
     /// Whether it is the floor's: it stays there when the robot goes elsewhere.
     pub is_of_floor: bool,
     /// Whether its signature is in proportion to what other effects do: it is computed anew when these are fitted anew.
@@ -144,6 +148,7 @@ impl Entry {
             means: E::means,
             is_credible: E::is_credible,
             varies: E::varies,
+            tried: E::tried,
             is_of_floor: false,
             rests_on_others: false,
             values: MeanLaws::nothing(),

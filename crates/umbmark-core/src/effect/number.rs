@@ -10,9 +10,15 @@ pub struct Number {
     pub effect: &'static str,
     /// The number.
     pub parameter: &'static str,
-    /// Another number of an effect that the model lacks (a length, a threshold), and its value.
-    pub shape: Option<(&'static str, f64)>,
+    /// Other numbers of an effect that the model lacks (a length, a threshold, a place), and their values.
+    pub shapes: Shapes,
 }
+
+/// The largest number of shapes of one effect that have other values than the usual ones while its sizes are asked for.
+pub const MAX_SHAPES: usize = 3;
+
+/// Names and values of shapes.
+pub type Shapes = [Option<(&'static str, f64)>; MAX_SHAPES];
 
 /// A chain that carries derivatives by some of a list of numbers.
 #[derive(Clone, Debug)]
@@ -45,7 +51,7 @@ impl Model {
         for (index, number) in numbers.iter().enumerate() {
             let agrees = |other: &usize| {
                 let other = &numbers[*other];
-                (other.effect != number.effect || other.shape == number.shape)
+                (other.effect != number.effect || other.shapes == number.shapes)
                     && other.seen_only() == number.seen_only()
             };
             match groups.iter_mut().find(|group| group.len() < LANES && group.iter().all(agrees)) {
@@ -58,9 +64,9 @@ impl Model {
 
     fn derived_together(&self, list: &[Number], numbers: Vec<usize>) -> Result<Derived, ModelError> {
         let mut with = self.clone();
-        for Number { effect, shape, .. } in numbers.iter().map(|index| list[*index]) {
+        for Number { effect, shapes, .. } in numbers.iter().map(|index| list[*index]) {
             with.add(effect)?;
-            if let Some((parameter, value)) = shape {
+            for (parameter, value) in shapes.into_iter().flatten() {
                 with.set(effect, parameter, value)?;
             }
         }

@@ -33,6 +33,7 @@ impl Effect for Scale {
             "link_length",
             "rear_truck",
             "bumps",
+            "reference_lens",
         ],
         separated_by: "the length of one straight leg, by tape; the pose at a stop",
         source: "Borenstein & Feng (1995), section 2",

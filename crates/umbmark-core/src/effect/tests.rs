@@ -282,9 +282,9 @@ fn derivatives_taken_together_are_those_of_each_number_alone_to_the_last_bit() {
         [("wheelbase", "e_b"), ("caster_kick", "kick_rad"), ("caster_kick", "trail_m"), ("nap", "k"), ("nap", "h0")];
     let listed = of_drive(DriveKind::default()).filter(|entry| entry.about.name != "caster_kick");
     let listed = listed.flat_map(|entry| entry.about.parameters.iter().map(move |p| (entry.about.name, p.name)));
-    let number = |(effect, parameter)| Number { effect, parameter, shape: None };
+    let number = |(effect, parameter)| Number { effect, parameter, shapes: Shapes::default() };
     let mut numbers: Vec<Number> = own.into_iter().chain(listed).map(number).collect();
-    let trail = |value| Number { effect: "leg_kick", parameter: "kick_rad", shape: Some(("trail_m", value)) };
+    let trail = |value| Number { effect: "leg_kick", parameter: "kick_rad", shapes: [Some(("trail_m", value)), None, None] };
     numbers.extend([trail(0.1), trail(0.2)]);
     let derived = model.derived(&numbers).unwrap();
     assert!(derived.len() <= numbers.len().div_ceil(LANES) + 2, "{} chains", derived.len());
@@ -292,10 +292,10 @@ fn derivatives_taken_together_are_those_of_each_number_alone_to_the_last_bit() {
     for Derived { chain, numbers: places, .. } in &derived {
         let together: Vec<Pose2<Dual>> = probes.iter().flat_map(|track| track.poses(chain)).collect();
         for (lane, place) in places.iter().enumerate() {
-            let Number { effect, parameter, shape } = numbers[*place];
+            let Number { effect, parameter, shapes } = numbers[*place];
             let mut with = model.clone();
             with.add(effect).unwrap();
-            if let Some((name, value)) = shape {
+            for (name, value) in shapes.into_iter().flatten() {
                 with.set(effect, name, value).unwrap();
             }
             let alone = with.chain_with(&seeded(with.values(), &[with.place_of(effect, parameter).unwrap()]));
@@ -413,7 +413,7 @@ fn changed(entry: &Entry, values: &[f64]) -> Changes {
         wheels(values, at, rolled);
         body(values, at, moved);
     }
-    let sight = Sight { time: 20.0, ..Sight::default() };
+    let sight = Sight { time: 20.0, room: Some(Pose2::IDENTITY), ..Sight::default() };
     seen(values, &sight, &mut shown);
     let mut behind = 0.0;
     late(values, 30.0, &mut behind);

@@ -190,6 +190,21 @@ impl Observed {
         self.runs.iter().map(|run| run.track.as_ref())
     }
 
+    /// Smallest and largest x and y of what the reference measured, in its own frame; `None` where it measured no positions.
+    pub(crate) fn extent(&self) -> Option<[[f64; 2]; 2]> {
+        let of_run = |run: &ObservedRun| {
+            let positions = if run.headings_only || run.relative { &[] } else { &run.measured[..] };
+            let room = run.track.sights().first().and_then(|sight| sight.room).unwrap_or(Pose2::IDENTITY);
+            let in_room = move |(x, y, _): &(f64, f64, Option<f64>)| room.compose(&Pose2::new(*x, *y, 0.0));
+            positions.iter().map(in_room).collect::<Vec<_>>()
+        };
+        let places = self.runs.iter().flat_map(of_run);
+        places.fold(None, |extent, Pose2 { x, y, .. }| {
+            let [least, most] = extent.unwrap_or([[x, y]; 2]);
+            Some([[least[0].min(x), least[1].min(y)], [most[0].max(x), most[1].max(y)]])
+        })
+    }
+
     /// The same runs as they were measured, restarting only where the track jumps.
     pub(crate) fn whole(&self) -> Observed {
         let mut observed = self.clone();
@@ -251,7 +266,8 @@ impl ObservedRun {
             kept = steps::apart(log, robot, &kept);
         }
         let samples = kept.iter().map(|pose| log.reference[*pose].sample);
-        let track = Track::from_log_seen(log, robot, place, samples)?.beginning_at(origin);
+        let room = log.start.pose().compose(&origin.inverse());
+        let track = Track::from_log_seen(log, robot, place, samples)?.beginning_at(origin).seen_in(room);
         let in_room = |pose: &usize| {
             let r = &log.reference[*pose];
             if origin == Pose2::IDENTITY {

@@ -7,6 +7,7 @@ use crate::dataset::TickLog;
 use crate::drive::{Robot, WheelTravel};
 use crate::effect::{RunContext, Sight};
 use crate::engine::Convoy;
+use crate::geometry::Pose2;
 use crate::path::{Direction, Path, Pieces, SpeedProfile};
 use std::sync::Arc;
 
@@ -96,7 +97,8 @@ impl Track {
                 }
             }
             if observed == Observed::AtStops || (observed == Observed::AtEnd && index + 1 == moves.len()) {
-                track.observe(Sight { time: progress.time(), ..Sight::default() });
+                let room = (observed == Observed::AtStops).then_some(Pose2::IDENTITY);
+                track.observe(Sight { time: progress.time(), room, ..Sight::default() });
             }
             progress.piece(&WheelTravel::default(), path.speed.pause(), [0.0; 2], [0.0; 2]);
         }
@@ -133,5 +135,6 @@ enum Observed {
 
 /// The moment at which the wheels have these speeds \[m/s\].
 fn sight(time: f64, [left, right]: [f64; 2], robot: &Robot) -> Sight {
-    Sight { time, late: 0.0, speed: 0.5 * (left + right), turn_rate: (right - left) / robot.drive.wheelbase() }
+    let (speed, turn_rate) = (0.5 * (left + right), (right - left) / robot.drive.wheelbase());
+    Sight { time, late: 0.0, speed, turn_rate, room: Some(Pose2::IDENTITY) }
 }

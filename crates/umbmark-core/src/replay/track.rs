@@ -63,13 +63,19 @@ impl Track {
         self.travel.truncate(end);
         self.contexts.truncate(end);
         self.seen_after = vec![end];
-        self.sights = vec![self.sights.last().copied().unwrap_or_default()];
+        self.sights = vec![Sight { room: None, ..self.sights.last().copied().unwrap_or_default() }];
         self
     }
 
     /// The same run with its START elsewhere in the room.
     pub fn beginning_at(self, origin: Pose2) -> Track {
         Track { origin, ..self }
+    }
+
+    /// The same run, measured by a reference whose own frame has the track's frame here.
+    pub fn seen_in(mut self, room: Pose2) -> Track {
+        self.sights.iter_mut().for_each(|sight| sight.room = Some(room));
+        self
     }
 
     /// Some of the observations, with the travel between them and what is driven within `margin` \[s\] before and after.

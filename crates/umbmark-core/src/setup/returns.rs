@@ -223,11 +223,13 @@ fn in_degrees(runs: &[Run], robot: &Robot, path: Option<&Path>) -> Option<Fault>
     }
     for (headings, expected) in headings.iter().zip(expected) {
         // Degrees that were read as radians can wrap around; single typing errors do not change the median.
-        let off = |from: f64| headings.iter().map(|heading| wrap(heading - from)).collect::<Vec<f64>>();
-        let (given, turned) = (median(off(expected))?, median(off(degrees * expected))?);
-        let spread = median(off(degrees * expected).into_iter().map(|own| (own - turned).abs()).collect())?;
-        let error = 1.4826 * spread / (headings.len() as f64).sqrt();
-        turns.extend(off(degrees * expected).into_iter().map(|own| (own - turned).abs()));
+        let first = headings[0];
+        let about_first: Vec<f64> = headings.iter().map(|heading| wrap(heading - first)).collect();
+        let middle = first + median(about_first)?;
+        let (given, turned) = (wrap(middle - expected), wrap(middle - degrees * expected));
+        let apart: Vec<f64> = headings.iter().map(|heading| wrap(heading - middle).abs()).collect();
+        let error = 1.4826 * median(apart.clone())? / (headings.len() as f64).sqrt();
+        turns.extend(apart);
         as_given += given * given;
         as_degrees += turned * turned;
         certain |= given.abs() > NEAR.max(BEYOND * error);

@@ -80,7 +80,7 @@ impl Simulator {
             recording.truth.push(truth.pose());
             recording.computed.push(track.pose());
             if time + 1e-9 >= next_reference || sample == samples {
-                sights.push((sample, Sight { time, ..Sight::default() }));
+                sights.push((sample, Sight { time, room: Some(Pose2::IDENTITY), ..Sight::default() }));
                 next_reference += 1.0 / reference_rate;
             }
         }

@@ -85,10 +85,10 @@ pub fn suspect(exam: &Examination, finding: &Finding) -> Option<Suspect> {
             degrees_of_freedom: finding.degrees_of_freedom[1],
         })
     });
-    let shape = exam.asked[finding.answer.asked].shape.map(|(parameter, value)| Estimate {
+    let shapes = exam.asked[finding.answer.asked].shapes.iter().map(|(parameter, value)| Estimate {
         effect: entry.about.name,
         parameter: parameter.name,
-        value,
+        value: *value,
         standard_error: f64::NAN,
         degrees_of_freedom: finding.degrees_of_freedom[1],
     });
@@ -101,7 +101,7 @@ pub fn suspect(exam: &Examination, finding: &Finding) -> Option<Suspect> {
         p: finding.p,
         p_adjusted: finding.p_adjusted(),
         p_flips: Some(finding.p_flips),
-        estimate: estimate.chain(shape).collect(),
+        estimate: estimate.chain(shapes).collect(),
         expected_drop: finding.answer.drop,
     })
 }

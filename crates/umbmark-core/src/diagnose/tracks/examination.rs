@@ -82,7 +82,7 @@ impl Examination {
     fn by(fitted: Fitted, responses: Responses) -> Examination {
         let names = names(&fitted.model);
         let own = fitted.free.iter().map(|value| names[*value]);
-        let own = own.map(|(effect, parameter)| Number { effect, parameter, shape: None });
+        let own = own.map(|(effect, parameter)| Number { effect, parameter, shapes: Default::default() });
         let free: Vec<usize> = (0..fitted.free.len()).collect();
         let Responses { mut asked, numbers, columns, along } = responses;
         for column in asked.iter_mut().flat_map(|group| &mut group.columns) {
@@ -299,9 +299,9 @@ impl Examination {
             let is_own = |column: &usize| self.number(*column).is_some_and(|own| own.parameter == parameter.name);
             columns.iter().position(is_own).map_or(0.0, |place| step[place])
         };
-        let value = |parameter: &Parameter| match asked.shape {
-            Some((shape, value)) if shape.name == parameter.name => value,
-            _ => parameter.default.resolve(robot) + stepped(parameter),
+        let value = |parameter: &Parameter| {
+            let tried = asked.shapes.iter().find(|(shape, _)| shape.name == parameter.name);
+            tried.map_or_else(|| parameter.default.resolve(robot) + stepped(parameter), |(_, value)| *value)
         };
         (entry.is_credible)(&entry.about.parameters.iter().map(value).collect::<Vec<_>>())
     }

@@ -1,10 +1,10 @@
 //! What the effects and smooths that a model lacks would do to the poses of its runs.
 
 use super::smooth::{self, Covariate, Motion, smooth_columns};
-use crate::effect::{Changes, Entry, Model, ModelError, Number, of_drive};
+use crate::effect::{Changes, Entry, Model, ModelError, Number, Shapes, Shown, of_drive};
 use crate::geometry::{Pose2, wrap};
 use crate::likelihood::{Column, Fitted, NUISANCE, Observed};
-use crate::parameter::{Parameter, Role};
+use crate::parameter::Parameter;
 use std::sync::Arc;
 
 /// What is tested.
@@ -23,8 +23,8 @@ pub struct Asked {
     pub question: Question,
     /// Its columns.
     pub columns: Vec<usize>,
-    /// Its shape, where it has one and another value than the usual is tried.
-    pub shape: Option<(&'static Parameter, f64)>,
+    /// Its shapes that are tried at other values than the usual ones.
+    pub shapes: Vec<(&'static Parameter, f64)>,
     /// Whether it is an effect of the reference, fitted out for the others.
     pub nuisance: bool,
 }
@@ -56,12 +56,12 @@ impl Responses {
     /// Of every effect of the catalogue that a model lacks and that shows in its runs, and of every smooth.
     pub fn new(fitted: &Fitted) -> Result<Responses, ModelError> {
         let (observed, model) = (&fitted.observed, &fitted.model);
-        let offers = offers(model);
+        let offers = offers(model, observed);
         let numbers: Vec<Number> = offers.iter().flat_map(Offer::numbers).collect();
         let mut columns = observed.columns_of(model, &numbers)?;
         let shows = |number: usize| columns.iter().any(|run| run[number].iter().any(|c| *c != [0.0; 3]));
         let (mut asked, mut kept, mut next, mut silent) = (Vec::new(), Vec::new(), 0, None);
-        for Offer { effect, shape, sizes } in offers {
+        for Offer { effect, shapes, sizes } in offers {
             let (first, own) = (kept.len(), next..next + sizes.len());
             next = own.end;
             let shown = sizes.into_iter().zip(own).filter(|(_, number)| silent != Some(effect) && shows(*number));
@@ -73,14 +73,14 @@ impl Responses {
             kept.extend(shown);
             let nuisance = NUISANCE.contains(&effect.about.name);
             let columns = (first..kept.len()).collect();
-            asked.push(Asked { question: Question::Effect(effect, parameters), columns, shape, nuisance });
+            asked.push(Asked { question: Question::Effect(effect, parameters), columns, shapes, nuisance });
         }
         for (run, smooths) in columns.iter_mut().zip(smooth_columns(observed, model)) {
             *run = kept.iter().map(|number| std::mem::take(&mut run[*number])).chain(smooths).collect();
         }
         for (covariate, motion, first, terms) in smooth::groups() {
             let columns = (kept.len() + first..kept.len() + first + terms).collect();
-            asked.push(Asked { question: Question::Smooth(covariate, motion), columns, shape: None, nuisance: false });
+            asked.push(Asked { question: Question::Smooth(covariate, motion), columns, shapes: Vec::new(), nuisance: false });
         }
         let numbers = kept.into_iter().map(|number| numbers[number]).collect();
         Ok(Responses { asked, numbers, columns, along: places(observed) })
@@ -106,38 +106,38 @@ pub fn hold(along: &[Arc<[Pose2]>], observed: &Observed) -> bool {
     })
 }
 
-/// A shape is tried at its usual value and at these multiples of it.
-const TRIED: [f64; 7] = [1.0, 0.5, 0.7, 1.4, 2.0, 2.8, 4.0];
-
-/// An effect of the catalogue that a model lacks, with one value of its shape.
+/// An effect of the catalogue that a model lacks, with one value of each of its shapes.
 struct Offer {
     effect: &'static Entry,
-    shape: Option<(&'static Parameter, f64)>,
+    shapes: Vec<(&'static Parameter, f64)>,
     sizes: Vec<&'static Parameter>,
 }
 
 impl Offer {
     fn numbers(&self) -> impl Iterator<Item = Number> + '_ {
-        let shape = self.shape.map(|(parameter, value)| (parameter.name, value));
-        self.sizes.iter().map(move |size| Number { effect: self.effect.about.name, parameter: size.name, shape })
+        let mut shapes = Shapes::default();
+        for (place, (parameter, value)) in shapes.iter_mut().zip(&self.shapes) {
+            *place = Some((parameter.name, *value));
+        }
+        self.sizes.iter().map(move |size| Number { effect: self.effect.about.name, parameter: size.name, shapes })
     }
 }
 
-/// Every effect of the catalogue that the model lacks and that may move some observation, with each value of its shape.
-fn offers(model: &Model) -> Vec<Offer> {
+/// Every effect of the catalogue that the model lacks and that may move some observation, with each value of its shapes.
+fn offers(model: &Model, observed: &Observed) -> Vec<Offer> {
     let missing = of_drive(model.robot().drive.kind()).filter(|entry| {
         entry.changes.include(Changes::MEAN) && model.parts().iter().all(|part| part.effect != **entry)
     });
+    let shown = Shown { robot: model.robot(), extent: observed.extent() };
     let mut offers = Vec::new();
     for effect in missing {
-        let parameters = effect.about.parameters.iter();
-        let (sizes, others): (Vec<&Parameter>, Vec<&Parameter>) = parameters.partition(|p| p.nothing().is_some());
-        let shapes: Vec<&Parameter> = others.into_iter().filter(|p| p.role == Role::Shape).collect();
-        let tried = if shapes.is_empty() { &TRIED[..1] } else { &TRIED[..] };
-        for factor in tried {
-            let shape = shapes.first().map(|shape| (*shape, factor * shape.default.resolve(model.robot())));
-            offers.push(Offer { effect, shape, sizes: sizes.clone() });
-        }
+        let parameters = &effect.about.parameters;
+        let sizes: Vec<&Parameter> = parameters.iter().filter(|p| p.nothing().is_some()).collect();
+        let offer = |tried: Vec<(&str, f64)>| {
+            let of = |(name, value)| Some((parameters.iter().find(|p| p.name == name)?, value));
+            Offer { effect, shapes: tried.into_iter().filter_map(of).collect(), sizes: sizes.clone() }
+        };
+        offers.extend((effect.tried)(&shown).into_iter().map(offer));
     }
     offers
 }

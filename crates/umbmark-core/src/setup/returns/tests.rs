@@ -200,3 +200,24 @@ fn degrees_of_a_usual_robot_are_seen_and_its_radians_are_left_alone() {
     let _ = writeln!(std::io::stderr(), "degrees seen in {told} of {sets}");
     assert!(told > 90, "{told}");
 }
+
+/// Read as degrees, these headings would lie half a turn from those of the positions, some on one side and some on the other: that is no
+/// scatter.
+#[test]
+fn radians_half_a_turn_from_what_they_would_be_in_degrees_are_left_alone() {
+    let mut robot = Robot::labmate();
+    robot.drive = crate::drive::DifferentialDrive::new(0.45, 0.095, 0.095).unwrap().into();
+    let path = Path::new(&crate::path::SQUARE, &[1.0], crate::path::SpeedProfile::default()).unwrap();
+    let mut stream = Stream::new(19, 0, 0);
+    for _ in 0..3000 {
+        let truth = Correction { e_d: 1.0145 + 0.001 * stream.uniform(), e_b: 0.977, e_s: 1.0 };
+        let mut runs = normal([4, 4], &mut stream);
+        for run in &mut runs {
+            let (Some(own), Some(direction)) = (run.returned.as_mut(), run.direction) else { continue };
+            let mean = drive_again(&robot, &path, direction, &truth, &Correction::NONE).unwrap();
+            let heading = own.heading.map(|h| h - 0.04 + mean.heading.unwrap_or(0.0));
+            *own = ReturnError { x: 0.2 * (own.x + 0.2) + mean.x, y: 0.2 * (own.y + 0.15) + mean.y, heading };
+        }
+        assert_eq!(Returned::of(&runs, &robot, Some(&path)).faults, [], "{truth:?}");
+    }
+}
