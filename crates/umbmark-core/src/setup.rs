@@ -15,10 +15,13 @@ mod agreement;
 mod by_positions;
 mod cheapest;
 mod clock;
+mod copies;
 mod counts_factor;
 mod disturbances;
 mod edges;
 mod faults;
+mod notices;
+mod one_way;
 mod returns;
 mod shared;
 mod stretches;
@@ -41,6 +44,7 @@ use windows::{Rolled, Window, windows};
 
 pub use counts_factor::CountsFactor;
 pub use faults::Fault;
+pub use notices::TOLD;
 pub use returns::{Coordinate, Deviant, OutlyingReturn, Returned};
 pub use suspicion::Suspicion;
 
@@ -176,6 +180,7 @@ impl Setup {
     /// it is known.
     pub fn of(runs: &[Run], robot: &Robot, path: Option<&Path>) -> Setup {
         let mut setup = Setup::of_tracks(runs, robot);
+        setup.faults.extend(copies::found(runs));
         // Return errors follow from the tracks and have the same faults.
         if setup.is_sound() {
             setup.returned = Returned::of(runs, robot, path);
@@ -208,7 +213,11 @@ impl Setup {
         if seen.iter().map(|seen| seen.windows.len()).sum::<usize>() < FEWEST {
             return Setup { runs: seen.iter().map(named).collect(), ..Setup::default() };
         }
-        if let Some(fault) = standing(&seen) {
+        let standing = standing(&seen).or_else(|| {
+            let alone = |seen: &Seen| clock::beside(&seen.windows, &seen.rolled, &seen.late);
+            one_way::counted_up(&seen.iter().map(|seen| (seen.log, alone(seen))).collect::<Vec<_>>(), robot)
+        });
+        if let Some(fault) = standing {
             return Setup { faults: vec![fault], runs: seen.iter().map(named).collect(), ..Setup::default() };
         }
         let pooled = |seen: &[Seen]| -> Vec<Beside> {
@@ -301,33 +310,6 @@ impl Setup {
         half.then_some(Suspicion::TailFirst { yaw })
     }
 
-    /// What must be known before the return errors are trusted, a sentence each without a full stop: faults and doubts, jumps and wrong poses of
-    /// tracks, runs whose return is far from the others. Of many of a kind, the first [`TOLD`] are listed and the rest counted.
-    pub fn notices(&self) -> Vec<String> {
-        let told = |fault: &Fault| format!("{}; to correct it, {}", fault.sentence(), fault.remedy());
-        let mut notices: Vec<String> = self.all_faults().map(told).collect();
-        notices.extend(self.doubts.iter().map(Suspicion::sentence));
-        let absolute = self.runs.iter().filter(|run| !run.relative);
-        let jumps = absolute.flat_map(|run| run.jumps.iter().map(|jump| jump.notice(&run.run)));
-        notices.extend(shortened(jumps.collect(), "jumps of tracks"));
-        notices.extend(self.wrong_steps());
-        let wrong = self.runs.iter().filter(|run| !run.relative && !run.wrong.is_empty()).map(RunSetup::notice);
-        notices.extend(shortened(wrong.collect(), "runs with wrong poses"));
-        let outlying = self.returned.outlying.iter().map(|run| format!("{}; {}", run.sentence(), run.remedy()));
-        notices.extend(shortened(outlying.collect(), "runs far from the others"));
-        notices
-    }
-
-    /// How many steps of references that tell motion only are wrong, in all runs together.
-    pub fn wrong_steps(&self) -> Option<String> {
-        let runs = || self.runs.iter().filter(|run| run.relative);
-        let wrong: usize = runs().map(|run| run.jumps.len() + run.wrong.len()).sum();
-        let steps: usize = runs().map(|run| run.poses.saturating_sub(1)).sum();
-        (wrong > 0).then(|| {
-            format!("{wrong} of {steps} steps of the reference are far from the motion of the wheels and were left out")
-        })
-    }
-
     /// What was found of a run.
     pub fn of_run(&self, name: &str) -> Option<&RunSetup> {
         self.runs.iter().find(|run| run.run == name)
@@ -354,39 +336,10 @@ const OTHER_WHEELS: f64 = 1.5;
 const SURELY: f64 = 4.0;
 /// If more than this share of all poses jump or are wrong, these are no accidents.
 const ACCIDENTS: f64 = 0.1;
-/// Maximum number of notices of a kind that are listed.
-pub const TOLD: usize = 5;
-
-/// The first notices, and how many more there are.
-fn shortened(mut notices: Vec<String>, kind: &str) -> Vec<String> {
-    if let rest @ 1.. = notices.len().saturating_sub(TOLD) {
-        notices.truncate(TOLD);
-        notices.push(format!("there are {rest} more {kind}"));
-    }
-    notices
-}
-
 impl Jump {
-    /// What it does to the run of this name.
-    pub(crate) fn notice(&self, run: &str) -> String {
-        let turned = self.turned.map(|t| format!(" and {:.0} deg", t.to_degrees())).unwrap_or_default();
-        let (moved, when) = (self.moved, self.when(1));
-        format!("the track of run {run} jumps by {moved:.2} m{turned} {when}: its return error is not the robot's")
-    }
-
     /// Whether a pose is within it.
     pub(crate) fn holds(&self, pose: usize) -> bool {
         self.from < pose && pose < self.pose
-    }
-
-    /// "at 12.3 s" or "between 12.3 s and 13.1 s", with so many decimals.
-    pub fn when(&self, decimals: usize) -> String {
-        let Jump { since, time, .. } = self;
-        if self.pose - self.from > 1 {
-            format!("between {since:.decimals$} s and {time:.decimals$} s")
-        } else {
-            format!("at {time:.decimals$} s")
-        }
     }
 }
 
@@ -394,16 +347,6 @@ impl RunSetup {
     /// Whether a pose is wrong or within a jump.
     pub(crate) fn is_lost(&self, pose: usize) -> bool {
         self.wrong.iter().any(|wrong| wrong.pose == pose) || self.jumps.iter().any(|jump| jump.holds(pose))
-    }
-
-    /// How many of its poses are wrong, and by how much at most: "3 of 1801 poses of run cw_01 are wrong, by up to 0.012 m and 1.6 deg".
-    pub fn notice(&self) -> String {
-        let most = |of: fn(&WrongPose) -> f64| self.wrong.iter().map(of).fold(0.0, f64::max);
-        let (moved, turned) = (most(|wrong| wrong.moved), most(|wrong| wrong.turned.map_or(0.0, f64::abs)));
-        let turned = if turned > 0.0 { format!(" and {:.1} deg", turned.to_degrees()) } else { String::new() };
-        let (run, wrong, poses) = (&self.run, self.wrong.len(), self.poses);
-        let are = if wrong == 1 { "is" } else { "are" };
-        format!("{wrong} of {poses} poses of run {run} {are} wrong, by up to {moved:.3} m{turned}")
     }
 }
 

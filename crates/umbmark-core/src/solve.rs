@@ -20,7 +20,7 @@ mod others;
 mod words;
 
 pub use numbers::Change;
-pub(crate) use numbers::slope;
+pub(crate) use numbers::{First, deviation};
 pub(crate) use off::Meter;
 pub use off::{Measure, Off, Part};
 pub use others::Other;

@@ -9,7 +9,7 @@
 //!
 //! for the measured change y with covariance V; F has 1 and ν degrees of freedom where it is that length.
 
-use super::quantities::{ratio, shown};
+use super::quantities::{first, ratio};
 use crate::evidence::Fit;
 use crate::stats::f_upper_tail;
 use nalgebra::{Matrix2, Vector2};
@@ -40,8 +40,9 @@ pub(super) fn of(fits: &[Fit; 2], size: f64) -> Vec<Alone> {
     let drive = &fits[0].model.robot().drive;
     let (mut change, mut covariance, mut freedom) = (Vector2::zeros(), Matrix2::zeros(), 0.0);
     for (sign, fit) in [-1.0, 1.0].into_iter().zip(fits) {
-        let (places, own, degrees) = shown(fit);
-        if !drive.kind().has_axle_wheels() || places != [0, 1] {
+        let first = first(fit);
+        let is_ratios = first.shown.iter().map(|(which, _)| *which).eq([0, 1]);
+        if !drive.kind().has_axle_wheels() || !is_ratios {
             return Vec::new();
         }
         let values = [0, 1].map(|which| ratio(fit, which).map(|ratio| ratio.value));
@@ -52,8 +53,8 @@ pub(super) fn of(fits: &[Fit; 2], size: f64) -> Vec<Alone> {
             fit.estimates.iter().find(|own| own.effect == effect).map_or(1.0, |own| own.value)
         });
         let scale = Matrix2::from_diagonal(&Vector2::new(1.0 / e_d, 1.0 / e_b));
-        covariance += scale * Matrix2::from_fn(|i, j| own[(i, j)]) * scale;
-        freedom += degrees;
+        covariance += scale * Matrix2::from_fn(|i, j| first.covariance[(i, j)]) * scale;
+        freedom += first.freedom().unwrap_or(0.0);
     }
     let Some(inverse) = covariance.try_inverse() else { return Vec::new() };
     let alone = |(key, meaning, [a, b]): (&'static str, &'static str, [f64; 2])| {

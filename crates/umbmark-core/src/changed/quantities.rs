@@ -4,8 +4,8 @@ use super::Value;
 use super::model::is_of_test;
 use crate::calibrate::Correction;
 use crate::evidence::{Estimate, Fit};
-use crate::solve::slope;
-use nalgebra::{DMatrix, DVector};
+use crate::solve::{First, deviation};
+use nalgebra::DVector;
 
 /// What a number belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,29 +85,16 @@ fn value(estimate: &Estimate) -> Value {
     Value { value, standard_error, degrees_of_freedom }
 }
 
-/// The first effects of a fit, by their places among the three, with the covariance.
-pub(super) fn shown(fit: &Fit) -> (Vec<usize>, DMatrix<f64>, f64) {
-    let first = fit.model.robot().drive.first_effects();
-    let places: Vec<(usize, usize)> = first
-        .iter()
-        .enumerate()
-        .filter_map(|(which, effect)| Some((which, fit.estimates.iter().position(|own| own.effect == *effect)?)))
-        .collect();
-    let of = |i: usize, j: usize| {
-        let [i, j] = [places[i].1, places[j].1];
-        let correlation = fit.correlations.get(i).and_then(|row| row.get(j)).copied();
-        let correlation = correlation.unwrap_or(f64::from(u8::from(i == j)));
-        correlation * fit.estimates[i].standard_error * fit.estimates[j].standard_error
-    };
-    let covariance = DMatrix::from_fn(places.len(), places.len(), of);
-    let freedom = places.first().map_or(1.0, |(_, place)| fit.estimates[*place].degrees_of_freedom);
-    (places.into_iter().map(|(which, _)| which).collect(), covariance, freedom)
+/// The first effects of a fit.
+pub(super) fn first(fit: &Fit) -> First<'_> {
+    First::of(&fit.model, &fit.estimates, &fit.correlations)
 }
 
 /// The robot's own numbers.
 fn geometry(fits: &[Fit; 2]) -> Vec<(Quantity, [Value; 2])> {
     let drive = &fits[0].model.robot().drive;
-    let [(before, ..), (after, ..)] = [shown(&fits[0]), shown(&fits[1])];
+    let [before, after] =
+        [0, 1].map(|test| first(&fits[test]).shown.iter().map(|(which, _)| *which).collect::<Vec<_>>());
     let all = drive.first_effects().len();
     if before.len() == all && after.len() == all {
         let parameters = drive.kind().parameters();
@@ -138,16 +125,14 @@ fn geometry(fits: &[Fit; 2]) -> Vec<(Quantity, [Value; 2])> {
 
 /// The numbers of the drive with the fitted effects in them.
 fn numbers(fit: &Fit) -> Option<Vec<Value>> {
-    let values = Correction::of(&fit.model).values();
-    let (places, covariance, freedom) = shown(fit);
-    let corrected = fit.model.robot().drive.corrected(values).ok()?.values();
-    let slopes: Vec<Vec<f64>> = places.iter().map(|which| slope(&fit.model, values, *which)).collect();
-    let of = |(place, value): (usize, &f64)| {
-        let own = DVector::from_iterator(slopes.len(), slopes.iter().map(|slope| slope[place]));
-        let standard_error = (&covariance * &own).dot(&own).max(0.0).sqrt();
+    let corrected = fit.model.robot().drive.corrected(Correction::of(&fit.model).values()).ok()?.values();
+    let first = first(fit);
+    let freedom = first.freedom().unwrap_or(1.0);
+    let of = |(value, own): (&f64, DVector<f64>)| {
+        let standard_error = deviation(&first.covariance, &own);
         Value { value: *value, standard_error, degrees_of_freedom: freedom }
     };
-    Some(corrected.iter().enumerate().map(of).collect())
+    Some(corrected.iter().zip(first.slopes(&fit.model)).map(of).collect())
 }
 
 /// One of the [RATIOS]: E_d and E_b times what is nominal.

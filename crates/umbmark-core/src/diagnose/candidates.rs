@@ -49,11 +49,8 @@ pub(crate) fn of_tracks<'a>(
     let mut sizes: Vec<(&'static Entry, Size)> = Vec::new();
     for (varies, asked) in [(false, &asked[0]), (true, &asked[1])] {
         let tracks = tracks(varies);
-        let number = |(effect, parameter): &(&'static Entry, &'static Parameter)| Number {
-            effect: effect.about.name,
-            parameter: parameter.name,
-            shapes: Default::default(),
-        };
+        let number =
+            |(effect, parameter): &(&'static Entry, &'static Parameter)| Number::of(effect.about.name, parameter.name);
         let derived = model.derived(&asked.iter().map(number).collect::<Vec<_>>())?;
         let columns: Vec<_> = derived.par_iter().map(|d| slopes(&d.chain, d.numbers.len(), &tracks)).collect();
         for (number, columns) in derived.iter().zip(columns).flat_map(|(d, columns)| d.numbers.iter().zip(columns)) {

@@ -202,8 +202,7 @@ impl Columns {
         let names = names(model);
         let own = fitted.free.iter().map(|index| names[*index]);
         let asked = own.chain(sizes.iter().map(|(effect, parameter)| (effect.about.name, parameter.name)));
-        let numbers: Vec<Number> =
-            asked.map(|(effect, parameter)| Number { effect, parameter, shapes: Default::default() }).collect();
+        let numbers: Vec<Number> = asked.map(|(effect, parameter)| Number::of(effect, parameter)).collect();
         let mut columns = vec![DVector::zeros(0); numbers.len()];
         for derived in model.derived(&numbers)? {
             let made = design.columns(&derived, &stages);

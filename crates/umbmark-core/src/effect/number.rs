@@ -32,6 +32,11 @@ pub struct Derived {
 }
 
 impl Number {
+    /// A number of an effect whose shapes, where the model lacks it, have their usual values.
+    pub fn of(effect: &'static str, parameter: &'static str) -> Number {
+        Number { effect, parameter, shapes: Shapes::default() }
+    }
+
     /// Whether it changes only the measurement.
     fn seen_only(&self) -> bool {
         find(self.effect).is_ok_and(|entry| !entry.changes.include(Changes::MOTION))

@@ -282,9 +282,10 @@ fn derivatives_taken_together_are_those_of_each_number_alone_to_the_last_bit() {
         [("wheelbase", "e_b"), ("caster_kick", "kick_rad"), ("caster_kick", "trail_m"), ("nap", "k"), ("nap", "h0")];
     let listed = of_drive(DriveKind::default()).filter(|entry| entry.about.name != "caster_kick");
     let listed = listed.flat_map(|entry| entry.about.parameters.iter().map(move |p| (entry.about.name, p.name)));
-    let number = |(effect, parameter)| Number { effect, parameter, shapes: Shapes::default() };
+    let number = |(effect, parameter)| Number::of(effect, parameter);
     let mut numbers: Vec<Number> = own.into_iter().chain(listed).map(number).collect();
-    let trail = |value| Number { effect: "leg_kick", parameter: "kick_rad", shapes: [Some(("trail_m", value)), None, None] };
+    let trail =
+        |value| Number { effect: "leg_kick", parameter: "kick_rad", shapes: [Some(("trail_m", value)), None, None] };
     numbers.extend([trail(0.1), trail(0.2)]);
     let derived = model.derived(&numbers).unwrap();
     assert!(derived.len() <= numbers.len().div_ceil(LANES) + 2, "{} chains", derived.len());

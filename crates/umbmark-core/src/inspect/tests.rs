@@ -98,7 +98,7 @@ fn exchanged_and_backward_wheels_are_told_from_the_track() {
 
 #[test]
 fn one_recording_of_exchanged_wheels_among_others_is_named() {
-    let mut runs: Vec<Run> = (0..4).map(|_| drive(Direction::Ccw, 5, same)).collect();
+    let mut runs: Vec<Run> = (4..8).map(|every| drive(Direction::Ccw, every, same)).collect();
     runs[2] = Run { name: "odd".into(), ..drive(Direction::Ccw, 5, |left, right| (right, left)) };
     let found = dataset(runs).inspect();
     assert_eq!(check(&found, "wheels").found, "left and right exchanged, in odd");

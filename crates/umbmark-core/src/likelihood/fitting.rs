@@ -356,7 +356,7 @@ mod tests {
         let observed = Observed::new(&watched(&model, 1, 3), &robot).unwrap().along(&model);
         let of = |entry: &'static crate::effect::Entry| {
             let parameters = entry.about.parameters.iter();
-            parameters.map(|p| Number { effect: entry.about.name, parameter: p.name, shapes: Default::default() })
+            parameters.map(|p| Number::of(entry.about.name, p.name))
         };
         let numbers: Vec<Number> = crate::effect::of_drive(robot.drive.kind()).flat_map(of).collect();
         let together = observed.columns_of(&model, &numbers).unwrap();

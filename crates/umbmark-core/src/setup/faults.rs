@@ -38,6 +38,18 @@ pub enum Fault {
         /// Whether the columns are exchanged as well.
         exchanged: bool,
     },
+    /// Counters count up whichever way their wheels roll.
+    OneWay {
+        /// What the columns are called, after "ticks_".
+        names: [&'static str; 2],
+        /// Whether the first does, and the second.
+        counters: [bool; 2],
+    },
+    /// Recordings are the same, to the last digit.
+    Copies {
+        /// The runs.
+        runs: Vec<String>,
+    },
     /// Measured headings grow clockwise.
     HeadingClockwise,
     /// Headings, which are all that was measured, turn opposite to the counts.
@@ -116,6 +128,18 @@ impl Fault {
                 let and = if *exchanged { ", and left and right are exchanged" } else { "" };
                 format!("{which} backward when the robot drives forward{and}")
             }
+            Fault::OneWay { names: [first, second], counters } => {
+                let which = match counters {
+                    [true, true] => "both counters count up whichever way their wheels roll".to_owned(),
+                    [true, false] => format!("ticks_{first} counts up whichever way its wheel rolls"),
+                    _ => format!("ticks_{second} counts up whichever way its wheel rolls"),
+                };
+                format!("{which}: where the reference shows a wheel roll backward, its counts go on")
+            }
+            Fault::Copies { runs } => format!(
+                "{} are one recording: all counts and all measured poses are the same",
+                named(runs)
+            ),
             Fault::HeadingClockwise => {
                 "the measured heading grows clockwise: it turns opposite to the robot and its track".into()
             }
@@ -176,6 +200,12 @@ impl Fault {
                 lines.extend(exchanged.then(|| "wheels_exchanged = true".to_owned()));
                 format!("write {} under [robot] in robot.toml", lines.join(" and "))
             }
+            Fault::OneWay { .. } => {
+                "give the counts the sign of the rotation (both channels of the encoder, or the sign of the motor's command), or use only runs \
+                 in which no wheel rolls backward"
+                    .into()
+            }
+            Fault::Copies { .. } => "keep one of the files".into(),
             Fault::HeadingClockwise => "write heading_clockwise = true under [reference] in robot.toml".into(),
             Fault::TurnsOpposite => {
                 "look, and write heading_clockwise = true under [reference] in robot.toml, or wheels_exchanged = true, or \

@@ -162,6 +162,49 @@ fn each_way_to_wire_the_counters_is_named_as_it_is() {
     }
 }
 
+/// The counts of encoders with one channel: every step counts up, of the left, the right or both.
+fn counted_up(mut runs: Vec<Run>, counters: [bool; 2]) -> Vec<Run> {
+    let rising = |counts: &mut Vec<f64>| {
+        let steps: Vec<f64> = counts.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+        let mut sum = counts[0];
+        for (count, step) in counts[1..].iter_mut().zip(&steps) {
+            sum += step;
+            *count = sum;
+        }
+    };
+    for log in runs.iter_mut().filter_map(|run| run.log.as_mut()) {
+        if counters[0] {
+            rising(&mut log.left);
+        }
+        if counters[1] {
+            rising(&mut log.right);
+        }
+    }
+    runs
+}
+
+/// Free drives with turns on the spot, seeds 300 to 315; and drives in which no wheel rolls backward.
+#[test]
+fn counters_of_one_channel_are_named_where_wheels_roll_backward_and_nowhere_else() {
+    for seed in 300..316 {
+        let runs = Drive { seed, ..clean() }.runs();
+        let faults = |runs: &[Run]| Setup::of(runs, &robot(), None).faults;
+        assert_eq!(faults(&runs), [], "{seed}");
+        for counters in [[true, false], [false, true], [true, true]] {
+            let found = faults(&counted_up(runs.clone(), counters));
+            let names = robot().drive.kind().counters();
+            assert_eq!(found, [Fault::OneWay { names, counters }], "{seed}");
+        }
+        let ahead = Drive { seed, driven: driven::pursuing, ..clean() }.runs();
+        let backward = |counts: &[f64]| counts.windows(2).any(|pair| pair[1] < pair[0]);
+        let reverses =
+            ahead.iter().filter_map(|run| run.log.as_ref()).any(|log| backward(&log.left) || backward(&log.right));
+        if !reverses {
+            assert_eq!(faults(&ahead), [], "{seed}");
+        }
+    }
+}
+
 #[test]
 fn headings_and_positions_that_are_not_what_they_are_called_are_named() {
     let faults = |written| Drive { written, ..clean() }.found().faults;

@@ -152,7 +152,7 @@ fn every_number_of_every_effect_shows_in_what_is_measured() {
             let (value, neutral) = (p.usual(&robot), p.default.resolve(&robot));
             let other = match (p.choices().is_empty(), value == neutral) {
                 (false, _) => 1.0 - value,
-                (true, true) => 1.5 * value,
+                (true, true) => value + 0.5 * if value == 0.0 { p.typical } else { value },
                 (true, false) => neutral + 1.5 * (value - neutral),
             };
             let mut changed = usual.clone();

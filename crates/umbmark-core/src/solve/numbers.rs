@@ -34,16 +34,15 @@ pub(super) fn of(learnt: &Learnt, others: &[Other], size: f64) -> (Vec<Change>, 
     let drive = &model.robot().drive;
     let values = Correction::of(model).values();
     let Ok(corrected) = drive.corrected(values) else { return (Vec::new(), false) };
-    let shown = shown(learnt);
-    let slopes: Vec<Vec<f64>> = shown.iter().map(|(which, _)| slope(model, values, *which)).collect();
-    let covariance = covariance(learnt, others, &shown);
-    let freedom = shown.first().map_or(0.0, |(_, estimate)| estimate.degrees_of_freedom);
+    let first = first(learnt, others);
+    let (slopes, freedom) = (first.slopes(model), first.freedom().unwrap_or(0.0));
+    let First { shown, covariance } = first;
+    let covariance = known(covariance);
     let t = student_t_quantile(1.0 - 0.5 * size, freedom.max(1.0));
     let keys = drive.kind().parameters().iter().map(|parameter| parameter.name);
-    let numbers = keys.zip(drive.values().into_iter().zip(corrected.values())).enumerate();
-    let change = |(place, (key, (old, new))): (usize, (&'static str, (f64, f64)))| {
-        let own = DVector::from_iterator(slopes.len(), slopes.iter().map(|slope| slope[place]));
-        let half = covariance.as_ref().map(|c| t * (c * &own).dot(&own).max(0.0).sqrt());
+    let numbers = keys.zip(drive.values().into_iter().zip(corrected.values())).zip(&slopes);
+    let change = |((key, (old, new)), own): ((&'static str, (f64, f64)), &DVector<f64>)| {
+        let half = covariance.as_ref().map(|covariance| t * deviation(covariance, own));
         let interval = half.filter(|half| half.is_finite()).map(|half| Interval::around(new, half));
         (own.amax() > 0.0).then_some(Change { key, old, new, interval, worth: None })
     };
@@ -59,9 +58,10 @@ pub(super) fn of(learnt: &Learnt, others: &[Other], size: f64) -> (Vec<Change>, 
 
 /// The three ratios of a differential drive as one more estimate; `None` where none was fitted.
 pub(super) fn estimate(learnt: &Learnt, others: &[Other]) -> Option<calibrate::Estimate> {
-    let shown = shown(learnt);
-    let (_, first) = shown.first()?;
-    let covariance = covariance(learnt, others, &shown).map(|covariance| {
+    let first = first(learnt, others);
+    let freedom = first.freedom()?;
+    let First { shown, covariance } = first;
+    let covariance = known(covariance).map(|covariance| {
         let mut all = Matrix3::zeros();
         for (i, (row, _)) in shown.iter().enumerate() {
             for (j, (column, _)) in shown.iter().enumerate() {
@@ -73,46 +73,78 @@ pub(super) fn estimate(learnt: &Learnt, others: &[Other]) -> Option<calibrate::E
     Some(calibrate::Estimate {
         shown: [0, 1, 2].map(|which| shown.iter().any(|(own, _)| *own == which)),
         covariance,
-        ..calibrate::Estimate::new(Method::Model, Correction::of(&learnt.model), first.degrees_of_freedom)
+        ..calibrate::Estimate::new(Method::Model, Correction::of(&learnt.model), freedom)
     })
 }
 
-/// The first effects that were fitted, each by its place among the three.
-fn shown(learnt: &Learnt) -> Vec<(usize, &Estimate)> {
-    let first = learnt.model.robot().drive.first_effects();
-    let of = |(which, effect): (usize, &&str)| {
-        Some((which, learnt.diagnosis.fitted.iter().find(|estimate| estimate.effect == *effect)?))
-    };
-    first.iter().enumerate().filter_map(of).collect()
+/// The first effects of a drive that were fitted: what its own numbers follow from.
+pub(crate) struct First<'a> {
+    /// Each by its place among the three, with its estimate.
+    pub shown: Vec<(usize, &'a Estimate)>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
 }
 
-/// Covariance of those; `None` where some standard error is not known.
+impl<'a> First<'a> {
+    /// Those among all estimates of a model, with the correlations of these in the same order.
+    pub fn of(model: &Model, fitted: &'a [Estimate], correlations: &[Vec<f64>]) -> First<'a> {
+        let first = model.robot().drive.first_effects();
+        let place = |(which, effect): (usize, &&str)| {
+            Some((which, fitted.iter().position(|estimate| estimate.effect == *effect)?))
+        };
+        let places: Vec<(usize, usize)> = first.iter().enumerate().filter_map(place).collect();
+        let correlation = |i: usize, j: usize| match correlations.get(i).and_then(|row| row.get(j)) {
+            Some(correlation) if correlations.len() == fitted.len() => *correlation,
+            _ => f64::from(u8::from(i == j)),
+        };
+        let of = |i: usize, j: usize| {
+            let [i, j] = [places[i].1, places[j].1];
+            correlation(i, j) * fitted[i].standard_error * fitted[j].standard_error
+        };
+        let covariance = DMatrix::from_fn(places.len(), places.len(), of);
+        First { shown: places.into_iter().map(|(which, place)| (which, &fitted[place])).collect(), covariance }
+    }
+
+    /// Degrees of freedom of their estimates; `None` where none was fitted.
+    pub fn freedom(&self) -> Option<f64> {
+        self.shown.first().map(|(_, estimate)| estimate.degrees_of_freedom)
+    }
+
+    /// For each number of the drive, its derivatives by the values of these effects.
+    pub fn slopes(&self, model: &Model) -> Vec<DVector<f64>> {
+        let values = Correction::of(model).values();
+        let slopes: Vec<Vec<f64>> = self.shown.iter().map(|(which, _)| slope(model, values, *which)).collect();
+        let of = |place: usize| DVector::from_iterator(slopes.len(), slopes.iter().map(|slope| slope[place]));
+        (0..model.robot().drive.values().len()).map(of).collect()
+    }
+}
+
+/// The first effects of what was learnt.
 ///
 /// Where another effect would do, the distance d of its values is one more error, L d dᵀ, with L its likelihood beside the one that was added.
 ///
 /// Source: Buckland, Burnham & Augustin (1997), Biometrics 53, 603: the variance of an estimate after a model was selected.
-fn covariance(learnt: &Learnt, others: &[Other], shown: &[(usize, &Estimate)]) -> Option<DMatrix<f64>> {
-    let (fitted, correlations) = (&learnt.diagnosis.fitted, &learnt.diagnosis.correlations);
-    let place = |estimate: &Estimate| fitted.iter().position(|own| own == estimate);
-    let places: Vec<usize> = shown.iter().map(|(_, estimate)| place(estimate)).collect::<Option<_>>()?;
-    let correlation = |i: usize, j: usize| match correlations.get(i).and_then(|row| row.get(j)) {
-        Some(correlation) if correlations.len() == fitted.len() => *correlation,
-        _ => f64::from(u8::from(i == j)),
-    };
-    let of = |i: usize, j: usize| {
-        let [i, j] = [places[i], places[j]];
-        correlation(i, j) * fitted[i].standard_error * fitted[j].standard_error
-    };
-    let mut covariance = DMatrix::from_fn(places.len(), places.len(), of);
+fn first<'a>(learnt: &'a Learnt, others: &[Other]) -> First<'a> {
+    let mut first = First::of(&learnt.model, &learnt.diagnosis.fitted, &learnt.diagnosis.correlations);
     for other in others {
-        let off = DVector::from_iterator(shown.len(), shown.iter().map(|(which, _)| other.off[*which]));
-        covariance.ger(other.likelihood, &off, &off, 1.0);
+        let off = DVector::from_iterator(first.shown.len(), first.shown.iter().map(|(which, _)| other.off[*which]));
+        first.covariance.ger(other.likelihood, &off, &off, 1.0);
     }
+    first
+}
+
+/// A covariance; `None` where some standard error is not known.
+fn known(covariance: DMatrix<f64>) -> Option<DMatrix<f64>> {
     covariance.iter().all(|value| value.is_finite()).then_some(covariance)
 }
 
+/// Standard deviation of a sum of values with these weights.
+pub(crate) fn deviation(covariance: &DMatrix<f64>, weights: &DVector<f64>) -> f64 {
+    (covariance * weights).dot(weights).max(0.0).sqrt()
+}
+
 /// Derivatives of the drive's numbers by the value of a first effect; zero where the drive cannot have them.
-pub(crate) fn slope(model: &Model, values: [f64; 3], which: usize) -> Vec<f64> {
+fn slope(model: &Model, values: [f64; 3], which: usize) -> Vec<f64> {
     let drive = &model.robot().drive;
     let at = |step: f64| {
         let mut moved = values;

@@ -78,6 +78,7 @@ EffectName: TypeAlias = Literal[
     "marker_yaw",
     "reference_heading_drift",
     "reference_heading_scale",
+    "reference_lens",
     "reference_noise",
 ]
 ActsOn: TypeAlias = Literal[

@@ -259,7 +259,7 @@ mod tests {
         let track = Track::with_stops(&Path::umbmark(), Direction::Ccw, &robot);
         let leg = Leg { track: track.clone(), runs: 3, turned: 0.0, minutes: 0.0 };
         let design = Design { what: String::new(), legs: vec![leg] };
-        let number = |(effect, parameter)| Number { effect, parameter, shape: None };
+        let number = |(effect, parameter)| Number::of(effect, parameter);
         let numbers = [("wheel_diameter_ratio", "e_d"), ("wheelbase", "e_b")].map(number);
         let derived = Model::new(&robot).derived(&numbers).unwrap().remove(0);
         let columns = design.columns(&derived, &design.stages(&robot, &noise));

@@ -82,7 +82,7 @@ impl Examination {
     fn by(fitted: Fitted, responses: Responses) -> Examination {
         let names = names(&fitted.model);
         let own = fitted.free.iter().map(|value| names[*value]);
-        let own = own.map(|(effect, parameter)| Number { effect, parameter, shapes: Default::default() });
+        let own = own.map(|(effect, parameter)| Number::of(effect, parameter));
         let free: Vec<usize> = (0..fitted.free.len()).collect();
         let Responses { mut asked, numbers, columns, along } = responses;
         for column in asked.iter_mut().flat_map(|group| &mut group.columns) {

@@ -104,7 +104,7 @@ pub fn of_laws(exam: &Examination, repeated: &Repeated) -> Result<Vec<Experiment
         for (parameter, value) in sizes {
             places.push(numbers.len());
             values.push(*value);
-            numbers.push(Number { effect: part.effect.name(), parameter: parameter.name, shapes: Default::default() });
+            numbers.push(Number::of(part.effect.name(), parameter.name));
         }
         Some((places, values, part.effect.name()))
     };
