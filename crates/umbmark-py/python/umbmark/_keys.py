@@ -210,3 +210,8 @@ class EffectKeys(TypedDict, total=False):
     left_m: Drawn
     yaw_rad: Drawn
     rate_rad_s: Drawn
+    k1_per_m2: Drawn
+    k2_per_m4: Drawn
+    centre_x_m: Drawn
+    centre_y_m: Drawn
+    headings: Drawn

@@ -80,7 +80,12 @@ impl Responses {
         }
         for (covariate, motion, first, terms) in smooth::groups() {
             let columns = (kept.len() + first..kept.len() + first + terms).collect();
-            asked.push(Asked { question: Question::Smooth(covariate, motion), columns, shapes: Vec::new(), nuisance: false });
+            asked.push(Asked {
+                question: Question::Smooth(covariate, motion),
+                columns,
+                shapes: Vec::new(),
+                nuisance: false,
+            });
         }
         let numbers = kept.into_iter().map(|number| numbers[number]).collect();
         Ok(Responses { asked, numbers, columns, along: places(observed) })
