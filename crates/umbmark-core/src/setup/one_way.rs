@@ -43,7 +43,11 @@ pub(super) fn counted_up(runs: &[(&TickLog, Vec<Beside>)], robot: &Robot) -> Opt
     let mut found = given;
     let mut signed = windows.clone();
     for _ in 0..ROUNDS {
-        signed = windows.iter().map(|own| best(own, &found, rising, wheelbase)).collect();
+        let chosen: Vec<Beside> = windows.iter().map(|own| best(own, &found, rising, wheelbase)).collect();
+        if chosen == signed {
+            break;
+        }
+        signed = chosen;
         found = Agreement::without_drift(&signed, Reading::default(), wheelbase);
     }
     let clear = |(_, rolled): &&Beside| rolled.travel.iter().any(|travel| travel.abs() > CLEAR);
