@@ -17,9 +17,9 @@ pub fn likeness(a: &DVector<f64>, b: &DVector<f64>) -> f64 {
 /// B, B like C, yet A unlike C.) Each group holds indices in increasing order, and groups stand in the order of their first.
 ///
 /// ```
-/// use nalgebra::dvector;
+/// use nalgebra::DVector;
 /// use umbmark_core::diagnose::classes::{ALIKE, complete_linkage};
-/// let columns = [dvector![1.0, 0.0], dvector![0.0, 2.0], dvector![-3.0, 0.1]];
+/// let columns = [[1.0, 0.0], [0.0, 2.0], [-3.0, 0.1]].map(|column| DVector::from_row_slice(&column));
 /// assert_eq!(complete_linkage(&columns, ALIKE), [vec![0, 2], vec![1]]);
 /// ```
 pub fn complete_linkage(columns: &[DVector<f64>], alike: f64) -> Vec<Vec<usize>> {

@@ -13,10 +13,10 @@ pub const RANK_TOLERANCE: f64 = 1e-3;
 /// largest; each is given in the parameters' own units with largest component ±1. Empty where every parameter is shown.
 ///
 /// ```
-/// use nalgebra::dmatrix;
+/// use nalgebra::DMatrix;
 /// use umbmark_core::fit::null_directions;
 /// // Only the difference of two parameters is seen: their common change is not.
-/// let null = null_directions(&dmatrix![1.0, -1.0; 2.0, -2.0], 1e-3);
+/// let null = null_directions(&DMatrix::from_row_slice(2, 2, &[1.0, -1.0, 2.0, -2.0]), 1e-3);
 /// assert_eq!(null.len(), 1);
 /// assert!((null[0][0] - null[0][1]).abs() < 1e-12);
 /// ```
