@@ -307,10 +307,11 @@ data[0].wheelbase
 """
     place = tmp_path / "script.py"
     place.write_text(good)
-    report, _, status = mypy.api.run(["--strict", "--no-incremental", str(place)])
+    check = ["--strict", f"--cache-dir={tmp_path / 'cache'}", str(place)]
+    report, _, status = mypy.api.run(check)
     assert (status, report) == (0, "Success: no issues found in 1 source file\n")
     place.write_text(good + wrong)
-    report, _, status = mypy.api.run(["--strict", "--no-incremental", str(place)])
+    report, _, status = mypy.api.run(check)
     found = {int(line.split(":")[1]) for line in report.splitlines() if ": error:" in line}
     first = len(good.splitlines()) + 2
     assert found == set(range(first, first + len(wrong.splitlines()) - 1)), report
