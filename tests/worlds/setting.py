@@ -180,6 +180,8 @@ class Faults:
     slam_period_s: float = 0.0
     """A reference that drifts is corrected every so often; 0: it does not drift."""
     slam_m: tuple[float, float] = (0.05, 0.3)
+    heading_walk_rad_sqrt_s: float = 0.0
+    """Measured headings drift, and positions do not: a random walk that begins anew in each run."""
     counts_commands: bool = False
     """Ticks are made from commanded speeds, not from the wheels' motion."""
 

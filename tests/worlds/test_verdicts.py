@@ -93,6 +93,21 @@ def test_jumps_are_named_and_the_robot_is_not_blamed(world: str) -> None:
     assert all(abs(one["standard_errors"]) < 4 for one in said["ratios"].values())
 
 
+def test_headings_that_drift_beside_positions_are_doubted_and_positions_alone_are_explained(
+    tmp_path: File,
+) -> None:
+    drifting = [*SMALL, "heading_walk_rad_sqrt_s=0.01", "run_s=60"]
+    said = {}
+    for name, more in [("with", []), ("without", ["has_heading=false"])]:
+        write(make("heading_walk", 2, drifting + more), tmp_path / name)
+        words = [str(COMMAND), "learn", str(tmp_path / name), "--json"]
+        told = subprocess.run(words, capture_output=True, check=True, text=True).stdout
+        said[name] = json.loads(told)
+    assert said["with"]["verdict"] == "not_explained"
+    assert any("the measured headings wander by" in one for one in said["with"]["reasons"])
+    assert said["without"]["verdict"] == "explained"
+
+
 def test_where_nothing_is_hidden_nothing_is_accused() -> None:
     said = found("null", 4)
     assert (said["verdict"], said["added_wrong"]) == ("explained", [])

@@ -149,6 +149,10 @@ def measured(
         pose = added_up(pose, faults, random)
     if faults.slam_period_s:
         pose, corrections = drifting(pose, stamp_s, faults, random)
+    if faults.heading_walk_rad_sqrt_s:
+        steps = np.sqrt(np.diff(stamp_s, prepend=stamp_s[:1]).clip(min=0.0))
+        walk = np.cumsum(steps * random.standard_normal(len(pose)))
+        pose = pose + faults.heading_walk_rad_sqrt_s * np.outer(walk, [0.0, 0.0, 1.0])
     sizes = [reference.position_noise_m, reference.position_noise_m, reference.heading_noise_rad]
     rate = setting.recording.reference_rate_hz
     pose = pose + noise(reference, len(pose), rate, random) * sizes

@@ -87,7 +87,7 @@ LAWS_IN_WORDS: list[tuple[str, str]] = [
 EXPLAINED = "explained"
 FREE_START = {"late_start", "moving_start", "long_pieces"}
 """Worlds where START was never seen at rest: `start_pose` is right there."""
-UNSTEADY = {"scanmatch", "slam", "command", "sparse"}
+UNSTEADY = {"scanmatch", "slam", "heading_walk", "command", "sparse"}
 """Worlds whose reference or wheels do more than the model can say: any verdict is right."""
 
 

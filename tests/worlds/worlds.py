@@ -175,6 +175,11 @@ def slam(_: Setting, random: Random) -> Changes:
     return {"slam_period_s": random.uniform(20, 40)}
 
 
+def heading_walk(_: Setting, random: Random) -> Changes:
+    """Headings that drift beside positions that do not."""
+    return {"heading_walk_rad_sqrt_s": log_uniform(random, 0.005, 0.02)}
+
+
 def combined(setting: Setting, random: Random) -> Changes:
     """Two or three troubles at once."""
     somewhere = always(start="room")
@@ -313,6 +318,7 @@ WORLDS = {
         World("command", "ticks are commands; the wheels lag by 0.1 to 0.3 s", command),
         World("gaps", "holes of 0.5 to 5 s in the poses", gaps),
         World("slam", "reference drifts and jumps back every half minute", slam),
+        World("heading_walk", "measured headings drift, and positions do not", heading_walk),
         World(
             "combined", "2 or 3 of delay, lever, yaw, jumps, glitches, start in a room", combined
         ),

@@ -91,6 +91,11 @@ pub enum Reason {
         /// What is off, and on what it depends, in words.
         what: String,
     },
+    /// The headings of the reference are not those of the way that it measured: what is between them changes slowly.
+    HeadingsWander {
+        /// Root mean square of what changes slowly \[rad\].
+        deviation: f64,
+    },
     /// One run is unlike the others.
     OddRun(OddRun),
     /// The data are in doubt.
@@ -117,7 +122,7 @@ impl Reason {
     /// Whether it concerns the data and not the model: a model that is fitted to such data is not written.
     pub fn is_of_data(&self) -> bool {
         match self {
-            Reason::Fault(_) => true,
+            Reason::Fault(_) | Reason::HeadingsWander { .. } => true,
             Reason::Data(suspicion) => suspicion.forbids_writing(),
             _ => false,
         }
@@ -189,6 +194,11 @@ impl Reason {
                 1e3 * inside
             ),
             Reason::Repeats(repeated) => repeated.sentence(),
+            Reason::HeadingsWander { deviation } => format!(
+                "the measured headings wander by {:.1} deg against the way that was measured: they drift, are set anew in each run, or the marker \
+                 turned on the robot; leave the column of headings empty, and positions alone are fitted",
+                deviation.to_degrees()
+            ),
             Reason::OddRun(odd) => odd.sentence(),
             Reason::Data(suspicion) => suspicion.sentence(),
         }

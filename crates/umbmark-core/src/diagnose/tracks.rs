@@ -38,6 +38,7 @@ mod search;
 mod significance;
 mod smooth;
 mod suggestion;
+mod wander;
 
 use super::diagnosis::{Diagnosis, Verdict};
 use super::experiments::{Experiment, worth};

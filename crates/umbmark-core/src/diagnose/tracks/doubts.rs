@@ -1,7 +1,8 @@
 //! Reasons against a fitted model as a whole, even where no missing effect is certified.
 
-use super::chance;
+use super::{chance, wander};
 use crate::diagnose::reason::Reason;
+use crate::effect::Model;
 use crate::evidence::tracks::Misses;
 use crate::likelihood::{Growth, Noise, Observed};
 
@@ -34,12 +35,13 @@ const SETS: (usize, usize) = (100, 2_000_000);
 /// large as the noise model predicts.
 const REMEMBERS: f64 = 2.5;
 
-/// Reasons from the noise, the jumps and the size of the residuals.
-pub(super) fn of_model(observed: &Observed, noise: &Noise, left: &Misses, seed: u64) -> Vec<Reason> {
+/// Reasons from the noise, the jumps, the size of the residuals and the headings. The runs lie along the model.
+pub(super) fn of_model(observed: &Observed, model: &Model, noise: &Noise, left: &Misses, seed: u64) -> Vec<Reason> {
     let mut reasons: Vec<Reason> = observed.setup.faults.iter().cloned().map(Reason::Fault).collect();
     reasons.extend(observed.setup.suspicions_of_tracks(&observed.robot).into_iter().map(Reason::Data));
     reasons.extend(of_noise(observed, noise));
     reasons.extend(of_size(observed, noise, left, seed));
+    reasons.extend(wander::of_headings(observed, model));
     reasons
 }
 

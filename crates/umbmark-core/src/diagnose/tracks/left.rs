@@ -23,7 +23,7 @@ pub(crate) fn remains_of(exam: &Examination, options: &Options) -> Remains {
 /// Reasons against the model of an examination as a whole.
 pub(crate) fn doubts_of(exam: &Examination, options: &Options) -> Vec<Reason> {
     let Examination { fitted, errors, .. } = exam;
-    doubts::of_model(&fitted.observed, &fitted.noise, &errors.in_sample(), options.seed)
+    doubts::of_model(&fitted.observed, &fitted.model, &fitted.noise, &errors.in_sample(), options.seed)
 }
 
 /// The reason for doubt from a repeating pattern in the residuals, if it is significant enough.
@@ -49,7 +49,7 @@ pub(crate) fn doubts_as_written(
     let noise = Noise::estimate(&fixed.observed, &chain, &columns, &fixed.noise);
     let system = System::new(&fixed.observed, &noise, &columns);
     let errors = Errors::new(&fixed.observed, &system, &columns, vec![0]);
-    let mut reasons = doubts::of_model(&fixed.observed, &noise, &errors.in_sample(), options.seed);
+    let mut reasons = doubts::of_model(&fixed.observed, &fixed.model, &noise, &errors.in_sample(), options.seed);
     let repeated = what_repeats(&fixed.observed, model, &noise, &columns, options.seed);
     reasons.extend(
         repeated.filter(|repeated| repeated.is_doubt(LEAST_GAIN)).map(|repeated| Reason::Repeats(Box::new(repeated))),
