@@ -48,6 +48,7 @@ results! {
     sensitivity: Sensitivity;
     setup;
     solution: Solution;
+    spin: Spin;
     study: MonteCarlo;
     sweep: Sweep;
     tolerance: Tolerance;

@@ -60,6 +60,7 @@ module! {
     score: score_arrays, score_dataset;
     sensitivity: Sobol, sensitivity;
     simulate: simulate;
+    spin: spin;
     sweep: sweep;
     tolerance: tolerance;
     tracks: tracks;
