@@ -48,7 +48,6 @@ results! {
     sensitivity: Sensitivity;
     setup;
     solution: Solution;
-    spin: Spin;
     study: MonteCarlo;
     sweep: Sweep;
     tolerance: Tolerance;

@@ -60,7 +60,6 @@ module! {
     score: score_arrays, score_dataset;
     sensitivity: Sobol, sensitivity;
     simulate: simulate;
-    spin: spin;
     sweep: sweep;
     tolerance: tolerance;
     tracks: tracks;

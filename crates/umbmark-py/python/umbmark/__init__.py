@@ -41,7 +41,7 @@ from umbmark._calibration import Calibration, GearCalibration, calibrate, calibr
 from umbmark._changed import Changed, changed
 from umbmark._comparison import Comparison, TrackComparison, compare
 from umbmark._diagnosis import Diagnosis, Fitted, Learnt, diagnose, fit, learn
-from umbmark._documents import Correction, Effect, Setup, Spin
+from umbmark._documents import Correction, Effect, Setup
 from umbmark._each import Each, each, fleet
 from umbmark._errors import MissingDependencyError
 from umbmark._export import Exported, export
@@ -86,7 +86,6 @@ from umbmark._umbmark import (
     load_dataset,
     presets,
     simulate,
-    spin,
 )
 from umbmark._unlisted import Unlisted
 from umbmark._warnings import ConversionWarning, UmbmarkWarning
@@ -139,7 +138,6 @@ __all__ = [
     "Setup",
     "Shape",
     "Solution",
-    "Spin",
     "Study",
     "Sweep",
     "Tolerance",
@@ -180,7 +178,6 @@ __all__ = [
     "separate",
     "simulate",
     "solve",
-    "spin",
     "sweep",
     "tolerance",
     "tracks",

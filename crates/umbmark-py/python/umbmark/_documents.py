@@ -3099,24 +3099,6 @@ class Off(Record, frozen=True):
     chance_m: float | None
 
 
-class Spin(Result, frozen=True):
-    """What a turn on the spot takes.
-
-    Attributes
-    ----------
-    robot : str
-        Name of the robot.
-    travel_m : float
-        How far each wheel rolls, in m.
-    version : str
-        Version of umbmark.
-    """
-
-    robot: str
-    travel_m: float
-    version: str
-
-
 class MonteCarlo(Result, frozen=True):
     """The result of a study.
 
