@@ -96,6 +96,15 @@ pub enum Reason {
         /// Root mean square of what changes slowly \[rad\].
         deviation: f64,
     },
+    /// What the model leaves depends on something, surely, though held-out runs are hardly predicted better with it.
+    Varies {
+        /// Standard deviation of that, as a share of the way.
+        share: f64,
+        /// "forward" or "yaw".
+        motion: &'static str,
+        /// What it depends on, in words.
+        on: &'static str,
+    },
     /// One run is unlike the others.
     OddRun(OddRun),
     /// The data are in doubt.
@@ -194,6 +203,10 @@ impl Reason {
                 1e3 * inside
             ),
             Reason::Repeats(repeated) => repeated.sentence(),
+            Reason::Varies { share, motion, on } => format!(
+                "the {motion} error depends on {on}, by {:.2} % of the way: the numbers are means of what changes, and their intervals do not hold that",
+                100.0 * share
+            ),
             Reason::HeadingsWander { deviation } => format!(
                 "the measured headings wander by {:.1} deg against the way that was measured: they drift, are set anew in each run, or the marker \
                  turned on the robot; leave the column of headings empty, and positions alone are fitted",

@@ -38,6 +38,7 @@ mod search;
 mod significance;
 mod smooth;
 mod suggestion;
+mod varying;
 mod wander;
 
 use super::diagnosis::{Diagnosis, Verdict};

@@ -9,7 +9,7 @@ use super::repeats::Repeated;
 use super::responses::Question;
 use super::search::{Added, Found, Search};
 use super::smooth::{ALONG_THE_WAY, Motion};
-use super::{experiments, significance};
+use super::{experiments, significance, varying};
 use crate::diagnose::diagnosis::{Diagnosis, GoodnessOfFit, Verdict};
 use crate::diagnose::experiments::Experiment;
 use crate::diagnose::identifiability::Identifiability;
@@ -59,6 +59,7 @@ impl Conclusion {
         reasons.extend(reason_to_doubt(repeats.as_ref()));
         reasons.extend(Reason::of_remains(&remains, last.fitted.observed.resolution()));
         reasons.extend(odd_run(last));
+        reasons.extend(varying::of_smooths(last, options));
         let (mut experiments, mut hints) = (Vec::new(), Vec::new());
         for (exam, added) in search.exams.iter().zip(&search.added) {
             let (told, hint) = next_experiments(exam, added)?;

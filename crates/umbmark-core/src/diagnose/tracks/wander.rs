@@ -49,7 +49,8 @@ pub(super) fn of_headings(observed: &Observed, model: &Model) -> Option<Reason> 
     let pairs = (1..left.len()).filter(|k| stretches[*k].follows).map(|k| left[k - 1] * left[k]);
     let (count, sum, squares) =
         pairs.fold((0, 0.0, 0.0), |(count, sum, squares), pair| (count + 1, sum + pair, squares + pair * pair));
-    let (count, variance) = (f64::from(count.max(1)), left.iter().map(|own| own * own).sum::<f64>() / left.len() as f64);
+    let (count, variance) =
+        (f64::from(count.max(1)), left.iter().map(|own| own * own).sum::<f64>() / left.len() as f64);
     let deviation = (sum / count).max(0.0).sqrt();
     let surely = sum > SURELY.0 * count.sqrt() * variance && sum > SURELY.1 * f64::sqrt(squares);
     let told = surely && deviation > LEAST;
