@@ -53,7 +53,7 @@ def ratios(learn: Json, truth: Json) -> Json:
         scale = said["e_s"][0] if said["e_s"] else 1.0
         wheelbase = off_by(said["e_b"], truth["e_b"] / truth["e_s"] * scale)
         return {"e_d": None, "e_b": wheelbase, "e_s": None}
-    if kind == "straights" or said["e_b"] is None:
+    if kind == "straights" or (kind == "back_and_forth" and said["e_b"] is None):
         # Straights show the turn of each metre, (E_d - 1) / E_b, where E_b is not fitted.
         believed = said["e_b"][0] if said["e_b"] else 1.0
         ratio = off_by(said["e_d"], 1.0 + (truth["e_d"] - 1.0) / truth["e_b"] * believed)

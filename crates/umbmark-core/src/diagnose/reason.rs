@@ -204,7 +204,7 @@ impl Reason {
             ),
             Reason::Repeats(repeated) => repeated.sentence(),
             Reason::Varies { share, motion, on } => format!(
-                "the {motion} error depends on {on}, by {:.2} % of the way: the numbers are means of what changes, and their intervals do not hold that",
+                "the {motion} error depends on {on}, by {:.2} % of the way: the fitted numbers are averages over this change, which their intervals leave out",
                 100.0 * share
             ),
             Reason::HeadingsWander { deviation } => format!(

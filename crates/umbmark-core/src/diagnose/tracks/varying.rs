@@ -1,8 +1,8 @@
 //! Whether the numbers that were fitted are the same all along the runs.
 //!
 //! A dependence that is not added, because it lowers the error of held-out runs too little, can still bend the numbers: wheels that shrink by
-//! 0.4 % in the course of each run leave little behind the chance of turns, and E_d, E_b and E_s are ten standard errors off. So a
-//! smooth that is certain, and as large as a share of the way that matters, is a reason for doubt.
+//! 0.4 % in the course of each run leave less than chance does in turns, and E_d, E_b and E_s are 7 to 11 standard errors off. So a
+//! smooth is a reason for doubt where it is certain and as large as a share of the way that matters.
 
 use super::curve::curve;
 use super::examination::Examination;
