@@ -182,6 +182,12 @@ class Faults:
     slam_m: tuple[float, float] = (0.05, 0.3)
     heading_walk_rad_sqrt_s: float = 0.0
     """Measured headings drift, and positions do not: a random walk that begins anew in each run."""
+    stretch_along: float = 0.0
+    """Positions are longer by this share along x, and shorter along y."""
+    stretch_diagonal: float = 0.0
+    """The same along the diagonal between x and y, and across it."""
+    filled_in_poses: int = 0
+    """One of so many poses is measured, and the others lie on lines between those; 0: all are."""
     counts_commands: bool = False
     """Ticks are made from commanded speeds, not from the wheels' motion."""
 

@@ -108,6 +108,22 @@ def test_headings_that_drift_beside_positions_are_doubted_and_positions_alone_ar
     assert said["without"]["verdict"] == "explained"
 
 
+def test_axes_of_unequal_scale_are_named_and_leave_the_scale_open(tmp_path: File) -> None:
+    write(make("stretched", 3, [*SMALL, "stretch_along=0.008", "run_s=60"]), tmp_path)
+    words = [str(COMMAND), "learn", str(tmp_path), "--json"]
+    learnt = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
+    assert "reference_stretch" in [step["added"] for step in learnt["steps"]]
+    assert learnt["verdict"] == "not_explained"
+    assert any("E_s and E_b may be 0." in reason for reason in learnt["reasons"])
+    assert learnt["sentence"].endswith("do not write the new numbers below into the robot yet.")
+
+
+def test_poses_that_were_filled_in_are_left_out_and_the_robot_is_explained() -> None:
+    said = found("filled_in", 2, "filled_in_poses=6", "run_s=60")
+    assert (said["verdict"], said["added_wrong"]) == ("explained", [])
+    assert all(abs(one["standard_errors"]) < 4 for one in said["ratios"].values()), said["ratios"]
+
+
 def test_where_nothing_is_hidden_nothing_is_accused() -> None:
     said = found("null", 4)
     assert (said["verdict"], said["added_wrong"]) == ("explained", [])

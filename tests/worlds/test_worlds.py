@@ -57,7 +57,7 @@ def folder_bytes(folder: File) -> dict[str, bytes]:
     return {str(file.relative_to(folder)): file.read_bytes() for file in files}
 
 
-@pytest.mark.parametrize("world", sorted(set(WORLDS) - DRIFTS - {"heading_walk"}))
+@pytest.mark.parametrize("world", sorted(set(WORLDS) - DRIFTS - {"heading_walk", "stretched"}))
 def test_the_truth_replays_to_the_measured_poses_within_noise(world: str, tmp_path: File) -> None:
     write(made(world, 4, *EXACT), tmp_path)
     assert rms_m(left(tmp_path), with_glitches=False) < 2e-3
@@ -76,6 +76,25 @@ def test_headings_walk_away_beside_positions_that_stay() -> None:
         turned = np.unwrap(off[:, 2])
         assert np.abs(np.diff(turned)).max() < 0.03 < np.ptp(turned)
         assert off[:, :2] == pytest.approx(0, abs=0.03)
+
+
+def test_a_stretched_picture_is_longer_along_one_axis_and_shorter_along_the_other() -> None:
+    seen = made("stretched", 3, "stretch_along=0.01", "stretch_diagonal=0.004").logs
+    true = made("stretched", 3, "stretch_along=0", "stretch_diagonal=0").logs
+    for one, other in zip(seen, true, strict=True):
+        place = with_pose(other)[:, :2]
+        off = with_pose(one)[:, :2] - place
+        expected = np.column_stack(
+            [0.01 * place[:, 0] + 0.004 * place[:, 1], 0.004 * place[:, 0] - 0.01 * place[:, 1]]
+        )
+        assert np.abs(off).max() > 5e-3
+        assert off == pytest.approx(expected, abs=3e-4)
+
+
+def test_poses_that_are_filled_in_lie_on_lines_between_the_others() -> None:
+    for log in made("filled_in", 3, "filled_in_poses=5", *EXACT).logs:
+        place = with_pose(log)[:60, :2].reshape(12, 5, 2)
+        assert np.diff(place, n=2, axis=1) == pytest.approx(0.0, abs=2e-3)
 
 
 @pytest.mark.parametrize("world", ["null", "combined", "one_long", "interleaved"])

@@ -153,11 +153,27 @@ def measured(
         steps = np.sqrt(np.diff(stamp_s, prepend=stamp_s[:1]).clip(min=0.0))
         walk = np.cumsum(steps * random.standard_normal(len(pose)))
         pose = pose + faults.heading_walk_rad_sqrt_s * np.outer(walk, [0.0, 0.0, 1.0])
+    if faults.stretch_along or faults.stretch_diagonal:
+        along, diagonal = faults.stretch_along, faults.stretch_diagonal
+        picture = np.array(
+            [[1 + along, diagonal, 0.0], [diagonal, 1 - along, 0.0], [0.0, 0.0, 1.0]]
+        )
+        pose = pose @ picture
     sizes = [reference.position_noise_m, reference.position_noise_m, reference.heading_noise_rad]
     rate = setting.recording.reference_rate_hz
     pose = pose + noise(reference, len(pose), rate, random) * sizes
     pose, bad = with_glitches(pose, faults, random)
-    return pose, bad, corrections
+    return filled_in(pose, stamp_s, faults), bad, corrections
+
+
+def filled_in(pose: Array, stamp_s: Array, faults: Faults) -> Array:
+    """Poses of which only some are measured, and the others lie on lines between these."""
+    if not faults.filled_in_poses or len(pose) == 0:
+        return pose
+    some = np.arange(0, len(pose), faults.filled_in_poses)
+    some = np.append(some, len(pose) - 1)
+    whole = np.column_stack([pose[:, :2], np.unwrap(pose[:, 2])])
+    return np.column_stack([np.interp(stamp_s, stamp_s[some], axis[some]) for axis in whole.T])
 
 
 def resting(ride: Ride, time_s: Array) -> Array:

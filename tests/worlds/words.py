@@ -33,6 +33,8 @@ NUISANCES: dict[str, set[str]] = {
     "lever_forward_m": {"marker_offset"},
     "yaw_rad": {"marker_yaw", "crab"},
     "counts_commands": {"wheel_lag", "reference_delay"},
+    "stretch_along": {"reference_stretch"},
+    "stretch_diagonal": {"reference_stretch"},
 }
 """Effects that are right to add where the number is not zero."""
 LAWS: dict[str, tuple[set[str], str]] = {
@@ -87,7 +89,7 @@ LAWS_IN_WORDS: list[tuple[str, str]] = [
 EXPLAINED = "explained"
 FREE_START = {"late_start", "moving_start", "long_pieces"}
 """Worlds where START was never seen at rest: `start_pose` is right there."""
-UNSTEADY = {"scanmatch", "slam", "heading_walk", "command", "sparse"}
+UNSTEADY = {"scanmatch", "slam", "heading_walk", "stretched", "command", "sparse"}
 """Worlds whose reference or wheels do more than the model can say: any verdict is right."""
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import ceil, pi
+from math import ceil, cos, pi, sin
 from typing import Any, TypeAlias
 
 from draw import around, chance, log_uniform, pick, signed
@@ -180,6 +180,20 @@ def heading_walk(_: Setting, random: Random) -> Changes:
     return {"heading_walk_rad_sqrt_s": log_uniform(random, 0.005, 0.02)}
 
 
+def stretched(_: Setting, random: Random) -> Changes:
+    """A reference that shows ways longer in one direction of the room than across it."""
+    share, direction = log_uniform(random, 0.001, 0.01), random.uniform(0, 2 * pi)
+    return {
+        "stretch_along": share * cos(direction),
+        "stretch_diagonal": share * sin(direction),
+    }
+
+
+def filled_in(_: Setting, random: Random) -> Changes:
+    """Poses that were filled in on straight lines between measured ones."""
+    return {"filled_in_poses": int(random.integers(4, 11))}
+
+
 def combined(setting: Setting, random: Random) -> Changes:
     """Two or three troubles at once."""
     somewhere = always(start="room")
@@ -319,6 +333,8 @@ WORLDS = {
         World("gaps", "holes of 0.5 to 5 s in the poses", gaps),
         World("slam", "reference drifts and jumps back every half minute", slam),
         World("heading_walk", "measured headings drift, and positions do not", heading_walk),
+        World("stretched", "ways longer in one direction of the room", stretched),
+        World("filled_in", "3 to 9 of 4 to 10 poses on lines between the others", filled_in),
         World(
             "combined", "2 or 3 of delay, lever, yaw, jumps, glitches, start in a room", combined
         ),

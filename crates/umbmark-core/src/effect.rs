@@ -113,6 +113,7 @@ register! {
     reference_heading_drift,
     reference_heading_scale,
     reference_lens,
+    reference_stretch,
     reference_noise,
 }
 
@@ -252,6 +253,11 @@ pub trait Effect {
     /// Meaning of these values for the robot, in a sentence; empty if there is none.
     fn means(_p: &[f64], _robot: &Robot) -> String {
         String::new()
+    }
+
+    /// Share by which E_s may be off either way beside these values, because no pose of this reference says more.
+    fn unknown_scale(_p: &[f64]) -> f64 {
+        0.0
     }
 
     /// Whether a robot can have these values; where it cannot, something else is the cause.

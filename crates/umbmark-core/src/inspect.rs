@@ -205,7 +205,9 @@ fn mended_checks(logs: &[LogFacts], robot: Option<&Robot>) -> Vec<Check> {
     }
     let sum = |of: fn(&Mended) -> usize| logs.iter().map(|log| of(&log.mended)).sum::<usize>();
     let (roll_overs, resets) = (sum(|m| m.roll_overs), sum(|m| m.resets));
-    let (late, repeated, stale) = (sum(|m| m.late), sum(|m| m.repeated), sum(|m| m.stale));
+    let (late, repeated) = (sum(|m| m.late), sum(|m| m.repeated));
+    let (stale, filled_in) = (sum(|m| m.stale), sum(|m| m.filled_in));
+    let repaired = late + repeated + stale + filled_in;
     let width = robot.and_then(|robot| robot.encoder.counter_bits());
     vec![
         Check {
@@ -225,12 +227,13 @@ fn mended_checks(logs: &[LogFacts], robot: Option<&Robot>) -> Vec<Check> {
         },
         Check {
             name: "rows and poses repaired",
-            found: match late + repeated + stale {
-                0 => "none".into(),
-                _ => format!("{late} out of order, {repeated} repeated, {stale} stale poses"),
+            found: match (repaired, filled_in) {
+                (0, _) => "none".into(),
+                (_, 0) => format!("{late} out of order, {repeated} repeated, {stale} stale poses"),
+                _ => format!("{late} out of order, {repeated} repeated, {stale} stale poses, {filled_in} filled in"),
             },
             good: "none: a logger or tracker that keeps up",
-            ok: late + repeated + stale == 0,
+            ok: repaired == 0,
         },
     ]
 }

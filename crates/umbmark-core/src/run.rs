@@ -122,6 +122,8 @@ pub struct Mended {
     pub repeated: usize,
     /// Poses that repeat the one before while the wheels turn and were left out.
     pub stale: usize,
+    /// Poses that were filled in between measured ones and were left out.
+    pub filled_in: usize,
 }
 
 /// One drive round the path.

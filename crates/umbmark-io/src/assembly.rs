@@ -3,6 +3,7 @@
 use super::RobotFile;
 use super::closures::{Closure, Marks, closures};
 use super::error::{At, DatasetError, LineProblem};
+use super::filled_in::drop_filled_in;
 use super::label::{self, Named};
 use super::layout::csv::{Measured, ReturnRow};
 use super::recording::Recording;
@@ -177,6 +178,7 @@ impl Assembly {
         if !log.relative {
             if let Some(robot) = self.robot.as_ref().filter(|_| !log.headings_only) {
                 drop_stale(&file, &mut log, robot, &mut self.warnings);
+                drop_filled_in(&file, &mut log, &mut self.warnings);
             }
             move_to_start(&file, &mut log, self.robot.as_ref(), &mut self.warnings)?;
         }

@@ -24,6 +24,7 @@ mod distribution_table;
 mod document;
 mod error;
 pub mod export;
+mod filled_in;
 mod foreign;
 mod label;
 mod layout;

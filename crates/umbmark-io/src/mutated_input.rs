@@ -5,6 +5,7 @@
 
 use super::closures::{Closure, Marks, closures};
 use super::error::DatasetError;
+use super::filled_in::drop_filled_in;
 use super::layout::csv::{Measured, parse_returns, parse_tick_log};
 use super::layout::{optiodom, parse_track};
 use super::model_file::ModelFile;
@@ -94,6 +95,7 @@ fn finished(recording: Recording, bits: Option<u32>) -> bool {
     let finite = |log: &TickLog| log.left.iter().chain(&log.right).chain(&log.time).all(|value| value.is_finite());
     log.is_ok_and(|mut log| {
         drop_stale("file", &mut log, &Robot::labmate(), &mut Vec::new());
+        drop_filled_in("file", &mut log, &mut Vec::new());
         let moved = move_to_start("file", &mut log, None, &mut Vec::new()).is_ok();
         assert!(finite(&log));
         assert!(log.reference.iter().all(|p| p.x.is_finite() && p.y.is_finite()));

@@ -194,9 +194,12 @@ impl Recording {
             rates.truncate(hundredth);
             least
         };
+        // A small counter of a fast wheel rolls over in more than one step in a hundred.
+        let range = widths_of(&self.counts[wheel]).first().map_or(f64::INFINITY, |bits| f64::from(*bits).exp2());
+        let rolled = |step: f64| step.min((range - step).abs());
         let (mut largest, mut least) = (Vec::with_capacity(2 * hundredth), f64::NEG_INFINITY);
         for (count, time) in self.counts[wheel].windows(2).zip(self.time.windows(2)) {
-            let rate = (count[1] - count[0]).abs() / (time[1] - time[0]);
+            let rate = rolled((count[1] - count[0]).abs()) / (time[1] - time[0]);
             if !(rate <= least) {
                 largest.push(rate);
                 if largest.len() == 2 * hundredth {
@@ -310,6 +313,20 @@ mod tests {
         ] {
             assert_eq!(rolled_bits(4094.0, 1.0, &widths_of(&readings)), bits, "{readings:?}");
         }
+    }
+
+    /// A wheel of 2600 ticks a row rolls a counter of 16 bits over in four rows of a hundred.
+    #[test]
+    fn a_counter_that_rolls_over_every_few_rows_is_named() {
+        let count = |row: i32| f64::from((2600 * row) % 65_536);
+        let counts: Vec<f64> = (0..400).map(count).collect();
+        let time: Vec<f64> = (0..400).map(|row| 0.05 * f64::from(row)).collect();
+        let columns = ["t_s", "ticks_left", "ticks_right"].map(str::to_owned);
+        let counts = [counts.clone(), counts];
+        let recording = Recording { time, counts, columns, lines: (2..402).collect(), ..Recording::default() };
+        assert!((recording.usual_rate(0) / 52_000.0 - 1.0).abs() < 1e-6);
+        let refused = recording.into_log(None, None, &mut Vec::new()).map(|_| ()).unwrap_err().to_string();
+        assert!(refused.contains("a counter of 16 bits"), "{refused}");
     }
 
     #[test]

@@ -436,6 +436,48 @@ fn poses_that_repeat_while_the_wheels_turn_are_stale_and_those_at_rest_are_not()
     assert_eq!(data.runs[0].log.as_ref().unwrap().reference.len(), 36);
 }
 
+/// A drive round a bend and on, with a pose each row that its reference saw every `every` rows, beginning with `first`, and filled in on straight
+/// lines; as many rows as that.
+fn seen_now_and_then(every: f64, first: f64) -> String {
+    let noise = |seen: f64| 1e-3 * (7.3 * seen * seen).sin();
+    let pose = |row: f64| {
+        let heading = (0.004 * row).min(1.2);
+        let turned = row.min(300.0);
+        let on = 0.01 * (row - turned);
+        let round = [2.5 * (0.004 * turned).sin(), 2.5 - 2.5 * (0.004 * turned).cos()];
+        [round[0] + on * heading.cos(), round[1] + on * heading.sin(), heading]
+    };
+    let mut text = String::from("t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad\n");
+    for row in 0..600 {
+        let since = (f64::from(row) - first) / every;
+        let (seen, share) = (since.floor(), since - since.floor());
+        let measured = |seen: f64, axis: usize| pose(first + every * seen)[axis] + noise(seen + 0.3 * axis as f64);
+        let [x, y, heading] =
+            [0, 1, 2].map(|axis| (1.0 - share) * measured(seen, axis) + share * measured(seen + 1.0, axis));
+        let ticks = [-1.0, 1.0].map(|side| 20.0 * f64::from(row) + side * 1.4 * f64::from(row.min(300)));
+        text += &format!("{},{:.0},{:.0},{x:.5},{y:.5},{heading:.5}\n", 0.02 * f64::from(row), ticks[0], ticks[1]);
+    }
+    text
+}
+
+#[test]
+fn poses_that_were_filled_in_on_straight_lines_are_left_out_and_those_that_were_measured_are_kept() {
+    let (data, said) = warnings_of(&seen_now_and_then(10.0, 0.0));
+    let kept: Vec<usize> = data.runs[0].log.as_ref().unwrap().reference.iter().map(|pose| pose.sample).collect();
+    assert!(said.contains("poses were filled in on straight lines between measured ones, 10 poses apart"), "{said}");
+    assert!(kept.len() >= 55 && kept[..kept.len() - 1].iter().all(|sample| sample % 10 == 0), "{kept:?}");
+    // Measured between the rows: the row beside it stays.
+    let (data, said) = warnings_of(&seen_now_and_then(8.0, 2.6));
+    let kept: Vec<usize> = data.runs[0].log.as_ref().unwrap().reference.iter().map(|pose| pose.sample).collect();
+    assert!(said.contains("between measured ones, 8 poses apart"), "{said}");
+    let inner = &kept[1..kept.len() - 1];
+    assert!(kept.len() >= 60 && inner.iter().all(|sample| [2, 3].contains(&(sample % 8))), "{kept:?}");
+    // Every pose measured: nothing is filled in.
+    let (data, said) = warnings_of(&seen_now_and_then(1.0, 0.0));
+    assert!(!said.contains("filled in"), "{said}");
+    assert_eq!(data.runs[0].log.as_ref().unwrap().reference.len(), 600);
+}
+
 #[test]
 fn a_track_beside_the_log_is_set_by_the_motion_in_every_format() {
     // Legs of 1 m and quarter turns, with rests, at 50 Hz; b = 0.5 m, 0.2 pi mm a tick.

@@ -105,6 +105,13 @@ pub enum Reason {
         /// What it depends on, in words.
         on: &'static str,
     },
+    /// An effect of the reference leaves the scale open.
+    UnknownScale {
+        /// The effect, in words.
+        title: &'static str,
+        /// Share by which E_s may be off either way.
+        share: f64,
+    },
     /// One run is unlike the others.
     OddRun(OddRun),
     /// The data are in doubt.
@@ -131,7 +138,7 @@ impl Reason {
     /// Whether it concerns the data and not the model: a model that is fitted to such data is not written.
     pub fn is_of_data(&self) -> bool {
         match self {
-            Reason::Fault(_) | Reason::HeadingsWander { .. } => true,
+            Reason::Fault(_) | Reason::HeadingsWander { .. } | Reason::UnknownScale { .. } => true,
             Reason::Data(suspicion) => suspicion.forbids_writing(),
             _ => false,
         }
@@ -211,6 +218,11 @@ impl Reason {
                 "the measured headings wander by {:.1} deg against the way that was measured: they drift, are set anew in each run, or the marker \
                  turned on the robot; leave the column of headings empty, and positions alone are fitted",
                 deviation.to_degrees()
+            ),
+            Reason::UnknownScale { title, share } => format!(
+                "the reference has {title}, and which of them is right it does not say: E_s and E_b may be {:.2} % off either way; measure a straight \
+                 leg along each axis with a tape, and correct the reference",
+                100.0 * share
             ),
             Reason::OddRun(odd) => odd.sentence(),
             Reason::Data(suspicion) => suspicion.sentence(),

@@ -106,6 +106,8 @@ pub struct Entry {
     pub changes: Changes,
     /// See [`Effect::means`].
     pub means: fn(&[f64], &Robot) -> String,
+    /// See [`Effect::unknown_scale`].
+    pub unknown_scale: fn(&[f64]) -> f64,
     /// See [`Effect::is_credible`].
     pub is_credible: fn(&[f64]) -> bool,
     /// See [`Effect::varies`].
@@ -146,6 +148,7 @@ impl Entry {
             drives: E::DRIVES,
             changes: Changes::NOTHING,
             means: E::means,
+            unknown_scale: E::unknown_scale,
             is_credible: E::is_credible,
             varies: E::varies,
             tried: E::tried,

@@ -70,7 +70,7 @@ impl Effect for ReferenceLens {
                   same picture is bent with them (h = 1).",
         signature: "The robot seems to drive a longer way, and on curves, near the edge of the picture than in its middle, whatever \
                     wheel leads and whichever way it drives. In the mean over the room it looks like E_s.",
-        confused_with: &["scale"],
+        confused_with: &["scale", "reference_stretch"],
         separated_by: "the same straight leg, by tape, in the middle of the picture and at its edge",
         source: "radial distortion (D. C. Brown, Decentering distortion of lenses, 1966); 2 mm at 1 m are assumed",
     };

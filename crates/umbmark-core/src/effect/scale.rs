@@ -34,6 +34,7 @@ impl Effect for Scale {
             "rear_truck",
             "bumps",
             "reference_lens",
+            "reference_stretch",
         ],
         separated_by: "the length of one straight leg, by tape; the pose at a stop",
         source: "Borenstein & Feng (1995), section 2",

@@ -185,7 +185,8 @@ fn a_recording_with_a_clock_of_its_own_is_named() {
 #[test]
 fn what_was_mended_in_a_log_is_counted_and_only_a_roll_over_is_harmless() {
     let mut mended = drive(Direction::Ccw, 5, same);
-    mended.log.as_mut().unwrap().mended = Mended { roll_overs: 3, resets: 1, late: 2, repeated: 0, stale: 4 };
+    mended.log.as_mut().unwrap().mended =
+        Mended { roll_overs: 3, resets: 1, late: 2, repeated: 0, stale: 4, filled_in: 0 };
     let mut data = dataset(vec![mended, drive(Direction::Cw, 5, same)]);
     let encoder = data.robot.as_ref().unwrap().encoder;
     let encoder = Encoder::new(encoder.ticks_per_revolution(), encoder.rate(), Some(16)).unwrap();
@@ -195,6 +196,10 @@ fn what_was_mended_in_a_log_is_counted_and_only_a_roll_over_is_harmless() {
     assert_eq!(said("counter roll-overs"), ("3 of counters of 16 bits, undone", true));
     assert_eq!(said("counter resets"), ("1, counted on from zero", false));
     assert_eq!(said("rows and poses repaired"), ("2 out of order, 0 repeated, 4 stale poses", false));
+    data.runs[0].log.as_mut().unwrap().mended = Mended { filled_in: 30, ..Mended::default() };
+    let found = data.inspect();
+    let said = check(&found, "rows and poses repaired");
+    assert!(!said.ok && said.found.ends_with("0 stale poses, 30 filled in"), "{}", said.found);
 }
 
 #[test]

@@ -51,6 +51,8 @@ pub struct Mended {
     pub rows_repeated: usize,
     /// Poses repeated from the previous row.
     pub stale_poses: usize,
+    /// Poses that were filled in between measured ones.
+    pub filled_in_poses: usize,
 }
 
 /// Whether the motion of the poses confirms the names of the wheels.
@@ -195,6 +197,7 @@ impl From<&inspect::LogFacts> for LogFacts {
                 rows_out_of_order: log.mended.late,
                 rows_repeated: log.mended.repeated,
                 stale_poses: log.mended.stale,
+                filled_in_poses: log.mended.filled_in,
             },
             length_m: log.length,
             heading_rad: log.heading,

@@ -1,8 +1,9 @@
 //! The answer in words.
 
 use super::{Measure, Off, Part, Solution};
-use crate::diagnose::{Experiment, Verdict};
+use crate::diagnose::{Experiment, Reason, Verdict};
 use crate::effect::find;
+use crate::prose::counted;
 
 /// An error is told in tenths of a millimetre below this \[m\].
 const FINE: f64 = 0.01;
@@ -56,7 +57,13 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
         }];
     }
     if solution.learnt.is_in_doubt() {
-        return vec!["No model explains these runs, so do not write the new numbers below into the robot yet.".into()];
+        let mut forbidding =
+            solution.learnt.diagnosis.reasons.iter().filter(|reason| reason.forbids_writing()).peekable();
+        let cause = match forbidding.peek().is_some() && forbidding.all(Reason::is_of_data) {
+            true => "What was measured is in doubt",
+            false => "No model explains these runs",
+        };
+        return vec![format!("{cause}, so do not write the new numbers below into the robot yet.")];
     }
     if solution.misleads_alone() {
         return vec![alone(solution, off)];
@@ -66,10 +73,13 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
     }
     let known: f64 = off.known.iter().map(|part| part.worth).sum();
     let explained = verdict == Verdict::Explained;
-    let is_chance = |error: f64| off.chance.map_or(explained, |chance| error <= chance);
+    let jumps = if off.measure == Measure::Along { jumps(solution) } else { 0 };
+    let is_chance = |error: f64| off.chance.map_or(explained && jumps == 0, |chance| error <= chance);
     let by_chance = |error: f64| match off.chance {
         _ if is_chance(error) => ", no more than chance makes".to_owned(),
         Some(chance) => format!(", and chance stays below {} in 95 % of tests", mm(chance)),
+        None if jumps == 1 => ", of which one jump of the tracks makes a part".to_owned(),
+        None if jumps > 1 => format!(", of which {jumps} jumps of the tracks make a part"),
         None => String::new(),
     };
     let mut said = Vec::new();
@@ -116,11 +126,28 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
         });
     }
     if solution.misses_something() {
-        said.push("The robot has a further error source, which the model lacks.".into());
+        said.push(format!("The robot has a further error source, which the model lacks{}.", hidden(solution)));
     } else if !off.known.is_empty() {
         said.push(format!("The rest is {}{}.", mm(off.rest), by_chance(off.rest)));
+        if verdict == Verdict::UnlistedEffect {
+            said.push(format!("A law of no catalogue has a cause that nobody knows{}.", hidden(solution)));
+        }
     }
     said
+}
+
+/// That what is not known may hide in the new numbers, where there are some to write.
+fn hidden(solution: &Solution) -> &'static str {
+    match solution.needed {
+        true => ": the new numbers may hold a part of it, for which their intervals make no allowance",
+        false => "",
+    }
+}
+
+/// Number of jumps of the tracks, those that only the fit shows included.
+fn jumps(solution: &Solution) -> usize {
+    let diagnosis = &solution.learnt.diagnosis;
+    diagnosis.setup.disturbances()[0] + diagnosis.outliers.len()
 }
 
 /// Why the new numbers are not to be written alone.
@@ -206,6 +233,13 @@ pub(super) fn next(solution: &Solution) -> Vec<String> {
                 .into(),
         );
         next.push("Then drive the same test again: `umbmark score` shows whether it is better.".into());
+    }
+    if !solution.learnt.is_in_doubt() && jumps(solution) > 0 {
+        next.push(format!(
+            "Find the cause of {}: counts that were lost, a wheel that slipped, a push, or a reference that lost the robot. `umbmark learn \
+             DATA` says where.",
+            counted(jumps(solution), "jump")
+        ));
     }
     if !enough {
         next.push("Drive at least three runs in each direction, or log poses on the way, then solve again.".into());

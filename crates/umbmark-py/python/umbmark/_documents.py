@@ -1677,6 +1677,8 @@ class Mended(Record, frozen=True):
         Duplicate rows.
     stale_poses : int
         Poses repeated from the previous row.
+    filled_in_poses : int
+        Poses that were filled in between measured ones.
     """
 
     roll_overs: int
@@ -1684,6 +1686,7 @@ class Mended(Record, frozen=True):
     rows_out_of_order: int
     rows_repeated: int
     stale_poses: int
+    filled_in_poses: int
 
 
 class WheelFacts(Record, frozen=True):

@@ -80,6 +80,7 @@ EffectName: TypeAlias = Literal[
     "reference_heading_scale",
     "reference_lens",
     "reference_noise",
+    "reference_stretch",
 ]
 ActsOn: TypeAlias = Literal[
     "heading_per_metre",
@@ -215,3 +216,5 @@ class EffectKeys(TypedDict, total=False):
     centre_x_m: Drawn
     centre_y_m: Drawn
     headings: Drawn
+    along_m_per_m: Drawn
+    diagonal_m_per_m: Drawn

@@ -2,7 +2,7 @@
 
 use super::{chance, wander};
 use crate::diagnose::reason::Reason;
-use crate::effect::Model;
+use crate::effect::{Model, Part};
 use crate::evidence::tracks::Misses;
 use crate::likelihood::{Growth, Noise, Observed};
 
@@ -31,6 +31,8 @@ const AT_LIMIT: f64 = 0.9;
 const LEAST: (f64, f64) = (1.0, 1.0);
 /// Number of simulated sets that errors along the way are compared with; fewer where the data has more blocks than the second number.
 const SETS: (usize, usize) = (100, 2_000_000);
+/// The scale may be open by this share: usual tapes and motion capture are no better.
+const OPEN_SCALE: f64 = 2.5e-4;
 /// Errors may exceed the 95 % quantile of simulated sets by this factor: noise that is correlated over metres makes drifts 2.6 times as
 /// large as the noise model predicts.
 const REMEMBERS: f64 = 2.5;
@@ -42,7 +44,18 @@ pub(super) fn of_model(observed: &Observed, model: &Model, noise: &Noise, left: 
     reasons.extend(of_noise(observed, noise));
     reasons.extend(of_size(observed, noise, left, seed));
     reasons.extend(wander::of_headings(observed, model));
+    reasons.extend(of_scale(model));
     reasons
+}
+
+/// The reason of an effect beside which the reference does not show the scale.
+fn of_scale(model: &Model) -> Option<Reason> {
+    let unknown = |part: &Part| {
+        let entry = part.effect.entry()?;
+        let share = (entry.unknown_scale)(&part.values);
+        (share > OPEN_SCALE).then_some(Reason::UnknownScale { title: entry.about.title, share })
+    };
+    model.parts().iter().find_map(unknown)
 }
 
 /// A size of the noise.
