@@ -20,6 +20,7 @@ mod counts_factor;
 mod disturbances;
 mod edges;
 mod faults;
+mod misread;
 mod notices;
 mod one_way;
 mod returns;
@@ -44,6 +45,7 @@ use windows::{Rolled, Window, windows};
 
 pub use counts_factor::CountsFactor;
 pub use faults::Fault;
+pub use misread::{Misread, Written};
 pub use notices::TOLD;
 pub use returns::{Coordinate, Deviant, OutlyingReturn, Returned};
 pub use suspicion::Suspicion;
@@ -184,6 +186,9 @@ impl Setup {
         // Return errors follow from the tracks and have the same faults.
         if setup.is_sound() {
             setup.returned = Returned::of(runs, robot, path);
+        }
+        if setup.is_sound() && setup.returned.faults.is_empty() && setup.outlying().next().is_none() {
+            setup.doubts.extend(path.and_then(|path| Misread::of(runs, robot, path)).map(Suspicion::Misread));
         }
         if setup.is_sound() && setup.mounting.is_none() {
             setup.doubts.extend(path.and_then(|path| counts_factor::by_path(runs, robot, path)));

@@ -1,7 +1,7 @@
 //! What makes the data suspicious although no fault is certain.
 
 use super::counts_factor::CountsFactor;
-use super::{Jump, OutlyingReturn};
+use super::{Jump, Misread, OutlyingReturn};
 
 /// One suspicion.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +13,8 @@ pub enum Suspicion {
     },
     /// The return error of a run is far from those of the other runs of its direction.
     OutlyingReturn(OutlyingReturn),
+    /// A sheet of return errors that another reading of it would explain.
+    Misread(Misread),
     /// The track of a run jumps, so that its return error is not the robot's.
     JumpBeforeReturn {
         /// The run's name.
@@ -64,6 +66,7 @@ impl Suspicion {
                 yaw.to_degrees()
             ),
             Suspicion::OutlyingReturn(run) => format!("{}; {}", run.sentence(), run.remedy()),
+            Suspicion::Misread(misread) => misread.sentence(),
             Suspicion::JumpBeforeReturn { run, jump } => jump.notice(run),
             Suspicion::ManyJumps { count, poses } => format!(
                 "{count} of {poses} poses are wrong or jump: look at the reference, and whether the counts are read as the drive makes them"
