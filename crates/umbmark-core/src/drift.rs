@@ -144,7 +144,8 @@ impl Point {
     /// Kinds of change whose limit is exceeded.
     fn alarms(&self) -> impl Iterator<Item = Kind> + '_ {
         let both = self.heights.zip(self.limits);
-        let above = move |kind: &Kind| both.is_some_and(|(heights, limits)| heights[*kind as usize] > limits[*kind as usize]);
+        let above =
+            move |kind: &Kind| both.is_some_and(|(heights, limits)| heights[*kind as usize] > limits[*kind as usize]);
         Kind::ALL.into_iter().filter(above)
     }
 }
@@ -198,7 +199,8 @@ impl Course {
         let first = since.first();
         let heading = first.is_some_and(|run| run.heading_rad.is_some());
         let scale = heading && first.is_some_and(|run| run.scale.is_some());
-        let rows: Vec<usize> = (0..4).filter(|row| *row < 2 || (*row == 2 && heading) || (*row == 3 && scale)).collect();
+        let rows: Vec<usize> =
+            (0..4).filter(|row| *row < 2 || (*row == 2 && heading) || (*row == 3 && scale)).collect();
         let numbers = if scale { NUMBERS } else { NUMBERS - 1 };
         let mut signature = Signature { components: rows.len(), numbers, ..Signature::default() };
         let mut ways: [Option<Option<f64>>; 2] = [None; 2];

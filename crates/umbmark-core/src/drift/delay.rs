@@ -59,7 +59,15 @@ pub(super) fn delays(course: &Course, scorers: &[Scorer; 2], scan: &Scan, per_ru
             .into_par_iter()
             .map(|future| {
                 let mut stream = Stream::new(seed, PURPOSE + index as u64, future);
-                runs_until_seen(course, scorers.clone(), past.clone(), scan.scored(), (key, *share), per_run, &mut stream)
+                runs_until_seen(
+                    course,
+                    scorers.clone(),
+                    past.clone(),
+                    scan.scored(),
+                    (key, *share),
+                    per_run,
+                    &mut stream,
+                )
             })
             .collect();
         runs.sort_unstable();

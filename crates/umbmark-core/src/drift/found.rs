@@ -23,6 +23,9 @@ pub const CONFIDENCE: f64 = 0.95;
 /// A change of place is told from one of numbers, and of scatter from one of place, at this p.
 const TOLD_APART: f64 = 0.01;
 
+/// Numbers account for a change if they account for this share of its square, whatever the rest is: large changes are not linear.
+const MOST: f64 = 0.8;
+
 /// A value with its interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Value {
@@ -154,14 +157,28 @@ pub(super) fn change(
         None => of_kind(if alarmed.contains(&Kind::Scatter) { Kind::Scatter } else { first })?,
     };
     let p_left = numbers.as_ref().and_then(|numbers| numbers.p_left);
+    let accounts = numbers.as_ref().is_some_and(|numbers| numbers.accounts);
     let kind = match kind {
-        Kind::Place if numbers.is_some() && p_left.is_some_and(|p| p >= TOLD_APART) => Kind::Numbers,
-        kind => kind,
+        Kind::Scatter => Kind::Scatter,
+        _ if accounts => Kind::Numbers,
+        _ => Kind::Place,
     };
     let places = sides.places();
     let scatter = sides.scatter(course);
     let (numbers, alone) = numbers.map(|numbers| (numbers.moved, numbers.alone)).unwrap_or_default();
-    Some(Change { kind, since, earliest, latest, seen, numbers, alone, p_left, places, scatter, outlying: sides.outlying })
+    Some(Change {
+        kind,
+        since,
+        earliest,
+        latest,
+        seen,
+        numbers,
+        alone,
+        p_left,
+        places,
+        scatter,
+        outlying: sides.outlying,
+    })
 }
 
 /// The place of a change of a kind, and the ends of where it is with 95 % probability.
@@ -263,7 +280,8 @@ impl Sides {
         for side in &self.sides {
             let own = |at: usize| {
                 let known = side.counts[at] > side.covariance.nrows() + 1;
-                let own = if known { &side.scatters[at] / (side.counts[at] - 1) as f64 } else { side.covariance.clone() };
+                let own =
+                    if known { &side.scatters[at] / (side.counts[at] - 1) as f64 } else { side.covariance.clone() };
                 own / side.counts[at] as f64
             };
             let Some(inverse) = (own(0) + own(1)).try_inverse() else { return 0.0 };
@@ -338,6 +356,8 @@ struct Numbers {
     moved: Vec<MovedNumber>,
     alone: Vec<Alone>,
     p_left: Option<f64>,
+    /// Whether they account for the change of place.
+    accounts: bool,
 }
 
 /// Names of the numbers.
@@ -416,7 +436,8 @@ impl Numbers {
             }
         });
         let alone = alone(&delta, &of_change, sides.freedom, quantile)?;
-        Some(Numbers { moved: moved.collect(), alone, p_left })
+        let accounts = p_left.is_none_or(|p| p >= TOLD_APART) || unexplained < (1.0 - MOST) * whole;
+        Some(Numbers { moved: moved.collect(), alone, p_left, accounts })
     }
 }
 

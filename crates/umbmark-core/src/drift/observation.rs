@@ -123,7 +123,9 @@ fn of_log(log: &TickLog, robot: &Robot) -> Option<Slopes> {
         let other = |by: f64| {
             let robot = moved(&Correction::NONE, number, by).apply(robot).ok()?;
             let poses = computed_poses(log, &robot);
-            Some((computed_end(log, &robot).0?, ratio_of(log, &nominal, |sample, _| poses.get(sample).copied())?))
+            // Of a single place there is no size.
+            let scale = ratio_of(log, &nominal, |sample, _| poses.get(sample).copied()).unwrap_or(0.0);
+            Some((computed_end(log, &robot).0?, scale))
         };
         let ((more, larger), (less, smaller)) = (other(STEP)?, other(-STEP)?);
         let by_step = [more.x - less.x, more.y - less.y, wrap(more.heading - less.heading), larger - smaller];

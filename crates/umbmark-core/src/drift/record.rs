@@ -38,7 +38,11 @@ impl Rate {
     /// [`DriftError::Rate`].
     pub fn checked(self) -> Result<Rate, DriftError> {
         let Rate { false_alarms_per_month: rate, runs_per_month: runs } = self;
-        if rate > 0.0 && rate <= 0.5 && (1..=100_000).contains(&runs) { Ok(self) } else { Err(DriftError::Rate { rate, runs }) }
+        if rate > 0.0 && rate <= 0.5 && (1..=100_000).contains(&runs) {
+            Ok(self)
+        } else {
+            Err(DriftError::Rate { rate, runs })
+        }
     }
 }
 
@@ -85,7 +89,8 @@ impl Known {
         };
         let number = self.numbers.iter().zip(&data.numbers).find_map(differs);
         let path = |known: &Known| {
-            let named = known.path.as_ref().map(|(shape, sizes)| format!("a path of shape \"{shape}\" with sizes {sizes:?}"));
+            let named =
+                known.path.as_ref().map(|(shape, sizes)| format!("a path of shape \"{shape}\" with sizes {sizes:?}"));
             named.unwrap_or_else(|| "no path".to_owned())
         };
         number.or_else(|| (self.path != data.path).then(|| format!("{}, and the data {}", path(self), path(data))))
@@ -184,7 +189,8 @@ impl Record {
             }
         }
         arrived.new = self.runs.len() - known;
-        arrived.vanished = (0..known).filter(|place| !found[*place]).map(|place| self.runs[place].name.clone()).collect();
+        arrived.vanished =
+            (0..known).filter(|place| !found[*place]).map(|place| self.runs[place].name.clone()).collect();
         Ok(arrived)
     }
 
@@ -197,7 +203,10 @@ impl Record {
             Restart::Now => self.runs.len(),
             Restart::At(name) => {
                 let place = self.runs.iter().rposition(|run| run.name == *name);
-                place.ok_or_else(|| DriftError::NoSuchRun { name: name.clone(), last: self.runs.last().map(|run| run.name.clone()) })?
+                place.ok_or_else(|| DriftError::NoSuchRun {
+                    name: name.clone(),
+                    last: self.runs.last().map(|run| run.name.clone()),
+                })?
             }
         };
         Ok(())
@@ -227,7 +236,9 @@ impl Record {
 impl Observation {
     /// Whether the names can be of one run: a run of several datasets is called by its dataset, too.
     fn is_named_as(&self, other: &Observation) -> bool {
-        let ends = |long: &str, short: &str| long.strip_suffix(short).is_some_and(|rest| rest.is_empty() || rest.ends_with('/'));
+        let ends = |long: &str, short: &str| {
+            long.strip_suffix(short).is_some_and(|rest| rest.is_empty() || rest.ends_with('/'))
+        };
         self.direction == other.direction && (ends(&self.name, &other.name) || ends(&other.name, &self.name))
     }
 

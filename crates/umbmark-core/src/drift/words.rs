@@ -34,7 +34,10 @@ pub(super) fn sentence(watched: &Watched, arrived: &Arrived) -> String {
     });
     let seen: Vec<String> = seen.collect();
     if !seen.is_empty() {
-        said.push(format!("Changes that would be found, in brackets within how many runs in 90 % of cases: {}.", seen.join(", ")));
+        said.push(format!(
+            "Changes that would be found, in brackets within how many runs in 90 % of cases: {}.",
+            seen.join(", ")
+        ));
     } else if !watched.delays.is_empty() {
         said.push("These runs scatter so much that a wheel that shrinks by 0.5 % or a wheelbase that grows by 1 % would not be found within 60 runs in 90 % of cases.".to_owned());
     }
@@ -50,7 +53,8 @@ pub(super) fn sentence(watched: &Watched, arrived: &Arrived) -> String {
         Use::LeftOut(reason) => Some((run.name.as_str(), reason)),
         _ => None,
     });
-    let left: Vec<(&str, &str)> = arrived.left_out.iter().map(|(name, reason)| (name.as_str(), *reason)).chain(left).collect();
+    let left: Vec<(&str, &str)> =
+        arrived.left_out.iter().map(|(name, reason)| (name.as_str(), *reason)).chain(left).collect();
     let mut reasons: Vec<&str> = left.iter().map(|(_, reason)| *reason).collect();
     reasons.dedup();
     for reason in reasons {
@@ -93,7 +97,8 @@ fn changed(watched: &Watched, change: &Change) -> String {
     } else {
         format!(" (between {} and {})", name(change.earliest), name(change.latest))
     };
-    let (since, later) = (format!("since run {}{between}", name(change.since)), counted(change.runs_until_seen(&watched.runs), "run"));
+    let (since, later) =
+        (format!("since run {}{between}", name(change.since)), counted(change.runs_until_seen(&watched.runs), "run"));
     match change.kind {
         Kind::Numbers => {
             let mut moved: Vec<&MovedNumber> = change.moved().collect();
@@ -123,16 +128,27 @@ fn changed(watched: &Watched, change: &Change) -> String {
                 .iter()
                 .map(|place| {
                     let mm = |value: f64| format!("{:.1}", 1e3 * value);
-                    let turned = place.heading.map_or(String::new(), |heading| format!(", turned by {:.2} deg", heading.value.to_degrees()));
-                    format!("{} runs return ({}, {}) mm away from where they did{turned}", word(place.direction), mm(place.x.value), mm(place.y.value))
+                    let turned = place
+                        .heading
+                        .map_or(String::new(), |heading| format!(", turned by {:.2} deg", heading.value.to_degrees()));
+                    format!(
+                        "{} runs return ({}, {}) mm away from where they did{turned}",
+                        word(place.direction),
+                        mm(place.x.value),
+                        mm(place.y.value)
+                    )
                 })
                 .collect();
-            let remedy = "no change of E_d and E_b explains it; look at START, the reference, the floor, the load and the speed";
+            let remedy =
+                "no change of E_d and E_b explains it; look at START, the reference, the floor, the load and the speed";
             format!("The return errors changed: {since}, {}, seen with {later}; {remedy}.", all.join("; "))
         }
         Kind::Scatter => {
             let ratio = change.scatter.map_or(String::new(), |scatter| {
-                format!(" to {:.1} times what it was ({:.1} to {:.1})", scatter.ratio, scatter.interval.low, scatter.interval.high)
+                format!(
+                    " to {:.1} times what it was ({:.1} to {:.1})",
+                    scatter.ratio, scatter.interval.low, scatter.interval.high
+                )
             });
             let remedy = "look for slip, loose parts and a reference that errs";
             format!("The scatter of the runs rose{ratio}: {since}, seen with {later}; {remedy}.")

@@ -1,6 +1,6 @@
 //! The table of limits, simulated.
 
-use super::{BINS, Lines, SHARES, TABLE, limits};
+use super::{BINS, Lines, TABLE, limits};
 use crate::drift::scores::{COMPONENTS, Scorer};
 use crate::drift::statistic::{Kind, Scan, Signature};
 use crate::random::Stream;
