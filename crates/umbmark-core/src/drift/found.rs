@@ -407,18 +407,30 @@ impl Numbers {
         let of_change = covariance(&|side| side.counts.iter().map(|count| 1.0 / *count as f64).sum())?;
         let [of_before, of_after] = [0, 1].map(|at| covariance(&|side: &Side| 1.0 / side.counts[at] as f64));
         let (of_before, of_after) = (of_before?, of_after?);
-        let (mut pull, mut whole) = (DVector::zeros(numbers), 0.0);
-        for side in &sides.sides {
-            let (weight, shift) = (Sides::weight(side)?, Sides::shift(side));
-            pull += slopes(side, &at)?.transpose() * &weight * &shift;
-            whole += (&weight * &shift).dot(&shift);
+        // The change is not linear where it is large: each step begins where the one before ended.
+        let mut delta = DVector::zeros(numbers);
+        let (mut whole, mut unexplained) = (0.0, 0.0);
+        for _ in 0..6 {
+            let (mut information, mut pull) = (DMatrix::zeros(numbers, numbers), DVector::zeros(numbers));
+            (whole, unexplained) = (0.0, 0.0);
+            for side in &sides.sides {
+                let after = &at + &delta;
+                let (weight, shift, jacobian) = (Sides::weight(side)?, Sides::shift(side), slopes(side, &after)?);
+                let mut off = &shift - (predicted(side, &after)? - predicted(side, &at)?);
+                if count > 2 {
+                    off[2] = wrap(off[2]);
+                }
+                information += jacobian.transpose() * &weight * &jacobian;
+                pull += jacobian.transpose() * &weight * &off;
+                whole += (&weight * &shift).dot(&shift);
+                unexplained += (&weight * &off).dot(&off);
+            }
+            delta += information.try_inverse()? * pull;
         }
-        let delta = &of_change * &pull;
         if !delta.iter().chain(at.iter()).all(|value| value.is_finite()) {
             return None;
         }
         let left = sides.sides.len() * count - numbers;
-        let unexplained = (whole - delta.dot(&pull)).max(0.0);
         let p_left = (left > 0).then(|| f_upper_tail(unexplained / left as f64, [left as f64, sides.freedom]));
         let quantile = student_t_quantile(0.5 + 0.5 * CONFIDENCE, sides.freedom);
         let p: Vec<f64> =
