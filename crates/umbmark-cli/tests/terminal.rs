@@ -50,7 +50,7 @@ const COMMANDS: &[&str] = &[
     "changed tracked fresh_day",
     "changed slope tape",
     "watch tape --verbose",
-    "watch tape --state robot.watch.json --restart cw_2",
+    "watch tape --state robot.watch.json --restart cw_02",
     "watch slope --check",
     "convert one -o one_mcap --to mcap",
     "inspect one_mcap",

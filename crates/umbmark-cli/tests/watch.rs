@@ -76,7 +76,7 @@ fn a_state_of_another_robot_or_rate_or_that_is_none_is_refused_by_one_sentence()
     let text = refused(&with(&["--false-alarms", "0.1"]));
     assert!(text.contains("watched with 0.01 false alarms a month of 60 runs, and not with 0.1 of 60"), "{text}");
     let text = refused(&with(&["--restart", "cw_77"]));
-    assert!(text.contains("no run is called \"cw_77\"; the last one is \"ccw_6\""), "{text}");
+    assert!(text.contains("no run is called \"cw_77\"; the last one is \"ccw_06\""), "{text}");
     let state = folder.join("robot.watch.json");
     let good = std::fs::read_to_string(&state).unwrap();
     std::fs::write(&state, good.replacen("\"x_m\":0", "\"x_m\":1", 1)).unwrap();

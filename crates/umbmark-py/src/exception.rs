@@ -13,8 +13,8 @@ use umbmark_core::evidence::FitError as CoreFitError;
 use umbmark_core::joined::JoinError;
 use umbmark_core::learn::GearError;
 use umbmark_core::score::ScoreError;
-use umbmark_io::{DatasetError, StateError};
 use umbmark_io::checkpoint::CheckpointError;
+use umbmark_io::{DatasetError, StateError};
 
 /// Each exception with its base and its documentation, and those of the core that become it.
 macro_rules! exceptions {
