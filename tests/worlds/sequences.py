@@ -8,6 +8,7 @@ import argparse
 import json
 import subprocess
 import sys
+from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from math import pi, sqrt
 from pathlib import Path as File
@@ -27,8 +28,8 @@ PIECE_M = 0.05
 MONTH = 60
 """Runs."""
 QUIET = ("nothing", "student", "correlated", "bumps", "blocks")
-"""Worlds in which nothing changes: normal noise; Student's t with 4 degrees of freedom; correlated by 0.3 from run to run; wheels
-on rare bumps; all runs of a day in one direction first."""
+"""Worlds in which nothing changes: normal noise; Student's t with 4 degrees of freedom;
+correlated by 0.3 from run to run; wheels on rare bumps; five runs of a direction at a time."""
 
 
 class Change(NamedTuple):
@@ -51,6 +52,16 @@ CHANGES = {
     "start_50mm": Change(start_m=0.05),
     "bad_run": Change(),
 }
+
+
+class Asked(NamedTuple):
+    """How sequences are driven and watched."""
+
+    runs: int
+    change_at: int
+    side_m: float | None
+    rate: float
+    binary: File
 
 
 class Robot(NamedTuple):
@@ -78,13 +89,11 @@ def drawn(random: Random, side_m: float | None) -> Robot:
     return Robot(wheelbase, diameter, left, right, ratio, noise, side_m or side, heading, tape)
 
 
-def unit_noise(random: Random, what: str, runs: int) -> Array:
-    """Noise of one piece of each run, with variance 1."""
-    return random.standard_normal(runs)
-
-
 def driven(robot: Robot, sense: Array, factors: Array, random: Random, what: str) -> Array:
-    """Where the robot comes to stand after each run; `factors` are rows of left, right, wheelbase and noise."""
+    """Where the robot comes to stand after each run.
+
+    `factors` are rows of left, right, wheelbase and noise.
+    """
     runs = len(sense)
     x, y, heading = np.zeros((3, runs))
     left_factor, right_factor, base_factor, noise_factor = factors
@@ -112,7 +121,7 @@ def driven(robot: Robot, sense: Array, factors: Array, random: Random, what: str
 
 
 def correlated(ends: Array, sense: Array) -> Array:
-    """The same with deviations that are correlated by 0.3 from each run of a direction to its next."""
+    """The same with deviations that are correlated by 0.3 from a run to its next."""
     mixed = ends.copy()
     for own in (sense < 0, sense > 0):
         mean = ends[:, own].mean(axis=1, keepdims=True)
@@ -123,7 +132,9 @@ def correlated(ends: Array, sense: Array) -> Array:
     return mixed
 
 
-def sequence(robot: Robot, what: str, runs: int, change_at: int, random: Random) -> tuple[Array, Array]:
+def sequence(
+    robot: Robot, what: str, runs: int, change_at: int, random: Random
+) -> tuple[Array, Array]:
     """The sense of each run, and its return error."""
     sense = np.where(np.arange(runs) % 2 == 0, -1.0, 1.0)
     if what == "blocks":
@@ -161,62 +172,62 @@ def write(folder: File, robot: Robot, sense: Array, ends: Array) -> None:
     (folder / "returns.csv").write_text("\n".join([",".join(names), *rows]) + "\n")
 
 
-def said(what: str, seed: int, binary: File, runs: int, change_at: int, side_m: float | None, rate: float) -> dict[str, Any]:
-    """What the command says of a sequence."""
+def said(what: str, seed: int, asked: Asked) -> tuple[dict[str, Any], Robot]:
+    """What the command says of a sequence, and the robot."""
     random = stream(seed, what, "sequence")
-    robot = drawn(random, side_m)
-    sense, ends = sequence(robot, what, runs, change_at, random)
+    robot = drawn(random, asked.side_m)
+    sense, ends = sequence(robot, what, asked.runs, asked.change_at, random)
     with TemporaryDirectory() as place:
         folder = File(place) / "robot"
         write(folder, robot, sense, ends)
-        words = [str(binary), "watch", str(folder), "--json", "--threads", "1", "--false-alarms", str(rate)]
+        words = [str(asked.binary), "watch", str(folder), "--json", "--threads", "1"]
+        words += ["--false-alarms", str(asked.rate)]
         answer = subprocess.run(words, capture_output=True, text=True, timeout=300)
     if not answer.stdout:
         raise RuntimeError(f"{what} {seed}: {answer.stderr}")
-    found: dict[str, Any] = json.loads(answer.stdout)
-    found["robot"] = robot
-    return found
+    return json.loads(answer.stdout), robot
+
+
+def all_said(
+    what: str, asked: Asked, chosen: argparse.Namespace
+) -> list[tuple[dict[str, Any], Robot]]:
+    """What the command says of all sequences."""
+    seeds = range(chosen.first_seed, chosen.first_seed + chosen.sets)
+    with ThreadPoolExecutor(2) as pool:
+        return list(pool.map(lambda seed: said(what, seed, asked), seeds))
 
 
 def quiet(what: str, chosen: argparse.Namespace) -> None:
     """Alarms in months in which nothing changes; a sequence ends with its first alarm."""
     runs = chosen.months * MONTH + 10
-    with ThreadPoolExecutor(2) as pool:
-        seeds = range(chosen.first_seed, chosen.first_seed + chosen.sets)
-        answers = pool.map(
-            lambda seed: said(what, seed, chosen.binary, runs, runs, chosen.side, chosen.rate), seeds
-        )
-        alarms, compared, early, kinds = 0, 0, [0, 0], {}
-        for found in answers:
-            names = [run["run"] for run in found["runs"]]
-            change = found["change"]
-            last = names.index(change["seen"]) if change else len(names)
-            own = sum(run["used"] == "compared" for run in found["runs"][: last + 1])
-            compared += own
-            early[1] += min(own, MONTH) > 0
-            if change:
-                alarms += 1
-                early[0] += own <= MONTH
-                kinds[change["kind"]] = kinds.get(change["kind"], 0) + 1
+    alarms, compared, early, kinds = 0, 0, 0, Counter[str]()
+    asked = Asked(runs, runs, chosen.side, chosen.rate, chosen.binary)
+    for found, _ in all_said(what, asked, chosen):
+        names = [run["run"] for run in found["runs"]]
+        change = found["change"]
+        last = names.index(change["seen"]) if change else len(names)
+        own = sum(run["used"] == "compared" for run in found["runs"][: last + 1])
+        compared += own
+        if change:
+            alarms += 1
+            early += own <= MONTH
+            kinds[change["kind"]] += 1
     months = compared / MONTH
     print(
-        f"{what}: {alarms} alarms in {months:.0f} months, {alarms / months:.5f} a month ({chosen.rate} asked); "
-        f"in the first month {early[0]} of {early[1]}; {kinds}",
+        f"{what}: {alarms} alarms in {months:.0f} months, {alarms / months:.5f} a month, "
+        f"{chosen.rate} asked; in the first month {early} of {chosen.sets}; {dict(kinds)}",
         flush=True,
     )
 
 
 def changes(what: str, chosen: argparse.Namespace) -> None:
-    """How many runs after a change it is found, by the baseline."""
-    with ThreadPoolExecutor(2) as pool:
-        seeds = range(chosen.first_seed, chosen.first_seed + chosen.sets)
-        at = chosen.before
-        answers = list(
-            pool.map(lambda seed: said(what, seed, chosen.binary, at + 60, at, chosen.side, chosen.rate), seeds)
-        )
-    delays, early, kinds, covered, right, where = [], 0, {}, 0, 0, 0
+    """How many runs after a change it is found, and what is said of it."""
+    at = chosen.before
+    asked = Asked(at + 60, at, chosen.side, chosen.rate, chosen.binary)
+    delays: list[int] = []
+    early, covered, right, where, kinds = 0, 0, 0, 0, Counter[str]()
     key = "wheelbase_m" if "wheelbase" in what else "wheel_diameter_right_m"
-    for found in answers:
+    for found, robot in all_said(what, asked, chosen):
         names = [run["run"] for run in found["runs"]]
         change = found["change"]
         if not change:
@@ -227,21 +238,21 @@ def changes(what: str, chosen: argparse.Namespace) -> None:
             early += 1
             continue
         delays.append(seen - at + 1)
-        kinds[change["kind"]] = kinds.get(change["kind"], 0) + 1
+        kinds[change["kind"]] += 1
         where += names.index(change["earliest"]) <= at <= names.index(change["latest"])
-        robot, own = found["robot"], CHANGES[what]
-        right += bool(change["alone"]) and any(one["key"] == key for one in change["alone"])
-        e_d = robot.right / robot.left * (own.right - 1)
-        low, high = (change["numbers"] or [{"interval": [9, 9]}])[0]["interval"]
-        covered += low <= e_d <= high
+        right += any(one["key"] == key for one in change["alone"])
+        e_d = robot.right / robot.left * (CHANGES[what].right - 1)
+        if change["numbers"]:
+            low, high = change["numbers"][0]["interval"]
+            covered += low <= e_d <= high
     delays.sort()
-    share = [delays[int(len(delays) * part)] for part in (0.5, 0.8, 0.9, 0.95)] if delays else []
-    within = sum(delay <= 20 for delay in delays)
-    seen = sum(delay < 1000 for delay in delays)
+    share = [delays[int(len(delays) * part)] for part in (0.5, 0.8, 0.9, 0.95)]
+    within, seen = (sum(delay <= most for delay in delays) for most in (20, 60))
     print(
-        f"{what}: of {len(delays)} after {at} runs, {within} found within 20, {seen} within 60 "
-        f"({early} false before); 50, 80, 90, 95 % after {share}; {kinds}; E_d in its interval {covered}, "
-        f"the length named {right}, the run in its interval {where}",
+        f"{what}: of {len(delays)} after {at} runs, {within} found within 20, {seen} within 60, "
+        f"{early} false before; 50, 80, 90, 95 % after {share}; {dict(kinds)}; "
+        f"E_d in its interval {covered}, the length named {right}, "
+        f"the run in its interval {where}",
         flush=True,
     )
 
