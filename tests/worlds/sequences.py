@@ -1,7 +1,7 @@
-"""Sequences of squares by tape, driven by one robot, in which something changes at some run or nothing does.
+"""Squares by tape that one robot drives again and again, with a change at some run or without.
 
-`sequences.py nothing --sets 834` prints how often `umbmark watch` accuses robots that do not change, in months of 60 runs;
-`sequences.py wheel` how many runs after a change it is found.
+`sequences.py nothing --sets 834` prints how often `umbmark watch` accuses robots that do not
+change, in months of 60 runs; `sequences.py wheel_0.2` after how many runs a change is found.
 """
 
 import argparse
