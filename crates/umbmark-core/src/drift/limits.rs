@@ -37,6 +37,7 @@ pub(super) fn limits(signature: &Signature, directions: usize, scored: usize, pe
 
 /// Made by `simulated::lines`: two components in one direction, in two, three in one, and so on; 400 000 robots each
 /// and 40 000 of the last, seed 27.
+#[expect(clippy::approx_constant, reason = "simulated")]
 const TABLE: [Lines; 6] = [
     // 2 components, one direction.
     [

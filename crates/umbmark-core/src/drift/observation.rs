@@ -102,6 +102,7 @@ fn moved(at: &Correction, number: usize, by: f64) -> Correction {
 }
 
 /// The derivatives of the return error of a path, for a robot with this correction.
+#[expect(clippy::needless_range_loop, reason = "indices as in the equation")]
 pub(super) fn slopes_at(robot: &Robot, path: &Path, direction: Direction, at: &Correction) -> Option<Slopes> {
     let mut slopes = Slopes::default();
     for number in 0..NUMBERS {
@@ -116,6 +117,7 @@ pub(super) fn slopes_at(robot: &Robot, path: &Path, direction: Direction, at: &C
 }
 
 /// The derivatives of the return error and the scale of a log: what the same counts are for another robot.
+#[expect(clippy::needless_range_loop, reason = "indices as in the equation")]
 fn of_log(log: &TickLog, robot: &Robot) -> Option<Slopes> {
     let nominal = computed_poses(log, robot);
     let mut slopes = Slopes::default();

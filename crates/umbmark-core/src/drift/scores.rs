@@ -164,6 +164,7 @@ pub(super) fn cholesky(matrix: &Matrix, count: usize) -> Option<Matrix> {
 }
 
 /// The inverse of a lower triangle.
+#[expect(clippy::needless_range_loop, reason = "indices as in the equation")]
 pub(super) fn inverse(factor: &Matrix, count: usize) -> Matrix {
     let mut inverse = [[0.0; COMPONENTS]; COMPONENTS];
     for i in 0..count {

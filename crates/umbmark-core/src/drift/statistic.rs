@@ -102,6 +102,7 @@ impl Scan {
     }
 
     /// Adds a run; `None` is one that is not scored.
+    #[expect(clippy::needless_range_loop, reason = "indices as in the equation")]
     pub fn add(&mut self, direction: usize, scored: Option<&Scored>) {
         if let Some(scored) = scored {
             let (q, n) = (self.signature.components, scored.earlier as f64);

@@ -106,6 +106,7 @@ impl Counts {
 }
 
 /// The lines for so many components and directions, from so many simulated robots.
+#[expect(clippy::needless_range_loop, reason = "indices as in the equation")]
 fn lines(components: usize, directions: usize, robots: u64, seed: u64) -> Lines {
     let signature = usual(components);
     let purpose = (10 * components + directions) as u64;
