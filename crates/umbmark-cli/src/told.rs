@@ -5,6 +5,7 @@ use umbmark_core::changed::Changed;
 use umbmark_core::compare::Compared;
 use umbmark_core::dataset::Dataset;
 use umbmark_core::diagnose::{Diagnosis, Options};
+use umbmark_core::drift::{Arrived, Watched};
 use umbmark_core::drive::Robot;
 use umbmark_core::evidence::Fit;
 use umbmark_core::monte_carlo::{Ensemble, Metric, Sweep, SweepPoint};
@@ -25,7 +26,7 @@ use crate::tracks_report;
 use crate::verb::{
     calibrate as calibrating, changed as changing, compare as comparing, diagnose as diagnosing, fit as fitting,
 };
-use crate::verb::{inspect as inspecting, learn as learning, score as scoring};
+use crate::verb::{inspect as inspecting, learn as learning, score as scoring, watch as watching};
 
 /// Of `score`; without a dataset, the return errors are not drawn.
 pub fn score(data: Option<&Dataset>, score: &Score, convention: Convention) -> String {
@@ -70,6 +71,11 @@ pub fn solution(solution: &Solution, options: &Options) -> String {
 /// Of `changed`.
 pub fn changed(found: &Changed) -> String {
     changing::told(found)
+}
+
+/// Of `watch`.
+pub fn watched(watched: &Watched, arrived: &Arrived) -> String {
+    watching::told(watched, arrived, false)
 }
 
 /// Of `mc` and `merge`; `took` is how long it took \[s\], and for how many trials.

@@ -44,6 +44,8 @@ verbs! {
     Compare(compare),
     /// Find what changed of a robot between two tests
     Changed(changed),
+    /// Watch a robot that is tested again and again: did it change, since when, and what of it
+    Watch(watch),
     /// Correct the odometry of a log by a model, with its covariance; no reference is needed
     Apply(apply),
     /// Find which class of effects a model is missing, and what to measure next

@@ -28,3 +28,4 @@ mod solve;
 mod streams;
 mod terminal;
 mod together;
+mod watch;

@@ -17,6 +17,7 @@ pub mod changed;
 pub mod compare;
 pub mod dataset;
 pub mod diagnose;
+pub mod drift;
 pub mod drive;
 pub mod effect;
 pub mod engine;

@@ -52,6 +52,7 @@ results! {
     sweep: Sweep;
     tolerance: Tolerance;
     track_comparison: TrackComparison;
+    watched: Watched;
 }
 
 /// A number, or nothing where it is not finite.

@@ -98,6 +98,11 @@ pub fn standard_normal_share(value: f64) -> f64 {
     0.5 * libm::erfc(-value * std::f64::consts::FRAC_1_SQRT_2)
 }
 
+/// The value that F with these degrees of freedom stays below with `probability`; NaN for one outside (0, 1).
+pub fn f_quantile(probability: f64, degrees_of_freedom: [f64; 2]) -> f64 {
+    quantile(FisherSnedecor::new(degrees_of_freedom[0], degrees_of_freedom[1]), probability)
+}
+
 /// The probability that F with these degrees of freedom exceeds `f`.
 ///
 /// NaN for degrees of freedom that are not positive, or an F that is no number.
@@ -233,6 +238,11 @@ mod tests {
         }
         for (p, df, x) in [(0.025, 16.0, 6.907664), (0.975, 16.0, 28.845351), (0.5, 8.0, 7.344121)] {
             assert!((chi_squared_quantile(p, df) - x).abs() < 1e-5 * x, "{p} {df}: {}", chi_squared_quantile(p, df));
+        }
+        for (p, df, x) in
+            [(0.95, [4.0, 14.0], 3.112_250), (0.025, [4.0, 14.0], 1.0 / 8.683_8), (0.975, [14.0, 4.0], 8.683_8)]
+        {
+            assert!((f_quantile(p, df) - x).abs() < 1e-4 * x, "{p} {df:?}: {}", f_quantile(p, df));
         }
     }
 

@@ -164,7 +164,7 @@ struct Announced {
 }
 
 /// Content with the line before it that says how long it is and what its checksum is.
-fn framed(content: &impl Serialize) -> Result<String, serde_json::Error> {
+pub(crate) fn framed(content: &impl Serialize) -> Result<String, serde_json::Error> {
     let content = serde_json::to_string(content)? + "\n";
     let crc32 = crc32fast::hash(content.as_bytes());
     let line = Announced { umbmark_checkpoint: FORMAT, bytes: content.len() as u64, crc32 };
@@ -172,7 +172,7 @@ fn framed(content: &impl Serialize) -> Result<String, serde_json::Error> {
 }
 
 /// The content that a first line announces; all of a file of the first format, which has none.
-fn content(text: &[u8]) -> Result<&[u8], Damage> {
+pub(crate) fn content(text: &[u8]) -> Result<&[u8], Damage> {
     let end = text.iter().position(|byte| *byte == b'\n').map_or(text.len(), |end| end + 1);
     let (line, content) = text.split_at(end);
     let Ok(Announced { umbmark_checkpoint, bytes, crc32 }) = serde_json::from_slice(line) else { return Ok(text) };

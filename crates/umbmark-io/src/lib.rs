@@ -53,6 +53,7 @@ mod template;
 mod together;
 
 mod track_rows;
+mod watch_state;
 mod wheel_names;
 pub mod whole_file;
 
@@ -73,6 +74,7 @@ pub use robot_file::RobotFile;
 pub use save::Existing;
 pub use template::{template, write_template};
 pub use together::{load_together, load_together_of};
+pub use watch_state::{StateError, WatchState};
 
 use std::path::Path;
 use umbmark_core::dataset::Dataset;

@@ -7,13 +7,14 @@ use pyo3::prelude::*;
 use umbmark_core::calibrate::CalibrateError;
 use umbmark_core::changed::ChangeError;
 use umbmark_core::dataset::NoRobot;
+use umbmark_core::drift::DriftError;
 use umbmark_core::effect::{FormulaError, ModelError as CoreModelError};
 use umbmark_core::evidence::FitError as CoreFitError;
 use umbmark_core::joined::JoinError;
 use umbmark_core::learn::GearError;
 use umbmark_core::score::ScoreError;
-use umbmark_io::DatasetError;
 use umbmark_io::checkpoint::CheckpointError;
+use umbmark_io::{DatasetError, StateError};
 
 /// Each exception with its base and its documentation, and those of the core that become it.
 macro_rules! exceptions {
@@ -45,7 +46,7 @@ exceptions! {
     DataError(
         UmbmarkError,
         "A file that cannot be read, or measurements that do not hold what was asked of them."
-    ) = DatasetError, JoinError, NoRobot, ScoreError, CalibrateError, CheckpointError;
+    ) = DatasetError, JoinError, NoRobot, ScoreError, CalibrateError, CheckpointError, DriftError, StateError;
     ModelError(UmbmarkError, "A model with an effect, a parameter, a value or a formula that there is not.")
         = CoreModelError, FormulaError;
     FitError(UmbmarkError, "A model that cannot be fitted to these measurements.") = CoreFitError, GearError, ChangeError;

@@ -63,6 +63,7 @@ module! {
     sweep: sweep;
     tolerance: tolerance;
     tracks: tracks;
+    watch: watch;
     work;
 }
 

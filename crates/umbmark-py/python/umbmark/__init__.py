@@ -14,6 +14,7 @@ carries a unit (``sigma_m``), that is its unit. What the command does, this pack
 ``compare``, ``diagnose``          what models explain, and what they are missing
 ``solve``                          the one answer: what to write into the robot
 ``changed``                        what changed of a robot between two tests
+``watch``                          whether a robot that is tested again and again changes
 ``apply``                          corrected odometry from counts and a model
 ``tracks``                         measured runs beside odometry and a model: residuals as arrays
 ``fit``, ``learn``                 fit a model; add what is missing until nothing is
@@ -89,6 +90,7 @@ from umbmark._umbmark import (
 )
 from umbmark._unlisted import Unlisted
 from umbmark._warnings import ConversionWarning, UmbmarkWarning
+from umbmark._watch import Watched, watch
 
 # Nothing is logged unless the program that uses this package asks for it.
 logging.getLogger("umbmark").addHandler(logging.NullHandler())
@@ -147,6 +149,7 @@ __all__ = [
     "UmbmarkError",
     "UmbmarkWarning",
     "Unlisted",
+    "Watched",
     "__version__",
     "apply",
     "calibrate",
@@ -181,4 +184,5 @@ __all__ = [
     "sweep",
     "tolerance",
     "tracks",
+    "watch",
 ]

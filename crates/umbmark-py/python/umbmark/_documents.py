@@ -3699,6 +3699,260 @@ class Bin(Record, frozen=True):
     amount: float
 
 
+class Watched(Result, frozen=True):
+    """What is known of a robot that is watched.
+
+    Attributes
+    ----------
+    changed : bool
+        Whether something changed.
+    sentence : str
+        The answer in words.
+    change : WatchedChange or None
+        The change; None where nothing changed.
+    new : int
+        Number of runs that are new.
+    runs : tuple[WatchedRun, ...]
+        All runs in the order in which they arrived.
+    missing : tuple[int, int]
+        Runs that the baseline still needs, clockwise and counter-clockwise.
+    delays : tuple[WatchedDelay, ...]
+        How soon changes would be found that happened now; empty while there is no baseline, and
+        after an alarm.
+    vanished : tuple[str, ...]
+        Runs that were watched before and are not in the data any more.
+    altered : tuple[str, ...]
+        Runs that were watched before and have other values in the data now.
+    left_out : tuple[str, ...]
+        Runs of the data that cannot be watched.
+    false_alarms_per_month : float
+        Probability of a false alarm in a month.
+    runs_per_month : int
+        Runs in a month.
+    seed : int
+        Seed of the delays.
+    version : str
+        Version of umbmark.
+    """
+
+    changed: bool
+    sentence: str
+    change: WatchedChange | None
+    new: int
+    runs: tuple[WatchedRun, ...]
+    missing: tuple[int, int]
+    delays: tuple[WatchedDelay, ...]
+    vanished: tuple[str, ...]
+    altered: tuple[str, ...]
+    left_out: tuple[str, ...]
+    false_alarms_per_month: float
+    runs_per_month: int
+    seed: int
+    version: str
+
+
+class WatchedChange(Record, frozen=True):
+    """A change of a robot that is watched.
+
+    Attributes
+    ----------
+    kind : str
+        What changed: "numbers" of the robot, "place" of the return errors, or "scatter" of the
+        runs.
+    since : str
+        The first run after the change.
+    earliest : str
+        The first run after the change lies between this one,
+    latest : str
+        and this one, with 95 % probability.
+    seen : str
+        The run with which the alarm was raised.
+    runs_until_seen : int
+        Runs from the first after the change to that.
+    numbers : tuple[WatchedNumber, ...]
+        The numbers of the robot.
+    alone : tuple[WatchedLength, ...]
+        Lengths of which each accounts for the change of the numbers by itself, the best first.
+    p_left : float or None
+        p of what the numbers leave of the change of the return errors; None where they leave
+        nothing to compare.
+    places : tuple[WatchedPlace, ...]
+        The mean return errors.
+    scatter_ratio : float or None
+        Scatter after over before, as a ratio of standard deviations; None where it is not known.
+    scatter_interval : Interval or None
+        95 % interval of that.
+    """
+
+    kind: str
+    since: str
+    earliest: str
+    latest: str
+    seen: str
+    runs_until_seen: int
+    numbers: tuple[WatchedNumber, ...]
+    alone: tuple[WatchedLength, ...]
+    p_left: float | None
+    places: tuple[WatchedPlace, ...]
+    scatter_ratio: float | None
+    scatter_interval: Interval | None
+
+
+class WatchedNumber(Record, frozen=True):
+    """A number of the robot before and after a change.
+
+    Attributes
+    ----------
+    key : str
+        "e_d", "e_b" or "e_s"; where runs were not tracked, "e_b" is that for E_s = 1.
+    before : float
+        True over nominal before, as the return errors show it if nothing else makes them.
+    before_half : float or None
+        Half the width of the 95 % interval of that.
+    after : float
+        True over nominal after.
+    after_half : float or None
+        Half the width of the 95 % interval of that.
+    change : float
+        After less before.
+    interval : Interval or None
+        95 % interval of the change.
+    p_adjusted : float
+        p of no change, adjusted for all numbers (Holm).
+    moved : bool
+        Whether it moved by more than chance.
+    """
+
+    key: str
+    before: float
+    before_half: float | None
+    after: float
+    after_half: float | None
+    change: float
+    interval: Interval | None
+    p_adjusted: float
+    moved: bool
+
+
+class WatchedLength(Record, frozen=True):
+    """A length that accounts for a change of the numbers by itself.
+
+    Attributes
+    ----------
+    key : str
+        Its key in robot.toml.
+    share : float
+        Change of it as a share of itself.
+    half : float or None
+        Half the width of its 95 % interval.
+    p : float
+        p of what it leaves of the change.
+    """
+
+    key: str
+    share: float
+    half: float | None
+    p: float
+
+
+class WatchedPlace(Record, frozen=True):
+    """The mean return error of a direction, after a change less before.
+
+    Attributes
+    ----------
+    direction : str
+        "cw" or "ccw".
+    x_m : float
+        Along the START heading, in m.
+    x_half_m : float or None
+        Half the width of its 95 % interval, in m.
+    y_m : float
+        To the left, in m.
+    y_half_m : float or None
+        Half the width of its 95 % interval, in m.
+    heading_rad : float or None
+        Heading, in rad; None where it was not measured.
+    heading_half_rad : float or None
+        Half the width of its 95 % interval, in rad.
+    """
+
+    direction: str
+    x_m: float
+    x_half_m: float | None
+    y_m: float
+    y_half_m: float | None
+    heading_rad: float | None
+    heading_half_rad: float | None
+
+
+class WatchedRun(Record, frozen=True):
+    """A run of a robot that is watched.
+
+    Attributes
+    ----------
+    run : str
+        Its name.
+    direction : str
+        "cw" or "ccw".
+    used : str
+        What it is used for: "earlier" than the baseline, "baseline", "compared" or "left_out".
+    reason : str or None
+        Why it is left out; None where it is not.
+    outlying : bool
+        Whether it lies farther out than one good run in 200, and belongs to no lasting change.
+    p : float or None
+        Probability that a good run lies as far from what the earlier runs predict; None where it
+        was not compared.
+    numbers : float or None
+        Logarithm of the likelihood ratio of a change of E_d, E_b and E_s, as of this run; None
+        where it was not compared.
+    numbers_limit : float or None
+        Its limit.
+    place : float or None
+        The same of any other change of the return errors.
+    place_limit : float or None
+        Its limit.
+    scatter : float or None
+        The same of larger scatter.
+    scatter_limit : float or None
+        Its limit.
+    """
+
+    run: str
+    direction: str
+    used: str
+    reason: str | None
+    outlying: bool
+    p: float | None
+    numbers: float | None
+    numbers_limit: float | None
+    place: float | None
+    place_limit: float | None
+    scatter: float | None
+    scatter_limit: float | None
+
+
+class WatchedDelay(Record, frozen=True):
+    """How soon a change would be found that happened now.
+
+    Attributes
+    ----------
+    key : str
+        The key of a length in robot.toml.
+    share : float
+        The share by which it grows.
+    half : int or None
+        Runs after which half of such changes are found; None for more than 60.
+    most : int or None
+        Runs after which nine of ten are; None for more than 60.
+    """
+
+    key: str
+    share: float
+    half: int | None
+    most: int | None
+
+
 class Effect(Record, frozen=True):
     """An effect of the catalogue: equation, cause, signature, and effects that look like it.
 

@@ -56,6 +56,7 @@ __all__ = [
     "sweep",
     "tolerance",
     "tracks",
+    "watch",
     "write",
 ]
 
@@ -515,6 +516,15 @@ def changed(
     return_poses: bool,
     threads: int,
     progress: Callable[[int], object] | None,
+) -> tuple[str, str]: ...
+def watch(
+    data: Dataset,
+    state: str | None,
+    false_alarms: float | None,
+    runs_per_month: int | None,
+    restart: str | None,
+    seed: int,
+    threads: int,
 ) -> tuple[str, str]: ...
 def apply(
     data: Dataset, model: Model, start: tuple[float, float, float]
