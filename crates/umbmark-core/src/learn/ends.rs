@@ -89,11 +89,15 @@ impl<'a> Story<'a> {
         self.model.parts().iter().any(|own| own.effect.name() == part.effect.name())
     }
 
-    /// Adds an effect everywhere, without asking.
+    /// Adds an effect everywhere, without asking; not where it cannot be fitted.
     pub fn add(&mut self, part: &Part) -> Result<(), FitError> {
+        let Some(whole) = fitted_if_it_can_be(grown(self.ends, &self.model, part))? else { return Ok(()) };
         let folds = self.folds.par_iter().zip(&self.fold_models);
-        self.fold_models = folds.map(|(fold, model)| grown(fold, model, part)).collect::<Result<_, _>>()?;
-        self.model = grown(self.ends, &self.model, part)?;
+        let of_fold = |(fold, model): (&Ends, &Model)| {
+            Ok(fitted_if_it_can_be(grown(fold, model, part))?.unwrap_or_else(|| model.clone()))
+        };
+        self.fold_models = folds.map(of_fold).collect::<Result<_, FitError>>()?;
+        self.model = whole;
         let effect = part.effect.name();
         self.tell(Some(effect), vec![effect], None);
         Ok(())
@@ -114,18 +118,17 @@ impl<'a> Story<'a> {
     fn with_likeliest(&self, effect: &'static str, class: Vec<&'static str>, p: f64) -> Result<Story<'a>, FitError> {
         let folds = self.folds.par_iter().zip(&self.fold_models);
         let choose = |(fold, model): (&Ends, &Model)| match ends::likeliest(fold, model)? {
-            Some(own) => match grown(fold, model, &free_part(&fold.robot, own)?) {
-                // Once this run is left out, the effect cannot be fitted.
-                Err(FitError::NotConverged { .. } | FitError::OutOfBounds { .. }) => Ok(model.clone()),
-                fitted => fitted,
-            },
+            Some(own) => {
+                let fitted = fitted_if_it_can_be(grown(fold, model, &free_part(&fold.robot, own)?))?;
+                Ok(fitted.unwrap_or_else(|| model.clone()))
+            }
             None => Ok(model.clone()),
         };
         let mut further = Story {
             ends: self.ends,
             folds: self.folds.clone(),
             model: grown(self.ends, &self.model, &free_part(&self.ends.robot, effect)?)?,
-            fold_models: folds.map(choose).collect::<Result<_, _>>()?,
+            fold_models: folds.map(choose).collect::<Result<_, FitError>>()?,
             steps: self.steps.clone(),
         };
         further.tell(Some(effect), class, Some(p));
@@ -159,6 +162,14 @@ pub(super) fn free_part(robot: &Robot, effect: &str) -> Result<Part, FitError> {
     let part = model.add(effect).map_err(FitError::Model)?;
     part.free = true;
     Ok(part.clone())
+}
+
+/// A model, unless the runs allow no fit of it.
+fn fitted_if_it_can_be(fitted: Result<Model, FitError>) -> Result<Option<Model>, FitError> {
+    match fitted {
+        Err(FitError::NotConverged { .. } | FitError::OutOfBounds { .. }) => Ok(None),
+        fitted => fitted.map(Some),
+    }
 }
 
 /// A model with one more effect, fitted.

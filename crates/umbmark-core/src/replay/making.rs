@@ -117,7 +117,9 @@ impl Track {
                 Observed::AtStops => stops,
                 Observed::AtEnd => made == convoy.steps().len(),
             } {
-                track.observe(sight(step.time, step.speeds[0], robot));
+                let by_tape = observed == Observed::AtEnd;
+                let room = (!by_tape).then_some(Pose2::IDENTITY);
+                track.observe(Sight { room, ..sight(step.time, step.speeds[0], robot) });
             }
         }
         track.convoy = Some(Arc::new(convoy));
