@@ -79,8 +79,8 @@ EffectName: TypeAlias = Literal[
     "reference_heading_drift",
     "reference_heading_scale",
     "reference_lens",
-    "reference_noise",
     "reference_stretch",
+    "reference_noise",
 ]
 ActsOn: TypeAlias = Literal[
     "heading_per_metre",
