@@ -2,7 +2,7 @@
 //!
 //! Each new run is compared with what the earlier runs of its direction predict. Its scores are standard normal while nothing changes, whatever the
 //! robot, its path and its noise are (`scores`). The likelihood ratios of a change before any of the runs (`statistic`) raise an alarm where they
-//! exceed limits that were simulated once (`limits`), so that a robot that does not change is accused at a stated rate, the same with every run
+//! exceed limits that were simulated once (`limits`), so that the false-alarm rate is as stated, the same with every run
 //! from the first that is scored.
 //!
 //! | what changed | seen in |
@@ -43,7 +43,7 @@ pub use statistic::Kind;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DriftError {
-    /// A rate that is none.
+    /// A rate out of its range.
     #[error(
         "the false-alarm rate must be above 0 and at most 0.5 a month, and the runs 1 to 100000 a month; got {rate} and {runs}"
     )]
@@ -157,7 +157,7 @@ pub struct Watched {
     pub runs: Vec<Point>,
     /// Place of the run with which the baseline begins.
     pub begins: usize,
-    /// How often a good robot is accused.
+    /// The false-alarm rate.
     pub rate: Rate,
     /// The change, if there is an alarm.
     pub change: Option<Change>,

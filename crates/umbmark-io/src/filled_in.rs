@@ -9,7 +9,7 @@ use umbmark_core::stats::median;
 
 /// The least number of measured poses by which the pattern is recognised.
 const FEWEST: usize = 20;
-/// Filled-in poses lie within rounding of the line \[m\]; less than the second is never told apart.
+/// Filled-in poses lie within rounding of the line \[m\]; less than the second is never seen.
 const ROUNDING: (f64, f64) = (5e-5, 1e-7);
 /// Beyond so many times the usual distance, a pose breaks the line; measured ones do so by more, on average.
 const BREAKS: f64 = 3.0;

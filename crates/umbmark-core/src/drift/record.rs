@@ -32,7 +32,7 @@ impl Rate {
         -libm::expm1(libm::log1p(-self.false_alarms_per_month) / f64::from(self.runs_per_month))
     }
 
-    /// Refuses a rate that is none.
+    /// Refuses a rate out of its range.
     ///
     /// # Errors
     /// [`DriftError::Rate`].
@@ -128,7 +128,7 @@ impl Record {
     /// Nothing known yet of the robot of a dataset.
     ///
     /// # Errors
-    /// As of [`Record::add`]; [`DriftError::Rate`] for a rate that is none.
+    /// As of [`Record::add`]; [`DriftError::Rate`] for a rate out of its range.
     pub fn new(data: &Dataset, rate: Rate) -> Result<Record, DriftError> {
         let robot = usable(data)?;
         let known = Known::of(robot, data.path.as_ref());
