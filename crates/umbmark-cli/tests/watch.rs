@@ -49,7 +49,7 @@ fn a_folder_that_grows_is_watched_until_the_robot_changes_and_then_until_it_is_r
     write(folder, 30, 24);
     let text = flowing(&said(folder, &WATCH, 3));
     assert!(text.starts_with("The robot changed: since run cw_13"), "{text}");
-    assert!(text.contains("E_d moved from") && text.contains("in one of 100 months of 60 runs"), "{text}");
+    assert!(text.contains("E_d moved from") && text.contains("one in 100 months of 60 runs"), "{text}");
     let again = document(folder, &WATCH[..4]);
     assert_eq!((&again["changed"], &again["new"]), (&true.into(), &0.into()));
     assert_eq!(again["change"]["since"], "cw_13");
