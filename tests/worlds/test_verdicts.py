@@ -124,6 +124,16 @@ def test_poses_that_were_filled_in_are_left_out_and_the_robot_is_explained() -> 
     assert all(abs(one["standard_errors"]) < 4 for one in said["ratios"].values()), said["ratios"]
 
 
+def test_what_jumps_leave_is_not_called_chance(tmp_path: File) -> None:
+    small = [*SMALL, "run_s=60", "jump_m=0.006,0.012", "jump_rad=0.01,0.03"]
+    write(make("jumps", 5, [*small, "position_noise_m=0.001"]), tmp_path)
+    words = [str(COMMAND), "solve", str(tmp_path), "--json"]
+    solved = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
+    assert "4 jumps that only the fit shows make a part" in solved["sentence"], solved["sentence"]
+    assert "no more than chance" not in solved["sentence"]
+    assert any(step.startswith("Find the cause of") for step in solved["next"]), solved["next"]
+
+
 def test_where_nothing_is_hidden_nothing_is_accused() -> None:
     said = found("null", 4)
     assert (said["verdict"], said["added_wrong"]) == ("explained", [])

@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::Existing;
-use crate::lock::Lock;
+use crate::lock::{Held, Lock};
 use crate::whole_file::{FileError, WholeFile, in_words};
 use umbmark_core::monte_carlo::{Ensemble, MergeError, Shard, Study, Sweep, SweepPoint};
 use umbmark_core::result;
@@ -60,7 +60,7 @@ pub enum CheckpointError {
     #[error("{} exists already", .0.display())]
     Exists(PathBuf),
     /// It is a device, a pipe or a folder, from which nothing can be gone on with.
-    #[error("{} is not a regular file, and a checkpoint is read again; name another", .0.display())]
+    #[error("{} is not a regular file, and it is read again; name another", .0.display())]
     NotRegular(PathBuf),
     /// Another process writes it.
     #[error(
@@ -84,7 +84,7 @@ pub enum CheckpointError {
     },
     /// It was changed or cut off after it was written.
     #[error(
-        "{} is damaged: {damage}; give another copy of it, or begin the study anew",
+        "{} is damaged: {damage}; give another copy of it, or move it away and begin anew",
         file.display()
     )]
     Damaged {
@@ -172,7 +172,7 @@ pub(crate) fn framed(content: &impl Serialize) -> Result<String, serde_json::Err
 }
 
 /// The content that a first line announces; all of a file of the first format, which has none.
-pub(crate) fn content(text: &[u8]) -> Result<&[u8], Damage> {
+fn content(text: &[u8]) -> Result<&[u8], Damage> {
     let end = text.iter().position(|byte| *byte == b'\n').map_or(text.len(), |end| end + 1);
     let (line, content) = text.split_at(end);
     let Ok(Announced { umbmark_checkpoint, bytes, crc32 }) = serde_json::from_slice(line) else { return Ok(text) };
@@ -261,13 +261,7 @@ pub struct Keeper {
 impl Keeper {
     /// Takes the file for this process, before anything of it is read, and begins to count the time.
     pub fn of(checkpoint: Option<&Checkpoint>) -> Result<Keeper, CheckpointError> {
-        let lock = checkpoint.map(|checkpoint| {
-            let in_use = |held: crate::lock::Held| CheckpointError::InUse {
-                file: checkpoint.file.clone(),
-                process: held.process,
-            };
-            Lock::of(&checkpoint.file).map_err(in_use)
-        });
+        let lock = checkpoint.map(|checkpoint| locked(&checkpoint.file));
         Ok(Keeper { checkpoint: checkpoint.cloned(), _lock: lock.transpose()?.flatten(), saved: Instant::now() })
     }
 
@@ -315,13 +309,31 @@ impl Keeper {
 }
 
 fn read<T: DeserializeOwned>(file: &Path, what: &'static str) -> Result<T, CheckpointError> {
+    read_from(file, what, false)
+}
+
+/// Reads what has a first line with its checksum, and refuses files of the first format, which have none.
+pub(crate) fn read_framed<T: DeserializeOwned>(file: &Path, what: &'static str) -> Result<T, CheckpointError> {
+    read_from(file, what, true)
+}
+
+fn read_from<T: DeserializeOwned>(file: &Path, what: &'static str, framed: bool) -> Result<T, CheckpointError> {
     let text = std::fs::read(file);
     let text = text.map_err(|error| CheckpointError::Read { file: file.to_owned(), error })?;
     let content = content(&text).map_err(|damage| CheckpointError::Damaged { file: file.to_owned(), damage })?;
-    serde_json::from_slice(content).map_err(|error| CheckpointError::Other { file: file.to_owned(), what, error })
+    let read = match framed && content.len() == text.len() {
+        true => Err(serde::de::Error::custom("its first line does not announce one")),
+        false => serde_json::from_slice(content),
+    };
+    read.map_err(|error| CheckpointError::Other { file: file.to_owned(), what, error })
 }
 
-fn write(file: &Path, content: &impl Serialize) -> Result<(), CheckpointError> {
+/// Takes a file for this process, until the lock is dropped.
+pub(crate) fn locked(file: &Path) -> Result<Option<Lock>, CheckpointError> {
+    Lock::of(file).map_err(|Held { process }| CheckpointError::InUse { file: file.to_owned(), process })
+}
+
+pub(crate) fn write(file: &Path, content: &impl Serialize) -> Result<(), CheckpointError> {
     let failed = |error: serde_json::Error| FileError::Write { file: file.to_owned(), error: error.into() };
     Ok(WholeFile::write(file, Existing::Replace, framed(content).map_err(failed)?.as_bytes())?)
 }

@@ -2,55 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::Existing;
-use crate::checkpoint::{Damage, content, framed};
-use crate::lock::{Held, Lock};
-use crate::whole_file::{FileError, WholeFile, in_words};
+use crate::checkpoint::{self, CheckpointError};
+use crate::lock::Lock;
 use umbmark_core::drift::{DriftError, Record};
 
 /// Why the state of a watch is not read, or not written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StateError {
-    /// It is a device, a pipe or a folder.
-    #[error("{} is not a regular file, and a state is read again; name another", .0.display())]
-    NotRegular(PathBuf),
-    /// Another process writes it.
-    #[error(
-        "{} is written by {} at this moment; wait for it, or name another file",
-        file.display(),
-        process.map_or("another process".to_owned(), |process| format!("process {process}"))
-    )]
-    InUse {
-        /// The file.
-        file: PathBuf,
-        /// The number of the process, if it is known.
-        process: Option<u32>,
-    },
-    /// It cannot be read.
-    #[error("cannot read {}: {}", file.display(), in_words(error, "there is no such file"))]
-    Read {
-        /// The file.
-        file: PathBuf,
-        /// Why.
-        error: std::io::Error,
-    },
-    /// It was changed or cut off after it was written.
-    #[error("{} is damaged: {damage}; give another copy of it, or move it away and begin anew", file.display())]
-    Damaged {
-        /// The file.
-        file: PathBuf,
-        /// What differs from what its first line announces.
-        damage: Damage,
-    },
-    /// Something else stands in it.
-    #[error("{} is no state of a watch by this version of umbmark: {error}", file.display())]
-    Other {
-        /// The file.
-        file: PathBuf,
-        /// Why.
-        error: serde_json::Error,
-    },
+    /// It is not read or written, as any checkpoint is not.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     /// It says what no state says.
     #[error("{} is no state of a watch: {error}; give another copy of it, or move it away and begin anew", file.display())]
     Impossible {
@@ -59,9 +21,6 @@ pub enum StateError {
         /// What.
         error: DriftError,
     },
-    /// It cannot be written.
-    #[error(transparent)]
-    File(#[from] FileError),
 }
 
 /// The file in which a watch is kept. No other process writes it as long as this lives; who is killed leaves the old or the new state.
@@ -81,14 +40,15 @@ impl WatchState {
     pub fn open(file: &Path) -> Result<WatchState, StateError> {
         let there = std::fs::metadata(file);
         if there.is_ok_and(|there| !there.is_file()) {
-            return Err(StateError::NotRegular(file.to_owned()));
+            return Err(CheckpointError::NotRegular(file.to_owned()).into());
         }
-        let in_use = |Held { process }| StateError::InUse { file: file.to_owned(), process };
-        let lock = Lock::of(file).map_err(in_use)?;
-        let there = match std::fs::read(file) {
-            Ok(text) => Some(record(file, &text)?),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
-            Err(error) => return Err(StateError::Read { file: file.to_owned(), error }),
+        let lock = checkpoint::locked(file)?;
+        let there = match checkpoint::read_framed(file, "watch") {
+            Ok(Written { watch }) => {
+                Some(Record::checked(watch).map_err(|error| StateError::Impossible { file: file.to_owned(), error })?)
+            }
+            Err(CheckpointError::Read { error, .. }) if error.kind() == std::io::ErrorKind::NotFound => None,
+            Err(error) => return Err(error.into()),
         };
         Ok(WatchState { file: file.to_owned(), there, _lock: lock })
     }
@@ -101,14 +61,12 @@ impl WatchState {
     /// Writes a record down, beside the file and renamed; where it stands there already, nothing.
     ///
     /// # Errors
-    /// [`StateError::File`].
+    /// [`StateError::Checkpoint`].
     pub fn keep(&mut self, record: &Record) -> Result<(), StateError> {
         if self.there.as_ref() == Some(record) {
             return Ok(());
         }
-        let failed = |error: serde_json::Error| FileError::Write { file: self.file.clone(), error: error.into() };
-        let text = framed(&Written { watch: record }).map_err(failed)?;
-        WholeFile::write(&self.file, Existing::Replace, text.as_bytes())?;
+        checkpoint::write(&self.file, &Written { watch: record })?;
         self.there = Some(record.clone());
         Ok(())
     }
@@ -120,20 +78,10 @@ struct Written<R> {
     watch: R,
 }
 
-fn record(file: &Path, text: &[u8]) -> Result<Record, StateError> {
-    let file = || file.to_owned();
-    let content = content(text).map_err(|damage| StateError::Damaged { file: file(), damage })?;
-    let other = |error| StateError::Other { file: file(), error };
-    if content.len() == text.len() {
-        return Err(other(serde::de::Error::custom("its first line does not announce one")));
-    }
-    let Written { watch }: Written<Record> = serde_json::from_slice(content).map_err(other)?;
-    watch.checked().map_err(|error| StateError::Impossible { file: file(), error })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::checkpoint::framed;
     use umbmark_core::dataset::{Dataset, ReturnError, Run};
     use umbmark_core::drift::Rate;
     use umbmark_core::path::{Direction, Path as Course};
@@ -161,7 +109,7 @@ mod tests {
         let file = folder.path().join("robot.watch.json");
         let mut state = WatchState::open(&file).unwrap();
         assert!(state.record().is_none() && !file.exists());
-        assert!(matches!(WatchState::open(&file), Err(StateError::InUse { .. })));
+        assert!(matches!(WatchState::open(&file), Err(StateError::Checkpoint(CheckpointError::InUse { .. }))));
         state.keep(&record(7)).unwrap();
         drop(state);
         let mut state = WatchState::open(&file).unwrap();
@@ -174,7 +122,7 @@ mod tests {
         drop(state);
         assert_eq!(WatchState::open(&file).unwrap().record().unwrap().runs.len(), 8);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
-        assert!(matches!(WatchState::open(folder.path()), Err(StateError::NotRegular(_))));
+        assert!(matches!(WatchState::open(folder.path()), Err(StateError::Checkpoint(CheckpointError::NotRegular(_)))));
     }
 
     /// Every byte of the content changed by itself, the file cut at every place, no first line, another document, and numbers that no state has.
@@ -193,13 +141,19 @@ mod tests {
             let mut changed = good.clone();
             changed[at] ^= 1;
             let refused = of(&changed);
-            assert!(matches!(refused, Err(StateError::Damaged { .. })), "{at}: {refused:?}");
+            assert!(
+                matches!(refused, Err(StateError::Checkpoint(CheckpointError::Damaged { .. }))),
+                "{at}: {refused:?}"
+            );
         }
         for end in 0..good.len() {
             assert!(of(&good[..end]).is_err(), "{end}");
         }
-        assert!(matches!(of(&good[line..]), Err(StateError::Other { .. })));
-        assert!(matches!(of(framed(&7).unwrap().as_bytes()), Err(StateError::Other { .. })));
+        assert!(matches!(of(&good[line..]), Err(StateError::Checkpoint(CheckpointError::Other { .. }))));
+        assert!(matches!(
+            of(framed(&7).unwrap().as_bytes()),
+            Err(StateError::Checkpoint(CheckpointError::Other { .. }))
+        ));
         let forged = |forge: &dyn Fn(&mut Record)| {
             let mut record = record(3);
             forge(&mut record);
@@ -209,7 +163,10 @@ mod tests {
         assert!(matches!(forged(&|record| record.begins = 4), Err(StateError::Impossible { .. })));
         assert!(matches!(forged(&|record| record.runs[1].x_m = 1e300), Err(StateError::Impossible { .. })));
         assert!(matches!(forged(&|record| record.rate.runs_per_month = 0), Err(StateError::Impossible { .. })));
-        assert!(matches!(forged(&|record| record.runs[1].y_m = f64::NAN), Err(StateError::Other { .. })));
+        assert!(matches!(
+            forged(&|record| record.runs[1].y_m = f64::NAN),
+            Err(StateError::Checkpoint(CheckpointError::Other { .. }))
+        ));
         assert!(of(&good).is_ok());
     }
 }

@@ -84,7 +84,7 @@ fn word(direction: Direction) -> &'static str {
 fn chance(watched: &Watched) -> String {
     let months = 1.0 / watched.rate.false_alarms_per_month;
     format!(
-        "The false-alarm rate is one in {} months of {}.",
+        "The false-alarm rate is one in {} months of {}, if runs do not depend on each other.",
         if months >= 10.0 { format!("{months:.0}") } else { format!("{months:.1}") },
         counted(watched.rate.runs_per_month as usize, "run")
     )

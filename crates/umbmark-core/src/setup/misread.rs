@@ -251,14 +251,18 @@ impl<'a> Sheet<'a> {
                 Matrix2::new(sum(&first, &first), sum(&first, &second), sum(&first, &second), sum(&second, &second));
             values += products.lu().solve(&Vector2::new(sum(&first, &now), sum(&second, &now)))?;
             if !(values[0].abs() < CREDIBLE[0] && values[1].abs() < CREDIBLE[1]) {
-                return (values.norm() < 1.0).then_some(Fitted { misfit: f64::INFINITY, left: size.sqrt() });
+                return (values.norm() < 1.0).then(|| Fitted { misfit: f64::INFINITY, left: of_places(&told) });
             }
         }
         let now = left(values)?;
         let misfit = (0..told.len()).map(|k| now[k] * now[k] / variance(k)).sum::<f64>() / f64::from(counted - 2);
-        let places = [0, 1, 3, 4].map(|k| now[k] * now[k]).iter().sum::<f64>();
-        Some(Fitted { misfit, left: (0.5 * places).sqrt() })
+        Some(Fitted { misfit, left: of_places(&now) })
     }
+}
+
+/// Root mean square distance of both places \[m\].
+fn of_places(numbers: &[f64]) -> f64 {
+    (0.5 * [0, 1, 3, 4].map(|k| numbers[k] * numbers[k]).iter().sum::<f64>()).sqrt()
 }
 
 fn mean(errors: &[ReturnError]) -> Pose2 {

@@ -73,13 +73,14 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
     }
     let known: f64 = off.known.iter().map(|part| part.worth).sum();
     let explained = verdict == Verdict::Explained;
-    let jumps = if off.measure == Measure::Along { jumps(solution) } else { 0 };
+    // Runs begin anew behind the jumps that the setup found, and not behind those that only the fit shows.
+    let jumps = if off.measure == Measure::Along { solution.learnt.diagnosis.outliers.len() } else { 0 };
     let is_chance = |error: f64| off.chance.map_or(explained && jumps == 0, |chance| error <= chance);
     let by_chance = |error: f64| match off.chance {
         _ if is_chance(error) => ", no more than chance makes".to_owned(),
         Some(chance) => format!(", and chance stays below {} in 95 % of tests", mm(chance)),
-        None if jumps == 1 => ", of which one jump of the tracks makes a part".to_owned(),
-        None if jumps > 1 => format!(", of which {jumps} jumps of the tracks make a part"),
+        None if jumps == 1 => ", of which one jump that only the fit shows makes a part".to_owned(),
+        None if jumps > 1 => format!(", of which {jumps} jumps that only the fit shows make a part"),
         None => String::new(),
     };
     let mut said = Vec::new();
@@ -130,7 +131,7 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
     } else if !off.known.is_empty() {
         said.push(format!("The rest is {}{}.", mm(off.rest), by_chance(off.rest)));
         if verdict == Verdict::UnlistedEffect {
-            said.push(format!("A law of no catalogue has a cause that nobody knows{}.", hidden(solution)));
+            said.push(format!("The cause of a law outside the catalogue is not known{}.", hidden(solution)));
         }
     }
     said
@@ -139,7 +140,7 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
 /// That what is not known may hide in the new numbers, where there are some to write.
 fn hidden(solution: &Solution) -> &'static str {
     match solution.needed {
-        true => ": the new numbers may hold a part of it, for which their intervals make no allowance",
+        true => ": a part of it may be in the new numbers, and their intervals leave that out",
         false => "",
     }
 }
