@@ -116,7 +116,8 @@ fn least_worst_end(data: &Dataset, start: [f64; 3]) -> f64 {
     best
 }
 
-/// By the measure that the authors minimise, the same robot ends nearer in every set than by either of their methods.
+/// By the measure that the authors minimise, the same robot ends nearer in every set than by either of their methods. The first set of each
+/// path is searched, and every set where all are asked for.
 #[test]
 fn a_tricycle_fitted_by_its_final_poses_ends_no_worse_than_its_authors() {
     let Some(folder) = folder() else { return };
@@ -124,6 +125,10 @@ fn a_tricycle_fitted_by_its_final_poses_ends_no_worse_than_its_authors() {
     let mut sets: Vec<&str> = rows.iter().map(|(set, _)| set.as_str()).collect();
     sets.sort_unstable();
     sets.dedup();
+    if !asked() {
+        let path = |set: &str| set.rsplit_once('/').unwrap().0.to_owned();
+        sets.dedup_by_key(|set| path(set));
+    }
     for set in sets {
         let own = rows.iter().filter(|(other, _)| other == set);
         let best = own.filter_map(|(_, row)| row[12]).fold(f64::INFINITY, f64::min);
