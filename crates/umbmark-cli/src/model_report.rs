@@ -76,8 +76,7 @@ const OUTLIERS: usize = 5;
 
 /// Where runs were disturbed by less than what was found before the fit, a paragraph each.
 pub fn outliers_text(outliers: &[Outlier], setup: &Setup) -> String {
-    let [jumps, _] = setup.disturbances();
-    let outliers = &outliers[jumps.min(outliers.len())..];
+    let outliers = &outliers[setup.jumps().count().min(outliers.len())..];
     let one = |o: &Outlier| {
         let turned = o.turned.map(|t| format!(" and {:.2} deg", t.abs().to_degrees())).unwrap_or_default();
         let jump =

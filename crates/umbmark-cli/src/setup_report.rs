@@ -63,24 +63,22 @@ pub fn taken_text(taken: &[Taken]) -> String {
 /// Jumps and wrong poses, a paragraph each.
 pub fn disturbances_text(setup: &Setup) -> String {
     let mut text = String::new();
-    let absolute = setup.runs.iter().filter(|run| !run.relative);
-    let jumps = absolute.clone().flat_map(|run| run.jumps.iter().map(move |jump| (run, jump)));
+    let jumps = setup.jumps();
     for (run, jump) in jumps.clone().take(JUMPS) {
         let turned = jump.turned.map(|t| format!(" and {:.1} deg", t.to_degrees())).unwrap_or_default();
-        let said = format!(
-            "{} {}: the track jumps by {:.3} m{turned} ({:.0} standard deviations); the run starts anew there.",
-            run.run,
-            jump.when(2),
-            jump.moved,
-            jump.deviations
-        );
+        let size = format!("{:.3} m{turned} ({:.0} standard deviations)", jump.moved, jump.deviations);
+        let what = match jump.unrecorded {
+            Some(seconds) => format!("no rows for {seconds:.2} s; the wheels' way across is off by {size}"),
+            None => format!("the track jumps by {size}"),
+        };
+        let said = format!("{} {}: {what}; the run starts anew there.", run.run, jump.when(2));
         text += &hanging("jump", 10, &said);
     }
     if let rest @ 1.. = jumps.count().saturating_sub(JUMPS) {
         text += &hanging("", 10, &format!("and {rest} more (--json)"));
     }
     text += &setup.wrong_steps().map(|said| hanging("steps", 10, &format!("{said}."))).unwrap_or_default();
-    let wrong: Vec<&RunSetup> = absolute.filter(|run| !run.wrong.is_empty()).collect();
+    let wrong: Vec<&RunSetup> = setup.runs.iter().filter(|run| !run.relative && !run.wrong.is_empty()).collect();
     for run in wrong.iter().take(JUMPS) {
         text += &hanging("wrong", 10, &format!("{}, and left out.", run.notice()));
     }

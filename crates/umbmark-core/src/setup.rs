@@ -115,6 +115,8 @@ pub struct Jump {
     pub turned: Option<f64>,
     /// In standard deviations of the motion from pose to pose.
     pub deviations: f64,
+    /// How long its log has no rows within it \[s\], where that is longer than usual: the way of the wheels is not known then.
+    pub unrecorded: Option<f64>,
 }
 
 /// What was found of one run.
@@ -325,6 +327,12 @@ impl Setup {
         let count = |of: fn(&RunSetup) -> usize| self.runs.iter().map(of).sum();
         [count(|run| run.jumps.len()), count(|run| run.wrong.len())]
     }
+
+    /// Jumps at which a track starts anew: those of references that tell more than motion.
+    pub fn jumps(&self) -> impl Iterator<Item = (&RunSetup, &Jump)> + Clone {
+        let absolute = self.runs.iter().filter(|run| !run.relative);
+        absolute.flat_map(|run| run.jumps.iter().map(move |jump| (run, jump)))
+    }
 }
 
 /// Distance from the beginning of a run at which the reference surely moves \[m\]. Wheels stand that roll less than this in a run \[m\], and
@@ -341,6 +349,11 @@ const OTHER_WHEELS: f64 = 1.5;
 const SURELY: f64 = 4.0;
 /// If more than this share of all poses jump or are wrong, these are no accidents.
 const ACCIDENTS: f64 = 0.1;
+/// Rows are missing where there is none for this many times the usual time between two.
+const GAP: f64 = 5.0;
+/// Without rows for this long \[s\] while the wheels roll this far \[m\], the way of the wheels is not known.
+const BLIND: (f64, f64) = (0.5, 0.05);
+
 impl Jump {
     /// Whether a pose is within it.
     pub(crate) fn holds(&self, pose: usize) -> bool {
@@ -388,10 +401,22 @@ fn told(mut run: RunSetup, seen: &Seen, found: Found) -> RunSetup {
         moved: leap.moved,
         turned: leap.turned,
         deviations: leap.deviations,
+        unrecorded: unrecorded(
+            &seen.log.time,
+            seen.log.reference[leap.from].sample,
+            seen.log.reference[leap.pose].sample,
+        ),
     };
     run.jumps = found.jumps.into_iter().map(jump).collect();
     run.delay = seen.late.measured();
     run
+}
+
+/// The longest time without a row from one sample to another \[s\], if it is longer than usual.
+fn unrecorded(time: &[f64], from: usize, to: usize) -> Option<f64> {
+    let usual = robust::median(time.windows(2).map(|pair| pair[1] - pair[0]));
+    let longest = time[from..=to].windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    (longest > GAP * usual).then_some(longest)
 }
 
 /// Every pose of a run with the corresponding pose by the wheels, scaled and mounted as all runs agree.
@@ -402,6 +427,9 @@ fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting>
     let with_heading = seen.log.reference.iter().all(|pose| pose.heading.is_some());
     let body = if with_heading { Pose2::new(ahead, left, agreement.yaw()) } else { Pose2::IDENTITY };
     let (mut pose, mut rolled, mut now) = (Pose2::IDENTITY, [0.0; 2], None);
+    // Where positions and headings are measured, their own differences show whether the way is lost.
+    let asked = !with_heading || seen.log.headings_only && seen.log.relative;
+    let mut before: Option<(usize, f64)> = None;
     let mut samples = seen.log.time.iter().copied().peekable();
     let mut drive_to = |time: f64| {
         let from: f64 = *now.get_or_insert(time);
@@ -422,11 +450,18 @@ fn sightings(seen: &Seen, robot: &Robot, agreement: &Agreement) -> Vec<Sighting>
         }
         let (pose, [way, turned]) = drive_to(taken);
         let expected = pose.compose(&body);
+        let blind = |(sample, rolled_then): (usize, f64)| {
+            unrecorded(&seen.log.time, sample, reference.sample).is_some_and(|seconds| seconds > BLIND.0)
+                && way + 0.5 * wheelbase * turned - rolled_then > BLIND.1
+        };
+        let after_gap = asked && before.is_some_and(blind);
+        before = Some((reference.sample, way + 0.5 * wheelbase * turned));
         Sighting {
             time: stamp,
             way,
             turned,
             rolled: way + 0.5 * wheelbase * turned,
+            after_gap,
             expected,
             measured: if seen.log.headings_only {
                 (expected.x, expected.y, reference.heading)

@@ -262,7 +262,7 @@ fn deviance(products: &DMatrix<f64>, log_scale: f64) -> f64 {
 /// The largest scatter of the delay from run to run that the motion allows \[s\], where no heading was measured: a late run then looks like
 /// one that began with another heading and turns by other angles, and the poses alone hardly tell these apart.
 fn longest_delay(observed: &Observed) -> f64 {
-    if observed.runs.iter().any(|run| run.blocks.iter().any(|block| block.headings > 0)) {
+    if observed.has_headings() {
         return f64::INFINITY;
     }
     let delays: Vec<_> = observed.setup.runs.iter().filter_map(|run| run.delay).collect();

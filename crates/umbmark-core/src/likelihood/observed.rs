@@ -213,6 +213,17 @@ impl Observed {
         observed
     }
 
+    /// Whether a heading was measured anywhere.
+    pub(crate) fn has_headings(&self) -> bool {
+        self.runs.iter().any(|run| run.blocks.iter().any(|block| block.headings > 0))
+    }
+
+    /// The same runs in pieces of about so many seconds, each with its own START.
+    pub(super) fn in_pieces(&self, seconds: f64) -> Observed {
+        let runs = self.runs.iter().flat_map(|run| pieces::of_about(run, seconds, &self.robot)).collect();
+        Observed { runs, ..self.clone() }
+    }
+
     /// The same runs, with the noise growing along the poses that `model` predicts.
     ///
     /// A rotation error moves the robot perpendicular to its true path; computed for a path that is a degree off, it would seem to move it

@@ -35,17 +35,14 @@ pub(super) type BlockIndex = (usize, usize);
 impl Observed {
     /// The jumps that were found before anything was fitted.
     pub(super) fn jumps(&self) -> Vec<Outlier> {
-        let of_run = |found: &RunSetup| {
-            let of = |jump: &Jump| Outlier {
-                run: found.run.clone(),
-                time: jump.time,
-                moved: jump.moved,
-                turned: jump.turned,
-                deviations: jump.deviations,
-            };
-            found.jumps.iter().map(of).collect::<Vec<_>>()
+        let of = |(found, jump): (&RunSetup, &Jump)| Outlier {
+            run: found.run.clone(),
+            time: jump.time,
+            moved: jump.moved,
+            turned: jump.turned,
+            deviations: jump.deviations,
         };
-        self.setup.runs.iter().filter(|run| !run.relative).flat_map(of_run).collect()
+        self.setup.jumps().map(of).collect()
     }
 }
 

@@ -98,6 +98,8 @@ pub struct Jump {
     pub turned_rad: Option<f64>,
     /// Size of the jump, in standard deviations of the motion from pose to pose; null where that is not known.
     pub standard_deviations: Option<f64>,
+    /// How long the log has no rows within it, in s: the way of the wheels is not known then; null where rows are as close as usual.
+    pub unrecorded_s: Option<f64>,
 }
 
 impl Jump {
@@ -109,6 +111,7 @@ impl Jump {
             moved_m: jump.moved,
             turned_rad: jump.turned,
             standard_deviations: finite(jump.deviations),
+            unrecorded_s: jump.unrecorded,
         }
     }
 }

@@ -64,7 +64,10 @@ pub(super) fn search(runs: &[Vec<Sighting>], steps_only: bool, counted: [f64; 2]
     };
     let (kept, jumps): (Vec<_>, Vec<_>) = runs.iter().enumerate().map(left).unzip();
     let stretches = stretches::search(runs, &kept, jumps, &spread);
-    let found = runs.iter().zip(&kept).zip(stretches).map(|((run, kept), stretches)| Found::of(run, kept, stretches));
+    let found = runs.iter().zip(&kept).zip(stretches).map(|((run, kept), mut stretches)| {
+        behind_gaps(run, kept, &mut stretches, &spread);
+        Found::of(run, kept, stretches)
+    });
     (found.collect(), noise)
 }
 
@@ -87,6 +90,18 @@ fn sorted_out(run: &[Sighting], kept: &[usize], jumps: Vec<Edge>, spread: &Sprea
         }
     }
     (kept, jumps)
+}
+
+/// Adds the places where rows are missing, however small the difference.
+fn behind_gaps(run: &[Sighting], kept: &[usize], jumps: &mut Vec<Edge>, spread: &Spread) {
+    for pair in kept.windows(2) {
+        let (from, to) = (pair[0], pair[1]);
+        let known = jumps.iter().any(|jump| jump.from <= from && to <= jump.to);
+        if !known && run[from + 1..=to].iter().any(|pose| pose.after_gap) {
+            jumps.push(Edge::between(run, from, to, spread));
+        }
+    }
+    jumps.sort_by_key(|jump| jump.from);
 }
 
 impl Found {
@@ -144,6 +159,7 @@ mod tests {
                             way,
                             turned,
                             rolled: way + 0.15 * turned,
+                            after_gap: false,
                             expected: pose,
                             measured,
                         }

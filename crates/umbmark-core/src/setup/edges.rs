@@ -31,6 +31,8 @@ pub(super) struct Sighting {
     pub turned: f64,
     /// Both together, the rotation as an arc at half the wheelbase \[m\].
     pub rolled: f64,
+    /// Whether rows are missing before it during which the wheels rolled, so that it does not tell how the robot came there.
+    pub after_gap: bool,
     pub expected: Pose2,
     /// The heading is `None` if it was not measured.
     pub measured: (f64, f64, Option<f64>),

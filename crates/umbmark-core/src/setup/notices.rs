@@ -12,8 +12,7 @@ impl Setup {
         let told = |fault: &Fault| format!("{}; to correct it, {}", fault.sentence(), fault.remedy());
         let mut notices: Vec<String> = self.all_faults().map(told).collect();
         notices.extend(self.doubts.iter().map(Suspicion::sentence));
-        let absolute = self.runs.iter().filter(|run| !run.relative);
-        let jumps = absolute.flat_map(|run| run.jumps.iter().map(|jump| jump.notice(&run.run)));
+        let jumps = self.jumps().map(|(run, jump)| jump.notice(&run.run));
         notices.extend(shortened(jumps.collect(), "jumps of tracks"));
         notices.extend(self.wrong_steps());
         let wrong = self.runs.iter().filter(|run| !run.relative && !run.wrong.is_empty()).map(RunSetup::notice);
@@ -39,6 +38,11 @@ impl Jump {
     pub(crate) fn notice(&self, run: &str) -> String {
         let turned = self.turned.map(|t| format!(" and {:.0} deg", t.to_degrees())).unwrap_or_default();
         let (moved, when) = (self.moved, self.when(1));
+        if let Some(seconds) = self.unrecorded {
+            return format!(
+                "run {run} has no rows for {seconds:.1} s {when}, and its wheels rolled: its return error is not the robot's"
+            );
+        }
         format!("the track of run {run} jumps by {moved:.2} m{turned} {when}: its return error is not the robot's")
     }
 

@@ -417,7 +417,35 @@ fn several_jumps_in_a_set_and_one_in_every_run_are_named_with_time_and_size() {
             assert!(*run == own && (jump.time - time).abs() < 0.06, "{jump:?}");
             assert!((jump.moved - libm::hypot(*x, *y)).abs() < 0.05, "{jump:?}");
             assert!((jump.turned.unwrap() - turned).abs() < 0.03, "{jump:?}");
+            assert_eq!(jump.unrecorded, None, "{jump:?}");
         }
+    }
+}
+
+#[test]
+fn where_no_rows_were_written_the_way_is_not_known_and_no_track_jumps() {
+    let mut runs = clean().runs();
+    let log = runs[1].log.as_mut().unwrap();
+    let missing = 400..500;
+    log.reference.retain(|pose| !missing.contains(&pose.sample));
+    for pose in log.reference.iter_mut().filter(|pose| pose.sample >= missing.end) {
+        pose.sample -= missing.len();
+    }
+    for column in [&mut log.time, &mut log.left, &mut log.right] {
+        column.drain(missing.clone());
+    }
+    let without_headings = runs.clone().into_iter().map(|mut run| {
+        run.log.iter_mut().flat_map(|log| &mut log.reference).for_each(|pose| pose.heading = None);
+        run
+    });
+    for runs in [runs, without_headings.collect()] {
+        let found = Setup::of(&runs, &robot(), None);
+        let jumps: Vec<_> = found.jumps().collect();
+        let [(run, jump)] = jumps[..] else { panic!("{jumps:?}") };
+        assert_eq!(run.run, "run_1");
+        assert!((jump.unrecorded.unwrap() - 5.05).abs() < 1e-9 && (jump.time - 25.0).abs() < 1e-9, "{jump:?}");
+        let notices = found.notices();
+        assert!(notices[0].starts_with("run run_1 has no rows for 5.1 s"), "{notices:?}");
     }
 }
 

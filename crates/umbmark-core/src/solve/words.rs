@@ -74,7 +74,7 @@ fn of_numbers(solution: &Solution, off: &Off) -> Vec<String> {
     let known: f64 = off.known.iter().map(|part| part.worth).sum();
     let explained = verdict == Verdict::Explained;
     // Runs begin anew behind the jumps that the setup found, and not behind those that only the fit shows.
-    let jumps = if off.measure == Measure::Along { solution.learnt.diagnosis.outliers.len() } else { 0 };
+    let jumps = if off.measure == Measure::Along { only_fitted(solution) } else { 0 };
     let is_chance = |error: f64| off.chance.map_or(explained && jumps == 0, |chance| error <= chance);
     let by_chance = |error: f64| match off.chance {
         _ if is_chance(error) => ", no more than chance makes".to_owned(),
@@ -145,10 +145,10 @@ fn hidden(solution: &Solution) -> &'static str {
     }
 }
 
-/// Number of jumps of the tracks, those that only the fit shows included.
-fn jumps(solution: &Solution) -> usize {
+/// Number of jumps of the tracks that only the fit shows.
+fn only_fitted(solution: &Solution) -> usize {
     let diagnosis = &solution.learnt.diagnosis;
-    diagnosis.setup.disturbances()[0] + diagnosis.outliers.len()
+    diagnosis.outliers.len().saturating_sub(diagnosis.setup.jumps().count())
 }
 
 /// Why the new numbers are not to be written alone.
@@ -235,11 +235,21 @@ pub(super) fn next(solution: &Solution) -> Vec<String> {
         );
         next.push("Then drive the same test again: `umbmark score` shows whether it is better.".into());
     }
-    if !solution.learnt.is_in_doubt() && jumps(solution) > 0 {
+    let found = || solution.learnt.diagnosis.setup.runs.iter().flat_map(|run| &run.jumps);
+    let unrecorded = found().filter(|jump| jump.unrecorded.is_some()).count();
+    let jumps = found().count() - unrecorded + only_fitted(solution);
+    if !solution.learnt.is_in_doubt() && jumps > 0 {
         next.push(format!(
             "Find the cause of {}: counts that were lost, a wheel that slipped, a push, or a reference that lost the robot. `umbmark learn \
              DATA` says where.",
-            counted(jumps(solution), "jump")
+            counted(jumps, "jump")
+        ));
+    }
+    if !solution.learnt.is_in_doubt() && unrecorded > 0 {
+        next.push(format!(
+            "Log without a gap: in {} no rows were written while the wheels rolled, and no odometry knows that way. `umbmark learn DATA` \
+             says where.",
+            counted(unrecorded, "place")
         ));
     }
     if !enough {

@@ -37,6 +37,12 @@ pub(super) fn cut(runs: Vec<ObservedRun>, robot: &Robot) -> Vec<ObservedRun> {
     runs.into_iter().flat_map(of_run).collect()
 }
 
+/// A run in pieces of about so many seconds; whole, if it has too few blocks for that.
+pub(super) fn of_about(run: &ObservedRun, seconds: f64, robot: &Robot) -> Vec<ObservedRun> {
+    let count = (duration(run) / seconds).min((run.blocks.len() / LEAST_BLOCKS) as f64).floor();
+    if count > 1.0 { in_pieces(run, count as usize, robot) } else { vec![run.clone()] }
+}
+
 fn duration(run: &ObservedRun) -> f64 {
     let sights = run.track.sights();
     sights.last().zip(sights.first()).map_or(0.0, |(last, first)| last.time - first.time)
