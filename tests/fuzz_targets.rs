@@ -30,6 +30,10 @@ fn survive(purpose: u64, good: &[Vec<u8>], rounds: u64, target: fn(&[u8]) -> boo
     assert!(fine > 0 && fine < rounds, "{fine}: damage too heavy or too light to tell anything");
 }
 
+fn examples() -> std::path::PathBuf {
+    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples")
+}
+
 /// The first byte chooses the ending.
 fn file(ending: &str, text: &[u8]) -> Vec<u8> {
     let first = targets::ENDINGS.iter().position(|own| *own == ending).unwrap() as u8;
@@ -39,8 +43,7 @@ fn file(ending: &str, text: &[u8]) -> Vec<u8> {
 #[test]
 fn files_of_every_layout() {
     let log = b"t_s,ticks_left,ticks_right,x_ref_m,y_ref_m,theta_ref_rad\n0.00,0,0,0.001,0,0\n0.05,40,42,,,\n0.10,80,85,0.02,0,0.01\n";
-    let examples = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
-    let sheet = std::fs::read(examples.join("tape/returns.csv")).unwrap();
+    let sheet = std::fs::read(examples().join("tape/returns.csv")).unwrap();
     survive(1, &[file("csv", log), file("csv", &sheet)], 400, targets::readers);
 }
 
@@ -48,9 +51,8 @@ fn files_of_every_layout() {
 fn robots_and_models() {
     let robot = targets::TAPE[0].as_bytes().to_vec();
     survive(2, &[robot], 4000, targets::robots);
-    let model = "[robot]\nwheelbase_m = 0.34\nwheel_diameter_m = 0.15\nticks_per_revolution = 2000\n\n[[effect]]\nname = \"mine\"\n\
-                 acts_on = \"heading_per_metre\"\nformula = \"a * cos(heading) + b\"\na = 0.01\nb = 0.0\nfree = true\n";
-    survive(3, &[model.into()], 2000, targets::models);
+    let carpet = std::fs::read(examples().join("carpet.toml")).unwrap();
+    survive(3, &[carpet], 2000, targets::models);
 }
 
 #[test]
@@ -67,7 +69,7 @@ fn formulas_of_any_text() {
 fn checkpoints_of_both_formats() {
     let mut model = Model::new(&Robot::labmate());
     model.set("wheel_noise", "k_sqrt_m", 1e-3).unwrap();
-    let study = Study { runs: [1, 1], ..Study::new(model, 20, 3) };
+    let study = Study { runs: [1, 1], ..Study::new(model, 1, 3) };
     let told = result::Study::new(&study, &result::NoiseFree::of(&study).unwrap(), &result::Told::default());
     let ensemble = study.run(|_| std::ops::ControlFlow::Continue(())).unwrap();
     let written = Written { seed: 3, study: told, ensemble }.text().unwrap().into_bytes();
