@@ -26,7 +26,6 @@ fn survive(purpose: u64, good: &[Vec<u8>], rounds: u64, target: fn(&[u8]) -> boo
         let input = damage::damage(good, &mut stream);
         fine += u64::from(target(&input));
     }
-    println!("input {purpose}: {rounds} damaged, {fine} of them still good");
     assert!(fine > 0 && fine < rounds, "{fine}: damage too heavy or too light to tell anything");
 }
 
