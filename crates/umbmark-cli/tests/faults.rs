@@ -155,14 +155,16 @@ impl Bench {
         let words = self.writing.words;
         let (mut now, mut changed) = (files(self.folder.path()), BTreeMap::new());
         now.retain(|path, bytes| {
-            let first = path.iter().next().unwrap().to_str().unwrap();
+            if path.iter().any(|part| left(part.to_str().unwrap())) {
+                return false;
+            }
             if path.starts_with(self.writing.place) {
                 if self.before.get(path) != Some(bytes) {
                     changed.insert(path.clone(), bytes.clone());
                 }
                 return self.before.contains_key(path);
             }
-            self.before.contains_key(path) || !left(first)
+            true
         });
         assert!(now.keys().eq(self.before.keys()), "{words} {fault}: other files: {:?}", now.keys());
         // Rows, a document or a page that ends as it should.
